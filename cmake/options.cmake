@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+# Compile options of every target of the project.
+add_library(sunder_options INTERFACE)
+target_compile_options(sunder_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual
+  # Bitwise repeatability over compilers' whims: no contraction of a*b+c.
+  -ffp-contract=off)
+if(SUNDER_WERROR)
+  target_compile_options(sunder_options INTERFACE -Werror)
+endif()
+# Only the parts of Eigen under MPL2: the library links into closed trainers.
+target_compile_definitions(sunder_options INTERFACE EIGEN_MPL2_ONLY)
+if(SUNDER_SANITIZE)
+  target_compile_options(sunder_options INTERFACE
+    -fsanitize=${SUNDER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(sunder_options INTERFACE -fsanitize=${SUNDER_SANITIZE})
+endif()

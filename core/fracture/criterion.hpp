@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a fracture model is to the frame: it looks at the state and names the next event, and it
+// keeps the cracks. A further model is a further implementation and one line in make_criterion.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sunder/backend.hpp"
+#include "sunder/crack.hpp"
+#include "sunder/report.hpp"
+
+namespace sunder {
+
+/// A pressing instrument as it acts now (method.md 7).
+struct ActingPress {
+  std::size_t instrument = 0;
+  const Press* press = nullptr;
+  Vec3 force;                   ///< times its ramp factor, N
+  std::vector<Index> nodes;     ///< pressed nodes
+};
+
+/// What a criterion may look at when it decides. Callbacks are cheap for single elements.
+struct FractureState {
+  const Problem& problem;
+  std::span<const std::uint8_t> destroyed;  ///< per element
+  StressSummary summary;
+  std::function<Voigt(Index)> current_stress;
+  /// Displacement of the intact body under the current expansion instruments alone, shape
+  /// (3 * nodes); computed at the first call of a step, cached.
+  std::function<std::span<const double>()> pristine_displacement;
+  Vec3 expansion_resultant;  ///< forces and grip reactions of all expansion instruments, N
+  std::vector<ActingPress> presses;
+};
+
+/// One event: the elements that one update destroys. `cause`, `element`, `crack`, `ratio`, `sif`
+/// are filled; step, event and load factor are the frame's. Empty: nothing breaks.
+struct Decision {
+  std::vector<DestroyedElement> elements;
+  /// Elements that must not start a crack any more (they share a node with a crack's elements).
+  std::vector<Index> excluded;
+  /// Findings to report, e.g. a closing push.
+  std::vector<std::string> warnings;
+};
+
+class FractureCriterion {
+ public:
+  virtual ~FractureCriterion() = default;
+  /// Names the next event and records it in the cracks (the caller always carries it out).
+  [[nodiscard]] virtual Decision decide(const FractureState& state) = 0;
+  /// Preset cracks; called once, before anything else, when the problem has any. Elements come in
+  /// crack order; returns what must be excluded as candidates.
+  [[nodiscard]] virtual Decision preset() = 0;
+  /// Nodes on which `press` acts, given what is destroyed (method.md 7), the lower (bottom
+  /// surface) node first; empty when its crack offers none (yet).
+  [[nodiscard]] virtual std::vector<Index> pressed_nodes(
+      const Press& press, std::span<const std::uint8_t> destroyed) const = 0;
+  [[nodiscard]] virtual const std::vector<Crack>& cracks() const = 0;
+};
+
+/// The criterion of problem.scene().fracture.model; never null (model none: never breaks anything).
+[[nodiscard]] std::unique_ptr<FractureCriterion> make_criterion(const Problem& problem);
+
+}  // namespace sunder

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// THE interface between the frame (simulation.hpp) and whatever computes it. Few, coarse
+// operations; state stays on the backend, a quiet frame returns only small structs.
+// Public functions check their arguments once and call the do_* of the backend.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sunder/problem.hpp"
+
+namespace sunder {
+
+/// What a scene asks of a backend; nothing else is allocated, built or computed. Asking for what
+/// was not planned is a UsageError.
+struct Needs {
+  bool stress = false;    ///< element stress, for the criterion or for output
+  bool yield = false;     ///< ratio to yield with its summary
+  bool damage = false;    ///< elements may be destroyed
+  bool pristine = false;  ///< displacement of the intact body (method B's remote stress)
+  std::vector<std::string> left_out;  ///< what this scene does not need, in words
+};
+
+/// The load of one solve. Forces act on free dofs (ascending, no dof twice). Every gripped dof of
+/// the problem (Problem::gripped_dofs) gets its prescribed displacement, in that order.
+struct Load {
+  std::vector<Index> force_dofs;
+  std::vector<double> forces;         ///< [N], same length
+  std::vector<double> displacements;  ///< [mm], one per gripped dof
+};
+
+struct SolveReport {
+  double residual = 0;  ///< |f - K u| / |f|, fp64, 0 without load (design.md "Accuracy")
+  double error = 0;     ///< estimate: largest |stress(du)| / largest |stress(u)| over live elements
+  int iterations = 0;   ///< of conjugate gradients, when they ran
+  bool polished = false;  ///< the frame was over tolerance and was refined
+};
+
+struct Worst {
+  Index element = kNone;
+  double ratio = 0;
+};
+
+/// Over live breakable elements; ties go to the lowest id.
+struct StressSummary {
+  Worst any;        ///< of all live breakable elements
+  Worst candidate;  ///< of those not excluded (exclude_candidates)
+};
+
+struct BackendInfo {
+  std::string backend;    ///< "cpu", "vulkan"
+  std::string device;     ///< marketing name
+  std::string driver;
+  std::string precision;  ///< "fp64", "fp32", ...
+  std::string route, update;
+  std::string why;        ///< one sentence: why this route
+  std::size_t memory_bytes = 0;  ///< held by the backend
+};
+
+/// A buffer that a scene makes a backend hold, for `plan`.
+struct BufferPlan {
+  std::string name;
+  std::size_t bytes = 0;
+};
+
+class Backend {
+ public:
+  virtual ~Backend();
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+
+  [[nodiscard]] virtual BackendInfo info() const = 0;
+  [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+
+  /// Loads for the following solves. Throws UsageError when sizes or dofs do not fit.
+  void set_load(const Load& load);
+
+  /// Displacement u of the damaged body under the current load, grips included. Refines the
+  /// solution until the stress error estimate is under the tolerance; throws NumericalError when
+  /// it cannot get there.
+  SolveReport solve();
+
+  /// Stress a_e D B u of every element from the last solve, and the summary over yield.
+  StressSummary stress();
+
+  /// Destroys live elements (one event: one update of rank 6 k). Ids must be valid, distinct, live.
+  void destroy(std::span<const Index> elements);
+
+  /// Takes elements out of StressSummary::candidate for good.
+  void exclude_candidates(std::span<const Index> elements);
+
+  /// Displacement of the *intact* body under `load`, at all nodes, shape (3 * nodes).
+  void solve_pristine(const Load& load, std::span<double> displacement);
+
+  /// Displacement of the last solve at all nodes (supports included), shape (3 * nodes), mm.
+  void read_displacement(std::span<double> displacement) const;
+  /// Stress of the last stress(), Voigt order, shape (elements), MPa.
+  void read_stress(std::span<Voigt> stress) const;
+  [[nodiscard]] Voigt read_stress(Index element) const;
+  /// Force that the grips exert on the body, one per gripped dof, N.
+  void read_reactions(std::span<double> reactions) const;
+
+  [[nodiscard]] const Problem& problem() const { return *problem_; }
+  [[nodiscard]] const Needs& needs() const { return needs_; }
+  /// 1 for destroyed elements, per element.
+  [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
+
+ protected:
+  Backend(std::shared_ptr<const Problem> problem, Needs needs);
+
+ private:
+  virtual void do_set_load(const Load& load) = 0;
+  virtual SolveReport do_solve() = 0;
+  virtual StressSummary do_stress() = 0;
+  virtual void do_destroy(std::span<const Index> elements) = 0;  // destroyed() is updated after it
+  virtual void do_exclude_candidates(std::span<const Index> elements) = 0;
+  virtual void do_solve_pristine(const Load& load, std::span<double> displacement) = 0;
+  virtual void do_read_displacement(std::span<double> displacement) const = 0;
+  virtual void do_read_stress(std::span<Voigt> stress) const = 0;
+  virtual Voigt do_read_stress(Index element) const = 0;
+  virtual void do_read_reactions(std::span<double> reactions) const = 0;
+
+  enum class Stage { created, loaded, solved, stressed };
+  void require(bool condition, const char* what) const;
+
+  std::shared_ptr<const Problem> problem_;
+  Needs needs_;
+  std::vector<std::uint8_t> destroyed_;
+  Stage stage_ = Stage::created;
+};
+
+}  // namespace sunder

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cracks as records: what a result file, a figure or a criterion needs to know about them.
+// Geometry is the projection on the board's plane (method.md 4), undeformed, in mm.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "sunder/types.hpp"
+
+namespace sunder {
+
+enum class CrackKind { edge, internal };
+
+struct CrackTip {
+  Vec2 position;   ///< in-plane coordinates (along e1, e2)
+  Vec2 direction;  ///< unit, forward
+  bool ended = false;
+};
+
+struct Crack {
+  int id = 0;
+  CrackKind kind = CrackKind::edge;
+  std::optional<Vec2> mouth;            ///< edge cracks
+  std::vector<CrackTip> tips;           ///< one (edge) or two (internal)
+  std::vector<Vec2> path;               ///< from mouth (or first tip) to the (second) tip
+  double length = 0;                    ///< of the path
+  std::vector<Index> elements;          ///< destroyed elements that belong to this crack, in order
+  std::map<Index, std::int8_t> side;    ///< node -> +1 left of the path, -1 right (seen along d)
+};
+
+/// The terms of the stress intensity factor at one tip (Eq. 1-4), kept with each progression.
+struct SifTerms {
+  int tip = 0;
+  double k = 0, k_a = 0, k_b = 0, k_c = 0;  ///< [MPa sqrt(mm)]
+  double theta = 0;                         ///< [deg] of growth from d, counter-clockwise
+  double reach = 0;                         ///< r_e [mm] of the element (Eq. 1)
+  double sigma0 = 0;                        ///< remote stress s0 [MPa]
+  double beta = 0;                          ///< [deg] between crack normal and n1
+  double a = 0, b = 0;                      ///< crack length and chord [mm]
+};
+
+}  // namespace sunder

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// A checked scene, turned into numbers: shapes, elasticity, dofs, resolved selections. Immutable;
+// shared by the simulation and its backend.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sunder/scene.hpp"
+
+namespace sunder {
+
+/// Constant-strain tetrahedron: gradients of the four shape functions [1/mm] and volume [mm^3].
+struct TetShape {
+  Eigen::Matrix<double, 3, 4> gradient;
+  double volume = 0;
+};
+
+/// An instrument's resolved nodes (empty for Press: they depend on the crack's state).
+struct InstrumentNodes {
+  std::vector<Index> nodes;  ///< ascending
+};
+
+class Problem {
+ public:
+  /// Checks the scene strictly and resolves all names and selections. Throws InputError.
+  explicit Problem(Scene scene);
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const Mesh& mesh() const { return scene_.mesh; }
+  [[nodiscard]] Index node_count() const { return mesh().node_count(); }
+  [[nodiscard]] Index tet_count() const { return mesh().tet_count(); }
+
+  /// Shape of element e.
+  [[nodiscard]] const TetShape& shape(Index e) const { return shapes_[e]; }
+  /// Material of element e.
+  [[nodiscard]] const Material& material(Index e) const {
+    return *material_of_volume_[mesh().volume_of[e]];
+  }
+  /// Yield stress of element e [MPa]; 0: unbreakable.
+  [[nodiscard]] double yield(Index e) const { return material(e).yield.value_or(0.0); }
+  [[nodiscard]] bool breakable(Index e) const { return material(e).yield.has_value(); }
+
+  /// Number of unknowns n: dofs not held by a support. Gripped dofs are unknowns.
+  [[nodiscard]] Index dof_count() const { return dof_count_; }
+  /// Unknown of (node, axis), or kNone where a support holds it.
+  [[nodiscard]] Index dof(Index node, int axis) const { return dof_[3 * node + axis]; }
+  /// Same, flat: index 3 * node + axis.
+  [[nodiscard]] std::span<const Index> dofs() const { return dof_; }
+  /// Unknowns with prescribed displacement, ascending, of all grips.
+  [[nodiscard]] std::span<const Index> gripped_dofs() const { return gripped_dofs_; }
+  /// Spring [N/mm] added to K0 at the gripped dofs of a body that only grips hold; 0 when every
+  /// body has supports of its own. It leaves the solution exact: u is prescribed there, so the
+  /// spring's force is known and is taken off the reaction.
+  [[nodiscard]] double anchor_stiffness() const { return anchor_stiffness_; }
+  [[nodiscard]] std::span<const Index> anchored_dofs() const { return anchored_dofs_; }
+
+  [[nodiscard]] const std::vector<InstrumentNodes>& instrument_nodes() const {
+    return instrument_nodes_;
+  }
+  /// Elements of each preset crack, ascending.
+  [[nodiscard]] const std::vector<std::vector<Index>>& crack_elements() const {
+    return crack_elements_;
+  }
+  /// Elements of each scripted removal, ascending.
+  [[nodiscard]] const std::vector<std::vector<Index>>& removal_elements() const {
+    return removal_elements_;
+  }
+  /// Findings that are no errors.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  void resolve_materials();
+  void build_shapes();
+  void resolve_supports();
+  void resolve_instruments();
+  void resolve_elements();
+  void check_options() const;
+  void check_held_bodies();
+
+  Scene scene_;
+  std::vector<TetShape> shapes_;
+  std::vector<const Material*> material_of_volume_;
+  std::vector<Index> dof_;
+  Index dof_count_ = 0;
+  std::vector<Index> gripped_dofs_, anchored_dofs_;
+  double anchor_stiffness_ = 0;
+  std::vector<InstrumentNodes> instrument_nodes_;
+  std::vector<std::vector<Index>> crack_elements_, removal_elements_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace sunder

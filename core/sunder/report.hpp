@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run tells: one record per destroyed element, one per step.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sunder/backend.hpp"
+#include "sunder/crack.hpp"
+
+namespace sunder {
+
+enum class Cause { mss, sif, preset, script };
+[[nodiscard]] const char* to_string(Cause cause);
+
+/// One destroyed element (a row of events.csv).
+struct DestroyedElement {
+  int step = 0;
+  int event = 0;  ///< over the whole run, from 0
+  Index element = kNone;
+  Cause cause = Cause::mss;
+  int crack = kNone;           ///< for sif, preset, and the mss that starts a crack
+  std::optional<double> ratio; ///< mss: measure/yield; sif: r_e / max(rho, h/2)
+  double load_factor = 0;      ///< scene time t
+  std::optional<SifTerms> sif;
+};
+
+/// The stages of a frame, in order; milliseconds.
+struct StageTimes {
+  double load = 0, solve = 0, stress = 0, decide = 0, update = 0, total = 0;
+};
+
+/// One step (a row of frames.csv).
+struct StepReport {
+  int step = 0;
+  double load_factor = 0;
+  int events = 0;     ///< of this step
+  int destroyed = 0;  ///< total so far
+  double compliance = 0;
+  double residual = 0;
+  double error = 0;
+  double max_yield_ratio = 0;  ///< over live breakable elements, at the end of the step
+  int iterations = 0;
+  bool polished = false;
+  StageTimes times;
+};
+
+}  // namespace sunder

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene as the user states it: mesh, materials, supports, instruments, cracks, scripts, options.
+// Plain data; `Problem` (problem.hpp) checks it and turns it into numbers. Units: mm, N, MPa.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "sunder/mesh.hpp"
+
+namespace sunder {
+
+/// Isotropic linear elasticity; without yield the material is unbreakable (method.md "Elasticity").
+struct Material {
+  double young = 0;             ///< E [MPa], finite and > 0
+  double poisson = 0;           ///< nu in (-1, 0.5)
+  std::optional<double> yield;  ///< yield stress [MPa], finite and > 0
+};
+
+struct Box {
+  Vec3 min, max;  ///< closed
+};
+struct Ball {
+  Vec3 center;
+  double radius = 0;
+};
+struct SurfaceName {
+  std::string name;
+};
+struct VolumeName {
+  std::string name;
+};
+
+/// Nodes by box, ball, named surface, or ids.
+using NodeSelection = std::variant<std::vector<Index>, Box, Ball, SurfaceName>;
+/// Elements by ids, named volume, or box (of centroids).
+using ElementSelection = std::variant<std::vector<Index>, VolumeName, Box>;
+
+struct Support {
+  NodeSelection nodes;
+  Axes axes;  ///< held axes
+};
+
+/// An instrument acts with clamp((t - begin)/(end - begin), 0, 1); a step at `begin` if equal.
+struct Ramp {
+  double begin = 0, end = 0;
+  [[nodiscard]] double factor(double time) const;
+};
+
+/// Pulls: a total force in equal parts on its nodes ("expansion", f1).
+struct Pull {
+  NodeSelection nodes;
+  Vec3 force;
+};
+/// Grips: a prescribed displacement of the held axes of its nodes (expansion by a stiff tool).
+/// A grip holds its nodes from the start; the ramp scales the displacement.
+struct Grip {
+  NodeSelection nodes;
+  Vec3 displacement;
+  Axes axes;
+};
+enum class CrackSide { upper, lower };
+/// Presses on one face of a crack at the nodes nearest to `at` ("pressure", f2; method.md 7).
+struct Press {
+  Vec3 at;
+  CrackSide side = CrackSide::upper;
+  int crack = 0;
+  Vec3 force;
+};
+
+struct Instrument {
+  std::string name;
+  std::variant<Pull, Grip, Press> action;
+  std::optional<Ramp> ramp;  ///< none: fully from the start
+  [[nodiscard]] double factor(double time) const { return ramp ? ramp->factor(time) : 1.0; }
+};
+
+/// A preset crack: its elements are destroyed from the start. Edge crack: mouth and one tip;
+/// internal crack: no mouth and two tips.
+struct PresetCrack {
+  ElementSelection elements;
+  std::optional<Vec3> mouth;
+  std::vector<Vec3> tips;
+};
+
+/// Elements removed before the first solve of a step (a cautery, a cut).
+struct ScriptedRemoval {
+  int step = 0;
+  ElementSelection elements;
+};
+
+enum class FractureModel { none, a, b };
+enum class YieldMeasure { max_shear, tresca };
+enum class RemoteStress { line, tip };
+enum class CrackLength { path, tool };
+enum class SifSource { formula };
+
+struct FractureOptions {
+  FractureModel model = FractureModel::none;
+  double alpha = 1e-6;  ///< remaining share of a destroyed element's stiffness, in (0, 1)
+  YieldMeasure yield_measure = YieldMeasure::max_shear;
+  RemoteStress sigma0 = RemoteStress::line;
+  CrackLength crack_length = CrackLength::path;
+  SifSource sif = SifSource::formula;
+  int max_events = 10000;            ///< of one step
+  std::optional<Vec3> plane_normal;  ///< overrides the third axis of the bounding box
+};
+
+enum class Route { automatic, inverse, condensed, factor, cg };
+enum class Update { automatic, eager, deferred };
+enum class Precision { automatic, fp32, fp64 };
+
+struct SolverOptions {
+  std::string backend = "auto";  ///< "auto" or a backend's name
+  int device = kNone;            ///< index among the backend's devices, kNone: it chooses
+  Route route = Route::automatic;
+  Update update = Update::automatic;
+  Precision precision = Precision::automatic;
+  double tolerance = 1e-4;  ///< promised relative stress error of every frame
+};
+
+struct OutputOptions {
+  bool displacement = true;
+  bool stress = true;
+};
+
+struct Scene {
+  std::string title;
+  std::string source;  ///< where it came from (a file name); begins messages
+  Mesh mesh;
+  std::map<std::string, Material> materials;  ///< by volume name
+  std::vector<Support> supports;
+  std::vector<Instrument> instruments;
+  std::vector<PresetCrack> cracks;
+  std::vector<ScriptedRemoval> removals;
+  FractureOptions fracture;
+  SolverOptions solver;
+  int steps = 1;
+  OutputOptions output;
+};
+
+}  // namespace sunder
