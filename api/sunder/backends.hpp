@@ -10,18 +10,6 @@
 
 namespace sunder {
 
-/// A device on which a backend can run, as `sunder devices` lists it.
-struct DeviceInfo {
-  std::string backend;     ///< "cpu", "vulkan"
-  int index = 0;           ///< among the backend's devices
-  std::string name;        ///< marketing name
-  std::string driver;
-  std::string precisions;  ///< "fp64", "fp32 fp64", ...
-  std::string limits;      ///< one line: memory, largest buffer, threads
-  bool chosen = false;     ///< by backend = "auto"
-  std::string why;         ///< why it is chosen, or why not
-};
-
 /// Names that `backend = ...` takes besides "auto".
 [[nodiscard]] std::vector<std::string> backend_names();
 

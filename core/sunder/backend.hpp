@@ -51,13 +51,25 @@ struct StressSummary {
 };
 
 struct BackendInfo {
-  std::string backend;    ///< "cpu", "vulkan"
-  std::string device;     ///< marketing name
+  std::string backend;  ///< "cpu", "vulkan"
+  std::string device;   ///< marketing name
   std::string driver;
   std::string precision;  ///< "fp64", "fp32", ...
   std::string route, update;
-  std::string why;        ///< one sentence: why this route
+  std::string why;               ///< one sentence: why this route
   std::size_t memory_bytes = 0;  ///< held by the backend
+};
+
+/// A device on which a backend can run, as `sunder devices` lists it.
+struct DeviceInfo {
+  std::string backend;  ///< "cpu", "vulkan"
+  int index = 0;        ///< among the backend's devices
+  std::string name;     ///< marketing name
+  std::string driver;
+  std::string precisions;  ///< "fp64", "fp32 fp64", ...
+  std::string limits;      ///< one line: memory, largest buffer, threads
+  bool chosen = false;     ///< by backend = "auto"
+  std::string why;         ///< why it is chosen, or why not
 };
 
 /// A buffer that a scene makes a backend hold, for `plan`.
@@ -97,6 +109,8 @@ class Backend {
 
   /// Displacement of the last solve at all nodes (supports included), shape (3 * nodes), mm.
   void read_displacement(std::span<double> displacement) const;
+  /// Same at some nodes, so that a quiet frame reads back only what its instruments need.
+  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;
   /// Stress of the last stress(), Voigt order, shape (elements), MPa.
   void read_stress(std::span<Voigt> stress) const;
   [[nodiscard]] Voigt read_stress(Index element) const;
@@ -119,6 +133,8 @@ class Backend {
   virtual void do_exclude_candidates(std::span<const Index> elements) = 0;
   virtual void do_solve_pristine(const Load& load, std::span<double> displacement) = 0;
   virtual void do_read_displacement(std::span<double> displacement) const = 0;
+  virtual void do_read_displacement(std::span<const Index> nodes,
+                                    std::span<Vec3> displacement) const = 0;
   virtual void do_read_stress(std::span<Voigt> stress) const = 0;
   virtual Voigt do_read_stress(Index element) const = 0;
   virtual void do_read_reactions(std::span<double> reactions) const = 0;

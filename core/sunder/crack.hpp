@@ -22,12 +22,12 @@ struct CrackTip {
 struct Crack {
   int id = 0;
   CrackKind kind = CrackKind::edge;
-  std::optional<Vec2> mouth;            ///< edge cracks
-  std::vector<CrackTip> tips;           ///< one (edge) or two (internal)
-  std::vector<Vec2> path;               ///< from mouth (or first tip) to the (second) tip
-  double length = 0;                    ///< of the path
-  std::vector<Index> elements;          ///< destroyed elements that belong to this crack, in order
-  std::map<Index, std::int8_t> side;    ///< node -> +1 left of the path, -1 right (seen along d)
+  std::optional<Vec2> mouth;          ///< edge cracks
+  std::vector<CrackTip> tips;         ///< one (edge) or two (internal)
+  std::vector<Vec2> path;             ///< from mouth (or first tip) to the (second) tip
+  double length = 0;                  ///< of the path
+  std::vector<Index> elements;        ///< destroyed elements that belong to this crack, in order
+  std::map<Index, std::int8_t> side;  ///< node -> +1 left of the path, -1 right (seen along d)
 };
 
 /// The terms of the stress intensity factor at one tip (Eq. 1-4), kept with each progression.

@@ -27,24 +27,24 @@ class UsageError : public Error {
 
 /// What is wrong with a scene or a mesh. One value per rule, so that callers can react to it.
 enum class InputFault {
-  unreadable_file,      ///< missing, a directory, truncated, not of the stated format
-  syntax,               ///< the scene is not TOML 1.0
-  unknown_key,          ///< a key or an enumeration value that the schema does not know
-  missing_key,          ///< a required key is absent
-  wrong_type,           ///< a value of another type or array length than the schema's
-  out_of_range,         ///< a number outside what is allowed, NaN and infinity included
-  unknown_name,         ///< a volume, surface or crack that does not exist
-  duplicate_name,       ///< the same name twice
-  empty_selection,      ///< a selection that selects nothing
-  bad_id,               ///< a node or element id outside the mesh
-  no_tetrahedra,        ///< a mesh without a single tetrahedron
-  inverted_element,     ///< negative volume
-  degenerate_element,   ///< zero volume or a repeated node
-  no_material,          ///< a volume without material
-  unsupported_body,     ///< rigid modes left
-  load_on_held_node,    ///< an instrument drives a dof that a support holds
-  conflicting_supports, ///< two grips prescribe the same dof
-  too_large,            ///< sizes beyond what the index type or the memory at hand can hold
+  unreadable_file,       ///< missing, a directory, truncated, not of the stated format
+  syntax,                ///< the scene is not TOML 1.0
+  unknown_key,           ///< a key or an enumeration value that the schema does not know
+  missing_key,           ///< a required key is absent
+  wrong_type,            ///< a value of another type or array length than the schema's
+  out_of_range,          ///< a number outside what is allowed, NaN and infinity included
+  unknown_name,          ///< a volume, surface or crack that does not exist
+  duplicate_name,        ///< the same name twice
+  empty_selection,       ///< a selection that selects nothing
+  bad_id,                ///< a node or element id outside the mesh
+  no_tetrahedra,         ///< a mesh without a single tetrahedron
+  inverted_element,      ///< negative volume
+  degenerate_element,    ///< zero volume or a repeated node
+  no_material,           ///< a volume without material
+  unsupported_body,      ///< rigid modes left
+  load_on_held_node,     ///< an instrument drives a dof that a support holds
+  conflicting_supports,  ///< two grips prescribe the same dof
+  too_large,             ///< sizes beyond what the index type or the memory at hand can hold
 };
 
 /// Bad input: exit code 3.

@@ -21,9 +21,9 @@ struct DestroyedElement {
   int event = 0;  ///< over the whole run, from 0
   Index element = kNone;
   Cause cause = Cause::mss;
-  int crack = kNone;           ///< for sif, preset, and the mss that starts a crack
-  std::optional<double> ratio; ///< mss: measure/yield; sif: r_e / max(rho, h/2)
-  double load_factor = 0;      ///< scene time t
+  int crack = kNone;            ///< for sif, preset, and the mss that starts a crack
+  std::optional<double> ratio;  ///< mss: measure/yield; sif: r_e / max(rho, h/2)
+  double load_factor = 0;       ///< scene time t
   std::optional<SifTerms> sif;
 };
 

@@ -16,14 +16,15 @@ namespace sunder {
 
 class FractureCriterion;
 class Loads;
+struct Decision;
 
 /// Derives from a problem what a backend must offer and what it may leave out.
 [[nodiscard]] Needs needs_of(const Problem& problem);
 
 class Simulation {
  public:
-  /// Takes presets out (event 0 of step 0) at the first step. The backend must have been created
-  /// for `problem` with needs_of(*problem) or more.
+  /// Presets are taken out at the first step (event 0 of step 0). The backend must have been
+  /// created for `problem` with needs_of(*problem) or more.
   Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<Backend> backend);
   ~Simulation();
   Simulation(const Simulation&) = delete;
@@ -33,6 +34,11 @@ class Simulation {
   /// stays consistent; interrupted() is then true).
   using EventObserver = std::function<bool(std::span<const DestroyedElement>)>;
   void observe_events(EventObserver observer) { observer_ = std::move(observer); }
+
+  /// Called after each solve of a step, when displacement, stress and what is destroyed belong
+  /// together: the place to take a snapshot within a step.
+  using FrameObserver = std::function<void()>;
+  void observe_frames(FrameObserver observer) { frame_observer_ = std::move(observer); }
 
   /// Computes the next step. Throws NumericalError when the promise cannot be kept and UsageError
   /// when all steps are done.
@@ -47,7 +53,7 @@ class Simulation {
   [[nodiscard]] const std::vector<DestroyedElement>& destroyed() const { return destroyed_; }
   [[nodiscard]] const std::vector<Crack>& cracks() const;
   /// Problem's warnings, then what happened during the run, each once.
-  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+  [[nodiscard]] std::vector<std::string> warnings() const;
 
   /// Force each instrument exerts on the body in the last solve, N; pulls and presses: the force
   /// applied, grips: the reaction.
@@ -65,9 +71,12 @@ class Simulation {
  private:
   void apply_presets();
   void apply_removals();
-  void apply_event(std::vector<DestroyedElement> records);
-  void report_loose_pieces();
+  void record_solve(const SolveReport& solve, StepReport& report);
+  [[nodiscard]] Decision decide(const StressSummary& summary);
+  bool apply_event(Decision decision);  // false: nothing broke
+  void find_loose();
   void warn(std::string message);
+  [[nodiscard]] std::span<const double> pristine_displacement();
   [[nodiscard]] double compliance() const;
 
   std::shared_ptr<const Problem> problem_;
@@ -75,12 +84,18 @@ class Simulation {
   std::unique_ptr<Loads> loads_;
   std::unique_ptr<FractureCriterion> criterion_;
   EventObserver observer_;
+  FrameObserver frame_observer_;
   std::vector<DestroyedElement> destroyed_;
   std::vector<std::string> warnings_;
+  std::vector<double> pristine_;  // of this step's expansion load; empty: not computed yet
   int next_step_ = 0;
   int next_event_ = 0;
   int events_this_step_ = 0;
+  int decisions_this_step_ = 0;
   bool interrupted_ = false;
+  bool solved_ = false;  // the backend holds fields
+  std::size_t loose_nodes_ = 0, loose_pieces_ = 0, loose_elements_ = 0;
+  int loose_nodes_step_ = kNone, loose_pieces_step_ = kNone;  // first seen
 };
 
 }  // namespace sunder

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sunder/backend.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sunder/error.hpp"
+
+namespace sunder {
+
+Backend::Backend(std::shared_ptr<const Problem> problem, Needs needs)
+    : problem_(std::move(problem)), needs_(std::move(needs)) {
+  if (!problem_) throw UsageError("a backend needs a problem");
+  destroyed_.assign(static_cast<std::size_t>(problem_->tet_count()), 0);
+}
+
+Backend::~Backend() = default;
+
+void Backend::require(bool condition, const char* what) const {
+  if (!condition) throw UsageError(what);
+}
+
+void Backend::set_load(const Load& load) {
+  require(load.forces.size() == load.force_dofs.size(), "a load needs one force per dof");
+  require(load.displacements.size() == problem_->gripped_dofs().size(),
+          "a load needs one displacement per gripped dof");
+  for (std::size_t i = 0; i < load.force_dofs.size(); ++i) {
+    const Index d = load.force_dofs[i];
+    require(d >= 0 && d < problem_->dof_count(), "a load's dof lies outside the problem");
+    require(i == 0 || load.force_dofs[i - 1] < d, "a load's dofs must ascend, each once");
+    require(std::isfinite(load.forces[i]), "a load's forces must be finite");
+  }
+  for (double d : load.displacements) {
+    require(std::isfinite(d), "a load's displacements must be finite");
+  }
+  do_set_load(load);
+  stage_ = Stage::loaded;
+}
+
+SolveReport Backend::solve() {
+  require(stage_ != Stage::created, "solve() needs set_load() first");
+  const SolveReport report = do_solve();
+  stage_ = Stage::solved;
+  return report;
+}
+
+StressSummary Backend::stress() {
+  require(needs_.stress, "stress was left out of this backend's needs");
+  require(stage_ == Stage::solved || stage_ == Stage::stressed, "stress() needs solve() first");
+  const StressSummary summary = do_stress();
+  stage_ = Stage::stressed;
+  return summary;
+}
+
+void Backend::destroy(std::span<const Index> elements) {
+  require(needs_.damage, "damage was left out of this backend's needs");
+  if (elements.empty()) return;
+  std::vector<Index> sorted(elements.begin(), elements.end());
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    require(sorted[i] >= 0 && sorted[i] < problem_->tet_count(),
+            "destroy() names an element outside the mesh");
+    require(i == 0 || sorted[i] != sorted[i - 1], "destroy() names an element twice");
+    require(!destroyed_[sorted[i]], "destroy() names an element that is destroyed already");
+  }
+  do_destroy(elements);
+  for (Index e : elements) destroyed_[e] = 1;
+  if (stage_ != Stage::created) stage_ = Stage::loaded;
+}
+
+void Backend::exclude_candidates(std::span<const Index> elements) {
+  require(needs_.yield, "the yield summary was left out of this backend's needs");
+  for (Index e : elements) {
+    require(e >= 0 && e < problem_->tet_count(),
+            "exclude_candidates() names an element outside the mesh");
+  }
+  do_exclude_candidates(elements);
+}
+
+void Backend::solve_pristine(const Load& load, std::span<double> displacement) {
+  require(needs_.pristine, "the intact body's field was left out of this backend's needs");
+  require(displacement.size() == 3 * problem_->mesh().nodes.size(),
+          "the intact body's displacement needs 3 values per node");
+  require(load.displacements.size() == problem_->gripped_dofs().size() &&
+              load.forces.size() == load.force_dofs.size(),
+          "the load does not fit the problem");
+  do_solve_pristine(load, displacement);
+}
+
+void Backend::read_displacement(std::span<double> displacement) const {
+  require(stage_ != Stage::created, "there is no displacement before the first solve()");
+  require(displacement.size() == 3 * problem_->mesh().nodes.size(),
+          "the displacement needs 3 values per node");
+  do_read_displacement(displacement);
+}
+
+void Backend::read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const {
+  require(stage_ != Stage::created, "there is no displacement before the first solve()");
+  require(nodes.size() == displacement.size(), "one displacement per node");
+  for (Index n : nodes) require(n >= 0 && n < problem_->node_count(), "a node outside the mesh");
+  do_read_displacement(nodes, displacement);
+}
+
+void Backend::read_stress(std::span<Voigt> stress) const {
+  require(stage_ == Stage::stressed, "there is no stress before stress()");
+  require(stress.size() == problem_->mesh().tets.size(), "one stress per element");
+  do_read_stress(stress);
+}
+
+Voigt Backend::read_stress(Index element) const {
+  require(stage_ == Stage::stressed, "there is no stress before stress()");
+  require(element >= 0 && element < problem_->tet_count(), "an element outside the mesh");
+  return do_read_stress(element);
+}
+
+void Backend::read_reactions(std::span<double> reactions) const {
+  require(stage_ != Stage::created, "there are no reactions before the first solve()");
+  require(reactions.size() == problem_->gripped_dofs().size(), "one reaction per gripped dof");
+  do_read_reactions(reactions);
+}
+
+}  // namespace sunder

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fem/supports.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <numeric>
+
+namespace sunder::fem {
+namespace {
+
+// Relative to the largest eigenvalue of the scaled Gram matrix of rigid modes at held dofs.
+constexpr double kRigidTolerance = 1e-10;
+
+Index root_of(std::vector<Index>& parent, Index n) {
+  while (parent[n] != n) {
+    parent[n] = parent[parent[n]];
+    n = parent[n];
+  }
+  return n;
+}
+
+}  // namespace
+
+int rigid_modes_left(const Mesh& mesh, std::span<const HeldDof> held) {
+  if (held.empty()) return 6;
+  Vec3 center = Vec3::Zero();
+  for (const HeldDof& h : held) center += mesh.nodes[h.node];
+  center /= static_cast<double>(held.size());
+  double size = 0;
+  for (const HeldDof& h : held) size = std::max(size, (mesh.nodes[h.node] - center).norm());
+  if (!(size > 0)) size = 1;
+  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+  for (const HeldDof& h : held) {
+    const Vec3 x = (mesh.nodes[h.node] - center) / size;
+    Eigen::Matrix<double, 6, 1> row;
+    row << Vec3::Unit(h.axis), x.cross(Vec3::Unit(h.axis));
+    gram += row * row.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(gram,
+                                                                          Eigen::EigenvaluesOnly);
+  const auto& values = solver.eigenvalues();
+  return static_cast<int>((values.array() <= kRigidTolerance * values[5]).count());
+}
+
+Bodies find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude) {
+  std::vector<Index> parent(mesh.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto included = [&](Index e) { return exclude.empty() || !exclude[e]; };
+  for (Index e = 0; e < mesh.tet_count(); ++e) {
+    if (!included(e)) continue;
+    const Index root = root_of(parent, mesh.tets[e][0]);
+    for (int a = 1; a < 4; ++a) parent[root_of(parent, mesh.tets[e][a])] = root;
+  }
+  Bodies bodies;
+  bodies.body_of_element.assign(mesh.tets.size(), kNone);
+  bodies.body_of_node.assign(mesh.nodes.size(), kNone);
+  std::vector<Index> number(mesh.nodes.size(), kNone);
+  for (Index e = 0; e < mesh.tet_count(); ++e) {
+    if (!included(e)) continue;
+    Index& body = number[root_of(parent, mesh.tets[e][0])];
+    if (body == kNone) body = bodies.count++;
+    bodies.body_of_element[e] = body;
+    for (Index n : mesh.tets[e]) bodies.body_of_node[n] = body;
+  }
+  return bodies;
+}
+
+}  // namespace sunder::fem

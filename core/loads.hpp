@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The instruments as they act at a scene time: nodal forces, prescribed displacements.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fracture/criterion.hpp"
+#include "sunder/backend.hpp"
+
+namespace sunder {
+
+class Loads {
+ public:
+  explicit Loads(const Problem& problem);
+
+  /// Instruments at scene time t. Pressing instruments choose their nodes when they start to act,
+  /// and again when such a node has lost its last live element (method.md 7). Returns findings.
+  std::vector<std::string> update(double time, const FractureCriterion& criterion,
+                                  std::span<const std::uint8_t> destroyed);
+
+  [[nodiscard]] const Load& load() const { return all_; }
+  /// Without the pressing instruments (the pristine field's load).
+  [[nodiscard]] const Load& expansion() const { return expansion_; }
+  /// Pressing instruments that act now.
+  [[nodiscard]] const std::vector<ActingPress>& presses() const { return acting_; }
+  /// Nodes on which instrument i acts now.
+  [[nodiscard]] std::span<const Index> nodes(std::size_t instrument) const;
+  /// Total force of instrument i now; zero for grips.
+  [[nodiscard]] const Vec3& force(std::size_t instrument) const { return forces_[instrument]; }
+  /// Per gripped dof: the instrument that grips it, and the axis.
+  struct Gripped {
+    std::size_t instrument;
+    int axis;
+  };
+  [[nodiscard]] const std::vector<Gripped>& gripped() const { return gripped_; }
+
+ private:
+  void choose_pressed_nodes(std::size_t instrument, const FractureCriterion& criterion,
+                            std::span<const std::uint8_t> destroyed,
+                            std::vector<std::string>& findings);
+  void add(std::size_t instrument, std::vector<std::pair<Index, double>>& entries) const;
+
+  const Problem& problem_;
+  std::vector<std::vector<Index>> pressed_;  // per instrument
+  std::vector<Gripped> gripped_;
+  std::vector<Vec3> forces_;
+  std::vector<ActingPress> acting_;
+  Load all_, expansion_;
+};
+
+}  // namespace sunder

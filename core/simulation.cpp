@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sunder/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "fem/element.hpp"
+#include "fracture/criterion.hpp"
+#include "loads.hpp"
+#include "pieces.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder {
+namespace {
+
+/// Adds the milliseconds of a scope to a stage.
+class Timer {
+ public:
+  explicit Timer(double& stage) : stage_(stage) {}
+  ~Timer() { stage_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& stage_;
+  Clock::time_point start_ = Clock::now();
+};
+
+bool any_breakable(const Problem& problem) {
+  const auto& volumes = problem.mesh().volume_of;
+  std::vector<std::uint8_t> seen(problem.mesh().volumes.size(), 0);
+  for (Index e = 0; e < static_cast<Index>(volumes.size()); ++e) {
+    if (seen[volumes[e]]) continue;
+    seen[volumes[e]] = 1;
+    if (problem.breakable(e)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Needs needs_of(const Problem& problem) {
+  const Scene& scene = problem.scene();
+  const bool breaks = scene.fracture.model != FractureModel::none && any_breakable(problem);
+  const bool presses =
+      std::any_of(scene.instruments.begin(), scene.instruments.end(),
+                  [](const Instrument& i) { return std::holds_alternative<Press>(i.action); });
+  Needs needs;
+  needs.stress = breaks || scene.output.stress;
+  needs.yield = needs.stress && any_breakable(problem);
+  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
+  needs.pristine = breaks && scene.fracture.model == FractureModel::b;
+  if (!needs.stress) needs.left_out.push_back("stress: no fracture model and no output needs it");
+  if (!needs.yield) needs.left_out.push_back("yield summary: nothing breakable or no stress");
+  if (!needs.damage) needs.left_out.push_back("update of the inverse: nothing can be destroyed");
+  if (!needs.pristine) needs.left_out.push_back("intact body's field: only model B reads it");
+  if (!presses) needs.left_out.push_back("pressure terms K_b, K_c: no pressing instrument");
+  if (problem.gripped_dofs().empty()) {
+    needs.left_out.push_back("compliance block of grips: no prescribed displacement");
+  }
+  return needs;
+}
+
+Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<Backend> backend)
+    : problem_(std::move(problem)), backend_(std::move(backend)) {
+  if (!problem_ || !backend_) throw UsageError("a simulation needs a problem and a backend");
+  if (&backend_->problem() != problem_.get()) {
+    throw UsageError("the backend was created for another problem");
+  }
+  loads_ = std::make_unique<Loads>(*problem_);
+  criterion_ = make_criterion(*problem_);
+  warnings_ = problem_->warnings();
+}
+
+Simulation::~Simulation() = default;
+
+StepReport Simulation::step() {
+  if (done()) throw UsageError("all steps of the scene are done");
+  StepReport report;
+  report.step = next_step_;
+  report.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
+  events_this_step_ = 0;
+  decisions_this_step_ = 0;
+  pristine_.clear();
+  StageTimes& times = report.times;
+  const std::size_t destroyed_before = destroyed_.size();
+  {
+    const Timer total(times.total);
+    {
+      const Timer timer(times.update);
+      if (next_step_ == 0) apply_presets();
+      apply_removals();
+    }
+    for (bool broke = true; broke;) {
+      {
+        const Timer timer(times.load);
+        for (auto& w : loads_->update(report.load_factor, *criterion_, backend_->destroyed())) {
+          warn(std::move(w));
+        }
+        backend_->set_load(loads_->load());
+      }
+      {
+        const Timer timer(times.solve);
+        record_solve(backend_->solve(), report);
+      }
+      StressSummary summary;
+      {
+        const Timer timer(times.stress);
+        if (backend_->needs().stress) summary = backend_->stress();
+      }
+      report.max_yield_ratio = summary.any.ratio;
+      if (frame_observer_) frame_observer_();
+      Decision decision;
+      {
+        const Timer timer(times.decide);
+        decision = decide(summary);
+      }
+      {
+        const Timer timer(times.update);
+        broke = apply_event(std::move(decision));
+      }
+    }
+    if (destroyed_.size() != destroyed_before) find_loose();
+  }
+  report.events = events_this_step_;
+  report.destroyed = static_cast<int>(destroyed_.size());
+  report.compliance = compliance();
+  ++next_step_;
+  return report;
+}
+
+void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
+  solved_ = true;
+  report.residual = solve.residual;
+  report.error = solve.error;
+  report.iterations += solve.iterations;
+  report.polished = report.polished || solve.polished;
+  if (solve.polished) {
+    warn("step " + std::to_string(next_step_) +
+         ": a frame was over the tolerance and was polished");
+  }
+}
+
+Decision Simulation::decide(const StressSummary& summary) {
+  if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return {};
+  if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
+    warn("step " + std::to_string(next_step_) + " ended at fracture.max_events = " +
+         std::to_string(problem_->scene().fracture.max_events) +
+         " events; more may be ready to break");
+    return {};
+  }
+  const auto forces = reactions();
+  Vec3 resultant = Vec3::Zero();
+  const auto& instruments = problem_->scene().instruments;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (!std::holds_alternative<Press>(instruments[i].action)) resultant += forces[i];
+  }
+  const FractureState state{
+      *problem_,
+      backend_->destroyed(),
+      summary,
+      [this](Index e) { return backend_->read_stress(e); },
+      [this] { return pristine_displacement(); },
+      resultant,
+      loads_->presses(),
+  };
+  Decision decision = criterion_->decide(state);
+  if (!decision.elements.empty()) ++decisions_this_step_;
+  return decision;
+}
+
+std::span<const double> Simulation::pristine_displacement() {
+  if (pristine_.empty()) {
+    pristine_.resize(3 * problem_->mesh().nodes.size());
+    backend_->solve_pristine(loads_->expansion(), pristine_);
+  }
+  return pristine_;
+}
+
+bool Simulation::apply_event(Decision decision) {
+  for (std::string& w : decision.warnings) warn(std::move(w));
+  if (decision.elements.empty()) return false;
+  std::vector<Index> elements;
+  elements.reserve(decision.elements.size());
+  for (DestroyedElement& d : decision.elements) {
+    d.step = next_step_;
+    d.event = next_event_;
+    d.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
+    elements.push_back(d.element);
+  }
+  backend_->destroy(elements);
+  if (backend_->needs().yield) backend_->exclude_candidates(decision.excluded);
+  ++next_event_;
+  ++events_this_step_;
+  destroyed_.insert(destroyed_.end(), decision.elements.begin(), decision.elements.end());
+  if (observer_ && !observer_(decision.elements)) interrupted_ = true;
+  return true;
+}
+
+void Simulation::apply_presets() {
+  if (problem_->scene().cracks.empty()) return;
+  apply_event(criterion_->preset());
+}
+
+void Simulation::apply_removals() {
+  Decision event;
+  std::vector<std::uint8_t> taken(backend_->destroyed().begin(), backend_->destroyed().end());
+  const auto& removals = problem_->scene().removals;
+  for (std::size_t r = 0; r < removals.size(); ++r) {
+    if (removals[r].step != next_step_) continue;
+    Index already = 0;
+    for (Index e : problem_->removal_elements()[r]) {
+      if (taken[e]) {
+        ++already;
+        continue;
+      }
+      taken[e] = 1;
+      DestroyedElement d;
+      d.element = e;
+      d.cause = Cause::script;
+      event.elements.push_back(d);
+    }
+    if (already > 0) {
+      warn("destroy " + std::to_string(r) + " in step " + std::to_string(next_step_) + ": " +
+           std::to_string(already) + " of its elements were destroyed already");
+    }
+  }
+  apply_event(std::move(event));
+}
+
+void Simulation::find_loose() {
+  const LooseParts parts = find_loose_parts(*problem_, backend_->destroyed());
+  if (!parts.isolated_nodes.empty() && loose_nodes_step_ == kNone) loose_nodes_step_ = next_step_;
+  if (!parts.pieces.empty() && loose_pieces_step_ == kNone) loose_pieces_step_ = next_step_;
+  loose_nodes_ = parts.isolated_nodes.size();
+  loose_pieces_ = parts.pieces.size();
+  loose_elements_ = 0;
+  for (const auto& piece : parts.pieces) loose_elements_ += piece.size();
+}
+
+void Simulation::warn(std::string message) {
+  if (std::find(warnings_.begin(), warnings_.end(), message) == warnings_.end()) {
+    warnings_.push_back(std::move(message));
+  }
+}
+
+std::vector<std::string> Simulation::warnings() const {
+  std::vector<std::string> all = warnings_;
+  if (loose_nodes_ > 0) {
+    all.push_back(std::to_string(loose_nodes_) +
+                  " nodes are held by destroyed elements only (since step " +
+                  std::to_string(loose_nodes_step_) + "); their displacement has no meaning");
+  }
+  if (loose_pieces_ > 0) {
+    all.push_back(std::to_string(loose_pieces_) + " pieces with " +
+                  std::to_string(loose_elements_) + " elements are cut off (since step " +
+                  std::to_string(loose_pieces_step_) +
+                  "); only destroyed elements hold them and their displacement has no meaning");
+  }
+  return all;
+}
+
+const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
+
+std::vector<Vec3> Simulation::reactions() const {
+  std::vector<Vec3> forces;
+  for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
+    forces.push_back(loads_->force(i));
+  }
+  std::vector<double> grips(problem_->gripped_dofs().size());
+  if (grips.empty()) return forces;
+  backend_->read_reactions(grips);
+  for (std::size_t g = 0; g < grips.size(); ++g) {
+    const auto [instrument, axis] = loads_->gripped()[g];
+    forces[instrument][axis] += grips[g];
+  }
+  return forces;
+}
+
+Vec3 Simulation::support_reaction() const {
+  std::vector<double> u(3 * problem_->mesh().nodes.size());
+  backend_->read_displacement(u);
+  const auto destroyed = backend_->destroyed();
+  Vec3 sum = Vec3::Zero();
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    const auto& tet = problem_->mesh().tets[e];
+    for (int a = 0; a < 4; ++a) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (problem_->dof(tet[a], axis) != kNone) continue;
+        const double scale = destroyed[e] ? problem_->scene().fracture.alpha : 1.0;
+        const TetShape& shape = problem_->shape(e);
+        const Voigt s = fem::stress(shape, problem_->material(e),
+                                    fem::corner_displacement(problem_->mesh(), e, u));
+        sum[axis] += scale * shape.volume * (fem::tensor(s) * shape.gradient.col(a))[axis];
+      }
+    }
+  }
+  return sum;
+}
+
+std::vector<Index> Simulation::acting_nodes(std::size_t instrument) const {
+  const auto nodes = loads_->nodes(instrument);
+  return {nodes.begin(), nodes.end()};
+}
+
+double Simulation::compliance() const {
+  const auto forces = reactions();
+  double work = 0;
+  std::vector<Vec3> u;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (problem_->scene().instruments.empty()) break;
+    const auto* grip = std::get_if<Grip>(&problem_->scene().instruments[i].action);
+    if (grip) {
+      const double factor = problem_->scene().instruments[i].factor(
+          static_cast<double>(next_step_ + 1) / problem_->scene().steps);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (grip->axes.has(axis)) work += forces[i][axis] * factor * grip->displacement[axis];
+      }
+      continue;
+    }
+    const auto nodes = loads_->nodes(i);
+    if (nodes.empty()) continue;
+    u.resize(nodes.size());
+    backend_->read_displacement(nodes, u);
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& v : u) mean += v;
+    work += forces[i].dot(mean) / static_cast<double>(nodes.size());
+  }
+  return work;
+}
+
+std::vector<Vec3> Simulation::displacement() const {
+  std::vector<Vec3> result(problem_->mesh().nodes.size(), Vec3::Zero());
+  if (!solved_) return result;
+  std::vector<double> flat(3 * result.size());
+  backend_->read_displacement(flat);
+  for (std::size_t n = 0; n < result.size(); ++n) {
+    result[n] = Vec3(flat[3 * n], flat[3 * n + 1], flat[3 * n + 2]);
+  }
+  return result;
+}
+
+std::vector<Voigt> Simulation::stress() const {
+  std::vector<Voigt> result(problem_->mesh().tets.size(), Voigt::Zero());
+  if (!backend_->needs().stress) throw UsageError("stress was left out of this simulation");
+  if (solved_) backend_->read_stress(result);
+  return result;
+}
+
+}  // namespace sunder

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two ways of the reference to apply the inverse of the damaged stiffness: a dense inverse
+// with eager updates, and conjugate gradients preconditioned by the intact factor.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "cpu_reference/inverse.hpp"
+#include "sunder/backend.hpp"
+
+namespace sunder::cpu_reference {
+
+/// Prescribed displacements by the compliance block of the gripped dofs G: with C = A^-1 E_G,
+/// x + C C_G^-1 (d - x_G) has x_G = d, and the added forces act on G alone.
+class Grips {
+ public:
+  explicit Grips(std::span<const Index> dofs) : dofs_(dofs) {}
+  /// Takes new columns A^-1 E_G, shape (n x dofs). Throws NumericalError when C_G is singular.
+  void set_columns(Eigen::MatrixXd columns);
+  /// Moves x so that x_G = displacement (empty: 0).
+  void hold(Eigen::VectorXd& x, std::span<const double> displacement) const;
+  [[nodiscard]] bool none() const { return dofs_.empty(); }
+  [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
+  [[nodiscard]] std::size_t bytes() const {
+    return static_cast<std::size_t>(columns_.size()) * sizeof(double);
+  }
+
+ private:
+  std::span<const Index> dofs_;
+  Eigen::MatrixXd columns_;
+  Eigen::LLT<Eigen::MatrixXd> block_;
+};
+
+/// The damaged body: which elements are destroyed, and K u.
+class DamagedBody {
+ public:
+  explicit DamagedBody(std::shared_ptr<const Problem> problem);
+  void destroy(std::span<const Index> elements);
+  /// y = K x over the unknowns, without anchors.
+  void apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  /// Largest stress norm over live elements of the displacement x.
+  [[nodiscard]] double largest_stress(const Eigen::VectorXd& x) const;
+  [[nodiscard]] const Problem& problem() const { return *problem_; }
+  /// a_e per element: 1 or alpha.
+  [[nodiscard]] std::span<const double> scale() const { return scale_; }
+  [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
+
+ private:
+  std::shared_ptr<const Problem> problem_;
+  std::vector<double> scale_;
+  std::vector<std::uint8_t> destroyed_;
+  mutable std::vector<double> nodal_in_, nodal_out_;
+};
+
+struct Applied {
+  int iterations = 0;
+  bool converged = true;
+};
+
+/// One way to apply the inverse of the damaged stiffness, grips held at zero.
+class InverseRoute {
+ public:
+  virtual ~InverseRoute() = default;
+  /// Displacement under a load with its grips. `f` is the force over the unknowns.
+  virtual Applied solve(const Load& load, const Eigen::VectorXd& f, Eigen::VectorXd& x) = 0;
+  /// x = A^-1 r with x_G = 0, to at least two digits.
+  virtual Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& x) = 0;
+  /// Follows an event; the body has destroyed the elements already.
+  virtual void destroy(std::span<const Index> elements) = 0;
+  [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+};
+
+/// The intact body's factor with its grips; the preconditioner of the CG route.
+struct IntactBody {
+  IntactBody(const Problem& problem);
+  /// x = K0^-1 f with x_G = displacement (empty: 0).
+  void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
+             Eigen::VectorXd& x) const;
+  Factor factor;
+  Grips grips;
+};
+
+[[nodiscard]] std::unique_ptr<InverseRoute> dense_inverse_route(const DamagedBody& body,
+                                                                const IntactBody& intact);
+[[nodiscard]] std::unique_ptr<InverseRoute> conjugate_gradient_route(const DamagedBody& body,
+                                                                     const IntactBody& intact);
+
+}  // namespace sunder::cpu_reference

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cpu_reference/stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/element.hpp"
+
+namespace sunder::cpu_reference {
+
+void element_stress(const Problem& problem, std::span<const double> scale,
+                    std::span<const double> u, std::span<Voigt> stress) {
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    stress[e] = scale[e] * fem::stress(problem.shape(e), problem.material(e),
+                                       fem::corner_displacement(problem.mesh(), e, u));
+  }
+}
+
+StressSummary summarize(const Problem& problem, std::span<const std::uint8_t> destroyed,
+                        std::span<const std::uint8_t> excluded, std::span<const Voigt> stress) {
+  const YieldMeasure measure = problem.scene().fracture.yield_measure;
+  StressSummary summary;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (destroyed[e] || !problem.breakable(e)) continue;
+    const double ratio = fem::yield_measure(stress[e], measure) / problem.yield(e);
+    if (ratio > summary.any.ratio) summary.any = {e, ratio};
+    if (!excluded[e] && ratio > summary.candidate.ratio) summary.candidate = {e, ratio};
+  }
+  return summary;
+}
+
+double largest_stress(const Problem& problem, std::span<const std::uint8_t> destroyed,
+                      std::span<const double> u) {
+  double largest = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (destroyed[e]) continue;
+    const Voigt s = fem::stress(problem.shape(e), problem.material(e),
+                                fem::corner_displacement(problem.mesh(), e, u));
+    const double squared = s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm();
+    if (!std::isfinite(squared)) return squared;
+    largest = std::max(largest, squared);
+  }
+  return std::sqrt(largest);
+}
+
+}  // namespace sunder::cpu_reference

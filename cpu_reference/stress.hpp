@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Element stress with its summary over yield.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sunder/backend.hpp"
+
+namespace sunder::cpu_reference {
+
+/// stress[e] = a_e D B u from the displacement at all nodes (3 * nodes); a_e = scale[e].
+void element_stress(const Problem& problem, std::span<const double> scale,
+                    std::span<const double> u, std::span<Voigt> stress);
+
+/// Worst ratio of the yield measure over live breakable elements, and over those not excluded.
+[[nodiscard]] StressSummary summarize(const Problem& problem,
+                                      std::span<const std::uint8_t> destroyed,
+                                      std::span<const std::uint8_t> excluded,
+                                      std::span<const Voigt> stress);
+
+/// Largest Frobenius norm of the stress tensor over live elements.
+[[nodiscard]] double largest_stress(const Problem& problem, std::span<const std::uint8_t> destroyed,
+                                    std::span<const double> u);
+
+}  // namespace sunder::cpu_reference
