@@ -40,9 +40,9 @@ class DenseInverseRoute final : public InverseRoute {
   }
 
   void destroy(std::span<const Index> elements) override {
-    if (!update_inverse(event_factor(body_.problem(), elements), x_)) {
+    if (!update_inverse(fem::event_factor(body_.problem(), elements), x_)) {
       // Rounding has made I - W^T X W indefinite: start anew from the damaged stiffness.
-      x_ = Factor(fem::assemble_lower(body_.problem(), body_.scale())).inverse();
+      x_ = fem::Factor(fem::assemble_lower(body_.problem(), body_.scale())).inverse();
     }
     read_grips();
   }

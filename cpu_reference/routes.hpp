@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "cpu_reference/inverse.hpp"
+#include "fem/factor.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::cpu_reference {
@@ -79,7 +79,7 @@ struct IntactBody {
   /// x = K0^-1 f with x_G = displacement (empty: 0).
   void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
              Eigen::VectorXd& x) const;
-  Factor factor;
+  fem::Factor factor;
   Grips grips;
 };
 

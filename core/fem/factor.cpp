@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/inverse.hpp"
+#include "fem/factor.hpp"
 
 #include <algorithm>
 
 #include "sunder/error.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::fem {
 namespace {
 
 // Right-hand sides are solved in row-major blocks of this width: each entry of L is then read once
@@ -14,7 +14,7 @@ constexpr Index kBlock = 32;
 using RowBlock = Eigen::Matrix<double, Eigen::Dynamic, kBlock, Eigen::RowMajor>;
 
 /// Solves L L^T y = b in place; `first` is the first row of b that is not zero.
-void solve_in_place(const fem::SparseMatrix& l, Index first, RowBlock& b) {
+void solve_in_place(const SparseMatrix& l, Index first, RowBlock& b) {
   const Index n = static_cast<Index>(l.rows());
   const Index* outer = l.outerIndexPtr();
   const Index* inner = l.innerIndexPtr();
@@ -31,7 +31,7 @@ void solve_in_place(const fem::SparseMatrix& l, Index first, RowBlock& b) {
 
 }  // namespace
 
-Factor::Factor(const fem::SparseMatrix& lower) {
+Factor::Factor(const SparseMatrix& lower) {
   llt_.compute(lower);
   if (llt_.info() != Eigen::Success) {
     throw NumericalError(
@@ -43,7 +43,7 @@ Factor::Factor(const fem::SparseMatrix& lower) {
 Eigen::VectorXd Factor::solve(const Eigen::VectorXd& rhs) const { return llt_.solve(rhs); }
 
 Eigen::MatrixXd Factor::inverse_columns(std::span<const Index> columns) const {
-  const fem::SparseMatrix& l = llt_.matrixL().nestedExpression();
+  const SparseMatrix& l = llt_.matrixL().nestedExpression();
   const Index n = static_cast<Index>(l.rows());
   const auto& permutation = llt_.permutationP().indices();  // row i of A is row P[i] of L
   Eigen::MatrixXd result(n, static_cast<Index>(columns.size()));
@@ -86,4 +86,4 @@ std::size_t Factor::bytes() const {
          static_cast<std::size_t>(l.rows() + 1) * sizeof(Index);
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::fem

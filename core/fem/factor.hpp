@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The intact stiffness's factor and its dense inverse (method.md "Elasticity" 1; the paper's
-// prepared inverse).
+// Sparse Cholesky factor of a stiffness matrix, and dense inverses from it (the paper's prepared
+// inverse, method.md "Elasticity" 1). Host side, double precision.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,13 +8,13 @@
 
 #include "fem/assembly.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::fem {
 
 /// Sparse Cholesky factor of a symmetric positive definite matrix given by its lower triangle.
 class Factor {
  public:
   /// Throws NumericalError when the matrix is not positive definite in double precision.
-  explicit Factor(const fem::SparseMatrix& lower);
+  explicit Factor(const SparseMatrix& lower);
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
   /// Inverse as a dense matrix, shape (n x n). Cost 2 n nnz(L) multiply-adds.
@@ -24,7 +24,7 @@ class Factor {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  Eigen::SimplicialLLT<fem::SparseMatrix, Eigen::Lower> llt_;
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
 };
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::fem
