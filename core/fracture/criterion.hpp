@@ -20,8 +20,8 @@ namespace sunder {
 struct ActingPress {
   std::size_t instrument = 0;
   const Press* press = nullptr;
-  Vec3 force;                   ///< times its ramp factor, N
-  std::vector<Index> nodes;     ///< pressed nodes
+  Vec3 force;                ///< times its ramp factor, N
+  std::vector<Index> nodes;  ///< pressed nodes
 };
 
 /// What a criterion may look at when it decides. Callbacks are cheap for single elements.

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/band.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "fracture/stress_intensity.hpp"
+
+namespace sunder::fracture {
+namespace {
+
+// All in h (method.md 10).
+constexpr double kOnRay = 0.2;        // nodes this close to the ray go to one side together
+constexpr double kLabelKept = 1.0;    // labelled nodes this close to the ray keep their label
+constexpr double kBehind = 0.5;       // centroids may lie this far behind the tip
+constexpr double kNodeBehind = 0.25;  // but one node must lie beyond this
+constexpr double kLongestStep = 1.5;  // of one event
+constexpr double kStepMargin = 0.25;  // past the last destroyed centroid
+constexpr double kOnLine = 1e-9;      // rounding: a node behind the tip, on the prolonged ray
+
+/// Side of a node; none when it is left to the common choice.
+std::optional<int> own_side(const Board& board, const Ray& ray, Index node) {
+  const double h = board.h();
+  const Vec2 x = board.node(node) - ray.origin;
+  const double along = x.dot(ray.direction);
+  const double offset = x.dot(left_of(ray.direction));
+  const double distance = along >= 0 ? std::abs(offset) : x.norm();
+  if (distance <= kLabelKept * h) {
+    const auto label = ray.crack->side.find(node);
+    if (label != ray.crack->side.end()) return label->second * ray.orientation;
+  }
+  if (distance <= kOnRay * h) return std::nullopt;
+  return offset >= -kOnLine * h ? 1 : -1;
+}
+
+/// A band for each choice of the side of near nodes: [0] right (-1), [1] left (+1).
+using TwoBands = std::array<std::vector<BandElement>, 2>;
+
+void sort_into_bands(const Board& board, const Ray& ray, BandElement candidate, TwoBands& bands) {
+  bool left = false, right = false, near = false, ahead = false;
+  for (Index n : board.mesh().tets[candidate.element]) {
+    const auto side = own_side(board, ray, n);
+    left = left || side == 1;
+    right = right || side == -1;
+    near = near || !side;
+    const double along = (board.node(n) - ray.origin).dot(ray.direction);
+    ahead = ahead || along > -kNodeBehind * board.h();
+  }
+  if (!ahead) return;
+  if (left && (right || near)) bands[0].push_back(candidate);
+  if (right && (left || near)) bands[1].push_back(candidate);
+}
+
+struct Strength {
+  double least_yield = std::numeric_limits<double>::infinity();  // of unbreakable elements
+  std::size_t count = 0;
+};
+
+Strength strength(const std::vector<BandElement>& band, double h, const ElementView& view) {
+  Strength s;
+  for (const BandElement& b : band) {
+    if (!(b.rho < kLongestStep * h)) continue;
+    ++s.count;
+    const double yield = view.yield(b.element);
+    if (yield > 0) s.least_yield = std::min(s.least_yield, yield);
+  }
+  return s;
+}
+
+/// The weaker band, then the one with fewer elements, then left.
+int choose_near_side(const TwoBands& bands, double h, const ElementView& view) {
+  const Strength right = strength(bands[0], h, view), left = strength(bands[1], h, view);
+  if (right.least_yield != left.least_yield) return right.least_yield < left.least_yield ? -1 : 1;
+  return right.count < left.count ? -1 : 1;
+}
+
+}  // namespace
+
+int node_side(const Board& board, const Ray& ray, int near_side, Index node) {
+  return own_side(board, ray, node).value_or(near_side);
+}
+
+Band find_band(const Board& board, const Ray& ray, const ElementView& view) {
+  const double h = board.h();
+  // Centroids lie between -h/2 and 1.5 h along the ray, and across it at most one element's size
+  // from a node that is on the ray's other side or (labelled) within h of it.
+  const Vec2 middle = ray.origin + (kLongestStep - kBehind) / 2 * h * ray.direction;
+  const double half_length = (kLongestStep + kBehind) / 2 * h;
+  const double half_width = board.largest_element() + kLabelKept * h;
+  TwoBands bands;
+  for (Index e : board.elements_within(middle, std::hypot(half_length, half_width))) {
+    const double rho = (board.centroid(e) - ray.origin).dot(ray.direction);
+    if (!(rho > -kBehind * h) || rho > kLongestStep * h || !view.live(e)) continue;
+    sort_into_bands(board, ray, {e, rho}, bands);
+  }
+  Band band;
+  band.near_side = choose_near_side(bands, h, view);
+  band.elements = std::move(bands[band.near_side > 0 ? 1 : 0]);
+  std::sort(band.elements.begin(), band.elements.end(),
+            [](const BandElement& a, const BandElement& b) {
+              return a.rho != b.rho ? a.rho < b.rho : a.element < b.element;
+            });
+  return band;
+}
+
+Walk walk_band(const Band& band, double h, double k, double theta, const ElementView& view) {
+  Walk walk;
+  double survivor = std::numeric_limits<double>::infinity();  // rho of the first that holds
+  for (const BandElement& b : band.elements) {
+    const double yield = view.yield(b.element);
+    const double distance = std::max(b.rho, kBehind * h);
+    const double r = yield > 0 ? reach(k, yield, theta) : 0;
+    if (!(r >= distance)) {
+      survivor = b.rho;
+      break;
+    }
+    walk.passed.push_back({b.element, b.rho, r, r / distance});
+    const double step = std::min({r, kLongestStep * h, distance + kStepMargin * h});
+    walk.advance = std::max(walk.advance, step);
+  }
+  if (survivor > 0) walk.advance = std::min(walk.advance, survivor);
+  return walk;
+}
+
+}  // namespace sunder::fracture

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which elements a growing tip destroys and how far it moves (method.md 10): the band of elements
+// that the ray ahead of the tip separates, walked in order of distance.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "fracture/board.hpp"
+#include "sunder/crack.hpp"
+
+namespace sunder::fracture {
+
+/// What a walk needs to know of elements, so that it depends on neither problem nor backend.
+struct ElementView {
+  std::function<bool(Index)> live;
+  std::function<double(Index)> yield;  ///< [MPa]; 0: unbreakable
+};
+
+/// The ray ahead of a tip, and the side labels that its crack has given to nodes.
+struct Ray {
+  Vec2 origin;     ///< p, the tip
+  Vec2 direction;  ///< g, unit
+  const Crack* crack = nullptr;
+  int orientation = 1;  ///< of the tip (crack_path.hpp): labels are left/right of the path
+};
+
+struct BandElement {
+  Index element;
+  double rho;  ///< distance of its centroid along the ray from p [mm]
+};
+
+/// Live elements separated by the ray, -h/2 < rho <= 1.5 h, in order of rho (ties: lowest id),
+/// and on which side nodes within 0.2 h of the ray were put: +1 left, -1 right.
+struct Band {
+  std::vector<BandElement> elements;
+  int near_side = 1;
+};
+
+[[nodiscard]] Band find_band(const Board& board, const Ray& ray, const ElementView& view);
+
+/// Side of a node as seen by the tip: +1 left of the ray, -1 right of it.
+[[nodiscard]] int node_side(const Board& board, const Ray& ray, int near_side, Index node);
+
+struct Passed {
+  Index element;
+  double rho;    ///< [mm]
+  double reach;  ///< r_e [mm] (Eq. 1)
+  double ratio;  ///< r_e / max(rho, h/2)
+};
+
+struct Walk {
+  std::vector<Passed> passed;  ///< elements to destroy, in order
+  double advance = 0;          ///< of the tip [mm]; 0 when nothing is destroyed
+};
+
+/// Walks the band with stress intensity K and angle theta [rad].
+[[nodiscard]] Walk walk_band(const Band& band, double h, double k, double theta,
+                             const ElementView& view);
+
+}  // namespace sunder::fracture

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/combined.hpp"
+
+#include <algorithm>
+
+#include "fracture/crack_birth.hpp"
+#include "fracture/crack_path.hpp"
+#include "fracture/max_shear.hpp"
+#include "fracture/preset_cracks.hpp"
+#include "fracture/pressed_nodes.hpp"
+
+namespace sunder::fracture {
+namespace {
+
+bool contains(const Decision& decision, Index element) {
+  return std::any_of(decision.elements.begin(), decision.elements.end(),
+                     [&](const DestroyedElement& row) { return row.element == element; });
+}
+
+DestroyedElement growth_row(const Passed& passed, int crack, SifTerms terms) {
+  terms.reach = passed.reach;
+  DestroyedElement row;
+  row.element = passed.element;
+  row.cause = Cause::sif;
+  row.crack = crack;
+  row.ratio = passed.ratio;
+  row.sif = terms;
+  return row;
+}
+
+bool any_tip_left(const std::vector<Crack>& cracks) {
+  return std::any_of(cracks.begin(), cracks.end(), [](const Crack& crack) {
+    return std::any_of(crack.tips.begin(), crack.tips.end(),
+                       [](const CrackTip& tip) { return !tip.ended; });
+  });
+}
+
+}  // namespace
+
+Combined::Combined(const Problem& problem)
+    : problem_(problem),
+      board_(problem.mesh(), problem.scene().fracture.plane_normal),
+      excluded_(problem.mesh().tets.size(), 0) {
+  for (Index e = 0; e < problem.tet_count() && !anything_breakable_; ++e)
+    anything_breakable_ = problem.breakable(e);
+}
+
+Decision Combined::preset() {
+  const auto& presets = problem_.scene().cracks;
+  for (std::size_t c = 0; c < presets.size(); ++c)
+    cracks_.push_back(
+        preset_crack(board_, presets[c], static_cast<int>(c), problem_.crack_elements()[c]));
+  Decision decision;
+  decision.elements = preset_elements(problem_);
+  exclude_neighbours(decision);
+  return decision;
+}
+
+Decision Combined::decide(const FractureState& state) {
+  Decision decision;
+  if (!anything_breakable_) return decision;
+  for (const DrivenTip& driven : driven_tips(state, decision.warnings))
+    grow(driven, state, decision);
+  if (decision.elements.empty()) start_crack(state, decision);
+  exclude_neighbours(decision);
+  return decision;
+}
+
+std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& state,
+                                                       std::vector<std::string>& warnings) const {
+  std::vector<DrivenTip> driven;
+  if (!any_tip_left(cracks_)) return driven;
+  const PristineField field(problem_, board_, state.pristine_displacement());
+  for (const Crack& crack : cracks_) {
+    const FacePressure pressure = face_pressure(board_, crack, state, warnings);
+    for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
+      if (crack.tips[tip].ended) continue;
+      if (auto growth = tip_growth(board_, field, crack, tip, pressure, state))
+        driven.push_back({crack.id, *growth});
+    }
+  }
+  return driven;
+}
+
+void Combined::grow(const DrivenTip& driven, const FractureState& state, Decision& decision) {
+  const TipGrowth& growth = driven.growth;
+  Crack& crack = cracks_[driven.crack];
+  CrackTip& tip = crack.tips[growth.terms.tip];
+  const int sense = orientation(crack, growth.terms.tip);
+  const Ray ray{tip.position, growth.direction, &crack, sense};
+  const ElementView view{
+      [&](Index e) { return !state.destroyed[e] && !contains(decision, e); },
+      [&](Index e) { return problem_.yield(e); },
+  };
+  const Band band = find_band(board_, ray, view);
+  if (band.elements.empty()) {
+    tip.ended = true;
+    return;
+  }
+  const Walk walk = walk_band(band, board_.h(), growth.terms.k, growth.theta, view);
+  if (walk.passed.empty()) return;
+  std::map<Index, std::int8_t> labels;  // all from the sides before this step
+  for (const Passed& passed : walk.passed) {
+    for (Index n : problem_.mesh().tets[passed.element])
+      labels[n] = static_cast<std::int8_t>(node_side(board_, ray, band.near_side, n) * sense);
+    crack.elements.push_back(passed.element);
+    decision.elements.push_back(growth_row(passed, crack.id, growth.terms));
+  }
+  for (const auto& [node, side] : labels) crack.side[node] = side;
+  advance_tip(crack, growth.terms.tip, growth.direction, walk.advance);
+  tip.ended = at_outline(board_, tip.position);
+}
+
+void Combined::start_crack(const FractureState& state, Decision& decision) {
+  auto row = rupture(state.summary.candidate);
+  if (!row) return;
+  const InPlane stress = in_plane(state.current_stress(row->element), board_.plane());
+  const int id = static_cast<int>(cracks_.size());
+  cracks_.push_back(born_crack(board_, row->element, stress, id));
+  row->crack = id;
+  decision.elements.push_back(*row);
+}
+
+void Combined::exclude_neighbours(Decision& decision) {
+  std::vector<Index>& excluded = decision.excluded;
+  for (const DestroyedElement& row : decision.elements) {
+    for (Index n : problem_.mesh().tets[row.element]) {
+      for (Index e : board_.elements_of(n)) {
+        if (excluded_[e]) continue;
+        excluded_[e] = 1;
+        excluded.push_back(e);
+      }
+    }
+  }
+  std::sort(excluded.begin(), excluded.end());
+}
+
+std::vector<Index> Combined::pressed_nodes(const Press& press,
+                                           std::span<const std::uint8_t> destroyed) const {
+  if (press.crack < 0 || static_cast<std::size_t>(press.crack) >= cracks_.size()) return {};
+  return fracture::pressed_nodes(board_, cracks_[press.crack], press, destroyed);
+}
+
+}  // namespace sunder::fracture

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/max_shear.hpp"
+
+#include "fracture/preset_cracks.hpp"
+
+namespace sunder::fracture {
+
+std::optional<DestroyedElement> rupture(const Worst& worst) {
+  if (worst.element == kNone || !(worst.ratio >= 1)) return std::nullopt;
+  DestroyedElement row;
+  row.element = worst.element;
+  row.cause = Cause::mss;
+  row.ratio = worst.ratio;
+  return row;
+}
+
+Decision MaxShear::decide(const FractureState& state) {
+  Decision decision;
+  if (const auto row = rupture(state.summary.any)) decision.elements.push_back(*row);
+  return decision;
+}
+
+Decision MaxShear::preset() {
+  Decision decision;
+  decision.elements = preset_elements(problem_);
+  return decision;
+}
+
+/// Without crack records there is no face to press on.
+std::vector<Index> MaxShear::pressed_nodes(const Press&, std::span<const std::uint8_t>) const {
+  return {};
+}
+
+}  // namespace sunder::fracture

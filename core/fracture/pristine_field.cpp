@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/pristine_field.hpp"
+
+#include "fem/element.hpp"
+
+namespace sunder::fracture {
+
+std::optional<InPlane> PristineField::at(const Vec2& p) const {
+  Voigt sum = Voigt::Zero();
+  double volume = 0;
+  for (Index e : board_.elements_within(p, 1.5 * board_.h())) {
+    if (!problem_.breakable(e)) continue;
+    const TetShape& shape = problem_.shape(e);
+    const auto u = fem::corner_displacement(problem_.mesh(), e, displacement_);
+    sum += shape.volume * fem::stress(shape, problem_.material(e), u);
+    volume += shape.volume;
+  }
+  if (!(volume > 0)) return std::nullopt;
+  return in_plane(sum / volume, board_.plane());
+}
+
+std::optional<InPlane> PristineField::along(const Vec2& from, const Vec2& to) const {
+  constexpr int kStations = 9;
+  InPlane sum = InPlane::Zero();
+  int count = 0;
+  for (int k = 0; k < kStations; ++k) {
+    const auto stress = at(from + (k + 0.5) / kStations * (to - from));
+    if (!stress) continue;
+    sum += *stress;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+}  // namespace sunder::fracture

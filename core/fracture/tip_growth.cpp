@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/tip_growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fracture/crack_path.hpp"
+#include "fracture/geometry_factor.hpp"
+#include "fracture/stress_intensity.hpp"
+
+namespace sunder::fracture {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+Vec2 mean_position(const Board& board, const std::vector<Index>& nodes) {
+  Vec2 sum = Vec2::Zero();
+  for (Index n : nodes) sum += board.node(n);
+  return sum / static_cast<double>(nodes.size());
+}
+
+std::string closing_push(const FractureState& state, const ActingPress& acting) {
+  const auto& instrument = state.problem.scene().instruments[acting.instrument];
+  return "instrument \"" + instrument.name + "\" pushes crack " +
+         std::to_string(acting.press->crack) + " shut on its " +
+         (acting.press->side == CrackSide::upper ? "upper" : "lower") +
+         " face and counts as no pressure in its stress intensity";
+}
+
+/// Remote stress of method.md 5; none: no breakable element near any station.
+std::optional<InPlane> remote_stress(const PristineField& field, const Crack& crack,
+                                     const Vec2& tip, RemoteStress choice) {
+  if (choice == RemoteStress::tip) return field.at(tip);
+  return field.along(crack_origin(crack).position, tip);
+}
+
+/// e_a: where the expansion alone would lead the crack (method.md 8).
+Vec2 expansion_direction(const PristineField& field, const CrackTip& tip) {
+  constexpr double kPerpendicular = 1e-12;
+  const auto stress = field.at(tip.position);
+  if (!stress) return tip.direction;
+  const Vec2 e = left_of(principal(*stress).n1);
+  const double forward = e.dot(tip.direction);
+  if (std::abs(forward) <= kPerpendicular) return left_of(tip.direction);
+  return forward > 0 ? e : Vec2(-e);
+}
+
+/// The a of Eq. 3: with crack_length = "tool" the distance to the pressed places while some
+/// instrument presses the crack open.
+double effective_length(const Crack& crack, const FacePressure& pressure, double distance,
+                        CrackLength choice) {
+  const bool tool = choice == CrackLength::tool && !pressure.pushes.empty();
+  return tool ? distance : crack_length(crack);
+}
+
+double geometry_factor(const Crack& crack, double a, double b) {
+  return crack.kind == CrackKind::edge ? edge_factor(a / b) : internal_factor(2 * a / b);
+}
+
+}  // namespace
+
+FacePressure face_pressure(const Board& board, const Crack& crack, const FractureState& state,
+                           std::vector<std::string>& warnings) {
+  FacePressure faces;
+  faces.upward = upward_normal(crack);
+  for (const ActingPress& acting : state.presses) {
+    if (acting.press->crack != crack.id || acting.nodes.empty()) continue;
+    const bool upper = acting.press->side == CrackSide::upper;
+    const Vec3 opening = board.plane().lift_direction(upper ? faces.upward : Vec2(-faces.upward));
+    const double pressure = acting.force.dot(opening) / board.plane().thickness();
+    if (pressure < 0) warnings.push_back(closing_push(state, acting));
+    if (!(pressure > 0)) continue;
+    (upper ? faces.upper : faces.lower) += pressure;
+    faces.pushes.push_back({pressure, mean_position(board, acting.nodes)});
+  }
+  return faces;
+}
+
+double pressure_distance(const FacePressure& pressure, const Vec2& tip, double h) {
+  double weighted = 0, total = 0;
+  for (const auto& push : pressure.pushes) {
+    weighted += push.pressure * (push.at - tip).norm();
+    total += push.pressure;
+  }
+  return total > 0 ? std::max(weighted / total, h / 2) : h / 2;
+}
+
+std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& field,
+                                    const Crack& crack, std::size_t tip,
+                                    const FacePressure& pressure, const FractureState& state) {
+  const FractureOptions& options = state.problem.scene().fracture;
+  const CrackTip& at = crack.tips[tip];
+  const Vec2& d = at.direction;
+  TipGrowth growth;
+  SifTerms& terms = growth.terms;
+  terms.tip = static_cast<int>(tip);
+
+  const double distance = pressure_distance(pressure, at.position, board.h());  // b'
+  terms.a = effective_length(crack, pressure, distance, options.crack_length);
+  terms.b = board.plane().chord(at.position, d);
+  const auto remote = remote_stress(field, crack, at.position, options.sigma0);
+  if (remote) {
+    const Principal p = principal(*remote);
+    const double cos_beta = std::min(std::abs(left_of(d).dot(p.n1)), 1.0);
+    terms.sigma0 = p.s1;
+    terms.beta = std::acos(cos_beta) * kDegrees;
+    terms.k_a =
+        expansion_intensity(geometry_factor(crack, terms.a, terms.b), cos_beta, p.s1, terms.a);
+  }
+  terms.k_b = balanced_intensity(pressure.upper, pressure.lower, distance);
+  terms.k_c = one_sided_intensity(pressure.upper, pressure.lower, distance);
+  const Vec2 e_c = pressure.upper >= pressure.lower ? pressure.upward : Vec2(-pressure.upward);
+  const double sign = pressure_sign(board.plane().lift_direction(e_c), state.expansion_resultant);
+  terms.k = total_intensity(terms.k_a, terms.k_b, terms.k_c, sign);
+
+  const Vec2 v = terms.k_a * expansion_direction(field, at) + terms.k_b * d + terms.k_c * e_c;
+  if (!(v.norm() > 0)) return std::nullopt;
+  growth.theta = growth_angle(d, v);
+  growth.direction = turned(d, growth.theta);
+  terms.theta = growth.theta * kDegrees;
+  return growth;
+}
+
+}  // namespace sunder::fracture
