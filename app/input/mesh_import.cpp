@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_import.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "child_process.hpp"
+#include "file_bytes.hpp"
+#include "gmsh_reader.hpp"
+#include "nearest.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::app {
+namespace {
+
+constexpr std::size_t kLargestMesh = std::size_t{8} << 30U;  // bytes
+
+// gmsh takes any other file for a script of its own language and would run it.
+const std::vector<std::string>& readable_extensions() {
+  static const std::vector<std::string> extensions = {".msh", ".vtk", ".mesh", ".unv",
+                                                      ".bdf", ".nas", ".diff"};
+  return extensions;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+std::string checked_extension(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  const auto& known = readable_extensions();
+  if (std::find(known.begin(), known.end(), extension) == known.end()) {
+    throw InputError(InputFault::unreadable_file,
+                     path.string() + ": the extension \"" + extension +
+                         "\" is not that of a mesh file; allowed: " + quoted_list(known));
+  }
+  return extension;
+}
+
+// The last line "Error : ..." that gmsh wrote, without its head.
+std::string last_gmsh_error(const std::string& log) {
+  const std::size_t begin = log.rfind("Error ");
+  if (begin == std::string::npos) return "";
+  const std::size_t colon = log.find(':', begin);
+  if (colon == std::string::npos) return "";
+  std::string text = log.substr(colon + 1, log.find('\n', colon) - colon - 1);
+  text.erase(0, text.find_first_not_of(' '));
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\r')) text.pop_back();
+  return text;
+}
+
+std::string in_parentheses(const std::string& gmsh_error) {
+  return gmsh_error.empty() ? "" : " (gmsh: " + gmsh_error + ")";
+}
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& why,
+                       const std::string& gmsh_error) {
+  throw InputError(InputFault::unreadable_file,
+                   path.string() + ": " + why + in_parentheses(gmsh_error));
+}
+
+ChildLimits child_limits(const ImportLimits& limits, std::size_t file_bytes) {
+  constexpr std::size_t kMiB = std::size_t{1} << 20U;
+  ChildLimits result;
+  result.timeout = limits.timeout.count() > 0
+                       ? limits.timeout
+                       : std::chrono::milliseconds(30'000 + 1'000 * (file_bytes / kMiB));
+  result.memory_bytes =
+      limits.memory_bytes > 0 ? limits.memory_bytes : 2048 * kMiB + 64 * file_bytes;
+  return result;
+}
+
+// First byte: 'M' and the mesh, or 'E' and why gmsh refused.
+std::string read_to_bytes(const std::string& path) {
+  try {
+    return "M" + to_bytes(read_with_gmsh(path));
+  } catch (const InputError& error) {
+    return std::string("E") + error.what();
+  }
+}
+
+RawMesh read_in_child(const std::filesystem::path& path, const ChildLimits& limits) {
+  const ChildOutcome outcome = run_in_child([&] { return read_to_bytes(path.string()); }, limits);
+  const std::string error = last_gmsh_error(outcome.error_text);
+  switch (outcome.end) {
+    case ChildOutcome::End::timed_out:
+      fail(path,
+           "reading it took longer than " + std::to_string(limits.timeout.count() / 1000) +
+               " s and was stopped",
+           error);
+    case ChildOutcome::End::out_of_memory:
+      fail(path,
+           "reading it takes more than " + std::to_string(limits.memory_bytes >> 20U) +
+               " MiB of memory",
+           error);
+    case ChildOutcome::End::crashed:
+      fail(path,
+           "gmsh crashed while reading it (signal " + std::to_string(outcome.signal) +
+               "): the file is damaged or not of the format its name says",
+           error);
+    case ChildOutcome::End::done:
+      break;
+  }
+  const std::string_view result = outcome.result;
+  if (result.starts_with('E')) fail(path, "gmsh cannot read it", std::string(result.substr(1)));
+  std::optional<RawMesh> mesh = result.empty() ? std::nullopt : from_bytes(result.substr(1));
+  if (!mesh) fail(path, "gmsh's answer is incomplete", error);
+  return *std::move(mesh);
+}
+
+}  // namespace
+
+Mesh import_mesh(const std::filesystem::path& path, std::vector<std::string>* warnings,
+                 const ImportLimits& limits) {
+  const std::string name = path.string();
+  const std::string extension = checked_extension(path);
+  std::optional<MshContents> contents;
+  std::size_t size = 0;
+  {
+    const std::string bytes = read_file(path, kLargestMesh);
+    size = bytes.size();
+    if (extension == ".msh") contents = check_msh(bytes, name);
+  }
+  if (contents && contents->tetrahedra == 0)
+    throw InputError(InputFault::no_tetrahedra, name + ": has no tetrahedra");
+  const RawMesh raw = read_in_child(path, child_limits(limits, size));
+  return to_mesh(raw, contents ? &*contents : nullptr, name, warnings);
+}
+
+}  // namespace sunder::app

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes from files, through gmsh. gmsh may crash, hang or accept half a file, so it runs in a
+// child process with limits, and .msh files are checked for completeness before (mesh_check.hpp).
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sunder/mesh.hpp"
+
+namespace sunder::app {
+
+struct ImportLimits {
+  std::chrono::milliseconds timeout{0};  ///< of gmsh; 0: 30 s and 1 s for each MB of the file
+  std::size_t memory_bytes = 0;          ///< of gmsh; 0: 2 GiB and 64 times the file's size
+};
+
+/// Reads the tetrahedra of .msh (2.2 and 4.1, ascii and binary), .vtk, .mesh, .unv, .bdf, .nas and
+/// .diff files, corner nodes only; nodes and elements in the order of the file.
+///
+/// Volumes are the physical groups of dimension 3, ordered by tag; a group without name is
+/// "volume-<tag>", tetrahedra of no group form the volume "volume" (tag 0). Surfaces are the
+/// physical groups of dimension 2. Nodes that no tetrahedron uses are dropped with a warning.
+/// Throws InputError.
+[[nodiscard]] Mesh import_mesh(const std::filesystem::path& path,
+                               std::vector<std::string>* warnings = nullptr,
+                               const ImportLimits& limits = {});
+
+}  // namespace sunder::app

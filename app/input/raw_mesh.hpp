@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh as gmsh hands it over, with the file's tags; and its way through a pipe.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh_check.hpp"
+#include "sunder/mesh.hpp"
+
+namespace sunder::app {
+
+struct RawGroup {
+  int dimension = 0;
+  int tag = 0;
+  std::string name;  ///< "" when the file gives none
+};
+
+struct RawMesh {
+  std::vector<std::uint64_t> node_tags;
+  std::vector<double> coordinates;  ///< 3 per node
+  std::vector<std::uint64_t> tet_tags;
+  std::vector<std::uint64_t> tet_nodes;      ///< 4 corners per tetrahedron
+  std::vector<int> tet_group;                ///< physical tag, 0: none
+  std::vector<std::uint64_t> triangle_tags;  ///< of surfaces with a physical group
+  std::vector<std::uint64_t> triangle_nodes;
+  std::vector<int> triangle_group;
+  std::vector<RawGroup> groups;  ///< of dimension 2 and 3
+  std::uint64_t curved = 0;      ///< tetrahedra with more than four nodes in the file
+  std::uint64_t other_solids = 0;
+  std::string other_name;  ///< of the first of the other solids: "Hexahedron 8", ...
+};
+
+[[nodiscard]] std::string to_bytes(const RawMesh& mesh);
+/// nullopt when the bytes are not those of a RawMesh.
+[[nodiscard]] std::optional<RawMesh> from_bytes(std::string_view bytes);
+
+/// Nodes and elements in the order of the file (`contents`, for .msh files; else as they come),
+/// volumes and surfaces by tag. Drops unused nodes, validates. Throws InputError; `name` begins
+/// messages.
+[[nodiscard]] Mesh to_mesh(const RawMesh& raw, const MshContents* contents, const std::string& name,
+                           std::vector<std::string>* warnings);
+
+}  // namespace sunder::app

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections of a scene, one function each; scene_toml.cpp puts them together.
+#pragma once
+
+#include "sunder/scene.hpp"
+#include "toml_table.hpp"
+
+namespace sunder::app {
+
+[[nodiscard]] std::map<std::string, Material> read_materials(const TomlTable& root,
+                                                             const std::string& file);
+[[nodiscard]] std::vector<Support> read_supports(const TomlTable& root, const std::string& file);
+[[nodiscard]] std::vector<Instrument> read_instruments(const TomlTable& root,
+                                                       const std::string& file);
+[[nodiscard]] std::vector<PresetCrack> read_cracks(const TomlTable& root, const std::string& file);
+[[nodiscard]] std::vector<ScriptedRemoval> read_removals(const TomlTable& root,
+                                                         const std::string& file);
+[[nodiscard]] FractureOptions read_fracture(const TomlTable& root, const std::string& file);
+[[nodiscard]] SolverOptions read_solver(const TomlTable& root, const std::string& file);
+[[nodiscard]] OutputOptions read_output(const TomlTable& root, const std::string& file);
+[[nodiscard]] int read_steps(const TomlTable& root, const std::string& file);
+
+}  // namespace sunder::app
