@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "child_process.hpp"
+#include "app/input/child_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

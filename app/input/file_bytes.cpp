@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "file_bytes.hpp"
+#include "app/input/file_bytes.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gmsh_reader.hpp"
+#include "app/input/gmsh_reader.hpp"
 
 #include <gmsh.h>
 
@@ -91,6 +91,8 @@ void read_surface(int entity, const std::vector<int>& groups, RawMesh& mesh) {
   }
 }
 
+}  // namespace
+
 RawMesh read_model() {
   RawMesh mesh;
   std::vector<std::size_t> tags;
@@ -109,8 +111,6 @@ RawMesh read_model() {
   }
   return mesh;
 }
-
-}  // namespace
 
 RawMesh read_with_gmsh(const std::string& path) {
   try {

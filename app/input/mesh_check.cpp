@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_check.hpp"
+#include "app/input/mesh_check.hpp"
 
 #include <map>
 #include <set>
 
-#include "msh_sections.hpp"
+#include "app/input/msh_sections.hpp"
 
 namespace sunder::app {
 namespace {

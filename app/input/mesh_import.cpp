@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_import.hpp"
+#include "app/input/mesh_import.hpp"
 
 #include <algorithm>
 #include <optional>
 
-#include "child_process.hpp"
-#include "file_bytes.hpp"
-#include "gmsh_reader.hpp"
-#include "nearest.hpp"
+#include "app/input/child_process.hpp"
+#include "app/input/file_bytes.hpp"
+#include "app/input/gmsh_reader.hpp"
+#include "app/input/nearest.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::app {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "msh_cursor.hpp"
+#include "app/input/msh_cursor.hpp"
 
 #include <charconv>
 #include <cmath>

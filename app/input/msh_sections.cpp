@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "msh_sections.hpp"
+#include "app/input/msh_sections.hpp"
 
 #include <array>
 #include <limits>
 
-#include "tag_index.hpp"
+#include "app/input/tag_index.hpp"
 
 namespace sunder::app {
 namespace {

@@ -2,8 +2,8 @@
 // The bodies of $Nodes, $Elements and $Entities in the two versions of .msh.
 #pragma once
 
-#include "mesh_check.hpp"
-#include "msh_cursor.hpp"
+#include "app/input/mesh_check.hpp"
+#include "app/input/msh_cursor.hpp"
 
 namespace sunder::app {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raw_mesh.hpp"
+#include "app/input/raw_mesh.hpp"
 
 #include <cstring>
 

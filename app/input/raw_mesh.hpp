@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh_check.hpp"
+#include "app/input/mesh_check.hpp"
 #include "sunder/mesh.hpp"
 
 namespace sunder::app {

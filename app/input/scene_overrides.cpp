@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_overrides.hpp"
+#include "app/input/scene_overrides.hpp"
 
 #include <charconv>
 #include <vector>

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "toml.hpp"
+#include "app/input/toml.hpp"
 
 namespace sunder::app {
 

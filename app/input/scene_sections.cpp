@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_sections.hpp"
+#include "app/input/scene_sections.hpp"
 
 #include <limits>
 
-#include "nearest.hpp"
-#include "scene_selection.hpp"
+#include "app/input/nearest.hpp"
+#include "app/input/scene_selection.hpp"
 
 namespace sunder::app {
 namespace {

@@ -2,8 +2,8 @@
 // The sections of a scene, one function each; scene_toml.cpp puts them together.
 #pragma once
 
+#include "app/input/toml_table.hpp"
 #include "sunder/scene.hpp"
-#include "toml_table.hpp"
 
 namespace sunder::app {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_selection.hpp"
+#include "app/input/scene_selection.hpp"
 
-#include "nearest.hpp"
+#include "app/input/nearest.hpp"
 
 namespace sunder::app {
 namespace {

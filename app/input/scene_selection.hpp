@@ -2,8 +2,8 @@
 // Selections of nodes and elements, and axes, as scenes write them.
 #pragma once
 
+#include "app/input/toml_table.hpp"
 #include "sunder/scene.hpp"
-#include "toml_table.hpp"
 
 namespace sunder::app {
 

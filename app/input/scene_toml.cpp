@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_toml.hpp"
+#include "app/input/scene_toml.hpp"
 
-#include "file_bytes.hpp"
-#include "mesh_import.hpp"
-#include "scene_overrides.hpp"
-#include "scene_sections.hpp"
+#include "app/input/file_bytes.hpp"
+#include "app/input/mesh_import.hpp"
+#include "app/input/scene_overrides.hpp"
+#include "app/input/scene_sections.hpp"
 
 namespace sunder::app {
 namespace {

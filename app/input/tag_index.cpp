@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tag_index.hpp"
+#include "app/input/tag_index.hpp"
 
 #include <algorithm>
 

@@ -4,9 +4,9 @@
 #include <map>
 #include <numeric>
 
-#include "raw_mesh.hpp"
+#include "app/input/raw_mesh.hpp"
+#include "app/input/tag_index.hpp"
 #include "sunder/error.hpp"
-#include "tag_index.hpp"
 
 namespace sunder::app {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toml_table.hpp"
+#include "app/input/toml_table.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "nearest.hpp"
+#include "app/input/nearest.hpp"
 
 namespace sunder::app {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/input/toml.hpp"
 #include "sunder/error.hpp"
 #include "sunder/types.hpp"
-#include "toml.hpp"
 
 namespace sunder::app {
 
