@@ -103,9 +103,12 @@ RawMesh read_model() {
     const auto groups = groups_by_entity(dimension, mesh);
     gmsh::vectorpair entities;
     gmsh::model::getEntities(entities, dimension);
+    // Formats without groups (.mesh, .bdf) tell their regions by entity.
+    const bool by_entity = dimension == 3 && groups.empty() && entities.size() > 1;
     for (const auto& [dim, entity] : entities) {
       const auto found = groups.find(entity);
-      const std::vector<int> own = found == groups.end() ? std::vector<int>{} : found->second;
+      std::vector<int> own = found == groups.end() ? std::vector<int>{} : found->second;
+      if (by_entity) own = {entity};
       dim == 3 ? read_volume(entity, own, mesh) : read_surface(entity, own, mesh);
     }
   }

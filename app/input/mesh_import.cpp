@@ -5,9 +5,11 @@
 #include <optional>
 
 #include "app/input/child_process.hpp"
+#include "app/input/end_check.hpp"
 #include "app/input/file_bytes.hpp"
 #include "app/input/gmsh_reader.hpp"
 #include "app/input/nearest.hpp"
+#include "app/input/vtk_check.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::app {
@@ -17,8 +19,8 @@ constexpr std::size_t kLargestMesh = std::size_t{8} << 30U;  // bytes
 
 // gmsh takes any other file for a script of its own language and would run it.
 const std::vector<std::string>& readable_extensions() {
-  static const std::vector<std::string> extensions = {".msh", ".vtk", ".mesh", ".unv",
-                                                      ".bdf", ".nas", ".diff"};
+  static const std::vector<std::string> extensions = {".msh", ".vtk", ".mesh",
+                                                      ".unv", ".bdf", ".nas"};
   return extensions;
 }
 
@@ -112,23 +114,38 @@ RawMesh read_in_child(const std::filesystem::path& path, const ChildLimits& limi
   return *std::move(mesh);
 }
 
+// What the checks before gmsh found.
+struct Checked {
+  std::size_t bytes = 0;
+  std::optional<MshContents> msh;
+  std::optional<VtkContents> vtk;
+};
+
+Checked check_file(const std::filesystem::path& path) {
+  const std::string extension = checked_extension(path);
+  const std::string bytes = read_file(path, kLargestMesh);
+  const std::string name = path.string();
+  Checked checked{bytes.size(), std::nullopt, std::nullopt};
+  if (extension == ".msh")
+    checked.msh = check_msh(bytes, name);
+  else if (extension == ".vtk")
+    checked.vtk = check_vtk(bytes, name);
+  else
+    check_end(bytes, extension, name);
+  const bool none = (checked.msh && checked.msh->tetrahedra == 0) ||
+                    (checked.vtk && checked.vtk->tetrahedra == 0);
+  if (none) throw InputError(InputFault::no_tetrahedra, name + ": has no tetrahedra");
+  return checked;
+}
+
 }  // namespace
 
 Mesh import_mesh(const std::filesystem::path& path, std::vector<std::string>* warnings,
                  const ImportLimits& limits) {
-  const std::string name = path.string();
-  const std::string extension = checked_extension(path);
-  std::optional<MshContents> contents;
-  std::size_t size = 0;
-  {
-    const std::string bytes = read_file(path, kLargestMesh);
-    size = bytes.size();
-    if (extension == ".msh") contents = check_msh(bytes, name);
-  }
-  if (contents && contents->tetrahedra == 0)
-    throw InputError(InputFault::no_tetrahedra, name + ": has no tetrahedra");
-  const RawMesh raw = read_in_child(path, child_limits(limits, size));
-  return to_mesh(raw, contents ? &*contents : nullptr, name, warnings);
+  const Checked checked = check_file(path);
+  RawMesh raw = read_in_child(path, child_limits(limits, checked.bytes));
+  if (checked.vtk) set_groups_in_order(raw, checked.vtk->tet_tags);
+  return to_mesh(raw, checked.msh ? &*checked.msh : nullptr, path.string(), warnings);
 }
 
 }  // namespace sunder::app

@@ -51,7 +51,7 @@ class MshCursor {
   [[noreturn]] void fail(const std::string& message,
                          InputFault fault = InputFault::unreadable_file) const;
 
- private:
+  /// One binary number.
   template <class Word>
   [[nodiscard]] Word raw(const char* what) {
     if (remaining() < sizeof(Word)) fail_truncated(what);
@@ -66,6 +66,8 @@ class MshCursor {
     std::memcpy(&value, buffer, sizeof(Word));
     return value;
   }
+
+ private:
   [[noreturn]] void fail_truncated(const char* what) const;
   [[nodiscard]] std::string_view number_word(const char* what);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/input/raw_mesh.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace sunder::app {
 namespace {
@@ -110,6 +112,15 @@ std::optional<RawMesh> from_bytes(std::string_view bytes) {
        reader.get(mesh.other_name) && reader.done() && consistent(mesh);
   if (!ok) return std::nullopt;
   return mesh;
+}
+
+void set_groups_in_order(RawMesh& mesh, const std::vector<int>& tags) {
+  if (tags.size() != mesh.tet_tags.size()) return;
+  std::vector<std::size_t> order(tags.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return mesh.tet_tags[a] < mesh.tet_tags[b]; });
+  for (std::size_t i = 0; i < order.size(); ++i) mesh.tet_group[order[i]] = tags[i];
 }
 
 }  // namespace sunder::app

@@ -44,4 +44,8 @@ struct RawMesh {
 [[nodiscard]] Mesh to_mesh(const RawMesh& raw, const MshContents* contents, const std::string& name,
                            std::vector<std::string>* warnings);
 
+/// Groups of the tetrahedra from elsewhere: tags[i] is that of the one with the i-th smallest tag.
+/// Nothing happens when the numbers differ.
+void set_groups_in_order(RawMesh& mesh, const std::vector<int>& tags);
+
 }  // namespace sunder::app

@@ -22,6 +22,9 @@ class Converter {
                            : std::span<const std::uint64_t>()) {}
 
   Mesh convert() {
+    by_element_ = contents_ &&
+                  std::any_of(contents_->element_physical.begin(),
+                              contents_->element_physical.end(), [](int tag) { return tag != 0; });
     check_solids();
     place_nodes();
     place_volumes();
@@ -83,7 +86,7 @@ class Converter {
   // Physical tag of the raw tetrahedron i. In version 2.2 it belongs to the element; gmsh keeps
   // it by entity only, which mixes groups up when the entities do not follow them.
   [[nodiscard]] int group_of(std::size_t i) const {
-    if (!contents_ || contents_->element_physical.empty()) return raw_.tet_group[i];
+    if (!by_element_) return raw_.tet_group[i];
     const auto position = elements_.find(raw_.tet_tags[i]);
     return position ? contents_->element_physical[*position] : raw_.tet_group[i];
   }
@@ -167,8 +170,9 @@ class Converter {
   const RawMesh& raw_;
   const MshContents* contents_;
   const std::string& name_;
-  TagIndex nodes_;     // tag -> raw position
-  TagIndex elements_;  // tag -> position in the file
+  bool by_element_ = false;  // the file gives groups by element
+  TagIndex nodes_;           // tag -> raw position
+  TagIndex elements_;        // tag -> position in the file
   std::vector<Index> node_id_;
   std::map<int, Index> volume_of_tag_;
   Mesh mesh_;

@@ -69,8 +69,7 @@ BoardCells chosen_cells(const BoardOptions& options) {
 }
 
 const std::vector<std::string>& writable_extensions() {
-  static const std::vector<std::string> extensions = {".msh", ".vtk", ".mesh",
-                                                      ".unv", ".bdf", ".diff"};
+  static const std::vector<std::string> extensions = {".msh", ".vtk", ".mesh", ".unv", ".bdf"};
   return extensions;
 }
 

@@ -28,7 +28,7 @@ struct BoardReport {
 /// Throws UsageError (in one sentence) for options that do not fit.
 [[nodiscard]] Mesh make_board(const BoardOptions& options, BoardReport* report = nullptr);
 
-/// Writes .msh (version 4.1), .vtk, .mesh, .unv, .bdf or .diff; the file appears complete or not at
+/// Writes .msh (version 4.1), .vtk, .mesh, .unv or .bdf; the file appears complete or not at
 /// all. Throws UsageError for another extension.
 BoardReport write_board(const BoardOptions& options, const std::filesystem::path& file);
 
