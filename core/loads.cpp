@@ -23,18 +23,17 @@ void fill(Load& load, Entries& entries) {
   }
 }
 
-bool has_live_element(const Mesh& mesh, Index node, std::span<const std::uint8_t> destroyed) {
-  for (Index e = 0; e < mesh.tet_count(); ++e) {
-    const auto& t = mesh.tets[e];
-    if (!destroyed[e] && std::find(t.begin(), t.end(), node) != t.end()) return true;
-  }
-  return false;
+bool presses(const Instrument& instrument) {
+  return std::holds_alternative<Press>(instrument.action);
 }
 
 }  // namespace
 
 Loads::Loads(const Problem& problem) : problem_(problem) {
   const auto& instruments = problem.scene().instruments;
+  if (std::any_of(instruments.begin(), instruments.end(), presses)) {
+    elements_of_node_.emplace(problem.mesh());
+  }
   pressed_.resize(instruments.size());
   forces_.assign(instruments.size(), Vec3::Zero());
   const auto gripped = problem.gripped_dofs();
@@ -54,8 +53,9 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
 }
 
 std::span<const Index> Loads::nodes(std::size_t instrument) const {
-  const bool press = std::holds_alternative<Press>(problem_.scene().instruments[instrument].action);
-  return press ? pressed_[instrument] : problem_.instrument_nodes()[instrument].nodes;
+  return presses(problem_.scene().instruments[instrument])
+             ? pressed_[instrument]
+             : problem_.instrument_nodes()[instrument].nodes;
 }
 
 void Loads::choose_pressed_nodes(std::size_t instrument, const FractureCriterion& criterion,
@@ -63,7 +63,8 @@ void Loads::choose_pressed_nodes(std::size_t instrument, const FractureCriterion
                                  std::vector<std::string>& findings) {
   std::vector<Index>& chosen = pressed_[instrument];
   const bool keep = !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](Index n) {
-    return has_live_element(problem_.mesh(), n, destroyed);
+    const auto around = elements_of_node_->of(n);
+    return std::any_of(around.begin(), around.end(), [&](Index e) { return !destroyed[e]; });
   });
   if (keep) return;
   const Instrument& tool = problem_.scene().instruments[instrument];

@@ -2,11 +2,13 @@
 // The instruments as they act at a scene time: nodal forces, prescribed displacements.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fracture/criterion.hpp"
+#include "node_elements.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder {
@@ -43,7 +45,8 @@ class Loads {
   void add(std::size_t instrument, std::vector<std::pair<Index, double>>& entries) const;
 
   const Problem& problem_;
-  std::vector<std::vector<Index>> pressed_;  // per instrument
+  std::optional<NodeElements> elements_of_node_;  // only where something presses
+  std::vector<std::vector<Index>> pressed_;       // per instrument
   std::vector<Gripped> gripped_;
   std::vector<Vec3> forces_;
   std::vector<ActingPress> acting_;

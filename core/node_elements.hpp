@@ -8,7 +8,7 @@
 
 #include "sunder/mesh.hpp"
 
-namespace sunder::fracture {
+namespace sunder {
 
 class NodeElements {
  public:
@@ -22,4 +22,4 @@ class NodeElements {
   std::vector<Index> elements_;     // shape (4 * elements)
 };
 
-}  // namespace sunder::fracture
+}  // namespace sunder

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fracture/node_elements.hpp"
+#include "node_elements.hpp"
 
-namespace sunder::fracture {
+namespace sunder {
 
 NodeElements::NodeElements(const Mesh& mesh)
     : begin_(mesh.nodes.size() + 1, 0), elements_(4 * mesh.tets.size()) {
@@ -13,4 +13,4 @@ NodeElements::NodeElements(const Mesh& mesh)
     for (Index n : mesh.tets[e]) elements_[next[n]++] = e;
 }
 
-}  // namespace sunder::fracture
+}  // namespace sunder
