@@ -199,10 +199,11 @@ FractureOptions read_fracture(const TomlTable& root, const std::string& file) {
 }
 
 SolverOptions read_solver(const TomlTable& root, const std::string& file) {
-  const TomlTable table =
-      section(root, file, "solver", {"backend", "route", "update", "precision", "tolerance"});
+  const TomlTable table = section(
+      root, file, "solver", {"backend", "route", "update", "precision", "tolerance", "device"});
   SolverOptions options;
   options.backend = table.text("backend").value_or(options.backend);
+  options.device = table.integer("device", 0, std::numeric_limits<int>::max()).value_or(kNone);
   options.route = table
                       .choice<Route>("route", {{"auto", Route::automatic},
                                                {"inverse", Route::inverse},

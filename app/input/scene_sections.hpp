@@ -2,6 +2,7 @@
 // The sections of a scene, one function each; scene_toml.cpp puts them together.
 #pragma once
 
+#include "app/input/scene_places.hpp"
 #include "app/input/toml_table.hpp"
 #include "sunder/scene.hpp"
 
@@ -19,5 +20,7 @@ namespace sunder::app {
 [[nodiscard]] SolverOptions read_solver(const TomlTable& root, const std::string& file);
 [[nodiscard]] OutputOptions read_output(const TomlTable& root, const std::string& file);
 [[nodiscard]] int read_steps(const TomlTable& root, const std::string& file);
+
+[[nodiscard]] ScenePlaces collect_places(const toml::table& scene, const std::string& file);
 
 }  // namespace sunder::app

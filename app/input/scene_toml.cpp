@@ -20,21 +20,30 @@ toml::table parse_toml(std::string_view text, const std::string& source) {
   }
 }
 
+ParsedScene read_with_mesh(const std::filesystem::path& path,
+                           const std::vector<std::string>& overrides,
+                           std::vector<std::string>* warnings) {
+  ParsedScene parsed = parse_scene(read_file(path, kLargestScene), path.string(), overrides);
+  parsed.scene.mesh = import_mesh(path.parent_path() / parsed.mesh_path, warnings);
+  return parsed;
+}
+
 }  // namespace
 
-Scene parse_scene(std::string_view text, const std::string& source,
-                  const std::vector<std::string>& overrides, std::string& mesh_path) {
+ParsedScene parse_scene(std::string_view text, const std::string& source,
+                        const std::vector<std::string>& overrides) {
   toml::table parsed = parse_toml(text, source);
   for (const std::string& override_text : overrides) apply_override(parsed, override_text);
 
   const TomlTable root(parsed, source, "",
                        {"title", "mesh", "material", "fixed", "instrument", "crack", "destroy",
                         "fracture", "solver", "time", "output"});
-  Scene scene;
+  ParsedScene result;
+  Scene& scene = result.scene;
   scene.source = source;
   scene.title = root.text("title").value_or(std::filesystem::path(source).stem().string());
-  mesh_path = root.require("mesh", root.text("mesh"));
-  if (mesh_path.empty())
+  result.mesh_path = root.require("mesh", root.text("mesh"));
+  if (result.mesh_path.empty())
     root.fail(InputFault::out_of_range, "mesh", "is empty; allowed: the path of a mesh file");
   scene.materials = read_materials(root, source);
   scene.supports = read_supports(root, source);
@@ -45,15 +54,24 @@ Scene parse_scene(std::string_view text, const std::string& source,
   scene.solver = read_solver(root, source);
   scene.steps = read_steps(root, source);
   scene.output = read_output(root, source);
-  return scene;
+  result.places = collect_places(parsed, source);
+  return result;
 }
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                  std::vector<std::string>* warnings) {
-  std::string mesh_path;
-  Scene scene = parse_scene(read_file(path, kLargestScene), path.string(), overrides, mesh_path);
-  scene.mesh = import_mesh(path.parent_path() / mesh_path, warnings);
-  return scene;
+  return read_with_mesh(path, overrides, warnings).scene;
+}
+
+std::shared_ptr<const Problem> read_problem(const std::filesystem::path& path,
+                                            const std::vector<std::string>& overrides,
+                                            std::vector<std::string>* warnings) {
+  ParsedScene parsed = read_with_mesh(path, overrides, warnings);
+  try {
+    return std::make_shared<const Problem>(std::move(parsed.scene));
+  } catch (const InputError& error) {
+    throw parsed.places.located(error);
+  }
 }
 
 }  // namespace sunder::app

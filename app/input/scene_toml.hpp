@@ -4,11 +4,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sunder/scene.hpp"
+#include "app/input/scene_places.hpp"
+#include "sunder/problem.hpp"
 
 namespace sunder::app {
 
@@ -19,9 +21,20 @@ namespace sunder::app {
                                const std::vector<std::string>& overrides = {},
                                std::vector<std::string>* warnings = nullptr);
 
-/// The same from text, without the mesh: Scene::mesh stays empty, `mesh_path` receives the value
-/// of the key `mesh` as written. `source` begins messages.
-[[nodiscard]] Scene parse_scene(std::string_view text, const std::string& source,
-                                const std::vector<std::string>& overrides, std::string& mesh_path);
+/// Reads a scene and makes it a Problem, whose errors are reported with their place in the file.
+[[nodiscard]] std::shared_ptr<const Problem> read_problem(
+    const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
+    std::vector<std::string>* warnings = nullptr);
+
+/// A scene's text, read; Scene::mesh is empty.
+struct ParsedScene {
+  Scene scene;
+  std::string mesh_path;  ///< the value of the key `mesh`, as written
+  ScenePlaces places;
+};
+
+/// `source` (the file) begins messages. Throws InputError.
+[[nodiscard]] ParsedScene parse_scene(std::string_view text, const std::string& source,
+                                      const std::vector<std::string>& overrides = {});
 
 }  // namespace sunder::app

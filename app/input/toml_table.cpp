@@ -13,6 +13,9 @@ namespace {
 std::string shortened(std::string text) {
   constexpr std::size_t kLongest = 60;
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';  // a message is one line
+  }
   return text;
 }
 
