@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/options.hpp"
+
+#include "app/cli/values.hpp"
+#include "app/commands/commands.hpp"
+#include "sunder/backends.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::app {
+namespace {
+
+void add_scene_options(CLI::App& command, Options& o) {
+  command.add_option("scene", o.scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
+  command.add_option("--backend", o.backend, "auto, cpu or vulkan")->type_name("B");
+  command.add_option("--device", o.device, "Device of the backend, see `sunder devices`")
+      ->type_name("N");
+  command.add_option("--route", o.route, "auto, inverse, condensed, factor or cg")->type_name("R");
+  command.add_option("--update", o.update, "auto, eager or deferred")->type_name("U");
+  command.add_option("--precision", o.precision, "auto, fp32 or fp64")->type_name("P");
+  command.add_option("--steps", o.steps, "Number of steps, instead of the scene's")->type_name("N");
+  command
+      .add_option("--set", o.set,
+                  "Override or add a key of the scene, arrays by index: "
+                  "instrument.0.force=[0,-50,0]; may be given several times")
+      ->type_name("KEY.PATH=VALUE")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+/// Output options; `plan` takes and ignores them, so that a command line can be tried out.
+void add_output_options(CLI::App& command, Options& o) {
+  command.add_option("--out", o.out, "Folder for the results (default out/<scene name>)")
+      ->type_name("DIR");
+  command.add_flag("--series", o.series, "Write a VTU file per step and series.pvd");
+  command
+      .add_option("--snapshots", o.snapshots,
+                  "Figure and VTU when so many elements are destroyed: 5,10,20,40")
+      ->type_name("N,N,...");
+  command.add_flag("--quiet", o.quiet, "No progress and no warnings on stderr");
+}
+
+void add_mesh_options(CLI::App& mesh, Options& o) {
+  mesh.require_subcommand(1);
+  CLI::App& board =
+      *mesh.add_subcommand("board", "The paper's board, 500 to 1,000,000 tetrahedra and more");
+  board.add_option("--nx", o.nx, "Cells along x")->type_name("N");
+  board.add_option("--ny", o.ny, "Cells along y")->type_name("N");
+  board.add_option("--nz", o.nz, "Cells through the thickness")->type_name("N");
+  board.add_option("--tets", o.tets, "About this many tetrahedra, instead of cells")
+      ->type_name("N");
+  board.add_option("--thickness", o.thickness, "Thickness of the board [mm]")->type_name("MM");
+  board.add_flag("--unstructured", o.unstructured, "Delaunay mesh instead of a grid");
+  board.add_flag("--ascii", o.ascii, "Text instead of binary .msh");
+  board.add_option("-o,--output", o.mesh_file, "Mesh file to write: .msh, .vtk, .mesh, ...")
+      ->required()
+      ->type_name("FILE");
+}
+
+SceneArguments scene_arguments(const Options& o) {
+  SceneArguments arguments;
+  arguments.scene = o.scene;
+  const auto word = [](const std::string& option, const Options::Text& value,
+                       const std::vector<std::string>& allowed) {
+    if (value) check_word(option, *value, allowed);
+    return value;
+  };
+  arguments.backend = word("--backend", o.backend, {"auto", "cpu", "vulkan"});
+  arguments.route = word("--route", o.route, {"auto", "inverse", "condensed", "factor", "cg"});
+  arguments.update = word("--update", o.update, {"auto", "eager", "deferred"});
+  arguments.precision = word("--precision", o.precision, {"auto", "fp32", "fp64"});
+  if (o.device) arguments.device = whole_number("--device", *o.device, 0);
+  if (o.steps) arguments.steps = whole_number("--steps", *o.steps, 1);
+  for (const std::string& text : o.set)
+    if (text.find('=') == std::string::npos || text.front() == '=')
+      throw UsageError("--set is \"" + text +
+                       "\"; allowed is KEY.PATH=VALUE such as instrument.0.force=[0,-50,0]");
+  arguments.set = o.set;
+  return arguments;
+}
+
+RunArguments run_arguments(const Options& o) {
+  RunArguments arguments;
+  arguments.scene = scene_arguments(o);
+  if (o.out && o.out->empty()) throw UsageError("--out is \"\"; allowed is the name of a folder");
+  if (o.out) arguments.out = *o.out;
+  if (o.snapshots) arguments.snapshots = number_list("--snapshots", *o.snapshots);
+  arguments.series = o.series;
+  arguments.quiet = o.quiet;
+  return arguments;
+}
+
+BoardArguments board_arguments(const Options& o) {
+  BoardArguments arguments;
+  BoardOptions& board = arguments.options;
+  if (o.nx) board.nx = whole_number("--nx", *o.nx, 1);
+  if (o.ny) board.ny = whole_number("--ny", *o.ny, 1);
+  if (o.nz) board.nz = whole_number("--nz", *o.nz, 1);
+  if (o.tets) board.tets = whole_number("--tets", *o.tets, 1);
+  if (o.thickness) board.thickness = positive_number("--thickness", *o.thickness);
+  board.unstructured = o.unstructured;
+  board.ascii = o.ascii;
+  arguments.file = o.mesh_file;
+  return arguments;
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app, Options& options) {
+  CLI::App& run_command = *app.add_subcommand("run", "Simulate a scene and write its results");
+  add_scene_options(run_command, options);
+  add_output_options(run_command, options);
+  CLI::App& plan_command = *app.add_subcommand("plan", "What a scene needs and what is left out");
+  add_scene_options(plan_command, options);
+  add_output_options(plan_command, options);
+  add_mesh_options(*app.add_subcommand("mesh", "Make meshes"), options);
+  app.add_subcommand("devices", "Devices and backends, and what would be chosen");
+  app.add_subcommand("help", "Help for a command")
+      ->add_option("command", options.help_path, "Command")
+      ->type_name("COMMAND");
+}
+
+int carry_out(const CLI::App& app, const Options& options) {
+  if (app.got_subcommand("run")) return run(run_arguments(options));
+  if (app.got_subcommand("plan")) return plan(run_arguments(options).scene);
+  if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options));
+  return list_devices();
+}
+
+}  // namespace sunder::app

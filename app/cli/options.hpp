@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options of all commands, as texts; they are checked when a command is carried out.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sunder::app {
+
+struct Options {
+  using Text = std::optional<std::string>;
+  // run and plan
+  std::string scene;
+  Text out, backend, device, route, update, precision, steps, snapshots;
+  std::vector<std::string> set;
+  bool series = false, quiet = false;
+  // mesh board
+  Text nx, ny, nz, tets, thickness;
+  std::string mesh_file;
+  bool unstructured = false, ascii = false;
+  // help
+  std::vector<std::string> help_path;
+};
+
+void add_commands(CLI::App& app, Options& options);
+
+/// Carries out the command that was parsed, other than help. Throws UsageError for values that are
+/// not allowed.
+int carry_out(const CLI::App& app, const Options& options);
+
+}  // namespace sunder::app

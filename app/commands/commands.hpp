@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of the program, one function each. They print results on stdout, progress and
+// warnings on stderr, return the exit code and throw sunder::Error.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "app/commands/scene_arguments.hpp"
+#include "app/mesh_board/board.hpp"
+
+namespace sunder::app {
+
+constexpr int kInterruptedExit = 130;  // 128 + SIGINT, as shells have it
+
+struct RunArguments {
+  SceneArguments scene;
+  std::optional<std::filesystem::path> out;  ///< default: out/<scene name>
+  std::vector<int> snapshots;                ///< numbers of destroyed elements
+  bool series = false;
+  bool quiet = false;
+};
+
+struct BoardArguments {
+  BoardOptions options;
+  std::filesystem::path file;
+};
+
+int run(const RunArguments& arguments);
+int plan(const SceneArguments& arguments);
+int list_devices();
+int mesh_board(const BoardArguments& arguments);
+
+}  // namespace sunder::app

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <iostream>
+#include <numeric>
+#include <utility>
+
+#include "app/commands/commands.hpp"
+#include "app/output/run_record.hpp"
+#include "app/output/text.hpp"
+#include "sunder/backends.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder::app {
+namespace {
+
+void line(const std::string& name, const std::string& value) {
+  std::cout << "  " << name << std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') << value
+            << "\n";
+}
+
+/// Operations of the backend that one frame of this scene calls, in order.
+std::vector<std::string> operations(const Problem& problem, const Needs& needs) {
+  std::vector<std::string> names = {"set_load"};
+  names.push_back(problem.gripped_dofs().empty()
+                      ? "solve: displacement under the load"
+                      : "solve: displacement under load and grips, reactions of the grips");
+  if (needs.stress) names.push_back("stress: six components per element");
+  if (needs.yield) names.push_back("stress summary: largest yield ratio, and where");
+  if (needs.pristine) names.push_back("solve_pristine: intact body, once a step that breaks");
+  if (needs.damage) names.push_back("destroy: update of rank 6 for each element of an event");
+  return names;
+}
+
+void print_sizes(const Problem& problem) {
+  const Index dofs = problem.dof_count();
+  std::cout << "Problem\n";
+  line("nodes, tetrahedra", grouped(problem.node_count()) + ", " + grouped(problem.tet_count()));
+  line("unknowns",
+       grouped(dofs) + " (" + grouped(3LL * problem.node_count() - dofs) + " held by supports, " +
+           grouped(static_cast<long long>(problem.gripped_dofs().size())) + " driven by grips)");
+  line("fracture model", name_of(problem.scene().fracture.model));
+  line("steps", grouped(problem.scene().steps));
+}
+
+void print_engine(const Backend& backend) {
+  const BackendInfo info = backend.info();
+  std::cout << "Engine\n";
+  line("backend",
+       info.backend + " " + info.precision + " on " + info.device + " (" + info.driver + ")");
+  line("route", info.route + ", update " + info.update);
+  line("why", info.why);
+}
+
+void print_buffers(const Backend& backend) {
+  const std::vector<BufferPlan> buffers = backend.buffers();
+  std::cout << "Buffers\n";
+  for (const BufferPlan& buffer : buffers)
+    line(buffer.name, grouped(static_cast<long long>(buffer.bytes)) + " bytes (" +
+                          byte_size(static_cast<double>(buffer.bytes)) + ")");
+  const std::size_t sum = std::accumulate(
+      buffers.begin(), buffers.end(), std::size_t{0},
+      [](std::size_t bytes, const BufferPlan& buffer) { return bytes + buffer.bytes; });
+  line("predicted memory", grouped(static_cast<long long>(sum)) + " bytes (" +
+                               byte_size(static_cast<double>(sum)) + ")");
+}
+
+void print_list(const std::string& title, const std::vector<std::string>& items) {
+  std::cout << title << "\n";
+  for (const std::string& item : items) std::cout << "  - " << item << "\n";
+  if (items.empty()) std::cout << "  nothing\n";
+}
+
+}  // namespace
+
+int plan(const SceneArguments& arguments) {
+  const OpenedScene scene = open_scene(arguments);
+  const Problem& problem = *scene.problem;
+  const CreatedBackend created = create_backend(scene.problem, needs_of(problem));
+  const Backend& backend = *created.backend;
+  std::cout << problem.scene().title << "\n\n";
+  print_sizes(problem);
+  print_engine(backend);
+  print_buffers(backend);
+  print_list("Operations of a frame", operations(problem, backend.needs()));
+  print_list("Left out: this scene does not need it", backend.needs().left_out);
+  std::vector<std::string> warnings = scene.warnings;
+  warnings.insert(warnings.end(), problem.warnings().begin(), problem.warnings().end());
+  warnings.insert(warnings.end(), created.warnings.begin(), created.warnings.end());
+  for (const std::string& warning : warnings) std::cerr << "sunder: warning: " << warning << "\n";
+  return 0;
+}
+
+}  // namespace sunder::app

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/results.hpp"
+
+#include <utility>
+
+#include "app/output/summary.hpp"
+#include "app/output/tables.hpp"
+#include "app/output/text.hpp"
+
+namespace sunder::app {
+namespace {
+
+std::filesystem::path prepared(std::filesystem::path folder) {
+  make_result_folder(folder);
+  remove_old_results(folder);
+  return folder;
+}
+
+std::string padded(int value, std::size_t width) {
+  const std::string digits = std::to_string(value);
+  return std::string(width > digits.size() ? width - digits.size() : 0, '0') + digits;
+}
+
+}  // namespace
+
+ResultWriter::ResultWriter(std::filesystem::path folder, const Problem& problem, bool series)
+    : folder_(prepared(std::move(folder))),
+      problem_(problem),
+      series_(series),
+      painter_(problem),
+      frames_(folder_ / "frames.csv") {
+  frames_.write(frames_header());
+}
+
+void ResultWriter::write(const std::string& name, std::string_view text) {
+  write_file(folder_ / name, text);
+  files_.push_back(name);
+}
+
+void ResultWriter::write_state(const std::string& name, const State& state) {
+  write_vtu(folder_ / name, problem_, state);
+  files_.push_back(name);
+}
+
+void ResultWriter::step_done(const StepReport& report, const State& state) {
+  frames_.write(frames_row(report));
+  frames_.flush();
+  if (!series_) return;
+  const std::string name = "result_" + padded(report.step, 4) + ".vtu";
+  write_state(name, state);
+  series_entries_.push_back({report.load_factor, name});
+}
+
+void ResultWriter::snapshot(int wanted, const State& state) {
+  const std::string name = "snapshot_" + std::to_string(wanted);
+  const std::string svg = painter_.svg(state);
+  std::string png = FigurePainter::png(svg);
+  write(name + ".svg", svg);
+  write(name + ".png", png);
+  write_state(name + ".vtu", state);
+  snapshots_.push_back({wanted, state.destroyed_count, state.step, std::move(png)});
+}
+
+void ResultWriter::finish(const RunRecord& run) {
+  std::string events = events_header();
+  for (const DestroyedElement& record : run.destroyed) events += events_row(record);
+  write("events.csv", events);
+  frames_.commit();
+  files_.push_back("frames.csv");
+  write_state("result.vtu", run.last);
+  if (series_) write("series.pvd", pvd(series_entries_));
+  const std::string svg = painter_.svg(run.last);
+  const std::string png = FigurePainter::png(svg);
+  write("figure.svg", svg);
+  write("figure.png", png);
+  files_.push_back("summary.json");
+  write("index.html", report_html(run, {svg, png, snapshots_, files_}));
+  write_file(folder_ / "summary.json", summary_json(run));
+}
+
+}  // namespace sunder::app

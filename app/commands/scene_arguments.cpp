@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/commands/scene_arguments.hpp"
+
+#include <utility>
+
+#include "app/input/scene_toml.hpp"
+
+namespace sunder::app {
+namespace {
+
+std::vector<std::string> overrides_of(const SceneArguments& arguments) {
+  std::vector<std::string> all = arguments.set;
+  const auto add_word = [&](const char* key, const std::optional<std::string>& word) {
+    if (word) all.push_back(std::string(key) + "=\"" + *word + "\"");
+  };
+  const auto add_number = [&](const char* key, const std::optional<int>& value) {
+    if (value) all.push_back(std::string(key) + "=" + std::to_string(*value));
+  };
+  add_word("solver.backend", arguments.backend);
+  add_word("solver.route", arguments.route);
+  add_word("solver.update", arguments.update);
+  add_word("solver.precision", arguments.precision);
+  add_number("solver.device", arguments.device);
+  add_number("time.steps", arguments.steps);
+  return all;
+}
+
+}  // namespace
+
+OpenedScene open_scene(const SceneArguments& arguments) {
+  OpenedScene opened;
+  Scene scene = read_scene(arguments.scene, overrides_of(arguments), &opened.warnings);
+  opened.problem = std::make_shared<const Problem>(std::move(scene));
+  return opened;
+}
+
+}  // namespace sunder::app

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `run` and `plan` take alike: a scene and what overrides it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sunder/problem.hpp"
+
+namespace sunder::app {
+
+struct SceneArguments {
+  std::filesystem::path scene;
+  std::optional<std::string> backend, route, update, precision;
+  std::optional<int> device, steps;
+  std::vector<std::string> set;  ///< "key.path=value"
+};
+
+struct OpenedScene {
+  std::shared_ptr<const Problem> problem;
+  std::vector<std::string> warnings;  ///< of reading; the problem's own come on top
+};
+
+/// Reads the scene; the named options win over --set. Throws InputError.
+[[nodiscard]] OpenedScene open_scene(const SceneArguments& arguments);
+
+}  // namespace sunder::app

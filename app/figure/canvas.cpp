@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/figure/canvas.hpp"
+
+#include <algorithm>
+
+#include "app/figure/svg.hpp"
+#include "app/output/text.hpp"
+
+namespace sunder::app {
+namespace {
+
+constexpr double kMargin = 28, kTitle = 58, kCaption = 78, kBar = 118;
+constexpr double kWidth = 640, kLeastHeight = 150, kMostHeight = 680;
+
+}  // namespace
+
+Canvas::Canvas(const Bounds& bounds) : bounds_(bounds), corner_(kMargin, kTitle) {
+  const Vec2 extent = (bounds.max - bounds.min).cwiseMax(1e-12);
+  scale_ = std::min(kWidth / extent.x(), kMostHeight / extent.y());
+  size_ = {kWidth, std::max(extent.y() * scale_, kLeastHeight)};
+}
+
+Vec2 Canvas::map(const Vec2& p) const {
+  const Vec2 from_middle = (p - (bounds_.min + bounds_.max) / 2) * scale_;
+  return corner_ + size_ / 2 + Vec2(from_middle.x(), -from_middle.y());
+}
+
+double Canvas::page_width() const { return kMargin + kWidth + kBar + kMargin; }
+double Canvas::page_height() const { return kTitle + size_.y() + kCaption; }
+
+std::string Canvas::open(std::string_view title) const {
+  return svg::open(page_width(), page_height(),
+                   "font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"12.5\"") +
+         "<title>" + escaped(title) + "</title>\n" +
+         svg::rect({0, 0}, {page_width(), page_height()}, "fill=\"#fff\"") +
+         svg::text({kMargin, 34}, title, "font-size=\"18\" font-weight=\"bold\" fill=\"#222\"");
+}
+
+}  // namespace sunder::app

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/figure/figure.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "app/figure/annotations.hpp"
+#include "app/figure/canvas.hpp"
+#include "app/figure/pose.hpp"
+#include "app/figure/raster.hpp"
+#include "app/figure/shading.hpp"
+#include "app/figure/surface.hpp"
+#include "app/figure/svg.hpp"
+#include "app/output/text.hpp"
+
+namespace sunder::app {
+namespace {
+
+/// Above this number of triangles the surface goes into the figure as an image: a picture of a
+/// million elements stays a small file.
+constexpr std::size_t kMostVectorTriangles = 12000;
+/// Mesh lines help the eye on a coarse mesh and darken a fine one.
+constexpr std::size_t kMostOutlined = 3000;
+constexpr double kPngZoom = 1.6, kImageZoom = 2.0;
+
+struct Visible {
+  std::array<Vec2, 3> corners;  ///< in the plane, mm
+  double depth;                 ///< towards the viewer
+  Index tet;
+};
+
+/// Towards the viewer when e1 points right and e2 up.
+Vec3 viewer(const BoardPlane& plane) { return plane.e1.cross(plane.e2); }
+
+double signed_area(const std::array<Vec2, 3>& p) {
+  const Vec2 a = p[1] - p[0], b = p[2] - p[0];
+  return (a.x() * b.y() - a.y() * b.x()) / 2;
+}
+
+/// Faces that the viewer sees, back to front. Destroyed elements may have turned inside out while
+/// they stretched across the tear: theirs count from both sides.
+std::vector<Visible> visible_faces(const std::vector<BodyFace>& faces, const Pose& pose,
+                                   const BoardPlane& plane, const State& state) {
+  std::vector<Visible> visible;
+  const Vec3 eye = viewer(plane);
+  for (const BodyFace& face : faces) {
+    Visible v{{}, 0, face.tet};
+    for (int i = 0; i < 3; ++i) {
+      const Vec3& x = pose.position[face.nodes[i]];
+      v.corners[i] = plane.project(x);
+      v.depth += x.dot(eye) / 3;
+    }
+    const double area = signed_area(v.corners);
+    if (area > 0 || (state.destroyed[face.tet] && area != 0)) visible.push_back(v);
+  }
+  std::stable_sort(visible.begin(), visible.end(),
+                   [](const Visible& a, const Visible& b) { return a.depth < b.depth; });
+  return visible;
+}
+
+std::string triangle_path(const std::array<Vec2, 3>& p) {
+  std::string d = "M";
+  for (int i = 0; i < 3; ++i)
+    d += (i ? " " : "") + svg::coordinate(p[i].x()) + " " + svg::coordinate(p[i].y());
+  return d + "z";
+}
+
+/// Runs of one colour share a path.
+std::string vector_surface(const std::vector<PaintedTriangle>& triangles) {
+  const bool outlined = triangles.size() <= kMostOutlined;
+  std::string out =
+      "<g stroke-linejoin=\"round\" stroke-width=\"" +
+      std::string(outlined ? "0.6\" stroke=\"#000\" stroke-opacity=\"0.22\"" : "0.4\"") + ">\n";
+  for (std::size_t i = 0; i < triangles.size();) {
+    const Color fill = triangles[i].fill;
+    out += "<path fill=\"" + hex(fill) + "\"";
+    if (!outlined) out += " stroke=\"" + hex(fill) + "\"";
+    out += " d=\"";
+    for (; i < triangles.size() && triangles[i].fill == fill; ++i)
+      out += triangle_path(triangles[i].corners);
+    out += "\"/>\n";
+  }
+  return out + "</g>\n";
+}
+
+std::string image_surface(const std::vector<PaintedTriangle>& triangles, const Canvas& canvas) {
+  const Vec2 corner = canvas.corner(), size = canvas.size();
+  return "<image x=\"" + svg::coordinate(corner.x()) + "\" y=\"" + svg::coordinate(corner.y()) +
+         "\" width=\"" + svg::coordinate(size.x()) + "\" height=\"" + svg::coordinate(size.y()) +
+         "\" href=\"data:image/png;base64," +
+         base64(png_of_triangles(triangles, corner, size, kImageZoom)) + "\"/>\n";
+}
+
+std::string surface(const std::vector<Visible>& visible, const std::vector<Color>& colors,
+                    const Canvas& canvas) {
+  std::vector<PaintedTriangle> triangles;
+  triangles.reserve(visible.size());
+  for (const Visible& v : visible)
+    triangles.push_back(
+        {{canvas.map(v.corners[0]), canvas.map(v.corners[1]), canvas.map(v.corners[2])},
+         colors[v.tet]});
+  return triangles.size() <= kMostVectorTriangles ? vector_surface(triangles)
+                                                  : image_surface(triangles, canvas);
+}
+
+}  // namespace
+
+FigurePainter::FigurePainter(const Problem& problem)
+    : problem_(problem),
+      plane_(board_plane(problem.mesh(), problem.scene().fracture.plane_normal)),
+      faces_(std::make_unique<FaceTable>(problem.mesh())) {}
+
+FigurePainter::~FigurePainter() = default;
+
+std::string FigurePainter::svg(const State& state) const {
+  const Pose pose = pose_of(problem_, plane_, state);
+  const std::vector<BodyFace> faces = faces_->surface(state.destroyed);
+  const std::vector<Visible> visible = visible_faces(faces, pose, plane_, state);
+  const std::optional<StressScale> scale = stress_scale(problem_, state);
+  const std::vector<Arrow> arrows = instrument_arrows(plane_, pose, state);
+
+  Bounds bounds;
+  bounds.add(plane_.outline_min);
+  bounds.add(plane_.outline_max);
+  for (const Visible& v : visible)
+    for (const Vec2& p : v.corners) bounds.add(p);
+  for (const Arrow& arrow : arrows)
+    for (const Vec2& p : {arrow.from, arrow.to}) bounds.add(p);
+  const Canvas canvas(bounds);
+
+  std::string out = canvas.open(problem_.scene().title);
+  out += undeformed_outline(plane_, canvas);
+  out += surface(visible, element_colors(problem_, state, scale), canvas);
+  out += held_edges(problem_, plane_, pose, faces, canvas);
+  out += crack_paths(problem_.mesh(), plane_, pose, state, canvas);
+  out += draw(arrows, canvas);
+  if (scale) out += color_bar(*scale, canvas);
+  out += caption(problem_, pose, state, canvas);
+  return out + "</svg>\n";
+}
+
+std::string FigurePainter::png(const std::string& svg) { return png_of_svg(svg, kPngZoom); }
+
+}  // namespace sunder::app

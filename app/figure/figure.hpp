@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures in the style of the paper's figures: front view of the deformed board, shades of red
+// for stress, black for destroyed, grey for the frame, yellow instruments, the crack path.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/output/state.hpp"
+#include "sunder/board_plane.hpp"
+
+namespace sunder::app {
+
+class FaceTable;
+
+/// Draws states of one problem; what depends on the mesh alone is prepared once.
+class FigurePainter {
+ public:
+  explicit FigurePainter(const Problem& problem);
+  ~FigurePainter();
+
+  /// A complete SVG document; deterministic.
+  [[nodiscard]] std::string svg(const State& state) const;
+  /// The same picture as PNG.
+  [[nodiscard]] static std::string png(const std::string& svg);
+
+ private:
+  const Problem& problem_;
+  BoardPlane plane_;
+  std::unique_ptr<FaceTable> faces_;
+};
+
+}  // namespace sunder::app

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a picture draws each node: deformed, magnified or reduced where true scale would show
+// nothing, and with what no longer hangs on anything drawn near its place.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/output/state.hpp"
+#include "sunder/board_plane.hpp"
+
+namespace sunder::app {
+
+struct Pose {
+  std::vector<Vec3> position;  ///< per node, mm, displacement times `scale`
+  std::vector<Vec3> shift;     ///< position minus undeformed
+  double scale = 1;            ///< of displacements
+  bool loose_piece = false;    ///< a piece is cut off: it is drawn as a rigid body near its place
+};
+
+/// Nodes that only destroyed elements hold follow their neighbours; their own displacement means
+/// nothing (their stiffness is alpha times the tissue's).
+[[nodiscard]] Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state);
+
+}  // namespace sunder::app

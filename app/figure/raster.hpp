@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pixels: a drawing as PNG, and many triangles as one image.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sunder/types.hpp"
+
+namespace sunder::app {
+
+struct Color {
+  std::uint8_t r = 0, g = 0, b = 0;
+  friend bool operator==(const Color&, const Color&) = default;
+};
+
+/// A triangle in drawing coordinates (x right, y down).
+struct PaintedTriangle {
+  std::array<Vec2, 3> corners;
+  Color fill;
+};
+
+/// Renders an SVG document at `zoom` pixels per unit. Throws OutputError when it cannot be drawn.
+[[nodiscard]] std::string png_of_svg(std::string_view svg, double zoom);
+
+/// Paints triangles in their order onto a transparent image that shows the rectangle from
+/// `corner` with `size`, at `zoom` pixels per unit.
+[[nodiscard]] std::string png_of_triangles(const std::vector<PaintedTriangle>& triangles,
+                                           const Vec2& corner, const Vec2& size, double zoom);
+
+}  // namespace sunder::app

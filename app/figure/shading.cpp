@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/figure/shading.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sunder::app {
+namespace {
+
+constexpr Color kBlack{17, 17, 17}, kFrame{176, 180, 184}, kPlain{246, 216, 205};
+
+/// ColorBrewer "Reds", nine classes: even steps of lightness.
+constexpr std::array<Color, 9> kReds{{{255, 245, 240},
+                                      {254, 224, 210},
+                                      {252, 187, 161},
+                                      {252, 146, 114},
+                                      {251, 106, 74},
+                                      {239, 59, 44},
+                                      {203, 24, 29},
+                                      {165, 15, 21},
+                                      {103, 0, 13}}};
+
+bool has_breakable(const Problem& problem) {
+  for (Index e = 0; e < problem.tet_count(); ++e)
+    if (problem.breakable(e)) return true;
+  return false;
+}
+
+/// Smallest of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not below x.
+double round_up(double x) {
+  if (!(x > 0) || !std::isfinite(x)) return 1;
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double lead : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (x <= lead * power) return lead * power;
+  return 10 * power;
+}
+
+double nearly_largest(std::vector<double> values, const std::vector<std::uint8_t>& destroyed) {
+  std::vector<double> live;
+  for (std::size_t e = 0; e < values.size(); ++e)
+    if (!destroyed[e]) live.push_back(values[e]);
+  if (live.empty()) return 0;
+  const auto rank = live.begin() + static_cast<std::ptrdiff_t>((live.size() - 1) * 199 / 200);
+  std::nth_element(live.begin(), rank, live.end());
+  return *rank;
+}
+
+}  // namespace
+
+std::optional<StressScale> stress_scale(const Problem& problem, const State& state) {
+  if (state.stress.empty()) return std::nullopt;
+  if (problem.scene().fracture.model != FractureModel::none && has_breakable(problem)) {
+    const bool tresca = problem.scene().fracture.yield_measure == YieldMeasure::tresca;
+    return StressScale{yield_ratios(problem, state), 1.0,
+                       tresca ? "Tresca stress / yield" : "max. shear / yield"};
+  }
+  StressScale scale{max_shears(state), 1.0, "max. shear [MPa]"};
+  scale.maximum = round_up(nearly_largest(scale.value, state.destroyed));
+  return scale;
+}
+
+Color red(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * (kReds.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(at), kReds.size() - 2);
+  const double t = at - static_cast<double>(low);
+  const auto mix = [t](int a, int b) {
+    return static_cast<std::uint8_t>(std::lround(a + t * (b - a)));
+  };
+  const Color a = kReds[low], b = kReds[low + 1];
+  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
+}
+
+std::vector<Color> element_colors(const Problem& problem, const State& state,
+                                  const std::optional<StressScale>& scale) {
+  const bool frame = has_breakable(problem);
+  std::vector<Color> colors(state.destroyed.size(), kPlain);
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (state.destroyed[e])
+      colors[e] = kBlack;
+    else if (frame && !problem.breakable(e))
+      colors[e] = kFrame;
+    else if (scale)
+      colors[e] = red(scale->value[e] / scale->maximum);
+  }
+  return colors;
+}
+
+std::string hex(Color color) {
+  static constexpr std::string_view digits = "0123456789abcdef";
+  std::string out = "#";
+  for (const std::uint8_t channel : {color.r, color.g, color.b}) {
+    out += digits[channel >> 4];
+    out += digits[channel & 15];
+  }
+  return out;
+}
+
+}  // namespace sunder::app

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture colours elements by: stress in shades of red, frame grey, destroyed black.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/figure/raster.hpp"
+#include "app/output/state.hpp"
+
+namespace sunder::app {
+
+/// The stress scale of a picture: `value / maximum` runs from pale to dark red.
+struct StressScale {
+  std::vector<double> value;  ///< per element
+  double maximum = 1;
+  std::string label;  ///< quantity and unit
+};
+
+/// Yield ratio, 0 to 1, where tissue can break; else maximum shear stress in MPa up to a round
+/// number that all but the highest half percent stay below. None when stress was not computed.
+[[nodiscard]] std::optional<StressScale> stress_scale(const Problem& problem, const State& state);
+
+/// Shade of red for a share of the scale (clamped to 0 to 1).
+[[nodiscard]] Color red(double share);
+
+/// Colour of each element.
+[[nodiscard]] std::vector<Color> element_colors(const Problem& problem, const State& state,
+                                                const std::optional<StressScale>& scale);
+
+[[nodiscard]] std::string hex(Color color);
+
+}  // namespace sunder::app

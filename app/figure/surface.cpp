@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/figure/surface.hpp"
+
+#include <algorithm>
+
+namespace sunder::app {
+namespace {
+
+/// Outward faces of a tetrahedron of positive volume.
+constexpr std::array<std::array<int, 3>, 4> kFaces{{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+
+struct Half {
+  std::array<Index, 3> key;  ///< nodes, ascending
+  Index tet;
+  int face;
+};
+
+std::vector<Half> sorted_halves(const Mesh& mesh) {
+  std::vector<Half> halves;
+  halves.reserve(mesh.tets.size() * 4);
+  for (Index e = 0; e < mesh.tet_count(); ++e)
+    for (int f = 0; f < 4; ++f) {
+      std::array<Index, 3> key;
+      for (int i = 0; i < 3; ++i) key[i] = mesh.tets[e][kFaces[f][i]];
+      std::sort(key.begin(), key.end());
+      halves.push_back({key, e, f});
+    }
+  std::sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) {
+    return a.key != b.key ? a.key < b.key : a.tet < b.tet;
+  });
+  return halves;
+}
+
+}  // namespace
+
+FaceTable::FaceTable(const Mesh& mesh)
+    : mesh_(mesh), neighbour_(mesh.tets.size(), {kNone, kNone, kNone, kNone}) {
+  const std::vector<Half> halves = sorted_halves(mesh);
+  for (std::size_t i = 1; i < halves.size(); ++i) {
+    const Half &a = halves[i - 1], &b = halves[i];
+    if (a.key != b.key) continue;
+    neighbour_[a.tet][a.face] = b.tet;
+    neighbour_[b.tet][b.face] = a.tet;
+  }
+}
+
+std::vector<BodyFace> FaceTable::surface(std::span<const std::uint8_t> destroyed) const {
+  std::vector<BodyFace> faces;
+  for (Index e = 0; e < mesh_.tet_count(); ++e)
+    for (int f = 0; f < 4; ++f) {
+      const Index other = neighbour_[e][f];
+      if (other != kNone && destroyed[other] == destroyed[e]) continue;
+      BodyFace face{{}, e};
+      for (int i = 0; i < 3; ++i) face.nodes[i] = mesh_.tets[e][kFaces[f][i]];
+      faces.push_back(face);
+    }
+  return faces;
+}
+
+}  // namespace sunder::app

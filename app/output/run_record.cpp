@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/output/run_record.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace sunder::app {
+
+int RunRecord::event_count() const { return destroyed.empty() ? 0 : destroyed.back().event + 1; }
+
+StepReport RunRecord::last_report() const {
+  if (unfinished) return *unfinished;
+  return steps.empty() ? StepReport{} : steps.back();
+}
+
+const DestroyedElement* RunRecord::first_rupture() const {
+  const auto found = std::find_if(destroyed.begin(), destroyed.end(), [](const auto& d) {
+    return d.cause == Cause::mss || d.cause == Cause::sif;
+  });
+  return found == destroyed.end() ? nullptr : &*found;
+}
+
+const std::vector<Stage>& stages() {
+  static const std::vector<Stage> all = {
+      {"load", &StageTimes::load},     {"solve", &StageTimes::solve},
+      {"stress", &StageTimes::stress}, {"decide", &StageTimes::decide},
+      {"update", &StageTimes::update}, {"total", &StageTimes::total}};
+  return all;
+}
+
+TimeStatistics statistics(std::vector<double> ms) {
+  if (ms.empty()) return {};
+  std::sort(ms.begin(), ms.end());
+  const std::size_t n = ms.size();
+  const double median = (ms[(n - 1) / 2] + ms[n / 2]) / 2;
+  const std::size_t rank = (99 * n + 99) / 100;  // ceil(0.99 n)
+  return {ms.front(), median, ms[rank - 1], ms.back(), std::accumulate(ms.begin(), ms.end(), 0.0)};
+}
+
+TimeStatistics statistics(const std::vector<StepReport>& steps, const Stage& stage) {
+  std::vector<double> ms;
+  for (const StepReport& step : steps) ms.push_back(step.times.*stage.time);
+  return statistics(std::move(ms));
+}
+
+const char* name_of(FractureModel model) {
+  return model == FractureModel::none ? "none" : model == FractureModel::a ? "A" : "B";
+}
+
+const char* name_of(CrackKind kind) { return kind == CrackKind::edge ? "edge" : "internal"; }
+
+}  // namespace sunder::app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that a run has to tell, gathered for the result files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/output/state.hpp"
+
+namespace sunder::app {
+
+struct RunRecord {
+  explicit RunRecord(const Problem& p) : problem(p), last(undeformed(p)) {}
+
+  const Problem& problem;
+  BackendInfo backend;
+  std::vector<std::string> left_out;
+  std::vector<StepReport> steps;         ///< those that are done
+  std::optional<StepReport> unfinished;  ///< the step in which the run was interrupted
+  std::vector<DestroyedElement> destroyed;
+  std::vector<Crack> cracks;
+  std::vector<std::string> warnings;
+  State last;  ///< after the last of them
+  bool interrupted = false;
+  std::optional<std::string> failure;  ///< of a run that could not go on
+
+  [[nodiscard]] int event_count() const;
+  /// The report that belongs to `last`; zeros before the first.
+  [[nodiscard]] StepReport last_report() const;
+  /// First rupture by a criterion (mss or sif), or null.
+  [[nodiscard]] const DestroyedElement* first_rupture() const;
+};
+
+/// Of one stage over all steps [ms].
+struct TimeStatistics {
+  double min = 0, median = 0, p99 = 0, max = 0, sum = 0;
+};
+
+struct Stage {
+  const char* name;
+  double StageTimes::*time;
+};
+/// The stages of a frame in order, the total last.
+[[nodiscard]] const std::vector<Stage>& stages();
+
+/// Median: mean of the middle two for an even count; p99: nearest rank.
+[[nodiscard]] TimeStatistics statistics(std::vector<double> milliseconds);
+[[nodiscard]] TimeStatistics statistics(const std::vector<StepReport>& steps, const Stage& stage);
+
+[[nodiscard]] const char* name_of(FractureModel model);
+[[nodiscard]] const char* name_of(CrackKind kind);
+
+}  // namespace sunder::app

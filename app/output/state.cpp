@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/output/state.hpp"
+
+#include <algorithm>
+
+#include "fem/element.hpp"
+
+namespace sunder::app {
+
+State capture(const Simulation& simulation, int step) {
+  const Scene& scene = simulation.problem().scene();
+  State state;
+  state.step = step;
+  state.load_factor = scene_time(scene, step);
+  state.displacement = simulation.displacement();
+  if (simulation.backend().needs().stress) state.stress = simulation.stress();
+  const auto destroyed = simulation.backend().destroyed();
+  state.destroyed.assign(destroyed.begin(), destroyed.end());
+  state.destroyed_count = static_cast<int>(simulation.destroyed().size());
+  state.cracks = simulation.cracks();
+  const std::vector<Vec3> forces = simulation.reactions();
+  for (std::size_t i = 0; i < scene.instruments.size(); ++i)
+    state.instruments.push_back({scene.instruments[i].name, simulation.acting_nodes(i), forces[i],
+                                 std::holds_alternative<Press>(scene.instruments[i].action)});
+  state.support_reaction = simulation.support_reaction();
+  return state;
+}
+
+State undeformed(const Problem& problem) {
+  State state;
+  state.displacement.assign(problem.mesh().nodes.size(), Vec3::Zero());
+  state.destroyed.assign(problem.mesh().tets.size(), 0);
+  return state;
+}
+
+double scene_time(const Scene& scene, int step) {
+  return static_cast<double>(step + 1) / scene.steps;
+}
+
+std::vector<double> yield_ratios(const Problem& problem, const State& state) {
+  const YieldMeasure measure = problem.scene().fracture.yield_measure;
+  std::vector<double> ratios(state.stress.size(), 0.0);
+  for (Index e = 0; e < static_cast<Index>(ratios.size()); ++e)
+    if (problem.breakable(e) && !state.destroyed[e])
+      ratios[e] = fem::yield_measure(state.stress[e], measure) / problem.yield(e);
+  return ratios;
+}
+
+std::vector<double> max_shears(const State& state) {
+  std::vector<double> shears(state.stress.size());
+  std::transform(state.stress.begin(), state.stress.end(), shears.begin(), fem::max_shear);
+  return shears;
+}
+
+}  // namespace sunder::app

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// One solved state of a simulation, copied out: what a picture or a VTU file shows.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sunder/simulation.hpp"
+
+namespace sunder::app {
+
+struct InstrumentState {
+  std::string name;
+  std::vector<Index> nodes;  ///< on which it acts now
+  Vec3 force;                ///< on the body, N
+  bool pressure = false;
+};
+
+struct State {
+  int step = 0;                         ///< the step in which it was taken
+  double load_factor = 0;               ///< its scene time
+  std::vector<Vec3> displacement;       ///< per node, mm
+  std::vector<Voigt> stress;            ///< per element, MPa; empty: not computed in this scene
+  std::vector<std::uint8_t> destroyed;  ///< per element
+  int destroyed_count = 0;
+  std::vector<Crack> cracks;
+  std::vector<InstrumentState> instruments;
+  Vec3 support_reaction = Vec3::Zero();  ///< N
+};
+
+/// The fields of the last solve, taken in `step`.
+[[nodiscard]] State capture(const Simulation& simulation, int step);
+
+/// The undeformed body before the first solve, without stress.
+[[nodiscard]] State undeformed(const Problem& problem);
+
+/// Scene time of a step (method.md "Time").
+[[nodiscard]] double scene_time(const Scene& scene, int step);
+
+/// The chosen yield measure over the yield stress per element; 0 for unbreakable and destroyed.
+[[nodiscard]] std::vector<double> yield_ratios(const Problem& problem, const State& state);
+
+[[nodiscard]] std::vector<double> max_shears(const State& state);
+
+}  // namespace sunder::app

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/output/summary.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/output/text.hpp"
+
+namespace sunder::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Vector>
+Json array(const Vector& v) {
+  Json out = Json::array();
+  for (Eigen::Index i = 0; i < v.size(); ++i) out.push_back(v[i]);
+  return out;
+}
+
+Json points(const std::vector<Vec2>& path) {
+  Json out = Json::array();
+  for (const Vec2& p : path) out.push_back(array(p));
+  return out;
+}
+
+Json destroyed_ids(const RunRecord& run) {
+  Json out = Json::array();
+  for (const DestroyedElement& d : run.destroyed) out.push_back(d.element);
+  return out;
+}
+
+Json first_rupture(const RunRecord& run) {
+  const DestroyedElement* first = run.first_rupture();
+  if (!first) return nullptr;
+  return {{"step", first->step},
+          {"event", first->event},
+          {"element", first->element},
+          {"criterion", to_string(first->cause)},
+          {"load_factor", first->load_factor}};
+}
+
+Json cracks(const RunRecord& run) {
+  Json out = Json::array();
+  for (const Crack& crack : run.cracks) {
+    Json tips = Json::array();
+    for (const CrackTip& tip : crack.tips) tips.push_back(array(tip.position));
+    out.push_back({{"id", crack.id},
+                   {"kind", name_of(crack.kind)},
+                   {"mouth", crack.mouth ? array(*crack.mouth) : Json(nullptr)},
+                   {"tips", std::move(tips)},
+                   {"length", crack.length},
+                   {"path", points(crack.path)}});
+  }
+  return out;
+}
+
+Json reactions(const RunRecord& run) {
+  Json out = Json::object();
+  for (const InstrumentState& tool : run.last.instruments) out[tool.name] = array(tool.force);
+  return out;
+}
+
+Json timings(const RunRecord& run) {
+  Json out = Json::object();
+  for (const Stage& stage : stages()) {
+    const TimeStatistics t = statistics(run.steps, stage);
+    out[stage.name] = {
+        {"min", t.min}, {"median", t.median}, {"p99", t.p99}, {"max", t.max}, {"sum", t.sum}};
+  }
+  return out;
+}
+
+Json tree(const RunRecord& run) {
+  const Problem& problem = run.problem;
+  const StepReport last = run.last_report();
+  Json out;
+  out["title"] = problem.scene().title;
+  out["mesh"] = {{"nodes", problem.node_count()},
+                 {"tets", problem.tet_count()},
+                 {"free_dofs", problem.dof_count()}};
+  out["device"] = {{"name", run.backend.device},
+                   {"driver", run.backend.driver},
+                   {"backend", run.backend.backend},
+                   {"precision", run.backend.precision}};
+  out["route"] = {{"name", run.backend.route},
+                  {"update", run.backend.update},
+                  {"why", run.backend.why},
+                  {"left_out", run.left_out}};
+  out["compliance"] = last.compliance;
+  out["residual"] = last.residual;
+  out["error"] = last.error;
+  out["destroyed"] = destroyed_ids(run);
+  out["first_rupture"] = first_rupture(run);
+  out["cracks"] = cracks(run);
+  out["reactions"] = reactions(run);
+  out["supports"] = array(run.last.support_reaction);
+  out["memory_bytes"] = run.backend.memory_bytes;
+  out["timings_ms"] = timings(run);
+  out["warnings"] = run.warnings;
+  out["model"] = name_of(problem.scene().fracture.model);
+  out["steps"] = problem.scene().steps;
+  out["steps_done"] = run.steps.size();
+  out["events"] = run.event_count();
+  out["max_yield_ratio"] = last.max_yield_ratio;
+  out["interrupted"] = run.interrupted;
+  out["failure"] = run.failure ? Json(*run.failure) : Json(nullptr);
+  return out;
+}
+
+bool is_flat(const Json& value) {
+  for (const auto& item : value)
+    if (item.is_structured()) return false;
+  return true;
+}
+
+/// The library's own writer gives round-trip but not always shortest decimals.
+void write(const Json& value, int depth, std::string& out) {
+  if (value.is_number_float()) {
+    const double x = value.get<double>();
+    out += std::isfinite(x) ? number(x) : "null";
+    return;
+  }
+  if (!value.is_structured()) {
+    out += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return;
+  }
+  const bool object = value.is_object(), inline_items = !object && is_flat(value);
+  const std::string indent(2 * (depth + 1), ' ');
+  bool first = true;
+  out += object ? "{" : "[";
+  for (const auto& item : value.items()) {
+    if (!first) out += inline_items ? ", " : ",";
+    first = false;
+    if (!inline_items) out += "\n" + indent;
+    if (object) out += Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+    write(item.value(), depth + 1, out);
+  }
+  if (!inline_items && !first) out += "\n" + indent.substr(2);
+  out += object ? "}" : "]";
+}
+
+}  // namespace
+
+std::string summary_json(const RunRecord& run) {
+  std::string out;
+  write(tree(run), 0, out);
+  return out + "\n";
+}
+
+}  // namespace sunder::app

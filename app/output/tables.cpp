@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/output/tables.hpp"
+
+#include <initializer_list>
+
+#include "app/output/text.hpp"
+
+namespace sunder::app {
+namespace {
+
+std::string row(std::initializer_list<std::string> cells) {
+  std::string line;
+  for (const std::string& cell : cells) line += cell + ',';
+  line.back() = '\n';
+  return line;
+}
+
+}  // namespace
+
+std::string events_header() {
+  return "step,event,element,criterion,crack,ratio,load_factor,"
+         "tip,K,K_a,K_b,K_c,theta_deg,r,sigma0,beta_deg,a,b\n";
+}
+
+std::string events_row(const DestroyedElement& record) {
+  const auto sif = [&](double value) { return record.sif ? number(value) : std::string(); };
+  const SifTerms k = record.sif.value_or(SifTerms{});
+  return row({std::to_string(record.step), std::to_string(record.event),
+              std::to_string(record.element), to_string(record.cause),
+              record.crack == kNone ? "" : std::to_string(record.crack),
+              record.ratio ? number(*record.ratio) : "", number(record.load_factor),
+              record.sif ? std::to_string(k.tip) : "", sif(k.k), sif(k.k_a), sif(k.k_b), sif(k.k_c),
+              sif(k.theta), sif(k.reach), sif(k.sigma0), sif(k.beta), sif(k.a), sif(k.b)});
+}
+
+std::string frames_header() {
+  return "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
+         "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations\n";
+}
+
+std::string frames_row(const StepReport& report) {
+  const StageTimes& ms = report.times;
+  return row({std::to_string(report.step), number(report.load_factor),
+              std::to_string(report.events), std::to_string(report.destroyed),
+              number(report.compliance), number(report.residual), number(report.error),
+              number(report.max_yield_ratio), number(ms.load), number(ms.solve), number(ms.stress),
+              number(ms.decide), number(ms.update), number(ms.total),
+              std::to_string(report.iterations)});
+}
+
+}  // namespace sunder::app

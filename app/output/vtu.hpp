@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// VTK XML files: unstructured grids (.vtu) and their series over the steps (.pvd).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/output/state.hpp"
+
+namespace sunder::app {
+
+/// Writes one state: binary inline arrays (base64, little endian, 64-bit headers), fp64.
+void write_vtu(const std::filesystem::path& path, const Problem& problem, const State& state);
+
+struct SeriesEntry {
+  double load_factor = 0;
+  std::string file;  ///< relative to the .pvd
+};
+[[nodiscard]] std::string pvd(const std::vector<SeriesEntry>& entries);
+
+}  // namespace sunder::app

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/report/html.hpp"
+
+#include "app/output/text.hpp"
+#include "app/report/sections.hpp"
+#include "app/report/style.hpp"
+
+namespace sunder::app {
+namespace {
+
+/// Above this size the picture goes in as PNG.
+constexpr std::size_t kMostInlineSvg = 1'500'000;
+
+std::string embedded(const std::string& png, const std::string& alt) {
+  return "<img alt=\"" + escaped(alt) + "\" src=\"data:image/png;base64," + base64(png) + "\">\n";
+}
+
+std::string figure(const ReportPictures& pictures) {
+  return "<figure class=\"paper\">\n" +
+         (pictures.svg.size() <= kMostInlineSvg
+              ? pictures.svg
+              : embedded(pictures.png, "Last frame: stress, destroyed elements, instruments")) +
+         "</figure>\n";
+}
+
+std::string snapshots(const ReportPictures& pictures) {
+  if (pictures.snapshots.empty()) return {};
+  std::string out = "<section><h2>On the way</h2>\n<div class=\"snapshots\">\n";
+  for (const SnapshotPicture& s : pictures.snapshots)
+    out += "<figure class=\"paper\">" +
+           embedded(s.png, "Snapshot at " + std::to_string(s.wanted) + " destroyed elements") +
+           "<figcaption>" + counted(s.destroyed, "element") + " destroyed, step " +
+           std::to_string(s.step + 1) + "</figcaption></figure>\n";
+  return out + "</div></section>\n";
+}
+
+}  // namespace
+
+std::string report_html(const RunRecord& run, const ReportPictures& pictures) {
+  const std::string title = escaped(run.problem.scene().title);
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+         "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
+         title + "</title>\n<style>\n" + std::string(kStyle) +
+         "</style>\n</head>\n<body>\n<main>\n" + header(run) + key_figures(run) + findings(run) +
+         figure(pictures) + snapshots(pictures) + fracture(run) + curves(run) + times(run) +
+         engine(run) + forces(run) + file_list(pictures.files) + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace sunder::app

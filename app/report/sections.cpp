@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/report/sections.hpp"
+
+#include <array>
+
+#include "app/report/chart.hpp"
+#include "app/report/table.hpp"
+
+namespace sunder::app {
+namespace {
+
+constexpr std::size_t kMostEventRows = 400;
+
+std::string section(const std::string& title, const std::string& body,
+                    const std::string& kind = {}) {
+  return "<section" + (kind.empty() ? "" : " class=\"" + kind + "\"") + "><h2>" + escaped(title) +
+         "</h2>\n" + body + "</section>\n";
+}
+
+std::string list(const std::vector<std::string>& items) {
+  std::string out = "<ul>\n";
+  for (const std::string& item : items) out += "<li>" + escaped(item) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+std::string key(const std::string& value, const std::string& what) {
+  return "<div><b>" + escaped(value) + "</b><span>" + escaped(what) + "</span></div>\n";
+}
+
+std::string point(const Vec2& p) {
+  return "(" + rounded(p.x(), 4) + ", " + rounded(p.y(), 4) + ")";
+}
+
+std::string crack_table(const RunRecord& run) {
+  Table table({"crack", "kind", "mouth [mm]", "tips [mm]", "length [mm]", "elements"});
+  for (const Crack& crack : run.cracks) {
+    std::string tips;
+    for (const CrackTip& tip : crack.tips)
+      tips += (tips.empty() ? "" : ", ") + point(tip.position) + (tip.ended ? " ended" : "");
+    table.row({std::to_string(crack.id), name_of(crack.kind),
+               crack.mouth ? point(*crack.mouth) : "-", tips, rounded(crack.length, 4),
+               std::to_string(crack.elements.size())});
+  }
+  return "<h3>Cracks</h3>\n" + table.html();
+}
+
+/// One line per event, criterion, crack and tip: what those elements share.
+struct EventLine {
+  const DestroyedElement* first;
+  int elements = 0;
+  double largest_ratio = 0;
+};
+
+std::vector<EventLine> event_lines(const std::vector<DestroyedElement>& destroyed) {
+  std::vector<EventLine> lines;
+  const auto same = [](const DestroyedElement& a, const DestroyedElement& b) {
+    return a.event == b.event && a.cause == b.cause && a.crack == b.crack &&
+           a.sif.has_value() == b.sif.has_value() && (!a.sif || a.sif->tip == b.sif->tip);
+  };
+  for (const DestroyedElement& d : destroyed) {
+    if (lines.empty() || !same(*lines.back().first, d)) lines.push_back({&d});
+    ++lines.back().elements;
+    lines.back().largest_ratio = std::max(lines.back().largest_ratio, d.ratio.value_or(0));
+  }
+  return lines;
+}
+
+std::string event_table(const RunRecord& run) {
+  const std::vector<EventLine> lines = event_lines(run.destroyed);
+  Table table({"event", "step", "load factor", "criterion", "crack", "elements", "largest ratio",
+               "K [MPa√mm]", "K_a", "K_b", "K_c", "θ [°]", "a [mm]"});
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostEventRows); ++i) {
+    const DestroyedElement& d = *lines[i].first;
+    const auto sif = [&](double SifTerms::*term) {
+      return d.sif ? rounded((*d.sif).*term, 4) : std::string();
+    };
+    const bool tipped = d.sif && d.crack != kNone;
+    table.row({std::to_string(d.event), std::to_string(d.step), rounded(d.load_factor, 4),
+               to_string(d.cause),
+               d.crack == kNone
+                   ? ""
+                   : std::to_string(d.crack) + (tipped ? " tip " + std::to_string(d.sif->tip) : ""),
+               std::to_string(lines[i].elements), d.ratio ? rounded(lines[i].largest_ratio, 4) : "",
+               sif(&SifTerms::k), sif(&SifTerms::k_a), sif(&SifTerms::k_b), sif(&SifTerms::k_c),
+               sif(&SifTerms::theta), sif(&SifTerms::a)});
+  }
+  std::string out = "<h3>Events</h3>\n" + table.html();
+  if (lines.size() > kMostEventRows)
+    out += "<p class=\"note\">" + grouped(static_cast<long long>(lines.size() - kMostEventRows)) +
+           " further lines are in events.csv.</p>\n";
+  return out;
+}
+
+std::string chart(const std::string& svg) { return "<div>" + svg + "</div>\n"; }
+
+ChartSeries over_steps(const RunRecord& run, const std::string& name, auto value) {
+  ChartSeries series{name, {}};
+  for (const StepReport& step : run.steps)
+    series.points.emplace_back(step.load_factor, static_cast<double>(value(step)));
+  return series;
+}
+
+std::string force_cells(const Vec3& f) {
+  return rounded(f.x(), 5) + ", " + rounded(f.y(), 5) + ", " + rounded(f.z(), 5);
+}
+
+std::string definition(const std::string& term, const std::string& text) {
+  return "<dt>" + escaped(term) + "</dt><dd>" + escaped(text) + "</dd>\n";
+}
+
+}  // namespace
+
+std::string header(const RunRecord& run) {
+  const Problem& problem = run.problem;
+  const std::string chip = run.failure       ? "<span class=\"chip bad\">failed</span>"
+                           : run.interrupted ? "<span class=\"chip bad\">interrupted</span>"
+                                             : "<span class=\"chip\">done</span>";
+  const FractureModel model = problem.scene().fracture.model;
+  return "<header><h1>" + escaped(problem.scene().title) + chip + "</h1>\n<p>" +
+         escaped(grouped(problem.tet_count()) + " tetrahedra, " + grouped(problem.dof_count()) +
+                 " unknowns, " +
+                 (model == FractureModel::none ? std::string("no fracture model")
+                                               : std::string("fracture model ") + name_of(model)) +
+                 ", " + std::to_string(run.steps.size()) + " of " +
+                 counted(problem.scene().steps, "step") + ", " + run.backend.backend + " " +
+                 run.backend.precision) +
+         "</p></header>\n";
+}
+
+std::string key_figures(const RunRecord& run) {
+  const DestroyedElement* first = run.first_rupture();
+  const StepReport last = run.last_report();
+  return "<div class=\"keys\">\n" +
+         key(grouped(static_cast<long long>(run.destroyed.size())), "elements destroyed") +
+         key(grouped(run.event_count()), "events") +
+         key(std::to_string(run.cracks.size()), run.cracks.size() == 1 ? "crack" : "cracks") +
+         key(first ? rounded(first->load_factor, 4) : "none",
+             first ? std::string("load factor of the first rupture (") + to_string(first->cause) +
+                         ", element " + std::to_string(first->element) + ")"
+                   : "rupture by a criterion") +
+         key(rounded(statistics(run.steps, stages().back()).median, 3) + " ms", "median step") +
+         key(rounded(last.error, 2), "error estimate, last frame") + "</div>\n";
+}
+
+std::string findings(const RunRecord& run) {
+  std::string out;
+  if (run.failure)
+    out += section("Numerical failure", "<p>" + escaped(*run.failure) + "</p>\n", "bad-box");
+  if (run.interrupted)
+    out += section("Interrupted",
+                   "<p>The run was stopped " +
+                       std::string(run.unfinished ? "within a step" : "between two steps") +
+                       "; what is shown is the state it had reached.</p>\n",
+                   "bad-box");
+  if (!run.warnings.empty()) out += section("Warnings", list(run.warnings), "warn");
+  return out;
+}
+
+std::string fracture(const RunRecord& run) {
+  if (run.destroyed.empty()) return section("Fracture", "<p class=\"note\">Nothing broke.</p>\n");
+  return section("Fracture", (run.cracks.empty() ? "" : crack_table(run)) + event_table(run));
+}
+
+std::string curves(const RunRecord& run) {
+  if (run.steps.empty()) return {};
+  const std::string x = "load factor";
+  std::string out = "<div class=\"charts\">\n";
+  ChartSeries destroyed = over_steps(run, "", [](const StepReport& s) { return s.destroyed; });
+  destroyed.steps = true;
+  out += chart(line_chart({destroyed}, {x, "destroyed elements"}));
+  out += chart(line_chart({over_steps(run, "", [](const auto& s) { return s.max_yield_ratio; })},
+                          {x, "largest yield ratio left after the step"}));
+  out += chart(line_chart({over_steps(run, "", [](const auto& s) { return s.compliance; })},
+                          {x, "compliance f·u [N mm]"}));
+  out += chart(line_chart({over_steps(run, "residual", [](const auto& s) { return s.residual; }),
+                           over_steps(run, "error", [](const auto& s) { return s.error; })},
+                          {x, "relative", true}));
+  return section("Over the steps", out + "</div>\n");
+}
+
+std::string times(const RunRecord& run) {
+  std::vector<std::string> names;
+  for (const Stage& stage : stages()) names.emplace_back(stage.name);
+  names.pop_back();  // the total
+  std::vector<std::vector<double>> bars;
+  for (const StepReport& step : run.steps) {
+    bars.emplace_back();
+    for (std::size_t k = 0; k < names.size(); ++k)
+      bars.back().push_back(step.times.*stages()[k].time);
+  }
+  Table table({"stage [ms]", "min", "median", "p99", "max", "sum"});
+  for (const Stage& stage : stages()) {
+    const TimeStatistics t = statistics(run.steps, stage);
+    table.row({stage.name, rounded(t.min, 4), rounded(t.median, 4), rounded(t.p99, 4),
+               rounded(t.max, 4), rounded(t.sum, 5)});
+  }
+  return section("Time", "<div class=\"charts\"><div>" +
+                             stacked_bars(names, bars, {"step", "ms per step"}) + "</div><div>" +
+                             table.html() +
+                             "<p class=\"note\">A step holds as many frames as events, and one."
+                             "</p></div></div>\n");
+}
+
+std::string engine(const RunRecord& run) {
+  const BackendInfo& b = run.backend;
+  std::string out =
+      "<dl>\n" + definition("device", b.device) + definition("driver", b.driver) +
+      definition("backend, precision", b.backend + ", " + b.precision) +
+      definition("route", b.route + ", update " + b.update) + definition("why", b.why) +
+      definition("memory", byte_size(static_cast<double>(b.memory_bytes))) + "</dl>\n";
+  if (!run.left_out.empty())
+    out += "<h3>Left out: this scene does not need it</h3>\n" + list(run.left_out);
+  return section("Engine", out);
+}
+
+std::string forces(const RunRecord& run) {
+  Table table({"force on the body, last frame [N]", "x, y, z"});
+  for (const InstrumentState& tool : run.last.instruments)
+    table.row({tool.name, force_cells(tool.force)});
+  table.row({"supports", force_cells(run.last.support_reaction)});
+  return section("Reactions", table.html());
+}
+
+std::string file_list(const std::vector<std::string>& files) {
+  std::string out = "<p>\n";
+  for (const std::string& file : files)
+    out += "<a href=\"" + escaped(file) + "\"><code>" + escaped(file) + "</code></a> \n";
+  return section("Files", out + "</p>\n");
+}
+
+}  // namespace sunder::app
