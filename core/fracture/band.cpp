@@ -19,9 +19,10 @@ constexpr double kBehind = 0.5;       // centroids may lie this far behind the t
 constexpr double kNodeBehind = 0.25;  // but one node must lie beyond this
 constexpr double kLongestStep = 1.5;  // of one event
 constexpr double kStepMargin = 0.25;  // past the last destroyed centroid
-constexpr double kOnLine = 1e-9;      // rounding: a node behind the tip, on the prolonged ray
+constexpr double kOnLine =
+    1e-9;  // rounding: a node behind the tip, on the prolonged ray, has no side
 
-/// Side of a node; none when it is left to the common choice.
+/// Side of a node, 0 on the prolonged ray; none when it is left to the common choice.
 std::optional<int> own_side(const Board& board, const Ray& ray, Index node) {
   const double h = board.h();
   const Vec2 x = board.node(node) - ray.origin;
@@ -33,7 +34,8 @@ std::optional<int> own_side(const Board& board, const Ray& ray, Index node) {
     if (label != ray.crack->side.end()) return label->second * ray.orientation;
   }
   if (distance <= kOnRay * h) return std::nullopt;
-  return offset >= -kOnLine * h ? 1 : -1;
+  if (std::abs(offset) <= kOnLine * h) return 0;
+  return offset > 0 ? 1 : -1;
 }
 
 /// A band for each choice of the side of near nodes: [0] right (-1), [1] left (+1).

@@ -39,7 +39,8 @@ struct Band {
 
 [[nodiscard]] Band find_band(const Board& board, const Ray& ray, const ElementView& view);
 
-/// Side of a node as seen by the tip: +1 left of the ray, -1 right of it.
+/// Side of a node as seen by the tip: +1 left of the ray, -1 right of it; 0 for a node behind the
+/// tip on the prolonged ray.
 [[nodiscard]] int node_side(const Board& board, const Ray& ray, int near_side, Index node);
 
 struct Passed {

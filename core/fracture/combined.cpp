@@ -102,7 +102,8 @@ void Combined::grow(const DrivenTip& driven, const FractureState& state, Decisio
   std::map<Index, std::int8_t> labels;  // all from the sides before this step
   for (const Passed& passed : walk.passed) {
     for (Index n : problem_.mesh().tets[passed.element])
-      labels[n] = static_cast<std::int8_t>(node_side(board_, ray, band.near_side, n) * sense);
+      if (const int side = node_side(board_, ray, band.near_side, n))
+        labels[n] = static_cast<std::int8_t>(side * sense);
     crack.elements.push_back(passed.element);
     decision.elements.push_back(growth_row(passed, crack.id, growth.terms));
   }

@@ -48,10 +48,10 @@ Vec2 expansion_direction(const PristineField& field, const CrackTip& tip) {
 
 /// The a of Eq. 3: with crack_length = "tool" the distance to the pressed places while some
 /// instrument presses the crack open.
-double effective_length(const Crack& crack, const FacePressure& pressure, double distance,
+double effective_length(const Crack& crack, const FacePressure& pressure, double tool,
                         CrackLength choice) {
-  const bool tool = choice == CrackLength::tool && !pressure.pushes.empty();
-  return tool ? distance : crack_length(crack);
+  const bool by_tool = choice == CrackLength::tool && !pressure.pushes.empty();
+  return by_tool ? tool : crack_length(crack);
 }
 
 double geometry_factor(const Crack& crack, double a, double b) {
@@ -77,13 +77,13 @@ FacePressure face_pressure(const Board& board, const Crack& crack, const Fractur
   return faces;
 }
 
-double pressure_distance(const FacePressure& pressure, const Vec2& tip, double h) {
+double pressure_distance(const FacePressure& pressure, const Vec2& tip) {
   double weighted = 0, total = 0;
   for (const auto& push : pressure.pushes) {
     weighted += push.pressure * (push.at - tip).norm();
     total += push.pressure;
   }
-  return total > 0 ? std::max(weighted / total, h / 2) : h / 2;
+  return total > 0 ? weighted / total : 0;
 }
 
 std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& field,
@@ -96,8 +96,9 @@ std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& fie
   SifTerms& terms = growth.terms;
   terms.tip = static_cast<int>(tip);
 
-  const double distance = pressure_distance(pressure, at.position, board.h());  // b'
-  terms.a = effective_length(crack, pressure, distance, options.crack_length);
+  const double tool = pressure_distance(pressure, at.position);
+  const double distance = std::max(tool, board.h() / 2);  // b'
+  terms.a = effective_length(crack, pressure, tool, options.crack_length);
   terms.b = board.plane().chord(at.position, d);
   const auto remote = remote_stress(field, crack, at.position, options.sigma0);
   if (remote) {

@@ -30,8 +30,9 @@ struct FacePressure {
                                          const FractureState& state,
                                          std::vector<std::string>& warnings);
 
-/// b' [mm]: P-weighted mean distance from the tip to the pressed places, at least h/2.
-[[nodiscard]] double pressure_distance(const FacePressure& pressure, const Vec2& tip, double h);
+/// P-weighted mean distance from the tip to the pressed places [mm]; 0 without pressure. Eq. 4
+/// takes at least h/2 of it as b'.
+[[nodiscard]] double pressure_distance(const FacePressure& pressure, const Vec2& tip);
 
 struct TipGrowth {
   SifTerms terms;    ///< reach is per element and left to the band

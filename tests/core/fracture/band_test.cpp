@@ -133,6 +133,12 @@ TEST_F(BandOnABoard, LabelledNodesNearTheRayKeepTheirSide) {
   EXPECT_EQ(node_side(board, along, 1, on_ray), -1);
 }
 
+TEST_F(BandOnABoard, NodesOnTheProlongedRayHaveNoSide) {
+  const Ray ray{Vec2(5.5, 4), Vec2(1, 0), &crack, 1};
+  EXPECT_EQ(node_side(board, ray, 1, test::grid_node(kShape, 5, 4, 0)), 0);
+  EXPECT_EQ(node_side(board, ray, -1, test::grid_node(kShape, 6, 4, 0)), -1) << "ahead: the choice";
+}
+
 TEST_F(BandOnABoard, DestroyedElementsAreSkipped) {
   const Ray ray{Vec2(5, 3.5), Vec2(1, 0), &crack, 1};
   const Band whole = find_band(board, ray, elements.view());

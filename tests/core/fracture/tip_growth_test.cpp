@@ -167,12 +167,22 @@ TEST(TipGrowth, PressureFallsWithTheRootOfItsDistance) {
   EXPECT_NEAR(k[0] / k[1], std::sqrt(b[1] / b[0]), 1e-12);
 }
 
-TEST(TipGrowth, DistanceIsWeightedByPressureAndAtLeastHalfAnEdge) {
+TEST(TipGrowth, DistanceIsWeightedByPressure) {
   FacePressure faces;
+  EXPECT_EQ(pressure_distance(faces, Vec2(0, 0)), 0);
   faces.pushes = {{3, Vec2(0, 4)}, {1, Vec2(8, 0)}};
-  EXPECT_DOUBLE_EQ(pressure_distance(faces, Vec2(0, 0), 1), (3 * 4 + 8) / 4.0);
-  faces.pushes = {{3, Vec2(0, 0.1)}};
-  EXPECT_DOUBLE_EQ(pressure_distance(faces, Vec2(0, 0), 1), 0.5);
+  EXPECT_DOUBLE_EQ(pressure_distance(faces, Vec2(0, 0)), (3 * 4 + 8) / 4.0);
+}
+
+TEST(TipGrowth, PressureAtTheTipCountsFromHalfAnEdge) {
+  // The tip lies 0.1 mm under the pressed node (5, 6); the crack rises 0.4 mm over 5 mm.
+  const std::vector<Pusher> one{pusher(CrackSide::upper, 3, 5)};
+  Scene scene = with_instruments(test::edge_slit(5), one);
+  scene.cracks[0].tips[0] = Vec3(5, 5.9, 1);
+  Driver driver(std::move(scene));
+  const double pressure = 3 * 5 / std::hypot(5, 0.4) / 2;
+  EXPECT_NEAR(grow_tip(driver, one).growth->terms.k_c,
+              pressure / std::sqrt(2 * pi * driver.board.h() / 2), 1e-13);
 }
 
 TEST(TipGrowth, ClosingPushCountsZeroWithAWarning) {
