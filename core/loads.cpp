@@ -23,7 +23,7 @@ void fill(Load& load, Entries& entries) {
   }
 }
 
-bool presses(const Instrument& instrument) {
+bool is_press(const Instrument& instrument) {
   return std::holds_alternative<Press>(instrument.action);
 }
 
@@ -31,7 +31,7 @@ bool presses(const Instrument& instrument) {
 
 Loads::Loads(const Problem& problem) : problem_(problem) {
   const auto& instruments = problem.scene().instruments;
-  if (std::any_of(instruments.begin(), instruments.end(), presses)) {
+  if (std::any_of(instruments.begin(), instruments.end(), is_press)) {
     elements_of_node_.emplace(problem.mesh());
   }
   pressed_.resize(instruments.size());
@@ -53,7 +53,7 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
 }
 
 std::span<const Index> Loads::nodes(std::size_t instrument) const {
-  return presses(problem_.scene().instruments[instrument])
+  return is_press(problem_.scene().instruments[instrument])
              ? pressed_[instrument]
              : problem_.instrument_nodes()[instrument].nodes;
 }
