@@ -14,8 +14,6 @@
 namespace sunder::app {
 namespace {
 
-constexpr const char* kSeeHelp = "; `sunder help` lists what is allowed";
-
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
@@ -29,31 +27,53 @@ const CLI::App& meant(const CLI::App& app) {
   return *command;
 }
 
-std::string unexpected_argument(const CLI::App& app) {
-  const CLI::App& command = meant(app);
-  const std::vector<std::string> extra = app.remaining(true);
-  const std::string first = extra.empty() ? "an argument" : "\"" + extra.front() + "\"";
-  const bool option = !extra.empty() && extra.front().starts_with("-");
-  if (&command == &app && !option)
-    return "there is no command " + first + "; allowed are " +
-           quoted_list(command_names(app), "and");
-  std::vector<std::string> known;
-  for (const CLI::Option* o : command.get_options())
-    for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
-  const std::string close = option ? nearest(extra.front(), known) : "";
-  const std::string path = &command == &app ? "sunder" : "sunder " + command.get_name();
-  return path + (option ? " has no option " : " does not take ") + first +
-         (close.empty() ? "" : ", perhaps " + close + " was meant") + kSeeHelp;
+std::string path_of(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent ? path_of(*parent) + " " + command.get_name() : command.get_name();
+}
+
+/// Where the allowed arguments are listed.
+std::string see(const CLI::App& command) {
+  const std::string path = path_of(command);
+  return "; `" + path + " --help` lists what is allowed";
+}
+
+std::string help_text(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return command.help(parent ? path_of(*parent) : "");
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string unexpected_argument(const CLI::App& command, const std::string& argument) {
+  const bool option = argument.starts_with("-");
+  const std::vector<std::string> commands = command_names(command);
+  if (!commands.empty() && !option)
+    return path_of(command) + " has no command \"" + argument + "\"; allowed is " +
+           quoted_list(commands);
+  const std::string close = option ? nearest(argument, option_names(command)) : "";
+  return path_of(command) + (option ? " has no option \"" : " takes no further argument \"") +
+         argument + "\"" + (close.empty() ? "" : ", perhaps " + close + " was meant") +
+         see(command);
 }
 
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
-  if (dynamic_cast<const CLI::ExtrasError*>(&error)) return unexpected_argument(app);
-  std::string what = error.what();
-  for (char& c : what)
-    if (c == '\n') c = ' ';
-  if (dynamic_cast<const CLI::RequiredError*>(&error) && meant(app).get_name() == app.get_name())
-    return "no command was given; allowed are " + quoted_list(command_names(app), "and");
-  return what + kSeeHelp;
+  const CLI::App& command = meant(app);
+  const std::vector<std::string> extra = app.remaining(true);
+  if (!extra.empty()) return unexpected_argument(command, extra.front());
+  const std::vector<std::string> commands = command_names(command);
+  if (!commands.empty())
+    return path_of(command) + " needs a command; allowed is " + quoted_list(commands);
+  const std::string what = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error))
+    return path_of(command) + ": " + what.substr(0, what.find(':')) + " takes exactly one value" +
+           see(command);
+  return path_of(command) + ": " + what + see(command);
 }
 
 int report(const std::string& message, int exit_code) {
@@ -69,7 +89,7 @@ int help(CLI::App& app, const std::vector<std::string>& path) {
     check_word("the command after help", name, known);
     command = command->get_subcommand(name);
   }
-  std::cout << command->help();
+  std::cout << help_text(*command);
   return 0;
 }
 
@@ -84,7 +104,7 @@ int dispatch(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    std::cout << meant(app).help();
+    std::cout << help_text(meant(app));
     return 0;
   } catch (const CLI::CallForVersion&) {
     std::cout << app.version() << "\n";

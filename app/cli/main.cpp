@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+
 #include "app/cli/command_line.hpp"
 
-int main(int argc, char** argv) { return sunder::app::command_line(argc, argv); }
+int main(int argc, char** argv) {
+  // A file over the size limit is an error of that write (EFBIG), not the program's end.
+  std::signal(SIGXFSZ, SIG_IGN);
+  return sunder::app::command_line(argc, argv);
+}

@@ -10,7 +10,7 @@ namespace sunder::app {
 namespace {
 
 void add_scene_options(CLI::App& command, Options& o) {
-  command.add_option("scene", o.scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
+  command.add_option("SCENE.toml", o.scene, "Scene file")->required()->type_name("");
   command.add_option("--backend", o.backend, "auto, cpu or vulkan")->type_name("B");
   command.add_option("--device", o.device, "Device of the backend, see `sunder devices`")
       ->type_name("N");

@@ -14,7 +14,7 @@ namespace sunder::app {
 namespace {
 
 void line(const std::string& name, const std::string& value) {
-  std::cout << "  " << name << std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') << value
+  std::cout << "  " << name << std::string(name.size() < 34 ? 34 - name.size() : 1, ' ') << value
             << "\n";
 }
 

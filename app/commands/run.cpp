@@ -63,6 +63,7 @@ class Run {
   void write_snapshots();
   void close();
 
+  const InterruptGuard guard_;  // before any file appears
   const Problem& problem_;
   RunRecord record_;
   std::unique_ptr<Simulation> simulation_;
@@ -110,7 +111,6 @@ void Run::step() {
 }
 
 int Run::carry_out() {
-  const InterruptGuard guard;
   simulation_->observe_frames([this] { take_snapshots(); });
   simulation_->observe_events([this](std::span<const DestroyedElement>) {
     progress_.update(simulation_->steps_done(), static_cast<int>(simulation_->destroyed().size()));

@@ -50,22 +50,30 @@ std::string ring(const Vec2& at) {
          svg::circle(at, 9, "fill=\"none\" stroke=\"#ffd60a\" stroke-width=\"2\"");
 }
 
+/// Crack records are undeformed. A point moves with the crack's elements around it, weighted by a
+/// bell of width h: an opened crack's path runs in the middle of its opening.
 Vec2 drawn_point(const Mesh& mesh, const BoardPlane& plane, const Pose& pose, const Crack& crack,
                  const Vec2& point) {
-  double nearest = std::numeric_limits<double>::infinity();
-  Vec2 shift = Vec2::Zero();
+  double nearest = std::numeric_limits<double>::infinity(), weights = 0;
+  std::vector<std::pair<double, Vec2>> shifts;  // squared distance over h^2
   for (const Index e : crack.elements) {
     Vec3 centroid = Vec3::Zero(), mean = Vec3::Zero();
     for (const Index node : mesh.tets[e]) {
       centroid += mesh.nodes[node] / 4;
       mean += pose.shift[node] / 4;
     }
-    const double distance = (plane.project(centroid) - point).norm();
-    if (!(distance < nearest)) continue;
-    nearest = distance;
-    shift = plane.project(mean);
+    const double distance =
+        (plane.project(centroid) - point).squaredNorm() / (plane.edge_length * plane.edge_length);
+    nearest = std::min(nearest, distance);
+    shifts.emplace_back(distance, plane.project(mean));
   }
-  return point + shift;
+  Vec2 sum = Vec2::Zero();
+  for (const auto& [distance, shift] : shifts) {
+    const double weight = std::exp(nearest - distance);
+    sum += weight * shift;
+    weights += weight;
+  }
+  return shifts.empty() ? point : Vec2(point + sum / weights);
 }
 
 std::string sentence_of_scale(const Pose& pose) {

@@ -32,7 +32,7 @@ struct Arrow {
                                      const Pose& pose, const std::vector<BodyFace>& faces,
                                      const Canvas& canvas);
 
-/// Crack records are undeformed; each point moves with the nearest element of its crack.
+/// Paths and tips of all cracks, deformed.
 [[nodiscard]] std::string crack_paths(const Mesh& mesh, const BoardPlane& plane, const Pose& pose,
                                       const State& state, const Canvas& canvas);
 

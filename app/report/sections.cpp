@@ -10,6 +10,8 @@ namespace sunder::app {
 namespace {
 
 constexpr std::size_t kMostEventRows = 400;
+// Marks what differs between two runs of the same scene.
+constexpr const char *kTimings = "<!-- timings -->\n", *kTimingsEnd = "<!-- end timings -->\n";
 
 std::string section(const std::string& title, const std::string& body,
                     const std::string& kind = {}) {
@@ -138,8 +140,9 @@ std::string key_figures(const RunRecord& run) {
              first ? std::string("load factor of the first rupture (") + to_string(first->cause) +
                          ", element " + std::to_string(first->element) + ")"
                    : "rupture by a criterion") +
+         kTimings +
          key(rounded(statistics(run.steps, stages().back()).median, 3) + " ms", "median step") +
-         key(rounded(last.error, 2), "error estimate, last frame") + "</div>\n";
+         kTimingsEnd + key(rounded(last.error, 2), "error estimate, last frame") + "</div>\n";
 }
 
 std::string findings(const RunRecord& run) {
@@ -194,11 +197,13 @@ std::string times(const RunRecord& run) {
     table.row({stage.name, rounded(t.min, 4), rounded(t.median, 4), rounded(t.p99, 4),
                rounded(t.max, 4), rounded(t.sum, 5)});
   }
-  return section("Time", "<div class=\"charts\"><div>" +
+  return kTimings +
+         section("Time", "<div class=\"charts\"><div>" +
                              stacked_bars(names, bars, {"step", "ms per step"}) + "</div><div>" +
                              table.html() +
                              "<p class=\"note\">A step holds as many frames as events, and one."
-                             "</p></div></div>\n");
+                             "</p></div></div>\n") +
+         kTimingsEnd;
 }
 
 std::string engine(const RunRecord& run) {
