@@ -40,11 +40,17 @@ class DenseInverseRoute final : public InverseRoute {
   }
 
   void destroy(std::span<const Index> elements) override {
-    if (!update_inverse(fem::event_factor(body_.problem(), elements), x_)) {
-      // Rounding has made I - W^T X W indefinite: start anew from the damaged stiffness.
-      x_ = fem::Factor(fem::assemble_lower(body_.problem(), body_.scale())).inverse();
+    if (update_inverse(fem::event_factor(body_.problem(), elements), x_)) {
+      read_grips();
+    } else {  // rounding has made I - W^T X W indefinite
+      rebase();
     }
+  }
+
+  bool rebase() override {
+    x_ = fem::Factor(fem::assemble_lower(body_.problem(), body_.scale())).inverse();
     read_grips();
+    return true;
   }
 
   std::vector<BufferPlan> buffers() const override {

@@ -70,6 +70,8 @@ class InverseRoute {
   virtual Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& x) = 0;
   /// Follows an event; the body has destroyed the elements already.
   virtual void destroy(std::span<const Index> elements) = 0;
+  /// Computes anew what updates have worn out; false: this route has nothing of the kind.
+  virtual bool rebase() { return false; }
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
 };
 
