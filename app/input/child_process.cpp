@@ -45,24 +45,9 @@ struct Pipe {
   }
 };
 
-// Sanitizers reserve far more address space than any limit.
-constexpr bool kLimitMemory =
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || \
-    __has_feature(memory_sanitizer)
-    false;
-#else
-    true;
-#endif
-#else
-    true;
-#endif
-
 // RLIMIT_DATA counts private writable memory, what the parent held at the fork included.
 void limit_memory(std::size_t bytes) {
-  if (!kLimitMemory) return;
+  if (!kLimitsMemory) return;
   std::ifstream statm("/proc/self/statm");
   std::size_t size = 0, resident = 0, shared = 0, text = 0, lib = 0, data = 0;
   statm >> size >> resident >> shared >> text >> lib >> data;
@@ -140,6 +125,20 @@ int wait_for(pid_t child) {
 }
 
 }  // namespace
+
+const bool kLimitsMemory =
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || \
+    __has_feature(memory_sanitizer)
+    false;
+#else
+    true;
+#endif
+#else
+    true;
+#endif
 
 ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
   using End = ChildOutcome::End;

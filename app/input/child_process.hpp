@@ -10,6 +10,9 @@
 
 namespace sunder::app {
 
+/// False under sanitizers, which reserve far more address space than any limit.
+extern const bool kLimitsMemory;
+
 struct ChildLimits {
   std::chrono::milliseconds timeout{30'000};
   std::size_t memory_bytes = std::size_t{2} << 30U;  ///< beyond what the parent holds

@@ -29,7 +29,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
   constexpr std::size_t kLongest = 64;  // the distance costs the product of the lengths
   if (word.size() > kLongest) return "";
   std::string best;
-  std::size_t fewest = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::size_t fewest = std::max<std::size_t>(1, (word.size() + 1) / 3) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edits(word, candidate);
     if (distance < fewest) {

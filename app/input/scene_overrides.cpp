@@ -14,9 +14,17 @@ struct Segment {
   bool quoted = false;
 };
 
+// One line, whatever was typed.
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  }
+  return text;
+}
+
 [[noreturn]] void fail(InputFault fault, const std::string& override_text,
                        const std::string& rest) {
-  throw InputError(fault, "--set " + override_text + ": " + rest);
+  throw InputError(fault, "--set " + one_line(override_text) + ": " + rest);
 }
 
 // Splits `a.0."b.c"=value`; returns the position after '='.
@@ -57,7 +65,7 @@ std::string as_toml_string(const std::string& word) {
 
 // A table with the single key "value".
 toml::table parse_value(const std::string& value, const std::string& text) {
-  const std::string source = "--set " + text;
+  const std::string source = "--set " + one_line(text);
   try {
     toml::table parsed = toml::parse("value = " + value, source);
     if (parsed.size() == 1) return parsed;
@@ -94,24 +102,24 @@ toml::node& element(toml::array& array, const Segment& segment, bool array_next,
   return array[index];
 }
 
+// The key carries its source, so that "unknown key" names the --set text.
+toml::key sourced_key(const std::string& name, const toml::source_region& source) {
+  return toml::key(name, toml::source_region(source));
+}
+
 toml::node& child(toml::node& parent, const Segment& segment, bool array_next,
-                  const std::string& text) {
+                  const std::string& text, const toml::source_region& source) {
   if (toml::array* array = parent.as_array()) return element(*array, segment, array_next, text);
   toml::table* table = parent.as_table();
   if (!table)
     fail(InputFault::unknown_key, text, "\"" + segment.text + "\" lies inside a plain value");
   if (!table->contains(segment.text)) {
     if (array_next)
-      table->insert(segment.text, toml::array{});
+      table->insert(sourced_key(segment.text, source), toml::array{});
     else
-      table->insert(segment.text, toml::table{});
+      table->insert(sourced_key(segment.text, source), toml::table{});
   }
   return *table->get(segment.text);
-}
-
-// The key carries its source, so that "unknown key" names the --set text.
-toml::key sourced_key(const std::string& name, const toml::node& value) {
-  return toml::key(name, toml::source_region(value.source()));
 }
 
 }  // namespace
@@ -124,7 +132,7 @@ void apply_override(toml::table& scene, const std::string& text) {
 
   toml::node* parent = &scene;
   for (std::size_t i = 0; i + 1 < path.size(); ++i)
-    parent = &child(*parent, path[i], is_index(path[i + 1]), text);
+    parent = &child(*parent, path[i], is_index(path[i + 1]), text, value.source());
 
   const Segment& last = path.back();
   if (toml::array* array = parent->as_array()) {
@@ -138,7 +146,7 @@ void apply_override(toml::table& scene, const std::string& text) {
   if (!table)
     fail(InputFault::unknown_key, text, "\"" + last.text + "\" lies inside a plain value");
   table->erase(last.text);
-  toml::key key = sourced_key(last.text, value);
+  toml::key key = sourced_key(last.text, value.source());
   value.visit([&](auto& typed) { table->insert(std::move(key), std::move(typed)); });
 }
 

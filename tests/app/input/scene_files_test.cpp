@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scenes that come with the program: each is read, checked, and has what its kind needs.
+#include <set>
+
+#include "app/input/input_support.hpp"
+#include "app/input/scene_toml.hpp"
+
+namespace sunder::test {
+namespace {
+
+std::set<std::filesystem::path> scene_files() {
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(SUNDER_SCENES))
+    if (entry.path().extension() == ".toml") files.insert(entry.path());
+  return files;
+}
+
+TEST(SceneFiles, AllAreThere) {
+  std::set<std::string> names;
+  for (const auto& file : scene_files()) names.insert(file.stem());
+  for (const char* name :
+       {"board-pull-a", "board-pull-b", "board-pull-two-points-a", "board-pull-two-points-b",
+        "notch-a", "notch-b", "pressure-near", "pressure-far", "pressure-upper",
+        "pressure-balanced", "pressure-under", "two-instruments", "cantilever", "stiff-contrast",
+        "nearly-incompressible", "scripted-cut"})
+    EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST(SceneFiles, AreRightWithoutWarning) {
+  for (const auto& file : scene_files()) {
+    SCOPED_TRACE(file);
+    std::vector<std::string> warnings;
+    std::shared_ptr<const Problem> problem;
+    ASSERT_NO_THROW(problem = app::read_problem(file, {}, &warnings));
+    EXPECT_TRUE(warnings.empty()) << warnings.front();
+    EXPECT_FALSE(problem->scene().title.empty());
+    EXPECT_FALSE(problem->scene().instruments.empty());
+    for (Index e = 0; e < problem->tet_count(); ++e) {
+      const std::string& name =
+          problem->mesh().volumes[static_cast<std::size_t>(problem->mesh().volume_of[e])].name;
+      if (name.ends_with("frame")) {
+        ASSERT_FALSE(problem->breakable(e)) << name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sunder::test
