@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs CalculiX (an independent finite element program) on a problem of ours: C3D4, the linear
+// tetrahedron with one integration point.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sunder/problem.hpp"
+
+namespace sunder::test {
+
+struct CalculixResult {
+  std::vector<double> displacement;  ///< 3 * nodes
+  std::vector<Voigt> stress;         ///< in our order
+};
+
+namespace calculix {
+
+/// Decks take at most 20 characters a number.
+inline std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.13g", v);
+  return text;
+}
+
+inline void write_mesh(std::ostream& deck, const Problem& problem, std::span<const double> scale) {
+  const Mesh& mesh = problem.mesh();
+  deck << "*NODE, NSET=NALL\n";
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    const Vec3& x = mesh.nodes[n];
+    deck << n + 1 << ", " << number(x[0]) << ", " << number(x[1]) << ", " << number(x[2]) << "\n";
+  }
+  std::map<std::pair<double, double>, std::vector<Index>> by_material;  // E a_e, nu
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    by_material[{problem.material(e).young * scale[e], problem.material(e).poisson}].push_back(e);
+  }
+  int set = 0;
+  for (const auto& [elastic, elements] : by_material) {
+    const std::string name = std::to_string(set++);
+    deck << "*ELEMENT, TYPE=C3D4, ELSET=E" << name << "\n";
+    for (Index e : elements) {
+      deck << e + 1;
+      for (Index n : mesh.tets[e]) deck << ", " << n + 1;
+      deck << "\n";
+    }
+    deck << "*MATERIAL, NAME=M" << name << "\n*ELASTIC\n"
+         << number(elastic.first) << ", " << number(elastic.second) << "\n*SOLID SECTION, ELSET=E"
+         << name << ", MATERIAL=M" << name << "\n";
+  }
+  deck << "*ELSET, ELSET=EALL, GENERATE\n1, " << problem.tet_count() << "\n";
+}
+
+inline void write_step(std::ostream& deck, const Problem& problem, std::span<const double> force) {
+  deck << "*BOUNDARY\n";
+  for (std::size_t i = 0; i < problem.dofs().size(); ++i) {
+    if (problem.dofs()[i] == kNone) deck << i / 3 + 1 << ", " << i % 3 + 1 << "\n";
+  }
+  deck << "*STEP\n*STATIC\n*CLOAD\n";
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (force[i] != 0) deck << i / 3 + 1 << ", " << i % 3 + 1 << ", " << number(force[i]) << "\n";
+  }
+  deck << "*NODE PRINT, NSET=NALL\nU\n*EL PRINT, ELSET=EALL\nS\n*END STEP\n";
+}
+
+inline CalculixResult read_dat(const std::string& file, const Problem& problem) {
+  std::ifstream in(file);
+  CalculixResult result;
+  result.displacement.assign(problem.dofs().size(), 0.0);
+  result.stress.assign(problem.mesh().tets.size(), Voigt::Zero());
+  bool stresses = false;
+  std::size_t nodes = 0, elements = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("displacements") != std::string::npos) stresses = false;
+    if (line.find("stresses") != std::string::npos) stresses = true;
+    std::istringstream fields(line);
+    std::size_t id = 0;
+    if (!(fields >> id)) continue;
+    if (!stresses) {
+      for (std::size_t axis = 0; axis < 3; ++axis) fields >> result.displacement[3 * id - 3 + axis];
+      nodes += fields ? 1 : 0;
+    } else {
+      int point = 0;
+      double xx, yy, zz, xy, xz, yz;
+      fields >> point >> xx >> yy >> zz >> xy >> xz >> yz;
+      result.stress[id - 1] << xx, yy, zz, xy, yz, xz;
+      elements += fields ? 1 : 0;
+    }
+  }
+  if (nodes != problem.mesh().nodes.size() || elements != problem.mesh().tets.size()) {
+    throw std::runtime_error(file + " does not hold all nodes and elements");
+  }
+  return result;
+}
+
+}  // namespace calculix
+
+/// Is there a program ccx? (Debian: apt-get install calculix-ccx.)
+inline bool calculix_installed() { return std::system("command -v ccx > /dev/null 2>&1") == 0; }
+
+/// `folder` is emptied first and removed afterwards.
+inline CalculixResult run_calculix(const Problem& problem, std::span<const double> scale,
+                                   std::span<const double> force,
+                                   const std::filesystem::path& folder) {
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  {
+    std::ofstream deck(folder / "deck.inp");
+    calculix::write_mesh(deck, problem, scale);
+    calculix::write_step(deck, problem, force);
+  }
+  const std::string command = "cd '" + folder.string() + "' && ccx deck > log 2>&1";
+  if (std::system(command.c_str()) != 0) {
+    throw std::runtime_error("ccx failed; see " + (folder / "log").string());
+  }
+  CalculixResult result = calculix::read_dat((folder / "deck.dat").string(), problem);
+  std::filesystem::remove_all(folder);
+  return result;
+}
+
+}  // namespace sunder::test
