@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/field_sif/field_intensity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fracture/crack_path.hpp"
+
+namespace sunder::fracture {
+namespace {
+
+// A free surface frees the front's surroundings from s33 up to about t/2 away from the front; a
+// domain that reaches as far as t/2 sees a board in plane stress, a smaller one plane strain.
+constexpr double kThinBoard = 2.0;  // thickness / radius
+
+/// Points of the path from the tip backwards.
+std::vector<Vec2> path_from_tip(const Crack& crack, std::size_t tip) {
+  std::vector<Vec2> points = crack.path;
+  if (orientation(crack, tip) > 0) std::reverse(points.begin(), points.end());
+  return points;
+}
+
+/// The stretch of the path within `length` behind the tip (its length along the path), as a crack
+/// of its own with the same sense.
+Crack path_tail(const Crack& crack, std::size_t tip, double length) {
+  const std::vector<Vec2> points = path_from_tip(crack, tip);
+  Crack tail;
+  double passed = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    tail.path.push_back(points[i]);
+    if (i + 1 == points.size()) break;
+    const Vec2 step = points[i + 1] - points[i];
+    if (passed + step.norm() >= length) {
+      tail.path.push_back(points[i] + step.normalized() * (length - passed));
+      break;
+    }
+    passed += step.norm();
+  }
+  std::reverse(tail.path.begin(), tail.path.end());
+  return tail;
+}
+
+/// Elements make a path of short zigzags; the field a few h away sees its mean direction.
+Vec2 mean_direction(const Crack& crack, std::size_t tip, double length) {
+  const Crack tail = path_tail(crack, tip, length);
+  const Vec2 back = tail.path.empty() ? Vec2(Vec2::Zero()) : Vec2(tail.path.back() - tail.path.front());
+  return back.norm() > 0 ? Vec2(back.normalized()) : crack.tips[tip].direction;
+}
+
+bool straight(const Crack& tail, const TipFrame& frame, double tolerance) {
+  return std::all_of(tail.path.begin(), tail.path.end(), [&](const Vec2& p) {
+    return std::abs(frame.local(p).y()) <= tolerance;
+  });
+}
+
+std::string tip_name(const Crack& crack, std::size_t tip) {
+  return "the field K of crack " + std::to_string(crack.id) + " at its tip " + std::to_string(tip);
+}
+
+bool same(const Material& a, const Material& b) {
+  return a.young == b.young && a.poisson == b.poisson;
+}
+
+}  // namespace
+
+/// What disturbs a domain: distances [mm] of the nearest element of another material and of the
+/// nearest element destroyed by something else than this crack.
+struct FieldIntensityMeter::Surroundings {
+  double other_material = std::numeric_limits<double>::infinity();
+  double other_damage = std::numeric_limits<double>::infinity();
+};
+
+FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& board)
+    : problem_(problem),
+      board_(board),
+      surface_(board),
+      builder_(board),
+      own_(problem.mesh().tets.size(), 0) {
+  board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
+}
+
+FieldIntensityMeter::Surroundings FieldIntensityMeter::look_around(const Crack& crack,
+                                                                   const Vec2& tip, double radius,
+                                                                   const FieldView& view) {
+  for (Index e : crack.elements) own_[e] = 1;
+  Surroundings found;
+  const std::vector<Index> near = board_.elements_within(tip, radius);
+  double nearest = std::numeric_limits<double>::infinity();
+  const Material* material = nullptr;  // of the nearest live element
+  for (Index e : near) {
+    const double r = (board_.centroid(e) - tip).norm();
+    if (view.destroyed[e]) {
+      if (!own_[e]) found.other_damage = std::min(found.other_damage, r);
+    } else if (r < nearest) {
+      nearest = r;
+      material = &problem_.material(e);
+    }
+  }
+  for (Index e : near)
+    if (!view.destroyed[e] && !same(problem_.material(e), *material))  // set: e is live
+      found.other_material = std::min(found.other_material, (board_.centroid(e) - tip).norm());
+  for (Index e : crack.elements) own_[e] = 0;
+  return found;
+}
+
+FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, const FieldView& view,
+                                       std::optional<double> radius) {
+  if (radius) return measure(crack, tip, view, *radius, {});
+  const double h = board_.h();
+  // The mouth or the other tip stays outside: their fields are not this tip's.
+  const double wanted =
+      std::clamp(crack_length(crack), kSmallestDomainRadius * h, kDomainRadius * h);
+  const Surroundings around = look_around(crack, crack.tips[tip].position, wanted, view);
+  const double free = std::min(around.other_material, around.other_damage);
+  const double chosen = std::clamp(free, kSmallestDomainRadius * h, wanted);
+  FieldIntensity result = measure(crack, tip, view, chosen, {});
+  if (around.other_material < chosen)
+    result.warnings.push_back(tip_name(crack, tip) +
+                              " reaches another material: it is that of one body with the mean "
+                              "compliance around the tip");
+  if (around.other_damage < chosen)
+    result.warnings.push_back(tip_name(crack, tip) +
+                              " reaches elements destroyed by something else: it is not "
+                              "separated from their field");
+  return result;
+}
+
+std::vector<FieldIntensity> FieldIntensityMeter::along_front(const Crack& crack, std::size_t tip,
+                                                             const FieldView& view, int stations) {
+  const double width = board_.plane().thickness() / (stations - 1);
+  std::vector<FieldIntensity> profile;
+  for (int k = 0; k < stations; ++k)
+    profile.push_back(measure(crack, tip, view, kDomainRadius * board_.h(),
+                              FrontStretch{board_.plane().bottom + k * width, width}));
+  return profile;
+}
+
+FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
+                                            const FieldView& view, double radius,
+                                            const std::optional<FrontStretch>& stretch) {
+  const Vec2& position = crack.tips[tip].position;
+  FieldIntensity result;
+  result.radius = radius;
+  result.frame = {position, mean_direction(crack, tip, radius / 2)};
+  const TipDomain domain = builder_.collect(position, radius, view.destroyed, stretch);
+  if (domain.elements.empty()) return result;  // nothing left to carry a field
+  result.material = tip_material(domain);
+  displacement_.resize(domain.nodes.size());
+  view.displacement(domain.nodes, displacement_);
+  IntegralInput input{problem_,     board_, surface_, result.frame, domain, displacement_,
+                      view.forces, {}};
+  const Crack tail = path_tail(crack, tip, 2 * radius);
+  if (!straight(tail, result.frame, 1e-6 * board_.h()))
+    input.side = [&](const Vec2& p) { return path_side(tail, p, 0); };
+  result.factors = interaction_integral(input, result.material);
+  const bool held = std::any_of(domain.nodes.begin(), domain.nodes.end(), [&](Index n) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (axis != normal_axis_ && problem_.dof(n, axis) == kNone) return true;
+    return false;
+  });
+  if (held)
+    result.warnings.push_back(tip_name(crack, tip) +
+                              " reaches fixed nodes, whose reactions it leaves out");
+  return result;
+}
+
+TipMaterial FieldIntensityMeter::tip_material(const TipDomain& domain) const {
+  // Of two materials the mean compliance counts: G = K^2 (1/E1 + 1/E2)/2 on their interface.
+  double volume = 0, compliance = 0, poisson = 0;
+  for (Index e : domain.elements) {
+    const double v = problem_.shape(e).volume;
+    volume += v;
+    compliance += v / problem_.material(e).young;
+    poisson += v * problem_.material(e).poisson;
+  }
+  const auto held = std::count_if(domain.nodes.begin(), domain.nodes.end(), [&](Index n) {
+    return problem_.dof(n, normal_axis_) == kNone;
+  });
+  const bool flat = 2 * static_cast<std::size_t>(held) > domain.nodes.size();
+  const bool thin = board_.plane().thickness() <= kThinBoard * domain.radius;
+  TipMaterial material;
+  material.young = volume / compliance;
+  material.poisson = poisson / volume;
+  material.constraint = thin && !flat ? 0 : 1;
+  return material;
+}
+
+}  // namespace sunder::fracture

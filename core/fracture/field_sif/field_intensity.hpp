@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stress intensity factors of a crack's tip measured from the displacement field (method.md
+// "Field K"): chooses the frame, the domain and the out-of-plane state for the interaction
+// integral. Works on what lies within 6 h of the tip only.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fracture/field_sif/interaction_integral.hpp"
+#include "sunder/crack.hpp"
+
+namespace sunder::fracture {
+
+inline constexpr double kDomainRadius = 6.0;          ///< in h
+inline constexpr double kSmallestDomainRadius = 3.0;  ///< in h, however near an obstacle is
+
+/// The damaged body as it is now.
+struct FieldView {
+  std::span<const std::uint8_t> destroyed;  ///< per element
+  /// Displacement of some nodes [mm].
+  std::function<void(std::span<const Index>, std::span<Vec3>)> displacement;
+  std::vector<NodalForce> forces;  ///< of pulling and pressing instruments
+};
+
+struct FieldIntensity {
+  IntensityFactors factors;
+  TipFrame frame;     ///< in which they are meant
+  double radius = 0;  ///< of the domain [mm]
+  TipMaterial material;
+  std::vector<std::string> warnings;
+};
+
+class FieldIntensityMeter {
+ public:
+  FieldIntensityMeter(const Problem& problem, const Board& board);
+
+  /// Mean over the front of one tip. `radius` [mm]: of the domain, chosen if left out.
+  [[nodiscard]] FieldIntensity at(const Crack& crack, std::size_t tip, const FieldView& view,
+                                  std::optional<double> radius = {});
+
+  /// Along a straight front: at `stations` equidistant places from bottom to top, each the mean
+  /// around it. Meant for blocks of several elements across.
+  [[nodiscard]] std::vector<FieldIntensity> along_front(const Crack& crack, std::size_t tip,
+                                                        const FieldView& view, int stations);
+
+ private:
+  struct Surroundings;
+  [[nodiscard]] Surroundings look_around(const Crack& crack, const Vec2& tip, double radius,
+                                         const FieldView& view);
+  [[nodiscard]] TipMaterial tip_material(const TipDomain& domain) const;
+  [[nodiscard]] FieldIntensity measure(const Crack& crack, std::size_t tip, const FieldView& view,
+                                       double radius, const std::optional<FrontStretch>& stretch);
+
+  const Problem& problem_;
+  const Board& board_;
+  int normal_axis_ = 2;  // coordinate axis nearest to the board's normal
+  FreeSurface surface_;
+  DomainBuilder builder_;
+  std::vector<std::uint8_t> own_;  // shape (elements): of the crack being looked at
+  std::vector<Vec3> displacement_;
+};
+
+}  // namespace sunder::fracture

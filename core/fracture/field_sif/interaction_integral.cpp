@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/field_sif/interaction_integral.hpp"
+
+#include <algorithm>
+
+#include "fem/element.hpp"
+
+namespace sunder::fracture {
+namespace {
+
+using Sums = std::array<double, kModes>;
+
+/// Field of one element in the tip's frame.
+struct ElementField {
+  Mat3 gradient;  // u_i,j
+  Mat3 stress;    // [MPa]
+  Vec3 weight_gradient;
+};
+
+Mat3 stress_of(const Mat3& gradient, const Material& m) {
+  const double mu = m.young / (2 * (1 + m.poisson));
+  const double lambda = 2 * mu * m.poisson / (1 - 2 * m.poisson);
+  Mat3 stress = mu * (gradient + gradient.transpose());
+  stress.diagonal().array() += lambda * gradient.trace();
+  return stress;
+}
+
+ElementField element_field(const IntegralInput& in, std::size_t i, const Mat3& axes) {
+  const auto& corners = in.domain.corners[i];
+  const Index e = in.domain.elements[i];
+  const Eigen::Matrix<double, 3, 4> shape = axes * in.problem.shape(e).gradient;
+  Mat3 gradient = Mat3::Zero();
+  Vec3 weight_gradient = Vec3::Zero();
+  for (int a = 1; a < 4; ++a) {  // differences to corner 0: no cancellation of a rigid motion
+    const Vec3 u = axes * (in.displacement[corners[a]] - in.displacement[corners[0]]);
+    gradient += u * shape.col(a).transpose();
+    weight_gradient += (in.domain.weight[corners[a]] - in.domain.weight[corners[0]]) * shape.col(a);
+  }
+  return {gradient, stress_of(gradient, in.problem.material(e)), weight_gradient};
+}
+
+std::array<AuxiliaryState, kModes> auxiliary_at(const IntegralInput& in, const Vec2& place,
+                                                const TipMaterial& material) {
+  const Vec2 x = in.frame.local(place);
+  const int side = in.side && x.x() < 0 ? in.side(place) : 0;
+  return auxiliary_states(x, side, material);
+}
+
+/// [s_ij u*_i,1 + s*_ij u_i,1 - s*_kl e_kl delta_1j] q,j
+double integrand(const ElementField& field, const AuxiliaryState& aux) {
+  const Vec3 flux = field.stress * aux.slope + aux.stress * field.gradient.col(0);
+  const double work = aux.stress.cwiseProduct(field.gradient).sum();
+  return flux.dot(field.weight_gradient) - work * field.weight_gradient[0];
+}
+
+/// q (s*_ij n_j u_i,1 - s*_kl e_kl n_1) dA over the element's part of the body's free surface.
+/// Plane stress leaves top and bottom free, so only the outline counts then.
+void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField& field,
+                      const Mat3& axes, const TipMaterial& material, Sums& sum) {
+  const Index e = in.domain.elements[i];
+  const auto& tet = in.board.mesh().tets[e];
+  for (const FreeSurface::Face& face : in.surface.of(e)) {
+    if (!face.lateral && material.constraint == 0) continue;
+    double weight = 0;
+    Vec2 centre = Vec2::Zero();
+    for (Index n : face.nodes) {
+      const auto corner = std::find(tet.begin(), tet.end(), n) - tet.begin();
+      weight += in.domain.weight[in.domain.corners[i][static_cast<std::size_t>(corner)]] / 3;
+      centre += in.board.node(n) / 3;
+    }
+    const auto aux = auxiliary_at(in, centre, material);
+    const Vec3 area = axes * face.area;
+    for (int m = 0; m < kModes; ++m) {
+      const double work = aux[m].stress.cwiseProduct(field.gradient).sum();
+      sum[m] -=
+          weight * ((aux[m].stress * area).dot(field.gradient.col(0)) - work * area[0]);
+    }
+  }
+}
+
+void subtract_forces(const IntegralInput& in, const Mat3& axes, const TipMaterial& material,
+                     Sums& sum) {
+  for (const NodalForce& load : in.forces) {
+    const Vec2 place = in.board.node(load.node);
+    const double r = (place - in.frame.position).norm();
+    const double weight = domain_weight(r, in.domain.radius);
+    if (!(weight > 0) || !(r > 0)) continue;
+    const auto aux = auxiliary_at(in, place, material);
+    const Vec3 force = axes * load.force;
+    for (int m = 0; m < kModes; ++m) sum[m] -= weight * force.dot(aux[m].slope);
+  }
+}
+
+}  // namespace
+
+IntensityFactors interaction_integral(const IntegralInput& in, const TipMaterial& material) {
+  const Mat3 axes = in.frame.axes(in.board.plane());
+  Sums sum{};
+  for (std::size_t i = 0; i < in.domain.elements.size(); ++i) {
+    const Index e = in.domain.elements[i];
+    const ElementField field = element_field(in, i, axes);
+    const auto aux = auxiliary_at(in, in.board.centroid(e), material);
+    for (int m = 0; m < kModes; ++m)
+      sum[m] += in.problem.shape(e).volume * integrand(field, aux[m]);
+    subtract_surface(in, i, field, axes, material, sum);
+  }
+  subtract_forces(in, axes, material, sum);
+  const double half_young = material.effective_young() / 2;
+  for (double& s : sum) s /= in.domain.front_length;
+  return {half_young * sum[kModeI], half_young * sum[kModeII], material.shear() * sum[kModeIII]};
+}
+
+}  // namespace sunder::fracture

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// K_I, K_II and K_III at a crack tip from the displacement field around it: the interaction
+// integral in domain form (Yau, Wang, Corten 1980; Shih, Asaro 1988).
+//
+//   I = 1/t  int_V [s_ij u*_i,1 + s*_ij u_i,1 - s*_kl e_kl delta_1j] q,j dV
+//     - 1/t  int over the body's free surface  q (s*_ij n_j u_i,1 - s*_kl e_kl n_1) dA
+//     - 1/t  sum over loaded nodes  q f_i u*_i,1
+//
+// with the auxiliary state * of one unit stress intensity: K_I = E'/2 I_I, K_II = E'/2 I_II,
+// K_III = mu I_III. t is the front's length, so K is its mean over the front. The faces of the
+// crack itself carry no term: the auxiliary state leaves them free, and what the width of a crack
+// of destroyed elements changes is of the order of (width / distance)^2.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "fracture/field_sif/auxiliary_field.hpp"
+#include "fracture/field_sif/free_surface.hpp"
+#include "fracture/field_sif/tip_domain.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::fracture {
+
+/// Stress intensity factors [MPa sqrt(mm)], signs in the tip's frame: K_I > 0 opens, K_II > 0
+/// moves the left face forward against the right one, K_III > 0 along x3.
+struct IntensityFactors {
+  double k_1 = 0, k_2 = 0, k_3 = 0;
+};
+
+/// A force on a node, N.
+struct NodalForce {
+  Index node;
+  Vec3 force;
+};
+
+struct IntegralInput {
+  const Problem& problem;
+  const Board& board;
+  const FreeSurface& surface;
+  const TipFrame& frame;
+  const TipDomain& domain;
+  std::span<const Vec3> displacement;  ///< of domain.nodes, mm
+  std::span<const NodalForce> forces;  ///< those beyond the domain count nothing
+  /// Of the crack on which a place lies, +1 left, -1 right; unset: as for a straight crack.
+  std::function<int(const Vec2&)> side;
+};
+
+[[nodiscard]] IntensityFactors interaction_integral(const IntegralInput& input,
+                                                    const TipMaterial& material);
+
+}  // namespace sunder::fracture
