@@ -35,7 +35,7 @@ std::vector<Vec2> dots_of(const BoardPlane& plane, const Pose& pose, const Instr
 }
 
 std::string arrow_shape(const Vec2& from, const Vec2& to) {
-  constexpr double shaft = 2.2, head = 7, head_length = 13;
+  constexpr double shaft = 2.8, head = 8.5, head_length = 15;
   const Vec2 along = (to - from).normalized(), across = rotated(along);
   const Vec2 neck = to - along * head_length;
   const std::array<Vec2, 7> points{
@@ -114,7 +114,7 @@ std::string draw(const std::vector<Arrow>& arrows, const Canvas& canvas) {
   for (const Arrow& arrow : arrows) {
     const Vec2 from = canvas.map(arrow.from), to = canvas.map(arrow.to);
     out += (to - from).norm() > 1 ? arrow_shape(from, to) : ring(from);
-    for (const Vec2& dot : arrow.dots) out += svg::circle(canvas.map(dot), 4.6, kYellow);
+    for (const Vec2& dot : arrow.dots) out += svg::circle(canvas.map(dot), 5.4, kYellow);
   }
   return out;
 }

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// events.csv, frames.csv and the set of files, against docs/interface.md "Results".
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "app/output/program.hpp"
+
+namespace sunder::test {
+namespace {
+
+using Row = std::vector<std::string>;
+
+double value(const std::string& cell) { return std::strtod(cell.c_str(), nullptr); }
+
+TEST(ResultFolder, HoldsExactlyTheDocumentedFiles) {
+  EXPECT_EQ(
+      names_in(torn_board()),
+      (Row{"events.csv", "figure.png", "figure.svg", "frames.csv", "index.html", "result.vtu",
+           "result_0000.vtu", "result_0001.vtu", "result_0002.vtu", "result_0003.vtu",
+           "result_0004.vtu", "series.pvd", "snapshot_10.png", "snapshot_10.svg", "snapshot_10.vtu",
+           "snapshot_3.png", "snapshot_3.svg", "snapshot_3.vtu", "summary.json"}));
+}
+
+TEST(EventsTable, HasTheDocumentedColumns) {
+  const auto rows = read_csv(torn_board() / "events.csv");
+  EXPECT_EQ(rows.front(),
+            (Row{"step", "event", "element", "criterion", "crack", "ratio", "load_factor", "tip",
+                 "K", "K_a", "K_b", "K_c", "theta_deg", "r", "sigma0", "beta_deg", "a", "b"}));
+  for (const Row& row : rows) EXPECT_EQ(row.size(), rows.front().size());
+}
+
+TEST(EventsTable, EventsCountUpAndElementsBreakOnce) {
+  const auto rows = read_csv(torn_board() / "events.csv");
+  std::set<std::string> elements;
+  int last_event = -1, last_step = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const int step = std::atoi(rows[i][0].c_str()), event = std::atoi(rows[i][1].c_str());
+    EXPECT_TRUE(event == last_event || event == last_event + 1) << "row " << i;
+    EXPECT_GE(step, last_step);
+    EXPECT_DOUBLE_EQ(value(rows[i][6]), (step + 1) / 5.0);
+    EXPECT_TRUE(elements.insert(rows[i][2]).second) << "element " << rows[i][2];
+    last_event = event;
+    last_step = step;
+  }
+}
+
+TEST(EventsTable, CellsFitTheCriterion) {
+  const auto rows = read_csv(torn_board() / "events.csv");
+  std::set<std::string> seen;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    seen.insert(row[3]);
+    EXPECT_EQ(row[5].empty(), row[3] == "script");
+    EXPECT_EQ(row[8].empty(), row[3] != "sif");
+    EXPECT_TRUE(row[3] != "script" || row[4].empty());
+    EXPECT_TRUE(row[5].empty() || value(row[5]) >= 1.0) << "row " << i;
+    if (row[3] != "sif") continue;
+    EXPECT_NE(row[4], "");
+    EXPECT_GE(value(row[8]), 0);  // K
+  }
+  EXPECT_EQ(seen, (std::set<std::string>{"mss", "script", "sif"}));
+}
+
+TEST(FramesTable, HasARowPerStepThatAgreesWithTheEvents) {
+  const auto frames = read_csv(torn_board() / "frames.csv");
+  const auto events = read_csv(torn_board() / "events.csv");
+  EXPECT_EQ(frames.front(), (Row{"step", "load_factor", "events", "destroyed", "compliance",
+                                 "residual", "error", "max_yield_ratio", "ms_load", "ms_solve",
+                                 "ms_stress", "ms_decide", "ms_update", "ms_total", "iterations"}));
+  ASSERT_EQ(frames.size(), 6u);
+  for (int step = 0; step < 5; ++step) {
+    const Row& row = frames[static_cast<std::size_t>(step) + 1];
+    ASSERT_EQ(row.size(), frames.front().size());
+    EXPECT_EQ(row[0], std::to_string(step));
+    EXPECT_DOUBLE_EQ(value(row[1]), (step + 1) / 5.0);
+    std::set<std::string> of_step;
+    long destroyed = 0;
+    for (std::size_t i = 1; i < events.size(); ++i) {
+      if (std::atoi(events[i][0].c_str()) == step) of_step.insert(events[i][1]);
+      if (std::atoi(events[i][0].c_str()) <= step) ++destroyed;
+    }
+    EXPECT_EQ(row[2], std::to_string(of_step.size())) << "step " << step;
+    EXPECT_EQ(row[3], std::to_string(destroyed)) << "step " << step;
+    double stages = 0;
+    for (int i = 8; i < 13; ++i) stages += value(row[static_cast<std::size_t>(i)]);
+    EXPECT_GT(stages, 0);
+    EXPECT_LE(stages, value(row[13]) * (1 + 1e-9));
+    EXPECT_LE(value(row[6]), 1e-4);  // error: solver.tolerance
+  }
+}
+
+TEST(FramesTable, SummaryIsItsLastRow) {
+  const auto frames = read_csv(torn_board() / "frames.csv");
+  const auto summary = read_json(torn_board() / "summary.json");
+  EXPECT_EQ(summary["compliance"].get<double>(), value(frames.back()[4]));
+  EXPECT_EQ(summary["residual"].get<double>(), value(frames.back()[5]));
+  EXPECT_EQ(summary["error"].get<double>(), value(frames.back()[6]));
+  std::vector<double> total;
+  for (std::size_t i = 1; i < frames.size(); ++i) total.push_back(value(frames[i][13]));
+  std::sort(total.begin(), total.end());
+  EXPECT_EQ(summary["timings_ms"]["total"]["median"].get<double>(), total[2]);
+  EXPECT_EQ(summary["timings_ms"]["total"]["max"].get<double>(), total[4]);
+}
+
+}  // namespace
+}  // namespace sunder::test
