@@ -1,21 +1,86 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "cpu_reference/cpu_reference.hpp"
+#ifdef SUNDER_GPU
+#include "gpu/vulkan_backend.hpp"
+#endif
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder {
+namespace {
 
-std::vector<std::string> backend_names() { return {"cpu"}; }
+std::vector<DeviceInfo> vulkan_devices() {
+#ifdef SUNDER_GPU
+  return gpu::devices();
+#else
+  return {};
+#endif
+}
 
-std::vector<DeviceInfo> devices() { return {cpu_reference::device()}; }
+std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, Needs needs) {
+#ifdef SUNDER_GPU
+  return gpu::create(std::move(problem), std::move(needs));
+#else
+  static_cast<void>(problem);
+  static_cast<void>(needs);
+  throw DeviceError("this build leaves out the backend vulkan (SUNDER_GPU=OFF); it has cpu");
+#endif
+}
+
+bool has_gpu() {
+  const auto list = vulkan_devices();
+  return std::any_of(list.begin(), list.end(), [](const DeviceInfo& d) { return d.chosen; });
+}
+
+/// The machine's GPU when there is one and it can do the scene, else the CPU.
+CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, const Needs& needs) {
+  CreatedBackend created;
+  if (has_gpu()) {
+    try {
+      created.backend = create_vulkan(problem, needs);
+      return created;
+    } catch (const DeviceError& error) {
+      created.warnings.push_back(std::string("backend vulkan failed, cpu is used instead: ") +
+                                 error.what());
+    }
+  }
+  created.backend = cpu_reference::create(problem, needs);
+  return created;
+}
+
+}  // namespace
+
+std::vector<std::string> backend_names() {
+#ifdef SUNDER_GPU
+  return {"cpu", "vulkan"};
+#else
+  return {"cpu"};
+#endif
+}
+
+std::vector<DeviceInfo> devices() {
+  std::vector<DeviceInfo> list = {cpu_reference::device()};
+  for (DeviceInfo& d : vulkan_devices()) {
+    if (d.chosen) {
+      list.front().chosen = false;
+      list.front().why = "a GPU is there";
+    }
+    list.push_back(std::move(d));
+  }
+  return list;
+}
 
 CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs needs) {
   if (!problem) throw UsageError("a backend needs a problem");
   const std::string& name = problem->scene().solver.backend;
-  if (name == "cpu" || name == "auto") {
-    return {cpu_reference::create(std::move(problem), std::move(needs)), {}};
-  }
-  throw DeviceError("this build has no backend \"" + name + "\"; it has cpu");
+  if (name == "cpu") return {cpu_reference::create(std::move(problem), std::move(needs)), {}};
+  if (name == "vulkan") return {create_vulkan(std::move(problem), std::move(needs)), {}};
+  if (name == "auto") return create_automatic(problem, needs);
+  std::string names;
+  for (const std::string& n : backend_names()) names += (names.empty() ? "" : ", ") + n;
+  throw DeviceError("there is no backend \"" + name + "\"; this build has " + names);
 }
 
 }  // namespace sunder

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The damage as a correction to a base inverse X that is never overwritten, in fp64 on the host:
+// u = X f + X_E c, where E are the dofs touched by destroyed elements, held by grips or loaded (if
+// few), X_E exact columns of X, and c = M X_E^T f. An event on E adds a low-rank term to the small
+// matrix M alone.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "gpu/passes/dense_inverse.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::gpu {
+
+/// An event's update vectors with at most as many columns as dofs: W W^T is unchanged.
+[[nodiscard]] Eigen::MatrixXd compressed(const Eigen::MatrixXd& w);
+
+class Correction {
+ public:
+  /// Exact columns of the base, shape (n x dofs).
+  using Columns = std::function<Eigen::MatrixXd(std::span<const Index> dofs)>;
+
+  /// E begins with the gripped dofs.
+  Correction(const Problem& problem, Columns columns);
+
+  /// Follows an event: M += V C^-1 V^T with V = W + M X_ET W, C = I - W^T X' W. Returns false and
+  /// changes nothing but E when C is not positive definite in double precision.
+  /// Cost 12 k |E|^2 flops and the new columns.
+  [[nodiscard]] bool destroy(std::span<const Index> elements);
+
+  /// Adds dofs to E: what they carry is then multiplied by exact columns as well.
+  void extend(std::span<const Index> dofs);
+  /// How many of some dofs, or of those that elements touch, are not in E yet.
+  [[nodiscard]] Index new_dofs(std::span<const Index> dofs) const;
+  [[nodiscard]] Index new_dofs_of(std::span<const Index> elements) const;
+
+  /// X_E, shape (n x at least count()).
+  [[nodiscard]] const Eigen::MatrixXd& columns() const { return columns_; }
+  [[nodiscard]] Index count() const { return static_cast<Index>(dofs_.size()); }
+
+  /// Moves what a load carries on dofs of E to coefficients of the exact columns.
+  [[nodiscard]] Eigen::VectorXd take_exact(Loaded& load) const;
+  /// X_E^T f.
+  [[nodiscard]] Eigen::VectorXd project(const Loaded& load) const;
+  /// c for the force f given as X_E^T f, with the gripped dofs at `displacement` (empty: 0). Throws
+  /// NumericalError when the grips' compliance is singular.
+  [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& projection,
+                                             std::span<const double> displacement) const;
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  void factor_grips();
+
+  const Problem& problem_;
+  Columns base_;
+  std::vector<Index> dofs_;      // of E
+  std::vector<Index> place_;     // of every unknown in E, kNone outside
+  Eigen::MatrixXd columns_, x_;  // X_E, X_EE (by rows and columns in the order of E)
+  Eigen::MatrixXd m_;
+  Eigen::LLT<Eigen::MatrixXd> grips_;  // (X')_GG
+};
+
+}  // namespace sunder::gpu

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which Vulkan device a scene gets, and the list that `sunder devices` shows.
+#include <algorithm>
+
+#include "gpu/choose_device.hpp"
+#include "gpu/vulkan_backend.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+/// The first GPU that can run the kernels, discrete ones first; -1: none.
+int first_gpu(const std::vector<vulkan::PhysicalDevice>& list) {
+  for (const bool discrete : {true, false}) {
+    for (std::size_t d = 0; d < list.size(); ++d) {
+      const bool fits = !list[d].is_cpu() && list[d].shortcoming().empty();
+      const bool is_discrete = list[d].type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+      if (fits && is_discrete == discrete) return static_cast<int>(d);
+    }
+  }
+  return -1;
+}
+
+std::string megabytes(VkDeviceSize bytes) { return std::to_string(bytes / 1000000) + " MB"; }
+
+DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen) {
+  DeviceInfo info;
+  info.backend = "vulkan";
+  info.index = index;
+  info.name = device.name;
+  info.driver = device.driver;
+  const std::string shortcoming = device.shortcoming();
+  info.precisions = shortcoming.empty() ? "fp32 fp64" : "none";
+  info.limits = megabytes(device.memory) + " memory, buffers up to " +
+                megabytes(device.largest_buffer) + ", routes inverse";
+  info.chosen = index == chosen;
+  if (!shortcoming.empty()) {
+    info.why = "cannot be used: " + shortcoming;
+  } else if (device.is_cpu()) {
+    info.why = "runs on the processor, where backend cpu is quicker; only by name";
+  } else if (info.chosen) {
+    info.why = "first GPU";
+  } else {
+    info.why = "another GPU comes first; choose it with device = " + std::to_string(index);
+  }
+  return info;
+}
+
+}  // namespace
+
+vulkan::PhysicalDevice choose_device(const vulkan::Instance& instance, int asked) {
+  const auto list = vulkan::list_devices(instance);
+  if (list.empty()) {
+    throw DeviceError(
+        "no Vulkan driver with a device was found; install one (mesa-vulkan-drivers, say) or use "
+        "backend cpu");
+  }
+  if (asked >= static_cast<int>(list.size())) {
+    throw DeviceError("there is no Vulkan device " + std::to_string(asked) + "; devices 0 to " +
+                      std::to_string(list.size() - 1) + " exist");
+  }
+  if (asked >= 0) return list[static_cast<std::size_t>(asked)];
+  const int gpu = first_gpu(list);
+  if (gpu >= 0) return list[static_cast<std::size_t>(gpu)];
+  const auto fits =
+      std::find_if(list.begin(), list.end(), [](const auto& d) { return d.shortcoming().empty(); });
+  return fits == list.end() ? list.front() : *fits;
+}
+
+std::vector<DeviceInfo> devices() {
+  std::vector<DeviceInfo> infos;
+  std::vector<vulkan::PhysicalDevice> list;
+  try {
+    list = vulkan::list_devices(vulkan::Instance(options_from_environment().instance));
+  } catch (const DeviceError&) {
+    return infos;  // no loader or no driver: there are no Vulkan devices
+  }
+  const int chosen = first_gpu(list);
+  for (std::size_t d = 0; d < list.size(); ++d) {
+    infos.push_back(describe(list[d], static_cast<int>(d), chosen));
+  }
+  return infos;
+}
+
+}  // namespace sunder::gpu

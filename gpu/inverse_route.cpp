@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/inverse_route.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "fem/event_factor.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+// Up to this many unknowns the host keeps the dense inverse as well (288 MB): a fracture then
+// copies its columns instead of solving for them.
+constexpr Index kHostDense = 6000;
+// A pivot of C below this means that the event isolates something: fp32 has no digits left there
+// (method.md "Stability"), so the eager inverse must not take it in.
+constexpr double kLeastPivot32 = 1e-3;
+// A load on up to so many dofs is multiplied by exact columns: fp32 columns alone would cost 1e-4
+// of the board's largest stress, in its stiff frame.
+constexpr std::size_t kExactLoads = 64;
+
+}  // namespace
+
+HostInverse::HostInverse(const fem::SparseMatrix& lower) : factor_(lower) {
+  if (lower.rows() <= kHostDense) dense_ = factor_.inverse();
+}
+
+Eigen::MatrixXd HostInverse::columns(std::span<const Index> dofs) const {
+  if (dense_.size() == 0) return factor_.inverse_columns(dofs);
+  const std::vector<Index> list(dofs.begin(), dofs.end());
+  return dense_(Eigen::all, list);
+}
+
+Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
+  if (dense_.size() > 0) return dense_.middleCols(first, count);
+  std::vector<Index> list(static_cast<std::size_t>(count));
+  std::iota(list.begin(), list.end(), first);
+  return factor_.inverse_columns(list);
+}
+
+std::size_t HostInverse::bytes() const {
+  return factor_.bytes() + static_cast<std::size_t>(dense_.size()) * sizeof(double);
+}
+
+InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
+                           std::shared_ptr<const HostInverse> intact, const InverseOptions& options)
+    : kernels_(kernels),
+      problem_(problem),
+      fields_(fields),
+      host_(std::move(intact)),
+      options_(options),
+      eager_(options.eager),
+      base_(kernels, problem.dof_count(), fields.rows(), options.panel_bytes),
+      exact_(kernels, fields.rows()),
+      add_(kernels, fields),
+      commands_(kernels.device()) {
+  upload_base();
+  if (eager_) {
+    bind();
+    factor_grips();
+  } else {
+    defer({});
+  }
+}
+
+void InverseRoute::upload_base() {
+  base_.upload([this](Index first, Index count) { return host_->range(first, count); });
+}
+
+void InverseRoute::bind() {
+  sum_displacement_.reset();
+  sum_correction_.reset();
+  // The loaded columns never need more chunks than all columns do, one per panel aside.
+  partials_ = std::make_unique<PartialSums>(
+      kernels_, fields_.rows(), base_.chunks() + base_.loaded_chunks({}) + exact_.chunk_capacity());
+  base_.bind(*partials_, fields_.residual());
+  exact_.bind(*partials_, fields_.residual());
+  sum_displacement_ = partials_->bind_sum(fields_.positions(), fields_.nodal(Field::displacement));
+  sum_correction_ = partials_->bind_sum(fields_.positions(), fields_.nodal(Field::correction));
+}
+
+void InverseRoute::extend_exact() {
+  const bool moved = exact_.extend(correction_->columns(), correction_->count());
+  if (moved || !partials_) bind();
+}
+
+void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) {
+  commands_.barrier();
+  partials_->record_sum(
+      commands_, field == Field::displacement ? *sum_displacement_ : *sum_correction_, chunks, add);
+  commands_.barrier();
+}
+
+void InverseRoute::record_state() {
+  fields_.record_state(commands_);
+  if (eager_) return;
+  commands_.pass("projection");
+  exact_.record_project(commands_);
+}
+
+int InverseRoute::solve(const Load& load) {
+  if (eager_) {
+    solve_eager(load);
+  } else {
+    solve_deferred(load);
+  }
+  return 0;
+}
+
+void InverseRoute::solve_deferred(const Load& load) {
+  Loaded loaded{load.force_dofs, load.forces};
+  const Index added = correction_->new_dofs(loaded.dofs);
+  if (added > 0 && loaded.dofs.size() <= kExactLoads &&
+      correction_->count() + added <= exact_.most()) {
+    correction_->extend(loaded.dofs);
+    extend_exact();
+  }
+  Eigen::VectorXd c = correction_->coefficients(correction_->project(loaded), load.displacements);
+  c += correction_->take_exact(loaded);
+  base_.set_loaded(loaded);
+  exact_.set_coefficients(c);
+  commands_.begin();
+  commands_.pass("solve");
+  std::uint32_t chunks = base_.record_loaded(commands_, 0);
+  if (chunks > 0) commands_.barrier();
+  chunks += exact_.record_apply(commands_, chunks);
+  record_solution(Field::displacement, chunks, false);
+  fields_.record_hold(commands_, Field::displacement);
+  record_state();
+  commands_.end();
+  commands_.submit();
+}
+
+void InverseRoute::solve_eager(const Load& load) {
+  Loaded loaded{load.force_dofs, load.forces};
+  base_.set_loaded(loaded);
+  commands_.begin();
+  commands_.pass("solve");
+  record_solution(Field::displacement, base_.record_loaded(commands_, 0), false);
+  if (!problem_.gripped_dofs().empty()) {
+    commands_.end();
+    commands_.submit();
+    base_.set_loaded(grip_forces(Field::displacement, load.displacements));
+    commands_.begin();
+    commands_.pass("solve");
+    record_solution(Field::displacement, base_.record_loaded(commands_, 0), true);
+  }
+  fields_.record_hold(commands_, Field::displacement);
+  record_state();
+  commands_.end();
+  commands_.submit();
+}
+
+int InverseRoute::correct() {
+  if (!eager_) {
+    exact_.set_coefficients(correction_->coefficients(exact_.projection(), {}));
+  }
+  commands_.begin();
+  commands_.pass("dense product");
+  std::uint32_t chunks = base_.record_dense(commands_, 0);
+  if (!eager_) {
+    commands_.barrier();
+    chunks += exact_.record_apply(commands_, chunks);
+  }
+  record_solution(Field::correction, chunks, false);
+  if (eager_ && !problem_.gripped_dofs().empty()) {
+    commands_.end();
+    commands_.submit();
+    base_.set_loaded(grip_forces(Field::correction, {}));
+    commands_.begin();
+    commands_.pass("dense product");
+    record_solution(Field::correction, base_.record_loaded(commands_, 0), true);
+  }
+  fields_.record_hold(commands_, Field::correction);
+  fields_.record_correction(commands_);
+  commands_.end();
+  commands_.submit();
+  return 0;
+}
+
+void InverseRoute::add_correction() {
+  commands_.begin();
+  commands_.pass("refinement");
+  add_.record(commands_);
+  commands_.barrier();
+  record_state();
+  commands_.end();
+  commands_.submit();
+}
+
+/// Forces that close the gap between a field at the gripped dofs and what is prescribed there.
+Loaded InverseRoute::grip_forces(Field field, std::span<const double> displacement) const {
+  const auto gripped = problem_.gripped_dofs();
+  Eigen::VectorXd gap = -fields_.read_unknowns(field, gripped);
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    gap[static_cast<Index>(i)] += displacement[i];
+  }
+  const Eigen::VectorXd forces = grips_.solve(gap);
+  return {{gripped.begin(), gripped.end()}, {forces.data(), forces.data() + forces.size()}};
+}
+
+void InverseRoute::factor_grips() {
+  const auto gripped = problem_.gripped_dofs();
+  if (gripped.empty()) return;
+  grips_.compute(base_.pick(gripped, gripped));
+  if (grips_.info() != Eigen::Success) {
+    throw NumericalError("the compliance of the gripped nodes is singular in this precision");
+  }
+}
+
+void InverseRoute::destroy(std::span<const Index> elements, std::span<const Index> destroyed) {
+  if (eager_) {
+    if (!update_eager(elements)) {
+      defer(destroyed);
+      return;
+    }
+    factor_grips();
+    return;
+  }
+  if (correction_->count() + correction_->new_dofs_of(elements) > exact_.most() ||
+      !correction_->destroy(elements)) {
+    rebase(destroyed);
+    return;
+  }
+  extend_exact();
+}
+
+/// X += Z Z^T with Z = X W L^-T, L L^T = I - W^T X W, all as it stands on the device. False: the
+/// precision does not carry it, and nothing has changed.
+bool InverseRoute::update_eager(std::span<const Index> elements) {
+  const fem::EventFactor event = fem::event_factor(problem_, elements);
+  if (event.dofs.empty()) return true;
+  const Eigen::MatrixXd w = compressed(event.w);
+  Eigen::MatrixXd c = -w.transpose() * base_.pick(event.dofs, event.dofs) * w;
+  c.diagonal().array() += 1;
+  const Eigen::LLT<Eigen::MatrixXd> llt(c);
+  if (llt.info() != Eigen::Success || !llt.matrixLLT().allFinite()) return false;
+  const Eigen::VectorXd pivots = llt.matrixLLT().diagonal().array().square();
+  if (!kernels_.fp64() && !(pivots.minCoeff() > kLeastPivot32)) return false;
+  base_.update(event.dofs, llt.matrixL().solve(w.transpose()).transpose());
+  return true;
+}
+
+bool InverseRoute::leaves_at(double error, std::span<const Index> destroyed) {
+  if (!eager_ || kernels_.fp64() || error <= options_.tolerance / 2) return false;
+  defer(destroyed);
+  return true;
+}
+
+bool InverseRoute::restart(std::span<const Index> destroyed) {
+  if (rebased_ || destroyed.empty()) return false;
+  rebase(destroyed);
+  return true;
+}
+
+/// The recipe from here on: a pristine base and all damage so far as one correction.
+void InverseRoute::defer(std::span<const Index> destroyed) {
+  const bool overwritten = eager_;
+  eager_ = false;
+  correction_ = std::make_unique<Correction>(
+      problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });
+  if (!destroyed.empty() && !correction_->destroy(destroyed)) {
+    rebase(destroyed);
+    return;
+  }
+  if (overwritten) upload_base();
+  exact_.clear();
+  extend_exact();
+}
+
+/// A new base: the inverse of the body as damaged now, from a factor of its own.
+void InverseRoute::rebase(std::span<const Index> destroyed) {
+  std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
+  for (Index e : destroyed) scale[e] = problem_.scene().fracture.alpha;
+  host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale));
+  upload_base();
+  correction_ = std::make_unique<Correction>(
+      problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });
+  exact_.clear();
+  extend_exact();
+  eager_ = false;
+  rebased_ = true;
+}
+
+std::vector<BufferPlan> InverseRoute::buffers() const {
+  std::vector<BufferPlan> plan = {
+      {kernels_.fp64() ? "inverse (device, fp64)" : "inverse (device, fp32)", base_.bytes()},
+      {"partial sums (device)", partials_->buffer().bytes()},
+      {"intact factor and inverse (host)", host_->bytes()}};
+  if (correction_) {
+    plan.push_back({"exact columns (device)", exact_.bytes()});
+    plan.push_back({"exact columns and small matrix (host)", correction_->bytes()});
+  }
+  return plan;
+}
+
+std::vector<vulkan::PassTime> InverseRoute::pass_times() const { return commands_.pass_times(); }
+
+}  // namespace sunder::gpu

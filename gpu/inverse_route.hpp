@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Route inverse: a dense inverse on the device, with the damage either as a correction to it
+// (deferred) or worked into it (eager).
+#pragma once
+
+#include <memory>
+
+#include "fem/factor.hpp"
+#include "gpu/correction.hpp"
+#include "gpu/passes/add.hpp"
+#include "gpu/passes/exact_columns.hpp"
+#include "gpu/route.hpp"
+
+namespace sunder::gpu {
+
+/// Exact columns of an inverse on the host: from the dense inverse while that is small, else from
+/// the factor.
+class HostInverse {
+ public:
+  explicit HostInverse(const fem::SparseMatrix& lower);
+  [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
+  [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  fem::Factor factor_;
+  Eigen::MatrixXd dense_;  // empty: too large
+};
+
+struct InverseOptions {
+  bool eager = false;
+  double tolerance = 1e-4;
+  std::size_t panel_bytes = 0;  ///< largest buffer wanted, 0: the device's limit
+};
+
+class InverseRoute final : public DeviceRoute {
+ public:
+  InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
+               std::shared_ptr<const HostInverse> intact, const InverseOptions& options);
+
+  int solve(const Load& load) override;
+  int correct() override;
+  void add_correction() override;
+  void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
+  bool leaves_at(double error, std::span<const Index> destroyed) override;
+  bool restart(std::span<const Index> destroyed) override;
+
+  std::string name() const override { return "inverse"; }
+  std::string update() const override { return eager_ ? "eager" : "deferred"; }
+  std::vector<BufferPlan> buffers() const override;
+  std::vector<vulkan::PassTime> pass_times() const override;
+
+ private:
+  void upload_base();
+  void bind();
+  void extend_exact();
+  void record_solution(Field field, std::uint32_t chunks, bool add);
+  void record_state();
+  void solve_deferred(const Load& load);
+  void solve_eager(const Load& load);
+  bool update_eager(std::span<const Index> elements);
+  void factor_grips();
+  [[nodiscard]] Loaded grip_forces(Field field, std::span<const double> displacement) const;
+  void defer(std::span<const Index> destroyed);
+  void rebase(std::span<const Index> destroyed);
+
+  const KernelFactory& kernels_;
+  const Problem& problem_;
+  Fields& fields_;
+  std::shared_ptr<const HostInverse> host_;  // of the base
+  InverseOptions options_;
+  bool eager_, rebased_ = false;
+  DenseInverse base_;
+  ExactColumns exact_;
+  std::unique_ptr<Correction> correction_;
+  std::unique_ptr<PartialSums> partials_;
+  std::unique_ptr<vulkan::Binding> sum_displacement_, sum_correction_;
+  AddCorrection add_;
+  Eigen::LLT<Eigen::MatrixXd> grips_;  // eager: X_GG
+  vulkan::Commands commands_;
+};
+
+}  // namespace sunder::gpu

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/kernels.hpp"
+
+#include <cstdlib>
+#include <string>
+
+#include "shaders/embedded.hpp"
+#include "shaders/layout.h"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+vulkan::Access access(Reads reads, Variant variant, bool fp64) {
+  if (variant == Variant::gpu || reads == Reads::plain) return vulkan::Access::storage;
+  if (reads == Reads::reals && !fp64) return vulkan::Access::texel_float4;
+  return vulkan::Access::texel_uint4;
+}
+
+}  // namespace
+
+std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool fp64,
+                                                    std::initializer_list<Reads> bindings,
+                                                    std::size_t push_bytes) const {
+  const std::string full =
+      std::string(name) + (variant_ == Variant::gpu ? "_gpu_" : "_lvp_") + (fp64 ? "fp64" : "fp32");
+  vulkan::KernelCode code;
+  code.spirv = shaders::find(full);
+  if (code.spirv.empty()) throw DeviceError("this build lacks the kernel " + full);
+  std::vector<vulkan::Access> accesses;
+  for (Reads r : bindings) accesses.push_back(access(r, variant_, fp64));
+  code.bindings = accesses;
+  code.push_bytes = static_cast<std::uint32_t>(push_bytes);
+  const std::uint32_t constants[] = {shaders::kGroup};
+  code.constants = constants;
+  return std::make_unique<vulkan::Kernel>(device_, code);
+}
+
+Variant choose_variant(const vulkan::PhysicalDevice& device) {
+  const char* asked = std::getenv("SUNDER_SHADER_VARIANT");
+  if (asked && *asked) {
+    const std::string_view name = asked;
+    if (name == "gpu") return Variant::gpu;
+    if (name == "lvp") return Variant::lvp;
+    throw UsageError("SUNDER_SHADER_VARIANT is \"" + std::string(name) +
+                     "\"; it may be gpu or lvp");
+  }
+  return device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE ? Variant::lvp : Variant::gpu;
+}
+
+}  // namespace sunder::gpu

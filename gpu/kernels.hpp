@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns embedded kernels into pipelines, in the variant that suits the driver.
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <string_view>
+
+#include "gpu/vulkan/kernel.hpp"
+
+namespace sunder::gpu {
+
+/// How kernels read (shaders/common.glsl).
+enum class Variant { gpu, lvp };
+
+/// What a kernel reads through a binding; decides how the variant binds it.
+enum class Reads {
+  reals,    ///< IN_REAL4: the storage precision
+  doubles,  ///< IN_DVEC4
+  words,    ///< IN_UVEC4
+  plain,    ///< everything else: a storage buffer in both variants
+};
+
+class KernelFactory {
+ public:
+  /// `fp64`: storage precision of the inverse and of element stress.
+  KernelFactory(vulkan::Device& device, Variant variant, bool fp64)
+      : device_(device), variant_(variant), fp64_(fp64) {}
+
+  /// A kernel in storage precision.
+  [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name,
+                                                     std::initializer_list<Reads> bindings,
+                                                     std::size_t push_bytes) const {
+    return make(name, fp64_, bindings, push_bytes);
+  }
+  /// A kernel that computes in fp64 always.
+  [[nodiscard]] std::unique_ptr<vulkan::Kernel> make_fp64(std::string_view name,
+                                                          std::initializer_list<Reads> bindings,
+                                                          std::size_t push_bytes) const {
+    return make(name, true, bindings, push_bytes);
+  }
+
+  [[nodiscard]] vulkan::Device& device() const { return device_; }
+  [[nodiscard]] bool fp64() const { return fp64_; }
+  [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }
+
+ private:
+  [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name, bool fp64,
+                                                     std::initializer_list<Reads> bindings,
+                                                     std::size_t push_bytes) const;
+
+  vulkan::Device& device_;
+  Variant variant_;
+  bool fp64_;
+};
+
+/// lvp on lavapipe, gpu elsewhere; SUNDER_SHADER_VARIANT=gpu|lvp overrides. Throws UsageError for
+/// another value.
+[[nodiscard]] Variant choose_variant(const vulkan::PhysicalDevice& device);
+
+}  // namespace sunder::gpu

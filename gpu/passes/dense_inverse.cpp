@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/passes/dense_inverse.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "gpu/passes/fields.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+using vulkan::Binding;
+using vulkan::Buffer;
+using vulkan::Placement;
+
+std::uint32_t u32(std::size_t value) { return static_cast<std::uint32_t>(value); }
+
+std::unique_ptr<Binding> bind_buffers(const KernelFactory& kernels, const vulkan::Kernel& kernel,
+                                      std::initializer_list<const Buffer*> list) {
+  return std::make_unique<Binding>(kernels.device(), kernel, std::vector<const Buffer*>(list));
+}
+
+}  // namespace
+
+PartialSums::PartialSums(const KernelFactory& kernels, std::uint32_t rows, std::uint32_t chunks)
+    : kernels_(kernels),
+      rows_(rows),
+      chunks_(chunks),
+      buffer_(kernels.device(), std::size_t{chunks} * rows * sizeof(double), Placement::device),
+      sum_(kernels.make_fp64("sum", {Reads::doubles, Reads::words, Reads::plain},
+                             sizeof(shaders::SumPush))) {}
+
+std::unique_ptr<Binding> PartialSums::bind_sum(const Buffer& positions, const Buffer& nodal) const {
+  return bind_buffers(kernels_, *sum_, {&buffer_, &positions, &nodal});
+}
+
+void PartialSums::record_sum(vulkan::Commands& commands, const Binding& into, std::uint32_t chunks,
+                             bool add) const {
+  commands.dispatch(into, shaders::SumPush{rows_ / 4, chunks, add ? 1u : 0u},
+                    rows_ / shaders::kRowPad);
+}
+
+DenseInverse::DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t rows,
+                           std::size_t panel_bytes)
+    : kernels_(kernels), n_(n), rows_(rows), columns_(round_up(u32(n), shaders::kColumnPad)) {
+  create_panels(panel_bytes);
+  apply_ = kernels_.make("apply", {Reads::reals, Reads::words, Reads::plain},
+                         sizeof(shaders::ApplyPush));
+  dense_ = kernels_.make("dense", {Reads::reals, Reads::doubles, Reads::plain},
+                         sizeof(shaders::ApplyPush));
+  entries_ = Buffer(kernels_.device(), 64 * sizeof(shaders::Entry), Placement::host);
+}
+
+void DenseInverse::create_panels(std::size_t panel_bytes) {
+  const vulkan::PhysicalDevice& device = kernels_.device().physical();
+  const std::size_t column_bytes = rows_ * kernels_.real_bytes();
+  const std::size_t limit = std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
+                                                   std::size_t{device.largest_texel_buffer} * 16,
+                                                   panel_bytes > 0 ? panel_bytes : SIZE_MAX});
+  const std::size_t most = limit / column_bytes / shaders::kColumnPad * shaders::kColumnPad;
+  kernels_.device().require_memory(columns_ * column_bytes, "the dense inverse");
+  if (most == 0) {
+    throw DeviceError("the device \"" + device.name + "\" takes buffers of " +
+                      std::to_string(limit) + " bytes, but 64 columns of the inverse need " +
+                      std::to_string(64 * column_bytes) + "; use route cg");
+  }
+  for (std::uint32_t first = 0; first < columns_;) {
+    Panel panel;
+    panel.first = first;
+    panel.columns = std::min(u32(most), columns_ - first);
+    panel.matrix = Buffer(kernels_.device(), panel.columns * column_bytes, Placement::device);
+    first += panel.columns;
+    panels_.push_back(std::move(panel));
+  }
+}
+
+void DenseInverse::upload(const Columns& columns) {
+  constexpr Index kBlock = 256;  // columns at a time: 2 MB per 1,000 unknowns on the host
+  for (Panel& panel : panels_) {
+    panel.matrix.fill_zero();
+    const Index end = std::min(n_, static_cast<Index>(panel.first + panel.columns));
+    for (Index c = static_cast<Index>(panel.first); c < end; c += kBlock) {
+      const Index count = std::min(kBlock, end - c);
+      Eigen::MatrixXd block = Eigen::MatrixXd::Zero(static_cast<Index>(rows_), count);
+      block.topRows(n_) = columns(c, count);
+      const std::size_t at = (static_cast<std::size_t>(c) - panel.first) * rows_;
+      const std::size_t size = static_cast<std::size_t>(block.size());
+      if (kernels_.fp64()) {
+        panel.matrix.write(std::span<const double>(block.data(), size), at);
+      } else {
+        const Eigen::MatrixXf rounded = block.cast<float>();
+        panel.matrix.write(std::span<const float>(rounded.data(), size), at);
+      }
+    }
+  }
+}
+
+void DenseInverse::bind(const PartialSums& partials, const Buffer& vector) {
+  partials_ = &partials;
+  for (Panel& panel : panels_) {
+    panel.dense = bind_buffers(kernels_, *dense_, {&panel.matrix, &vector, &partials.buffer()});
+  }
+  bind_loaded();
+}
+
+void DenseInverse::bind_loaded() {
+  for (Panel& panel : panels_) {
+    panel.loaded =
+        bind_buffers(kernels_, *apply_, {&panel.matrix, &entries_, &partials_->buffer()});
+  }
+}
+
+std::uint32_t DenseInverse::loaded_chunks(const Loaded& load) const {
+  return u32(load.dofs.size() / shaders::kChunk + panels_.size());
+}
+
+void DenseInverse::set_loaded(const Loaded& load) {
+  if (load.dofs.size() * sizeof(shaders::Entry) > entries_.bytes()) {
+    entries_ =
+        Buffer(kernels_.device(), 2 * load.dofs.size() * sizeof(shaders::Entry), Placement::host);
+    bind_loaded();
+  }
+  auto* entry = entries_.mapped<shaders::Entry>();
+  std::uint32_t next = 0;
+  for (Panel& panel : panels_) {
+    panel.first_entry = next;
+    while (next < load.dofs.size() && u32(load.dofs[next]) < panel.first + panel.columns) {
+      const auto bits = std::bit_cast<std::uint64_t>(load.values[next]);
+      entry[next] = {u32(load.dofs[next]) - panel.first, 0, static_cast<std::uint32_t>(bits),
+                     static_cast<std::uint32_t>(bits >> 32)};
+      ++next;
+    }
+    panel.last_entry = next;
+  }
+}
+
+std::uint32_t DenseInverse::record_loaded(vulkan::Commands& commands,
+                                          std::uint32_t first_chunk) const {
+  std::uint32_t chunk = first_chunk;
+  for (const Panel& panel : panels_) {
+    if (panel.first_entry == panel.last_entry) continue;
+    const std::uint32_t groups =
+        round_up(panel.last_entry - panel.first_entry, shaders::kChunk) / shaders::kChunk;
+    commands.dispatch(*panel.loaded,
+                      shaders::ApplyPush{rows_ / 4, panel.first_entry, panel.last_entry, 0, chunk},
+                      rows_ / shaders::kRowPad, groups);
+    chunk += groups;
+  }
+  return chunk - first_chunk;
+}
+
+std::uint32_t DenseInverse::record_dense(vulkan::Commands& commands,
+                                         std::uint32_t first_chunk) const {
+  for (const Panel& panel : panels_) {
+    commands.dispatch(*panel.dense,
+                      shaders::ApplyPush{rows_ / 4, 0, panel.columns, panel.first / 4,
+                                         first_chunk + panel.first / shaders::kChunk},
+                      rows_ / shaders::kRowPad, panel.columns / shaders::kChunk);
+  }
+  return chunks();
+}
+
+void DenseInverse::reserve_pick(std::size_t dofs, std::size_t values) {
+  if (!pick_) {
+    pick_ = kernels_.make("pick", {Reads::plain, Reads::plain, Reads::plain},
+                          sizeof(shaders::PickPush));
+  } else if (dofs * 4 <= pick_dofs_.bytes() && values * 8 <= picked_.bytes()) {
+    return;
+  }
+  for (Panel& panel : panels_) panel.pick.reset();
+  pick_dofs_ = Buffer(kernels_.device(), 2 * dofs * 4, Placement::host);
+  picked_ = Buffer(kernels_.device(), 2 * values * 8, Placement::host);
+  for (Panel& panel : panels_) {
+    panel.pick = bind_buffers(kernels_, *pick_, {&panel.matrix, &pick_dofs_, &picked_});
+  }
+}
+
+Eigen::MatrixXd DenseInverse::pick(std::span<const Index> rows, std::span<const Index> columns) {
+  const std::size_t values = rows.size() * columns.size();
+  if (values == 0) {
+    return Eigen::MatrixXd(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
+  }
+  reserve_pick(rows.size() + columns.size(), values);
+  auto* dofs = pick_dofs_.mapped<Index>();
+  std::copy(columns.begin(), columns.end(), std::copy(rows.begin(), rows.end(), dofs));
+  vulkan::Commands commands(kernels_.device());
+  commands.begin();
+  for (const Panel& panel : panels_) {
+    commands.dispatch(
+        *panel.pick,
+        shaders::PickPush{u32(rows.size()), u32(columns.size()), panel.first, panel.columns, rows_},
+        round_up(u32(rows.size()), shaders::kGroup) / shaders::kGroup, u32(columns.size()));
+    commands.barrier();
+  }
+  commands.end();
+  commands.submit();
+  return Eigen::Map<const Eigen::MatrixXd>(picked_.mapped<double>(),
+                                           static_cast<Index>(rows.size()),
+                                           static_cast<Index>(columns.size()));
+}
+
+void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
+  const std::size_t factor_bytes = dofs * blocks * 8 * sizeof(double);
+  const std::size_t z_bytes =
+      std::size_t{blocks} * shaders::kRankBlock * rows_ * kernels_.real_bytes();
+  if (!low_rank_) {
+    vectors_ =
+        kernels_.make("update_vectors", {Reads::reals, Reads::plain, Reads::doubles, Reads::plain},
+                      sizeof(shaders::VectorsPush));
+    low_rank_ = kernels_.make("low_rank", {Reads::reals, Reads::reals, Reads::plain},
+                              sizeof(shaders::LowRankPush));
+  } else if (dofs * 4 <= update_dofs_.bytes() && factor_bytes <= factors_.bytes() &&
+             z_bytes <= z_.bytes()) {
+    return;
+  }
+  for (Panel& panel : panels_) {
+    panel.vectors.reset();
+    panel.low_rank.reset();
+  }
+  update_dofs_ = Buffer(kernels_.device(), dofs * 4, Placement::host);
+  factors_ = Buffer(kernels_.device(), factor_bytes, Placement::device);
+  z_ = Buffer(kernels_.device(), z_bytes, Placement::device);
+  for (Panel& panel : panels_) {
+    panel.vectors =
+        bind_buffers(kernels_, *vectors_, {&panel.matrix, &update_dofs_, &factors_, &z_});
+    panel.low_rank = bind_buffers(kernels_, *low_rank_, {&panel.matrix, &z_, &panel.matrix});
+  }
+}
+
+void DenseInverse::write_factors(const Eigen::MatrixXd& v, std::uint32_t blocks) {
+  std::vector<double> packed(static_cast<std::size_t>(v.rows()) * blocks * 8, 0.0);
+  for (Index t = 0; t < v.rows(); ++t) {
+    for (Index r = 0; r < v.cols(); ++r) {
+      packed[(static_cast<std::size_t>(t) * blocks + r / shaders::kRankBlock) * 8 +
+             r % shaders::kRankBlock] = v(t, r);
+    }
+  }
+  factors_.write(std::span<const double>(packed));
+}
+
+void DenseInverse::record_vectors(vulkan::Commands& commands, std::span<const Index> dofs,
+                                  std::uint32_t blocks) const {
+  bool add = false;
+  for (const Panel& panel : panels_) {
+    const auto begin = std::lower_bound(dofs.begin(), dofs.end(), static_cast<Index>(panel.first));
+    const auto end =
+        std::lower_bound(begin, dofs.end(), static_cast<Index>(panel.first + panel.columns));
+    if (begin == end) continue;
+    commands.dispatch(
+        *panel.vectors,
+        shaders::VectorsPush{rows_ / 4, u32(begin - dofs.begin()), u32(end - dofs.begin()), blocks,
+                             panel.first, add ? 1u : 0u},
+        rows_ / shaders::kRowPad, blocks);
+    commands.barrier();
+    add = true;
+  }
+}
+
+void DenseInverse::update(std::span<const Index> dofs, const Eigen::MatrixXd& v) {
+  const std::uint32_t blocks = round_up(u32(v.cols()), shaders::kRankBlock) / shaders::kRankBlock;
+  reserve_update(dofs.size(), blocks);
+  std::copy(dofs.begin(), dofs.end(), update_dofs_.mapped<Index>());
+  write_factors(v, blocks);
+  vulkan::Commands commands(kernels_.device());
+  commands.begin();
+  commands.pass("update vectors");
+  record_vectors(commands, dofs, blocks);
+  commands.pass("low-rank update");
+  for (const Panel& panel : panels_) {
+    commands.dispatch(*panel.low_rank, shaders::LowRankPush{rows_ / 4, blocks, panel.first},
+                      rows_ / shaders::kRowPad, panel.columns / shaders::kUpdateColumns);
+  }
+  commands.end();
+  commands.submit();
+  times_ = commands.pass_times();
+}
+
+std::size_t DenseInverse::bytes() const {
+  std::size_t bytes = 0;
+  for (const Panel& panel : panels_) bytes += panel.matrix.bytes();
+  return bytes;
+}
+
+}  // namespace sunder::gpu

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// A dense inverse on the device, in panels of columns so that no buffer exceeds the device's
+// limits: u = X f for few loaded dofs and for all, and the eager update X += Z Z^T.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "gpu/kernels.hpp"
+#include "gpu/vulkan/commands.hpp"
+#include "shaders/layout.h"
+#include "sunder/backend.hpp"
+
+namespace sunder::gpu {
+
+/// Sums of 64 columns each that `sum` adds up in order; shared by all who take part in u = X f.
+class PartialSums {
+ public:
+  PartialSums(const KernelFactory& kernels, std::uint32_t rows, std::uint32_t chunks);
+  [[nodiscard]] const vulkan::Buffer& buffer() const { return buffer_; }
+  [[nodiscard]] std::uint32_t chunks() const { return chunks_; }
+  /// field (+)= sum of the first `chunks`.
+  void record_sum(vulkan::Commands& commands, const vulkan::Binding& into, std::uint32_t chunks,
+                  bool add) const;
+  [[nodiscard]] std::unique_ptr<vulkan::Binding> bind_sum(const vulkan::Buffer& positions,
+                                                          const vulkan::Buffer& nodal) const;
+
+ private:
+  const KernelFactory& kernels_;
+  std::uint32_t rows_, chunks_;
+  vulkan::Buffer buffer_;
+  std::unique_ptr<vulkan::Kernel> sum_;
+};
+
+/// Loaded dofs, ascending, and what they carry.
+struct Loaded {
+  std::vector<Index> dofs;
+  std::vector<double> values;
+};
+
+class DenseInverse {
+ public:
+  /// Columns [first, first + count) of a matrix, shape (n x count).
+  using Columns = std::function<Eigen::MatrixXd(Index first, Index count)>;
+
+  /// `panel_bytes`: largest buffer wanted, 0: the device's limit. Throws DeviceError, before
+  /// anything is allocated, when the device cannot hold it.
+  DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t rows, std::size_t panel_bytes);
+
+  /// Fills the matrix from the host.
+  void upload(const Columns& columns);
+
+  [[nodiscard]] std::uint32_t chunks() const { return columns_ / shaders::kChunk; }
+  /// Chunks that record_loaded() needs for a load.
+  [[nodiscard]] std::uint32_t loaded_chunks(const Loaded& load) const;
+  void bind(const PartialSums& partials, const vulkan::Buffer& vector);
+
+  /// Writes a load for record_loaded().
+  void set_loaded(const Loaded& load);
+  /// partials from `first_chunk` on = X f of that load; returns how many.
+  std::uint32_t record_loaded(vulkan::Commands& commands, std::uint32_t first_chunk) const;
+  /// partials from `first_chunk` on = X times the bound vector; returns how many.
+  std::uint32_t record_dense(vulkan::Commands& commands, std::uint32_t first_chunk) const;
+
+  /// X(rows, columns) as it stands on the device.
+  [[nodiscard]] Eigen::MatrixXd pick(std::span<const Index> rows, std::span<const Index> columns);
+  /// X += Z Z^T with Z = X(:, dofs) V; V: shape (dofs x rank).
+  void update(std::span<const Index> dofs, const Eigen::MatrixXd& v);
+
+  [[nodiscard]] std::size_t bytes() const;
+  /// Device time of the last update.
+  [[nodiscard]] const std::vector<vulkan::PassTime>& update_times() const { return times_; }
+
+ private:
+  struct Panel {
+    std::uint32_t first = 0, columns = 0;
+    vulkan::Buffer matrix;
+    std::unique_ptr<vulkan::Binding> loaded, dense, pick, vectors, low_rank;
+    std::uint32_t first_entry = 0, last_entry = 0;
+  };
+
+  void create_panels(std::size_t panel_bytes);
+  void bind_loaded();
+  void reserve_pick(std::size_t dofs, std::size_t values);
+  void reserve_update(std::size_t dofs, std::uint32_t blocks);
+  void write_factors(const Eigen::MatrixXd& v, std::uint32_t blocks);
+  void record_vectors(vulkan::Commands& commands, std::span<const Index> dofs,
+                      std::uint32_t blocks) const;
+
+  const KernelFactory& kernels_;
+  Index n_;
+  std::uint32_t rows_, columns_;
+  std::vector<Panel> panels_;
+  const PartialSums* partials_ = nullptr;
+  std::unique_ptr<vulkan::Kernel> apply_, dense_, pick_, vectors_, low_rank_;
+  vulkan::Buffer entries_, pick_dofs_, picked_, update_dofs_, factors_, z_;
+  std::vector<vulkan::PassTime> times_;
+};
+
+}  // namespace sunder::gpu

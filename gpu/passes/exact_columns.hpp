@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Columns of the pristine inverse in fp64 on the device: those that the correction multiplies
+// (mixed recipe: their coefficients grow to 30 times the load, so they must be exact).
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+
+#include "gpu/kernels.hpp"
+#include "gpu/passes/dense_inverse.hpp"
+#include "gpu/vulkan/commands.hpp"
+
+namespace sunder::gpu {
+
+class ExactColumns {
+ public:
+  ExactColumns(const KernelFactory& kernels, std::uint32_t rows);
+
+  /// Columns beyond this do not fit the device's buffers.
+  [[nodiscard]] Index most() const;
+  /// Takes over the first `count` columns of `all`; those held before are the same and are not
+  /// sent again. Returns true when buffers moved: bind() anew.
+  bool extend(const Eigen::MatrixXd& all, Index count);
+  void clear() { count_ = 0; }
+
+  [[nodiscard]] Index count() const { return count_; }
+  [[nodiscard]] std::uint32_t chunks() const;
+  /// Chunks that the present capacity may need.
+  [[nodiscard]] std::uint32_t chunk_capacity() const { return capacity_ / shaders::kChunk; }
+  void bind(const PartialSums& partials, const vulkan::Buffer& vector);
+
+  void set_coefficients(const Eigen::VectorXd& coefficients);
+  /// partials from `first_chunk` on = columns times coefficients; returns how many.
+  std::uint32_t record_apply(vulkan::Commands& commands, std::uint32_t first_chunk) const;
+  /// projection() = columns^T times the bound vector.
+  void record_project(vulkan::Commands& commands) const;
+  [[nodiscard]] Eigen::VectorXd projection() const;
+
+  [[nodiscard]] std::size_t bytes() const { return columns_.bytes(); }
+
+ private:
+  const KernelFactory& kernels_;
+  std::uint32_t rows_, capacity_ = 0;
+  Index count_ = 0;
+  std::unique_ptr<vulkan::Kernel> dense_, project_;
+  vulkan::Buffer columns_, coefficients_, projection_;
+  std::unique_ptr<vulkan::Binding> apply_binding_, project_binding_;
+};
+
+}  // namespace sunder::gpu

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/passes/fields.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace sunder::gpu {
+namespace {
+
+using vulkan::Buffer;
+using vulkan::Placement;
+
+struct Lame {
+  double lambda, mu;
+};
+
+Lame lame(const Material& m) {
+  return {m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson)),
+          m.young / (2 * (1 + m.poisson))};
+}
+
+}  // namespace
+
+Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs& needs)
+    : kernels_(kernels),
+      problem_(problem),
+      keep_stress_(needs.stress),
+      rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
+      elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
+      nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)) {
+  vulkan::Device& device = kernels.device();
+  const auto make = [&](std::size_t bytes, Placement placement = Placement::device) {
+    Buffer buffer(device, bytes, placement);
+    buffer.fill_zero();
+    return buffer;
+  };
+  const std::size_t nodal_bytes = (std::size_t{4} * nodes_ + rows_) * sizeof(double);
+  displacement_ = make(nodal_bytes);
+  correction_ = make(nodal_bytes);
+  load_ = make(rows_ * sizeof(double));
+  residual_ = make(rows_ * sizeof(double));
+  balance_ = make(rows_ * sizeof(double));
+  element_force_ = make(std::size_t{elements_} * 16 * sizeof(double));
+  stress_ = make(keep_stress_ ? std::size_t{elements_} * 8 * kernels.real_bytes() : 16);
+  stress_partials_ = make(elements_ / shaders::kGroup * sizeof(shaders::StressPartial));
+  node_partials_ = make(nodes_ / shaders::kGroup * 2 * sizeof(double));
+  summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
+  upload_mesh();
+  upload_shapes();
+  upload_corners();
+  create_kernels();
+  create_hold();
+}
+
+void Fields::upload_mesh() {
+  std::vector<std::uint32_t> nodes_of(std::size_t{4} * elements_, 0);
+  states_.assign(elements_, shaders::kAbsent);
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    for (int a = 0; a < 4; ++a) {
+      nodes_of[4 * static_cast<std::size_t>(e) + a] =
+          static_cast<std::uint32_t>(problem_.mesh().tets[e][a]);
+    }
+    states_[e] = problem_.breakable(e) ? shaders::kBreakable : 0;
+  }
+  std::vector<std::uint32_t> dofs(std::size_t{4} * nodes_, shaders::kHeld);
+  // Padding rows write behind the nodes, where nothing reads.
+  std::vector<std::uint32_t> positions(rows_);
+  for (std::uint32_t i = 0; i < rows_; ++i) positions[i] = 4 * nodes_ + i;
+  const auto gripped = problem_.gripped_dofs();
+  for (std::uint32_t n = 0; n < nodes_; ++n) {
+    dofs[4 * n + 3] = 0;
+    if (n >= static_cast<std::uint32_t>(problem_.node_count())) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index dof = problem_.dof(static_cast<Index>(n), axis);
+      if (dof == kNone) continue;
+      dofs[4 * n + axis] = static_cast<std::uint32_t>(dof);
+      positions[dof] = 4 * n + axis;
+      if (std::binary_search(gripped.begin(), gripped.end(), dof)) dofs[4 * n + 3] |= 1u << axis;
+    }
+  }
+  const auto upload = [&](Buffer& buffer, const std::vector<std::uint32_t>& words) {
+    buffer = Buffer(kernels_.device(), words.size() * sizeof(std::uint32_t), Placement::device);
+    buffer.write(std::span<const std::uint32_t>(words));
+  };
+  upload(nodes_of_, nodes_of);
+  upload(state_, states_);
+  upload(dofs_, dofs);
+  upload(positions_, positions);
+  place_ = std::move(positions);
+}
+
+void Fields::upload_shapes() {
+  std::vector<double> shape(std::size_t{12} * elements_, 0.0), yield(elements_, 1.0);
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    const TetShape& s = problem_.shape(e);
+    const Lame m = lame(problem_.material(e));
+    const std::array<double, 3> last = {m.lambda, m.mu, s.volume};
+    for (int corner = 1; corner < 4; ++corner) {
+      double* to = &shape[12 * static_cast<std::size_t>(e) + 4 * (corner - 1)];
+      for (int axis = 0; axis < 3; ++axis) to[axis] = s.gradient(axis, corner);
+      to[3] = last[corner - 1];
+    }
+    if (problem_.breakable(e)) yield[e] = problem_.yield(e);
+  }
+  shape_ = Buffer(kernels_.device(), shape.size() * sizeof(double), Placement::device);
+  shape_.write(std::span<const double>(shape));
+  yield_ = Buffer(kernels_.device(), yield.size() * sizeof(double), Placement::device);
+  yield_.write(std::span<const double>(yield));
+}
+
+void Fields::upload_corners() {
+  // Corners of each node, ordered by element: the order of the sum in residual.comp.
+  std::vector<std::uint32_t> start(nodes_ + 1, 0), corners(4 * problem_.mesh().tets.size());
+  for (const auto& tet : problem_.mesh().tets) {
+    for (Index n : tet) ++start[n + 1];
+  }
+  for (std::uint32_t n = 0; n < nodes_; ++n) start[n + 1] += start[n];
+  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    for (int a = 0; a < 4; ++a) {
+      corners[next[problem_.mesh().tets[e][a]]++] = static_cast<std::uint32_t>(4 * e + a);
+    }
+  }
+  corner_start_ =
+      Buffer(kernels_.device(), start.size() * sizeof(std::uint32_t), Placement::device);
+  corner_start_.write(std::span<const std::uint32_t>(start));
+  corners_ = Buffer(kernels_.device(), corners.size() * sizeof(std::uint32_t), Placement::device);
+  corners_.write(std::span<const std::uint32_t>(corners));
+}
+
+void Fields::create_kernels() {
+  using enum Reads;
+  vulkan::Device& device = kernels_.device();
+  const auto bind = [&](const vulkan::Kernel& kernel, std::initializer_list<const Buffer*> list) {
+    return std::make_unique<vulkan::Binding>(device, kernel, std::vector<const Buffer*>(list));
+  };
+  stress_pass_.kernel =
+      kernels_.make("stress", {doubles, words, doubles, plain, plain, plain, plain},
+                    sizeof(shaders::ElementPush));
+  stress_pass_.binding = bind(*stress_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &state_,
+                                                     &stress_, &stress_partials_, &yield_});
+  correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &state_,
+                                                   &stress_, &stress_partials_, &yield_});
+  force_pass_.kernel = kernels_.make_fp64("element_force", {doubles, words, doubles, plain, plain},
+                                          sizeof(shaders::ElementPush));
+  force_pass_.binding =
+      bind(*force_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &state_, &element_force_});
+  residual_pass_.kernel =
+      kernels_.make_fp64("residual", {doubles, plain, plain, words, plain, plain, plain, plain},
+                         sizeof(shaders::ElementPush));
+  residual_pass_.binding =
+      bind(*residual_pass_.kernel, {&element_force_, &corner_start_, &corners_, &dofs_, &load_,
+                                    &balance_, &residual_, &node_partials_});
+  summary_pass_.kernel =
+      kernels_.make_fp64("summary", {plain, plain, plain}, sizeof(shaders::SummaryPush));
+  summary_pass_.binding =
+      bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_});
+}
+
+shaders::ElementPush Fields::element_push(bool store) const {
+  const FractureOptions& fracture = problem_.scene().fracture;
+  return {fracture.alpha, store ? 1u : 0u,
+          fracture.yield_measure == YieldMeasure::tresca ? 1u : 0u};
+}
+
+void Fields::set_load(std::span<const double> force, std::span<const double> displacements) {
+  load_.write(force);
+  if (!displacements.empty()) prescribed_.write(displacements);
+}
+
+void Fields::create_hold() {
+  const auto gripped = problem_.gripped_dofs();
+  if (gripped.empty()) return;
+  vulkan::Device& device = kernels_.device();
+  std::vector<std::uint32_t> held;
+  for (Index d : gripped) held.push_back(place_[d]);
+  held_ = Buffer(device, held.size() * sizeof(std::uint32_t), Placement::device);
+  held_.write(std::span<const std::uint32_t>(held));
+  prescribed_ = Buffer(device, held.size() * sizeof(double), Placement::host);
+  hold_pass_.kernel = kernels_.make_fp64("hold", {Reads::plain, Reads::plain, Reads::plain},
+                                         sizeof(shaders::HoldPush));
+  const Buffer* of_displacement[] = {&held_, &prescribed_, &displacement_};
+  const Buffer* of_correction[] = {&held_, &prescribed_, &correction_};
+  hold_pass_.binding =
+      std::make_unique<vulkan::Binding>(device, *hold_pass_.kernel, of_displacement);
+  correction_hold_ = std::make_unique<vulkan::Binding>(device, *hold_pass_.kernel, of_correction);
+}
+
+void Fields::record_hold(vulkan::Commands& commands, Field field) const {
+  const auto count = static_cast<std::uint32_t>(problem_.gripped_dofs().size());
+  if (count == 0) return;
+  const bool correction = field == Field::correction;
+  commands.dispatch(correction ? *correction_hold_ : *hold_pass_.binding,
+                    shaders::HoldPush{count, correction ? 1u : 0u},
+                    round_up(count, shaders::kGroup) / shaders::kGroup);
+  commands.barrier();
+}
+
+void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits) {
+  if (elements.empty()) return;
+  for (Index e : elements) states_[e] |= bits;
+  const auto [first, last] = std::minmax_element(elements.begin(), elements.end());
+  state_.write(std::span<const std::uint32_t>(states_).subspan(
+                   static_cast<std::size_t>(*first), static_cast<std::size_t>(*last - *first + 1)),
+               static_cast<std::size_t>(*first));
+}
+
+void Fields::destroy(std::span<const Index> elements) {
+  set_state_bits(elements, shaders::kDestroyed);
+}
+
+void Fields::exclude(std::span<const Index> elements) {
+  set_state_bits(elements, shaders::kExcluded);
+}
+
+void Fields::record_state(vulkan::Commands& commands) const {
+  const std::uint32_t element_groups = elements_ / shaders::kGroup;
+  const std::uint32_t node_groups = nodes_ / shaders::kGroup;
+  commands.pass("stress");
+  commands.dispatch(*stress_pass_.binding, element_push(keep_stress_), element_groups);
+  commands.pass("residual");
+  commands.dispatch(*force_pass_.binding, element_push(false), element_groups);
+  commands.barrier();
+  commands.dispatch(*residual_pass_.binding, element_push(false), node_groups);
+  commands.barrier();
+  commands.pass("summary");
+  commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_groups, node_groups, 0},
+                    1);
+}
+
+void Fields::record_correction(vulkan::Commands& commands) const {
+  const std::uint32_t element_groups = elements_ / shaders::kGroup;
+  commands.pass("error estimate");
+  commands.dispatch(*correction_stress_, element_push(false), element_groups);
+  commands.barrier();
+  commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_groups, 0, 1}, 1);
+}
+
+void Fields::read_displacement(std::span<double> nodal) const {
+  std::vector<double> padded(4 * problem_.mesh().nodes.size());
+  displacement_.read(std::span<double>(padded));
+  for (std::size_t n = 0; n < problem_.mesh().nodes.size(); ++n) {
+    std::copy_n(&padded[4 * n], 3, &nodal[3 * n]);
+  }
+}
+
+Eigen::VectorXd Fields::read_unknowns(Field field, std::span<const Index> dofs) const {
+  std::vector<double> padded(4 * problem_.mesh().nodes.size());
+  nodal(field).read(std::span<double>(padded));
+  Eigen::VectorXd values(static_cast<Index>(dofs.size()));
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    values[static_cast<Index>(i)] = padded[place_[dofs[i]]];
+  }
+  return values;
+}
+
+Vec3 Fields::read_displacement(Index node) const {
+  std::array<double, 4> value{};
+  displacement_.read(std::span<double>(value), 4 * static_cast<std::size_t>(node));
+  return {value[0], value[1], value[2]};
+}
+
+namespace {
+
+template <class T>
+Voigt to_voigt(const T* v) {
+  Voigt s;
+  for (int i = 0; i < 6; ++i) s[i] = static_cast<double>(v[i]);
+  return s;
+}
+
+template <class T>
+void read_elements(const Buffer& buffer, std::size_t first, std::span<Voigt> stress) {
+  std::vector<T> values(8 * stress.size());
+  buffer.read(std::span<T>(values), 8 * first);
+  for (std::size_t e = 0; e < stress.size(); ++e) stress[e] = to_voigt(&values[8 * e]);
+}
+
+}  // namespace
+
+void Fields::read_stress(std::span<Voigt> stress) const {
+  if (kernels_.fp64()) {
+    read_elements<double>(stress_, 0, stress);
+  } else {
+    read_elements<float>(stress_, 0, stress);
+  }
+}
+
+Voigt Fields::read_stress(Index element) const {
+  std::array<Voigt, 1> one;
+  if (kernels_.fp64()) {
+    read_elements<double>(stress_, static_cast<std::size_t>(element), one);
+  } else {
+    read_elements<float>(stress_, static_cast<std::size_t>(element), one);
+  }
+  return one[0];
+}
+
+void Fields::read_reactions(std::span<const Index> dofs, std::span<double> reactions) const {
+  if (dofs.empty()) return;
+  std::vector<double> balance(static_cast<std::size_t>(problem_.dof_count()));
+  balance_.read(std::span<double>(balance));
+  for (std::size_t i = 0; i < dofs.size(); ++i) reactions[i] = -balance[dofs[i]];
+}
+
+std::vector<BufferPlan> Fields::buffers() const {
+  const auto sum = [](std::initializer_list<const Buffer*> list) {
+    std::size_t bytes = 0;
+    for (const Buffer* b : list) bytes += b->bytes();
+    return bytes;
+  };
+  return {
+      {"mesh and element state (device)", sum({&nodes_of_, &shape_, &yield_, &state_,
+                                               &corner_start_, &corners_, &dofs_, &positions_})},
+      {"displacement, correction, load, residual (device)",
+       sum({&displacement_, &correction_, &load_, &residual_, &balance_})},
+      {"element forces (device)", element_force_.bytes()},
+      {"element stress (device)", stress_.bytes()},
+      {"partial results and summary (device)",
+       sum({&stress_partials_, &node_partials_, &summaries_})}};
+}
+
+}  // namespace sunder::gpu

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// One way to apply the inverse of the damaged stiffness on the device.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/passes/fields.hpp"
+#include "gpu/vulkan/commands.hpp"
+#include "sunder/backend.hpp"
+
+namespace sunder::gpu {
+
+class DeviceRoute {
+ public:
+  virtual ~DeviceRoute() = default;
+  DeviceRoute() = default;
+  DeviceRoute(const DeviceRoute&) = delete;
+  DeviceRoute& operator=(const DeviceRoute&) = delete;
+
+  /// Displacement under a load, and Fields' state of it. Returns iterations.
+  virtual int solve(const Load& load) = 0;
+  /// Correction = A^-1 r with grips at 0, and Fields' summary of it. Returns iterations.
+  virtual int correct() = 0;
+  /// Displacement += correction, and Fields' state anew.
+  virtual void add_correction() = 0;
+  /// Follows an event; `destroyed`: all that are destroyed now, this event's included.
+  virtual void destroy(std::span<const Index> elements, std::span<const Index> destroyed) = 0;
+  /// Shown the stress error estimate of a solve before refinement. True: the route left for a
+  /// sounder way in time, solve anew.
+  [[nodiscard]] virtual bool leaves_at(double error, std::span<const Index> destroyed) = 0;
+  /// Called when refinement failed. True: the route started afresh, solve anew.
+  [[nodiscard]] virtual bool restart(std::span<const Index> destroyed) = 0;
+
+  [[nodiscard]] virtual std::string name() const = 0;
+  [[nodiscard]] virtual std::string update() const = 0;
+  [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// Device time of the last solve() and what followed it.
+  [[nodiscard]] virtual std::vector<vulkan::PassTime> pass_times() const = 0;
+};
+
+}  // namespace sunder::gpu

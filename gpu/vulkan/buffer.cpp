@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/vulkan/buffer.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "gpu/vulkan/check.hpp"
+#include "gpu/vulkan/commands.hpp"
+
+namespace sunder::vulkan {
+namespace {
+
+constexpr std::size_t kStagingBytes = std::size_t{64} << 20;  // of one copy; larger ones in pieces
+constexpr unsigned char kSentinel = 0xa5;
+
+void copy(Device& device, VkBuffer from, std::size_t from_offset, VkBuffer to,
+          std::size_t to_offset, std::size_t bytes) {
+  Commands commands(device);
+  commands.begin();
+  commands.copy(from, from_offset, to, to_offset, bytes);
+  commands.end();
+  commands.submit();
+}
+
+}  // namespace
+
+Buffer::Buffer(Device& device, std::size_t bytes, Placement placement)
+    : device_(&device),
+      bytes_((std::max<std::size_t>(bytes, 1) + 15) / 16 * 16),  // whole texels
+      guard_(device.guard_bytes()) {
+  try {
+    create();
+    allocate(placement);
+    write_guards();
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+Buffer::~Buffer() { release(); }
+
+Buffer::Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+  if (this == &other) return *this;
+  release();
+  device_ = std::exchange(other.device_, nullptr);
+  bytes_ = std::exchange(other.bytes_, 0);
+  guard_ = std::exchange(other.guard_, 0);
+  handle_ = std::exchange(other.handle_, VK_NULL_HANDLE);
+  memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
+  mapped_ = std::exchange(other.mapped_, nullptr);
+  return *this;
+}
+
+void Buffer::release() noexcept {
+  if (!device_) return;
+  check_guards();
+  device_->vk().DestroyBuffer(device_->handle(), handle_, nullptr);
+  device_->vk().FreeMemory(device_->handle(), memory_, nullptr);
+  device_ = nullptr;
+}
+
+void Buffer::create() {
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = bytes_ + 2 * guard_;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
+               VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+  info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
+  check(device_->vk().CreateBuffer(device_->handle(), &info, nullptr, &handle_), "vkCreateBuffer");
+}
+
+void Buffer::allocate(Placement placement) {
+  const DeviceFunctions& vk = device_->vk();
+  VkMemoryRequirements needed{};
+  vk.GetBufferMemoryRequirements(device_->handle(), handle_, &needed);
+  constexpr VkMemoryPropertyFlags visible =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const bool map = placement == Placement::host || device_->physical().unified();
+  VkMemoryAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  info.allocationSize = needed.size;
+  info.memoryTypeIndex =
+      placement == Placement::host
+          ? device_->memory_type(needed.memoryTypeBits, visible, VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
+          : device_->memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                                 map ? visible : 0);
+  const std::string purpose = "allocating " + std::to_string(bytes_) + " bytes";
+  check(vk.AllocateMemory(device_->handle(), &info, nullptr, &memory_), purpose.c_str());
+  check(vk.BindBufferMemory(device_->handle(), handle_, memory_, 0), "vkBindBufferMemory");
+  if (map && (device_->memory_flags(info.memoryTypeIndex) & visible) == visible) {
+    check(vk.MapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+  }
+}
+
+void Buffer::write_guards() {
+  if (guard_ == 0 || !mapped_) return;
+  std::memset(mapped_, kSentinel, guard_);
+  std::memset(begin() + bytes_, kSentinel, guard_);
+}
+
+void Buffer::check_guards() const {
+  if (guard_ == 0 || !mapped_) return;
+  const auto intact = [&](const std::byte* from) {
+    return std::all_of(from, from + guard_, [](std::byte b) { return b == std::byte{kSentinel}; });
+  };
+  if (!intact(begin() - guard_) || !intact(begin() + bytes_)) {
+    device_->report("a kernel wrote outside a buffer of " + std::to_string(bytes_) + " bytes");
+  }
+}
+
+void Buffer::write(std::size_t offset, std::span<const std::byte> data) {
+  if (data.empty()) return;
+  if (mapped_) {
+    std::memcpy(begin() + offset, data.data(), data.size());
+    return;
+  }
+  const Buffer staging(*device_, std::min(data.size(), kStagingBytes), Placement::host);
+  for (std::size_t done = 0; done < data.size(); done += kStagingBytes) {
+    const std::size_t part = std::min(data.size() - done, kStagingBytes);
+    std::memcpy(staging.begin(), data.data() + done, part);
+    copy(*device_, staging.handle_, staging.guard_, handle_, guard_ + offset + done, part);
+  }
+}
+
+void Buffer::read(std::size_t offset, std::span<std::byte> data) const {
+  if (data.empty()) return;
+  if (mapped_) {
+    std::memcpy(data.data(), begin() + offset, data.size());
+    return;
+  }
+  const Buffer staging(*device_, std::min(data.size(), kStagingBytes), Placement::host);
+  for (std::size_t done = 0; done < data.size(); done += kStagingBytes) {
+    const std::size_t part = std::min(data.size() - done, kStagingBytes);
+    copy(*device_, handle_, guard_ + offset + done, staging.handle_, staging.guard_, part);
+    std::memcpy(data.data() + done, staging.begin(), part);
+  }
+}
+
+void Buffer::fill_zero() {
+  if (mapped_) {
+    std::memset(begin(), 0, bytes_);
+    return;
+  }
+  Commands commands(*device_);
+  commands.begin();
+  commands.fill_zero(*this);
+  commands.end();
+  commands.submit();
+}
+
+}  // namespace sunder::vulkan

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Device memory as typed as it needs to be: a range of bytes that kernels read and write and the
+// host fills and reads.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "gpu/vulkan/device.hpp"
+
+namespace sunder::vulkan {
+
+/// Where a buffer lives. On unified memory both are mapped.
+enum class Placement {
+  device,  ///< device-local; the host goes through staging where memory is not unified
+  host,    ///< mapped, for small things that cross every frame
+};
+
+class Buffer {
+ public:
+  Buffer() = default;
+  /// Uninitialised memory; `bytes` at least 1. Throws DeviceError when the memory is not there.
+  Buffer(Device& device, std::size_t bytes, Placement placement);
+  ~Buffer();
+  Buffer(Buffer&& other) noexcept;
+  Buffer& operator=(Buffer&& other) noexcept;
+
+  [[nodiscard]] VkBuffer handle() const { return handle_; }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  /// Where the bytes begin in the VkBuffer, and the range that kernels see.
+  [[nodiscard]] std::size_t offset() const { return guard_; }
+  [[nodiscard]] std::size_t range() const { return bytes_ + guard_; }
+
+  void write(std::size_t offset, std::span<const std::byte> data);
+  void read(std::size_t offset, std::span<std::byte> data) const;
+  void fill_zero();
+
+  template <class T>
+  void write(std::span<const T> values, std::size_t first = 0) {
+    write(first * sizeof(T), std::as_bytes(values));
+  }
+  template <class T>
+  void read(std::span<T> values, std::size_t first = 0) const {
+    read(first * sizeof(T), std::as_writable_bytes(values));
+  }
+  /// The mapping; only of host buffers.
+  template <class T>
+  [[nodiscard]] T* mapped() const {
+    return reinterpret_cast<T*>(begin());
+  }
+
+ private:
+  [[nodiscard]] std::byte* begin() const { return static_cast<std::byte*>(mapped_) + guard_; }
+  void create();
+  void write_guards();
+  void check_guards() const;
+  void allocate(Placement placement);
+  void release() noexcept;
+
+  Device* device_ = nullptr;
+  std::size_t bytes_ = 0, guard_ = 0;
+  VkBuffer handle_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  void* mapped_ = nullptr;
+};
+
+}  // namespace sunder::vulkan

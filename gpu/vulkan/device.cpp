@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/vulkan/device.hpp"
+
+#include "gpu/vulkan/check.hpp"
+
+namespace sunder::vulkan {
+namespace {
+
+/// Destroys a device of our own, then lets go of its instance.
+struct OwnDevice {
+  OwnDevice(std::shared_ptr<const Instance> of, VkDevice handle, PFN_vkDestroyDevice function)
+      : instance(std::move(of)), device(handle), destroy(function) {}
+  ~OwnDevice() { destroy(device, nullptr); }
+  OwnDevice(const OwnDevice&) = delete;
+  OwnDevice& operator=(const OwnDevice&) = delete;
+
+  std::shared_ptr<const Instance> instance;
+  VkDevice device;
+  PFN_vkDestroyDevice destroy;
+};
+
+VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical) {
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue{};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = static_cast<std::uint32_t>(physical.compute_family);
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkPhysicalDeviceFeatures features{};
+  features.shaderFloat64 = VK_TRUE;
+  features.shaderInt64 = physical.int64 ? VK_TRUE : VK_FALSE;
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.pEnabledFeatures = &features;
+  VkDevice device = VK_NULL_HANDLE;
+  check(instance.vk().CreateDevice(physical.handle, &info, nullptr, &device), "vkCreateDevice");
+  return device;
+}
+
+}  // namespace
+
+std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
+                                      const PhysicalDevice& physical, DeviceProbe probe) {
+  const std::string shortcoming = physical.shortcoming();
+  if (!shortcoming.empty()) {
+    throw DeviceError("the Vulkan device \"" + physical.name + "\" cannot be used: " + shortcoming);
+  }
+  DeviceHandles handles;
+  handles.device = create_handle(*instance, physical);
+  handles.vk = load_functions(instance->vk().GetDeviceProcAddr, handles.device);
+  handles.owner = std::make_shared<OwnDevice>(instance, handles.device, handles.vk.DestroyDevice);
+  handles.family = static_cast<std::uint32_t>(physical.compute_family);
+  handles.int64 = physical.int64;
+  handles.vk.GetDeviceQueue(handles.device, handles.family, 0, &handles.queue);
+  instance->vk().GetPhysicalDeviceMemoryProperties(physical.handle, &handles.memory);
+  return std::make_unique<Device>(std::move(handles), physical, instance->messages(), probe);
+}
+
+Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<Messages> messages,
+               DeviceProbe probe)
+    : handles_(std::move(handles)),
+      physical_(std::move(physical)),
+      messages_(std::move(messages)),
+      probe_(probe) {
+  VkCommandPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool.queueFamilyIndex = handles_.family;
+  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  check(vk().CreateCommandPool(handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
+  VkFenceCreateInfo fence{};
+  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  check(vk().CreateFence(handle(), &fence, nullptr, &fence_), "vkCreateFence");
+}
+
+Device::~Device() {
+  vk().DestroyFence(handle(), fence_, nullptr);
+  vk().DestroyCommandPool(handle(), pool_, nullptr);
+}
+
+std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
+                                  VkMemoryPropertyFlags preferred) const {
+  for (const VkMemoryPropertyFlags wanted : {required | preferred, required}) {
+    for (std::uint32_t t = 0; t < handles_.memory.memoryTypeCount; ++t) {
+      if ((allowed >> t & 1) && (memory_flags(t) & wanted) == wanted) return t;
+    }
+  }
+  throw DeviceError("the Vulkan device \"" + physical_.name + "\" has no memory of the kind asked");
+}
+
+void Device::require_memory(VkDeviceSize bytes, const std::string& purpose) const {
+  if (bytes <= physical_.memory) return;
+  throw DeviceError(purpose + " needs " + std::to_string(bytes) + " bytes on the device \"" +
+                    physical_.name + "\", which has " + std::to_string(physical_.memory) +
+                    "; use precision fp32, route cg or a smaller mesh");
+}
+
+void Device::submit(VkCommandBuffer commands) {
+  check_messages();
+  if (probe_.submits_until_lost == 0) check(VK_ERROR_DEVICE_LOST, "a submit (injected fault)");
+  if (probe_.submits_until_lost > 0) --probe_.submits_until_lost;
+  VkSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands;
+  check(vk().ResetFences(handle(), 1, &fence_), "vkResetFences");
+  check(vk().QueueSubmit(handles_.queue, 1, &info, fence_), "vkQueueSubmit");
+  check(vk().WaitForFences(handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check_messages();
+}
+
+void Device::check_messages() const {
+  if (messages_->texts.empty()) return;
+  throw DeviceError("Vulkan validation: " + messages_->texts.front());
+}
+
+}  // namespace sunder::vulkan

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// A logical device with one compute queue. Its handles may be its own or a host's: nothing but
+// `owner` ever destroys them, so a trainer can lend instance, device and queue.
+#pragma once
+
+#include <memory>
+
+#include "gpu/vulkan/physical_device.hpp"
+
+namespace sunder::vulkan {
+
+/// Everything the kernels need of a device.
+struct DeviceHandles {
+  DeviceFunctions vk;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t family = 0;
+  VkPhysicalDeviceMemoryProperties memory{};
+  bool int64 = false;           ///< shaderInt64 was enabled
+  std::shared_ptr<void> owner;  ///< keeps instance and device alive; does nothing when borrowed
+};
+
+/// What tests ask of a device.
+struct DeviceProbe {
+  /// After so many submits every further one reports a lost device. Negative: never.
+  int submits_until_lost = -1;
+  /// Sentinel bytes before and after every buffer, a multiple of 256; a changed one is a message.
+  std::size_t guard_bytes = 0;
+};
+
+class Device {
+ public:
+  Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<Messages> messages,
+         DeviceProbe probe = {});
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  [[nodiscard]] const DeviceFunctions& vk() const { return handles_.vk; }
+  [[nodiscard]] VkDevice handle() const { return handles_.device; }
+  [[nodiscard]] const PhysicalDevice& physical() const { return physical_; }
+  [[nodiscard]] bool int64() const { return handles_.int64; }
+  [[nodiscard]] std::size_t guard_bytes() const { return probe_.guard_bytes; }
+  /// Reports a finding as a validation layer would.
+  void report(std::string message) { messages_->texts.push_back(std::move(message)); }
+  [[nodiscard]] VkCommandPool command_pool() const { return pool_; }
+
+  /// Memory type with all of `required`, preferring those with `preferred`. Throws DeviceError.
+  [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
+                                          VkMemoryPropertyFlags preferred) const;
+  [[nodiscard]] VkMemoryPropertyFlags memory_flags(std::uint32_t type) const {
+    return handles_.memory.memoryTypes[type].propertyFlags;
+  }
+
+  /// Submits and waits. Throws DeviceLost, or DeviceError with the first validation message.
+  void submit(VkCommandBuffer commands);
+
+  /// Throws DeviceError when `bytes` more than the device's memory are asked for.
+  void require_memory(VkDeviceSize bytes, const std::string& purpose) const;
+
+ private:
+  void check_messages() const;
+
+  DeviceHandles handles_;
+  PhysicalDevice physical_;
+  std::shared_ptr<Messages> messages_;
+  DeviceProbe probe_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkFence fence_ = VK_NULL_HANDLE;
+};
+
+/// Creates a device of its own. Throws DeviceError naming the shortcoming of `physical`.
+[[nodiscard]] std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
+                                                    const PhysicalDevice& physical,
+                                                    DeviceProbe probe = {});
+
+}  // namespace sunder::vulkan

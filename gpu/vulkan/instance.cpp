@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/vulkan/instance.hpp"
+
+#include <dlfcn.h>
+
+#include "gpu/vulkan/check.hpp"
+
+namespace sunder::vulkan {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL take_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                            VkDebugUtilsMessageTypeFlagsEXT,
+                                            const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                            void* user) {
+  static_cast<Messages*>(user)->texts.emplace_back(data->pMessage);
+  return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(Messages* messages) {
+  VkDebugUtilsMessengerCreateInfoEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+  info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                         VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  // Not "general": the loader reports drivers that do not fit this machine there.
+  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                     VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  info.pfnUserCallback = take_message;
+  info.pUserData = messages;
+  return info;
+}
+
+}  // namespace
+
+Instance::Instance(const InstanceOptions& options) : messages_(options.messages) {
+  open_loader(options.loader);
+  try {
+    create(options.validation);
+    vk_ = load_functions(get_, handle_);
+    if (options.validation) {
+      const auto info = messenger_info(messages_.get());
+      check(vk_.CreateDebugUtilsMessengerEXT(handle_, &info, nullptr, &messenger_),
+            "vkCreateDebugUtilsMessengerEXT");
+    }
+  } catch (...) {
+    dlclose(library_);
+    throw;
+  }
+}
+
+Instance::~Instance() {
+  if (messenger_) vk_.DestroyDebugUtilsMessengerEXT(handle_, messenger_, nullptr);
+  vk_.DestroyInstance(handle_, nullptr);
+  dlclose(library_);
+}
+
+void Instance::open_loader(const char* name) {
+  library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+  if (library_) {
+    get_ = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library_, "vkGetInstanceProcAddr"));
+  }
+  if (!get_) {
+    if (library_) dlclose(library_);
+    throw DeviceError(std::string("no Vulkan loader was found (") + name +
+                      "); install libvulkan1 or use backend cpu");
+  }
+}
+
+void Instance::create(bool validation) {
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "sunder";
+  application.apiVersion = VK_API_VERSION_1_2;
+  const VkValidationFeatureEnableEXT enables[] = {
+      VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+  VkValidationFeaturesEXT features{};
+  features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+  features.enabledValidationFeatureCount = 1;
+  features.pEnabledValidationFeatures = enables;
+  const auto messenger = messenger_info(messages_.get());
+  features.pNext = &messenger;
+  const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &application;
+  if (validation) {
+    info.pNext = &features;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &kValidationLayer;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = &extension;
+  }
+  const auto create_instance =
+      reinterpret_cast<PFN_vkCreateInstance>(get_(nullptr, "vkCreateInstance"));
+  check(create_instance(&info, nullptr, &handle_), "vkCreateInstance");
+}
+
+std::vector<VkPhysicalDevice> Instance::physical_devices() const {
+  std::uint32_t count = 0;
+  const VkResult result = vk_.EnumeratePhysicalDevices(handle_, &count, nullptr);
+  if (result == VK_ERROR_INITIALIZATION_FAILED) return {};  // drivers without a device
+  check(result, "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> devices(count);
+  check(vk_.EnumeratePhysicalDevices(handle_, &count, devices.data()),
+        "vkEnumeratePhysicalDevices");
+  devices.resize(count);
+  return devices;
+}
+
+}  // namespace sunder::vulkan

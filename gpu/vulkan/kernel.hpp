@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// A compute pipeline and the buffers bound to it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gpu/vulkan/buffer.hpp"
+
+namespace sunder::vulkan {
+
+/// How a kernel sees a buffer.
+enum class Access : std::uint8_t {
+  storage,       ///< a storage buffer
+  texel_float4,  ///< a texel buffer of vec4 (the lvp variant's way to read fp32)
+  texel_uint4,   ///< a texel buffer of uvec4 (words, and fp64 in pairs)
+};
+
+struct KernelCode {
+  std::span<const std::uint32_t> spirv;
+  std::span<const Access> bindings;  ///< in order of binding
+  std::uint32_t push_bytes = 0;
+  std::span<const std::uint32_t> constants;  ///< specialization constants, in order of id
+};
+
+class Kernel {
+ public:
+  Kernel(Device& device, const KernelCode& code);
+  ~Kernel();
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
+
+  [[nodiscard]] VkPipeline pipeline() const { return pipeline_; }
+  [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
+  [[nodiscard]] VkDescriptorSetLayout set_layout() const { return set_layout_; }
+  [[nodiscard]] const std::vector<Access>& bindings() const { return bindings_; }
+  [[nodiscard]] std::uint32_t push_bytes() const { return push_bytes_; }
+
+ private:
+  void create_layouts();
+  void create_pipeline(const KernelCode& code);
+  void release() noexcept;
+
+  Device& device_;
+  std::vector<Access> bindings_;
+  std::uint32_t push_bytes_;
+  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+/// The buffers of one kernel, written once. They must outlive it.
+class Binding {
+ public:
+  Binding(Device& device, const Kernel& kernel, std::span<const Buffer* const> buffers);
+  ~Binding();
+  Binding(const Binding&) = delete;
+  Binding& operator=(const Binding&) = delete;
+
+  [[nodiscard]] const Kernel& kernel() const { return kernel_; }
+  [[nodiscard]] VkDescriptorSet set() const { return set_; }
+
+ private:
+  void allocate();
+  void write(std::uint32_t binding, Access access, const Buffer& buffer);
+  void release() noexcept;
+
+  Device& device_;
+  const Kernel& kernel_;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  std::vector<VkBufferView> views_;
+};
+
+}  // namespace sunder::vulkan

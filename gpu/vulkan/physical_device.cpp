@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/vulkan/physical_device.hpp"
+
+#include <algorithm>
+
+namespace sunder::vulkan {
+namespace {
+
+void read_properties(const InstanceFunctions& vk, PhysicalDevice& device) {
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceMaintenance3Properties maintenance{};
+  maintenance.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+  maintenance.pNext = &driver;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &maintenance;
+  vk.GetPhysicalDeviceProperties2(device.handle, &properties);
+  const VkPhysicalDeviceProperties& p = properties.properties;
+  device.name = p.deviceName;
+  device.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+  device.driver_id = driver.driverID;
+  device.type = p.deviceType;
+  device.api_version = p.apiVersion;
+  device.timestamp_period = static_cast<double>(p.limits.timestampPeriod);
+  device.largest_buffer = p.limits.maxStorageBufferRange;
+  device.largest_texel_buffer = p.limits.maxTexelBufferElements;
+  device.largest_allocation = maintenance.maxMemoryAllocationSize;
+}
+
+void read_features(const InstanceFunctions& vk, PhysicalDevice& device) {
+  VkPhysicalDeviceFeatures2 features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  vk.GetPhysicalDeviceFeatures2(device.handle, &features);
+  device.float64 = features.features.shaderFloat64;
+  device.int64 = features.features.shaderInt64;
+}
+
+void read_memory(const InstanceFunctions& vk, PhysicalDevice& device) {
+  VkPhysicalDeviceMemoryProperties memory{};
+  vk.GetPhysicalDeviceMemoryProperties(device.handle, &memory);
+  for (std::uint32_t h = 0; h < memory.memoryHeapCount; ++h) {
+    if (memory.memoryHeaps[h].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) {
+      device.memory = std::max(device.memory, memory.memoryHeaps[h].size);
+    }
+  }
+}
+
+void read_queues(const InstanceFunctions& vk, PhysicalDevice& device) {
+  std::uint32_t count = 0;
+  vk.GetPhysicalDeviceQueueFamilyProperties(device.handle, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vk.GetPhysicalDeviceQueueFamilyProperties(device.handle, &count, families.data());
+  for (std::uint32_t f = 0; f < count; ++f) {
+    if (!(families[f].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
+    device.compute_family = static_cast<int>(f);
+    device.timestamp_bits = families[f].timestampValidBits;
+    return;
+  }
+}
+
+}  // namespace
+
+std::string PhysicalDevice::shortcoming() const {
+  if (api_version < VK_API_VERSION_1_2) {
+    return "it offers Vulkan " + std::to_string(VK_API_VERSION_MAJOR(api_version)) + "." +
+           std::to_string(VK_API_VERSION_MINOR(api_version)) + " only; 1.2 is needed";
+  }
+  if (compute_family < 0) return "it has no compute queue";
+  if (!float64) return "it lacks shaderFloat64, which the fp64 sums of every route need";
+  return {};
+}
+
+std::vector<PhysicalDevice> list_devices(const Instance& instance) {
+  std::vector<PhysicalDevice> devices;
+  for (VkPhysicalDevice handle : instance.physical_devices()) {
+    PhysicalDevice device;
+    device.handle = handle;
+    read_properties(instance.vk(), device);
+    read_features(instance.vk(), device);
+    read_memory(instance.vk(), device);
+    read_queues(instance.vk(), device);
+    devices.push_back(std::move(device));
+  }
+  return devices;
+}
+
+}  // namespace sunder::vulkan

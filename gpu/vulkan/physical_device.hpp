@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a machine's Vulkan devices offer, and which of them can run the kernels.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gpu/vulkan/instance.hpp"
+
+namespace sunder::vulkan {
+
+struct PhysicalDevice {
+  VkPhysicalDevice handle = VK_NULL_HANDLE;
+  std::string name, driver;
+  VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+  VkDriverId driver_id = VK_DRIVER_ID_MAX_ENUM;
+  std::uint32_t api_version = 0;
+  bool float64 = false, int64 = false;
+  int compute_family = -1;                 ///< queue family, -1: none
+  std::uint32_t timestamp_bits = 0;        ///< of that family
+  double timestamp_period = 0;             ///< [ns]
+  VkDeviceSize memory = 0;                 ///< largest device-local heap [bytes]
+  VkDeviceSize largest_buffer = 0;         ///< storage buffer range [bytes]
+  VkDeviceSize largest_allocation = 0;     ///< [bytes]
+  std::uint32_t largest_texel_buffer = 0;  ///< [texels]
+
+  /// A processor that emulates a GPU (lavapipe, say).
+  [[nodiscard]] bool is_cpu() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  /// Memory is one for host and device.
+  [[nodiscard]] bool unified() const {
+    return is_cpu() || type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+  }
+  /// Why the kernels cannot run there; empty: they can.
+  [[nodiscard]] std::string shortcoming() const;
+};
+
+/// In the driver's order.
+[[nodiscard]] std::vector<PhysicalDevice> list_devices(const Instance& instance);
+
+}  // namespace sunder::vulkan

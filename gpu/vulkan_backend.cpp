@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/vulkan_backend.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "gpu/choose_device.hpp"
+#include "gpu/inverse_route.hpp"
+#include "gpu/plan.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+// Refined silently down to this stress error: fp64 promises 1e-8 along a crack; fp32 storage
+// promises the scene's tolerance, half of which leaves room for the estimate's own error.
+constexpr double kFp64Error = 1e-9;
+constexpr double kFp32Error = 5e-4;  // however large the tolerance
+constexpr int kRefinements = 6;
+// Read back node by node up to here, whole beyond.
+constexpr std::size_t kFewNodes = 64;
+
+class VulkanBackend final : public Backend {
+ public:
+  VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
+      : Backend(problem, std::move(needs)),
+        instance_(std::make_shared<vulkan::Instance>(options.instance)),
+        device_(vulkan::create_device(
+            instance_, choose_device(*instance_, problem->scene().solver.device), options.probe)),
+        plan_(make_plan(*problem, this->needs(), device_->physical())),
+        kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
+                 plan_.fp64),
+        fields_(kernels_, *problem, this->needs()),
+        intact_(std::make_shared<HostInverse>(fem::assemble_lower(*problem, {}))) {
+    if (this->needs().pristine) {
+      pristine_ = std::make_unique<Correction>(
+          *problem, [host = intact_](std::span<const Index> dofs) { return host->columns(dofs); });
+    }
+    force_.assign(fields_.rows(), 0.0);
+    route_ = std::make_unique<InverseRoute>(
+        kernels_, *problem, fields_, intact_,
+        InverseOptions{plan_.eager, problem->scene().solver.tolerance, options.panel_bytes});
+  }
+
+  BackendInfo info() const override {
+    BackendInfo info;
+    info.backend = "vulkan";
+    info.device = device_->physical().name;
+    info.driver = device_->physical().driver;
+    info.precision = plan_.fp64 ? "fp64" : "fp32";
+    info.route = route_->name();
+    info.update = needs().damage ? route_->update() : "none";
+    info.why = plan_.why;
+    for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
+    return info;
+  }
+
+  std::vector<BufferPlan> buffers() const override {
+    std::vector<BufferPlan> plan = route_->buffers();
+    for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
+    return plan;
+  }
+
+  std::vector<vulkan::PassTime> pass_times() const { return route_->pass_times(); }
+
+ private:
+  void do_set_load(const Load& load) override {
+    for (Index d : load_.force_dofs) force_[d] = 0;
+    load_ = load;
+    force_squared_ = 0;
+    for (std::size_t i = 0; i < load.forces.size(); ++i) {
+      force_[load.force_dofs[i]] = load.forces[i];
+      force_squared_ += load.forces[i] * load.forces[i];
+    }
+    fields_.set_load(force_, load.displacements);
+  }
+
+  SolveReport do_solve() override {
+    SolveReport report;
+    do {
+      report = attempt();
+    } while (!(report.error <= tolerance()) && route_->restart(destroyed_list_));
+    if (!(report.error <= tolerance())) {
+      throw NumericalError(
+          "the solution cannot be brought under the tolerance: estimated stress error " +
+          std::to_string(report.error) + ", residual " + std::to_string(report.residual) +
+          "; use precision fp64, raise solver.tolerance or ease contrast, Poisson's ratio or "
+          "slivers");
+    }
+    return report;
+  }
+
+  /// One solve, refined while that helps and is needed.
+  SolveReport attempt() {
+    SolveReport report;
+    report.iterations = route_->solve(load_);
+    const double target = std::min(plan_.fp64 ? kFp64Error : kFp32Error, tolerance() / 2);
+    for (int refinement = 0;; ++refinement) {
+      report.iterations += route_->correct();
+      const double error = estimate();
+      report.residual = residual();
+      if (refinement == 0) {
+        report.polished = !(error <= tolerance());
+        if (route_->leaves_at(error, destroyed_list_)) return attempt();
+      }
+      // A correction that no longer shrinks is rounding: stop there if the promise holds.
+      const bool stalled = refinement > 0 && !(error < report.error / 2);
+      report.error = error;
+      if (error <= target || refinement == kRefinements || stalled) return report;
+      route_->add_correction();
+    }
+  }
+
+  double estimate() const {
+    const double of_u = std::sqrt(fields_.state().stress_squared);
+    const double of_du = std::sqrt(fields_.correction().stress_squared);
+    if (!std::isfinite(residual())) return residual();
+    return of_du == 0 ? 0.0 : of_du / of_u;
+  }
+
+  double residual() const {
+    const shaders::Summary s = fields_.state();
+    const double load = force_squared_ + s.reaction_squared;
+    return load > 0 ? std::sqrt(s.residual_squared / load) : 0.0;
+  }
+
+  double tolerance() const { return problem().scene().solver.tolerance; }
+
+  StressSummary do_stress() override {
+    if (!needs().yield) return {};
+    const shaders::Summary s = fields_.state();
+    const auto worst = [](double ratio, std::uint32_t element) {
+      return ratio > 0 ? Worst{static_cast<Index>(element), ratio} : Worst{};
+    };
+    return {worst(s.any_ratio, s.any_element), worst(s.candidate_ratio, s.candidate_element)};
+  }
+
+  void do_destroy(std::span<const Index> elements) override {
+    destroyed_list_.insert(destroyed_list_.end(), elements.begin(), elements.end());
+    fields_.destroy(elements);
+    route_->destroy(elements, destroyed_list_);
+  }
+
+  void do_exclude_candidates(std::span<const Index> elements) override {
+    fields_.exclude(elements);
+  }
+
+  void do_solve_pristine(const Load& load, std::span<double> displacement) override {
+    const Loaded loaded{load.force_dofs, load.forces};
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(problem().dof_count());
+    const Eigen::MatrixXd columns = intact_->columns(load.force_dofs);
+    for (std::size_t i = 0; i < load.forces.size(); ++i) {
+      u += load.forces[i] * columns.col(static_cast<Index>(i));
+    }
+    if (pristine_->count() > 0) {
+      u += pristine_->columns() *
+           pristine_->coefficients(pristine_->project(loaded), load.displacements);
+    }
+    fem::scatter(problem(), {u.data(), static_cast<std::size_t>(u.size())}, displacement);
+  }
+
+  void do_read_displacement(std::span<double> displacement) const override {
+    fields_.read_displacement(displacement);
+  }
+
+  void do_read_displacement(std::span<const Index> nodes,
+                            std::span<Vec3> displacement) const override {
+    if (nodes.size() <= kFewNodes) {
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        displacement[i] = fields_.read_displacement(nodes[i]);
+      }
+      return;
+    }
+    std::vector<double> all(3 * problem().mesh().nodes.size());
+    fields_.read_displacement(all);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      displacement[i] = Vec3(&all[3 * static_cast<std::size_t>(nodes[i])]);
+    }
+  }
+
+  void do_read_stress(std::span<Voigt> stress) const override { fields_.read_stress(stress); }
+  Voigt do_read_stress(Index element) const override { return fields_.read_stress(element); }
+
+  void do_read_reactions(std::span<double> reactions) const override {
+    fields_.read_reactions(problem().gripped_dofs(), reactions);
+  }
+
+  std::shared_ptr<vulkan::Instance> instance_;
+  std::unique_ptr<vulkan::Device> device_;
+  Plan plan_;
+  KernelFactory kernels_;
+  Fields fields_;
+  std::shared_ptr<const HostInverse> intact_;
+  std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
+  std::unique_ptr<DeviceRoute> route_;
+  Load load_;
+  std::vector<double> force_;  // over the padded unknowns
+  double force_squared_ = 0;
+  std::vector<Index> destroyed_list_;
+};
+
+}  // namespace
+
+VulkanOptions options_from_environment() {
+  VulkanOptions options;
+  const char* validation = std::getenv("SUNDER_VULKAN_VALIDATION");
+  options.instance.validation = validation && std::strcmp(validation, "1") == 0;
+  return options;
+}
+
+std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs) {
+  return create(std::move(problem), std::move(needs), options_from_environment());
+}
+
+std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
+                                const VulkanOptions& options) {
+  if (!problem) throw UsageError("a backend needs a problem");
+  return std::make_unique<VulkanBackend>(std::move(problem), std::move(needs), options);
+}
+
+std::vector<vulkan::PassTime> pass_times(const Backend& backend) {
+  const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
+  return vulkan_backend ? vulkan_backend->pass_times() : std::vector<vulkan::PassTime>{};
+}
+
+}  // namespace sunder::gpu

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The backend on Vulkan compute shaders: any Vulkan 1.2 device with shaderFloat64.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gpu/kernels.hpp"
+#include "gpu/vulkan/commands.hpp"
+#include "sunder/backend.hpp"
+
+namespace sunder::gpu {
+
+/// What tests set beside the scene's options.
+struct VulkanOptions {
+  vulkan::InstanceOptions instance;
+  vulkan::DeviceProbe probe;
+  std::optional<Variant> variant;  ///< none: chosen by driver (choose_variant)
+  std::size_t panel_bytes = 0;     ///< largest buffer of the inverse, 0: the device's limit
+};
+
+/// Options from the environment: SUNDER_VULKAN_VALIDATION=1 turns the validation layers on and
+/// their messages into errors.
+[[nodiscard]] VulkanOptions options_from_environment();
+
+/// All Vulkan devices of the machine; empty without loader or driver. The one that `auto` would
+/// take is marked; a processor that emulates a GPU never is.
+[[nodiscard]] std::vector<DeviceInfo> devices();
+
+/// Creates it for a problem, on the device that the scene names or the first GPU (without one: the
+/// first device). Throws DeviceError: no loader, no driver, no such device, a feature, a route or
+/// memory missing.
+[[nodiscard]] std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs);
+[[nodiscard]] std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
+                                              const VulkanOptions& options);
+
+/// Device time per pass of the last solve, of a backend that create() returned; else empty.
+[[nodiscard]] std::vector<vulkan::PassTime> pass_times(const Backend& backend);
+
+}  // namespace sunder::gpu

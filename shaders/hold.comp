@@ -1,0 +1,16 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// Gripped dofs get exactly what is prescribed there: rounding in the grips' forces would otherwise
+// stay, for refinement moves everything but them.
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+
+IN_WORDS(0, Held, held)  // positions among the nodes' values
+layout(std430, set = 0, binding = 1) readonly buffer Prescribed { double data[]; } prescribed;
+INOUT(2, Nodal, double, u)
+layout(push_constant) uniform Push { HoldPush p; };
+
+void main() {
+  const uint g = gl_GlobalInvocationID.x;
+  if (g < p.count) u.data[held.data[g]] = p.to_zero != 0u ? 0.0LF : prescribed.data[g];
+}

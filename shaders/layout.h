@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Structs and numbers that C++ and GLSL share: read by both, so that a layout exists once.
+// Buffers are std430; every matrix is stored by columns, rows padded to kRowPad.
+#ifndef SUNDER_SHADERS_LAYOUT_H
+#define SUNDER_SHADERS_LAYOUT_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace sunder::shaders {
+using uint = std::uint32_t;
+#define SUNDER_CONST constexpr uint
+#else
+#define SUNDER_CONST const uint
+#endif
+
+SUNDER_CONST kGroup = 64u;          // invocations of a workgroup
+SUNDER_CONST kRowPad = 256u;        // rows of a vector: four an invocation
+SUNDER_CONST kColumnPad = 64u;      // columns of a matrix
+SUNDER_CONST kChunk = 64u;          // columns that one workgroup sums
+SUNDER_CONST kRankBlock = 6u;       // update vectors of one element
+SUNDER_CONST kUpdateColumns = 8u;   // columns of the inverse that one workgroup updates
+SUNDER_CONST kHeld = 0xffffffffu;   // dof of an axis that a support holds
+
+// State of an element, bit by bit.
+SUNDER_CONST kDestroyed = 1u;
+SUNDER_CONST kBreakable = 2u;
+SUNDER_CONST kExcluded = 4u;        // never a candidate
+SUNDER_CONST kAbsent = 8u;          // padding
+
+// One loaded dof: coefficient times a column of the inverse.
+struct Entry {
+  uint column;
+  uint unused;
+  uint low, high;  // the coefficient, fp64, in two words
+};
+
+struct ApplyPush {
+  uint packs;          // rows / 4
+  uint first, last;    // entries, or (dense) columns of this matrix
+  uint vector_first;   // dense: where the columns' coefficients begin in the vector, / 4
+  uint partial;        // first chunk of partial sums
+};
+
+struct SumPush {
+  uint packs;
+  uint chunks;
+  uint add;  // 1: add to what is there
+};
+
+struct HoldPush {
+  uint count;
+  uint to_zero;
+};
+
+struct ElementPush {
+  double alpha;
+  uint store;   // 1: keep the stress of every element
+  uint tresca;  // 1: measure s1 - s3 instead of half of it
+};
+
+struct ProjectPush {
+  uint packs;
+};
+
+struct SummaryPush {
+  uint element_groups;
+  uint node_groups;
+  uint slot;
+};
+
+struct PickPush {
+  uint rows, columns;         // of the block
+  uint first_column;          // of this panel
+  uint panel_columns;
+  uint leading;               // rows of the matrix
+};
+
+struct VectorsPush {
+  uint packs;
+  uint first, last;           // rows of V
+  uint blocks;                // rank / 6
+  uint first_column;          // of this panel
+  uint add;
+};
+
+struct LowRankPush {
+  uint packs;
+  uint blocks;
+  uint first_column;          // of this panel
+};
+
+// Worst yield ratio and largest stress of the elements of one workgroup.
+struct StressPartial {
+  double any_ratio, candidate_ratio;
+  double stress_squared;      // largest Frobenius norm of a live element, squared
+  uint any_element, candidate_element;
+};
+
+// What a frame sends back.
+struct Summary {
+  double any_ratio, candidate_ratio;
+  double stress_squared;
+  double residual_squared;    // over dofs that no grip holds
+  double reaction_squared;    // over those that one holds
+  uint any_element, candidate_element;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(Entry) == 16);
+static_assert(sizeof(ElementPush) == 16);
+static_assert(sizeof(StressPartial) == 32);
+static_assert(sizeof(Summary) == 48);
+#undef SUNDER_CONST
+}  // namespace sunder::shaders
+#endif
+#endif

@@ -1,0 +1,20 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// block(r, c) = X(row_r, column_c) for the columns that lie in this panel.
+#extension GL_GOOGLE_include_directive : require
+#include "common.glsl"
+
+layout(std430, set = 0, binding = 0) readonly buffer Matrix { REAL data[]; } matrix;
+IN_WORDS(1, Dofs, dofs)  // rows, then columns
+OUT(2, Block, double, block)
+layout(push_constant) uniform Push { PickPush p; };
+
+void main() {
+  const uint r = gl_GlobalInvocationID.x, c = gl_GlobalInvocationID.y;
+  if (r < p.rows) {
+    const uint column = dofs.data[p.rows + c] - p.first_column;
+    if (column < p.panel_columns) {
+      block.data[c * p.rows + r] = double(matrix.data[column * p.leading + dofs.data[r]]);
+    }
+  }
+}

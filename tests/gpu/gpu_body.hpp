@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// A problem on the CPU reference and on Vulkan at once, driven below the frame. Validation and
+// synchronization validation watch every Vulkan call, sentinels every buffer.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "cpu_reference/cpu_reference.hpp"
+#include "gpu/vulkan_backend.hpp"
+#include "support/accuracy.hpp"
+#include "support/sequences.hpp"
+#include "support/structured_board.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::test {
+
+inline Needs everything() {
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = needs.pristine = true;
+  return needs;
+}
+
+/// Fails without a Vulkan device, unless SUNDER_EXPECT_NO_VULKAN says beforehand that there is
+/// none.
+template <class Base = testing::Test>
+class WithVulkan : public Base {
+ protected:
+  void SetUp() override {
+    if (std::getenv("SUNDER_EXPECT_NO_VULKAN")) GTEST_SKIP() << "no Vulkan device is expected";
+  }
+};
+
+/// One way to run a scene on Vulkan.
+struct Way {
+  gpu::Variant variant = gpu::Variant::lvp;
+  Precision precision = Precision::fp64;
+  Update update = Update::deferred;
+  double tolerance = 1e-4;
+  std::size_t panel_bytes = 0;
+};
+
+inline std::vector<Way> all_ways() {
+  std::vector<Way> ways;
+  for (gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
+    for (Precision precision : {Precision::fp32, Precision::fp64}) {
+      for (Update update : {Update::deferred, Update::eager}) {
+        // Eager fp32 keeps 1e-3 for short scenes only; it may ask for no more.
+        const bool rough = precision == Precision::fp32 && update == Update::eager;
+        ways.push_back({variant, precision, update, rough ? 1e-2 : 1e-4});
+      }
+    }
+  }
+  return ways;
+}
+
+inline std::string name_of(const Way& s) {
+  return std::string(s.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
+         (s.precision == Precision::fp64 ? "_fp64" : "_fp32") +
+         (s.update == Update::eager ? "_eager" : "_deferred");
+}
+
+class Pair {
+ public:
+  Pair(Scene scene, const Way& way, Needs needs = everything())
+      : problem_(cpu_problem(scene)), vulkan_problem_(vulkan_problem(scene, way)) {
+    reference = cpu_reference::create(problem_, needs);
+    gpu::VulkanOptions options;
+    options.instance.validation = true;
+    options.instance.messages = messages_;
+    options.probe.guard_bytes = 256;
+    options.variant = way.variant;
+    options.panel_bytes = way.panel_bytes;
+    vulkan = gpu::create(vulkan_problem_, needs, options);
+  }
+  ~Pair() {
+    vulkan.reset();  // reports sentinels and what was left undestroyed
+    for (const std::string& m : messages_->texts) ADD_FAILURE() << m;
+  }
+  Pair(const Pair&) = delete;
+  Pair& operator=(const Pair&) = delete;
+
+  [[nodiscard]] const Problem& problem() const { return *problem_; }
+
+  void load(const Load& load) {
+    reference->set_load(load);
+    vulkan->set_load(load);
+  }
+  void destroy(std::span<const Index> elements) {
+    reference->destroy(elements);
+    vulkan->destroy(elements);
+  }
+
+  struct Errors {
+    double u = 0, stress = 0;
+    SolveReport report;
+    StressSummary summary, reference_summary;
+  };
+  /// Solves on both. Elements in `ignored` (besides destroyed ones) do not count.
+  Errors solve(std::span<const std::uint8_t> ignored = {}) {
+    Errors errors;
+    reference->solve();
+    errors.report = vulkan->solve();
+    errors.reference_summary = reference->stress();
+    errors.summary = vulkan->stress();
+    std::vector<std::uint8_t> out(vulkan->destroyed().begin(), vulkan->destroyed().end());
+    for (std::size_t e = 0; e < ignored.size(); ++e) out[e] |= ignored[e];
+    errors.u =
+        displacement_error(problem().mesh(), out, displacement(*vulkan), displacement(*reference));
+    errors.stress = stress_error(out, stress(*vulkan), stress(*reference));
+    return errors;
+  }
+
+  [[nodiscard]] static std::vector<double> displacement(const Backend& backend) {
+    std::vector<double> u(3 * backend.problem().mesh().nodes.size());
+    backend.read_displacement(u);
+    return u;
+  }
+  [[nodiscard]] static std::vector<Voigt> stress(const Backend& backend) {
+    std::vector<Voigt> s(backend.problem().mesh().tets.size());
+    backend.read_stress(s);
+    return s;
+  }
+
+  std::unique_ptr<Backend> reference, vulkan;
+
+ private:
+  static std::shared_ptr<const Problem> cpu_problem(Scene scene) {
+    scene.solver = {};
+    scene.solver.backend = "cpu";
+    return std::make_shared<Problem>(std::move(scene));
+  }
+  static std::shared_ptr<const Problem> vulkan_problem(Scene scene, const Way& way) {
+    scene.solver.backend = "vulkan";
+    scene.solver.precision = way.precision;
+    scene.solver.update = way.update;
+    scene.solver.tolerance = way.tolerance;
+    return std::make_shared<Problem>(std::move(scene));
+  }
+
+  std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();
+  std::shared_ptr<const Problem> problem_, vulkan_problem_;
+};
+
+/// A force shared equally by some nodes.
+inline Load pull(const Problem& problem, const std::vector<Index>& nodes, const Vec3& force) {
+  Load load;
+  for (Index n : nodes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (force[axis] == 0 || problem.dof(n, axis) == kNone) continue;
+      load.force_dofs.push_back(problem.dof(n, axis));
+      load.forces.push_back(force[axis] / static_cast<double>(nodes.size()));
+    }
+  }
+  load.displacements.assign(problem.gripped_dofs().size(), 0.0);
+  return load;
+}
+
+inline std::vector<Index> nodes_in(const Mesh& mesh, const Box& box) {
+  std::vector<Index> nodes;
+  for (Index n = 0; n < mesh.node_count(); ++n) {
+    const Vec3& x = mesh.nodes[n];
+    if ((x.array() >= box.min.array()).all() && (x.array() <= box.max.array()).all()) {
+      nodes.push_back(n);
+    }
+  }
+  return nodes;
+}
+
+/// The pull of the board's lower right corner.
+inline Load corner_pull(const Problem& problem, const Vec3& force = Vec3(0, -60, 0)) {
+  return pull(problem, nodes_in(problem.mesh(), lower_right_corner()), force);
+}
+
+}  // namespace sunder::test
