@@ -161,6 +161,7 @@ class CpuBackend final : public Backend {
       // A correction that no longer shrinks is rounding.
       const bool stalled = attempt > 0 && !(error < report.error / 2);
       report.error = error;
+      if (!std::isfinite(error)) return;  // overflow: there is no correction
       if (error <= kReferenceError || attempt == kRefinements || stalled) return;
       u_ += du_;
     }
