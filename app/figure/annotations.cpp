@@ -196,20 +196,21 @@ std::string color_bar(const StressScale& scale, const Canvas& canvas) {
 std::string caption(const Problem& problem, const Pose& pose, const State& state,
                     const Canvas& canvas) {
   const Scene& scene = problem.scene();
-  const std::string first = "Step " + std::to_string(state.step + 1) + " of " +
-                            std::to_string(scene.steps) + ", load factor " +
-                            rounded(state.load_factor, 4) + ": " +
-                            counted(state.destroyed_count, "element") + " of " +
-                            grouped(problem.tet_count()) + " destroyed. " + sentence_of_scale(pose);
-  std::string second = "Black: destroyed";
-  if (!state.stress.empty() && scene.fracture.model != FractureModel::none)
-    second += "; grey: unbreakable";
-  if (!state.cracks.empty()) second += "; blue line: crack path";
-  if (!state.instruments.empty()) second += "; yellow: instruments";
-  second += "; dark line: held.";
+  const std::string what = "Step " + std::to_string(state.step + 1) + " of " +
+                           std::to_string(scene.steps) + ", load factor " +
+                           rounded(state.load_factor, 4) + ": " +
+                           counted(state.destroyed_count, "element") + " of " +
+                           grouped(problem.tet_count()) + " destroyed.";
+  std::string legend = "Black: destroyed";
+  if (shows_frame(problem)) legend += "; grey: unbreakable";
+  if (!state.cracks.empty()) legend += "; blue line: crack path";
+  if (!state.instruments.empty()) legend += "; yellow: instruments";
+  legend += "; dark line: held.";
   const double top = canvas.corner().y() + canvas.size().y() + 34;
-  return svg::text({canvas.corner().x(), top}, first, "fill=\"#222\"") +
-         svg::text({canvas.corner().x(), top + 21}, second, "fill=\"#666\"");
+  const double left = canvas.corner().x();
+  return svg::text({left, top}, what, "fill=\"#222\"") +
+         svg::text({left, top + 21}, sentence_of_scale(pose), "fill=\"#222\"") +
+         svg::text({left, top + 42}, legend, "fill=\"#666\"");
 }
 
 }  // namespace sunder::app

@@ -9,8 +9,14 @@
 namespace sunder::app {
 namespace {
 
-constexpr double kMargin = 28, kTitle = 58, kCaption = 78, kBar = 118;
+constexpr double kMargin = 28, kTitle = 58, kCaption = 100, kBar = 118;
 constexpr double kWidth = 640, kLeastHeight = 150, kMostHeight = 680;
+
+/// A long title gets smaller letters; bold ones are about 0.66 of their size wide.
+double title_size(std::string_view title, double page_width) {
+  const double fits = (page_width - 2 * kMargin) / (0.66 * static_cast<double>(title.size() + 1));
+  return std::clamp(fits, 9.0, 18.0);
+}
 
 }  // namespace
 
@@ -33,7 +39,9 @@ std::string Canvas::open(std::string_view title) const {
                    "font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"12.5\"") +
          "<title>" + escaped(title) + "</title>\n" +
          svg::rect({0, 0}, {page_width(), page_height()}, "fill=\"#fff\"") +
-         svg::text({kMargin, 34}, title, "font-size=\"18\" font-weight=\"bold\" fill=\"#222\"");
+         svg::text({kMargin, 34}, title,
+                   "font-size=\"" + svg::coordinate(title_size(title, page_width())) +
+                       "\" font-weight=\"bold\" fill=\"#222\"");
 }
 
 }  // namespace sunder::app

@@ -21,12 +21,6 @@ constexpr std::array<Color, 9> kReds{{{255, 245, 240},
                                       {165, 15, 21},
                                       {103, 0, 13}}};
 
-bool has_breakable(const Problem& problem) {
-  for (Index e = 0; e < problem.tet_count(); ++e)
-    if (problem.breakable(e)) return true;
-  return false;
-}
-
 /// Smallest of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not below x.
 double round_up(double x) {
   if (!(x > 0) || !std::isfinite(x)) return 1;
@@ -36,27 +30,35 @@ double round_up(double x) {
   return 10 * power;
 }
 
-double nearly_largest(std::vector<double> values, const std::vector<std::uint8_t>& destroyed) {
-  std::vector<double> live;
-  for (std::size_t e = 0; e < values.size(); ++e)
-    if (!destroyed[e]) live.push_back(values[e]);
-  if (live.empty()) return 0;
-  const auto rank = live.begin() + static_cast<std::ptrdiff_t>((live.size() - 1) * 199 / 200);
-  std::nth_element(live.begin(), rank, live.end());
+double nearly_largest(const Problem& problem, const std::vector<double>& values,
+                      const std::vector<std::uint8_t>& destroyed) {
+  const bool frame = shows_frame(problem);
+  std::vector<double> shown;
+  for (Index e = 0; e < problem.tet_count(); ++e)
+    if (!destroyed[e] && (!frame || problem.breakable(e))) shown.push_back(values[e]);
+  if (shown.empty()) return 0;
+  const auto rank = shown.begin() + static_cast<std::ptrdiff_t>((shown.size() - 1) * 199 / 200);
+  std::nth_element(shown.begin(), rank, shown.end());
   return *rank;
 }
 
 }  // namespace
 
+bool shows_frame(const Problem& problem) {
+  for (Index e = 0; e < problem.tet_count(); ++e)
+    if (problem.breakable(e)) return true;
+  return false;
+}
+
 std::optional<StressScale> stress_scale(const Problem& problem, const State& state) {
   if (state.stress.empty()) return std::nullopt;
-  if (problem.scene().fracture.model != FractureModel::none && has_breakable(problem)) {
+  if (problem.scene().fracture.model != FractureModel::none && shows_frame(problem)) {
     const bool tresca = problem.scene().fracture.yield_measure == YieldMeasure::tresca;
     return StressScale{yield_ratios(problem, state), 1.0,
                        tresca ? "Tresca stress / yield" : "max. shear / yield"};
   }
   StressScale scale{max_shears(state), 1.0, "max. shear [MPa]"};
-  scale.maximum = round_up(nearly_largest(scale.value, state.destroyed));
+  scale.maximum = round_up(nearly_largest(problem, scale.value, state.destroyed));
   return scale;
 }
 
@@ -73,7 +75,7 @@ Color red(double share) {
 
 std::vector<Color> element_colors(const Problem& problem, const State& state,
                                   const std::optional<StressScale>& scale) {
-  const bool frame = has_breakable(problem);
+  const bool frame = shows_frame(problem);
   std::vector<Color> colors(state.destroyed.size(), kPlain);
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (state.destroyed[e])

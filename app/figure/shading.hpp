@@ -25,6 +25,9 @@ struct StressScale {
 /// Shade of red for a share of the scale (clamped to 0 to 1).
 [[nodiscard]] Color red(double share);
 
+/// Unbreakable elements are grey, unless the whole body is.
+[[nodiscard]] bool shows_frame(const Problem& problem);
+
 /// Colour of each element.
 [[nodiscard]] std::vector<Color> element_colors(const Problem& problem, const State& state,
                                                 const std::optional<StressScale>& scale);
