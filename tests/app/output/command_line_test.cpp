@@ -183,19 +183,5 @@ TEST(CommandLine, PlanSaysWhatIsNeededAndLeftOut) {
   EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"board.msh", "torn.toml"}));
 }
 
-TEST(CommandLine, ReportStandsAlone) {
-  const std::string html = read_file(torn_board() / "index.html");
-  EXPECT_EQ(html.find("http://"), html.find("http://www.w3.org/2000/svg"));  // a name, not a link
-  EXPECT_EQ(html.find("https://"), std::string::npos);
-  EXPECT_EQ(html.find("<script"), std::string::npos);
-  EXPECT_EQ(html.find("<link"), std::string::npos);
-  EXPECT_NE(html.find("Board &lt;pulled&gt; &amp; torn"), std::string::npos);
-  EXPECT_EQ(html.find("<pulled>"), std::string::npos);
-  for (const char* part :
-       {"<svg", "data:image/png;base64,", "Fracture", "Cracks", "Events", "Time", "median",
-        "residual", "Left out", "Warnings", "Reactions", "right forceps", "Files", "summary.json"})
-    EXPECT_NE(html.find(part), std::string::npos) << part;
-}
-
 }  // namespace
 }  // namespace sunder::test
