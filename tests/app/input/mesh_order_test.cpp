@@ -5,7 +5,7 @@
 
 #include "app/input/input_support.hpp"
 #include "app/input/mesh_import.hpp"
-#include "app/input/msh_text.hpp"
+#include "app/input/same_mesh.hpp"
 #include "support/msh_reader.hpp"
 
 namespace sunder::test {
