@@ -38,6 +38,19 @@ bool any_breakable(const Problem& problem) {
   return false;
 }
 
+void check_needs(const Needs& scene, const Needs& backend) {
+  const auto check = [](bool needed, bool offered, const char* what) {
+    if (needed && !offered) {
+      throw UsageError(std::string("the scene needs ") + what +
+                       ", which was left out of the backend's needs; create it with needs_of()");
+    }
+  };
+  check(scene.stress, backend.stress, "stress");
+  check(scene.yield, backend.yield, "the yield summary");
+  check(scene.damage, backend.damage, "damage");
+  check(scene.pristine, backend.pristine, "the intact body's field");
+}
+
 }  // namespace
 
 Needs needs_of(const Problem& problem) {
@@ -68,6 +81,7 @@ Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<B
   if (&backend_->problem() != problem_.get()) {
     throw UsageError("the backend was created for another problem");
   }
+  check_needs(needs_of(*problem_), backend_->needs());
   loads_ = std::make_unique<Loads>(*problem_);
   criterion_ = make_criterion(*problem_);
   warnings_ = problem_->warnings();
@@ -80,6 +94,7 @@ StepReport Simulation::step() {
   StepReport report;
   report.step = next_step_;
   report.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
+  interrupted_ = false;
   events_this_step_ = 0;
   decisions_this_step_ = 0;
   pristine_.clear();
@@ -136,18 +151,13 @@ void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
   report.error = solve.error;
   report.iterations += solve.iterations;
   report.polished = report.polished || solve.polished;
-  if (solve.polished) {
-    warn("step " + std::to_string(next_step_) +
-         ": a frame was over the tolerance and was polished");
-  }
+  if (solve.polished) polished_.add(next_step_);
 }
 
 Decision Simulation::decide(const StressSummary& summary) {
   if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return {};
   if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
-    warn("step " + std::to_string(next_step_) + " ended at fracture.max_events = " +
-         std::to_string(problem_->scene().fracture.max_events) +
-         " events; more may be ready to break");
+    capped_.add(next_step_);
     return {};
   }
   const auto forces = reactions();
@@ -239,6 +249,18 @@ void Simulation::find_loose() {
   for (const auto& piece : parts.pieces) loose_elements_ += piece.size();
 }
 
+void Simulation::Steps::add(int step) {
+  if (step == last) return;
+  if (count++ == 0) first = step;
+  last = step;
+}
+
+std::string Simulation::Steps::sentence(const std::string& what) const {
+  if (count == 1) return "step " + std::to_string(first) + " " + what;
+  return std::to_string(count) + " steps between " + std::to_string(first) + " and " +
+         std::to_string(last) + " " + what;
+}
+
 void Simulation::warn(std::string message) {
   if (std::find(warnings_.begin(), warnings_.end(), message) == warnings_.end()) {
     warnings_.push_back(std::move(message));
@@ -247,6 +269,14 @@ void Simulation::warn(std::string message) {
 
 std::vector<std::string> Simulation::warnings() const {
   std::vector<std::string> all = warnings_;
+  if (capped_.count > 0) {
+    all.push_back(capped_.sentence(
+        "ended at fracture.max_events = " + std::to_string(problem_->scene().fracture.max_events) +
+        " events; more may have been ready to break"));
+  }
+  if (polished_.count > 0) {
+    all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
+  }
   if (loose_nodes_ > 0) {
     all.push_back(std::to_string(loose_nodes_) +
                   " nodes are held by destroyed elements only (since step " +

@@ -31,7 +31,7 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// Called after each event, with its records; returning false ends the step early (the state
-  /// stays consistent; interrupted() is then true).
+  /// stays consistent; interrupted() is then true until the next step begins).
   using EventObserver = std::function<bool(std::span<const DestroyedElement>)>;
   void observe_events(EventObserver observer) { observer_ = std::move(observer); }
 
@@ -79,6 +79,13 @@ class Simulation {
   [[nodiscard]] std::span<const double> pristine_displacement();
   [[nodiscard]] double compliance() const;
 
+  /// Steps to which the same thing happened: one warning for all of them.
+  struct Steps {
+    int count = 0, first = kNone, last = kNone;
+    void add(int step);
+    [[nodiscard]] std::string sentence(const std::string& what) const;
+  };
+
   std::shared_ptr<const Problem> problem_;
   std::unique_ptr<Backend> backend_;
   std::unique_ptr<Loads> loads_;
@@ -93,6 +100,7 @@ class Simulation {
   int events_this_step_ = 0;
   int decisions_this_step_ = 0;
   bool interrupted_ = false;
+  Steps capped_, polished_;
   bool solved_ = false;  // the backend holds fields
   std::size_t loose_nodes_ = 0, loose_pieces_ = 0, loose_elements_ = 0;
   int loose_nodes_step_ = kNone, loose_pieces_step_ = kNone;  // first seen
