@@ -109,8 +109,9 @@ void Problem::check_options() const {
 void Problem::resolve_materials() {
   for (const auto& [name, material] : scene_.materials) {
     check_material(name, material);
-    const bool known = std::any_of(mesh().volumes.begin(), mesh().volumes.end(),
-                                   [&](const NamedVolume& v) { return v.name == name; });
+    const bool known =
+        std::any_of(mesh().volumes.begin(), mesh().volumes.end(),
+                    [&wanted = name](const NamedVolume& v) { return v.name == wanted; });
     if (!known) {
       std::string names;
       for (const NamedVolume& v : mesh().volumes) names += " " + quoted(v.name);

@@ -29,8 +29,7 @@ std::vector<std::string> overrides_of(const SceneArguments& arguments) {
 
 OpenedScene open_scene(const SceneArguments& arguments) {
   OpenedScene opened;
-  Scene scene = read_scene(arguments.scene, overrides_of(arguments), &opened.warnings);
-  opened.problem = std::make_shared<const Problem>(std::move(scene));
+  opened.problem = read_problem(arguments.scene, overrides_of(arguments), &opened.warnings);
   return opened;
 }
 

@@ -75,7 +75,7 @@ BoardCells cells_for(long long tets, double thickness) {
 }
 
 Mesh structured_board(const BoardCells& cells, double thickness) {
-  const auto [nx, ny, nz] = cells;
+  const int nx = cells.nx, ny = cells.ny, nz = cells.nz;
   Mesh mesh;
   mesh.volumes = board_volumes();
   std::vector<Index> volume_of_row;
