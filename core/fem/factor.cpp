@@ -2,88 +2,83 @@
 #include "fem/factor.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "sunder/error.hpp"
 
 namespace sunder::fem {
 namespace {
 
-// Right-hand sides are solved in row-major blocks of this width: each entry of L is then read once
-// per block and the inner loop runs over consecutive doubles.
-constexpr Index kBlock = 32;
-using RowBlock = Eigen::Matrix<double, Eigen::Dynamic, kBlock, Eigen::RowMajor>;
-
-/// Solves L L^T y = b in place; `first` is the first row of b that is not zero.
-void solve_in_place(const SparseMatrix& l, Index first, RowBlock& b) {
-  const Index n = static_cast<Index>(l.rows());
-  const Index* outer = l.outerIndexPtr();
-  const Index* inner = l.innerIndexPtr();
-  const double* value = l.valuePtr();
-  for (Index j = first; j < n; ++j) {  // the diagonal comes first in each column
-    b.row(j) /= value[outer[j]];
-    for (Index p = outer[j] + 1; p < outer[j + 1]; ++p) b.row(inner[p]) -= value[p] * b.row(j);
-  }
-  for (Index j = n - 1; j >= 0; --j) {
-    for (Index p = outer[j] + 1; p < outer[j + 1]; ++p) b.row(j) -= value[p] * b.row(inner[p]);
-    b.row(j) /= value[outer[j]];
-  }
-}
+// Right-hand sides that go through the factor together: wide enough for the panels' products.
+constexpr std::size_t kBlock = 64;
 
 }  // namespace
 
-Factor::Factor(const SparseMatrix& lower) {
-  llt_.compute(lower);
-  if (llt_.info() != Eigen::Success) {
+Factor::Factor(const SparseMatrix& lower) : cholesky_(lower) {
+  if (!cholesky_.succeeded()) {
     throw NumericalError(
         "the stiffness matrix is not positive definite in double precision: a part of the body "
         "hangs on a hinge, or stiffness contrast, Poisson's ratio or slivers are too extreme");
   }
 }
 
-Eigen::VectorXd Factor::solve(const Eigen::VectorXd& rhs) const { return llt_.solve(rhs); }
+Eigen::VectorXd Factor::solve(const Eigen::VectorXd& rhs) const {
+  const auto& place = cholesky_.supernodes().place;
+  Eigen::VectorXd y(rhs.size()), x(rhs.size());
+  for (std::size_t i = 0; i < place.size(); ++i) y[place[i]] = rhs[static_cast<Eigen::Index>(i)];
+  cholesky_.forward(y);
+  cholesky_.backward(y);
+  for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y[place[i]];
+  return x;
+}
 
-Eigen::MatrixXd Factor::inverse_columns(std::span<const Index> columns) const {
-  const SparseMatrix& l = llt_.matrixL().nestedExpression();
-  const Index n = static_cast<Index>(l.rows());
-  const auto& permutation = llt_.permutationP().indices();  // row i of A is row P[i] of L
-  Eigen::MatrixXd result(n, static_cast<Index>(columns.size()));
-  RowBlock block(n, kBlock);
+Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
+                                      std::span<const Index> columns) const {
+  const auto& place = cholesky_.supernodes().place;
+  // In the factor's own order, so that the columns of a block share their path.
+  std::vector<Index> order(columns.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return place[columns[a]] < place[columns[b]]; });
+  Eigen::MatrixXd result(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
+  SupernodalCholesky::RowMajor block;
   for (std::size_t start = 0; start < columns.size(); start += kBlock) {
-    const Index width = static_cast<Index>(std::min<std::size_t>(kBlock, columns.size() - start));
-    block.setZero();
-    Index first = n;
-    for (Index c = 0; c < width; ++c) {
-      const Index row = permutation.size() ? permutation[columns[start + c]] : columns[start + c];
-      block(row, c) = 1;
-      first = std::min(first, row);
+    const std::size_t width = std::min(kBlock, columns.size() - start);
+    block.setZero(cholesky_.size(), static_cast<Index>(width));
+    std::vector<Index> seeds;
+    for (std::size_t c = 0; c < width; ++c) {
+      seeds.push_back(place[columns[order[start + c]]]);
+      block(seeds.back(), static_cast<Index>(c)) = 1;
     }
-    solve_in_place(l, first, block);
-    for (Index i = 0; i < n; ++i) {
-      const Index row = permutation.size() ? permutation[i] : i;
-      result.row(i).segment(static_cast<Index>(start), width) = block.row(row).head(width);
+    cholesky_.forward(cholesky_.reach(seeds), block);
+    cholesky_.backward(block);
+    for (std::size_t c = 0; c < width; ++c) {
+      auto column = result.col(order[start + c]);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        column[static_cast<Eigen::Index>(i)] = block(place[rows[i]], static_cast<Index>(c));
+      }
     }
   }
   return result;
 }
 
-Eigen::MatrixXd Factor::inverse() const {
-  // In the factor's own order, so that the columns of a block share their leading zeros.
-  const Index n = static_cast<Index>(llt_.matrixL().rows());
-  const auto& permutation = llt_.permutationP().indices();
-  std::vector<Index> order(static_cast<std::size_t>(n));
-  for (Index i = 0; i < n; ++i) order[permutation.size() ? permutation[i] : i] = i;
-  const Eigen::MatrixXd columns = inverse_columns(order);
-  Eigen::MatrixXd result(n, n);
-  for (Index i = 0; i < n; ++i) result.col(order[i]) = columns.col(i);
-  // Rounding leaves the two triangles apart in the last digits; the updates expect symmetry.
-  result = ((result + result.transpose()) / 2).eval();
-  return result;
+Eigen::MatrixXd Factor::inverse_columns(std::span<const Index> columns) const {
+  std::vector<Index> rows(static_cast<std::size_t>(cholesky_.size()));
+  std::iota(rows.begin(), rows.end(), 0);
+  return inverse_block(rows, columns);
 }
 
-std::size_t Factor::bytes() const {
-  const auto& l = llt_.matrixL().nestedExpression();
-  return static_cast<std::size_t>(l.nonZeros()) * (sizeof(double) + sizeof(Index)) +
-         static_cast<std::size_t>(l.rows() + 1) * sizeof(Index);
+Eigen::MatrixXd Factor::inverse() const {
+  std::vector<Index> all(static_cast<std::size_t>(cholesky_.size()));
+  std::iota(all.begin(), all.end(), 0);
+  Eigen::MatrixXd result = inverse_block(all, all);
+  // Rounding leaves the two triangles apart in the last digits; the updates expect symmetry.
+  for (Eigen::Index j = 0; j < result.cols(); ++j) {
+    for (Eigen::Index i = 0; i < j; ++i) {
+      result(i, j) = result(j, i) = (result(i, j) + result(j, i)) / 2;
+    }
+  }
+  return result;
 }
 
 }  // namespace sunder::fem

@@ -4,9 +4,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
+#include <span>
 
 #include "fem/assembly.hpp"
+#include "fem/supernodal_cholesky.hpp"
 
 namespace sunder::fem {
 
@@ -21,10 +22,16 @@ class Factor {
   [[nodiscard]] Eigen::MatrixXd inverse() const;
   /// Some columns of the inverse, shape (n x columns).
   [[nodiscard]] Eigen::MatrixXd inverse_columns(std::span<const Index> columns) const;
-  [[nodiscard]] std::size_t bytes() const;
+  /// Some columns of the inverse at some rows, shape (rows x columns).
+  [[nodiscard]] Eigen::MatrixXd inverse_block(std::span<const Index> rows,
+                                              std::span<const Index> columns) const;
+  /// Entries of L: a triangular solve reads each once.
+  [[nodiscard]] std::size_t entries() const { return cholesky_.entries(); }
+  [[nodiscard]] std::size_t bytes() const { return cholesky_.bytes(); }
+  [[nodiscard]] const SupernodalCholesky& cholesky() const { return cholesky_; }
 
  private:
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt_;
+  SupernodalCholesky cholesky_;
 };
 
 }  // namespace sunder::fem

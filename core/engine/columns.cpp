@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/columns.hpp"
+
+#include <algorithm>
+
+#include "engine/vectorised.hpp"
+
+namespace sunder::engine {
+namespace {
+
+// Rows of y that stay in the first-level cache while the columns pass.
+constexpr Eigen::Index kRows = 1024;
+
+SUNDER_VECTORISED
+void add_four(const double* a, const double* b, const double* c, const double* d,
+              const double* value, Eigen::Index rows, double* y) {
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    y[i] += (value[0] * a[i] + value[1] * b[i]) + (value[2] * c[i] + value[3] * d[i]);
+  }
+}
+
+SUNDER_VECTORISED
+void add_one(const double* a, double value, Eigen::Index rows, double* y) {
+  for (Eigen::Index i = 0; i < rows; ++i) y[i] += value * a[i];
+}
+
+}  // namespace
+
+void add_columns(const Eigen::MatrixXd& x, std::span<const Index> columns,
+                 std::span<const double> values, Eigen::VectorXd& y) {
+  for (Eigen::Index start = 0; start < x.rows(); start += kRows) {
+    const Eigen::Index rows = std::min(kRows, x.rows() - start);
+    std::size_t i = 0;
+    for (; i + 4 <= columns.size(); i += 4) {
+      add_four(x.col(columns[i]).data() + start, x.col(columns[i + 1]).data() + start,
+               x.col(columns[i + 2]).data() + start, x.col(columns[i + 3]).data() + start,
+               &values[i], rows, y.data() + start);
+    }
+    for (; i < columns.size(); ++i) {
+      add_one(x.col(columns[i]).data() + start, values[i], rows, y.data() + start);
+    }
+  }
+}
+
+}  // namespace sunder::engine

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sparse Cholesky factor P A P^T = L L^T, held as dense panels of columns with equal structure.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "fem/supernodes.hpp"
+
+namespace sunder::fem {
+
+class SupernodalCholesky {
+ public:
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  /// From the lower triangle; succeeded() tells whether A is positive definite in double precision.
+  explicit SupernodalCholesky(const SparseMatrix& lower);
+  [[nodiscard]] bool succeeded() const { return succeeded_; }
+
+  [[nodiscard]] Index size() const { return static_cast<Index>(nodes_.place.size()); }
+  [[nodiscard]] const Supernodes& supernodes() const { return nodes_; }
+  /// Entries of the panels: a triangular solve reads each once.
+  [[nodiscard]] std::size_t entries() const { return values_.size(); }
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// The supernodes that L^-1 b can reach from some rows of L, ascending: their paths to the root.
+  [[nodiscard]] std::vector<Index> reach(std::span<const Index> rows) const;
+
+  /// y <- L^-1 y over the listed supernodes (ascending and closed under parents), y in the order of
+  /// L and zero elsewhere.
+  void forward(std::span<const Index> supernodes, Eigen::VectorXd& y) const;
+  void forward(Eigen::VectorXd& y) const;
+  /// y <- L^-T y.
+  void backward(Eigen::VectorXd& y) const;
+  /// The same for several right sides at once, shape (size() x right sides).
+  void forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y) const;
+  void backward(Eigen::Ref<RowMajor> y) const;
+
+ private:
+  using Panel = Eigen::Map<Eigen::MatrixXd>;
+  using ConstPanel = Eigen::Map<const Eigen::MatrixXd>;
+  [[nodiscard]] ConstPanel panel(Index s) const;
+  [[nodiscard]] bool factorise(const SparseMatrix& permuted);
+  void forward_panel(Index s, Eigen::VectorXd& y, std::vector<double>& work) const;
+
+  Supernodes nodes_;
+  std::vector<double> values_;
+  Index tallest_ = 0;
+  bool succeeded_ = false;
+};
+
+}  // namespace sunder::fem

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every base with the deferred update, against a fresh dense factor refined in extended precision.
+#include "engine/deferred.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "engine/factor_base.hpp"
+#include "engine/inverse_base.hpp"
+#include "pieces.hpp"
+#include "sunder/error.hpp"
+#include "support/accuracy.hpp"
+#include "support/direct_solution.hpp"
+#include "support/sequences.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::engine {
+namespace {
+
+/// A problem with the force that pulls its board, over nodes and over unknowns.
+struct Board {
+  explicit Board(Scene scene)
+      : problem(std::move(scene)), factor(fem::assemble_lower(problem, {})) {
+    nodal.assign(problem.dofs().size(), 0.0);
+    for (Index n = 0; n < problem.node_count(); ++n) {
+      const Vec3& x = problem.mesh().nodes[n];
+      const Index d = problem.dof(n, 1);
+      if (x.x() < 49.999 || x.y() > 0.001) continue;
+      nodal[3 * static_cast<std::size_t>(n) + 1] = -30;
+      if (d != kNone &&
+          !std::binary_search(problem.gripped_dofs().begin(), problem.gripped_dofs().end(), d)) {
+        dofs.push_back(d);
+        values.push_back(-30);
+      }
+    }
+  }
+
+  [[nodiscard]] std::unique_ptr<Base> base(const std::string& name) const {
+    if (name == "inverse") return std::make_unique<InverseBase>(factor);
+    return std::make_unique<FactorBase>(factor);
+  }
+
+  [[nodiscard]] std::vector<double> nodal_displacement(const Eigen::VectorXd& u) const {
+    std::vector<double> all(problem.dofs().size());
+    fem::scatter(problem, {u.data(), static_cast<std::size_t>(u.size())}, all);
+    return all;
+  }
+
+  Problem problem;
+  fem::Factor factor;
+  std::vector<double> nodal, values;
+  std::vector<Index> dofs;
+};
+
+struct Engine {
+  std::string name;
+  std::size_t batch;
+  Deferred deferred;
+};
+
+std::vector<Engine> engines(const Board& board, std::vector<std::size_t> batches) {
+  std::vector<Engine> all;
+  for (const char* name : {"inverse", "factor"}) {
+    for (std::size_t batch : batches) {
+      all.push_back({std::string(name) + " in batches of " + std::to_string(batch), batch,
+                     Deferred(board.base(name), board.problem.gripped_dofs())});
+    }
+  }
+  return all;
+}
+
+void destroy_up_to(const Board& board, Engine& engine, std::span<const Index> sequence,
+                   std::size_t from, std::size_t to) {
+  for (std::size_t i = from - from % engine.batch; i < to; i += engine.batch) {
+    const std::size_t end = std::min(i + engine.batch, sequence.size());
+    if (end <= from || end > to) continue;
+    ASSERT_TRUE(engine.deferred.destroy(board.problem, sequence.subspan(i, end - i)));
+  }
+}
+
+/// Compares all engines with the yardstick; `ignored`: elements that do not count.
+void compare(const Board& board, std::span<Engine> all, std::span<const Index> destroyed,
+             double tolerance) {
+  std::vector<double> scale(board.problem.mesh().tets.size(), 1.0);
+  std::vector<std::uint8_t> dead(scale.size(), 0);
+  for (Index e : destroyed) {
+    scale[e] = board.problem.scene().fracture.alpha;
+    dead[e] = 1;
+  }
+  test::Known known;
+  for (std::size_t i = 0; i < board.problem.dofs().size(); ++i) {
+    const auto grips = board.problem.gripped_dofs();
+    if (std::binary_search(grips.begin(), grips.end(), board.problem.dofs()[i])) {
+      known[static_cast<Index>(i)] = 0.25;
+    }
+  }
+  const test::DirectSolution direct(board.problem, scale, known);
+  const std::vector<double> reference = direct.solve(board.nodal);
+  const std::vector<Voigt> stress = direct.stress(reference);
+  const LooseParts loose = find_loose_parts(board.problem, dead);
+  std::vector<std::uint8_t> ignored = dead;
+  for (const auto& piece : loose.pieces) {
+    for (Index e : piece) ignored[e] = 1;
+  }
+  const std::vector<double> grips(board.problem.gripped_dofs().size(), 0.25);
+  for (Engine& engine : all) {
+    if (destroyed.size() % engine.batch != 0) continue;
+    SCOPED_TRACE(engine.name + " after " + std::to_string(destroyed.size()));
+    Eigen::VectorXd u;
+    engine.deferred.solve({board.dofs, board.values}, grips, u);
+    ASSERT_TRUE(u.allFinite());
+    const std::vector<double> nodal = board.nodal_displacement(u);
+    EXPECT_LE(test::displacement_error(board.problem.mesh(), ignored, nodal, reference), tolerance);
+    EXPECT_LE(test::stress_error(ignored, direct.stress(nodal), stress), tolerance);
+  }
+}
+
+void follow(const Board& board, std::span<const Index> sequence, double tolerance) {
+  std::vector<Engine> all = engines(board, {1, 10, 100});
+  std::size_t done = 0;
+  for (std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{10}, std::size_t{50},
+                        std::size_t{100}, std::size_t{200}}) {
+    for (Engine& engine : all) destroy_up_to(board, engine, sequence, done, k);
+    compare(board, all, sequence.first(k), tolerance);
+    done = k;
+  }
+}
+
+TEST(Deferred, KeepsItsPromiseOverScatteredFractures) {
+  const Board board(test::pulled_board());
+  follow(board, test::scattered_sequence(board.problem, 200), test::kIntactTolerance);
+}
+
+TEST(Deferred, KeepsItsPromiseAlongACrack) {
+  const Board board(test::pulled_board());
+  follow(board, test::crack_sequence(board.problem, 200, 8), test::kCrackTolerance);
+}
+
+TEST(Deferred, KeepsItsPromiseAlongACrackWithGrips) {
+  Scene scene = test::pulled_board();
+  scene.instruments[0].action = Grip{test::lower_right_corner(), Vec3::Constant(0.25), Axes{7}};
+  const Board board(std::move(scene));
+  follow(board, test::crack_sequence(board.problem, 200, 8), test::kCrackTolerance);
+}
+
+TEST(Deferred, KeepsTheAttachedPartRightAfterACut) {
+  Scene scene = test::pulled_board();
+  const Board board(std::move(scene));
+  const std::vector<Index> cut = test::elements_across(board.problem.mesh(), 26.5);
+  std::vector<Engine> all = engines(board, {1, cut.size()});
+  for (Engine& engine : all) destroy_up_to(board, engine, cut, 0, cut.size());
+  compare(board, all, cut, test::kCutTolerance);
+}
+
+TEST(Deferred, TakesEventsBackBitByBit) {
+  Scene scene = test::pulled_board();
+  scene.instruments[0].action = Grip{test::lower_right_corner(), Vec3::Constant(0.25), Axes{7}};
+  const Board board(std::move(scene));
+  const std::vector<Index> crack = test::crack_sequence(board.problem, 60, 8);
+  const std::vector<double> grips(board.problem.gripped_dofs().size(), 0.25);
+  for (Engine& engine : engines(board, {1, 10})) {
+    std::vector<Eigen::VectorXd> solutions;
+    for (std::size_t k = 0; k < crack.size(); k += 10) {
+      destroy_up_to(board, engine, crack, k, k + 10);
+      engine.deferred.solve({board.dofs, board.values}, grips, solutions.emplace_back());
+    }
+    const Index events = engine.deferred.events();
+    const Index events_of_ten = events / static_cast<Index>(crack.size() / 10);
+    for (std::size_t k = solutions.size() - 1; k-- > 0;) {
+      for (Index i = 0; i < events_of_ten; ++i) engine.deferred.take_back();
+      Eigen::VectorXd u;
+      engine.deferred.solve({board.dofs, board.values}, grips, u);
+      EXPECT_EQ(u, solutions[k]) << engine.name << " back to event " << k;
+    }
+  }
+}
+
+TEST(Deferred, HasNothingToTakeBackAtTheStart) {
+  const Board board(test::pulled_board());
+  Deferred deferred(board.base("factor"), {});
+  EXPECT_THROW(deferred.take_back(), UsageError);
+}
+
+}  // namespace
+}  // namespace sunder::engine
