@@ -44,14 +44,14 @@ Crack path_tail(const Crack& crack, std::size_t tip, double length) {
 /// Elements make a path of short zigzags; the field a few h away sees its mean direction.
 Vec2 mean_direction(const Crack& crack, std::size_t tip, double length) {
   const Crack tail = path_tail(crack, tip, length);
-  const Vec2 back = tail.path.empty() ? Vec2(Vec2::Zero()) : Vec2(tail.path.back() - tail.path.front());
+  const Vec2 back =
+      tail.path.empty() ? Vec2(Vec2::Zero()) : Vec2(tail.path.back() - tail.path.front());
   return back.norm() > 0 ? Vec2(back.normalized()) : crack.tips[tip].direction;
 }
 
 bool straight(const Crack& tail, const TipFrame& frame, double tolerance) {
-  return std::all_of(tail.path.begin(), tail.path.end(), [&](const Vec2& p) {
-    return std::abs(frame.local(p).y()) <= tolerance;
-  });
+  return std::all_of(tail.path.begin(), tail.path.end(),
+                     [&](const Vec2& p) { return std::abs(frame.local(p).y()) <= tolerance; });
 }
 
 std::string tip_name(const Crack& crack, std::size_t tip) {
@@ -148,8 +148,8 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   result.material = tip_material(domain);
   displacement_.resize(domain.nodes.size());
   view.displacement(domain.nodes, displacement_);
-  IntegralInput input{problem_,     board_, surface_, result.frame, domain, displacement_,
-                      view.forces, {}};
+  IntegralInput input{problem_, board_,        surface_,    result.frame,
+                      domain,   displacement_, view.forces, {}};
   const Crack tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h()))
     input.side = [&](const Vec2& p) { return path_side(tail, p, 0); };
@@ -174,9 +174,8 @@ TipMaterial FieldIntensityMeter::tip_material(const TipDomain& domain) const {
     compliance += v / problem_.material(e).young;
     poisson += v * problem_.material(e).poisson;
   }
-  const auto held = std::count_if(domain.nodes.begin(), domain.nodes.end(), [&](Index n) {
-    return problem_.dof(n, normal_axis_) == kNone;
-  });
+  const auto held = std::count_if(domain.nodes.begin(), domain.nodes.end(),
+                                  [&](Index n) { return problem_.dof(n, normal_axis_) == kNone; });
   const bool flat = 2 * static_cast<std::size_t>(held) > domain.nodes.size();
   const bool thin = board_.plane().thickness() <= kThinBoard * domain.radius;
   TipMaterial material;

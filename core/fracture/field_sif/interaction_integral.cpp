@@ -72,8 +72,7 @@ void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField
     const Vec3 area = axes * face.area;
     for (int m = 0; m < kModes; ++m) {
       const double work = aux[m].stress.cwiseProduct(field.gradient).sum();
-      sum[m] -=
-          weight * ((aux[m].stress * area).dot(field.gradient.col(0)) - work * area[0]);
+      sum[m] -= weight * ((aux[m].stress * area).dot(field.gradient.col(0)) - work * area[0]);
     }
   }
 }

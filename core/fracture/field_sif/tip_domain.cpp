@@ -35,9 +35,7 @@ Mat3 TipFrame::axes(const BoardPlane& plane) const {
   return rows;
 }
 
-double domain_weight(double r, double radius) {
-  return std::clamp(2 * (1 - r / radius), 0.0, 1.0);
-}
+double domain_weight(double r, double radius) { return std::clamp(2 * (1 - r / radius), 0.0, 1.0); }
 
 TipDomain DomainBuilder::collect(const Vec2& tip, double radius,
                                  std::span<const std::uint8_t> destroyed,
