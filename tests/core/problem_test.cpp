@@ -1,0 +1,528 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bad scenes: each fault is refused with its kind, and with a message that names the place and
+// the value.
+#include "sunder/problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <limits>
+
+#include "sunder/error.hpp"
+#include "support/structured_board.hpp"
+
+namespace sunder {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// 2 x 2 x 1 cells, 24 elements, nodes 0 to 17; held at y = 2.
+Scene good_scene() {
+  Scene scene;
+  scene.source = "scene.toml";
+  scene.mesh = test::structured_board(
+      {2, 2, 1, 2, 2, 1}, [](const Vec3& x) { return std::string(x.y() < 1 ? "lower" : "upper"); });
+  scene.materials["lower"] = {5, 0.4, 2.0};
+  scene.materials["upper"] = {8, 0.4, std::nullopt};
+  scene.supports.emplace_back(Box{Vec3(-1, 1.9, -1), Vec3(3, 3, 2)}, Axes{7});
+  return scene;
+}
+
+Instrument pull(NodeSelection nodes, const Vec3& force) {
+  Instrument tool;
+  tool.name = "forceps";
+  tool.action = Pull{std::move(nodes), force};
+  return tool;
+}
+
+Instrument grip(NodeSelection nodes, const Vec3& displacement, Axes axes = {}) {
+  Instrument tool;
+  tool.name = "clamp";
+  tool.action = Grip{std::move(nodes), displacement, axes};
+  return tool;
+}
+
+Instrument press(int crack) {
+  Instrument tool;
+  tool.name = "probe";
+  tool.action = Press{Vec3(1, 1, 0), CrackSide::upper, crack, Vec3(0, 1, 0)};
+  return tool;
+}
+
+PresetCrack crack(std::vector<Index> elements, std::optional<Vec3> mouth, std::vector<Vec3> tips) {
+  return {ElementSelection(std::move(elements)), mouth, std::move(tips)};
+}
+
+struct Fault {
+  const char* name;
+  std::function<void(Scene&)> spoil;
+  InputFault fault;
+  std::vector<std::string> message;  // parts that it must contain
+};
+
+class BadScene : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(BadScene, IsRefused) {
+  Scene scene = good_scene();
+  GetParam().spoil(scene);
+  try {
+    const Problem problem(std::move(scene));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.fault(), GetParam().fault) << error.what();
+    EXPECT_EQ(error.exit_code(), 3);
+    const std::string what = error.what();
+    EXPECT_EQ(what.rfind("scene.toml: ", 0), 0u) << what;
+    for (const std::string& part : GetParam().message) {
+      EXPECT_NE(what.find(part), std::string::npos) << '"' << part << "\" is not in: " << what;
+    }
+  }
+}
+
+const std::vector<Fault> kMaterialFaults = {
+    {"YoungZero",
+     [](Scene& s) { s.materials["lower"].young = 0; },
+     InputFault::out_of_range,
+     {"lower", "young = 0", "above 0"}},
+    {"YoungNegative",
+     [](Scene& s) { s.materials["lower"].young = -5; },
+     InputFault::out_of_range,
+     {"lower", "young = -5"}},
+    {"YoungNan",
+     [](Scene& s) { s.materials["upper"].young = kNan; },
+     InputFault::out_of_range,
+     {"upper", "nan", "finite"}},
+    {"YoungInfinite",
+     [](Scene& s) { s.materials["upper"].young = kInf; },
+     InputFault::out_of_range,
+     {"upper", "inf"}},
+    {"PoissonHalf",
+     [](Scene& s) { s.materials["lower"].poisson = 0.5; },
+     InputFault::out_of_range,
+     {"lower", "poisson = 0.5", "below 0.5"}},
+    {"PoissonMinusOne",
+     [](Scene& s) { s.materials["lower"].poisson = -1; },
+     InputFault::out_of_range,
+     {"poisson = -1"}},
+    {"PoissonNan",
+     [](Scene& s) { s.materials["lower"].poisson = kNan; },
+     InputFault::out_of_range,
+     {"poisson = nan"}},
+    {"YieldZero",
+     [](Scene& s) { s.materials["lower"].yield = 0; },
+     InputFault::out_of_range,
+     {"lower", "yield = 0", "left out"}},
+    {"YieldInfinite",
+     [](Scene& s) { s.materials["lower"].yield = kInf; },
+     InputFault::out_of_range,
+     {"yield = inf"}},
+    {"VolumeWithoutMaterial",
+     [](Scene& s) { s.materials.erase("upper"); },
+     InputFault::no_material,
+     {"upper", "12 elements"}},
+    {"MaterialWithoutVolume",
+     [](Scene& s) {
+       s.materials["middle"] = {5, 0.4, 1.0};
+     },
+     InputFault::unknown_name,
+     {"middle", "\"lower\"", "\"upper\""}},
+};
+
+const std::vector<Fault> kMeshFaults = {
+    {"NoTetrahedra",
+     [](Scene& s) {
+       s.mesh.tets.clear();
+       s.mesh.volume_of.clear();
+     },
+     InputFault::no_tetrahedra,
+     {"no tetrahedra"}},
+    {"Inverted",
+     [](Scene& s) { std::swap(s.mesh.tets[7][0], s.mesh.tets[7][1]); },
+     InputFault::inverted_element,
+     {"element 7", "inverted"}},
+    {"ZeroVolume",
+     [](Scene& s) { s.mesh.nodes[4] = s.mesh.nodes[3]; },
+     InputFault::degenerate_element,
+     {"element ", "zero volume"}},
+    {"RepeatedNode",
+     [](Scene& s) { s.mesh.tets[5][2] = s.mesh.tets[5][0]; },
+     InputFault::degenerate_element,
+     {"element 5"}},
+    {"NodeOutside",
+     [](Scene& s) { s.mesh.tets[3][1] = 18; },
+     InputFault::bad_id,
+     {"element 3", "node 18", "0 to 17"}},
+    {"NodeNegative",
+     [](Scene& s) { s.mesh.tets[3][1] = -1; },
+     InputFault::bad_id,
+     {"element 3", "node -1"}},
+    {"CoordinateNan",
+     [](Scene& s) { s.mesh.nodes[2].z() = kNan; },
+     InputFault::out_of_range,
+     {"node 2", "finite"}},
+    {"VolumeTwice",
+     [](Scene& s) { s.mesh.volumes[1].name = "lower"; },
+     InputFault::duplicate_name,
+     {"lower", "twice"}},
+    {"VolumeOutside",
+     [](Scene& s) { s.mesh.volume_of[9] = 2; },
+     InputFault::bad_id,
+     {"element 9", "volume 2"}},
+    {"VolumeMissing", [](Scene& s) { s.mesh.volume_of.pop_back(); }, InputFault::bad_id, {}},
+    {"SurfaceNodeOutside",
+     [](Scene& s) {
+       s.mesh.surfaces.push_back({"skin", 1, {{0, 1, 99}}});
+     },
+     InputFault::bad_id,
+     {"skin", "99"}},
+    {"UnusedNode",
+     [](Scene& s) { s.mesh.nodes.emplace_back(5, 5, 5); },
+     InputFault::unsupported_body,
+     {"node 18", "no element"}},
+};
+
+void add_second_body(Scene& scene) {
+  const Index first = scene.mesh.node_count();
+  for (const Vec3& x : {Vec3(9, 0, 0), Vec3(10, 0, 0), Vec3(9, 1, 0), Vec3(9, 0, 1)}) {
+    scene.mesh.nodes.push_back(x);
+  }
+  scene.mesh.tets.push_back({first, first + 1, first + 2, first + 3});
+  scene.mesh.volume_of.push_back(0);
+}
+
+const std::vector<Fault> kSupportFaults = {
+    {"NoSupport",
+     [](Scene& s) { s.supports.clear(); },
+     InputFault::unsupported_body,
+     {"element 0", "6 rigid modes"}},
+    {"Rollers",
+     [](Scene& s) { s.supports[0].axes = Axes{2}; },
+     InputFault::unsupported_body,
+     {"3 rigid modes"}},
+    {"Hinge",
+     [](Scene& s) {
+       s.supports[0].nodes = std::vector<Index>{0, 1};
+     },
+     InputFault::unsupported_body,
+     {"1 rigid modes"}},
+    {"SecondBody",
+     [](Scene& s) { add_second_body(s); },
+     InputFault::unsupported_body,
+     {"element 24", "body 1 of 2", "6 rigid modes"}},
+    {"GripHoldsTooLittle",
+     [](Scene& s) {
+       s.supports.clear();
+       s.instruments.push_back(grip(std::vector<Index>{0}, Vec3::Zero()));
+     },
+     InputFault::unsupported_body,
+     {"3 rigid modes"}},
+    {"EverythingHeld",
+     [](Scene& s) {
+       s.supports[0].nodes = Box{Vec3(-1, -1, -1), Vec3(3, 3, 3)};
+     },
+     InputFault::unsupported_body,
+     {"every node is held"}},
+    {"SupportSelectsNothing",
+     [](Scene& s) {
+       s.supports[0].nodes = Box{Vec3(7, 7, 7), Vec3(8, 8, 8)};
+     },
+     InputFault::empty_selection,
+     {"fixed 0", "no node"}},
+    {"SupportWithoutAxes",
+     [](Scene& s) { s.supports[0].axes = Axes{0}; },
+     InputFault::out_of_range,
+     {"fixed 0", "axis"}},
+    {"SupportNodeOutside",
+     [](Scene& s) { s.supports[0].nodes = std::vector<Index>{18}; },
+     InputFault::bad_id,
+     {"fixed 0", "node 18", "0 to 17"}},
+    {"SupportBoxBackwards",
+     [](Scene& s) {
+       s.supports[0].nodes = Box{Vec3(3, 3, 3), Vec3(-1, -1, -1)};
+     },
+     InputFault::out_of_range,
+     {"fixed 0", "box"}},
+    {"SupportBoxNan",
+     [](Scene& s) {
+       s.supports[0].nodes = Box{Vec3(kNan, 0, 0), Vec3(1, 1, 1)};
+     },
+     InputFault::out_of_range,
+     {"fixed 0", "box"}},
+    {"SupportBallNegative",
+     [](Scene& s) {
+       s.supports[0].nodes = Ball{Vec3(0, 0, 0), -1};
+     },
+     InputFault::out_of_range,
+     {"fixed 0", "radius"}},
+    {"SupportUnknownSurface",
+     [](Scene& s) { s.supports[0].nodes = SurfaceName{"skin"}; },
+     InputFault::unknown_name,
+     {"fixed 0", "skin", "no named surfaces"}},
+};
+
+const std::vector<Fault> kInstrumentFaults = {
+    {"PullOnHeldNode",
+     [](Scene& s) { s.instruments.push_back(pull(std::vector<Index>{7}, Vec3(0, -1, 0))); },
+     InputFault::load_on_held_node,
+     {"forceps", "node 7", "along y", "support"}},
+    {"PullOnGrippedNode",
+     [](Scene& s) {
+       s.instruments.push_back(grip(std::vector<Index>{0}, Vec3(0, 1, 0)));
+       s.instruments.push_back(pull(std::vector<Index>{0}, Vec3(1, 0, 0)));
+     },
+     InputFault::load_on_held_node,
+     {"forceps", "node 0", "along x", "clamp"}},
+    {"ForceNan",
+     [](Scene& s) { s.instruments.push_back(pull(std::vector<Index>{0}, Vec3(0, kNan, 0))); },
+     InputFault::out_of_range,
+     {"forceps", "force", "finite"}},
+    {"PullSelectsNothing",
+     [](Scene& s) {
+       s.instruments.push_back(pull(Ball{Vec3(9, 9, 9), 1}, Vec3(0, 1, 0)));
+     },
+     InputFault::empty_selection,
+     {"forceps"}},
+    {"GripOnSupport",
+     [](Scene& s) { s.instruments.push_back(grip(std::vector<Index>{6}, Vec3(0, 1, 0))); },
+     InputFault::conflicting_supports,
+     {"clamp", "node 6", "x", "support"}},
+    {"TwoGripsOnOneNode",
+     [](Scene& s) {
+       s.instruments.push_back(grip(std::vector<Index>{0, 1}, Vec3(0, 1, 0)));
+       s.instruments.push_back(grip(std::vector<Index>{1, 2}, Vec3(0, 1, 0)));
+       s.instruments.back().name = "second";
+     },
+     InputFault::conflicting_supports,
+     {"second", "node 1", "clamp"}},
+    {"GripWithoutAxes",
+     [](Scene& s) { s.instruments.push_back(grip(std::vector<Index>{0}, Vec3(0, 1, 0), Axes{0})); },
+     InputFault::out_of_range,
+     {"clamp", "axis"}},
+    {"GripInfinite",
+     [](Scene& s) { s.instruments.push_back(grip(std::vector<Index>{0}, Vec3(kInf, 0, 0))); },
+     InputFault::out_of_range,
+     {"clamp", "displacement"}},
+    {"NameTwice",
+     [](Scene& s) {
+       s.instruments.push_back(pull(std::vector<Index>{0}, Vec3(0, 1, 0)));
+       s.instruments.push_back(pull(std::vector<Index>{1}, Vec3(0, 1, 0)));
+     },
+     InputFault::duplicate_name,
+     {"forceps", "twice"}},
+    {"RampBackwards",
+     [](Scene& s) {
+       s.instruments.push_back(pull(std::vector<Index>{0}, Vec3(0, 1, 0)));
+       s.instruments.back().ramp = Ramp{0.8, 0.2};
+     },
+     InputFault::out_of_range,
+     {"forceps", "[0.8, 0.2]"}},
+    {"PressOnMissingCrack",
+     [](Scene& s) { s.instruments.push_back(press(0)); },
+     InputFault::unknown_name,
+     {"probe", "crack 0"}},
+    {"PressUnderModelA",
+     [](Scene& s) {
+       s.fracture.model = FractureModel::a;
+       s.instruments.push_back(press(0));
+     },
+     InputFault::unknown_name,
+     {"probe", "keeps no cracks"}},
+    {"PressOnNegativeCrack",
+     [](Scene& s) {
+       s.fracture.model = FractureModel::b;
+       s.instruments.push_back(press(-1));
+     },
+     InputFault::unknown_name,
+     {"probe", "crack -1"}},
+};
+
+const std::vector<Fault> kFractureFaults = {
+    {"CrackElementOutside",
+     [](Scene& s) { s.cracks.push_back(crack({24}, Vec3(2, 1, 0), {Vec3(1, 1, 0)})); },
+     InputFault::bad_id,
+     {"crack 0", "element 24", "0 to 23"}},
+    {"CracksOverlap",
+     [](Scene& s) {
+       s.cracks.push_back(crack({0, 1}, Vec3(2, 1, 0), {Vec3(1, 1, 0)}));
+       s.cracks.push_back(crack({1, 2}, Vec3(2, 1, 0), {Vec3(1, 1, 0)}));
+     },
+     InputFault::bad_id,
+     {"crack 1", "element 1", "crack 0"}},
+    {"MouthAndTwoTips",
+     [](Scene& s) {
+       s.cracks.push_back(crack({0}, Vec3(2, 1, 0), {Vec3(1, 1, 0), Vec3(0, 1, 0)}));
+     },
+     InputFault::missing_key,
+     {"crack 0", "one tip"}},
+    {"NoMouthOneTip",
+     [](Scene& s) { s.cracks.push_back(crack({0}, std::nullopt, {Vec3(1, 1, 0)})); },
+     InputFault::missing_key,
+     {"crack 0", "two tips"}},
+    {"CrackWithoutLength",
+     [](Scene& s) { s.cracks.push_back(crack({0}, Vec3(1, 1, 0), {Vec3(1, 1, 0)})); },
+     InputFault::out_of_range,
+     {"crack 0", "length"}},
+    {"TipNan",
+     [](Scene& s) { s.cracks.push_back(crack({0}, Vec3(1, 1, 0), {Vec3(kNan, 1, 0)})); },
+     InputFault::out_of_range,
+     {"crack 0", "tip"}},
+    {"CrackUnknownVolume",
+     [](Scene& s) {
+       s.cracks.push_back({VolumeName{"notch"}, Vec3(2, 1, 0), {Vec3(1, 1, 0)}});
+     },
+     InputFault::unknown_name,
+     {"crack 0", "notch", "lower"}},
+    {"RemovalAfterTheEnd",
+     [](Scene& s) {
+       s.steps = 3;
+       s.removals.push_back({3, std::vector<Index>{0}});
+     },
+     InputFault::out_of_range,
+     {"destroy 0", "step 3", "0 to 2"}},
+    {"RemovalBeforeTheStart",
+     [](Scene& s) {
+       s.removals.push_back({-1, std::vector<Index>{0}});
+     },
+     InputFault::out_of_range,
+     {"destroy 0", "step -1"}},
+    {"RemovalOfNothing",
+     [](Scene& s) {
+       s.removals.push_back({0, Box{Vec3(8, 8, 8), Vec3(9, 9, 9)}});
+     },
+     InputFault::empty_selection,
+     {"destroy 0", "no element"}},
+    {"RemovalElementOutside",
+     [](Scene& s) {
+       s.removals.push_back({0, std::vector<Index>{0, -7}});
+     },
+     InputFault::bad_id,
+     {"destroy 0", "element -7"}},
+    {"AlphaZero", [](Scene& s) { s.fracture.alpha = 0; }, InputFault::out_of_range, {"alpha = 0"}},
+    {"AlphaOne", [](Scene& s) { s.fracture.alpha = 1; }, InputFault::out_of_range, {"alpha = 1"}},
+    {"AlphaNan",
+     [](Scene& s) { s.fracture.alpha = kNan; },
+     InputFault::out_of_range,
+     {"alpha = nan"}},
+    {"MaxEventsZero",
+     [](Scene& s) { s.fracture.max_events = 0; },
+     InputFault::out_of_range,
+     {"max_events = 0"}},
+    {"NormalZero",
+     [](Scene& s) { s.fracture.plane_normal = Vec3::Zero(); },
+     InputFault::out_of_range,
+     {"plane_normal"}},
+    {"ToleranceZero",
+     [](Scene& s) { s.solver.tolerance = 0; },
+     InputFault::out_of_range,
+     {"tolerance = 0"}},
+    {"ToleranceNan",
+     [](Scene& s) { s.solver.tolerance = kNan; },
+     InputFault::out_of_range,
+     {"tolerance = nan"}},
+    {"StepsZero", [](Scene& s) { s.steps = 0; }, InputFault::out_of_range, {"steps = 0"}},
+};
+
+const auto kName = [](const auto& p) { return p.param.name; };
+INSTANTIATE_TEST_SUITE_P(Material, BadScene, ::testing::ValuesIn(kMaterialFaults), kName);
+INSTANTIATE_TEST_SUITE_P(Mesh, BadScene, ::testing::ValuesIn(kMeshFaults), kName);
+INSTANTIATE_TEST_SUITE_P(Support, BadScene, ::testing::ValuesIn(kSupportFaults), kName);
+INSTANTIATE_TEST_SUITE_P(Instrument, BadScene, ::testing::ValuesIn(kInstrumentFaults), kName);
+INSTANTIATE_TEST_SUITE_P(Fracture, BadScene, ::testing::ValuesIn(kFractureFaults), kName);
+
+TEST(GoodScene, NumbersItsUnknowns) {
+  const Problem problem(good_scene());
+  EXPECT_EQ(problem.node_count(), 18);
+  EXPECT_EQ(problem.dof_count(), 3 * (18 - 6));  // six nodes at y = 2
+  EXPECT_EQ(problem.dof(0, 0), 0);
+  EXPECT_EQ(problem.dof(5, 2), 17);
+  EXPECT_EQ(problem.dof(6, 0), kNone);
+  EXPECT_EQ(problem.dof(9, 0), 18);
+  EXPECT_EQ(problem.anchor_stiffness(), 0);
+  EXPECT_TRUE(problem.breakable(0));
+  EXPECT_FALSE(problem.breakable(23));
+  EXPECT_DOUBLE_EQ(problem.shape(0).volume, 1.0 / 6);
+}
+
+TEST(GoodScene, OverlappingSupportsAdd) {
+  Scene scene = good_scene();
+  scene.supports.emplace_back(std::vector<Index>{0, 6}, Axes{4});
+  const Problem problem(std::move(scene));
+  EXPECT_EQ(problem.dof(0, 2), kNone);
+  EXPECT_EQ(problem.dof(0, 1), 1);
+  EXPECT_EQ(problem.dof(6, 0), kNone);
+}
+
+// A pull may act on a node that is held on other axes only.
+TEST(GoodScene, PullBesideAHeldAxis) {
+  Scene scene = good_scene();
+  scene.supports.emplace_back(std::vector<Index>{0}, Axes{4});
+  scene.instruments.push_back(pull(std::vector<Index>{0}, Vec3(0, -1, 0)));
+  EXPECT_EQ(Problem(std::move(scene)).instrument_nodes()[0].nodes, std::vector<Index>{0});
+}
+
+TEST(Selections, AreSortedAndUnique) {
+  Scene scene = good_scene();
+  scene.removals.push_back({0, std::vector<Index>{9, 3, 9}});
+  scene.removals.push_back({0, Box{Vec3(0, 0, 0), Vec3(1, 1, 1)}});
+  scene.removals.push_back({0, VolumeName{"upper"}});
+  const Problem problem(std::move(scene));
+  EXPECT_EQ(problem.removal_elements()[0], (std::vector<Index>{3, 9}));
+  EXPECT_EQ(problem.removal_elements()[1], (std::vector<Index>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(problem.removal_elements()[2].front(), 12);
+  EXPECT_EQ(problem.removal_elements()[2].size(), 12u);
+}
+
+TEST(Selections, BoxesAreClosedAndSurfacesNameNodes) {
+  Scene scene = good_scene();
+  scene.mesh.surfaces.push_back({"skin", 1, {{2, 1, 0}, {2, 0, 9}}});
+  scene.instruments.push_back(pull(SurfaceName{"skin"}, Vec3(0, -1, 0)));
+  scene.instruments.push_back(pull(Box{Vec3(0, 0, 0), Vec3(1, 0, 0)}, Vec3(0, -1, 0)));
+  scene.instruments.push_back(pull(Ball{Vec3(0, 0, 0), 1}, Vec3(0, -1, 0)));
+  scene.instruments[1].name = "b";
+  scene.instruments[2].name = "c";
+  const Problem problem(std::move(scene));
+  EXPECT_EQ(problem.instrument_nodes()[0].nodes, (std::vector<Index>{0, 1, 2, 9}));
+  EXPECT_EQ(problem.instrument_nodes()[1].nodes, (std::vector<Index>{0, 1}));
+  EXPECT_EQ(problem.instrument_nodes()[2].nodes, (std::vector<Index>{0, 1, 3, 9}));
+}
+
+TEST(Ramp, RisesLinearlyAndClamps) {
+  const Ramp ramp{0.2, 0.6};
+  EXPECT_EQ(ramp.factor(0.1), 0);
+  EXPECT_DOUBLE_EQ(ramp.factor(0.4), 0.5);
+  EXPECT_EQ(ramp.factor(0.7), 1);
+  const Ramp step{0.5, 0.5};
+  EXPECT_EQ(step.factor(0.49), 0);
+  EXPECT_EQ(step.factor(0.5), 1);
+}
+
+TEST(UnusedNodes, AreDroppedAndIdsCloseUp) {
+  Mesh mesh = good_scene().mesh;
+  const auto tets = mesh.tets;
+  mesh.nodes.insert(mesh.nodes.begin() + 4, Vec3(7, 7, 7));
+  for (auto& tet : mesh.tets) {
+    for (Index& n : tet) n += n >= 4 ? 1 : 0;
+  }
+  mesh.surfaces.push_back({"skin", 1, {{0, 1, 2}, {0, 4, 5}, {0, 5, 6}}});
+  EXPECT_EQ(drop_unused_nodes(mesh), 1);
+  EXPECT_EQ(mesh.tets, tets);
+  EXPECT_EQ(mesh.surfaces[0].triangles, (std::vector<std::array<Index, 3>>{{0, 1, 2}, {0, 4, 5}}));
+  EXPECT_EQ(drop_unused_nodes(mesh), 0);
+}
+
+// A cube's free faces: two on each of six sides, normals outward.
+TEST(FreeFaces, OfACube) {
+  const Mesh mesh = test::structured_board({1, 1, 1, 1, 1, 1});
+  const auto faces = free_faces(mesh);
+  EXPECT_EQ(faces.size(), 12u);
+  for (const FreeFace& f : faces) {
+    const Vec3 a = mesh.nodes[f.nodes[0]], b = mesh.nodes[f.nodes[1]], c = mesh.nodes[f.nodes[2]];
+    const Vec3 outward = (a + b + c) / 3 - Vec3::Constant(0.5);
+    EXPECT_GT((b - a).cross(c - a).dot(outward), 0);
+  }
+}
+
+}  // namespace
+}  // namespace sunder

@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frame: time and ramps, presets and scripts, events, reports, warnings, misuse.
+#include "sunder/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "cpu_reference/cpu_reference.hpp"
+#include "fem/element.hpp"
+#include "pieces.hpp"
+#include "sunder/error.hpp"
+#include "support/structured_board.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::test {
+namespace {
+
+Box band(double low, double high) { return {Vec3(-1, low, -1), Vec3(99, high, 9)}; }
+
+/// 4 x 8 x 1 cells, fixed at y = 8, pulled down at y = 0; 192 elements.
+Scene strip(double yield, double force, int steps) {
+  Scene scene;
+  scene.mesh = structured_board({4, 8, 1, 4, 8, 1});
+  scene.materials["board"] = {5, 0.3, yield};
+  scene.supports.emplace_back(band(7.9, 9), Axes{7});
+  Instrument forceps;
+  forceps.name = "forceps";
+  forceps.action = Pull{band(-1, 0.1), Vec3(0, -force, 0)};
+  forceps.ramp = Ramp{0, 1};
+  scene.instruments.push_back(forceps);
+  scene.steps = steps;
+  scene.fracture.model = FractureModel::a;
+  return scene;
+}
+
+struct SceneRun {
+  explicit SceneRun(Scene scene)
+      : problem(std::make_shared<Problem>(std::move(scene))),
+        simulation(problem, cpu_reference::create(problem, needs_of(*problem))) {}
+
+  std::vector<StepReport> all() {
+    std::vector<StepReport> reports;
+    while (!simulation.done()) reports.push_back(simulation.step());
+    return reports;
+  }
+
+  std::shared_ptr<const Problem> problem;
+  Simulation simulation;
+};
+
+bool mentions(const std::vector<std::string>& warnings, const std::string& part) {
+  return std::any_of(warnings.begin(), warnings.end(),
+                     [&](const std::string& w) { return w.find(part) != std::string::npos; });
+}
+
+TEST(Frame, LoadFollowsSceneTime) {
+  SceneRun run(strip(1e9, 2, 4));
+  std::vector<double> compliance;
+  for (const StepReport& r : run.all()) {
+    EXPECT_DOUBLE_EQ(r.load_factor, (r.step + 1) / 4.0);
+    EXPECT_EQ(r.events, 0);
+    compliance.push_back(r.compliance);
+  }
+  // Displacement grows with the force, so force times displacement with its square.
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(compliance[i], compliance[3] * (i + 1) * (i + 1) / 16.0, 1e-10 * compliance[3]);
+  }
+  EXPECT_EQ(run.simulation.steps_done(), 4);
+}
+
+TEST(Frame, StepAfterTheLastIsMisuse) {
+  SceneRun run(strip(1e9, 2, 1));
+  EXPECT_FALSE(run.simulation.done());
+  run.simulation.step();
+  EXPECT_TRUE(run.simulation.done());
+  EXPECT_THROW(run.simulation.step(), UsageError);
+}
+
+TEST(Frame, SupportsAndInstrumentsBalance) {
+  SceneRun run(strip(0.6, 3, 3));
+  for (int i = 0; i < 3; ++i) {
+    run.simulation.step();
+    Vec3 sum = run.simulation.support_reaction();
+    double largest = 0;
+    for (const Vec3& r : run.simulation.reactions()) {
+      sum += r;
+      largest = std::max(largest, r.norm());
+    }
+    EXPECT_TRUE(sum.norm() <= 1e-9 * largest) << sum.norm();
+    EXPECT_EQ(run.simulation.reactions()[0], Vec3(0, -3 * (i + 1) / 3.0, 0));
+  }
+}
+
+TEST(Frame, ZeroLoadBreaksNothing) {
+  SceneRun run(strip(0.1, 0, 2));
+  for (const StepReport& r : run.all()) {
+    EXPECT_EQ(r.events, 0);
+    EXPECT_EQ(r.max_yield_ratio, 0);
+    EXPECT_EQ(r.residual, 0);
+    EXPECT_EQ(r.error, 0);
+    EXPECT_EQ(r.compliance, 0);
+  }
+}
+
+TEST(Frame, NoLoadAtAll) {
+  Scene scene = strip(0.1, 0, 1);
+  scene.instruments.clear();
+  SceneRun run(std::move(scene));
+  EXPECT_EQ(run.all()[0].compliance, 0);
+  EXPECT_TRUE(run.simulation.reactions().empty());
+  EXPECT_EQ(run.simulation.support_reaction(), Vec3(0, 0, 0));
+}
+
+TEST(ModelA, BreaksTheWorstElementFirst) {
+  SceneRun run(strip(0.35, 2, 1));
+  std::vector<Index> worst;
+  run.simulation.observe_frames([&] {
+    const auto stress = run.simulation.stress();
+    const auto destroyed = run.simulation.backend().destroyed();
+    Index element = kNone;
+    double largest = 0;
+    for (Index e = 0; e < run.problem->tet_count(); ++e) {
+      const double shear = fem::max_shear(stress[e]);
+      if (!destroyed[e] && shear >= 0.35 && shear > largest) {
+        largest = shear;
+        element = e;
+      }
+    }
+    if (element != kNone) worst.push_back(element);
+  });
+  Scene limited = run.problem->scene();
+  const StepReport report = run.simulation.step();
+  ASSERT_GT(report.events, 3);
+  ASSERT_EQ(worst.size(), run.simulation.destroyed().size());
+  for (std::size_t i = 0; i < worst.size(); ++i) {
+    const DestroyedElement& d = run.simulation.destroyed()[i];
+    EXPECT_EQ(d.element, worst[i]);
+    EXPECT_EQ(d.event, static_cast<int>(i));
+    EXPECT_EQ(d.cause, Cause::mss);
+    EXPECT_EQ(d.crack, kNone);
+    EXPECT_TRUE(d.ratio && *d.ratio >= 1);
+    EXPECT_DOUBLE_EQ(d.load_factor, 1);
+  }
+  EXPECT_LT(report.max_yield_ratio, 1);
+  EXPECT_TRUE(run.simulation.cracks().empty());
+}
+
+TEST(ModelA, MaxEventsEndsTheStepWithAWarning) {
+  Scene scene = strip(0.35, 2, 2);
+  scene.fracture.max_events = 2;
+  scene.instruments[0].ramp.reset();
+  SceneRun run(std::move(scene));
+  EXPECT_EQ(run.simulation.step().events, 2);
+  EXPECT_TRUE(mentions(run.simulation.warnings(), "max_events = 2"));
+  EXPECT_EQ(run.simulation.step().events, 2);
+  EXPECT_EQ(run.simulation.destroyed().back().event, 3);
+}
+
+TEST(ModelA, TrescaIsTwiceTheShear) {
+  Scene scene = strip(0.7, 2, 1);
+  SceneRun shear(strip(0.35, 2, 1));
+  scene.fracture.yield_measure = YieldMeasure::tresca;
+  SceneRun tresca(std::move(scene));
+  shear.all();
+  tresca.all();
+  ASSERT_EQ(shear.simulation.destroyed().size(), tresca.simulation.destroyed().size());
+  for (std::size_t i = 0; i < shear.simulation.destroyed().size(); ++i) {
+    EXPECT_EQ(shear.simulation.destroyed()[i].element, tresca.simulation.destroyed()[i].element);
+  }
+}
+
+TEST(ModelNone, BreaksNothingByItself) {
+  Scene scene = strip(0.01, 2, 2);
+  scene.fracture.model = FractureModel::none;
+  SceneRun run(std::move(scene));
+  EXPECT_FALSE(run.simulation.backend().needs().damage);
+  for (const StepReport& r : run.all()) {
+    EXPECT_EQ(r.destroyed, 0);
+    EXPECT_GT(r.max_yield_ratio, 1);
+  }
+}
+
+TEST(Scripts, TakeElementsOutBeforeTheFirstSolveOfTheirStep) {
+  Scene scene = strip(1e9, 2, 3);
+  scene.fracture.model = FractureModel::none;
+  scene.instruments[0].ramp.reset();
+  scene.removals.push_back({1, std::vector<Index>{40, 20, 30}});
+  scene.removals.push_back({1, std::vector<Index>{30, 50}});
+  scene.removals.push_back({2, std::vector<Index>{20}});
+  SceneRun run(std::move(scene));
+  const double intact = run.simulation.step().compliance;
+  const StepReport second = run.simulation.step();
+  EXPECT_EQ(second.events, 1);
+  EXPECT_EQ(second.destroyed, 4);
+  EXPECT_GT(second.compliance, intact * (1 + 1e-6)) << "must act in its own step";
+  std::vector<Index> order;
+  for (const DestroyedElement& d : run.simulation.destroyed()) {
+    order.push_back(d.element);
+    EXPECT_EQ(d.step, 1);
+    EXPECT_EQ(d.event, 0);
+    EXPECT_EQ(d.cause, Cause::script);
+    EXPECT_FALSE(d.ratio);
+    EXPECT_EQ(d.crack, kNone);
+    EXPECT_DOUBLE_EQ(d.load_factor, 2.0 / 3);
+  }
+  EXPECT_EQ(order, (std::vector<Index>{20, 30, 40, 50}));
+  EXPECT_TRUE(mentions(run.simulation.warnings(), "destroy 1 in step 1: 1 of its elements"));
+  const StepReport third = run.simulation.step();
+  EXPECT_EQ(third.events, 0);
+  EXPECT_EQ(third.destroyed, 4);
+  EXPECT_TRUE(mentions(run.simulation.warnings(), "destroy 2 in step 2"));
+  EXPECT_TRUE(run.simulation.cracks().empty());
+}
+
+TEST(Scripts, MayTakeUnbreakableElements) {
+  Scene scene = strip(1, 2, 1);
+  scene.materials["board"].yield.reset();
+  scene.removals.push_back({0, std::vector<Index>{100}});
+  SceneRun run(std::move(scene));
+  EXPECT_EQ(run.all()[0].destroyed, 1);
+}
+
+Scene notched(FractureModel model) {
+  Scene scene = strip(0.9, 2, 2);
+  scene.fracture.model = model;
+  std::vector<Index> notch;
+  for (Index e = 6 * (3 + 4 * 4); e < 6 * (4 + 4 * 4); ++e) notch.push_back(e);  // cell (3, 4)
+  scene.cracks.push_back({notch, Vec3(4, 4.5, 0.5), {Vec3(3, 4.5, 0.5)}});
+  return scene;
+}
+
+TEST(Presets, AreEventZeroOfStepZero) {
+  for (FractureModel model : {FractureModel::none, FractureModel::a, FractureModel::b}) {
+    SceneRun run(notched(model));
+    run.simulation.step();
+    ASSERT_GE(run.simulation.destroyed().size(), 6u);
+    for (int i = 0; i < 6; ++i) {
+      const DestroyedElement& d = run.simulation.destroyed()[i];
+      EXPECT_EQ(d.element, 6 * 19 + i);
+      EXPECT_EQ(d.event, 0);
+      EXPECT_EQ(d.step, 0);
+      EXPECT_EQ(d.cause, Cause::preset);
+      EXPECT_DOUBLE_EQ(d.load_factor, 0.5);
+    }
+  }
+}
+
+// An unbreakable board with a preset crack under model B: nothing can grow, nothing may fail.
+TEST(Presets, OnAnUnbreakableBoard) {
+  for (bool stress : {true, false}) {
+    Scene scene = notched(FractureModel::b);
+    scene.materials["board"].yield.reset();
+    scene.output.stress = stress;
+    SceneRun run(std::move(scene));
+    for (const StepReport& r : run.all()) EXPECT_EQ(r.destroyed, 6);
+  }
+}
+
+TEST(Needs, FollowTheScene) {
+  const auto needs = [](const std::function<void(Scene&)>& change) {
+    Scene scene = strip(0.5, 2, 1);
+    change(scene);
+    return needs_of(Problem(std::move(scene)));
+  };
+  const Needs a = needs([](Scene&) {});
+  EXPECT_TRUE(a.stress && a.yield && a.damage && !a.pristine);
+  const Needs b = needs([](Scene& s) { s.fracture.model = FractureModel::b; });
+  EXPECT_TRUE(b.stress && b.yield && b.damage && b.pristine);
+  const Needs quiet = needs([](Scene& s) {
+    s.fracture.model = FractureModel::none;
+    s.output.stress = false;
+  });
+  EXPECT_FALSE(quiet.stress || quiet.yield || quiet.damage || quiet.pristine);
+  EXPECT_FALSE(quiet.left_out.empty());
+  const Needs script = needs([](Scene& s) {
+    s.fracture.model = FractureModel::none;
+    s.removals.push_back({0, std::vector<Index>{0}});
+  });
+  EXPECT_TRUE(script.damage);
+}
+
+TEST(Needs, StressThatWasLeftOutIsMisuse) {
+  Scene scene = strip(0.5, 2, 1);
+  scene.fracture.model = FractureModel::none;
+  scene.output.stress = false;
+  SceneRun run(std::move(scene));
+  EXPECT_THROW((void)run.simulation.stress(), UsageError);
+  run.simulation.step();
+  EXPECT_THROW((void)run.simulation.stress(), UsageError);
+}
+
+TEST(Needs, ABackendThatOffersLessIsRefused) {
+  const auto problem = std::make_shared<Problem>(strip(0.5, 2, 1));
+  EXPECT_THROW(Simulation(problem, cpu_reference::create(problem, Needs{})), UsageError);
+  EXPECT_THROW(Simulation(problem, nullptr), UsageError);
+  const auto other = std::make_shared<Problem>(strip(0.5, 2, 1));
+  EXPECT_THROW(Simulation(problem, cpu_reference::create(other, needs_of(*other))), UsageError);
+}
+
+TEST(Determinism, TwoRunsAgreeToTheLastBit) {
+  for (FractureModel model : {FractureModel::a, FractureModel::b}) {
+    Scene scene = notched(model);
+    scene.materials["board"].yield = 0.35;
+    SceneRun first(scene), second(scene);
+    const auto a = first.all(), b = second.all();
+    ASSERT_GT(first.simulation.destroyed().size(), 6u);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].compliance, b[i].compliance);
+      EXPECT_EQ(a[i].residual, b[i].residual);
+      EXPECT_EQ(a[i].error, b[i].error);
+      EXPECT_EQ(a[i].events, b[i].events);
+    }
+    EXPECT_EQ(first.simulation.displacement(), second.simulation.displacement());
+    EXPECT_EQ(first.simulation.stress(), second.simulation.stress());
+    ASSERT_EQ(first.simulation.destroyed().size(), second.simulation.destroyed().size());
+    for (std::size_t i = 0; i < first.simulation.destroyed().size(); ++i) {
+      const auto &d = first.simulation.destroyed()[i], &e = second.simulation.destroyed()[i];
+      EXPECT_EQ(d.element, e.element);
+      EXPECT_EQ(d.ratio, e.ratio);
+    }
+  }
+}
+
+TEST(Observer, InterruptsAfterAnEventAndLeavesTheStateConsistent) {
+  SceneRun run(strip(0.35, 2, 2));
+  int events = 0;
+  run.simulation.observe_events([&](std::span<const DestroyedElement> d) {
+    EXPECT_EQ(d.size(), 1u);
+    return ++events < 2;
+  });
+  const int first = run.simulation.step().events;
+  const int second = run.simulation.step().events;
+  EXPECT_EQ(first + second, events);
+  EXPECT_GE(events, 2);
+  EXPECT_TRUE(run.simulation.interrupted());
+  EXPECT_EQ(run.simulation.destroyed().size(), static_cast<std::size_t>(events));
+  // Fields belong together: a_e D B u with the elements destroyed by now.
+  const auto displacement = run.simulation.displacement();
+  const auto stress = run.simulation.stress();
+  for (Index e = 0; e < run.problem->tet_count(); ++e) {
+    Eigen::Matrix<double, 3, 4> corners;
+    for (int a = 0; a < 4; ++a) corners.col(a) = displacement[run.problem->mesh().tets[e][a]];
+    const double scale = run.simulation.backend().destroyed()[e] ? 1e-6 : 1.0;
+    const Voigt s = scale * fem::stress(run.problem->shape(e), run.problem->material(e), corners);
+    EXPECT_LE((stress[e] - s).norm(), 1e-12 * s.norm()) << e;
+  }
+  Vec3 sum = run.simulation.support_reaction() + run.simulation.reactions()[0];
+  EXPECT_LE(sum.norm(), 1e-9 * run.simulation.reactions()[0].norm());
+}
+
+TEST(Observer, TheNextStepGoesOnAfterAnInterruption) {
+  Scene scene = strip(0.35, 2, 2);
+  scene.instruments[0].ramp.reset();
+  SceneRun run(std::move(scene));
+  bool stop = true;
+  run.simulation.observe_events([&](auto) { return !stop; });
+  EXPECT_EQ(run.simulation.step().events, 1);
+  EXPECT_TRUE(run.simulation.interrupted());
+  stop = false;
+  EXPECT_GT(run.simulation.step().events, 1);
+  EXPECT_FALSE(run.simulation.interrupted());
+}
+
+TEST(Grips, RampAndReactions) {
+  Scene scene = strip(1e9, 0, 4);
+  scene.instruments[0].action = Grip{band(-1, 0.1), Vec3(0, -0.4, 0), Axes{2}};
+  SceneRun run(std::move(scene));
+  for (int i = 1; i <= 4; ++i) {
+    const StepReport report = run.simulation.step();
+    const double moved = -0.4 * i / 4.0;
+    EXPECT_DOUBLE_EQ(run.simulation.displacement()[0].y(), moved);
+    const Vec3 reaction = run.simulation.reactions()[0];
+    EXPECT_LT(reaction.y(), 0);
+    EXPECT_EQ(reaction.x(), 0);
+    EXPECT_NEAR(report.compliance, reaction.y() * moved, 1e-12 * std::abs(report.compliance));
+    EXPECT_LE(std::abs(run.simulation.support_reaction().y() + reaction.y()),
+              1e-9 * std::abs(reaction.y()));
+  }
+}
+
+// A strip cut through: reported once, with what is cut off; the rest stays finite and right.
+TEST(LooseParts, AreReported) {
+  Scene scene = strip(1e9, 0.001, 2);
+  scene.fracture.model = FractureModel::none;
+  scene.solver.tolerance = 1e-3;
+  scene.removals.push_back({1, Box{Vec3(0, 4, 0), Vec3(4, 5, 1)}});  // a row of cells
+  SceneRun run(std::move(scene));
+  run.simulation.step();
+  EXPECT_TRUE(run.simulation.warnings().empty());
+  run.simulation.step();
+  EXPECT_TRUE(
+      mentions(run.simulation.warnings(), "1 pieces with 96 elements are cut off (since step 1)"));
+  for (const Vec3& u : run.simulation.displacement()) EXPECT_TRUE(u.allFinite());
+}
+
+TEST(LooseParts, ByHand) {
+  Scene scene = strip(1, 1, 1);
+  const Problem problem(std::move(scene));
+  std::vector<std::uint8_t> destroyed(192, 0);
+  EXPECT_TRUE(find_loose_parts(problem, destroyed).none());
+  for (Index e = 0; e < 48; ++e) destroyed[e] = 1;  // the two lowest rows
+  LooseParts parts = find_loose_parts(problem, destroyed);
+  EXPECT_EQ(parts.isolated_nodes.size(), 20u);  // y = 0 and y = 1, five by two each
+  EXPECT_TRUE(parts.pieces.empty());
+  std::fill(destroyed.begin(), destroyed.begin() + 24, 0);  // only the second row is out
+  parts = find_loose_parts(problem, destroyed);
+  EXPECT_TRUE(parts.isolated_nodes.empty());
+  ASSERT_EQ(parts.pieces.size(), 1u);
+  EXPECT_EQ(parts.pieces[0].size(), 24u);
+}
+
+// A frame that fails leaves the last good fields readable: "results so far".
+TEST(Failure, LeavesTheLastFieldsReadable) {
+  Scene scene = strip(1e9, 1e308, 2);
+  scene.instruments[0].ramp = Ramp{0.5, 0.5};
+  scene.instruments.push_back(scene.instruments[0]);
+  scene.instruments[0].ramp = Ramp{0.6, 0.6};
+  scene.instruments[1].name = "gentle";
+  std::get<Pull>(scene.instruments[1].action).force = Vec3(0, -1, 0);
+  SceneRun run(std::move(scene));
+  run.simulation.step();
+  const auto u = run.simulation.displacement();
+  const auto stress = run.simulation.stress();
+  EXPECT_THROW(run.simulation.step(), NumericalError);
+  EXPECT_EQ(run.simulation.steps_done(), 1);
+  EXPECT_EQ(run.simulation.displacement(), u);
+  EXPECT_EQ(run.simulation.stress(), stress);
+}
+
+TEST(Frame, BeforeTheFirstStep) {
+  SceneRun run(strip(1, 1, 1));
+  EXPECT_EQ(run.simulation.displacement()[0], Vec3(0, 0, 0));
+  EXPECT_EQ(run.simulation.stress()[0], Voigt(Voigt::Zero()));
+  EXPECT_EQ(run.simulation.acting_nodes(0).size(), 10u);
+}
+
+}  // namespace
+}  // namespace sunder::test
