@@ -49,6 +49,7 @@ StressSummary Backend::stress() {
   require(stage_ == Stage::solved || stage_ == Stage::stressed, "stress() needs solve() first");
   const StressSummary summary = do_stress();
   stage_ = Stage::stressed;
+  stress_known_ = true;
   return summary;
 }
 
@@ -102,13 +103,13 @@ void Backend::read_displacement(std::span<const Index> nodes, std::span<Vec3> di
 }
 
 void Backend::read_stress(std::span<Voigt> stress) const {
-  require(stage_ == Stage::stressed, "there is no stress before stress()");
+  require(stress_known_, "there is no stress before stress()");
   require(stress.size() == problem_->mesh().tets.size(), "one stress per element");
   do_read_stress(stress);
 }
 
 Voigt Backend::read_stress(Index element) const {
-  require(stage_ == Stage::stressed, "there is no stress before stress()");
+  require(stress_known_, "there is no stress before stress()");
   require(element >= 0 && element < problem_->tet_count(), "an element outside the mesh");
   return do_read_stress(element);
 }

@@ -111,7 +111,8 @@ class Backend {
   void read_displacement(std::span<double> displacement) const;
   /// Same at some nodes, so that a quiet frame reads back only what its instruments need.
   void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;
-  /// Stress of the last stress(), Voigt order, shape (elements), MPa.
+  /// Stress of the last stress() (that of an earlier solve after a solve() that failed), Voigt
+  /// order, shape (elements), MPa.
   void read_stress(std::span<Voigt> stress) const;
   [[nodiscard]] Voigt read_stress(Index element) const;
   /// Force that the grips exert on the body, one per gripped dof, N.
@@ -146,6 +147,7 @@ class Backend {
   Needs needs_;
   std::vector<std::uint8_t> destroyed_;
   Stage stage_ = Stage::created;
+  bool stress_known_ = false;  // some stress() has succeeded
 };
 
 }  // namespace sunder

@@ -28,6 +28,8 @@ class Problem {
  public:
   /// Checks the scene strictly and resolves all names and selections. Throws InputError.
   explicit Problem(Scene scene);
+  Problem(const Problem&) = delete;  // holds pointers into its own scene
+  Problem& operator=(const Problem&) = delete;
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Mesh& mesh() const { return scene_.mesh; }
