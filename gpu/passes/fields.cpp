@@ -236,6 +236,14 @@ void Fields::record_correction(vulkan::Commands& commands) const {
   commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_groups, 0, 1}, 1);
 }
 
+void Fields::write_displacement(std::span<const double> nodal) {
+  std::vector<double> padded(4 * problem_.mesh().nodes.size(), 0.0);
+  for (std::size_t n = 0; n < problem_.mesh().nodes.size(); ++n) {
+    std::copy_n(&nodal[3 * n], 3, &padded[4 * n]);
+  }
+  displacement_.write(std::span<const double>(padded));
+}
+
 void Fields::read_displacement(std::span<double> nodal) const {
   std::vector<double> padded(4 * problem_.mesh().nodes.size());
   displacement_.read(std::span<double>(padded));

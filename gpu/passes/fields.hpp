@@ -57,6 +57,10 @@ class Fields {
   [[nodiscard]] const vulkan::Buffer& residual() const { return residual_; }
   [[nodiscard]] const vulkan::Buffer& state_words() const { return state_; }
 
+  /// For tests of single kernels: inputs as given, shapes (3 * nodes) and (rows()).
+  void write_displacement(std::span<const double> nodal);
+  void write_residual(std::span<const double> residual) { residual_.write(residual); }
+
   void read_displacement(std::span<double> nodal) const;
   [[nodiscard]] Vec3 read_displacement(Index node) const;
   /// A field at some unknowns.

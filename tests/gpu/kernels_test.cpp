@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// Single kernels against plain double precision on equal inputs, rounded to storage precision
+// first; sizes are no multiples of 64. Bounds are derived from the sums' lengths.
+#include <Eigen/Geometry>
+#include <numeric>
+#include <random>
+
+#include "fem/assembly.hpp"
+#include "fem/element.hpp"
+#include "gpu/passes/dense_inverse.hpp"
+#include "gpu/passes/exact_columns.hpp"
+#include "gpu/passes/fields.hpp"
+#include "gpu_body.hpp"
+
+namespace sunder::test {
+namespace {
+
+constexpr double kEps32 = 1.1920928955078125e-7;
+constexpr double kEps64 = 2.220446049250313e-16;
+
+struct Numbers {
+  gpu::Variant variant;
+  bool fp64;
+  [[nodiscard]] double eps() const { return fp64 ? kEps64 : kEps32; }
+};
+
+class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
+ protected:
+  void SetUp() override {
+    WithVulkan<testing::TestWithParam<Numbers>>::SetUp();
+    if (IsSkipped()) return;
+    vulkan::InstanceOptions options;
+    options.validation = true;
+    options.messages = messages_;
+    const auto instance = std::make_shared<vulkan::Instance>(options);
+    device_ = vulkan::create_device(instance, vulkan::list_devices(*instance).front(), {-1, 256});
+    factory_ = std::make_unique<gpu::KernelFactory>(*device_, GetParam().variant, GetParam().fp64);
+  }
+  void TearDown() override {
+    for (const std::string& m : messages_->texts) ADD_FAILURE() << m;
+  }
+
+  /// Symmetric, entries in [-1, 1], representable in storage precision.
+  Eigen::MatrixXd random_symmetric(Index n) {
+    Eigen::MatrixXd m(n, n);
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i <= j; ++i) m(i, j) = m(j, i) = random();
+    }
+    return m;
+  }
+  double random() {
+    const double v = uniform_(generator_);
+    return GetParam().fp64 ? v : static_cast<double>(static_cast<float>(v));
+  }
+
+  std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();
+  std::unique_ptr<vulkan::Device> device_;
+  std::unique_ptr<gpu::KernelFactory> factory_;
+  std::mt19937 generator_{42};
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+};
+
+TEST_P(Kernels, PickAndLowRankUpdateInOneAndSeveralPanels) {
+  for (const Index n : {1, 43, 300, 597}) {
+    for (const std::size_t panel_bytes : {std::size_t{0}, std::size_t{64} * 768 * 8}) {
+      const Eigen::MatrixXd x = random_symmetric(n);
+      const auto rows = gpu::round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
+      gpu::DenseInverse inverse(*factory_, n, rows, panel_bytes);
+      inverse.upload(
+          [&](Index first, Index count) -> Eigen::MatrixXd { return x.middleCols(first, count); });
+      std::vector<Index> all(static_cast<std::size_t>(n));
+      std::iota(all.begin(), all.end(), 0);
+      ASSERT_EQ(inverse.pick(all, all), x);  // storage keeps rounded entries exactly
+
+      // Rank 12 on every fifth dof, entries of X up to 1: sums of `touched` and of 12 products.
+      std::vector<Index> touched;
+      for (Index i = 0; i < n; i += 5) touched.push_back(i);
+      const auto t = static_cast<Index>(touched.size());
+      Eigen::MatrixXd v(t, std::min<Index>(12, 2 * t));
+      for (double& entry : v.reshaped()) entry = random();
+      inverse.update(touched, v);
+      const Eigen::MatrixXd z = x(Eigen::all, touched) * v;
+      const Eigen::MatrixXd size = x(Eigen::all, touched).cwiseAbs() * v.cwiseAbs();
+      const Eigen::MatrixXd error = (inverse.pick(all, all) - (x + z * z.transpose())).cwiseAbs();
+      const double units =
+          4.0 + static_cast<double>(v.cols()) + (GetParam().fp64 ? static_cast<double>(t) : 1.0);
+      const Eigen::MatrixXd allowed =
+          units * GetParam().eps() * (x.cwiseAbs() + size * size.transpose());
+      EXPECT_TRUE((error.array() <= allowed.array()).all())
+          << "n " << n << ", largest " << (error.array() / allowed.array()).maxCoeff();
+    }
+  }
+}
+
+/// Uses the board's fields for positions and residual; any problem of size n does.
+TEST_P(Kernels, DenseAndFewColumnProducts) {
+  Scene scene;
+  scene.mesh = structured_board({6, 5, 2});
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, 9.9, -1), Vec3(11, 11, 2)}, Axes{7}});
+  const Problem problem(scene);
+  gpu::Fields fields(*factory_, problem, everything());
+  const Index n = problem.dof_count();
+  ASSERT_NE(n % 64, 0);
+  const Eigen::MatrixXd x = random_symmetric(n);
+  gpu::DenseInverse inverse(*factory_, n, fields.rows(), 0);
+  inverse.upload(
+      [&](Index first, Index count) -> Eigen::MatrixXd { return x.middleCols(first, count); });
+  gpu::ExactColumns exact(*factory_, fields.rows());
+  Eigen::MatrixXd columns(n, 70);
+  for (double& entry : columns.reshaped()) entry = uniform_(generator_);
+  ASSERT_TRUE(exact.extend(columns, 70));
+  gpu::PartialSums partials(*factory_, fields.rows(), inverse.chunks() + exact.chunks() + 1);
+  inverse.bind(partials, fields.residual());
+  exact.bind(partials, fields.residual());
+  const auto sum = partials.bind_sum(fields.positions(), fields.nodal(gpu::Field::displacement));
+
+  gpu::Loaded load;
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(n), c(70);
+  for (Index i = 3; i < n; i += 4) {
+    load.dofs.push_back(i);
+    load.values.push_back(f[i] = uniform_(generator_));
+  }
+  for (double& entry : c) entry = uniform_(generator_);
+  inverse.set_loaded(load);
+  exact.set_coefficients(c);
+  const auto result = [&](auto&& record) {
+    vulkan::Commands commands(*device_);
+    commands.begin();
+    const std::uint32_t chunks = record(commands);
+    commands.barrier();
+    partials.record_sum(commands, *sum, chunks, false);
+    commands.end();
+    commands.submit();
+    std::vector<Index> dofs(static_cast<std::size_t>(n));
+    std::iota(dofs.begin(), dofs.end(), 0);
+    return fields.read_unknowns(gpu::Field::displacement, dofs);
+  };
+  // Fp64 sums of n + 70 products of numbers up to 1, whatever the storage.
+  const double allowed = (static_cast<double>(n) + 70) * kEps64 * (static_cast<double>(n) + 70);
+  const Eigen::VectorXd few = result([&](vulkan::Commands& commands) {
+    const auto chunks = inverse.record_loaded(commands, 0);
+    commands.barrier();
+    return chunks + exact.record_apply(commands, chunks);
+  });
+  EXPECT_LE((few - (x * f + columns * c)).cwiseAbs().maxCoeff(), allowed);
+
+  std::vector<double> r(fields.rows(), 0.0);
+  for (Index i = 0; i < n; ++i) r[static_cast<std::size_t>(i)] = uniform_(generator_);
+  fields.write_residual(r);
+  const Eigen::Map<const Eigen::VectorXd> rhs(r.data(), n);
+  const Eigen::VectorXd dense =
+      result([&](vulkan::Commands& commands) { return inverse.record_dense(commands, 0); });
+  EXPECT_LE((dense - x * rhs).cwiseAbs().maxCoeff(), allowed);
+
+  vulkan::Commands commands(*device_);
+  commands.begin();
+  exact.record_project(commands);
+  commands.end();
+  commands.submit();
+  EXPECT_LE((exact.projection() - columns.transpose() * rhs).cwiseAbs().maxCoeff(), allowed);
+}
+
+/// Random boards, rigid motions far larger than the strain, up to nu 0.499.
+TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
+  for (const double nu : {0.0, 0.4, 0.499}) {
+    Scene scene;
+    scene.mesh = structured_board({5, 4, 3});
+    for (Vec3& x : scene.mesh.nodes) x += 0.1 * Vec3(random(), random(), random());
+    scene.materials["board"] = {5, nu, 2.0};
+    scene.supports.push_back({Box{Vec3(-1, 9.5, -1), Vec3(11, 11, 2)}, Axes{7}});
+    const Problem problem(scene);
+    gpu::Fields fields(*factory_, problem, everything());
+    std::vector<double> u(3 * problem.mesh().nodes.size());
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = 10 + 0.01 * uniform_(generator_);
+    fields.write_displacement(u);
+    fields.set_load(std::vector<double>(fields.rows(), 0.0), {});
+    const Index gone = 7;
+    fields.destroy({&gone, 1});
+    vulkan::Commands commands(*device_);
+    commands.begin();
+    fields.record_state(commands);
+    commands.end();
+    commands.submit();
+
+    std::vector<Voigt> stress(problem.mesh().tets.size());
+    fields.read_stress(stress);
+    double largest = 0, worst_ratio = 0;
+    Index worst = kNone;
+    std::vector<double> scale(stress.size(), 1.0);
+    scale[gone] = problem.scene().fracture.alpha;
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      const auto corners = fem::corner_displacement(problem.mesh(), e, u);
+      const Voigt s = scale[e] * fem::stress(problem.shape(e), problem.material(e), corners);
+      // Norm product D, B, (u_a - u_0).
+      const double norms = fem::elasticity(5, nu).norm() *
+                           problem.shape(e).gradient.rightCols<3>().norm() *
+                           (corners.rightCols<3>().colwise() - corners.col(0)).norm();
+      EXPECT_LE(tensor_norm(stress[e] - s), 8 * GetParam().eps() / (1 - 2 * nu) * scale[e] * norms)
+          << "element " << e << ", nu " << nu;
+      if (e == gone) continue;
+      largest = std::max(largest, tensor_norm(s));
+      const double ratio = fem::max_shear(s) / 2.0;
+      if (ratio > worst_ratio) {
+        worst_ratio = ratio;
+        worst = e;
+      }
+    }
+    const shaders::Summary summary = fields.state();
+    EXPECT_EQ(static_cast<Index>(summary.any_element), worst);
+    EXPECT_NEAR(summary.any_ratio, worst_ratio, 32 * GetParam().eps() / (1 - 2 * nu) * worst_ratio);
+    EXPECT_NEAR(std::sqrt(summary.stress_squared), largest,
+                32 * GetParam().eps() / (1 - 2 * nu) * largest);
+
+    std::vector<double> k_u(u.size());
+    fem::apply_stiffness(problem, scale, u, k_u);
+    double squared = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      if (problem.dofs()[i] != kNone) squared += k_u[i] * k_u[i];
+    }
+    // Fp64 in every precision; a node sums 24 elements or so.
+    EXPECT_NEAR(summary.residual_squared, squared, 1e4 * kEps64 / (1 - 2 * nu) * squared);
+  }
+}
+
+/// Principal stresses with every kind of coincidence.
+TEST_P(Kernels, YieldRatioOfKnownStates) {
+  Scene scene;
+  scene.mesh = structured_board({1, 1, 1, 1, 1, 1});
+  scene.materials["board"] = {5, 0.25, 2.0};
+  scene.supports.push_back({std::vector<Index>{0}, Axes{7}});
+  scene.supports.push_back({std::vector<Index>{1, 2}, Axes{7}});
+  const Problem problem(scene);
+  gpu::Fields fields(*factory_, problem, everything());
+  fields.set_load(std::vector<double>(fields.rows(), 0.0), {});
+  const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  for (const Vec3& strain : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(0, 0, 0),
+                             Vec3(1, -1, 0), Vec3(1, 1 + 1e-6, -2), Vec3(-3, 1e-3, 2)}) {
+    for (const bool rotated : {false, true}) {
+      Mat3 h = 0.01 * strain.asDiagonal();
+      if (rotated) h = rotation * h * rotation.transpose();
+      std::vector<double> u;
+      for (const Vec3& x : problem.mesh().nodes) {
+        const Vec3 at = h * x;
+        u.insert(u.end(), at.data(), at.data() + 3);
+      }
+      fields.write_displacement(u);
+      vulkan::Commands commands(*device_);
+      commands.begin();
+      fields.record_state(commands);
+      commands.end();
+      commands.submit();
+      // tau = mu (largest - smallest principal strain), mu = 2 MPa; yield 2 MPa.
+      const double ratio = 0.01 * (strain.maxCoeff() - strain.minCoeff());
+      EXPECT_NEAR(fields.state().any_ratio, ratio, 16 * GetParam().eps() * 0.01 * 4)
+          << strain.transpose() << (rotated ? " rotated" : "");
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Kernels,
+    testing::Values(Numbers{gpu::Variant::gpu, false}, Numbers{gpu::Variant::gpu, true},
+                    Numbers{gpu::Variant::lvp, false}, Numbers{gpu::Variant::lvp, true}),
+    [](const auto& tested) {
+      return std::string(tested.param.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
+             (tested.param.fp64 ? "_fp64" : "_fp32");
+    });
+
+}  // namespace
+}  // namespace sunder::test
