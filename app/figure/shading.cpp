@@ -63,7 +63,7 @@ std::optional<StressScale> stress_scale(const Problem& problem, const State& sta
 }
 
 Color red(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * (kReds.size() - 1);
+  const double at = (share > 0 ? std::min(share, 1.0) : 0.0) * (kReds.size() - 1);
   const auto low = std::min(static_cast<std::size_t>(at), kReds.size() - 2);
   const double t = at - static_cast<double>(low);
   const auto mix = [t](int a, int b) {

@@ -31,9 +31,9 @@ void expect_whole_results(const std::filesystem::path& folder) {
   for (const char* name : {"summary.json", "events.csv", "frames.csv", "result.vtu", "figure.svg",
                            "figure.png", "index.html"})
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
-  EXPECT_NO_THROW(read_json(folder / "summary.json"));
-  EXPECT_NO_THROW(parse_xml(read_file(folder / "result.vtu")));
-  EXPECT_NO_THROW(parse_xml(read_file(folder / "figure.svg")));
+  EXPECT_TRUE(read_json(folder / "summary.json").is_object());
+  EXPECT_EQ(parse_xml(read_file(folder / "result.vtu")).name, "VTKFile");
+  EXPECT_EQ(parse_xml(read_file(folder / "figure.svg")).name, "svg");
 }
 
 class Interruption : public ::testing::TestWithParam<int> {};
