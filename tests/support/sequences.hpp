@@ -56,10 +56,10 @@ inline std::vector<Index> crack_sequence(const Problem& problem, std::size_t cou
   std::vector<Index> sequence;
   for (double offset : {0.0, 1.5, -1.5, 3.0, -3.0, 4.5, -4.5}) {
     for (Index e : elements_across(mesh, 26.5 + offset)) {
+      if (sequence.size() == count) return sequence;
       if (taken[e] || !problem.breakable(e) || centroid(mesh, e).x() < end) continue;
       taken[e] = 1;
       sequence.push_back(e);
-      if (sequence.size() == count) return sequence;
     }
   }
   return sequence;
