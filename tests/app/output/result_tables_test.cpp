@@ -26,7 +26,9 @@ TEST(ResultFolder, HoldsExactlyTheDocumentedFiles) {
 
 TEST(EventsTable, HasTheDocumentedColumns) {
   const auto rows = read_csv(torn_board() / "events.csv");
-  EXPECT_EQ(rows.front(),
+  ASSERT_GE(rows.front().size(), 18u);  // further columns may follow
+  const Row documented(rows.front().begin(), rows.front().begin() + 18);
+  EXPECT_EQ(documented,
             (Row{"step", "event", "element", "criterion", "crack", "ratio", "load_factor", "tip",
                  "K", "K_a", "K_b", "K_c", "theta_deg", "r", "sigma0", "beta_deg", "a", "b"}));
   for (const Row& row : rows) EXPECT_EQ(row.size(), rows.front().size());
