@@ -4,6 +4,7 @@
 #include <charconv>
 #include <vector>
 
+#include "app/input/toml_guard.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::app {
@@ -67,8 +68,10 @@ std::string as_toml_string(const std::string& word) {
 toml::table parse_value(const std::string& value, const std::string& text) {
   const std::string source = "--set " + one_line(text);
   try {
-    toml::table parsed = toml::parse("value = " + value, source);
-    if (parsed.size() == 1) return parsed;
+    if (!stray_character_line(value)) {
+      toml::table parsed = toml::parse("value = " + value, source);
+      if (parsed.size() == 1) return parsed;
+    }
   } catch (const toml::parse_error&) {
     // fall through: a bare word
   }

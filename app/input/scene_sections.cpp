@@ -85,18 +85,6 @@ Instrument read_instrument(const TomlTable& table, std::size_t index) {
   return instrument;
 }
 
-// The source of K: the formula of Eq. 3 and 4. "field" is a word of the schema without a
-// measurement behind it yet, so it gets a sentence of its own.
-SifSource read_sif(const TomlTable& table) {
-  const std::optional<std::string> word = table.text("sif");
-  if (word == "field") {
-    table.fail(InputFault::unknown_key, "sif",
-               "is \"field\", which this version does not offer; available: \"formula\"");
-  }
-  return table.choice<SifSource>("sif", {{"formula", SifSource::formula}})
-      .value_or(SifSource::formula);
-}
-
 }  // namespace
 
 std::map<std::string, Material> read_materials(const TomlTable& root, const std::string& file) {
@@ -171,7 +159,7 @@ std::vector<ScriptedRemoval> read_removals(const TomlTable& root, const std::str
 FractureOptions read_fracture(const TomlTable& root, const std::string& file) {
   const TomlTable table = section(root, file, "fracture",
                                   {"model", "alpha", "yield_measure", "sigma0", "crack_length",
-                                   "sif", "max_events", "plane_normal"});
+                                   "sif", "max_events", "plane_normal", "birth"});
   FractureOptions options;
   options.model = table
                       .choice<FractureModel>("model", {{"none", FractureModel::none},
@@ -192,7 +180,13 @@ FractureOptions read_fracture(const TomlTable& root, const std::string& file) {
                              .choice<CrackLength>("crack_length", {{"path", CrackLength::path},
                                                                    {"tool", CrackLength::tool}})
                              .value_or(options.crack_length);
-  options.sif = read_sif(table);
+  options.sif =
+      table.choice<SifSource>("sif", {{"formula", SifSource::formula}, {"field", SifSource::field}})
+          .value_or(options.sif);
+  options.birth = table
+                      .choice<CrackBirth>("birth", {{"element", CrackBirth::element},
+                                                    {"through", CrackBirth::through}})
+                      .value_or(options.birth);
   options.max_events = table.integer("max_events", 1, kMostSteps).value_or(options.max_events);
   options.plane_normal = table.vec3("plane_normal");
   return options;

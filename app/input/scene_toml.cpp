@@ -5,6 +5,7 @@
 #include "app/input/mesh_import.hpp"
 #include "app/input/scene_overrides.hpp"
 #include "app/input/scene_sections.hpp"
+#include "app/input/toml_guard.hpp"
 
 namespace sunder::app {
 namespace {
@@ -12,6 +13,11 @@ namespace {
 constexpr std::size_t kLargestScene = 64U << 20U;  // bytes; a scene is written by hand
 
 toml::table parse_toml(std::string_view text, const std::string& source) {
+  if (const auto line = stray_character_line(text)) {
+    throw InputError(InputFault::syntax,
+                     source + ":" + std::to_string(*line) +
+                         ": not valid TOML: a character that is not ASCII outside quotes");
+  }
   try {
     return toml::parse(text, source);
   } catch (const toml::parse_error& error) {

@@ -39,6 +39,7 @@ TEST(BadScenes, NotToml) {
           {"[solver]", "[fracture]", F::syntax, {"bad.toml:65:", "fracture"}},
           {"alpha = 1e-6", "alpha = 1e-", F::syntax, {"bad.toml:57:"}},
           {"step = 3", "step = 99999999999999999999", F::syntax, {"bad.toml:52:"}},
+          {"steps = 4", "steps = 4\u0262", F::syntax, {"bad.toml:73:", "not ASCII"}},
           {"title = \"A", std::string("title = \"\xff\xfe"), F::syntax, {"bad.toml:1:"}},
       },
       parse);
@@ -270,7 +271,7 @@ TEST(BadScenes, ValuesThatAreNotAllowed) {
            "crack_length = \"a\"",
            F::unknown_key,
            {"\"path\" or \"tool\""}},
-          {"sif = \"formula\"", "sif = \"guess\"", F::unknown_key, {"\"guess\"", "\"formula\""}},
+          {"sif = \"formula\"", "sif = \"guess\"", F::unknown_key, {"\"guess\"", "\"formula\" or \"field\""}},
           {"route = \"auto\"",
            "route = \"fast\"",
            F::unknown_key,

@@ -109,10 +109,9 @@ TEST(SceneToml, OtherWordsOfTheSchema) {
   EXPECT_FALSE(scene.output.displacement);
 }
 
-TEST(SceneToml, SifFieldIsKnownButNotOffered) {
-  expect_input_error([] { parse(with(good_scene(), "sif = \"formula\"", "sif = \"field\"")); },
-                     InputFault::unknown_key,
-                     {"scene.toml:61:7", "\"field\"", "this version", "\"formula\""});
+TEST(SceneToml, SifFromTheField) {
+  const Scene scene = parse(with(good_scene(), "sif = \"formula\"", "sif = \"field\""));
+  EXPECT_EQ(scene.fracture.sif, SifSource::field);
 }
 
 }  // namespace
