@@ -5,6 +5,7 @@
 #ifdef SUNDER_GPU
 #include "gpu/vulkan_backend.hpp"
 #endif
+#include "failover_backend.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
 
@@ -19,9 +20,22 @@ std::vector<DeviceInfo> vulkan_devices() {
 #endif
 }
 
+#ifdef SUNDER_GPU
+/// The CPU backend with options of its own: the scene's were meant for a GPU.
+std::unique_ptr<Backend> create_replacement(const Problem& problem, const Needs& needs) {
+  Scene scene = problem.scene();
+  const double tolerance = scene.solver.tolerance;
+  scene.solver = {};
+  scene.solver.tolerance = tolerance;
+  return cpu_reference::create(std::make_shared<const Problem>(std::move(scene)), needs);
+}
+#endif
+
 std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, Needs needs) {
 #ifdef SUNDER_GPU
-  return gpu::create(std::move(problem), std::move(needs));
+  auto primary = gpu::create(problem, needs);
+  return with_failover(problem, std::move(primary),
+                       [problem, needs] { return create_replacement(*problem, needs); });
 #else
   static_cast<void>(problem);
   static_cast<void>(needs);

@@ -22,8 +22,8 @@ constexpr std::size_t kExactLoads = 64;
 
 }  // namespace
 
-HostInverse::HostInverse(const fem::SparseMatrix& lower) : factor_(lower) {
-  if (lower.rows() <= kHostDense) dense_ = factor_.inverse();
+HostInverse::HostInverse(const fem::SparseMatrix& lower, bool keep_dense) : factor_(lower) {
+  if (keep_dense && lower.rows() <= kHostDense) dense_ = factor_.inverse();
 }
 
 Eigen::MatrixXd HostInverse::columns(std::span<const Index> dofs) const {
@@ -273,7 +273,7 @@ void InverseRoute::defer(std::span<const Index> destroyed) {
 void InverseRoute::rebase(std::span<const Index> destroyed) {
   std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
   for (Index e : destroyed) scale[e] = problem_.scene().fracture.alpha;
-  host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale));
+  host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale), true);
   upload_base();
   correction_ = std::make_unique<Correction>(
       problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });

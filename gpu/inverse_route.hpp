@@ -13,11 +13,11 @@
 
 namespace sunder::gpu {
 
-/// Exact columns of an inverse on the host: from the dense inverse while that is small, else from
-/// the factor.
+/// Exact columns of an inverse on the host: from the dense inverse when that is kept and small,
+/// else from the factor.
 class HostInverse {
  public:
-  explicit HostInverse(const fem::SparseMatrix& lower);
+  HostInverse(const fem::SparseMatrix& lower, bool keep_dense);
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
   [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
   [[nodiscard]] std::size_t bytes() const;

@@ -10,6 +10,8 @@ namespace {
 
 // What the mixed recipe holds with fp32 storage (docs/method.md "Stability"); below it only fp64.
 constexpr double kFp32Tolerance = 1e-4;
+// Above this many unknowns an inverse is not computed unless asked for: the host takes n^2 nnz(L).
+constexpr Index kDenseLimit = 6000;
 
 std::string number(double value) {
   std::ostringstream out;
@@ -19,31 +21,51 @@ std::string number(double value) {
 
 }  // namespace
 
+namespace {
+
+void choose_route(const Problem& problem, const vulkan::PhysicalDevice& device, Plan& plan) {
+  const Route asked = problem.scene().solver.route;
+  const auto n = static_cast<std::size_t>(problem.dof_count());
+  const std::size_t bytes = n * n * (plan.fp64 ? 8 : 4);
+  plan.cg = asked == Route::cg || (asked == Route::automatic && problem.dof_count() > kDenseLimit);
+  plan.why = std::to_string(n) + " unknowns: ";
+  if (asked == Route::cg) {
+    plan.why += "route cg was asked for";
+  } else if (plan.cg) {
+    plan.why += "a dense inverse would take " + std::to_string(bytes / 1000000) + " MB";
+  } else if (bytes > device.memory) {
+    throw DeviceError("route inverse needs " + std::to_string(bytes) + " bytes for " +
+                      std::to_string(n) + " unknowns, but the device \"" + device.name + "\" has " +
+                      std::to_string(device.memory) + "; use route cg");
+  } else {
+    plan.why += "the dense inverse takes " + std::to_string(bytes / 1000000) + " MB";
+  }
+}
+
+}  // namespace
+
 Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::PhysicalDevice& device) {
   const SolverOptions& solver = problem.scene().solver;
-  if (solver.route != Route::automatic && solver.route != Route::inverse) {
-    throw DeviceError("backend vulkan offers the route inverse; choose it, auto or backend cpu");
+  if (solver.route == Route::condensed || solver.route == Route::factor) {
+    throw DeviceError(
+        "backend vulkan offers the routes inverse and cg; choose one, auto or "
+        "backend cpu");
   }
   Plan plan;
   plan.fp64 = solver.precision == Precision::fp64 ||
               (solver.precision == Precision::automatic && !(solver.tolerance >= kFp32Tolerance));
-  plan.eager = solver.update == Update::eager;
-  const auto n = static_cast<std::size_t>(problem.dof_count());
-  const std::size_t bytes = n * n * (plan.fp64 ? 8 : 4);
-  if (bytes > device.memory) {
-    throw DeviceError("route inverse needs " + std::to_string(bytes) + " bytes for " +
-                      std::to_string(n) + " unknowns, but the device \"" + device.name + "\" has " +
-                      std::to_string(device.memory) + "; use backend cpu with route cg");
-  }
-  plan.why = std::to_string(n) + " unknowns: the dense inverse takes " +
-             std::to_string(bytes / 1000000) + " MB; ";
+  choose_route(problem, device, plan);
   if (solver.precision != Precision::automatic) {
-    plan.why += plan.fp64 ? "fp64 was asked for" : "fp32 storage was asked for";
+    plan.why += plan.fp64 ? "; fp64 was asked for" : "; fp32 storage was asked for";
   } else {
-    plan.why += "tolerance " + number(solver.tolerance) +
-                (plan.fp64 ? " needs fp64" : " is kept by fp32 storage with fp64 corrections");
+    plan.why += "; tolerance " + number(solver.tolerance) +
+                (plan.fp64 ? " needs fp64" : " is kept by fp32 storage with fp64 sums");
   }
-  if (needs.damage) {
+  if (plan.cg && solver.update != Update::automatic) {
+    throw DeviceError("route cg has no inverse to update; use update auto with it");
+  }
+  plan.eager = solver.update == Update::eager;
+  if (needs.damage && !plan.cg) {
     plan.why += plan.eager ? "; the eager update was asked for"
                            : "; the deferred update never overwrites the inverse";
   }

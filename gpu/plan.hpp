@@ -12,6 +12,7 @@ namespace sunder::gpu {
 struct Plan {
   bool fp64 = false;   ///< storage of the inverse and of element stress
   bool eager = false;  ///< the update
+  bool cg = false;     ///< the route: conjugate gradients instead of the inverse
   std::string why;
 };
 

@@ -89,6 +89,22 @@ struct LowRankPush {
   uint first_column;          // of this panel
 };
 
+struct CgPush {
+  uint groups;     // workgroups of 64 nodes
+  uint parity;     // of the iteration
+  double reduction;  // stop at this share of the first r^T M r
+};
+
+// State of conjugate gradients, on the device from the first iteration to the last.
+struct CgState {
+  double rz[2];    // r^T M r of this iteration and the next, by parity
+  double target;
+  uint iterations;
+  uint broken;     // 1: p^T K p was not positive, or something was not finite
+  uint running;
+  uint unused;
+};
+
 // Worst yield ratio and largest stress of the elements of one workgroup.
 struct StressPartial {
   double any_ratio, candidate_ratio;
@@ -110,6 +126,8 @@ static_assert(sizeof(Entry) == 16);
 static_assert(sizeof(ElementPush) == 16);
 static_assert(sizeof(StressPartial) == 32);
 static_assert(sizeof(Summary) == 48);
+static_assert(sizeof(CgPush) == 16);
+static_assert(sizeof(CgState) == 40);
 #undef SUNDER_CONST
 }  // namespace sunder::shaders
 #endif

@@ -63,6 +63,12 @@ class DeviceError : public Error {
   explicit DeviceError(const std::string& message) : Error(4, message) {}
 };
 
+/// The device stopped answering in the middle of its work; what it held is gone.
+class DeviceLost : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
+};
+
 /// A computation that cannot keep its promise; says where and how far it got: exit code 5.
 class NumericalError : public Error {
  public:

@@ -55,7 +55,8 @@ class Fields {
   }
   [[nodiscard]] const vulkan::Buffer& positions() const { return positions_; }
   [[nodiscard]] const vulkan::Buffer& residual() const { return residual_; }
-  [[nodiscard]] const vulkan::Buffer& state_words() const { return state_; }
+  /// Of each node: unknowns along x, y, z (kHeld: a support), gripped axes as bits.
+  [[nodiscard]] const vulkan::Buffer& dofs() const { return dofs_; }
 
   /// For tests of single kernels: inputs as given, shapes (3 * nodes) and (rows()).
   void write_displacement(std::span<const double> nodal);

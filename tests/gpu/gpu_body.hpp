@@ -41,6 +41,7 @@ struct Way {
   Update update = Update::deferred;
   double tolerance = 1e-4;
   std::size_t panel_bytes = 0;
+  Route route = Route::inverse;
 };
 
 inline std::vector<Way> all_ways() {
@@ -138,6 +139,7 @@ class Pair {
     scene.solver.precision = way.precision;
     scene.solver.update = way.update;
     scene.solver.tolerance = way.tolerance;
+    scene.solver.route = way.route;
     return std::make_shared<Problem>(std::move(scene));
   }
 

@@ -235,7 +235,7 @@ TEST_F(VulkanWatch, AWriteBehindABufferIsNoticed) {
 
 TEST_F(VulkanWatch, EachResultHasItsSentence) {
   EXPECT_NO_THROW(vulkan::check(VK_SUCCESS, "a call"));
-  EXPECT_THROW(vulkan::check(VK_ERROR_DEVICE_LOST, "a call"), vulkan::DeviceLost);
+  EXPECT_THROW(vulkan::check(VK_ERROR_DEVICE_LOST, "a call"), DeviceLost);
   const auto said = [](VkResult result) {
     return message_of([&] { vulkan::check(result, "a call"); });
   };

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "failover_backend.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "sunder/error.hpp"
+
+namespace sunder {
+namespace {
+
+class FailoverBackend final : public Backend {
+ public:
+  FailoverBackend(std::shared_ptr<const Problem> problem, std::unique_ptr<Backend> primary,
+                  std::function<std::unique_ptr<Backend>()> replacement)
+      : Backend(std::move(problem), primary->needs()),
+        current_(std::move(primary)),
+        replacement_(std::move(replacement)) {}
+
+  BackendInfo info() const override {
+    BackendInfo info = current_->info();
+    if (!lost_.empty()) info.why += "; took over from backend vulkan: " + lost_;
+    return info;
+  }
+  std::vector<BufferPlan> buffers() const override { return current_->buffers(); }
+
+ private:
+  void do_set_load(const Load& load) override {
+    load_ = load;
+    attempt([&] { current_->set_load(load); });
+  }
+  SolveReport do_solve() override {
+    SolveReport report;
+    attempt([&] { report = current_->solve(); });
+    solved_ = true;
+    return report;
+  }
+  StressSummary do_stress() override {
+    StressSummary summary;
+    attempt([&] { summary = current_->stress(); });
+    stressed_ = true;
+    return summary;
+  }
+  void do_destroy(std::span<const Index> elements) override {
+    attempt([&] { current_->destroy(elements); });
+    events_.insert(events_.end(), elements.begin(), elements.end());
+    solved_ = stressed_ = false;
+  }
+  void do_exclude_candidates(std::span<const Index> elements) override {
+    attempt([&] { current_->exclude_candidates(elements); });
+    excluded_.insert(excluded_.end(), elements.begin(), elements.end());
+  }
+  void do_solve_pristine(const Load& load, std::span<double> displacement) override {
+    attempt([&] { current_->solve_pristine(load, displacement); });
+  }
+  void do_read_displacement(std::span<double> displacement) const override {
+    attempt([&] { current_->read_displacement(displacement); });
+  }
+  void do_read_displacement(std::span<const Index> nodes,
+                            std::span<Vec3> displacement) const override {
+    attempt([&] { current_->read_displacement(nodes, displacement); });
+  }
+  void do_read_stress(std::span<Voigt> stress) const override {
+    attempt([&] { current_->read_stress(stress); });
+  }
+  Voigt do_read_stress(Index element) const override {
+    Voigt stress;
+    attempt([&] { stress = current_->read_stress(element); });
+    return stress;
+  }
+  void do_read_reactions(std::span<double> reactions) const override {
+    attempt([&] { current_->read_reactions(reactions); });
+  }
+
+  template <class Operation>
+  void attempt(Operation&& operation) const {
+    try {
+      operation();
+    } catch (const DeviceLost& error) {
+      if (!lost_.empty()) throw;
+      lost_ = error.what();
+      take_over();
+      operation();
+    }
+  }
+
+  /// Brings the replacement to the state before the operation that failed.
+  void take_over() const {
+    current_ = replacement_();
+    if (!events_.empty()) current_->destroy(events_);
+    if (needs().yield) current_->exclude_candidates(excluded_);
+    if (load_) current_->set_load(*load_);
+    if (solved_) current_->solve();
+    if (stressed_) current_->stress();
+  }
+
+  mutable std::unique_ptr<Backend> current_;
+  std::function<std::unique_ptr<Backend>()> replacement_;
+  mutable std::string lost_;  // why the primary is gone; empty: it is not
+  std::vector<Index> events_, excluded_;
+  std::optional<Load> load_;
+  bool solved_ = false, stressed_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> with_failover(std::shared_ptr<const Problem> problem,
+                                       std::unique_ptr<Backend> primary,
+                                       std::function<std::unique_ptr<Backend>()> replacement) {
+  return std::make_unique<FailoverBackend>(std::move(problem), std::move(primary),
+                                           std::move(replacement));
+}
+
+}  // namespace sunder

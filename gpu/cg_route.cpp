@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/cg_route.hpp"
+
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+using vulkan::Buffer;
+using vulkan::Placement;
+
+// Iterations recorded in one submit; the device skips those that it does not need.
+constexpr int kIterations = 64;
+constexpr int kMaxIterations = 50000;
+// Energy norms of the residual: a solution to ten digits, a correction to three.
+constexpr double kSolution = 1e-20;
+constexpr double kCorrection = 1e-6;
+
+}  // namespace
+
+CgRoute::CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields)
+    : kernels_(kernels),
+      fields_(fields),
+      matrix_(kernels, problem),
+      add_(kernels, fields),
+      commands_(kernels.device()) {
+  const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;
+  for (Buffer* vector : {&r_, &p_, &q_, &z_}) {
+    *vector = Buffer(kernels.device(), nodes * 4 * sizeof(double), Placement::device);
+    vector->fill_zero();
+  }
+  for (Buffer* sums : {&pq_, &rz_}) {
+    *sums = Buffer(kernels.device(), matrix_.groups() * sizeof(double), Placement::device);
+  }
+  state_ = Buffer(kernels.device(), sizeof(shaders::CgState), Placement::host);
+  arguments_ = Buffer(kernels.device(), 4 * sizeof(std::uint32_t), Placement::device);
+  create_kernels(fields);
+}
+
+void CgRoute::create_kernels(const Fields& fields) {
+  using enum Reads;
+  const auto make = [&](Pass& pass, const char* name, std::initializer_list<Reads> reads,
+                        std::initializer_list<const Buffer*> buffers) {
+    pass.kernel = kernels_.make_fp64(name, reads, sizeof(shaders::CgPush));
+    pass.binding = std::make_unique<vulkan::Binding>(kernels_.device(), *pass.kernel,
+                                                     std::vector<const Buffer*>(buffers));
+  };
+  const Buffer& x = fields.nodal(Field::correction);
+  const Buffer& m = matrix_.preconditioner();
+  make(begin_, "cg_begin", {plain, words, doubles, plain, plain, plain, plain},
+       {&fields.residual(), &fields.dofs(), &m, &x, &r_, &p_, &rz_});
+  make(start_, "cg_start", {plain, plain, plain}, {&rz_, &state_, &arguments_});
+  make(multiply_, "cg_multiply", {doubles, plain, plain, words, doubles, plain, plain},
+       {&matrix_.blocks(), &matrix_.columns(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_});
+  make(step_, "cg_step", {plain, plain, doubles, doubles, doubles, plain, plain, plain, plain},
+       {&pq_, &state_, &m, &p_, &q_, &x, &r_, &z_, &rz_});
+  make(direction_, "cg_direction", {plain, plain, plain, doubles, plain},
+       {&rz_, &state_, &arguments_, &z_, &p_});
+}
+
+void CgRoute::record_start(double reduction) {
+  const shaders::CgPush push{matrix_.groups(), 0, reduction};
+  commands_.dispatch(*begin_.binding, push, matrix_.groups());
+  commands_.barrier();
+  commands_.dispatch(*start_.binding, push, 1);
+  commands_.barrier();
+}
+
+void CgRoute::record_iterations() {
+  for (int i = 0; i < kIterations; ++i) {
+    const shaders::CgPush push{matrix_.groups(), static_cast<std::uint32_t>(i % 2), 0};
+    for (const Pass* pass : {&multiply_, &step_, &direction_}) {
+      commands_.dispatch_indirect(*pass->binding, push, arguments_, 0);
+      commands_.barrier();
+    }
+  }
+}
+
+int CgRoute::run(double reduction) {
+  static_assert(kIterations % 2 == 0);  // parity goes on where the last submit ended
+  for (int submits = 0;; ++submits) {
+    commands_.begin();
+    commands_.pass("conjugate gradients");
+    if (submits == 0) record_start(reduction);
+    record_iterations();
+    commands_.end();
+    commands_.submit();
+    const shaders::CgState state = *state_.mapped<shaders::CgState>();
+    const auto iterations = static_cast<int>(state.iterations);
+    if (state.broken) {
+      throw NumericalError("conjugate gradients broke down after " + std::to_string(iterations) +
+                           " iterations: the stiffness is not positive definite in rounding; use "
+                           "route inverse or backend cpu");
+    }
+    if (!state.running) return iterations;
+    if (iterations >= kMaxIterations) {
+      throw NumericalError("conjugate gradients did not converge in " + std::to_string(iterations) +
+                           " iterations (a part that is cut off is held by destroyed elements "
+                           "only); use route inverse or backend cpu");
+    }
+  }
+}
+
+void CgRoute::refresh_state(bool add) {
+  commands_.begin();
+  if (add) {
+    commands_.pass("refinement");
+    add_.record(commands_);
+    commands_.barrier();
+  }
+  fields_.record_hold(commands_, Field::displacement);
+  fields_.record_state(commands_);
+  commands_.end();
+  commands_.submit();
+}
+
+int CgRoute::solve(const Load&) {
+  refresh_state(false);  // the last displacement is the first guess
+  const int iterations = run(kSolution);
+  refresh_state(true);
+  return iterations;
+}
+
+int CgRoute::correct() {
+  const int iterations = run(kCorrection);
+  commands_.begin();
+  fields_.record_correction(commands_);
+  commands_.end();
+  commands_.submit();
+  return iterations;
+}
+
+void CgRoute::add_correction() { refresh_state(true); }
+
+void CgRoute::destroy(std::span<const Index> elements, std::span<const Index>) {
+  matrix_.destroy(elements);
+}
+
+std::vector<BufferPlan> CgRoute::buffers() const {
+  const std::size_t vectors = r_.bytes() + p_.bytes() + q_.bytes() + z_.bytes() + pq_.bytes() +
+                              rz_.bytes() + state_.bytes() + arguments_.bytes();
+  return {{"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},
+          {"conjugate gradient vectors (device)", vectors}};
+}
+
+}  // namespace sunder::gpu

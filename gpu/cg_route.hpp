@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Route cg: conjugate gradients wholly on the device. Scalars and the decision to stop stay there;
+// a converged run zeroes the size of the dispatches that were recorded beyond it.
+#pragma once
+
+#include "gpu/passes/add.hpp"
+#include "gpu/passes/block_matrix.hpp"
+#include "gpu/route.hpp"
+
+namespace sunder::gpu {
+
+class CgRoute final : public DeviceRoute {
+ public:
+  CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields);
+
+  int solve(const Load& load) override;
+  int correct() override;
+  void add_correction() override;
+  void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
+  bool leaves_at(double, std::span<const Index>) override { return false; }
+  bool restart(std::span<const Index>) override { return false; }
+
+  std::string name() const override { return "cg"; }
+  std::string update() const override { return "matrix"; }
+  std::vector<BufferPlan> buffers() const override;
+  std::vector<vulkan::PassTime> pass_times() const override { return commands_.pass_times(); }
+
+ private:
+  void create_kernels(const Fields& fields);
+  /// correction = K^-1 r, to a share of the first r^T M r. Returns iterations.
+  int run(double reduction);
+  void record_start(double reduction);
+  void record_iterations();
+  void refresh_state(bool add);
+
+  const KernelFactory& kernels_;
+  Fields& fields_;
+  BlockMatrix matrix_;
+  AddCorrection add_;
+  vulkan::Buffer r_, p_, q_, z_, pq_, rz_, state_, arguments_;
+  struct Pass {
+    std::unique_ptr<vulkan::Kernel> kernel;
+    std::unique_ptr<vulkan::Binding> binding;
+  };
+  Pass begin_, start_, multiply_, step_, direction_;
+  vulkan::Commands commands_;
+};
+
+}  // namespace sunder::gpu

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/passes/block_matrix.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <set>
+
+#include "fem/element.hpp"
+#include "gpu/passes/fields.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+constexpr std::size_t kBlockDoubles = 12;  // three rows of four, the last unused
+
+Index corner_of(const std::array<Index, 4>& tet, Index node) {
+  return static_cast<Index>(std::find(tet.begin(), tet.end(), node) - tet.begin());
+}
+
+}  // namespace
+
+BlockMatrix::BlockMatrix(const KernelFactory& kernels, const Problem& problem)
+    : problem_(problem),
+      groups_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup) /
+              shaders::kGroup),
+      scale_(problem.mesh().tets.size(), 1.0),
+      elements_of_(problem.mesh().nodes.size()),
+      neighbours_(problem.mesh().nodes.size()) {
+  std::vector<std::uint32_t> columns;
+  build_pattern(columns);
+  const vulkan::PhysicalDevice& device = kernels.device().physical();
+  const std::size_t bytes = columns.size() * kBlockDoubles * sizeof(double);
+  const auto limit = std::min<std::size_t>(device.largest_buffer, device.largest_allocation);
+  if (bytes > limit) {
+    throw DeviceError("route cg needs a buffer of " + std::to_string(bytes) +
+                      " bytes for the stiffness, but the device \"" + device.name +
+                      "\" takes buffers of " + std::to_string(limit) + "; use backend cpu");
+  }
+  std::vector<double> blocks(columns.size() * kBlockDoubles, 0.0);
+  std::vector<double> preconditioner(std::size_t{groups_} * shaders::kGroup * kBlockDoubles, 0.0);
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    const auto row = static_cast<std::size_t>(n);
+    for (std::size_t k = 0; k < neighbours_[row].size(); ++k) {
+      const Mat3 value = block(n, neighbours_[row][k]);
+      const std::size_t at =
+          (first_[row / shaders::kGroup] + k) * shaders::kGroup + row % shaders::kGroup;
+      pack(value, &blocks[at * kBlockDoubles]);
+      if (neighbours_[row][k] == n) {
+        pack(inverse_of_free(n, value), &preconditioner[row * kBlockDoubles]);
+      }
+    }
+  }
+  const auto upload = [&](vulkan::Buffer& buffer, auto& values) {
+    buffer = vulkan::Buffer(kernels.device(), values.size() * sizeof(values[0]),
+                            vulkan::Placement::device);
+    buffer.write(std::span<const std::remove_reference_t<decltype(values[0])>>(values));
+  };
+  upload(blocks_, blocks);
+  upload(columns_, columns);
+  upload(slices_, first_);
+  upload(preconditioner_, preconditioner);
+}
+
+void BlockMatrix::build_pattern(std::vector<std::uint32_t>& columns) {
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    for (Index n : problem_.mesh().tets[e]) elements_of_[n].push_back(e);
+  }
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    std::set<Index> all;
+    for (Index e : elements_of_[n]) {
+      all.insert(problem_.mesh().tets[e].begin(), problem_.mesh().tets[e].end());
+    }
+    neighbours_[n].assign(all.begin(), all.end());
+  }
+  first_.assign(groups_ + 1, 0);
+  for (std::uint32_t slice = 0; slice < groups_; ++slice) {
+    std::size_t width = 0;
+    const std::size_t end =
+        std::min<std::size_t>(std::size_t{slice + 1} * shaders::kGroup, neighbours_.size());
+    for (std::size_t n = std::size_t{slice} * shaders::kGroup; n < end; ++n) {
+      width = std::max(width, neighbours_[n].size());
+    }
+    first_[slice + 1] = first_[slice] + static_cast<std::uint32_t>(width);
+  }
+  columns.assign(std::size_t{first_[groups_]} * shaders::kGroup, 0);  // padding: zero blocks
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    for (std::size_t k = 0; k < neighbours_[n].size(); ++k) {
+      columns[(first_[n / shaders::kGroup] + k) * shaders::kGroup + n % shaders::kGroup] =
+          static_cast<std::uint32_t>(neighbours_[n][k]);
+    }
+  }
+}
+
+/// Sum of a_e V (lambda g_i g_j^T + mu g_j g_i^T + mu g_i.g_j I) over the elements of both nodes.
+Mat3 BlockMatrix::block(Index row, Index column) const {
+  Mat3 sum = Mat3::Zero();
+  for (Index e : elements_of_[row]) {
+    const auto& tet = problem_.mesh().tets[e];
+    const Index j = corner_of(tet, column);
+    if (j == 4) continue;
+    const TetShape& shape = problem_.shape(e);
+    const Material& m = problem_.material(e);
+    const double mu = m.young / (2 * (1 + m.poisson));
+    const double lambda = m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
+    const Vec3 gi = shape.gradient.col(corner_of(tet, row)), gj = shape.gradient.col(j);
+    sum += scale_[e] * shape.volume *
+           (lambda * gi * gj.transpose() + mu * gj * gi.transpose() +
+            mu * gi.dot(gj) * Mat3::Identity());
+  }
+  return sum;
+}
+
+void BlockMatrix::pack(const Mat3& block, double* to) const {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) to[4 * i + j] = block(i, j);
+  }
+}
+
+/// Inverse of a diagonal block over the axes that neither a support nor a grip holds.
+Mat3 BlockMatrix::inverse_of_free(Index node, const Mat3& diagonal) const {
+  const auto gripped = problem_.gripped_dofs();
+  Mat3 matrix = diagonal;
+  std::array<bool, 3> held{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Index dof = problem_.dof(node, axis);
+    held[axis] = dof == kNone || std::binary_search(gripped.begin(), gripped.end(), dof);
+    if (!held[axis]) continue;
+    matrix.row(axis).setZero();
+    matrix.col(axis).setZero();
+    matrix(axis, axis) = 1;
+  }
+  Mat3 inverse = matrix.inverse();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (held[axis]) inverse(axis, axis) = 0;
+  }
+  return inverse;
+}
+
+void BlockMatrix::destroy(std::span<const Index> elements) {
+  std::set<std::pair<Index, Index>> touched;
+  for (Index e : elements) {
+    scale_[e] = problem_.scene().fracture.alpha;
+    for (Index i : problem_.mesh().tets[e]) {
+      for (Index j : problem_.mesh().tets[e]) touched.insert({i, j});
+    }
+  }
+  std::array<double, kBlockDoubles> packed{};
+  for (const auto& [i, j] : touched) {
+    const Mat3 value = block(i, j);
+    const auto& row = neighbours_[i];
+    const auto k =
+        static_cast<std::size_t>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
+    const auto n = static_cast<std::size_t>(i);
+    pack(value, packed.data());
+    blocks_.write(std::span<const double>(packed),
+                  ((first_[n / shaders::kGroup] + k) * shaders::kGroup + n % shaders::kGroup) *
+                      kBlockDoubles);
+    if (i != j) continue;
+    pack(inverse_of_free(i, value), packed.data());
+    preconditioner_.write(std::span<const double>(packed), n * kBlockDoubles);
+  }
+}
+
+std::size_t BlockMatrix::bytes() const {
+  return blocks_.bytes() + columns_.bytes() + slices_.bytes() + preconditioner_.bytes();
+}
+
+}  // namespace sunder::gpu

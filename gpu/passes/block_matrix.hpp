@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The damaged stiffness as 3 x 3 blocks between nodes in slices of 64 rows (SELL-64), with its
+// block-Jacobi preconditioner. A destroyed element's 16 blocks are summed anew, element by element:
+// no cancellation between its remaining stiffness and what was taken out.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gpu/kernels.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::gpu {
+
+class BlockMatrix {
+ public:
+  /// Throws DeviceError when the device's buffers cannot hold it.
+  BlockMatrix(const KernelFactory& kernels, const Problem& problem);
+
+  void destroy(std::span<const Index> elements);
+
+  [[nodiscard]] const vulkan::Buffer& blocks() const { return blocks_; }
+  [[nodiscard]] const vulkan::Buffer& columns() const { return columns_; }
+  [[nodiscard]] const vulkan::Buffer& slices() const { return slices_; }
+  [[nodiscard]] const vulkan::Buffer& preconditioner() const { return preconditioner_; }
+  /// Workgroups of 64 nodes.
+  [[nodiscard]] std::uint32_t groups() const { return groups_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  void build_pattern(std::vector<std::uint32_t>& columns);
+  [[nodiscard]] Mat3 block(Index row, Index column) const;
+  void pack(const Mat3& block, double* to) const;
+  [[nodiscard]] Mat3 inverse_of_free(Index node, const Mat3& diagonal) const;
+
+  const Problem& problem_;
+  std::uint32_t groups_;
+  std::vector<double> scale_;                    // a_e
+  std::vector<std::vector<Index>> elements_of_;  // per node, ascending
+  std::vector<std::vector<Index>> neighbours_;   // per node, ascending, itself included
+  std::vector<std::uint32_t> first_;             // of each slice, in rows of 64 blocks
+  vulkan::Buffer blocks_, columns_, slices_, preconditioner_;
+};
+
+}  // namespace sunder::gpu

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Route cg on the device against the CPU reference.
+#include "gpu_body.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::test {
+namespace {
+
+class ConjugateGradient : public WithVulkan<testing::TestWithParam<gpu::Variant>> {
+ protected:
+  [[nodiscard]] static Way way() {
+    return {.variant = GetParam(), .update = Update::automatic, .route = Route::cg};
+  }
+  static void expect(const Pair::Errors& e, double allowed, const std::string& where) {
+    EXPECT_TRUE(e.u <= allowed) << where << ": displacement error " << e.u;
+    EXPECT_TRUE(e.stress <= allowed) << where << ": stress error " << e.stress;
+    EXPECT_EQ(e.summary.any.element, e.reference_summary.any.element) << where;
+  }
+};
+
+TEST_P(ConjugateGradient, IntactAndAlongACrack) {
+  Pair pair(held_board(), way());
+  pair.load(corner_pull(pair.problem()));
+  const auto intact = pair.solve();
+  expect(intact, kIntactTolerance, "intact");
+  EXPECT_GT(intact.report.iterations, 0);
+  const auto crack = crack_sequence(pair.problem(), 100, 10);
+  std::size_t done = 0;
+  for (const std::size_t count : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) {
+    pair.destroy({&crack[done], count - done});
+    done = count;
+    expect(pair.solve(), kCrackTolerance, std::to_string(count) + " fractures");
+  }
+}
+
+TEST_P(ConjugateGradient, GripsWithReactions) {
+  Scene scene = held_board();
+  Instrument low;
+  low.name = "low";
+  low.action = Grip{Box{Vec3(-1, -0.001, -1), Vec3(51, 0.001, 3)}, Vec3(1, -2, 0.5), Axes{3}};
+  scene.instruments.push_back(low);
+  Pair pair(std::move(scene), way());
+  Load load =
+      pull(pair.problem(), nodes_in(pair.problem().mesh(), {Vec3(49.9, 20, -1), Vec3(51, 30, 3)}),
+           Vec3(10, 0, 0));
+  for (std::size_t i = 0; i < load.displacements.size(); ++i) {
+    load.displacements[i] = 0.1 * static_cast<double>(i % 7) - 0.2;
+  }
+  pair.load(load);
+  expect(pair.solve(), kIntactTolerance, "grips");
+  std::vector<double> r(load.displacements.size()), reference(r.size());
+  pair.vulkan->read_reactions(r);
+  pair.reference->read_reactions(reference);
+  double largest = 0;
+  for (double v : reference) largest = std::max(largest, std::abs(v));
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    EXPECT_NEAR(r[i], reference[i], kCrackTolerance * largest) << "grip " << i;
+  }
+}
+
+TEST_P(ConjugateGradient, NothingLoadedTakesNoIteration) {
+  Pair pair(held_board(), way());
+  pair.load({{}, {}, {}});
+  EXPECT_EQ(pair.vulkan->solve().iterations, 0);
+  for (double u : Pair::displacement(*pair.vulkan)) EXPECT_EQ(u, 0);
+}
+
+TEST_P(ConjugateGradient, AnUpdateOfTheInverseIsRefused) {
+  Scene scene = held_board();
+  scene.solver = {.backend = "vulkan", .route = Route::cg, .update = Update::eager};
+  const auto problem = std::make_shared<const Problem>(std::move(scene));
+  EXPECT_THROW(static_cast<void>(gpu::create(problem, everything())), DeviceError);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ConjugateGradient,
+                         testing::Values(gpu::Variant::gpu, gpu::Variant::lvp),
+                         [](const auto& tested) {
+                           return tested.param == gpu::Variant::gpu ? "gpu" : "lvp";
+                         });
+
+}  // namespace
+}  // namespace sunder::test
