@@ -122,7 +122,7 @@ TEST(CommandLine, ExitCodesTellWhoseFaultItIs) {
   EXPECT_EQ(run_program({"run", (folder / "none.toml").string()}).exit_code, 3);
   EXPECT_EQ(exit_code({"--set", "fracture.colour=1"}), 3);
   EXPECT_EQ(exit_code({"--set", "material.upper.young=-5"}), 3);
-  EXPECT_EQ(exit_code({"--route", "factor"}), 4);
+  EXPECT_EQ(exit_code({"--backend", "cpu", "--device", "99"}), 4);
   EXPECT_FALSE(std::filesystem::exists(out)) << "bad input must not leave a result folder";
 }
 
