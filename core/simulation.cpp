@@ -174,10 +174,24 @@ Decision Simulation::decide(const StressSummary& summary) {
       [this] { return pristine_displacement(); },
       resultant,
       loads_->presses(),
+      [this](std::span<const Index> nodes, std::span<Vec3> u) {
+        backend_->read_displacement(nodes, u);
+      },
+      [this] { return instrument_forces(); },
   };
   Decision decision = criterion_->decide(state);
   if (!decision.elements.empty()) ++decisions_this_step_;
   return decision;
+}
+
+std::vector<NodalForce> Simulation::instrument_forces() const {
+  std::vector<NodalForce> forces;
+  for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
+    const auto nodes = loads_->nodes(i);
+    for (Index n : nodes)
+      forces.push_back({n, loads_->force(i) / static_cast<double>(nodes.size())});
+  }
+  return forces;
 }
 
 std::span<const double> Simulation::pristine_displacement() {

@@ -19,18 +19,32 @@ std::string row(std::initializer_list<std::string> cells) {
 
 std::string events_header() {
   return "step,event,element,criterion,crack,ratio,load_factor,"
-         "tip,K,K_a,K_b,K_c,theta_deg,r,sigma0,beta_deg,a,b\n";
+         "tip,K,K_a,K_b,K_c,theta_deg,r,sigma0,beta_deg,a,b,K_I,K_II\n";
 }
 
 std::string events_row(const DestroyedElement& record) {
   const auto sif = [&](double value) { return record.sif ? number(value) : std::string(); };
   const SifTerms k = record.sif.value_or(SifTerms{});
-  return row({std::to_string(record.step), std::to_string(record.event),
-              std::to_string(record.element), to_string(record.cause),
+  return row({std::to_string(record.step),
+              std::to_string(record.event),
+              std::to_string(record.element),
+              to_string(record.cause),
               record.crack == kNone ? "" : std::to_string(record.crack),
-              record.ratio ? number(*record.ratio) : "", number(record.load_factor),
-              record.sif ? std::to_string(k.tip) : "", sif(k.k), sif(k.k_a), sif(k.k_b), sif(k.k_c),
-              sif(k.theta), sif(k.reach), sif(k.sigma0), sif(k.beta), sif(k.a), sif(k.b)});
+              record.ratio ? number(*record.ratio) : "",
+              number(record.load_factor),
+              record.sif ? std::to_string(k.tip) : "",
+              sif(k.k),
+              sif(k.k_a),
+              sif(k.k_b),
+              sif(k.k_c),
+              sif(k.theta),
+              sif(k.reach),
+              sif(k.sigma0),
+              sif(k.beta),
+              sif(k.a),
+              sif(k.b),
+              k.k_1 ? number(*k.k_1) : "",
+              k.k_2 ? number(*k.k_2) : ""});
 }
 
 std::string frames_header() {

@@ -2,7 +2,9 @@
 #include "fracture/combined.hpp"
 
 #include <algorithm>
+#include <map>
 
+#include "fem/element.hpp"
 #include "fracture/crack_birth.hpp"
 #include "fracture/crack_path.hpp"
 #include "fracture/max_shear.hpp"
@@ -41,6 +43,7 @@ Combined::Combined(const Problem& problem)
     : problem_(problem),
       board_(problem.mesh(), problem.scene().fracture.plane_normal),
       excluded_(problem.mesh().tets.size(), 0) {
+  if (problem.scene().fracture.sif == SifSource::field) meter_.emplace(problem, board_);
   for (Index e = 0; e < problem.tet_count() && !anything_breakable_; ++e)
     anything_breakable_ = problem.breakable(e);
 }
@@ -67,7 +70,7 @@ Decision Combined::decide(const FractureState& state) {
 }
 
 std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& state,
-                                                       std::vector<std::string>& warnings) const {
+                                                       std::vector<std::string>& warnings) {
   std::vector<DrivenTip> driven;
   if (!any_tip_left(cracks_)) return driven;
   const PristineField field(problem_, board_, state.pristine_displacement());
@@ -75,8 +78,9 @@ std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& stat
     const FacePressure pressure = face_pressure(board_, crack, state, warnings);
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
-      if (auto growth = tip_growth(board_, field, crack, tip, pressure, state))
-        driven.push_back({crack.id, *growth});
+      auto growth = tip_growth(board_, field, crack, tip, pressure, state);
+      if (meter_) growth = field_growth(*meter_, crack, tip, growth, state, warnings);
+      if (growth) driven.push_back({crack.id, *growth});
     }
   }
   return driven;
@@ -120,6 +124,36 @@ void Combined::start_crack(const FractureState& state, Decision& decision) {
   cracks_.push_back(born_crack(board_, row->element, stress, id));
   row->crack = id;
   decision.elements.push_back(*row);
+  if (problem_.scene().fracture.birth == CrackBirth::through)
+    cut_through(cracks_.back(), state, decision);
+}
+
+/// A board is thicker than one element: what lies beside the first one, across the new path, would
+/// stay behind as a ligament that carries the whole stress picture.
+void Combined::cut_through(Crack& crack, const FractureState& state, Decision& decision) {
+  const Vec2 along = crack.path.back() - crack.path.front();
+  const Ray ray{crack.path.front(), along.normalized(), &crack, 1};
+  const ElementView view{
+      [&](Index e) { return !state.destroyed[e] && problem_.breakable(e); },
+      [&](Index e) { return problem_.yield(e); },
+  };
+  const Band band = find_band(board_, ray, view);
+  for (const BandElement& beside : band.elements) {
+    if (beside.rho > along.norm() || contains(decision, beside.element)) continue;
+    DestroyedElement row = decision.elements.front();
+    row.element = beside.element;
+    row.ratio = fem::yield_measure(state.current_stress(beside.element),
+                                   problem_.scene().fracture.yield_measure) /
+                problem_.yield(beside.element);
+    decision.elements.push_back(row);
+    crack.elements.push_back(beside.element);
+  }
+  std::map<Index, std::int8_t> labels;
+  for (Index e : crack.elements) {
+    for (Index n : problem_.mesh().tets[e])
+      labels[n] = static_cast<std::int8_t>(node_side(board_, ray, band.near_side, n));
+  }
+  crack.side = std::move(labels);
 }
 
 void Combined::exclude_neighbours(Decision& decision) {

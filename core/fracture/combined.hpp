@@ -9,6 +9,7 @@
 #include "fracture/band.hpp"
 #include "fracture/board.hpp"
 #include "fracture/criterion.hpp"
+#include "fracture/field_sif/field_growth.hpp"
 #include "fracture/tip_growth.hpp"
 
 namespace sunder::fracture {
@@ -31,15 +32,17 @@ class Combined final : public FractureCriterion {
 
   /// K and direction of all tips that have not ended, from one state.
   [[nodiscard]] std::vector<DrivenTip> driven_tips(const FractureState& state,
-                                                   std::vector<std::string>& warnings) const;
+                                                   std::vector<std::string>& warnings);
   /// Moves one tip as far as it goes; its elements are added to the decision.
   void grow(const DrivenTip& driven, const FractureState& state, Decision& decision);
+  void cut_through(Crack& crack, const FractureState& state, Decision& decision);
   void start_crack(const FractureState& state, Decision& decision);
   /// Elements that the decision's elements touch, live and not excluded before.
   void exclude_neighbours(Decision& decision);
 
   const Problem& problem_;
   Board board_;
+  std::optional<FieldIntensityMeter> meter_;  // with sif = "field"
   bool anything_breakable_ = false;
   std::vector<Crack> cracks_;
   std::vector<std::uint8_t> excluded_;  // shape (elements)

@@ -24,6 +24,12 @@ struct ActingPress {
   std::vector<Index> nodes;  ///< pressed nodes
 };
 
+/// A force on a node, N.
+struct NodalForce {
+  Index node;
+  Vec3 force;
+};
+
 /// What a criterion may look at when it decides. Callbacks are cheap for single elements.
 struct FractureState {
   const Problem& problem;
@@ -35,6 +41,10 @@ struct FractureState {
   std::function<std::span<const double>()> pristine_displacement;
   Vec3 expansion_resultant;  ///< forces and grip reactions of all expansion instruments, N
   std::vector<ActingPress> presses;
+  /// Current displacement of some nodes [mm].
+  std::function<void(std::span<const Index>, std::span<Vec3>)> displacement = {};
+  /// What pulling and pressing instruments apply now; grips' forces are not among them.
+  std::function<std::vector<NodalForce>()> forces = {};
 };
 
 /// One event: the elements that one update destroys. `cause`, `element`, `crack`, `ratio`, `sif`

@@ -30,7 +30,8 @@ struct Crack {
   std::map<Index, std::int8_t> side;  ///< node -> +1 left of the path, -1 right (seen along d)
 };
 
-/// The terms of the stress intensity factor at one tip (Eq. 1-4), kept with each progression.
+/// The terms of the stress intensity factor at one tip (Eq. 1-4), kept with each progression. With
+/// sif = "field", k and theta follow from K_I and K_II; the formula's terms are still filled in.
 struct SifTerms {
   int tip = 0;
   double k = 0, k_a = 0, k_b = 0, k_c = 0;  ///< [MPa sqrt(mm)]
@@ -39,6 +40,8 @@ struct SifTerms {
   double sigma0 = 0;                        ///< remote stress s0 [MPa]
   double beta = 0;                          ///< [deg] between crack normal and n1
   double a = 0, b = 0;                      ///< crack length and chord [mm]
+  /// K_I, K_II measured from the field [MPa sqrt(mm)]; none with sif = "formula".
+  std::optional<double> k_1 = std::nullopt, k_2 = std::nullopt;
 };
 
 }  // namespace sunder

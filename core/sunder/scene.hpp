@@ -96,7 +96,8 @@ enum class FractureModel { none, a, b };
 enum class YieldMeasure { max_shear, tresca };
 enum class RemoteStress { line, tip };
 enum class CrackLength { path, tool };
-enum class SifSource { formula };
+enum class CrackBirth { element, through };
+enum class SifSource { formula, field };
 
 struct FractureOptions {
   FractureModel model = FractureModel::none;
@@ -104,6 +105,9 @@ struct FractureOptions {
   YieldMeasure yield_measure = YieldMeasure::max_shear;
   RemoteStress sigma0 = RemoteStress::line;
   CrackLength crack_length = CrackLength::path;
+  /// What an MSS rupture that starts a crack takes with it: nothing, or what hangs beside the
+  /// element through the thickness (method.md 4).
+  CrackBirth birth = CrackBirth::element;
   SifSource sif = SifSource::formula;
   int max_events = 10000;            ///< of one step
   std::optional<Vec3> plane_normal;  ///< overrides the third axis of the bounding box

@@ -17,6 +17,7 @@ namespace sunder {
 class FractureCriterion;
 class Loads;
 struct Decision;
+struct NodalForce;
 
 /// Derives from a problem what a backend must offer and what it may leave out.
 [[nodiscard]] Needs needs_of(const Problem& problem);
@@ -77,6 +78,7 @@ class Simulation {
   void find_loose();
   void warn(std::string message);
   [[nodiscard]] std::span<const double> pristine_displacement();
+  [[nodiscard]] std::vector<NodalForce> instrument_forces() const;
   [[nodiscard]] double compliance() const;
 
   /// Steps to which the same thing happened: one warning for all of them.

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "fracture/criterion.hpp"
 #include "fracture/field_sif/auxiliary_field.hpp"
 #include "fracture/field_sif/free_surface.hpp"
 #include "fracture/field_sif/tip_domain.hpp"
@@ -27,12 +28,6 @@ namespace sunder::fracture {
 /// moves the left face forward against the right one, K_III > 0 along x3.
 struct IntensityFactors {
   double k_1 = 0, k_2 = 0, k_3 = 0;
-};
-
-/// A force on a node, N.
-struct NodalForce {
-  Index node;
-  Vec3 force;
 };
 
 struct IntegralInput {

@@ -70,8 +70,8 @@ class CrackedBoard {
   std::unique_ptr<fracture::FieldIntensityMeter> meter_;
   Crack crack_;
   std::vector<std::uint8_t> destroyed_;
-  std::vector<double> force_, displacement_;        // shape (3 * nodes)
-  std::vector<fracture::NodalForce> crack_forces_;  // those on the crack's faces
+  std::vector<double> force_, displacement_;  // shape (3 * nodes)
+  std::vector<NodalForce> crack_forces_;      // those on the crack's faces
   double from_, to_, y_;
 };
 

@@ -15,6 +15,12 @@ inline double tada_edge(double x) {
          std::cos(t);
 }
 
+/// The same as a polynomial, 0.5 % up to a/W = 0.6 (Gross and Srawley 1964; Brown and Srawley
+/// 1966).
+inline double polynomial_edge(double x) {
+  return 1.12 + x * (-0.231 + x * (10.55 + x * (-21.72 + x * 30.39)));
+}
+
 /// Centre crack of length 2a in a strip 2W wide: Tada's modification of Feddersen's formula; 0.1 %
 /// for any a/W.
 inline double tada_centre(double x) {
