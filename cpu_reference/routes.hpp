@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two ways of the reference to apply the inverse of the damaged stiffness: a dense inverse
-// with eager updates, and conjugate gradients preconditioned by the intact factor.
+// The ways of the CPU to apply the inverse of the damaged stiffness. Two are the plain yardstick: a
+// dense inverse with eager updates, and conjugate gradients preconditioned by the intact factor.
+// The others hand over to the engine (core/engine): deferred updates over an inverse or a factor.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -87,6 +88,9 @@ struct IntactBody {
 
 [[nodiscard]] std::unique_ptr<InverseRoute> dense_inverse_route(const DamagedBody& body,
                                                                 const IntactBody& intact);
+/// Deferred update over a dense inverse (`dense`) or over the factor itself.
+[[nodiscard]] std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body,
+                                                           const IntactBody& intact, bool dense);
 [[nodiscard]] std::unique_ptr<InverseRoute> conjugate_gradient_route(const DamagedBody& body,
                                                                      const IntactBody& intact);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/deferred.hpp"
 
+#include <algorithm>
+
 #include "engine/update_vectors.hpp"
 #include "sunder/error.hpp"
 
@@ -31,9 +33,11 @@ bool Deferred::destroy(const Problem& problem, std::span<const Index> elements) 
   Eigen::MatrixXd block = -gram.bottomRows(k);
   block.diagonal().array() += 1;
   ranks_.push_back(static_cast<Index>(before));
+  elements_.emplace_back(elements.begin(), elements.end());
   if (!small_.append(-gram.middleRows(g, before), block)) {
     base_->pop();
     ranks_.pop_back();
+    elements_.pop_back();
     return false;
   }
   if (g > 0) {
@@ -54,8 +58,17 @@ void Deferred::take_back() {
   base_->pop();
   small_.shrink(ranks_.back());
   ranks_.pop_back();
+  elements_.pop_back();
   grip_rows_.conservativeResize(small_.size(), Eigen::NoChange);
   if (!factor_grips()) throw NumericalError("the compliance of the gripped nodes is singular");
+}
+
+bool Deferred::compact(const Problem& problem) {
+  std::vector<Index> all;
+  for (const auto& event : elements_) all.insert(all.end(), event.begin(), event.end());
+  while (!elements_.empty()) take_back();
+  std::sort(all.begin(), all.end());
+  return all.empty() || destroy(problem, all);
 }
 
 void Deferred::solve(const Forces& forces, std::span<const double> displacement,

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cpu_reference/choose_route.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sunder/error.hpp"
+#include "support/body.hpp"
+#include "support/structured_board.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::test {
+namespace {
+
+/// A board of some cells, held at its left end.
+Scene board(Index nx, Index ny) {
+  Scene scene;
+  scene.mesh = structured_board({nx, ny, 1, 10, 10, 1});
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(0.001, 11, 2)}, Axes{7}});
+  scene.solver.backend = "cpu";
+  return scene;
+}
+
+BackendInfo info_of(Scene scene, Needs needs = all_needs()) {
+  return Body(std::move(scene), std::move(needs)).backend->info();
+}
+
+bool mentions(const std::string& text, const std::string& word) {
+  return text.find(word) != std::string::npos;
+}
+
+TEST(ChooseRoute, TakesADenseInverseForASmallBodyThatTears) {
+  const BackendInfo info = info_of(board(6, 6));
+  EXPECT_EQ(info.route, "inverse");
+  EXPECT_EQ(info.update, "deferred");
+  EXPECT_TRUE(mentions(info.why, "252 unknowns")) << info.why;
+}
+
+TEST(ChooseRoute, TakesTheFactorWhenNothingTears) {
+  Needs needs;
+  needs.stress = true;
+  const Body body(board(6, 6), needs);
+  EXPECT_EQ(body.backend->info().route, "factor");
+  EXPECT_EQ(body.backend->info().update, "none");
+  EXPECT_TRUE(mentions(body.backend->info().why, "nothing can be destroyed"));
+  for (const BufferPlan& b : body.backend->buffers()) EXPECT_FALSE(mentions(b.name, "inverse"));
+}
+
+TEST(ChooseRoute, TakesTheFactorForALargeBody) {
+  const BackendInfo info = info_of(board(40, 40));  // 2 * 41 * 40 * 3 = 9840 unknowns
+  EXPECT_EQ(info.route, "factor");
+  EXPECT_EQ(info.update, "deferred");
+  EXPECT_TRUE(mentions(info.why, "774 MB")) << info.why;
+}
+
+TEST(ChooseRoute, CanBeForced) {
+  struct Pair {
+    Route route;
+    Update update;
+    const char *name, *update_name;
+  };
+  for (const Pair& p : {Pair{Route::inverse, Update::eager, "inverse", "eager"},
+                        Pair{Route::inverse, Update::deferred, "inverse", "deferred"},
+                        Pair{Route::factor, Update::deferred, "factor", "deferred"},
+                        Pair{Route::cg, Update::automatic, "cg", "matrix"},
+                        Pair{Route::automatic, Update::eager, "inverse", "eager"}}) {
+    Scene scene = board(4, 4);
+    scene.solver.route = p.route;
+    scene.solver.update = p.update;
+    const BackendInfo info = info_of(std::move(scene));
+    EXPECT_EQ(info.route, p.name);
+    EXPECT_EQ(info.update, p.update_name);
+  }
+}
+
+TEST(ChooseRoute, NamesWhatIsOfferedInsteadOfAnImpossiblePair) {
+  struct Impossible {
+    Route route;
+    Update update;
+    const char* offered;
+  };
+  for (const Impossible& i : {Impossible{Route::factor, Update::eager, "route inverse"},
+                              Impossible{Route::cg, Update::eager, "update auto"},
+                              Impossible{Route::cg, Update::deferred, "update auto"},
+                              Impossible{Route::condensed, Update::automatic, "factor"}}) {
+    Scene scene = board(4, 4);
+    scene.solver.route = i.route;
+    scene.solver.update = i.update;
+    try {
+      info_of(std::move(scene));
+      ADD_FAILURE() << "not refused: " << i.offered;
+    } catch (const DeviceError& error) {
+      EXPECT_TRUE(mentions(error.what(), i.offered)) << error.what();
+    }
+  }
+}
+
+TEST(ChooseRoute, RefusesAnInverseBeyondTheMemory) {
+  Scene scene = board(300, 300);  // 540,000 unknowns: 2.3 TB
+  scene.solver.route = Route::inverse;
+  try {
+    info_of(std::move(scene));
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.fault(), InputFault::too_large);
+    EXPECT_TRUE(mentions(error.what(), "use route factor")) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace sunder::test
