@@ -53,6 +53,13 @@ TEST_F(Birth, SlantedTensionTurnsTheCrack) {
   EXPECT_NEAR((crack.tips[1].position - board.centroid(e)).dot(d), largest, 1e-14);
 }
 
+TEST_F(Birth, FirstTipLiesTowardsSmallerE1) {
+  for (double degrees : {20.0, 70.0, 110.0, 160.0, 200.0, 290.0}) {
+    const Crack crack = born_crack(board, 6 * 110 + 1, in_plane_tension(2, degrees), 0);
+    EXPECT_LT(crack.tips[0].position.x(), crack.tips[1].position.x()) << degrees;
+  }
+}
+
 TEST_F(Birth, EqualPrincipalsRunAlongE1) {
   const Crack crack = born_crack(board, 6 * 110, InPlane::Identity(), 0);
   EXPECT_NEAR((crack.tips[1].direction - Vec2(1, 0)).norm(), 0, 1e-14);
@@ -147,6 +154,9 @@ TEST(CrackPath, SidesOfABentPath) {
   EXPECT_EQ(path_side(crack, Vec2(4.6, -0.5), 1e-9), -1) << "in the lee of the kink";
   EXPECT_EQ(path_side(crack, Vec2(4.5, -0.6), 1e-9), -1);
   EXPECT_EQ(path_side(crack, Vec2(-1, 1), 1e-9), 1) << "before the mouth";
+  // Turning back: past the kink, one segment's line alone would call the outside left.
+  const Crack sharp = path_crack(CrackKind::edge, {Vec2(0, 0), Vec2(4, 0), Vec2(2, 3)});
+  EXPECT_EQ(path_side(sharp, Vec2(4.5, 0.2), 1e-9), -1);
 }
 
 TEST(CrackPath, UpperFaceLooksUpOrRight) {

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "board_fixture.hpp"
-#include "fracture/crack_path.hpp"
+#include "fracture/crack_birth.hpp"
 
 namespace sunder {
 namespace {
@@ -195,6 +195,36 @@ TEST(ModelB, InternalCrackGrowsAtBothTips) {
   EXPECT_NEAR(crack.length, (crack.tips[1].position - crack.tips[0].position).norm(), 1e-13);
   for (const auto& [node, side] : crack.side)
     EXPECT_EQ(side, driver.board.node(node).y() > 5.5 ? 1 : -1) << "one sense for both tips";
+}
+
+TEST(ModelB, TipThatReachesTheOutlineHasEnded) {
+  for (Index length : {4, 5, 6}) {
+    Driver driver(test::edge_slit(length));
+    driver.pull(tension(0.9, 90));
+    const CrackTip& tip = driver.criterion->cracks()[0].tips[0];
+    while (!fracture::at_outline(driver.board, tip.position)) {
+      ASSERT_FALSE(tip.ended);
+      ASSERT_FALSE(driver.decide().elements.empty());
+    }
+    EXPECT_TRUE(tip.ended) << "with its last advance";
+    EXPECT_TRUE(driver.decide().elements.empty());
+  }
+}
+
+TEST(ModelB, PressureDrivesItsOwnCrackOnly) {
+  Scene scene = test::edge_slit(4);
+  scene.cracks.push_back(
+      {test::row_elements(kSlitShape, 5, 16, 20), Vec3(20, 5.5, 1), {Vec3(16, 5.5, 1)}});
+  const Press up{Vec3(17, 6, 1), CrackSide::upper, 1, Vec3(0, 12, 0)};
+  const Press down{Vec3(17, 5, 1), CrackSide::lower, 1, Vec3(0, -12, 0)};
+  scene.instruments = {{"up", up, std::nullopt}, {"down", down, std::nullopt}};
+  Driver driver(std::move(scene));
+  driver.presses = {
+      {0, &up, up.force, driver.criterion->pressed_nodes(up, driver.destroyed)},
+      {1, &down, down.force, driver.criterion->pressed_nodes(down, driver.destroyed)}};
+  const Decision d = driver.decide();
+  ASSERT_FALSE(d.elements.empty());
+  for (const auto& row : d.elements) EXPECT_EQ(row.crack, 1);
 }
 
 TEST(ModelB, UnbreakableElementsHoldTheTip) {

@@ -57,20 +57,23 @@ TEST(PressedNodes, NodesWithoutALiveElementAreLeft) {
 }
 
 TEST(PressedNodes, ASurfaceWithoutCandidatesLeavesAllToTheNearestInSpace) {
-  // The top layer alone is slit: its nodes lie on the top surface and in the middle plane.
+  // One layer of two is slit: its nodes lie on one surface and in the middle plane.
   const test::BoardShape shape{10, 7, 2, 10, 7, 2};
-  Scene scene = test::board_scene(test::structured_board(shape), FractureModel::b);
-  std::vector<Index> slit;
-  for (Index i = 0; i < 4; ++i)
-    for (Index t = 0; t < 6; ++t) slit.push_back(6 * (i + shape.nx * (3 + shape.ny * 1)) + t);
-  scene.cracks.push_back({slit, Vec3(0, 3.5, 1), {Vec3(4, 3.5, 1)}});
-  Driver driver(std::move(scene));
-  const auto on = [&](double z) {
-    return driver.criterion->pressed_nodes(press_at(Vec3(2, 4, z), CrackSide::upper),
-                                           driver.destroyed);
-  };
-  EXPECT_EQ(on(0.2), std::vector<Index>{grid_node(shape, 2, 4, 1)});
-  EXPECT_EQ(on(1.9), std::vector<Index>{grid_node(shape, 2, 4, 2)});
+  for (const Index layer : {0, 1}) {
+    Scene scene = test::board_scene(test::structured_board(shape), FractureModel::b);
+    std::vector<Index> slit;
+    for (Index i = 0; i < 4; ++i)
+      for (Index t = 0; t < 6; ++t) slit.push_back(6 * (i + shape.nx * (3 + shape.ny * layer)) + t);
+    scene.cracks.push_back({slit, Vec3(0, 3.5, 1), {Vec3(4, 3.5, 1)}});
+    Driver driver(std::move(scene));
+    const auto on = [&](double z) {
+      return driver.criterion->pressed_nodes(press_at(Vec3(2, 4, z), CrackSide::upper),
+                                             driver.destroyed);
+    };
+    const Index outer = 2 * layer;
+    EXPECT_EQ(on(layer == 0 ? 1.8 : 0.2), std::vector<Index>{grid_node(shape, 2, 4, 1)});
+    EXPECT_EQ(on(layer == 0 ? 0.1 : 1.9), std::vector<Index>{grid_node(shape, 2, 4, outer)});
+  }
 }
 
 TEST(PressedNodes, LabelsDecideBeforeThePath) {

@@ -96,6 +96,39 @@ TEST(TipGrowth, InternalSlitUsesHalfItsLengthAndItsFactor) {
   }
 }
 
+TEST(TipGrowth, WithoutBreakableElementsAtTheTipItRunsStraight) {
+  Driver driver(test::edge_slit(10, test::structured_board(test::kSlitShape, [](const Vec3& x) {
+                                  return std::string(x.x() < 5 ? "board" : "frame");
+                                })));
+  driver.pull(tension(0.3, 60));
+  const auto growth = grow_tip(driver).growth;
+  ASSERT_TRUE(growth);
+  EXPECT_NEAR(growth->terms.sigma0, 0.3, 1e-14) << "the stations near the mouth are not empty";
+  EXPECT_EQ(growth->terms.theta, 0);
+}
+
+TEST(TipGrowth, PullAlongTheSlitAtTheTipLeadsToTheLeft) {
+  for (const bool from_right : {false, true}) {
+    Scene scene = test::edge_slit(5);
+    if (from_right) {
+      scene.cracks[0] = {
+          test::row_elements(test::kSlitShape, 5, 15, 20), Vec3(20, 5.5, 1), {Vec3(15, 5.5, 1)}};
+    }
+    Driver driver(std::move(scene));
+    // Stress yy = 0.6 everywhere, xx = 2 around the tip only: few stations see it.
+    const double middle = from_right ? 16 : 4;
+    for (std::size_t n = 0; n < driver.problem.mesh().nodes.size(); ++n) {
+      const Vec3& x = driver.problem.mesh().nodes[n];
+      const bool at_tip = from_right ? x.x() < middle : x.x() > middle;
+      driver.pristine[3 * n] = at_tip ? 2 * (x.x() - middle) : 0;
+      driver.pristine[3 * n + 1] = 0.6 * x.y();
+    }
+    const auto growth = grow_tip(driver).growth;
+    ASSERT_TRUE(growth);
+    ASSERT_NEAR(growth->terms.theta, 90, 1e-12) << "left of d, whichever way d points";
+  }
+}
+
 TEST(TipGrowth, CompressionDoesNotGrow) {
   Driver driver(test::edge_slit(5));
   driver.pull(tension(-0.3, 90));
