@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 
 #include "fem/assembly.hpp"
 #include "fem/factor.hpp"
@@ -88,6 +89,18 @@ std::vector<Index> nodes_where(const Mesh& mesh, const std::function<bool(const 
   return nodes;
 }
 
+/// Shifts inner nodes at random, the same on every machine.
+void shake(const GridLines& g, double jitter, Mesh& mesh) {
+  std::mt19937 random(12345);
+  const auto shift = [&] { return (random() / 4294967295.0 * 2 - 1) * jitter; };
+  for (Vec3& x : mesh.nodes) {
+    const Vec3 before = x;
+    const bool inside = x.x() > g.x.front() + kClose && x.x() < g.x.back() - kClose &&
+                        x.y() > g.y.front() + kClose && x.y() < g.y.back() - kClose;
+    if (inside) x = before + Vec3(shift(), shift(), 0);
+  }
+}
+
 Support hold(std::vector<Index> nodes, Axes axes) {
   Support support;
   support.nodes = std::move(nodes);
@@ -149,25 +162,20 @@ CrackedBoard::CrackedBoard(const GridLines& lines, double from, double to, doubl
     : from_(from), to_(to), y_(y) {
   Scene scene;
   scene.mesh = grid_mesh(lines);
+  // Which elements the crack takes is the grid's matter; where their nodes are comes after.
   if (options.made == CrackMade::split)
     split_nodes(scene.mesh, from, to, y, lines.x.front(), lines.x.back());
+  if (options.made == CrackMade::deleted) take_row(lines, scene.mesh);
+  if (options.jitter > 0) shake(lines, options.jitter, scene.mesh);
   scene.materials["board"] = {options.young, options.poisson, 2.0};
   scene.supports = supports(lines, scene.mesh, options);
   problem_ = std::make_unique<Problem>(std::move(scene));
+  destroyed_.assign(problem_->mesh().tets.size(), 0);
+  for (Index e : crack_.elements) destroyed_[e] = 1;
   board_ = std::make_unique<fracture::Board>(problem_->mesh(), Vec3(0, 0, 1));
   meter_ = std::make_unique<fracture::FieldIntensityMeter>(*problem_, *board_);
 
-  const Mesh& mesh = problem_->mesh();
-  destroyed_.assign(mesh.tets.size(), 0);
-  force_.assign(3 * mesh.nodes.size(), 0);
-  const auto above = std::upper_bound(lines.y.begin(), lines.y.end(), y);
-  const double row_min = *(above - 1), row_max = *above;
-  for (Index e = 0; options.made == CrackMade::deleted && e < mesh.tet_count(); ++e) {
-    const Vec3 c = centroid(mesh, mesh.tets[e]);
-    if (c.x() < from || c.x() > to || c.y() < row_min || c.y() > row_max) continue;
-    destroyed_[e] = 1;
-    crack_.elements.push_back(e);
-  }
+  force_.assign(3 * problem_->mesh().nodes.size(), 0);
   const auto place = [&](double x) { return board_->plane().project(Vec3(x, y, 0)); };
   const Vec2 forward = board_->plane().project(Vec3(1, 0, 0));
   crack_.kind = CrackKind::internal;
@@ -179,6 +187,16 @@ CrackedBoard::CrackedBoard(const GridLines& lines, double from, double to, doubl
   }
   crack_.path = {place(from), place(to)};
   crack_.length = to - from;
+}
+
+void CrackedBoard::take_row(const GridLines& lines, const Mesh& mesh) {
+  const auto above = std::upper_bound(lines.y.begin(), lines.y.end(), y_);
+  const double row_min = *(above - 1), row_max = *above;
+  for (Index e = 0; e < mesh.tet_count(); ++e) {
+    const Vec3 c = centroid(mesh, mesh.tets[e]);
+    if (c.x() > from_ && c.x() < to_ && c.y() > row_min && c.y() < row_max)
+      crack_.elements.push_back(e);
+  }
 }
 
 void CrackedBoard::add_force(Index node, const Vec3& force) {

@@ -33,6 +33,7 @@ struct CrackedBoardOptions {
   double young = 5, poisson = 0.3;
   CrackMade made = CrackMade::deleted;
   bool held_flat = false;    ///< no displacement along z: plane strain
+  double jitter = 0;         ///< [mm] largest in-plane shift of inner nodes, by a fixed seed
   bool mirror_left = false;  ///< the left side is a plane of symmetry: half of a centre crack
 };
 
@@ -63,6 +64,7 @@ class CrackedBoard {
   [[nodiscard]] fracture::FieldView view() const;
 
  private:
+  void take_row(const GridLines& lines, const Mesh& mesh);
   void add_force(Index node, const Vec3& force);
 
   std::unique_ptr<Problem> problem_;

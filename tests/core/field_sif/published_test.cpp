@@ -18,6 +18,7 @@ constexpr double kFortieth = 0.01;   // h = W/40, deleted elements, a/W .2 to .6
 constexpr double kShallow = 0.015;   // a/W .1 at W/40: four cells long
 constexpr double kDomains = 0.01;    // radii 4 h to 10 h
 constexpr double kSymmetric = 0.01;  // K_II of K_I on a symmetric case
+constexpr double kIrregular = 0.03;  // nodes shifted by a quarter of h
 constexpr double kEnergy = 0.04;
 constexpr double kAngled = 0.04;
 constexpr double kForcePair = 0.03;
@@ -82,6 +83,16 @@ TEST(Published, SplitNodesConvergeFromFurtherBelow) {
   EXPECT_LT(error[0], 0);
   EXPECT_NEAR(error[1], 0, 0.05);
   EXPECT_LT(error[1] / error[0], 0.65);
+}
+
+TEST(Published, IrregularMesh) {
+  CrackedBoardOptions options;
+  options.jitter = 0.25;  // of the cells' size
+  for (double share : {0.2, 0.5}) {
+    auto board = pulled(Notch::edge, 40, share, options);
+    EXPECT_NEAR(board.intensity(kRing).factors.k_1 / published_intensity(Notch::edge, 40, share), 1,
+                kIrregular);
+  }
 }
 
 TEST(Published, EnergyReleaseAgreesWithTheIntegral) {
