@@ -5,7 +5,6 @@
 #include <string>
 
 #include "shaders/embedded.hpp"
-#include "shaders/layout.h"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -21,7 +20,8 @@ vulkan::Access access(Reads reads, Variant variant, bool fp64) {
 
 std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool fp64,
                                                     std::initializer_list<Reads> bindings,
-                                                    std::size_t push_bytes) const {
+                                                    std::size_t push_bytes,
+                                                    std::uint32_t group) const {
   const std::string full =
       std::string(name) + (variant_ == Variant::gpu ? "_gpu_" : "_lvp_") + (fp64 ? "fp64" : "fp32");
   vulkan::KernelCode code;
@@ -31,7 +31,7 @@ std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool 
   for (Reads r : bindings) accesses.push_back(access(r, variant_, fp64));
   code.bindings = accesses;
   code.push_bytes = static_cast<std::uint32_t>(push_bytes);
-  const std::uint32_t constants[] = {shaders::kGroup};
+  const std::uint32_t constants[] = {group};
   code.constants = constants;
   return std::make_unique<vulkan::Kernel>(device_, code);
 }

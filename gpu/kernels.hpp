@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "gpu/vulkan/kernel.hpp"
+#include "shaders/layout.h"
 
 namespace sunder::gpu {
 
@@ -30,24 +31,30 @@ class KernelFactory {
   /// A kernel in storage precision.
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name,
                                                      std::initializer_list<Reads> bindings,
-                                                     std::size_t push_bytes) const {
-    return make(name, fp64_, bindings, push_bytes);
+                                                     std::size_t push_bytes,
+                                                     std::uint32_t group = shaders::kGroup) const {
+    return make(name, fp64_, bindings, push_bytes, group);
   }
   /// A kernel that computes in fp64 always.
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make_fp64(std::string_view name,
                                                           std::initializer_list<Reads> bindings,
                                                           std::size_t push_bytes) const {
-    return make(name, true, bindings, push_bytes);
+    return make(name, true, bindings, push_bytes, shaders::kGroup);
   }
 
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
   [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }
+  /// Invocations that share 256 rows in the low-rank update (shaders/low_rank.comp).
+  [[nodiscard]] std::uint32_t low_rank_group() const {
+    return variant_ == Variant::lvp && !fp64_ ? shaders::kGroup / 2 : shaders::kGroup;
+  }
 
  private:
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name, bool fp64,
                                                      std::initializer_list<Reads> bindings,
-                                                     std::size_t push_bytes) const;
+                                                     std::size_t push_bytes,
+                                                     std::uint32_t group) const;
 
   vulkan::Device& device_;
   Variant variant_;

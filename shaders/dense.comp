@@ -1,7 +1,8 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// partial[chunk] = sum of X(:, j) r_j over the chunk's columns: the dense product u = X r.
-// Sums in fp64. Reads the whole matrix once; columns and vector are padded with zeros.
+// partial[chunk] = sum of X(:, j) r_j over the chunk's columns: the dense product u = X r, which
+// estimates errors and refines. 64 products are summed in storage precision, chunks in fp64. Reads
+// the whole matrix once; columns and vector are padded with zeros.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 
@@ -10,17 +11,34 @@ IN_DVEC4(1, Vector, vector)
 OUT(2, Partial, dvec4, partial)
 layout(push_constant) uniform Push { ApplyPush p; };
 
+#ifndef SUNDER_LVP
+shared REAL4 coefficients[kChunk / 4u];
+#endif
+
 void main() {
-  const uint pack = gl_GlobalInvocationID.x;
-  const uint first = gl_WorkGroupID.y * kChunk;
-  dvec4 sum = dvec4(0);
-  for (uint j = first; j < first + kChunk; j += 4u) {
-    const dvec4 c = DVEC4(vector, p.vector_first + j / 4u);
-    const uint at = j * p.packs + pack;
-    sum += dvec4(LOAD_REAL4(matrix, at)) * c.x;
-    sum += dvec4(LOAD_REAL4(matrix, at + p.packs)) * c.y;
-    sum += dvec4(LOAD_REAL4(matrix, at + 2u * p.packs)) * c.z;
-    sum += dvec4(LOAD_REAL4(matrix, at + 3u * p.packs)) * c.w;
+  const uint pack = gl_GlobalInvocationID.x, first = gl_WorkGroupID.y * kChunk;
+  const uint lane = gl_LocalInvocationID.x;
+#ifndef SUNDER_LVP
+  if (lane < kChunk / 4u) {
+    coefficients[lane] = REAL4(DVEC4(vector, p.vector_first + first / 4u + lane));
   }
-  partial.data[(p.partial + gl_WorkGroupID.y) * p.packs + pack] = sum;
+  barrier();
+#endif
+  REAL4 sum = REAL4(0);
+  uint at = first * p.packs + pack;
+  [[unroll]] for (uint j = 0u; j < kChunk / 4u; ++j) {
+#ifdef SUNDER_LVP
+    const REAL4 c = REAL4(DVEC4(vector, p.vector_first + first / 4u + j));
+#else
+    const REAL4 c = coefficients[j];
+#endif
+    sum += LOAD_REAL4(matrix, at) * c.x;
+    sum += LOAD_REAL4(matrix, at + p.packs) * c.y;
+    sum += LOAD_REAL4(matrix, at + 2u * p.packs) * c.z;
+    sum += LOAD_REAL4(matrix, at + 3u * p.packs) * c.w;
+    at += 4u * p.packs;
+  }
+  // Keeps the arithmetic out of lavapipe's store loop (low_rank.comp).
+  partial.data[(p.partial + gl_WorkGroupID.y) * p.packs + pack] =
+      p.packs != 0u ? dvec4(sum) : dvec4(0);
 }

@@ -209,7 +209,7 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
         kernels_.make("update_vectors", {Reads::reals, Reads::plain, Reads::doubles, Reads::plain},
                       sizeof(shaders::VectorsPush));
     low_rank_ = kernels_.make("low_rank", {Reads::reals, Reads::reals, Reads::plain},
-                              sizeof(shaders::LowRankPush));
+                              sizeof(shaders::LowRankPush), kernels_.low_rank_group());
   } else if (dofs * 4 <= update_dofs_.bytes() && factor_bytes <= factors_.bytes() &&
              z_bytes <= z_.bytes()) {
     return;

@@ -151,7 +151,9 @@ TEST_P(Kernels, DenseAndFewColumnProducts) {
   const Eigen::Map<const Eigen::VectorXd> rhs(r.data(), n);
   const Eigen::VectorXd dense =
       result([&](vulkan::Commands& commands) { return inverse.record_dense(commands, 0); });
-  EXPECT_LE((dense - x * rhs).cwiseAbs().maxCoeff(), allowed);
+  // Chunks of 64 products, and their inputs, in storage precision.
+  EXPECT_LE((dense - x * rhs).cwiseAbs().maxCoeff(),
+            allowed + 66 * GetParam().eps() * static_cast<double>(n));
 
   vulkan::Commands commands(*device_);
   commands.begin();
