@@ -103,6 +103,7 @@ int CgRoute::run(double reduction) {
 
 void CgRoute::refresh_state(bool add) {
   commands_.begin();
+  fields_.record_keep(commands_);
   if (add) {
     commands_.pass("refinement");
     add_.record(commands_);

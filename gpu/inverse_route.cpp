@@ -121,6 +121,7 @@ void InverseRoute::solve_deferred(const Load& load) {
   base_.set_loaded(loaded);
   exact_.set_coefficients(c);
   commands_.begin();
+  fields_.record_keep(commands_);
   commands_.pass("solve");
   std::uint32_t chunks = base_.record_loaded(commands_, 0);
   if (chunks > 0) commands_.barrier();
@@ -136,6 +137,7 @@ void InverseRoute::solve_eager(const Load& load) {
   Loaded loaded{load.force_dofs, load.forces};
   base_.set_loaded(loaded);
   commands_.begin();
+  fields_.record_keep(commands_);
   commands_.pass("solve");
   record_solution(Field::displacement, base_.record_loaded(commands_, 0), false);
   if (!problem_.gripped_dofs().empty()) {

@@ -86,6 +86,17 @@ class VulkanBackend final : public Backend {
   }
 
   SolveReport do_solve() override {
+    fields_.keep_next();
+    try {
+      return solve_within_tolerance();
+    } catch (const NumericalError&) {
+      checked_error_ = kUnchecked;
+      fields_.restore();  // results so far stay readable
+      throw;
+    }
+  }
+
+  SolveReport solve_within_tolerance() {
     SolveReport report;
     do {
       report = attempt();

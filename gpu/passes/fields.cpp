@@ -36,6 +36,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   };
   const std::size_t nodal_bytes = (std::size_t{4} * nodes_ + rows_) * sizeof(double);
   displacement_ = make(nodal_bytes);
+  kept_ = make(nodal_bytes);
   correction_ = make(nodal_bytes);
   load_ = make(rows_ * sizeof(double));
   residual_ = make(rows_ * sizeof(double));
@@ -186,6 +187,25 @@ void Fields::create_hold() {
   correction_hold_ = std::make_unique<vulkan::Binding>(device, *hold_pass_.kernel, of_correction);
 }
 
+void Fields::record_keep(vulkan::Commands& commands) {
+  if (!keep_) return;
+  keep_ = false;
+  commands.copy(displacement_.handle(), displacement_.offset(), kept_.handle(), kept_.offset(),
+                displacement_.bytes());
+  commands.barrier();
+}
+
+void Fields::restore() {
+  vulkan::Commands commands(kernels_.device());
+  commands.begin();
+  commands.copy(kept_.handle(), kept_.offset(), displacement_.handle(), displacement_.offset(),
+                displacement_.bytes());
+  commands.barrier();
+  record_state(commands);
+  commands.end();
+  commands.submit();
+}
+
 void Fields::record_hold(vulkan::Commands& commands, Field field) const {
   const auto count = static_cast<std::uint32_t>(problem_.gripped_dofs().size());
   if (count == 0) return;
@@ -321,7 +341,7 @@ std::vector<BufferPlan> Fields::buffers() const {
       {"mesh and element state (device)", sum({&nodes_of_, &shape_, &yield_, &state_,
                                                &corner_start_, &corners_, &dofs_, &positions_})},
       {"displacement, correction, load, residual (device)",
-       sum({&displacement_, &correction_, &load_, &residual_, &balance_})},
+       sum({&displacement_, &kept_, &correction_, &load_, &residual_, &balance_})},
       {"element forces (device)", element_force_.bytes()},
       {"element stress (device)", stress_.bytes()},
       {"partial results and summary (device)",

@@ -34,6 +34,11 @@ class Fields {
   void destroy(std::span<const Index> elements);
   void exclude(std::span<const Index> elements);
 
+  /// The next record_keep() sets the displacement aside, for restore() when the solve fails.
+  void keep_next() { keep_ = true; }
+  void record_keep(vulkan::Commands& commands);
+  /// The displacement that was set aside, with its state.
+  void restore();
   /// The field at gripped dofs as prescribed (displacement), or 0 (correction).
   void record_hold(vulkan::Commands& commands, Field field) const;
   /// Stress of the displacement, its summary, and f - K u with r (0 at grips).
@@ -91,7 +96,8 @@ class Fields {
 
   vulkan::Buffer nodes_of_, shape_, yield_, state_;
   vulkan::Buffer corner_start_, corners_, dofs_, positions_;
-  vulkan::Buffer displacement_, correction_, load_, residual_, balance_;
+  bool keep_ = false;
+  vulkan::Buffer displacement_, kept_, correction_, load_, residual_, balance_;
   vulkan::Buffer element_force_, stress_, stress_partials_, node_partials_, summaries_;
 
   struct Pass {

@@ -4,6 +4,7 @@
 #include "failover_backend.hpp"
 #include "gpu_body.hpp"
 #include "sunder/backends.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::test {
 namespace {
@@ -74,6 +75,22 @@ TEST_F(Runs, VulkanByNameGoesThroughTheListOfBackends) {
   const auto created = create_backend(problem, needs_of(*problem));
   EXPECT_EQ(created.backend->info().backend, "vulkan");
   EXPECT_EQ(created.backend->info().route, "inverse");
+}
+
+TEST_F(Runs, ASolveThatCannotKeepItsPromiseLeavesTheLastOneReadable) {
+  Scene scene = held_board();
+  for (const Route route : {Route::inverse, Route::cg}) {
+    const auto problem =
+        problem_of(scene, {.backend = "vulkan", .route = route, .tolerance = 1e-18});
+    const auto backend = gpu::create(problem, everything(), {});
+    backend->set_load({{}, {}, {}});
+    backend->solve();
+    backend->stress();
+    backend->set_load(corner_pull(*problem));
+    EXPECT_THROW(backend->solve(), NumericalError);
+    for (double u : Pair::displacement(*backend)) ASSERT_EQ(u, 0);
+    for (const Voigt& s : Pair::stress(*backend)) ASSERT_EQ(s, Voigt::Zero());
+  }
 }
 
 TEST_F(Runs, AQuietFrameOfAScaledLoadKeepsItsEstimate) {

@@ -152,6 +152,14 @@ TEST_F(VulkanDevices, PrecisionFollowsTheToleranceAndIsSaid) {
   }
 }
 
+TEST_F(VulkanDevices, AnUnknownShaderVariantIsAnError) {
+  const auto [output, code] = run_again("SUNDER_SHADER_VARIANT=fast", "DeterminismState.*");
+  EXPECT_NE(code, 0);
+  EXPECT_NE(output.find("SUNDER_SHADER_VARIANT is \"fast\"; it may be gpu or lvp"),
+            std::string::npos)
+      << output;
+}
+
 /// A device under validation, with the kernel `add` on two buffers.
 struct Adder {
   explicit Adder(std::size_t guard_bytes = 0) {
