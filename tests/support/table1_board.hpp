@@ -28,7 +28,7 @@ inline Scene held_board() {
   scene.title = "board of Table 1";
   scene.mesh = read_msh22(SUNDER_SCENES "/meshes/board1954.msh");
   scene.materials = table1_materials();
-  scene.supports.emplace_back(top_edge(), Axes{7});
+  scene.supports.push_back({top_edge(), Axes{7}});
   scene.solver.backend = "cpu";
   return scene;
 }
