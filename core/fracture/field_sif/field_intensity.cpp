@@ -75,7 +75,7 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
     : problem_(problem),
       board_(board),
       surface_(board),
-      builder_(board),
+      builder_(board, surface_),
       own_(problem.mesh().tets.size(), 0) {
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
 }
@@ -108,9 +108,9 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
                                        std::optional<double> radius) {
   if (radius) return measure(crack, tip, view, *radius, {});
   const double h = board_.h();
-  // The mouth or the other tip stays outside: their fields are not this tip's.
-  const double wanted =
-      std::clamp(crack_length(crack), kSmallestDomainRadius * h, kDomainRadius * h);
+  // The other tip of an internal crack stays outside: its field is not this tip's.
+  const double most = crack.kind == CrackKind::internal ? crack_length(crack) : kDomainRadius * h;
+  const double wanted = std::clamp(most, kSmallestDomainRadius * h, kDomainRadius * h);
   const Surroundings around = look_around(crack, crack.tips[tip].position, wanted, view);
   const double free = std::min(around.other_material, around.other_damage);
   const double chosen = std::clamp(free, kSmallestDomainRadius * h, wanted);
@@ -143,7 +143,8 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   FieldIntensity result;
   result.radius = radius;
   result.frame = {position, mean_direction(crack, tip, radius / 2)};
-  const TipDomain domain = builder_.collect(position, radius, view.destroyed, stretch);
+  const auto part = thin(radius) ? FreeSurface::Part::outline : FreeSurface::Part::all;
+  const TipDomain domain = builder_.collect(position, radius, view.destroyed, part, stretch);
   if (domain.elements.empty()) return result;  // nothing left to carry a field
   result.material = tip_material(domain);
   displacement_.resize(domain.nodes.size());
@@ -165,6 +166,10 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   return result;
 }
 
+bool FieldIntensityMeter::thin(double radius) const {
+  return board_.plane().thickness() <= kThinBoard * radius;
+}
+
 TipMaterial FieldIntensityMeter::tip_material(const TipDomain& domain) const {
   // Of two materials the mean compliance counts: G = K^2 (1/E1 + 1/E2)/2 on their interface.
   double volume = 0, compliance = 0, poisson = 0;
@@ -177,11 +182,10 @@ TipMaterial FieldIntensityMeter::tip_material(const TipDomain& domain) const {
   const auto held = std::count_if(domain.nodes.begin(), domain.nodes.end(),
                                   [&](Index n) { return problem_.dof(n, normal_axis_) == kNone; });
   const bool flat = 2 * static_cast<std::size_t>(held) > domain.nodes.size();
-  const bool thin = board_.plane().thickness() <= kThinBoard * domain.radius;
   TipMaterial material;
   material.young = volume / compliance;
   material.poisson = poisson / volume;
-  material.constraint = thin && !flat ? 0 : 1;
+  material.constraint = thin(domain.radius) && !flat ? 0 : 1;
   return material;
 }
 

@@ -50,6 +50,8 @@ class FieldIntensityMeter {
   struct Surroundings;
   [[nodiscard]] Surroundings look_around(const Crack& crack, const Vec2& tip, double radius,
                                          const FieldView& view);
+  /// Whether a domain sees the board in plane stress.
+  [[nodiscard]] bool thin(double radius) const;
   [[nodiscard]] TipMaterial tip_material(const TipDomain& domain) const;
   [[nodiscard]] FieldIntensity measure(const Crack& crack, std::size_t tip, const FieldView& view,
                                        double radius, const std::optional<FrontStretch>& stretch);

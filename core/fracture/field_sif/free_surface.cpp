@@ -2,6 +2,7 @@
 #include "fracture/field_sif/free_surface.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace sunder::fracture {
@@ -17,6 +18,12 @@ FreeSurface::FreeSurface(const Board& board) : begin_(board.mesh().tets.size() +
     ++begin_[face.tet + 1];
   }
   for (std::size_t e = 1; e < begin_.size(); ++e) begin_[e] += begin_[e - 1];
+}
+
+bool FreeSurface::touches(Index element, Part part) const {
+  const auto faces = of(element);
+  return std::any_of(faces.begin(), faces.end(),
+                     [&](const Face& face) { return face.lateral || part == Part::all; });
 }
 
 }  // namespace sunder::fracture

@@ -18,10 +18,13 @@ class FreeSurface {
     bool lateral;  ///< of the outline or a hole, not of the top or bottom surface
   };
 
+  enum class Part { outline, all };
+
   explicit FreeSurface(const Board& board);
   [[nodiscard]] std::span<const Face> of(Index element) const {
     return {faces_.data() + begin_[element], begin_[element + 1] - begin_[element]};
   }
+  [[nodiscard]] bool touches(Index element, Part part) const;
 
  private:
   std::vector<Face> faces_;         // by element

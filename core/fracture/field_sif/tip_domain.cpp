@@ -38,7 +38,7 @@ Mat3 TipFrame::axes(const BoardPlane& plane) const {
 double domain_weight(double r, double radius) { return std::clamp(2 * (1 - r / radius), 0.0, 1.0); }
 
 TipDomain DomainBuilder::collect(const Vec2& tip, double radius,
-                                 std::span<const std::uint8_t> destroyed,
+                                 std::span<const std::uint8_t> destroyed, FreeSurface::Part part,
                                  const std::optional<FrontStretch>& stretch) {
   ++round_;
   TipDomain domain;
@@ -47,7 +47,9 @@ TipDomain DomainBuilder::collect(const Vec2& tip, double radius,
   // Within this distance all corners have q = 1, unless q varies along the front.
   const double full = stretch ? 0 : std::max(radius / 2 - board_.largest_element(), 0.0);
   for (Index e : board_.elements_within(tip, radius + board_.largest_element())) {
-    if (destroyed[e] || (board_.centroid(e) - tip).squaredNorm() < full * full) continue;
+    if (destroyed[e]) continue;
+    const bool inside = (board_.centroid(e) - tip).squaredNorm() < full * full;
+    if (inside && !surface_.touches(e, part)) continue;
     std::array<Place*, 4> places{};
     double lowest = 1, highest = 0;
     for (int a = 0; a < 4; ++a) {
@@ -55,7 +57,8 @@ TipDomain DomainBuilder::collect(const Vec2& tip, double radius,
       lowest = std::min(lowest, places[a]->weight);
       highest = std::max(highest, places[a]->weight);
     }
-    if (!(highest > lowest)) continue;  // no gradient: nothing to integrate
+    // Neither a gradient nor a surface: nothing to integrate.
+    if (!(highest > lowest) && !(highest > 0 && surface_.touches(e, part))) continue;
     std::array<Index, 4> corners{};
     for (int a = 0; a < 4; ++a) {
       if (places[a]->at == kNone) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fracture/board.hpp"
+#include "fracture/field_sif/free_surface.hpp"
 
 namespace sunder::fracture {
 
@@ -31,8 +32,8 @@ struct FrontStretch {
   double at = 0, width = 0;
 };
 
-/// Elements whose weight varies, and their nodes in order of first use. Only these nodes'
-/// displacements enter.
+/// Elements whose weight varies or that carry a part of the body's surface, and their nodes in
+/// order of first use. Only these nodes' displacements enter.
 struct TipDomain {
   double radius = 0;        ///< [mm]
   double front_length = 0;  ///< integral of q along the front [mm]
@@ -48,11 +49,13 @@ struct TipDomain {
 /// Collects domains; keeps scratch of the mesh's size so that a domain costs what lies in it.
 class DomainBuilder {
  public:
-  explicit DomainBuilder(const Board& board) : board_(board), place_(board.mesh().nodes.size()) {}
+  DomainBuilder(const Board& board, const FreeSurface& surface)
+      : board_(board), surface_(surface), place_(board.mesh().nodes.size()) {}
 
-  /// Live elements of the ring, by id; over the whole thickness, or around a stretch of the front.
+  /// Live elements of the ring, by id, and within it those on the named part of the surface; over
+  /// the whole thickness, or around a stretch of the front.
   [[nodiscard]] TipDomain collect(const Vec2& tip, double radius,
-                                  std::span<const std::uint8_t> destroyed,
+                                  std::span<const std::uint8_t> destroyed, FreeSurface::Part part,
                                   const std::optional<FrontStretch>& stretch = {});
 
  private:
@@ -65,6 +68,7 @@ class DomainBuilder {
                   const std::optional<FrontStretch>& stretch);
 
   const Board& board_;
+  const FreeSurface& surface_;
   std::vector<Place> place_;  // shape (nodes)
   std::uint32_t round_ = 0;
 };

@@ -69,6 +69,16 @@ TEST(Published, DomainsAgree) {
     EXPECT_NEAR(board.intensity(radius).factors.k_1 / reference, 1, kDomains) << radius;
 }
 
+TEST(Published, DomainsThatTheOutlineCutsAgree) {
+  for (double share : {0.1, 0.9}) {  // 4 h from the mouth, 4 h from the far edge
+    auto board = pulled(Notch::edge, 40, share);
+    const double reference = board.intensity(4).factors.k_1;
+    for (double radius : {5.0, 7.0, 10.0})
+      EXPECT_NEAR(board.intensity(radius).factors.k_1 / reference, 1, kDomains)
+          << share << " " << radius;
+  }
+}
+
 TEST(Published, SplitNodesConvergeFromFurtherBelow) {
   CrackedBoardOptions options;
   options.made = CrackMade::split;
