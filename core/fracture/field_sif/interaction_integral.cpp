@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "fem/element.hpp"
-
 namespace sunder::fracture {
 namespace {
 
