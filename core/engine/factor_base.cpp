@@ -51,6 +51,7 @@ Eigen::MatrixXd FactorBase::push(const fem::EventFactor& block) {
   const Eigen::Index k = added.v.cols();
   columns_ += k;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_, k);
+  fem::RowMajor product;
   Eigen::Index row = 0;
   for (const Block& b : blocks_) {
     auto target = gram.middleRows(row, b.v.cols());
@@ -61,8 +62,12 @@ Eigen::MatrixXd FactorBase::push(const fem::EventFactor& block) {
       const Index begin = std::max(r.row, s.row);
       const Index end = std::min(r.row + r.length, s.row + s.length);
       if (begin < end) {
-        target.noalias() += b.v.middleRows(r.place + begin - r.row, end - begin).transpose() *
-                            added.v.middleRows(s.place + begin - s.row, end - begin);
+        const double* left = b.v.row(r.place + begin - r.row).data();
+        const double* right = added.v.row(s.place + begin - s.row).data();
+        product.resize(b.v.cols(), k);
+        fem::row_product({left, b.v.cols(), end - begin, 1, b.v.outerStride()}, right,
+                         added.v.outerStride(), k, product.data(), k);
+        target += product;
       }
       if (r.row + r.length <= s.row + s.length) {
         ++i;

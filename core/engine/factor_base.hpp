@@ -21,14 +21,13 @@ class FactorBase final : public Base {
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
  private:
-  using RowMajor = fem::SupernodalCholesky::RowMajor;
   /// Rows of L that follow each other: `place` counts the block's own rows.
   struct Run {
     Index row, length, place;
   };
   struct Block {
     std::vector<Run> runs;  // ascending
-    RowMajor v;             // L^-1 P V on those rows
+    fem::RowMajor v;        // L^-1 P V on those rows
   };
 
   [[nodiscard]] std::vector<Run> runs_of(std::span<const Index> supernodes) const;
@@ -38,7 +37,7 @@ class FactorBase final : public Base {
   std::vector<Block> blocks_;
   Eigen::Index columns_ = 0;
   std::vector<Index> places_;    // of a block's unknowns in L
-  RowMajor work_;                // rows of L, all zero between calls
+  fem::RowMajor work_;           // rows of L, all zero between calls
   Eigen::VectorXd of_load_, y_;  // L^-1 P f; the sum to solve back
   Eigen::VectorXd projected_, gathered_;
 };

@@ -26,13 +26,14 @@ Eigen::MatrixXd InverseBase::push(const fem::EventFactor& block) {
     const double* column = x_.col(block.dofs[static_cast<std::size_t>(j)]).data();
     for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, j) = column[rows[static_cast<std::size_t>(i)]];
   }
-  const Eigen::MatrixXd xw = x * added.w;
+  const fem::RowMajor xw = fem::row_product(fem::plain(x), fem::RowMajor(added.w));
   blocks_.push_back(std::move(added));
   columns_ += block.w.cols();
   Eigen::MatrixXd gram(columns_, block.w.cols());
   Eigen::Index row = 0;
   for (const Block& b : blocks_) {
-    gram.middleRows(row, b.w.cols()).noalias() = b.w.transpose() * xw(b.places, Eigen::all);
+    gram.middleRows(row, b.w.cols()) =
+        fem::row_product(fem::transposed(b.w), fem::RowMajor(xw(b.places, Eigen::all)));
     row += b.w.cols();
   }
   return gram;

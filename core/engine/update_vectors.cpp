@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <vector>
 
 namespace sunder::engine {
 namespace {
@@ -30,17 +31,29 @@ Eigen::MatrixXd pivoted_cholesky(const Eigen::MatrixXd& a) {
   return v;
 }
 
+/// W W^T of columns with few entries (an element's twelve unknowns).
+Eigen::MatrixXd product_with_transpose(const Eigen::MatrixXd& w) {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(w.rows(), w.rows());
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index k = 0; k < w.cols(); ++k) {
+    rows.clear();
+    for (Eigen::Index i = 0; i < w.rows(); ++i) {
+      if (w(i, k) != 0) rows.push_back(i);
+    }
+    for (Eigen::Index j : rows) {
+      for (Eigen::Index i : rows) a(i, j) += w(i, k) * w(j, k);
+    }
+  }
+  return a;
+}
+
 }  // namespace
 
 fem::EventFactor compressed(fem::EventFactor event) {
   if (event.w.rows() == 0 || event.w.cols() <= 6) return event;
   const Eigen::VectorXd scale = event.w.rowwise().norm();
   const Eigen::VectorXd inverse = scale.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
-  const Eigen::MatrixXd w = inverse.asDiagonal() * event.w;
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(w.rows(), w.rows());
-  a.selfadjointView<Eigen::Lower>().rankUpdate(w);
-  a.triangularView<Eigen::StrictlyUpper>() = a.transpose();
-  Eigen::MatrixXd v = pivoted_cholesky(a);
+  Eigen::MatrixXd v = pivoted_cholesky(product_with_transpose(inverse.asDiagonal() * event.w));
   if (v.cols() < event.w.cols()) event.w = scale.asDiagonal() * v;
   return event;
 }

@@ -41,7 +41,7 @@ Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return place[columns[a]] < place[columns[b]]; });
   Eigen::MatrixXd result(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
-  SupernodalCholesky::RowMajor block;
+  RowMajor block;
   for (std::size_t start = 0; start < columns.size(); start += kBlock) {
     const std::size_t width = std::min(kBlock, columns.size() - start);
     block.setZero(cholesky_.size(), static_cast<Index>(width));

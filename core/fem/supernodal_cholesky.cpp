@@ -28,7 +28,7 @@ bool SupernodalCholesky::factorise(const SparseMatrix& a) {
   const Index count = nodes_.count();
   std::vector<Index> head(static_cast<std::size_t>(count), kNone), next(head), done(head);
   std::vector<Index> at(static_cast<std::size_t>(size()));  // row -> row of the current panel
-  Eigen::MatrixXd product;
+  RowMajor product;
   for (Index s = 0; s < count; ++s) {
     const Index begin = nodes_.first[s], width = nodes_.width(s), end = begin + width;
     const auto below = nodes_.below(s);
@@ -42,9 +42,11 @@ bool SupernodalCholesky::factorise(const SparseMatrix& a) {
       const Index following = next[d];
       const auto rows = nodes_.below(d).subspan(static_cast<std::size_t>(done[d]));
       const auto reached = std::lower_bound(rows.begin(), rows.end(), end) - rows.begin();
-      const ConstPanel from = panel(d);
-      const auto tail = from.bottomRows(static_cast<Index>(rows.size()));
-      product.noalias() = tail * tail.topRows(reached).transpose();
+      const Index height = nodes_.height(d), left = static_cast<Index>(rows.size());
+      const double* tail = values_.data() + nodes_.value_begin[d] + height - left;
+      product.resize(left, reached);
+      row_product({tail, left, nodes_.width(d), 1, height}, tail, height, reached, product.data(),
+                  reached);
       for (Index j = 0; j < reached; ++j) {
         double* column = p.col(at[rows[static_cast<std::size_t>(j)]]).data();
         for (Index i = j; i < product.rows(); ++i) {
@@ -115,16 +117,41 @@ void SupernodalCholesky::backward(Eigen::VectorXd& y) const {
   }
 }
 
+// Blocks of columns: their own triangle row by row, the rest of the panel's triangle by a product.
+void SupernodalCholesky::forward_triangle(Index s, Eigen::Ref<RowMajor> y,
+                                          RowMajor& product) const {
+  constexpr Index kColumns = 16;
+  const ConstPanel p = panel(s);
+  const Index width = nodes_.width(s);
+  auto x = y.middleRows(nodes_.first[s], width);
+  for (Index begin = 0; begin < width; begin += kColumns) {
+    const Index end = std::min(begin + kColumns, width);
+    for (Index j = begin; j < end; ++j) {
+      x.row(j) /= p(j, j);
+      for (Index i = j + 1; i < end; ++i) x.row(i) -= p(i, j) * x.row(j);
+    }
+    if (end == width) return;
+    product.resize(width - end, y.cols());
+    row_product({p.col(begin).data() + end, width - end, end - begin, 1, p.outerStride()},
+                x.row(begin).data(), x.outerStride(), y.cols(), product.data(),
+                product.outerStride());
+    x.bottomRows(width - end) -= product;
+  }
+}
+
 void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y) const {
   RowMajor product;
   for (Index s : supernodes) {
     const ConstPanel p = panel(s);
     const Index width = nodes_.width(s);
     auto x = y.middleRows(nodes_.first[s], width);
-    p.topRows(width).triangularView<Eigen::Lower>().solveInPlace(x);
+    forward_triangle(s, y, product);
     const auto below = nodes_.below(s);
     if (below.empty()) continue;
-    product.noalias() = p.bottomRows(static_cast<Index>(below.size())) * x;
+    const auto under = static_cast<Eigen::Index>(below.size());
+    product.resize(under, y.cols());
+    row_product({p.data() + width, under, width, 1, p.outerStride()}, x.data(), x.outerStride(),
+                y.cols(), product.data(), product.outerStride());
     for (std::size_t i = 0; i < below.size(); ++i) {
       y.row(below[i]) -= product.row(static_cast<Eigen::Index>(i));
     }
@@ -132,7 +159,7 @@ void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<R
 }
 
 void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y) const {
-  RowMajor gathered;
+  RowMajor gathered, product;
   for (Index s = nodes_.count() - 1; s >= 0; --s) {
     const ConstPanel p = panel(s);
     const Index width = nodes_.width(s);
@@ -143,7 +170,10 @@ void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y) const {
       for (std::size_t i = 0; i < below.size(); ++i) {
         gathered.row(static_cast<Eigen::Index>(i)) = y.row(below[i]);
       }
-      x.noalias() -= p.bottomRows(gathered.rows()).transpose() * gathered;
+      product.resize(width, y.cols());
+      row_product({p.data() + width, width, gathered.rows(), p.outerStride(), 1}, gathered.data(),
+                  gathered.outerStride(), y.cols(), product.data(), product.outerStride());
+      x -= product;
     }
     p.topRows(width).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
   }

@@ -6,14 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "fem/row_product.hpp"
 #include "fem/supernodes.hpp"
 
 namespace sunder::fem {
 
 class SupernodalCholesky {
  public:
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
   /// From the lower triangle; succeeded() tells whether A is positive definite in double precision.
   explicit SupernodalCholesky(const SparseMatrix& lower);
   [[nodiscard]] bool succeeded() const { return succeeded_; }
@@ -43,6 +42,7 @@ class SupernodalCholesky {
   [[nodiscard]] ConstPanel panel(Index s) const;
   [[nodiscard]] bool factorise(const SparseMatrix& permuted);
   void forward_panel(Index s, Eigen::VectorXd& y, std::vector<double>& work) const;
+  void forward_triangle(Index s, Eigen::Ref<RowMajor> y, RowMajor& product) const;
 
   Supernodes nodes_;
   std::vector<double> values_;

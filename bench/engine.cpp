@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine against CHOLMOD: one event of k connected elements and the solution after it, one
+// thread. Ratio columns compare with the CHOLMOD rows of the same run; `error` is the difference to
+// CHOLMOD's refactored solution.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <numeric>
+
+#include "cholmod_peer.hpp"
+#include "cpu_reference/routes.hpp"
+#include "engine/deferred.hpp"
+#include "engine/factor_base.hpp"
+#include "engine/inverse_base.hpp"
+
+extern "C" void openblas_set_num_threads(int);
+
+namespace sunder::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Minimum times of the rows that ran, by name, in seconds.
+std::map<std::string, double>& best_times() {
+  static std::map<std::string, double> times;
+  return times;
+}
+
+const TearingBoard& board_of(Index cells) {
+  static std::map<Index, std::unique_ptr<TearingBoard>> boards;
+  auto& board = boards[cells];
+  if (!board) board = std::make_unique<TearingBoard>(cells);
+  return *board;
+}
+
+const fem::Factor& factor_of(Index cells) {
+  static std::map<Index, std::unique_ptr<fem::Factor>> factors;
+  auto& factor = factors[cells];
+  if (!factor) {
+    factor = std::make_unique<fem::Factor>(fem::assemble_lower(*board_of(cells).problem, {}));
+  }
+  return *factor;
+}
+
+std::string row(const char* name, Index cells, std::size_t k) {
+  return std::string(name) + "/" + std::to_string(6 * cells * cells) + "/k" + std::to_string(k);
+}
+
+Eigen::VectorXd& refactored(Index cells, std::size_t k) {
+  static std::map<std::pair<Index, std::size_t>, Eigen::VectorXd> solutions;
+  return solutions[{cells, k}];
+}
+
+/// Repeats prepare (untimed) and run (timed) and reports minimum, median and ratios.
+void measure(benchmark::State& state, const std::string& name, Index cells, std::size_t k,
+             const std::function<void()>& prepare, const std::function<void()>& run) {
+  std::vector<double> seconds;
+  for (auto _ : state) {
+    prepare();
+    const auto start = Clock::now();
+    run();
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    state.SetIterationTime(seconds.back());
+  }
+  std::sort(seconds.begin(), seconds.end());
+  best_times()[name] = seconds.front();
+  state.counters["min_ms"] = 1e3 * seconds.front();
+  state.counters["median_ms"] = 1e3 * seconds[seconds.size() / 2];
+  for (const char* peer : {"updown", "updown_solve", "refactor"}) {
+    const auto it = best_times().find(row((std::string("cholmod_") + peer).c_str(), cells, k));
+    if (it != best_times().end()) {
+      state.counters[std::string("over_") + peer] = seconds.front() / it->second;
+    }
+  }
+}
+
+void cholmod_row(benchmark::State& state, const char* name, Index cells, std::size_t k,
+                 void (Cholmod::*run)()) {
+  const TearingBoard& board = board_of(cells);
+  Cholmod cholmod(board);
+  const auto elements = board.connected(k);
+  measure(
+      state, row(name, cells, k), cells, k, [&] { cholmod.prepare(elements); },
+      [&] { (cholmod.*run)(); });
+  Eigen::VectorXd& reference = refactored(cells, k);
+  if (run == &Cholmod::refactor) reference = cholmod.solution();
+  if (reference.size() > 0) {
+    state.counters["error"] = (cholmod.solution() - reference).norm() / reference.norm();
+  }
+}
+
+void engine_row(benchmark::State& state, const char* name, Index cells, std::size_t k,
+                const std::function<std::unique_ptr<engine::Base>(const fem::Factor&)>& base) {
+  const TearingBoard& board = board_of(cells);
+  engine::Deferred deferred(base(factor_of(cells)), {});
+  const auto elements = board.connected(k);
+  Eigen::VectorXd u;
+  measure(
+      state, row(name, cells, k), cells, k,
+      [&] {
+        if (deferred.events() > 0) deferred.take_back();
+      },
+      [&] {
+        if (!deferred.destroy(*board.problem, elements)) state.SkipWithError("not definite");
+        deferred.solve({board.load_dofs, board.load_values}, {}, u);
+      });
+  state.counters["rank"] = deferred.rank();
+  const Eigen::VectorXd& reference = refactored(cells, k);
+  if (reference.size() > 0) state.counters["error"] = (u - reference).norm() / reference.norm();
+}
+
+void own_refactor(benchmark::State& state, Index cells) {
+  const TearingBoard& board = board_of(cells);
+  const fem::SparseMatrix k = fem::assemble_lower(*board.problem, {});
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(k.rows()), u;
+  for (std::size_t i = 0; i < board.load_dofs.size(); ++i) {
+    f[board.load_dofs[i]] = board.load_values[i];
+  }
+  measure(
+      state, row("sunder_factor_anew", cells, 1), cells, 1, [] {},
+      [&] { u = fem::Factor(k).solve(f); });
+  state.counters["nnz_L"] = static_cast<double>(factor_of(cells).entries());
+}
+
+/// 640 fractures one by one: first, median, 99th percentile and worst frame, last hundred's median.
+void accumulated(benchmark::State& state, Index cells, bool dense) {
+  const TearingBoard& board = board_of(cells);
+  const cpu_reference::IntactBody intact(*board.problem);
+  Load load{board.load_dofs, board.load_values, {}};
+  const Eigen::VectorXd none;
+  for (auto _ : state) {
+    cpu_reference::DamagedBody body(board.problem);
+    const auto route = cpu_reference::deferred_route(body, intact, dense);
+    std::vector<double> ms;
+    Eigen::VectorXd u;
+    for (const Index& e : board.connected(640)) {
+      const auto start = Clock::now();
+      body.destroy({&e, 1});
+      route->destroy({&e, 1});
+      route->solve(load, none, u);
+      ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    }
+    state.SetIterationTime(1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0));
+    const auto median = [](std::vector<double> v) {
+      std::sort(v.begin(), v.end());
+      return v[v.size() / 2];
+    };
+    state.counters["first_ms"] = median({ms.begin(), ms.begin() + 5});
+    state.counters["median_ms"] = median(ms);
+    state.counters["last_ms"] = median({ms.end() - 100, ms.end()});
+    std::sort(ms.begin(), ms.end());
+    state.counters["p99_ms"] = ms[633];
+    state.counters["worst_ms"] = ms.back();
+  }
+}
+
+void add(const std::string& name, double seconds,
+         const std::function<void(benchmark::State&)>& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)
+      ->UseManualTime()
+      ->MinTime(seconds)
+      ->Unit(benchmark::kMillisecond);
+}
+
+void register_rows() {
+  for (Index cells : {18, 36, 71, 141}) {
+    for (std::size_t k : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) {
+      const auto peer = [=](const char* name, void (Cholmod::*run)()) {
+        add(row(name, cells, k), 0.1, [=](auto& s) { cholmod_row(s, name, cells, k, run); });
+      };
+      peer("cholmod_refactor", &Cholmod::refactor);
+      peer("cholmod_updown", &Cholmod::updown_then_solve);
+      peer("cholmod_updown_solve", &Cholmod::updown_solve);
+      if (cells <= 36) {
+        add(row("sunder_inverse_deferred", cells, k), 0.1, [=](auto& s) {
+          engine_row(s, "sunder_inverse_deferred", cells, k,
+                     [](const fem::Factor& f) { return std::make_unique<engine::InverseBase>(f); });
+        });
+      }
+      add(row("sunder_factor_deferred", cells, k), 0.1, [=](auto& s) {
+        engine_row(s, "sunder_factor_deferred", cells, k,
+                   [](const fem::Factor& f) { return std::make_unique<engine::FactorBase>(f); });
+      });
+    }
+    add(row("sunder_factor_anew", cells, 1), 0.1, [=](auto& s) { own_refactor(s, cells); });
+  }
+  for (Index cells : {18, 36, 71}) {
+    for (bool dense : {true, false}) {
+      if (dense && cells > 36) continue;
+      const std::string name = dense ? "accumulated_640_inverse" : "accumulated_640_factor";
+      benchmark::RegisterBenchmark((name + "/" + std::to_string(6 * cells * cells)).c_str(),
+                                   [=](auto& s) { accumulated(s, cells, dense); })
+          ->UseManualTime()
+          ->Iterations(1)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sunder::bench
+
+int main(int argc, char** argv) {
+  openblas_set_num_threads(1);
+  sunder::bench::register_rows();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+}

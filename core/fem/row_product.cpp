@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fem/row_product.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "engine/vectorised.hpp"
+
+namespace sunder::fem {
+namespace {
+
+using Index = Eigen::Index;
+constexpr Index kLanes = 8;
+typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
+
+inline __attribute__((always_inline)) void load(const double* p, Lanes& v) {
+  std::memcpy(&v, p, sizeof(v));
+}
+inline __attribute__((always_inline)) void store(double* p, const Lanes& v) {
+  std::memcpy(p, &v, sizeof(v));
+}
+
+/// Rows x (Vectors * kLanes) entries of c, kept in registers.
+template <int Rows, int Vectors>
+inline __attribute__((always_inline)) void tile(const LeftFactor& a, Index row, const double* b,
+                                                Index b_stride, double* c, Index c_stride) {
+  Lanes sum[Rows][Vectors] = {};
+  const double* left = a.data + row * a.row_stride;
+  for (Index k = 0; k < a.columns; ++k, left += a.column_stride, b += b_stride) {
+    Lanes right[Vectors];
+    for (int v = 0; v < Vectors; ++v) load(b + v * kLanes, right[v]);
+    for (int r = 0; r < Rows; ++r) {
+      const double l = left[r * a.row_stride];
+      for (int v = 0; v < Vectors; ++v) sum[r][v] += l * right[v];
+    }
+  }
+  for (int r = 0; r < Rows; ++r) {
+    for (int v = 0; v < Vectors; ++v) store(c + r * c_stride + v * kLanes, sum[r][v]);
+  }
+}
+
+template <int Vectors>
+inline __attribute__((always_inline)) void strip(const LeftFactor& a, const double* b,
+                                                 Index b_stride, double* c, Index c_stride) {
+  constexpr int kRows = 4;
+  Index i = 0;
+  for (; i + kRows <= a.rows; i += kRows) {
+    tile<kRows, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+  }
+  for (; i < a.rows; ++i) tile<1, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+}
+
+}  // namespace
+
+SUNDER_VECTORISED
+void row_product(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
+                 Index c_stride) {
+  Index j = 0;
+  for (; j + 2 * kLanes <= width; j += 2 * kLanes) strip<2>(a, b + j, b_stride, c + j, c_stride);
+  for (; j + kLanes <= width; j += kLanes) strip<1>(a, b + j, b_stride, c + j, c_stride);
+  if (j == width) return;
+  // The last columns, padded with zeros to a full vector.
+  const Index rest = width - j;
+  std::vector<double> padded(static_cast<std::size_t>((a.columns + a.rows) * kLanes), 0.0);
+  for (Index k = 0; k < a.columns; ++k) {
+    std::copy_n(b + k * b_stride + j, rest, &padded[static_cast<std::size_t>(k * kLanes)]);
+  }
+  double* result = padded.data() + a.columns * kLanes;
+  strip<1>(a, padded.data(), kLanes, result, kLanes);
+  for (Index i = 0; i < a.rows; ++i) {
+    std::copy_n(result + i * kLanes, rest, c + i * c_stride + j);
+  }
+}
+
+}  // namespace sunder::fem

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The dense product behind the engine's updates, compiled for the vector width at hand: Eigen's own
+// is bound to the width that the whole library is compiled for.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace sunder::fem {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// A strided view of a left factor; a transpose swaps the strides.
+struct LeftFactor {
+  const double* data;
+  Eigen::Index rows, columns, row_stride, column_stride;
+};
+[[nodiscard]] inline LeftFactor transposed(const RowMajor& a) {
+  return {a.data(), a.cols(), a.rows(), 1, a.outerStride()};
+}
+[[nodiscard]] inline LeftFactor transposed(const Eigen::MatrixXd& a) {
+  return {a.data(), a.cols(), a.rows(), a.outerStride(), 1};
+}
+[[nodiscard]] inline LeftFactor plain(const Eigen::MatrixXd& a) {
+  return {a.data(), a.rows(), a.cols(), 1, a.outerStride()};
+}
+
+/// c = A b with b and c row by row at the given strides, `width` columns. Every entry is summed in
+/// the order of A's columns, so the bits do not depend on the vector width.
+void row_product(const LeftFactor& a, const double* b, Eigen::Index b_stride, Eigen::Index width,
+                 double* c, Eigen::Index c_stride);
+
+/// A b for a row-major b.
+[[nodiscard]] inline RowMajor row_product(const LeftFactor& a, const RowMajor& b) {
+  RowMajor c(a.rows, b.cols());
+  row_product(a, b.data(), b.outerStride(), b.cols(), c.data(), c.outerStride());
+  return c;
+}
+
+}  // namespace sunder::fem
