@@ -62,17 +62,16 @@ void decide(benchmark::State& bench, SifSource sif) {
   backend->solve();
   std::vector<double> pristine(3 * problem->mesh().nodes.size());
   backend->solve_pristine(load, pristine);
-  const FractureState state{*problem,
-                            backend->destroyed(),
-                            backend->stress(),
-                            [&](Index e) { return backend->read_stress(e); },
-                            [&] { return std::span<const double>(pristine); },
-                            Vec3(0, -5, 0),
-                            {},
-                            [&](std::span<const Index> ids, std::span<Vec3> u) {
-                              backend->read_displacement(ids, u);
-                            },
-                            [&] { return forces; }};
+  const FractureState state{
+      *problem,
+      backend->destroyed(),
+      backend->stress(),
+      [&](Index e) { return backend->read_stress(e); },
+      [&] { return std::span<const double>(pristine); },
+      Vec3(0, -5, 0),
+      {},
+      [&](std::span<const Index> ids, std::span<Vec3> u) { backend->read_displacement(ids, u); },
+      [&] { return forces; }};
   for (auto _ : bench) {
     const Decision decision = criterion->decide(state);
     if (!decision.elements.empty()) bench.SkipWithError("the board breaks under this load");

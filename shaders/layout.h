@@ -13,19 +13,19 @@ using uint = std::uint32_t;
 #define SUNDER_CONST const uint
 #endif
 
-SUNDER_CONST kGroup = 64u;          // invocations of a workgroup
-SUNDER_CONST kRowPad = 256u;        // rows of a vector: four an invocation
-SUNDER_CONST kColumnPad = 64u;      // columns of a matrix
-SUNDER_CONST kChunk = 64u;          // columns that one workgroup sums
-SUNDER_CONST kRankBlock = 6u;       // update vectors of one element
-SUNDER_CONST kUpdateColumns = 8u;   // columns of the inverse that one workgroup updates
-SUNDER_CONST kHeld = 0xffffffffu;   // dof of an axis that a support holds
+SUNDER_CONST kGroup = 64u;         // invocations of a workgroup
+SUNDER_CONST kRowPad = 256u;       // rows of a vector: four an invocation
+SUNDER_CONST kColumnPad = 64u;     // columns of a matrix
+SUNDER_CONST kChunk = 64u;         // columns that one workgroup sums
+SUNDER_CONST kRankBlock = 6u;      // update vectors of one element
+SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one workgroup updates
+SUNDER_CONST kHeld = 0xffffffffu;  // dof of an axis that a support holds
 
 // State of an element, bit by bit.
 SUNDER_CONST kDestroyed = 1u;
 SUNDER_CONST kBreakable = 2u;
-SUNDER_CONST kExcluded = 4u;        // never a candidate
-SUNDER_CONST kAbsent = 8u;          // padding
+SUNDER_CONST kExcluded = 4u;  // never a candidate
+SUNDER_CONST kAbsent = 8u;    // padding
 
 // One loaded dof: coefficient times a column of the inverse.
 struct Entry {
@@ -35,10 +35,10 @@ struct Entry {
 };
 
 struct ApplyPush {
-  uint packs;          // rows / 4
-  uint first, last;    // entries, or (dense) columns of this matrix
-  uint vector_first;   // dense: where the columns' coefficients begin in the vector, / 4
-  uint partial;        // first chunk of partial sums
+  uint packs;         // rows / 4
+  uint first, last;   // entries, or (dense) columns of this matrix
+  uint vector_first;  // dense: where the columns' coefficients begin in the vector, / 4
+  uint partial;       // first chunk of partial sums
 };
 
 struct SumPush {
@@ -69,38 +69,38 @@ struct SummaryPush {
 };
 
 struct PickPush {
-  uint rows, columns;         // of the block
-  uint first_column;          // of this panel
+  uint rows, columns;  // of the block
+  uint first_column;   // of this panel
   uint panel_columns;
-  uint leading;               // rows of the matrix
+  uint leading;  // rows of the matrix
 };
 
 struct VectorsPush {
   uint packs;
-  uint first, last;           // rows of V
-  uint blocks;                // rank / 6
-  uint first_column;          // of this panel
+  uint first, last;   // rows of V
+  uint blocks;        // rank / 6
+  uint first_column;  // of this panel
   uint add;
 };
 
 struct LowRankPush {
   uint packs;
   uint blocks;
-  uint first_column;          // of this panel
+  uint first_column;  // of this panel
 };
 
 struct CgPush {
-  uint groups;     // workgroups of 64 nodes
-  uint parity;     // of the iteration
+  uint groups;       // workgroups of 64 nodes
+  uint parity;       // of the iteration
   double reduction;  // stop at this share of the first r^T M r
 };
 
 // State of conjugate gradients, on the device from the first iteration to the last.
 struct CgState {
-  double rz[2];    // r^T M r of this iteration and the next, by parity
+  double rz[2];  // r^T M r of this iteration and the next, by parity
   double target;
   uint iterations;
-  uint broken;     // 1: p^T K p was not positive, or something was not finite
+  uint broken;  // 1: p^T K p was not positive, or something was not finite
   uint running;
   uint unused;
 };
@@ -108,7 +108,7 @@ struct CgState {
 // Worst yield ratio and largest stress of the elements of one workgroup.
 struct StressPartial {
   double any_ratio, candidate_ratio;
-  double stress_squared;      // largest Frobenius norm of a live element, squared
+  double stress_squared;  // largest Frobenius norm of a live element, squared
   uint any_element, candidate_element;
 };
 
@@ -116,8 +116,8 @@ struct StressPartial {
 struct Summary {
   double any_ratio, candidate_ratio;
   double stress_squared;
-  double residual_squared;    // over dofs that no grip holds
-  double reaction_squared;    // over those that one holds
+  double residual_squared;  // over dofs that no grip holds
+  double reaction_squared;  // over those that one holds
   uint any_element, candidate_element;
 };
 
