@@ -26,7 +26,7 @@ Scene good_scene() {
       {2, 2, 1, 2, 2, 1}, [](const Vec3& x) { return std::string(x.y() < 1 ? "lower" : "upper"); });
   scene.materials["lower"] = {5, 0.4, 2.0};
   scene.materials["upper"] = {8, 0.4, std::nullopt};
-  scene.supports.emplace_back(Box{Vec3(-1, 1.9, -1), Vec3(3, 3, 2)}, Axes{7});
+  scene.supports.push_back({Box{Vec3(-1, 1.9, -1), Vec3(3, 3, 2)}, Axes{7}});
   return scene;
 }
 
@@ -447,7 +447,7 @@ TEST(GoodScene, NumbersItsUnknowns) {
 
 TEST(GoodScene, OverlappingSupportsAdd) {
   Scene scene = good_scene();
-  scene.supports.emplace_back(std::vector<Index>{0, 6}, Axes{4});
+  scene.supports.push_back({std::vector<Index>{0, 6}, Axes{4}});
   const Problem problem(std::move(scene));
   EXPECT_EQ(problem.dof(0, 2), kNone);
   EXPECT_EQ(problem.dof(0, 1), 1);
@@ -457,7 +457,7 @@ TEST(GoodScene, OverlappingSupportsAdd) {
 // A pull may act on a node that is held on other axes only.
 TEST(GoodScene, PullBesideAHeldAxis) {
   Scene scene = good_scene();
-  scene.supports.emplace_back(std::vector<Index>{0}, Axes{4});
+  scene.supports.push_back({std::vector<Index>{0}, Axes{4}});
   scene.instruments.push_back(pull(std::vector<Index>{0}, Vec3(0, -1, 0)));
   EXPECT_EQ(Problem(std::move(scene)).instrument_nodes()[0].nodes, std::vector<Index>{0});
 }

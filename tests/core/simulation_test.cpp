@@ -24,7 +24,7 @@ Scene strip(double yield, double force, int steps) {
   Scene scene;
   scene.mesh = structured_board({4, 8, 1, 4, 8, 1});
   scene.materials["board"] = {5, 0.3, yield};
-  scene.supports.emplace_back(band(7.9, 9), Axes{7});
+  scene.supports.push_back({band(7.9, 9), Axes{7}});
   Instrument forceps;
   forceps.name = "forceps";
   forceps.action = Pull{band(-1, 0.1), Vec3(0, -force, 0)};

@@ -14,7 +14,7 @@ Scene small_board() {
   Scene scene;
   scene.mesh = structured_board({3, 3, 1, 3, 3, 1});
   scene.materials["board"] = {5, 0.4, 2.0};
-  scene.supports.emplace_back(Box{Vec3(-1, 2.9, -1), Vec3(4, 4, 2)}, Axes{7});
+  scene.supports.push_back({Box{Vec3(-1, 2.9, -1), Vec3(4, 4, 2)}, Axes{7}});
   return scene;
 }
 

@@ -89,7 +89,7 @@ const std::vector<Index> kCrack = {6 * 32,     6 * 32 + 1, 6 * 32 + 2, 6 * 32 + 
 
 Scene gripped_corner() {
   Scene scene = board();
-  scene.supports.emplace_back(edge(8), Axes{7});
+  scene.supports.push_back({edge(8), Axes{7}});
   scene.instruments.push_back(grip(edge(0), Vec3(0.1, -0.5, 0.05), Axes{7}));
   return scene;
 }
@@ -99,14 +99,14 @@ TEST_P(Grips, WithSupportsTorn) { expect_elimination(gripped_corner(), GetParam(
 
 TEST_P(Grips, OnSomeAxesOnly) {
   Scene scene = board();
-  scene.supports.emplace_back(edge(8), Axes{7});
+  scene.supports.push_back({edge(8), Axes{7}});
   scene.instruments.push_back(grip(edge(0), Vec3(0, -0.5, 0), Axes{2}));
   expect_elimination(std::move(scene), GetParam(), kCrack);
 }
 
 TEST_P(Grips, TwoAtOnceWithASupport) {
   Scene scene = board();
-  scene.supports.emplace_back(edge(8), Axes{7});
+  scene.supports.push_back({edge(8), Axes{7}});
   scene.instruments.push_back(grip(std::vector<Index>{0, 1}, Vec3(-0.2, -0.5, 0), Axes{7}));
   scene.instruments.push_back(grip(std::vector<Index>{7, 8}, Vec3(0.2, -0.4, 0.3), Axes{7}));
   expect_elimination(std::move(scene), GetParam(), kCrack);
