@@ -32,7 +32,7 @@ class Grips {
  private:
   std::span<const Index> dofs_;
   Eigen::MatrixXd columns_;
-  Eigen::LLT<Eigen::MatrixXd> block_;
+  Eigen::LLT<Eigen::MatrixXd> block_{Eigen::MatrixXd(0, 0)};  // copied before its first use
 };
 
 /// The damaged body: which elements are destroyed, and K u.

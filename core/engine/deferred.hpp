@@ -48,7 +48,8 @@ class Deferred {
   BorderedCholesky small_;                    // S = L L^T
   Eigen::MatrixXd grip_x_;                    // X_GG
   Eigen::MatrixXd grip_rows_;                 // L^-1 W^T X_G, shape (rank x grips)
-  Eigen::LLT<Eigen::MatrixXd> grip_block_;    // (A^-1)_GG = X_GG + grip_rows^T grip_rows
+  Eigen::LLT<Eigen::MatrixXd> grip_block_{
+      Eigen::MatrixXd(0, 0)};  // (A^-1)_GG = X_GG + grip_rows^T grip_rows
   Eigen::VectorXd coefficients_, forces_;
 };
 

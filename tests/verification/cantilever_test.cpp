@@ -17,7 +17,7 @@ double mean_end_deflection(Index cells, int axis) {
   Scene scene;
   scene.mesh = structured_board(shape);
   scene.materials["board"] = {5, 0, std::nullopt};
-  scene.supports.emplace_back(Box{Vec3(-1, -1, -1), Vec3(1e-9, 2, 2)}, Axes{7});
+  scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(1e-9, 2, 2)}, Axes{7}});
   const Body body(std::move(scene), Needs{});
   const Mesh& mesh = body.problem->mesh();
   const auto at_end = [](const Vec3& x) { return x.x() > 10 - 1e-9; };

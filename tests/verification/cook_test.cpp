@@ -26,15 +26,15 @@ void hold(Scene& scene, Plane plane) {
   const auto column = [](double x, double low, double high) {
     return Box{Vec3(x - 1e-6, low - 1e-6, -1), Vec3(x + 1e-6, high + 1e-6, 1e-6)};
   };
-  scene.supports.emplace_back(Box{Vec3(-1, -1, -1), Vec3(1e-6, 100, 2)}, Axes{3});
+  scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(1e-6, 100, 2)}, Axes{3}});
   if (plane == Plane::strain) {
-    scene.supports.emplace_back(Box{Vec3(-1, -1, -1), Vec3(100, 100, 2)}, Axes{4});
+    scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(100, 100, 2)}, Axes{4}});
     return;
   }
   // Free to change its thickness: z is held at three nodes only.
-  scene.supports.emplace_back(column(0, 0, 0), Axes{4});
-  scene.supports.emplace_back(column(0, 44, 44), Axes{4});
-  scene.supports.emplace_back(column(48, 60, 60), Axes{4});
+  scene.supports.push_back({column(0, 0, 0), Axes{4}});
+  scene.supports.push_back({column(0, 44, 44), Axes{4}});
+  scene.supports.push_back({column(48, 60, 60), Axes{4}});
 }
 
 /// Vertical displacement at (48, y), mean over the thickness.

@@ -108,9 +108,9 @@ TEST_P(Patch, DisplacedSurfaceStrainsTheInsideEvenly) {
 TEST_P(Patch, SurfaceTractionStrainsTheInsideEvenly) {
   Scene scene = patch_scene();
   // Three-two-one: the support's forces must come out as zero.
-  scene.supports.emplace_back(std::vector<Index>{0}, Axes{7});
-  scene.supports.emplace_back(std::vector<Index>{4}, Axes{6});   // along x: holds y and z
-  scene.supports.emplace_back(std::vector<Index>{20}, Axes{4});  // along y: holds z
+  scene.supports.push_back({std::vector<Index>{0}, Axes{7}});
+  scene.supports.push_back({std::vector<Index>{4}, Axes{6}});   // along x: holds y and z
+  scene.supports.push_back({std::vector<Index>{20}, Axes{4}});  // along y: holds z
   Mat3 h = unit_strain(GetParam());
   if (GetParam() == 5) h.transposeInPlace();  // u_x = z instead of u_z = x: 0 at the held dofs
   const Body body(std::move(scene));

@@ -14,7 +14,7 @@ Scene notch_board(FractureModel model) {
   scene.mesh = read_msh22(SUNDER_SCENES "/meshes/board1954_notch.msh");
   scene.materials = table1_materials();
   scene.materials["preset-crack"] = {5, 0.4, 2.0};
-  scene.supports.emplace_back(top_edge(), Axes{7});
+  scene.supports.push_back({top_edge(), Axes{7}});
   Instrument forceps;
   forceps.action = Pull{lower_right_corner(), Vec3(0, -60, 0)};
   forceps.ramp = Ramp{0, 1};
