@@ -63,21 +63,16 @@ Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<M
     : handles_(std::move(handles)),
       physical_(std::move(physical)),
       messages_(std::move(messages)),
-      probe_(probe) {
+      probe_(probe),
+      queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock) {
   VkCommandPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool.queueFamilyIndex = handles_.family;
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   check(vk().CreateCommandPool(handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
-  VkFenceCreateInfo fence{};
-  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  check(vk().CreateFence(handle(), &fence, nullptr, &fence_), "vkCreateFence");
 }
 
-Device::~Device() {
-  vk().DestroyFence(handle(), fence_, nullptr);
-  vk().DestroyCommandPool(handle(), pool_, nullptr);
-}
+Device::~Device() { vk().DestroyCommandPool(handle(), pool_, nullptr); }
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
                                   VkMemoryPropertyFlags preferred) const {
@@ -100,13 +95,8 @@ void Device::submit(VkCommandBuffer commands) {
   check_messages();
   if (probe_.submits_until_lost == 0) check(VK_ERROR_DEVICE_LOST, "a submit (injected fault)");
   if (probe_.submits_until_lost > 0) --probe_.submits_until_lost;
-  VkSubmitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  info.commandBufferCount = 1;
-  info.pCommandBuffers = &commands;
-  check(vk().ResetFences(handle(), 1, &fence_), "vkResetFences");
-  check(vk().QueueSubmit(handles_.queue, 1, &info, fence_), "vkQueueSubmit");
-  check(vk().WaitForFences(handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  queue_.submit(commands);
+  queue_.wait();
   check_messages();
 }
 

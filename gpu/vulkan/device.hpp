@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "gpu/vulkan/physical_device.hpp"
+#include "gpu/vulkan/queue.hpp"
 
 namespace sunder::vulkan {
 
@@ -15,6 +16,7 @@ struct DeviceHandles {
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t family = 0;
+  QueueLock lock;  ///< of a borrowed queue
   VkPhysicalDeviceMemoryProperties memory{};
   bool int64 = false;           ///< shaderInt64 was enabled
   std::shared_ptr<void> owner;  ///< keeps instance and device alive; does nothing when borrowed
@@ -52,6 +54,7 @@ class Device {
     return handles_.memory.memoryTypes[type].propertyFlags;
   }
 
+  [[nodiscard]] const Queue& queue() const { return queue_; }
   /// Submits and waits. Throws DeviceLost, or DeviceError with the first validation message.
   void submit(VkCommandBuffer commands);
 
@@ -66,7 +69,7 @@ class Device {
   std::shared_ptr<Messages> messages_;
   DeviceProbe probe_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  VkFence fence_ = VK_NULL_HANDLE;
+  Queue queue_;
 };
 
 /// Creates a device of its own. Throws DeviceError naming the shortcoming of `physical`.
