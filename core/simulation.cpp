@@ -186,12 +186,36 @@ Decision Simulation::decide(const StressSummary& summary) {
 
 std::vector<NodalForce> Simulation::instrument_forces() const {
   std::vector<NodalForce> forces;
-  for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
+  const auto& instruments = problem_->scene().instruments;
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    if (std::holds_alternative<Grip>(instruments[i].action)) continue;
     const auto nodes = loads_->nodes(i);
     for (Index n : nodes)
       forces.push_back({n, loads_->force(i) / static_cast<double>(nodes.size())});
   }
+  add_grip_forces(forces);
   return forces;
+}
+
+void Simulation::add_grip_forces(std::vector<NodalForce>& forces) const {
+  const auto gripped = problem_->gripped_dofs();
+  if (gripped.empty()) return;
+  std::vector<double> reactions(gripped.size());
+  backend_->read_reactions(reactions);
+  const auto& instruments = problem_->scene().instruments;
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    const auto* grip = std::get_if<Grip>(&instruments[i].action);
+    if (!grip) continue;
+    for (Index n : loads_->nodes(i)) {
+      NodalForce at{n, Vec3::Zero()};
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem_->dof(n, axis);
+        const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
+        if (grip->axes.has(axis)) at.force[axis] = reactions[static_cast<std::size_t>(g)];
+      }
+      forces.push_back(at);
+    }
+  }
 }
 
 std::span<const double> Simulation::pristine_displacement() {

@@ -19,11 +19,15 @@ std::string row(std::initializer_list<std::string> cells) {
 
 std::string events_header() {
   return "step,event,element,criterion,crack,ratio,load_factor,"
-         "tip,K,K_a,K_b,K_c,theta_deg,r,sigma0,beta_deg,a,b,K_I,K_II\n";
+         "tip,K,K_a,K_b,K_c,theta_deg,r,sigma0,beta_deg,a,b,K_I,K_II,"
+         "K_III,K_formula,theta_formula_deg,K_field,theta_field_deg,field_note\n";
 }
 
 std::string events_row(const DestroyedElement& record) {
   const auto sif = [&](double value) { return record.sif ? number(value) : std::string(); };
+  const auto known = [](const std::optional<double>& value) {
+    return value ? number(*value) : std::string();
+  };
   const SifTerms k = record.sif.value_or(SifTerms{});
   return row({std::to_string(record.step),
               std::to_string(record.event),
@@ -43,8 +47,14 @@ std::string events_row(const DestroyedElement& record) {
               sif(k.beta),
               sif(k.a),
               sif(k.b),
-              k.k_1 ? number(*k.k_1) : "",
-              k.k_2 ? number(*k.k_2) : ""});
+              known(k.k_1),
+              known(k.k_2),
+              known(k.k_3),
+              known(k.k_formula),
+              known(k.theta_formula),
+              known(k.k_field),
+              known(k.theta_field),
+              k.field_note});
 }
 
 std::string frames_header() {

@@ -69,8 +69,11 @@ std::vector<EventLine> event_lines(const std::vector<DestroyedElement>& destroye
 
 std::string event_table(const RunRecord& run) {
   const std::vector<EventLine> lines = event_lines(run.destroyed);
-  Table table({"event", "step", "load factor", "criterion", "crack", "elements", "largest ratio",
-               "K [MPa√mm]", "K_a", "K_b", "K_c", "θ [°]", "a [mm]", "K_I", "K_II"});
+  Table table(
+      {"event",        "step",   "load factor", "criterion", "crack", "elements", "largest ratio",
+       "K [MPa√mm]",   "K_a",    "K_b",         "K_c",       "θ [°]", "r [mm]",   "σ₀ [MPa]",
+       "β [°]",        "a [mm]", "b [mm]",      "K_I",       "K_II",  "K_III",    "K, θ by formula",
+       "K, θ by field"});
   for (std::size_t i = 0; i < std::min(lines.size(), kMostEventRows); ++i) {
     const DestroyedElement& d = *lines[i].first;
     const auto sif = [&](double SifTerms::*term) {
@@ -79,16 +82,36 @@ std::string event_table(const RunRecord& run) {
     const auto field = [&](std::optional<double> SifTerms::*term) {
       return d.sif && (*d.sif).*term ? rounded(*((*d.sif).*term), 4) : std::string();
     };
+    const auto pair = [&](std::optional<double> SifTerms::*k,
+                          std::optional<double> SifTerms::*angle) {
+      return field(k).empty() ? std::string() : field(k) + ", " + field(angle);
+    };
     const bool tipped = d.sif && d.crack != kNone;
-    table.row({std::to_string(d.event), std::to_string(d.step), rounded(d.load_factor, 4),
+    table.row({std::to_string(d.event),
+               std::to_string(d.step),
+               rounded(d.load_factor, 4),
                to_string(d.cause),
                d.crack == kNone
                    ? ""
                    : std::to_string(d.crack) + (tipped ? " tip " + std::to_string(d.sif->tip) : ""),
-               std::to_string(lines[i].elements), d.ratio ? rounded(lines[i].largest_ratio, 4) : "",
-               sif(&SifTerms::k), sif(&SifTerms::k_a), sif(&SifTerms::k_b), sif(&SifTerms::k_c),
-               sif(&SifTerms::theta), sif(&SifTerms::a), field(&SifTerms::k_1),
-               field(&SifTerms::k_2)});
+               std::to_string(lines[i].elements),
+               d.ratio ? rounded(lines[i].largest_ratio, 4) : "",
+               sif(&SifTerms::k),
+               sif(&SifTerms::k_a),
+               sif(&SifTerms::k_b),
+               sif(&SifTerms::k_c),
+               sif(&SifTerms::theta),
+               sif(&SifTerms::reach),
+               sif(&SifTerms::sigma0),
+               sif(&SifTerms::beta),
+               sif(&SifTerms::a),
+               sif(&SifTerms::b),
+               field(&SifTerms::k_1),
+               field(&SifTerms::k_2),
+               field(&SifTerms::k_3),
+               pair(&SifTerms::k_formula, &SifTerms::theta_formula),
+               pair(&SifTerms::k_field, &SifTerms::theta_field) +
+                   (d.sif && !d.sif->field_note.empty() ? " (" + d.sif->field_note + ")" : "")});
   }
   std::string out = "<h3>Events</h3>\n" + table.html();
   if (lines.size() > kMostEventRows)

@@ -30,6 +30,11 @@ DestroyedElement growth_row(const Passed& passed, int crack, SifTerms terms) {
   return row;
 }
 
+FieldView field_view(const FractureState& state) {
+  return {state.destroyed, state.displacement,
+          state.forces ? state.forces() : std::vector<NodalForce>{}};
+}
+
 bool any_tip_left(const std::vector<Crack>& cracks) {
   return std::any_of(cracks.begin(), cracks.end(), [](const Crack& crack) {
     return std::any_of(crack.tips.begin(), crack.tips.end(),
@@ -42,8 +47,8 @@ bool any_tip_left(const std::vector<Crack>& cracks) {
 Combined::Combined(const Problem& problem)
     : problem_(problem),
       board_(problem.mesh(), problem.scene().fracture.plane_normal),
+      meter_(problem, board_),
       excluded_(problem.mesh().tets.size(), 0) {
-  if (problem.scene().fracture.sif == SifSource::field) meter_.emplace(problem, board_);
   for (Index e = 0; e < problem.tet_count() && !anything_breakable_; ++e)
     anything_breakable_ = problem.breakable(e);
 }
@@ -62,8 +67,8 @@ Decision Combined::preset() {
 Decision Combined::decide(const FractureState& state) {
   Decision decision;
   if (!anything_breakable_) return decision;
-  for (const DrivenTip& driven : driven_tips(state, decision.warnings))
-    grow(driven, state, decision);
+  std::vector<DrivenTip> driven = driven_tips(state, decision.warnings);
+  for (std::size_t i = 0; i < driven.size(); ++i) grow(driven, i, state, decision);
   if (decision.elements.empty()) start_crack(state, decision);
   exclude_neighbours(decision);
   return decision;
@@ -74,21 +79,39 @@ std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& stat
   std::vector<DrivenTip> driven;
   if (!any_tip_left(cracks_)) return driven;
   const PristineField field(problem_, board_, state.pristine_displacement());
+  const bool by_field = problem_.scene().fracture.sif == SifSource::field;
+  const FieldView view = by_field ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
     const FacePressure pressure = face_pressure(board_, crack, state, warnings);
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
       auto growth = tip_growth(board_, field, crack, tip, pressure, state);
-      if (meter_) growth = field_growth(*meter_, crack, tip, growth, state, warnings);
-      if (growth) driven.push_back({crack.id, *growth});
+      if (by_field) {
+        const SifTerms terms =
+            growth ? growth->terms : formula_terms(board_, field, crack, tip, pressure, state);
+        growth = field_growth(meter_, crack, tip, view, terms, warnings);
+      }
+      if (growth) driven.push_back({crack.id, std::move(*growth)});
     }
   }
   return driven;
 }
 
-void Combined::grow(const DrivenTip& driven, const FractureState& state, Decision& decision) {
-  const TipGrowth& growth = driven.growth;
-  Crack& crack = cracks_[driven.crack];
+void Combined::add_field_terms(std::vector<DrivenTip>& driven, const FractureState& state) {
+  if (problem_.scene().fracture.sif == SifSource::field || !state.displacement) return;
+  const FieldView view = field_view(state);
+  std::vector<std::string> untold;  // the notes in the rows say it; nothing rests on these values
+  for (auto& [crack, growth] : driven) {
+    SifTerms& terms = growth.terms;
+    fracture::add_field_terms(meter_, cracks_[crack], static_cast<std::size_t>(terms.tip), view,
+                              terms, untold);
+  }
+}
+
+void Combined::grow(std::vector<DrivenTip>& driven, std::size_t which, const FractureState& state,
+                    Decision& decision) {
+  const TipGrowth& growth = driven[which].growth;
+  Crack& crack = cracks_[driven[which].crack];
   CrackTip& tip = crack.tips[growth.terms.tip];
   const int sense = orientation(crack, growth.terms.tip);
   const Ray ray{tip.position, growth.direction, &crack, sense};
@@ -103,6 +126,7 @@ void Combined::grow(const DrivenTip& driven, const FractureState& state, Decisio
   }
   const Walk walk = walk_band(band, board_.h(), growth.terms.k, growth.theta, view);
   if (walk.passed.empty()) return;
+  if (decision.elements.empty()) add_field_terms(driven, state);  // no tip has moved yet
   std::map<Index, std::int8_t> labels;  // all from the sides before this step
   for (const Passed& passed : walk.passed) {
     for (Index n : problem_.mesh().tets[passed.element])

@@ -33,8 +33,11 @@ class Combined final : public FractureCriterion {
   /// K and direction of all tips that have not ended, from one state.
   [[nodiscard]] std::vector<DrivenTip> driven_tips(const FractureState& state,
                                                    std::vector<std::string>& warnings);
+  /// With sif = "formula": what the field says of the same tips, for the rows that will tell.
+  void add_field_terms(std::vector<DrivenTip>& driven, const FractureState& state);
   /// Moves one tip as far as it goes; its elements are added to the decision.
-  void grow(const DrivenTip& driven, const FractureState& state, Decision& decision);
+  void grow(std::vector<DrivenTip>& driven, std::size_t which, const FractureState& state,
+            Decision& decision);
   void cut_through(Crack& crack, const FractureState& state, Decision& decision);
   void start_crack(const FractureState& state, Decision& decision);
   /// Elements that the decision's elements touch, live and not excluded before.
@@ -42,7 +45,7 @@ class Combined final : public FractureCriterion {
 
   const Problem& problem_;
   Board board_;
-  std::optional<FieldIntensityMeter> meter_;  // with sif = "field"
+  FieldIntensityMeter meter_;
   bool anything_breakable_ = false;
   std::vector<Crack> cracks_;
   std::vector<std::uint8_t> excluded_;  // shape (elements)

@@ -43,7 +43,7 @@ struct FractureState {
   std::vector<ActingPress> presses;
   /// Current displacement of some nodes [mm].
   std::function<void(std::span<const Index>, std::span<Vec3>)> displacement = {};
-  /// What pulling and pressing instruments apply now; grips' forces are not among them.
+  /// What the instruments exert now, grips included.
   std::function<std::vector<NodalForce>()> forces = {};
 };
 

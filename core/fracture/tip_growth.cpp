@@ -86,14 +86,20 @@ double pressure_distance(const FacePressure& pressure, const Vec2& tip) {
   return total > 0 ? weighted / total : 0;
 }
 
-std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& field,
-                                    const Crack& crack, std::size_t tip,
-                                    const FacePressure& pressure, const FractureState& state) {
+namespace {
+
+Vec2 one_sided_direction(const FacePressure& pressure) {  // e_c
+  return pressure.upper >= pressure.lower ? pressure.upward : Vec2(-pressure.upward);
+}
+
+}  // namespace
+
+SifTerms formula_terms(const Board& board, const PristineField& field, const Crack& crack,
+                       std::size_t tip, const FacePressure& pressure, const FractureState& state) {
   const FractureOptions& options = state.problem.scene().fracture;
   const CrackTip& at = crack.tips[tip];
   const Vec2& d = at.direction;
-  TipGrowth growth;
-  SifTerms& terms = growth.terms;
+  SifTerms terms;
   terms.tip = static_cast<int>(tip);
 
   const double tool = pressure_distance(pressure, at.position);
@@ -111,15 +117,28 @@ std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& fie
   }
   terms.k_b = balanced_intensity(pressure.upper, pressure.lower, distance);
   terms.k_c = one_sided_intensity(pressure.upper, pressure.lower, distance);
-  const Vec2 e_c = pressure.upper >= pressure.lower ? pressure.upward : Vec2(-pressure.upward);
-  const double sign = pressure_sign(board.plane().lift_direction(e_c), state.expansion_resultant);
+  const Vec3 opening = board.plane().lift_direction(one_sided_direction(pressure));
+  const double sign = pressure_sign(opening, state.expansion_resultant);
   terms.k = total_intensity(terms.k_a, terms.k_b, terms.k_c, sign);
+  return terms;
+}
 
-  const Vec2 v = terms.k_a * expansion_direction(field, at) + terms.k_b * d + terms.k_c * e_c;
+std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& field,
+                                    const Crack& crack, std::size_t tip,
+                                    const FacePressure& pressure, const FractureState& state) {
+  TipGrowth growth;
+  SifTerms& terms = growth.terms;
+  terms = formula_terms(board, field, crack, tip, pressure, state);
+  const CrackTip& at = crack.tips[tip];
+  const Vec2& d = at.direction;
+  const Vec2 v = terms.k_a * expansion_direction(field, at) + terms.k_b * d +
+                 terms.k_c * one_sided_direction(pressure);
   if (!(v.norm() > 0)) return std::nullopt;
   growth.theta = growth_angle(d, v);
   growth.direction = turned(d, growth.theta);
   terms.theta = growth.theta * kDegrees;
+  terms.k_formula = terms.k;
+  terms.theta_formula = terms.theta;
   return growth;
 }
 

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sunder/types.hpp"
@@ -30,8 +31,9 @@ struct Crack {
   std::map<Index, std::int8_t> side;  ///< node -> +1 left of the path, -1 right (seen along d)
 };
 
-/// The terms of the stress intensity factor at one tip (Eq. 1-4), kept with each progression. With
-/// sif = "field", k and theta follow from K_I and K_II; the formula's terms are still filled in.
+/// The terms of the stress intensity factor at one tip (Eq. 1-4), kept with each progression. k and
+/// theta drive the tip: those of the formula or, with sif = "field", those that follow from K_I and
+/// K_II. The terms of the other one are there for comparison.
 struct SifTerms {
   int tip = 0;
   double k = 0, k_a = 0, k_b = 0, k_c = 0;  ///< [MPa sqrt(mm)]
@@ -40,8 +42,14 @@ struct SifTerms {
   double sigma0 = 0;                        ///< remote stress s0 [MPa]
   double beta = 0;                          ///< [deg] between crack normal and n1
   double a = 0, b = 0;                      ///< crack length and chord [mm]
-  /// K_I, K_II measured from the field [MPa sqrt(mm)]; none with sif = "formula".
-  std::optional<double> k_1 = std::nullopt, k_2 = std::nullopt;
+  /// K_I, K_II, K_III measured from the field [MPa sqrt(mm)]; none where it carries nothing.
+  std::optional<double> k_1 = std::nullopt, k_2 = std::nullopt, k_3 = std::nullopt;
+  /// K [MPa sqrt(mm)] and theta [deg] by the formula and by the field, whichever drives the tip;
+  /// none where nothing drives it by that one.
+  std::optional<double> k_formula = std::nullopt, theta_formula = std::nullopt;
+  std::optional<double> k_field = std::nullopt, theta_field = std::nullopt;
+  /// What disturbs the field's K, words joined by +: "material", "damage", "fixed"; empty: nothing.
+  std::string field_note = {};
 };
 
 }  // namespace sunder

@@ -79,6 +79,7 @@ class Simulation {
   void warn(std::string message);
   [[nodiscard]] std::span<const double> pristine_displacement();
   [[nodiscard]] std::vector<NodalForce> instrument_forces() const;
+  void add_grip_forces(std::vector<NodalForce>& forces) const;
   [[nodiscard]] double compliance() const;
 
   /// Steps to which the same thing happened: one warning for all of them.

@@ -9,27 +9,39 @@
 
 namespace sunder::fracture {
 
-std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& crack,
-                                      std::size_t tip, const std::optional<TipGrowth>& formula,
-                                      const FractureState& state,
+std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& crack,
+                                      std::size_t tip, const FieldView& view, SifTerms& terms,
                                       std::vector<std::string>& warnings) {
-  const FieldView view{state.destroyed, state.displacement, state.forces()};
   FieldIntensity measured = meter.at(crack, tip, view);
   for (std::string& w : measured.warnings) warnings.push_back(std::move(w));
   const auto [k_1, k_2, k_3] = measured.factors;
-
+  // A piece that only destroyed elements hold may move as far as numbers go.
+  if (!std::isfinite(k_1) || !std::isfinite(k_2) || !std::isfinite(k_3)) return std::nullopt;
+  terms.k_1 = k_1;
+  terms.k_2 = k_2;
+  terms.k_3 = k_3;
+  terms.field_note = std::move(measured.note);
   const double from_frame = tangential_angle(k_1, k_2);
   const double k = tangential_intensity(k_1, k_2, from_frame);
-  if (!(k > 0) || !std::isfinite(k)) return std::nullopt;
-  TipGrowth growth = formula.value_or(TipGrowth{});
+  if (!(k > 0)) return std::nullopt;
   const Vec2& d = crack.tips[tip].direction;
-  growth.theta = growth_angle(d, turned(measured.frame.direction, from_frame));
-  growth.direction = turned(d, growth.theta);
-  growth.terms.tip = static_cast<int>(tip);
-  growth.terms.k = k;
-  growth.terms.theta = growth.theta * 180 / std::numbers::pi;
-  growth.terms.k_1 = k_1;
-  growth.terms.k_2 = k_2;
+  const double theta = growth_angle(d, turned(measured.frame.direction, from_frame));
+  terms.k_field = k;
+  terms.theta_field = theta * 180 / std::numbers::pi;
+  return theta;
+}
+
+std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& crack,
+                                      std::size_t tip, const FieldView& view,
+                                      const SifTerms& formula, std::vector<std::string>& warnings) {
+  TipGrowth growth;
+  growth.terms = formula;
+  const auto theta = add_field_terms(meter, crack, tip, view, growth.terms, warnings);
+  if (!theta) return std::nullopt;
+  growth.theta = *theta;
+  growth.direction = turned(crack.tips[tip].direction, *theta);
+  growth.terms.k = *growth.terms.k_field;
+  growth.terms.theta = *growth.terms.theta_field;
   return growth;
 }
 

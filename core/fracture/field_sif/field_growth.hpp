@@ -11,12 +11,18 @@
 
 namespace sunder::fracture {
 
-/// K and direction of one tip by the largest tangential stress; none when nothing opens it. The
-/// terms keep what the formula says (`formula`, if it says anything).
+/// Measures one tip and writes what the field says into `terms` (K_I to K_III, and K and theta by
+/// the largest tangential stress), beside what drives the tip. Returns theta [rad] from the tip's
+/// direction; none when nothing opens the crack.
+std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& crack,
+                                      std::size_t tip, const FieldView& view, SifTerms& terms,
+                                      std::vector<std::string>& warnings);
+
+/// K and direction of one tip by the field; none when nothing opens it. `formula`: the terms of
+/// Eq. 1 to 4, which are kept.
 [[nodiscard]] std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& crack,
-                                                    std::size_t tip,
-                                                    const std::optional<TipGrowth>& formula,
-                                                    const FractureState& state,
+                                                    std::size_t tip, const FieldView& view,
+                                                    const SifTerms& formula,
                                                     std::vector<std::string>& warnings);
 
 }  // namespace sunder::fracture

@@ -58,6 +58,11 @@ std::string tip_name(const Crack& crack, std::size_t tip) {
   return "the field K of crack " + std::to_string(crack.id) + " at its tip " + std::to_string(tip);
 }
 
+void disturb(FieldIntensity& result, const char* word, std::string warning) {
+  result.note += (result.note.empty() ? "" : "+") + std::string(word);
+  result.warnings.push_back(std::move(warning));
+}
+
 bool same(const Material& a, const Material& b) {
   return a.young == b.young && a.poisson == b.poisson;
 }
@@ -116,13 +121,15 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
   const double chosen = std::clamp(free, kSmallestDomainRadius * h, wanted);
   FieldIntensity result = measure(crack, tip, view, chosen, {});
   if (around.other_material < chosen)
-    result.warnings.push_back(tip_name(crack, tip) +
-                              " reaches another material: it is that of one body with the mean "
-                              "compliance around the tip");
+    disturb(result, "material",
+            tip_name(crack, tip) +
+                " reaches another material: it is that of one body with the mean compliance "
+                "around the tip");
   if (around.other_damage < chosen)
-    result.warnings.push_back(tip_name(crack, tip) +
-                              " reaches elements destroyed by something else: it is not "
-                              "separated from their field");
+    disturb(result, "damage",
+            tip_name(crack, tip) +
+                " reaches elements destroyed by something else: it is not separated from their "
+                "field");
   return result;
 }
 
@@ -161,8 +168,8 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
     return false;
   });
   if (held)
-    result.warnings.push_back(tip_name(crack, tip) +
-                              " reaches fixed nodes, whose reactions it leaves out");
+    disturb(result, "fixed",
+            tip_name(crack, tip) + " reaches fixed nodes, whose reactions it leaves out");
   return result;
 }
 

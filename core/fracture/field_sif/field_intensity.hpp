@@ -30,6 +30,7 @@ struct FieldIntensity {
   TipFrame frame;     ///< in which they are meant
   double radius = 0;  ///< of the domain [mm]
   TipMaterial material;
+  std::string note;  ///< what disturbs them, as SifTerms::field_note
   std::vector<std::string> warnings;
 };
 

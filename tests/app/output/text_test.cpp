@@ -80,7 +80,16 @@ TEST(Tables, EventRowsLeaveEmptyWhatDoesNotApply) {
   expect_row("2,7,42,mss,3,1.5,0.25,,,,,,,,,,,");
   record.cause = Cause::sif;
   record.sif = SifTerms{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-  expect_row("2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,7,8,9,10,11");
+  expect_row("2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,7,8,9,10,11,,,,,,,,");
+  record.sif->k_1 = 12;
+  record.sif->k_2 = -13;
+  record.sif->k_3 = 0;
+  record.sif->k_formula = 14;
+  record.sif->theta_formula = 15;
+  record.sif->k_field = 16;
+  record.sif->theta_field = -17;
+  record.sif->field_note = "material+fixed";
+  expect_row("2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,7,8,9,10,11,12,-13,0,14,15,16,-17,material+fixed");
 }
 
 TEST(Tables, FrameRowsFollowTheirHeader) {

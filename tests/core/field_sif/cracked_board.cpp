@@ -7,9 +7,6 @@
 #include <map>
 #include <random>
 
-#include "fem/assembly.hpp"
-#include "fem/factor.hpp"
-
 namespace sunder::test {
 namespace {
 
@@ -44,18 +41,6 @@ void add_cell(const GridLines& g, Index i, Index j, Index k, Mesh& mesh) {
     mesh.tets.push_back(tet);
     mesh.volume_of.push_back(0);
   }
-}
-
-Mesh grid_mesh(const GridLines& g) {
-  Mesh mesh;
-  mesh.volumes.push_back({"board", 1});
-  for (double z : g.z)
-    for (double y : g.y)
-      for (double x : g.x) mesh.nodes.emplace_back(x, y, z);
-  for (Index k = 0; k + 1 < lines_count(g.z); ++k)
-    for (Index j = 0; j + 1 < lines_count(g.y); ++j)
-      for (Index i = 0; i + 1 < lines_count(g.x); ++i) add_cell(g, i, j, k, mesh);
-  return mesh;
 }
 
 Vec3 centroid(const Mesh& mesh, const std::array<Index, 4>& tet) {
@@ -126,6 +111,32 @@ std::vector<Support> supports(const GridLines& g, const Mesh& mesh,
   return held;
 }
 
+Scene board_scene(const GridLines& lines, double from, double to, double y,
+                  const CrackedBoardOptions& options) {
+  Scene scene;
+  scene.mesh = grid_mesh(lines);
+  if (options.made == CrackMade::split)
+    split_nodes(scene.mesh, from, to, y, lines.x.front(), lines.x.back());
+  if (options.jitter > 0) shake(lines, options.jitter, scene.mesh);
+  scene.materials["board"] = {options.young, options.poisson, 2.0};
+  scene.supports = supports(lines, scene.mesh, options);
+  return scene;
+}
+
+/// The row of cells around y between two x. Which elements the crack takes is the grid's matter;
+/// where their nodes are may have been shaken.
+std::vector<Index> row_elements(const GridLines& lines, double from, double to, double y) {
+  const auto above = std::upper_bound(lines.y.begin(), lines.y.end(), y);
+  const double row_min = *(above - 1), row_max = *above;
+  const Mesh mesh = grid_mesh(lines);
+  std::vector<Index> elements;
+  for (Index e = 0; e < mesh.tet_count(); ++e) {
+    const Vec3 c = centroid(mesh, mesh.tets[e]);
+    if (c.x() > from && c.x() < to && c.y() > row_min && c.y() < row_max) elements.push_back(e);
+  }
+  return elements;
+}
+
 }  // namespace
 
 std::vector<double> even_lines(int count, double h) {
@@ -157,78 +168,31 @@ Index grid_node_count(const Mesh& mesh) {
   return static_cast<Index>(end - mesh.nodes.begin());
 }
 
+Mesh grid_mesh(const GridLines& g) {
+  Mesh mesh;
+  mesh.volumes.push_back({"board", 1});
+  for (double z : g.z)
+    for (double y : g.y)
+      for (double x : g.x) mesh.nodes.emplace_back(x, y, z);
+  for (Index k = 0; k + 1 < lines_count(g.z); ++k)
+    for (Index j = 0; j + 1 < lines_count(g.y); ++j)
+      for (Index i = 0; i + 1 < lines_count(g.x); ++i) add_cell(g, i, j, k, mesh);
+  return mesh;
+}
+
 CrackedBoard::CrackedBoard(const GridLines& lines, double from, double to, double y,
                            const CrackedBoardOptions& options)
-    : from_(from), to_(to), y_(y) {
-  Scene scene;
-  scene.mesh = grid_mesh(lines);
-  // Which elements the crack takes is the grid's matter; where their nodes are comes after.
-  if (options.made == CrackMade::split)
-    split_nodes(scene.mesh, from, to, y, lines.x.front(), lines.x.back());
-  if (options.made == CrackMade::deleted) take_row(lines, scene.mesh);
-  if (options.jitter > 0) shake(lines, options.jitter, scene.mesh);
-  scene.materials["board"] = {options.young, options.poisson, 2.0};
-  scene.supports = supports(lines, scene.mesh, options);
-  problem_ = std::make_unique<Problem>(std::move(scene));
-  destroyed_.assign(problem_->mesh().tets.size(), 0);
-  for (Index e : crack_.elements) destroyed_[e] = 1;
-  board_ = std::make_unique<fracture::Board>(problem_->mesh(), Vec3(0, 0, 1));
-  meter_ = std::make_unique<fracture::FieldIntensityMeter>(*problem_, *board_);
-
-  force_.assign(3 * problem_->mesh().nodes.size(), 0);
-  const auto place = [&](double x) { return board_->plane().project(Vec3(x, y, 0)); };
-  const Vec2 forward = board_->plane().project(Vec3(1, 0, 0));
-  crack_.kind = CrackKind::internal;
-  crack_.tips = {{place(from), -forward, false}, {place(to), forward, false}};
-  if (from <= lines.x.front() + kClose) {
-    crack_.kind = CrackKind::edge;
-    crack_.mouth = place(from);
-    crack_.tips.erase(crack_.tips.begin());
-  }
-  crack_.path = {place(from), place(to)};
-  crack_.length = to - from;
-}
-
-void CrackedBoard::take_row(const GridLines& lines, const Mesh& mesh) {
-  const auto above = std::upper_bound(lines.y.begin(), lines.y.end(), y_);
-  const double row_min = *(above - 1), row_max = *above;
-  for (Index e = 0; e < mesh.tet_count(); ++e) {
-    const Vec3 c = centroid(mesh, mesh.tets[e]);
-    if (c.x() > from_ && c.x() < to_ && c.y() > row_min && c.y() < row_max)
-      crack_.elements.push_back(e);
-  }
-}
-
-void CrackedBoard::add_force(Index node, const Vec3& force) {
-  for (int axis = 0; axis < 3; ++axis) force_[3 * node + axis] += force[axis];
-}
-
-void CrackedBoard::load_uniform(double s_xx, double s_yy, double s_xy) {
-  Mat3 stress = Mat3::Zero();
-  stress(0, 0) = s_xx;
-  stress(1, 1) = s_yy;
-  stress(0, 1) = stress(1, 0) = s_xy;
-  const auto& x = problem_->mesh().nodes;
-  Vec3 lo = x.front(), hi = x.front();
-  for (const Vec3& p : x) {
-    lo = lo.cwiseMin(p);
-    hi = hi.cwiseMax(p);
-  }
-  for (const FreeFace& face : free_faces(problem_->mesh())) {
-    const auto& [a, b, c] = face.nodes;
-    const Vec3 area = (x[b] - x[a]).cross(x[c] - x[a]) / 2;
-    const Vec3 middle = (x[a] + x[b] + x[c]) / 3;
-    const bool outer =
-        std::min((middle - lo).head<2>().minCoeff(), (hi - middle).head<2>().minCoeff()) < kClose;
-    if (!outer) continue;  // top, bottom and the faces of split nodes
-    for (Index n : face.nodes) add_force(n, stress * area / 3);
-  }
+    : CrackedBody(board_scene(lines, from, to, y, options)), y_(y) {
+  const bool edge = from <= lines.x.front() + kClose;
+  const auto elements =
+      options.made == CrackMade::deleted ? row_elements(lines, from, to, y) : std::vector<Index>{};
+  set_crack(edge ? CrackKind::edge : CrackKind::internal, {from, y}, {to, y}, elements);
 }
 
 void CrackedBoard::load_pair(double at, double per_thickness) {
   // The nodes of the faces nearest above and below the crack's line, each with its share of the
   // thickness.
-  const auto& x = problem_->mesh().nodes;
+  const auto& x = problem().mesh().nodes;
   double face = 1e300;
   for (const Vec3& p : x)
     if (std::abs(p.x() - at) < kClose) face = std::min(face, std::abs(p.y() - y_));
@@ -236,7 +200,7 @@ void CrackedBoard::load_pair(double at, double per_thickness) {
   for (const Vec3& p : x)
     if (std::abs(p.x() - at) < kClose && std::abs(p.y() - y_ - face) < kClose) z.push_back(p.z());
   std::sort(z.begin(), z.end());
-  for (Index n = 0; n < problem_->node_count(); ++n) {
+  for (Index n = 0; n < problem().node_count(); ++n) {
     const Vec3& p = x[n];
     const double offset = p.y() - y_;
     if (std::abs(p.x() - at) > kClose || std::abs(std::abs(offset) - face) > kClose) continue;
@@ -246,42 +210,6 @@ void CrackedBoard::load_pair(double at, double per_thickness) {
     add_force(n, force);
     crack_forces_.push_back({n, force});
   }
-}
-
-void CrackedBoard::solve() {
-  std::vector<double> scale(destroyed_.size(), 1.0);
-  for (std::size_t e = 0; e < scale.size(); ++e)
-    if (destroyed_[e]) scale[e] = problem_->scene().fracture.alpha;
-  const fem::Factor factor(fem::assemble_lower(*problem_, scale));
-  Eigen::VectorXd f(problem_->dof_count());
-  fem::gather(*problem_, force_, {f.data(), static_cast<std::size_t>(f.size())});
-  const Eigen::VectorXd u = factor.solve(f);
-  displacement_.assign(force_.size(), 0);
-  fem::scatter(*problem_, {u.data(), static_cast<std::size_t>(u.size())}, displacement_);
-}
-
-double CrackedBoard::energy() const {
-  double work = 0;
-  for (std::size_t i = 0; i < force_.size(); ++i) work += force_[i] * displacement_[i];
-  return work / 2;
-}
-
-fracture::FieldView CrackedBoard::view() const {
-  return {destroyed_,
-          [this](std::span<const Index> nodes, std::span<Vec3> u) {
-            for (std::size_t i = 0; i < nodes.size(); ++i)
-              u[i] = Eigen::Map<const Vec3>(displacement_.data() + 3 * nodes[i]);
-          },
-          crack_forces_};
-}
-
-fracture::FieldIntensity CrackedBoard::intensity(double radius, int tip) {
-  const std::size_t last = crack_.tips.size() - 1;
-  return meter_->at(crack_, last - static_cast<std::size_t>(tip), view(), radius);
-}
-
-std::vector<fracture::FieldIntensity> CrackedBoard::front(int stations) {
-  return meter_->along_front(crack_, crack_.tips.size() - 1, view(), stations);
 }
 
 }  // namespace sunder::test

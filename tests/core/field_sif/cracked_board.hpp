@@ -3,13 +3,9 @@
 // published stress intensity factors are compared with. Unit: mm, N, MPa.
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <vector>
 
-#include "fracture/board.hpp"
-#include "fracture/field_sif/field_intensity.hpp"
-#include "sunder/problem.hpp"
+#include "core/field_sif/cracked_body.hpp"
 
 namespace sunder::test {
 
@@ -37,44 +33,21 @@ struct CrackedBoardOptions {
   bool mirror_left = false;  ///< the left side is a plane of symmetry: half of a centre crack
 };
 
-class CrackedBoard {
+class CrackedBoard : public CrackedBody {
  public:
   /// A crack along x from `from` to `to`. Deleted elements: the row of cells around y is taken out
   /// between these ends. Split nodes: y is a grid line; an end inside the board keeps its node.
   CrackedBoard(const GridLines& lines, double from, double to, double y,
                const CrackedBoardOptions& options);
-  CrackedBoard(CrackedBoard&&) = default;
 
-  /// Uniform stress on the outer faces: s_xx on the sides, s_yy on top and bottom, s_xy on all.
-  void load_uniform(double s_xx, double s_yy, double s_xy);
   /// A pair of forces [N/mm of thickness] that opens the crack at x.
   void load_pair(double x, double per_thickness);
-  void solve();
-
-  /// Half the work of the loads: the strain energy [N mm].
-  [[nodiscard]] double energy() const;
-  /// The tip at `to` (0) or at `from` (1).
-  [[nodiscard]] fracture::FieldIntensity intensity(double radius, int tip = 0);
-  [[nodiscard]] std::vector<fracture::FieldIntensity> front(int stations);
-
-  [[nodiscard]] const Problem& problem() const { return *problem_; }
-  [[nodiscard]] const fracture::Board& board() const { return *board_; }
-  [[nodiscard]] const Crack& crack() const { return crack_; }
-  [[nodiscard]] fracture::FieldIntensityMeter& meter() { return *meter_; }
-  [[nodiscard]] fracture::FieldView view() const;
 
  private:
-  void take_row(const GridLines& lines, const Mesh& mesh);
-  void add_force(Index node, const Vec3& force);
-
-  std::unique_ptr<Problem> problem_;
-  std::unique_ptr<fracture::Board> board_;
-  std::unique_ptr<fracture::FieldIntensityMeter> meter_;
-  Crack crack_;
-  std::vector<std::uint8_t> destroyed_;
-  std::vector<double> force_, displacement_;  // shape (3 * nodes)
-  std::vector<NodalForce> crack_forces_;      // those on the crack's faces
-  double from_, to_, y_;
+  double y_;
 };
+
+/// The grid's mesh, whole.
+[[nodiscard]] Mesh grid_mesh(const GridLines& lines);
 
 }  // namespace sunder::test
