@@ -4,10 +4,15 @@ add_library(sunder_options INTERFACE)
 target_compile_options(sunder_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual
   # Bitwise repeatability over compilers' whims: no contraction of a*b+c.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # Everywhere alike: it defines a macro, and precompiled headers are shared between targets.
+  -pthread)
+target_link_options(sunder_options INTERFACE -pthread)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
-  target_compile_options(sunder_options INTERFACE -Wno-restrict)
+  # With precompiled headers it also loses that the standard library's are system headers.
+  target_compile_options(sunder_options INTERFACE
+    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 if(SUNDER_WERROR)
   target_compile_options(sunder_options INTERFACE -Werror)
