@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sunder/in_quotes.hpp"
+
 namespace sunder {
 namespace {
 
@@ -70,8 +72,8 @@ void Loads::choose_pressed_nodes(std::size_t instrument, const FractureCriterion
   const Instrument& tool = problem_.scene().instruments[instrument];
   chosen = criterion.pressed_nodes(std::get<Press>(tool.action), destroyed);
   if (chosen.empty()) {
-    findings.push_back("instrument \"" + tool.name +
-                       "\" finds no node of its crack's face to press on and does not act");
+    findings.push_back("instrument " + in_quotes(tool.name) +
+                       " finds no node of its crack's face to press on and does not act");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "sunder/error.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder {
 namespace {
@@ -89,7 +90,7 @@ void validate_volumes(const Mesh& mesh, const std::string& where) {
   for (const NamedVolume& v : mesh.volumes) {
     if (!names.insert(v.name).second) {
       fail(InputFault::duplicate_name, where,
-           "volume \"" + v.name + "\" is named twice; give every volume a name of its own");
+           "volume " + in_quotes(v.name) + " is named twice; give every volume a name of its own");
     }
   }
   if (mesh.volume_of.size() != mesh.tets.size()) {
@@ -111,7 +112,7 @@ void validate_surfaces(const Mesh& mesh, const std::string& where) {
       for (Index n : triangle) {
         if (n < 0 || n >= mesh.node_count()) {
           fail(InputFault::bad_id, where,
-               "surface \"" + s.name + "\" names node " + std::to_string(n) +
+               "surface " + in_quotes(s.name) + " names node " + std::to_string(n) +
                    ", which the mesh does not have");
         }
       }

@@ -9,6 +9,7 @@
 #include "fem/supports.hpp"
 #include "selection.hpp"
 #include "sunder/error.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder {
 namespace {
@@ -19,12 +20,10 @@ std::string number(double value) {
   return out.str();
 }
 
-std::string quoted(const std::string& name) { return "\"" + name + "\""; }
-
 const char* axis_name(int axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
 void check_material(const std::string& name, const Material& m) {
-  const std::string what = "material " + quoted(name);
+  const std::string what = "material " + in_quotes(name);
   if (!std::isfinite(m.young) || !(m.young > 0)) {
     throw InputError(InputFault::out_of_range, what + " has young = " + number(m.young) +
                                                    "; it must be finite and above 0 MPa");
@@ -55,7 +54,7 @@ void check_ramp(const Ramp& ramp, const std::string& what) {
 }
 
 std::string instrument_name(const Instrument& instrument, std::size_t i) {
-  return "instrument " + (instrument.name.empty() ? std::to_string(i) : quoted(instrument.name));
+  return "instrument " + (instrument.name.empty() ? std::to_string(i) : in_quotes(instrument.name));
 }
 
 }  // namespace
@@ -114,9 +113,9 @@ void Problem::resolve_materials() {
                     [&wanted = name](const NamedVolume& v) { return v.name == wanted; });
     if (!known) {
       std::string names;
-      for (const NamedVolume& v : mesh().volumes) names += " " + quoted(v.name);
+      for (const NamedVolume& v : mesh().volumes) names.append(" ").append(in_quotes(v.name));
       throw InputError(InputFault::unknown_name,
-                       "material " + quoted(name) + " names no volume; the mesh has" + names);
+                       "material " + in_quotes(name) + " names no volume; the mesh has" + names);
     }
   }
   std::vector<Index> elements(mesh().volumes.size(), 0);
@@ -124,8 +123,8 @@ void Problem::resolve_materials() {
   for (std::size_t v = 0; v < mesh().volumes.size(); ++v) {
     const auto it = scene_.materials.find(mesh().volumes[v].name);
     if (it == scene_.materials.end() && elements[v] > 0) {
-      throw InputError(InputFault::no_material, "volume " + quoted(mesh().volumes[v].name) + " (" +
-                                                    std::to_string(elements[v]) +
+      throw InputError(InputFault::no_material, "volume " + in_quotes(mesh().volumes[v].name) +
+                                                    " (" + std::to_string(elements[v]) +
                                                     " elements) has no material; add [material." +
                                                     mesh().volumes[v].name + "]");
     }

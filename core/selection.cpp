@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sunder/error.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder {
 namespace {
@@ -67,9 +68,9 @@ std::vector<Index> nodes_of_surface(const Mesh& mesh, const std::string& name,
                                [&](const NamedSurface& s) { return s.name == name; });
   if (it == mesh.surfaces.end()) {
     std::string known;
-    for (const NamedSurface& s : mesh.surfaces) known += " \"" + s.name + "\"";
+    for (const NamedSurface& s : mesh.surfaces) known.append(" ").append(in_quotes(s.name));
     throw InputError(InputFault::unknown_name,
-                     what + " names surface \"" + name + "\", but the mesh has " +
+                     what + " names surface " + in_quotes(name) + ", but the mesh has " +
                          (known.empty() ? "no named surfaces" : "only" + known));
   }
   std::vector<Index> ids;
@@ -84,9 +85,9 @@ std::vector<Index> elements_of_volume(const Mesh& mesh, const std::string& name,
                                [&](const NamedVolume& v) { return v.name == name; });
   if (it == mesh.volumes.end()) {
     std::string known;
-    for (const NamedVolume& v : mesh.volumes) known += " \"" + v.name + "\"";
+    for (const NamedVolume& v : mesh.volumes) known.append(" ").append(in_quotes(v.name));
     throw InputError(InputFault::unknown_name,
-                     what + " names volume \"" + name + "\", but the mesh has only" + known);
+                     what + " names volume " + in_quotes(name) + ", but the mesh has only" + known);
   }
   const Index volume = static_cast<Index>(it - mesh.volumes.begin());
   return ids_where(mesh.tet_count(), [&](Index t) { return mesh.volume_of[t] == volume; });

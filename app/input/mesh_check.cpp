@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/input/msh_sections.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
@@ -15,7 +16,7 @@ int read_format(MshCursor& cursor) {
   const std::string version(cursor.word());
   if (version != "2.2" && version != "2.1" && version != "2" && version != "2.0" &&
       version != "4.1")
-    cursor.fail("the version is \"" + version.substr(0, 20) + "\"; allowed: 2.2 and 4.1");
+    cursor.fail("the version is " + in_quotes(version, 20) + "; allowed: 2.2 and 4.1");
   const std::int64_t type = cursor.text_integer("the file type");
   if (type != 0 && type != 1)
     cursor.fail("the file type is " + std::to_string(type) + "; allowed: 0 (ascii), 1 (binary)");
@@ -54,7 +55,7 @@ void read_physical_names(MshCursor& cursor) {
     const char* kind = dimension == 3 ? "volume" : dimension == 2 ? "surface" : "group";
     const auto [other, fresh] = tags.try_emplace({dimension, name}, tag);
     if (!fresh && dimension >= 2)
-      cursor.fail(std::string("the ") + kind + " \"" + name + "\" is named twice (tags " +
+      cursor.fail(std::string("the ") + kind + " " + in_quotes(name) + " is named twice (tags " +
                       std::to_string(other->second) + " and " + std::to_string(tag) + ")",
                   InputFault::duplicate_name);
     if (!named.insert({dimension, tag}).second)

@@ -11,6 +11,7 @@
 #include "app/input/nearest.hpp"
 #include "app/input/vtk_check.hpp"
 #include "sunder/error.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
@@ -37,8 +38,8 @@ std::string checked_extension(const std::filesystem::path& path) {
   const auto& known = readable_extensions();
   if (std::find(known.begin(), known.end(), extension) == known.end()) {
     throw InputError(InputFault::unreadable_file,
-                     path.string() + ": the extension \"" + extension +
-                         "\" is not that of a mesh file; allowed: " + quoted_list(known));
+                     path.string() + ": the extension " + in_quotes(extension) +
+                         " is not that of a mesh file; allowed: " + quoted_list(known));
   }
   return extension;
 }

@@ -5,16 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "sunder/in_quotes.hpp"
+
 namespace sunder::app {
 namespace {
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-std::string shown(std::string_view word) {
-  std::string text;
-  for (const char c : word.substr(0, 40)) text += (c >= ' ' && c <= '~') ? c : '?';
-  return '"' + text + '"';
-}
+std::string shown(std::string_view word) { return in_quotes(word, 40); }
 
 }  // namespace
 

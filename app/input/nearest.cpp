@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sunder/in_quotes.hpp"
+
 namespace sunder::app {
 namespace {
 
@@ -44,7 +46,7 @@ std::string quoted_list(const std::vector<std::string>& words, std::string_view 
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (i > 0) text += i + 1 == words.size() ? " " + std::string(last) + " " : ", ";
-    text += '"' + words[i] + '"';
+    text += in_quotes(words[i]);
   }
   return text;
 }

@@ -6,6 +6,7 @@
 
 #include "app/input/toml_guard.hpp"
 #include "sunder/error.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
@@ -14,14 +15,6 @@ struct Segment {
   std::string text;
   bool quoted = false;
 };
-
-// One line, whatever was typed.
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
-  }
-  return text;
-}
 
 [[noreturn]] void fail(InputFault fault, const std::string& override_text,
                        const std::string& rest) {
@@ -93,7 +86,7 @@ toml::node& element(toml::array& array, const Segment& segment, bool array_next,
       is_index(segment) && std::from_chars(segment.text.data(), end, index).ec == std::errc();
   if (!ok || index > array.size()) {
     fail(InputFault::bad_id, text,
-         "\"" + segment.text + "\" is no index here; allowed: 0 to " +
+         in_quotes(segment.text) + " is no index here; allowed: 0 to " +
              std::to_string(array.size()) + " (the last one appends)");
   }
   if (index == array.size()) {
@@ -115,7 +108,7 @@ toml::node& child(toml::node& parent, const Segment& segment, bool array_next,
   if (toml::array* array = parent.as_array()) return element(*array, segment, array_next, text);
   toml::table* table = parent.as_table();
   if (!table)
-    fail(InputFault::unknown_key, text, "\"" + segment.text + "\" lies inside a plain value");
+    fail(InputFault::unknown_key, text, in_quotes(segment.text) + " lies inside a plain value");
   if (!table->contains(segment.text)) {
     if (array_next)
       table->insert(sourced_key(segment.text, source), toml::array{});
@@ -147,7 +140,7 @@ void apply_override(toml::table& scene, const std::string& text) {
   }
   toml::table* table = parent->as_table();
   if (!table)
-    fail(InputFault::unknown_key, text, "\"" + last.text + "\" lies inside a plain value");
+    fail(InputFault::unknown_key, text, in_quotes(last.text) + " lies inside a plain value");
   table->erase(last.text);
   toml::key key = sourced_key(last.text, value.source());
   value.visit([&](auto& typed) { table->insert(std::move(key), std::move(typed)); });

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/input/scene_sections.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
@@ -17,7 +18,7 @@ class Collector {
   ScenePlaces collect() {
     if (const toml::table* materials = scene_["material"].as_table()) {
       for (const auto& [name, node] : *materials)
-        add("material \"" + std::string(name.str()) + '"', node.source());
+        add("material " + in_quotes(name.str()), node.source());
     }
     for (const char* key : {"fixed", "crack", "destroy"}) add_array(key);
     add_instruments();
@@ -42,7 +43,8 @@ class Collector {
       const toml::node& table = (*tables)[i];
       const auto name = table.is_table() ? (*table.as_table())["name"].value<std::string>()
                                          : std::optional<std::string>();
-      add("instrument \"" + name.value_or("instrument-" + std::to_string(i)) + '"', table.source());
+      add("instrument " + in_quotes(name.value_or("instrument-" + std::to_string(i))),
+          table.source());
     }
   }
 

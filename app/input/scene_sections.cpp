@@ -5,6 +5,7 @@
 
 #include "app/input/nearest.hpp"
 #include "app/input/scene_selection.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
@@ -93,7 +94,7 @@ std::map<std::string, Material> read_materials(const TomlTable& root, const std:
   if (!table) return materials;
   for (const auto& [key, node] : *table) {
     const std::string name(key.str());
-    const std::string path = "material." + name;
+    const std::string path = key_path("material", name);
     if (!node.is_table()) {
       throw InputError(InputFault::wrong_type, location(node.source(), file) + ": " + path +
                                                    " takes a table [material.<volume>], not " +
@@ -232,8 +233,8 @@ OutputOptions read_output(const TomlTable& root, const std::string& file) {
       options.stress = true;
     else
       table.fail(InputFault::unknown_key, "fields",
-                 "contains \"" + field.substr(0, 40) +
-                     "\"; allowed: " + quoted_list({"displacement", "stress"}, "and"));
+                 "contains " + in_quotes(field, 40) +
+                     "; allowed: " + quoted_list({"displacement", "stress"}, "and"));
   }
   return options;
 }

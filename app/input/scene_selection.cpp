@@ -2,6 +2,7 @@
 #include "app/input/scene_selection.hpp"
 
 #include "app/input/nearest.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
@@ -82,8 +83,8 @@ Axes read_axes(const TomlTable& table) {
   }
   if (axes.bits == 0) {
     table.fail(InputFault::unknown_key, "axes",
-               "is \"" + word->substr(0, 20) +
-                   "\"; allowed: one or more of the letters x, y, z, each once, e.g. \"xy\"");
+               "is " + in_quotes(*word, 20) +
+                   "; allowed: one or more of the letters x, y, z, each once, e.g. \"xy\"");
   }
   return axes;
 }

@@ -6,18 +6,10 @@
 #include <limits>
 
 #include "app/input/nearest.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
-
-std::string shortened(std::string text) {
-  constexpr std::size_t kLongest = 60;
-  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';  // a message is one line
-  }
-  return text;
-}
 
 std::string printed(const toml::node& node) {
   std::ostringstream out;
@@ -34,6 +26,14 @@ std::string location(const toml::source_region& region, const std::string& file)
   return file + ":" + std::to_string(region.begin.line) + ":" + std::to_string(region.begin.column);
 }
 
+std::string key_path(const std::string& path, std::string_view key) {
+  constexpr std::string_view bare =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  const bool plain =
+      !key.empty() && key.size() <= 60 && key.find_first_not_of(bare) == std::string_view::npos;
+  return (path.empty() ? "" : path + ".") + (plain ? std::string(key) : in_quotes(key));
+}
+
 std::string describe(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
@@ -41,7 +41,7 @@ std::string describe(const toml::node& node) {
     case toml::node_type::array:
       return "an array of " + std::to_string(node.as_array()->size());
     case toml::node_type::string:
-      return "the string \"" + shortened(node.as_string()->get()) + '"';
+      return "the string " + in_quotes(node.as_string()->get());
     case toml::node_type::integer:
       return "the integer " + printed(node);
     case toml::node_type::floating_point:
@@ -63,8 +63,7 @@ TomlTable::TomlTable(const toml::table& table, std::string file, std::string pat
 }
 
 std::string TomlTable::full(std::string_view key) const {
-  if (path_.empty()) return std::string(key);
-  return key.empty() ? path_ : path_ + "." + std::string(key);
+  return key.empty() ? path_ : key_path(path_, key);
 }
 
 std::string TomlTable::at(const toml::source_region& region) const {
@@ -81,7 +80,8 @@ void TomlTable::fail(InputFault fault, std::string_view key, const std::string& 
 }
 
 void TomlTable::fail_missing(std::string_view key) const {
-  throw InputError(InputFault::missing_key, where() + ": the key \"" + full(key) + "\" is missing" +
+  throw InputError(InputFault::missing_key, where() + ": the key " + in_quotes(full(key)) +
+                                                " is missing" +
                                                 (path_.empty() ? "" : " in " + path_));
 }
 
@@ -95,17 +95,15 @@ void TomlTable::fail_unknown_key(const toml::key& key) const {
   const std::string name(key.str());
   const std::string close = nearest(name, allowed_);
   throw InputError(InputFault::unknown_key,
-                   at(key.source()) + ": unknown key \"" + shortened(full(name)) + '"' +
-                       (close.empty() ? "" : ", did you mean \"" + close + "\"?") +
+                   at(key.source()) + ": unknown key " + in_quotes(key_path(path_, name)) +
+                       (close.empty() ? "" : ", did you mean " + in_quotes(close) + "?") +
                        (close.empty() ? "; allowed" : " Allowed") +
-                       (path_.empty() ? "" : " in " + shortened(path_)) + ": " +
-                       quoted_list(allowed_, "and"));
+                       (path_.empty() ? "" : " in " + path_) + ": " + quoted_list(allowed_, "and"));
 }
 
 void TomlTable::fail_unknown_word(std::string_view key, const std::string& word,
                                   const std::vector<std::string>& known) const {
-  fail(InputFault::unknown_key, key,
-       "is \"" + shortened(word) + "\"; allowed: " + quoted_list(known));
+  fail(InputFault::unknown_key, key, "is " + in_quotes(word) + "; allowed: " + quoted_list(known));
 }
 
 double TomlTable::finite(const toml::node& node, std::string_view key,

@@ -89,6 +89,9 @@ class TomlTable {
 /// "file:line:column", the file alone when the region has no line, or the --set text that made it.
 [[nodiscard]] std::string location(const toml::source_region& region, const std::string& file);
 
+/// `path.key`, the key in quotes where TOML wants it so ("", "a b").
+[[nodiscard]] std::string key_path(const std::string& path, std::string_view key);
+
 /// `the string "abc"`, `the integer 3`, `an array of 2`, ...: what a value is, shortened.
 [[nodiscard]] std::string describe(const toml::node& node);
 

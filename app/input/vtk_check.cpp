@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/input/msh_cursor.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::app {
 namespace {
@@ -70,17 +71,18 @@ class VtkReader {
       cursor_.fail("the first line is not \"# vtk DataFile Version ...\": no legacy .vtk file");
     const std::string_view version = first.substr(head.size());
     if (version.empty() || version[0] < '1' || version[0] > '4')
-      cursor_.fail("the version is \"" + std::string(version.substr(0, 10)) +
-                   "\"; allowed: 1.0 to 4.2 (save as \"legacy\" version 4.2 or older)");
+      cursor_.fail("the version is " + in_quotes(version, 10) +
+                   "; allowed: 1.0 to 4.2 (save as \"legacy\" version 4.2 or older)");
     cursor_.skip_rest_of_line();  // title
     const std::string format(cursor_.word().substr(0, 20));
     if (format != "ASCII" && format != "BINARY")
-      cursor_.fail("the format is \"" + format + "\"; allowed: ASCII and BINARY");
+      cursor_.fail("the format is " + in_quotes(format) + "; allowed: ASCII and BINARY");
     binary_ = format == "BINARY";
     const std::string keyword(cursor_.word().substr(0, 20));
     const std::string dataset(cursor_.word().substr(0, 40));
     if (keyword != "DATASET" || dataset != "UNSTRUCTURED_GRID")
-      cursor_.fail("the data set is \"" + dataset + "\"; allowed: DATASET UNSTRUCTURED_GRID");
+      cursor_.fail("the data set is " + in_quotes(dataset) +
+                   "; allowed: DATASET UNSTRUCTURED_GRID");
   }
 
   // False: an attribute that is not read, and nothing behind it is.
@@ -116,7 +118,7 @@ class VtkReader {
     for (const NumberType& type : kNumberTypes) {
       if (type.name == word) return type;
     }
-    cursor_.fail("the number type \"" + word + "\" is not known");
+    cursor_.fail("the number type " + in_quotes(word) + " is not known");
   }
 
   void begin_body() {

@@ -8,6 +8,7 @@
 #include "fracture/crack_path.hpp"
 #include "fracture/geometry_factor.hpp"
 #include "fracture/stress_intensity.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -22,7 +23,7 @@ Vec2 mean_position(const Board& board, const std::vector<Index>& nodes) {
 
 std::string closing_push(const FractureState& state, const ActingPress& acting) {
   const auto& instrument = state.problem.scene().instruments[acting.instrument];
-  return "instrument \"" + instrument.name + "\" pushes crack " +
+  return "instrument " + in_quotes(instrument.name) + " pushes crack " +
          std::to_string(acting.press->crack) + " shut on its " +
          (acting.press->side == CrackSide::upper ? "upper" : "lower") +
          " face and counts as no pressure in its stress intensity";

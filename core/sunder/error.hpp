@@ -6,13 +6,16 @@
 #include <stdexcept>
 #include <string>
 
+#include "sunder/in_quotes.hpp"
+
 namespace sunder {
 
-/// Base of all errors thrown by the library; `exit_code` is the program's exit code for it.
+/// Base of all errors thrown by the library; `exit_code` is the program's exit code for it. The
+/// message is one line whatever it quotes.
 class Error : public std::runtime_error {
  public:
   Error(int exit_code, const std::string& message)
-      : std::runtime_error(message), exit_code_(exit_code) {}
+      : std::runtime_error(one_line(message)), exit_code_(exit_code) {}
   [[nodiscard]] int exit_code() const noexcept { return exit_code_; }
 
  private:

@@ -65,7 +65,7 @@ TEST(Overrides, NameTheirTextWhenWrong) {
       {"fracture.model.x=1", F::unknown_key, {"\"x\" lies inside a plain value"}},
       {"time.steps=many", F::wrong_type, {"time.steps takes an integer", "\"many\""}},
       {"time.steps=0", F::out_of_range, {"time.steps is 0"}},
-      {"time.steps=1\nmesh=2", F::syntax, {"--set time.steps=1?mesh=2"}},
+      {"time.steps=1\nmesh=2", F::syntax, {R"(--set time.steps=1\nmesh=2)"}},
       {"solver.tolerance=nan", F::out_of_range, {"solver.tolerance", "finite"}},
       {"instrument.9.force=[0,0,0]", F::bad_id, {"\"9\"", "0 to 3"}},
       {"instrument.x.force=[0,0,0]", F::bad_id, {"\"x\"", "0 to 3"}},

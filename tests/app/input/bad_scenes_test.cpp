@@ -45,6 +45,35 @@ TEST(BadScenes, NotToml) {
       parse);
 }
 
+// What a message quotes stays one line and cannot end it early.
+TEST(BadScenes, NamesWithControlCharacters) {
+  expect_all(
+      {
+          {"mesh = ", "\"\" = ", F::unknown_key, {"bad.toml:2:1", "unknown key \"\"", "\"mesh\""}},
+          {"mesh = ",
+           R"("a\nb\u0000c" = )",
+           F::unknown_key,
+           {"bad.toml:2:1", R"(unknown key ""a\nb\u0000c"")", "\"fracture\""}},
+          {"young = 5\n", "\"\" = 5\n", F::unknown_key, {"\"material.upper.\"\"\""}},
+          {"[material.upper]\nyoung = 5\n",
+           "[material.\"\\n\\u001b[1m\"]\nyoung = \"5\"\n",
+           F::wrong_type,
+           {"bad.toml:12:9", R"(material."\n\u001b[1m".young takes a number)"}},
+          {"[material.upper]\n",
+           "[material]\n\"\\u0000\" = 3\n[material.upper]\n",
+           F::wrong_type,
+           {"bad.toml:12:12", R"(material."\u0000" takes a table)"}},
+          {"side = \"upper\"",
+           R"(side = "up\nper\u007f")",
+           F::unknown_key,
+           {R"("up\nper\u007f"; allowed: "upper" or "lower")"}},
+          {"axes = \"xyz\"", R"(axes = "x\ty")", F::unknown_key, {R"(axes is "x\ty"; allowed)"}},
+          {"\"stress\"]", R"("\r\u0085"])", F::unknown_key, {R"(contains "\r\u0085"; allowed)"}},
+          {"poisson = 0.4", "poisson = n\n", F::syntax, {"bad.toml:6:", R"(saw 'n\n)"}},
+      },
+      parse);
+}
+
 TEST(BadScenes, UnknownKeys) {
   expect_all(
       {

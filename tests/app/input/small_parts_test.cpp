@@ -4,6 +4,7 @@
 #include "app/input/nearest.hpp"
 #include "app/input/raw_mesh.hpp"
 #include "app/input/tag_index.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::test {
 namespace {
@@ -16,6 +17,22 @@ TEST(Nearest, FindsTypos) {
   EXPECT_EQ(app::nearest(std::string(100'000, 'x'), known), "");
   EXPECT_EQ(app::quoted_list({"a", "b", "c"}), "\"a\", \"b\" or \"c\"");
   EXPECT_EQ(app::quoted_list({}), "");
+}
+
+TEST(InQuotes, IsOneLineOfBoundedLength) {
+  EXPECT_EQ(in_quotes("upper"), "\"upper\"");
+  EXPECT_EQ(in_quotes(std::string_view("a\n\r\t\0\x1b\x7f", 7)), R"("a\n\r\t\u0000\u001b\u007f")");
+  EXPECT_EQ(in_quotes("\xc2\x9b"
+                      "2J \xc2\xb5m"),
+            "\"\\u009b2J \xc2\xb5m\"");  // C1's CSI; the micro sign stays
+  EXPECT_EQ(in_quotes("abcdef", 4), "\"abcd...\"");
+  EXPECT_EQ(in_quotes("ab\xc3\xa4z", 3), "\"ab...\"");  // never half a character
+  EXPECT_EQ(in_quotes("", 0), "\"\"");
+}
+
+TEST(Errors, KeepTheirWholeMessageOnOneLine) {
+  const InputError error(InputFault::syntax, std::string("\0one\ntwo", 8));
+  EXPECT_STREQ(error.what(), "\\u0000one\\ntwo");
 }
 
 TEST(TagIndex, DenseAndSparse) {
