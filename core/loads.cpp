@@ -38,6 +38,7 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   }
   pressed_.resize(instruments.size());
   forces_.assign(instruments.size(), Vec3::Zero());
+  driven_.resize(instruments.size());
   const auto gripped = problem.gripped_dofs();
   gripped_.resize(gripped.size());
   expansion_.displacements.assign(gripped.size(), 0.0);
@@ -77,6 +78,15 @@ void Loads::choose_pressed_nodes(std::size_t instrument, const FractureCriterion
   }
 }
 
+Vec3 Loads::value(std::size_t instrument, double time) const {
+  if (driven_[instrument]) return *driven_[instrument];
+  const Instrument& tool = problem_.scene().instruments[instrument];
+  const double factor = tool.factor(time);
+  if (const auto* grip = std::get_if<Grip>(&tool.action)) return factor * grip->displacement;
+  if (const auto* pull = std::get_if<Pull>(&tool.action)) return factor * pull->force;
+  return factor * std::get<Press>(tool.action).force;
+}
+
 void Loads::add(std::size_t instrument, Entries& entries) const {
   const auto on = nodes(instrument);
   for (Index n : on) {
@@ -95,27 +105,23 @@ std::vector<std::string> Loads::update(double time, const FractureCriterion& cri
   Entries entries;
   acting_.clear();
   for (std::size_t i = 0; i < instruments.size(); ++i) {
-    const double factor = instruments[i].factor(time);
-    if (const auto* pull = std::get_if<Pull>(&instruments[i].action)) {
-      forces_[i] = factor * pull->force;
-      add(i, entries);
-    }
+    if (!std::holds_alternative<Pull>(instruments[i].action)) continue;
+    forces_[i] = value(i, time);
+    add(i, entries);
   }
   fill(expansion_, entries);
   for (std::size_t g = 0; g < gripped_.size(); ++g) {
-    const Instrument& tool = instruments[gripped_[g].instrument];
-    expansion_.displacements[g] =
-        tool.factor(time) * std::get<Grip>(tool.action).displacement[gripped_[g].axis];
+    expansion_.displacements[g] = value(gripped_[g].instrument, time)[gripped_[g].axis];
   }
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* press = std::get_if<Press>(&instruments[i].action);
     if (!press) continue;
-    const double factor = instruments[i].factor(time);
     forces_[i].setZero();
-    if (factor == 0) continue;
+    const bool idle = driven_[i] ? driven_[i]->isZero(0) : instruments[i].factor(time) == 0;
+    if (idle) continue;
     choose_pressed_nodes(i, criterion, destroyed, findings);
     if (pressed_[i].empty()) continue;
-    forces_[i] = factor * press->force;
+    forces_[i] = value(i, time);
     add(i, entries);
     acting_.push_back({i, press, forces_[i], pressed_[i]});
   }

@@ -22,6 +22,11 @@ class Loads {
   std::vector<std::string> update(double time, const FractureCriterion& criterion,
                                   std::span<const std::uint8_t> destroyed);
 
+  /// Instrument i has this force or displacement from the next update on, whatever the scene says.
+  void drive(std::size_t instrument, const Vec3& value) { driven_[instrument] = value; }
+  /// Force or displacement of instrument i at a scene time.
+  [[nodiscard]] Vec3 value(std::size_t instrument, double time) const;
+
   [[nodiscard]] const Load& load() const { return all_; }
   /// Without the pressing instruments (the pristine field's load).
   [[nodiscard]] const Load& expansion() const { return expansion_; }
@@ -48,6 +53,7 @@ class Loads {
   std::optional<NodeElements> elements_of_node_;  // only where something presses
   std::vector<std::vector<Index>> pressed_;       // per instrument
   std::vector<Gripped> gripped_;
+  std::vector<std::optional<Vec3>> driven_;
   std::vector<Vec3> forces_;
   std::vector<ActingPress> acting_;
   Load all_, expansion_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "attribution.hpp"
 #include "fem/element.hpp"
 #include "fracture/criterion.hpp"
 #include "loads.hpp"
@@ -133,6 +134,7 @@ StepReport Simulation::step() {
       }
       {
         const Timer timer(times.update);
+        if (attribute_) attribute(decision);
         broke = apply_event(std::move(decision));
       }
     }
@@ -224,6 +226,28 @@ std::span<const double> Simulation::pristine_displacement() {
     backend_->solve_pristine(loads_->expansion(), pristine_);
   }
   return pristine_;
+}
+
+void Simulation::drive(std::size_t instrument, const Vec3& value) {
+  if (instrument >= problem_->scene().instruments.size()) {
+    throw UsageError("there is no instrument " + std::to_string(instrument));
+  }
+  if (!value.allFinite()) throw UsageError("an instrument's value must be finite");
+  loads_->drive(instrument, value);
+}
+
+/// The instrument behind a decision; the backend holds the same solution before and after.
+void Simulation::attribute(Decision& decision) {
+  if (decision.elements.empty()) return;
+  const double time = (next_step_ + 1.0) / problem_->scene().steps;
+  const Attribution a = attribution(*backend_, *loads_, time, decision.elements.front().element);
+  backend_->set_load(loads_->load());
+  backend_->solve();
+  backend_->stress();
+  for (DestroyedElement& d : decision.elements) {
+    d.instrument = a.instrument;
+    d.instrument_share = a.share;
+  }
 }
 
 bool Simulation::apply_event(Decision decision) {
@@ -380,10 +404,10 @@ double Simulation::compliance() const {
     if (problem_->scene().instruments.empty()) break;
     const auto* grip = std::get_if<Grip>(&problem_->scene().instruments[i].action);
     if (grip) {
-      const double factor = problem_->scene().instruments[i].factor(
-          static_cast<double>(next_step_ + 1) / problem_->scene().steps);
+      const Vec3 displacement =
+          loads_->value(i, static_cast<double>(next_step_ + 1) / problem_->scene().steps);
       for (int axis = 0; axis < 3; ++axis) {
-        if (grip->axes.has(axis)) work += forces[i][axis] * factor * grip->displacement[axis];
+        if (grip->axes.has(axis)) work += forces[i][axis] * displacement[axis];
       }
       continue;
     }

@@ -25,6 +25,10 @@ struct DestroyedElement {
   std::optional<double> ratio;  ///< mss: measure/yield; sif: r_e / max(rho, h/2)
   double load_factor = 0;       ///< scene time t
   std::optional<SifTerms> sif;
+  /// The instrument with the largest share of the maximum shear stress of the event's first
+  /// element, and that share of the whole (Simulation::attribute_events); kNone: not asked for.
+  int instrument = kNone;
+  double instrument_share = 0;
 };
 
 /// The stages of a frame, in order; milliseconds.

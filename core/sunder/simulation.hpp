@@ -41,6 +41,14 @@ class Simulation {
   using FrameObserver = std::function<void()>;
   void observe_frames(FrameObserver observer) { frame_observer_ = std::move(observer); }
 
+  /// Drives an instrument by hand from the next step on: its force [N] or displacement [mm], in
+  /// place of the scene's value and ramp. Throws UsageError for a value that is not finite.
+  void drive(std::size_t instrument, const Vec3& value);
+
+  /// Says of each rupture which instrument caused it (DestroyedElement::instrument). Two more
+  /// solves an event.
+  void attribute_events(bool wanted) { attribute_ = wanted; }
+
   /// Computes the next step. Throws NumericalError when the promise cannot be kept and UsageError
   /// when all steps are done.
   StepReport step();
@@ -51,6 +59,7 @@ class Simulation {
 
   [[nodiscard]] const Problem& problem() const { return *problem_; }
   [[nodiscard]] const Backend& backend() const { return *backend_; }
+  [[nodiscard]] Backend& backend() { return *backend_; }
   [[nodiscard]] const std::vector<DestroyedElement>& destroyed() const { return destroyed_; }
   [[nodiscard]] const std::vector<Crack>& cracks() const;
   /// Problem's warnings, then what happened during the run, each once.
@@ -75,6 +84,7 @@ class Simulation {
   void record_solve(const SolveReport& solve, StepReport& report);
   [[nodiscard]] Decision decide(const StressSummary& summary);
   bool apply_event(Decision decision);  // false: nothing broke
+  void attribute(Decision& decision);
   void find_loose();
   void warn(std::string message);
   [[nodiscard]] std::span<const double> pristine_displacement();
@@ -103,6 +113,7 @@ class Simulation {
   int events_this_step_ = 0;
   int decisions_this_step_ = 0;
   bool interrupted_ = false;
+  bool attribute_ = false;
   Steps capped_, polished_;
   bool solved_ = false;  // the backend holds fields
   std::size_t loose_nodes_ = 0, loose_pieces_ = 0, loose_elements_ = 0;
