@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "c/scene.hpp"
+
+#include <limits>
+
+namespace sunder::c {
+namespace {
+
+std::vector<Index> to_ids(const sunder_selection& selection, const char* what) {
+  if (selection.id_count == 0) return {};
+  require(selection.ids, (std::string(what) + ": ids").c_str());
+  if (selection.id_count > static_cast<std::size_t>(std::numeric_limits<Index>::max())) {
+    throw Failure(SUNDER_ERROR_SIZE, std::string(what) + ": id_count exceeds 32 bits");
+  }
+  return {selection.ids, selection.ids + selection.id_count};
+}
+
+Box to_box(const sunder_selection& s) { return {Vec3(s.min), Vec3(s.max)}; }
+
+}  // namespace
+
+std::shared_ptr<const Problem> SceneObject::problem() const {
+  Scene complete = scene;
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    complete.materials[scene.mesh.volumes[m].name] = materials[m];
+  }
+  return std::make_shared<const Problem>(std::move(complete));
+}
+
+NodeSelection to_nodes(const sunder_selection& selection, const char* what) {
+  switch (choice<int>(selection.kind, 3, "selection kind")) {
+    case SUNDER_SELECT_IDS:
+      return to_ids(selection, what);
+    case SUNDER_SELECT_BOX:
+      return to_box(selection);
+    default:
+      return Ball{Vec3(selection.min), selection.radius};
+  }
+}
+
+ElementSelection to_elements(const sunder_selection& selection, const char* what) {
+  if (choice<int>(selection.kind, 2, "selection kind of elements") == SUNDER_SELECT_IDS) {
+    return to_ids(selection, what);
+  }
+  return to_box(selection);
+}
+
+}  // namespace sunder::c
+
+extern "C" {
+
+sunder_status sunder_scene_create(sunder_scene* scene) {
+  using namespace sunder::c;
+  return guarded([&] {
+    require(scene, "scene");
+    auto object = std::make_shared<SceneObject>();
+    object->scene.source = "scene";
+    *scene = new_handle<sunder_scene>(std::move(object));
+  });
+}
+
+sunder_status sunder_scene_destroy(sunder_scene scene) {
+  return sunder::c::destroy<sunder::c::SceneObject>(scene);
+}
+
+}  // extern "C"

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene under construction.
+#pragma once
+
+#include "c/handles.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::c {
+
+class SceneObject final : public Object {
+ public:
+  static constexpr const char* kName = "scene";
+
+  Scene scene;  ///< its mesh has one volume per material
+  std::vector<Material> materials;
+  bool attribution = false;
+
+  /// Checks everything. Throws InputError.
+  [[nodiscard]] std::shared_ptr<const Problem> problem() const;
+};
+
+/// Throw SUNDER_ERROR_VALUE, _NULL or _SIZE.
+[[nodiscard]] NodeSelection to_nodes(const sunder_selection& selection, const char* what);
+[[nodiscard]] ElementSelection to_elements(const sunder_selection& selection, const char* what);
+
+}  // namespace sunder::c

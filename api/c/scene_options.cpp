@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "c/names.hpp"
+#include "c/scene.hpp"
+#include "c/structs.hpp"
+
+namespace {
+
+using namespace sunder::c;
+
+sunder_fracture_options fracture_defaults() {
+  const sunder::FractureOptions defaults;
+  auto options = sized<sunder_fracture_options>();
+  options.alpha = defaults.alpha;
+  options.max_events = defaults.max_events;
+  return options;
+}
+
+sunder_solver_options solver_defaults() {
+  const sunder::SolverOptions defaults;
+  auto options = sized<sunder_solver_options>();
+  options.device = defaults.device;
+  options.tolerance = defaults.tolerance;
+  return options;
+}
+
+sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
+  sunder::FractureOptions f;
+  f.model = choice<sunder::FractureModel>(given.model, 3, "fracture model");
+  f.alpha = given.alpha;
+  f.yield_measure = choice<sunder::YieldMeasure>(given.yield_measure, 2, "yield_measure");
+  f.sigma0 = choice<sunder::RemoteStress>(given.sigma0, 2, "sigma0");
+  f.crack_length = choice<sunder::CrackLength>(given.crack_length, 2, "crack_length");
+  f.birth = choice<sunder::CrackBirth>(given.birth, 2, "birth");
+  f.sif = choice<sunder::SifSource>(given.sif, 2, "sif");
+  f.max_events = given.max_events;
+  if (given.has_plane_normal) f.plane_normal = sunder::Vec3(given.plane_normal);
+  return f;
+}
+
+sunder::SolverOptions to_solver(const sunder_solver_options& given) {
+  sunder::SolverOptions s;
+  s.backend = backend_name(choice<sunder_backend>(given.backend, 3, "backend"));
+  if (given.device < -1) {
+    throw Failure(SUNDER_ERROR_VALUE, "device = " + std::to_string(given.device) +
+                                          " is neither an index nor -1 (let the library choose)");
+  }
+  s.device = given.device;
+  s.route = choice<sunder::Route>(given.route, 5, "route");
+  s.update = choice<sunder::Update>(given.update, 3, "update");
+  s.precision = choice<sunder::Precision>(given.precision, 3, "precision");
+  s.tolerance = given.tolerance;
+  return s;
+}
+
+}  // namespace
+
+extern "C" {
+
+void sunder_fracture_options_init(sunder_fracture_options* options) {
+  if (options) *options = fracture_defaults();
+}
+
+sunder_status sunder_scene_set_fracture(sunder_scene scene,
+                                        const sunder_fracture_options* options) {
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    const auto given = read_struct(options, fracture_defaults(), "fracture options");
+    object.scene.fracture = to_fracture(given);
+    object.attribution = given.attribution != 0;
+  });
+}
+
+void sunder_solver_options_init(sunder_solver_options* options) {
+  if (options) *options = solver_defaults();
+}
+
+sunder_status sunder_scene_set_solver(sunder_scene scene, const sunder_solver_options* options) {
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    object.scene.solver = to_solver(read_struct(options, solver_defaults(), "solver options"));
+  });
+}
+
+sunder_status sunder_scene_set_steps(sunder_scene scene, int32_t steps) {
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    if (steps < 1) {
+      throw Failure(SUNDER_ERROR_VALUE, "steps = " + std::to_string(steps) + " is below 1");
+    }
+    object.scene.steps = steps;
+  });
+}
+
+sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted) {
+  return call<SceneObject>(scene,
+                           [&](SceneObject& object) { object.scene.output.stress = wanted != 0; });
+}
+
+}  // extern "C"

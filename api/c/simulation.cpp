@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Create, step, drive, cancel.
+#include "c/simulation.hpp"
+
+#include "c/engine.hpp"
+#include "c/simulation_create.hpp"
+
+namespace {
+
+using namespace sunder::c;
+
+sunder_step to_step(const sunder::StepReport& report) {
+  auto step = sized<sunder_step>();
+  step.step = report.step;
+  step.load_factor = report.load_factor;
+  step.events = report.events;
+  step.destroyed = report.destroyed;
+  step.iterations = report.iterations;
+  step.polished = report.polished ? 1 : 0;
+  step.compliance = report.compliance;
+  step.residual = report.residual;
+  step.error = report.error;
+  step.max_yield_ratio = report.max_yield_ratio;
+  step.ms_load = report.times.load;
+  step.ms_solve = report.times.solve;
+  step.ms_stress = report.times.stress;
+  step.ms_decide = report.times.decide;
+  step.ms_update = report.times.update;
+  step.ms_total = report.times.total;
+  return step;
+}
+
+}  // namespace
+
+namespace sunder::c {
+
+sunder_status create_simulation(sunder_scene scene, const sunder_callbacks* callbacks,
+                                const SimulationObject::Create& create,
+                                sunder_simulation* simulation) {
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    require(simulation, "simulation");
+    auto given = sized<sunder_callbacks>();
+    if (callbacks) given = read_struct(callbacks, given, "callbacks");
+    *simulation =
+        new_handle<sunder_simulation>(std::make_shared<SimulationObject>(object, given, create));
+  });
+}
+
+}  // namespace sunder::c
+
+extern "C" {
+
+sunder_status sunder_simulation_create(sunder_scene scene, const sunder_callbacks* callbacks,
+                                       sunder_simulation* simulation) {
+  return create_simulation(scene, callbacks, sunder::create_backend, simulation);
+}
+
+sunder_status sunder_simulation_destroy(sunder_simulation simulation) {
+  return destroy<SimulationObject>(simulation);
+}
+
+sunder_status sunder_simulation_engine(sunder_simulation simulation, sunder_engine* engine) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    write_struct(engine, describe(object.problem(), object.simulation().backend().info()),
+                 "engine");
+  });
+}
+
+sunder_status sunder_simulation_step(sunder_simulation simulation, sunder_step* step) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    if (step) static_cast<void>(stated_size(step, "step"));
+    const sunder::StepReport report = object.step();
+    if (step) write_struct(step, to_step(report), "step");
+    if (object.simulation().interrupted()) {
+      throw Failure(SUNDER_ERROR_CANCELLED, "step " + std::to_string(report.step) +
+                                                " was cancelled after its event " +
+                                                std::to_string(report.events));
+    }
+  });
+}
+
+sunder_status sunder_simulation_cancel(sunder_simulation simulation) {
+  return guarded([&] { find<SimulationObject>(simulation, SimulationObject::kName)->cancel(); });
+}
+
+sunder_status sunder_simulation_drive(sunder_simulation simulation, int32_t instrument,
+                                      const double value[3]) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    require(value, "value");
+    const auto& instruments = object.problem().scene().instruments;
+    require_index(instrument, static_cast<std::int64_t>(instruments.size()), "instrument");
+    object.simulation().drive(static_cast<std::size_t>(instrument), sunder::Vec3(value));
+  });
+}
+
+}  // extern "C"

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// A simulation behind a handle, with the host's callbacks.
+#pragma once
+
+#include <functional>
+#include <set>
+
+#include "c/handles.hpp"
+#include "c/scene.hpp"
+#include "sunder/backends.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder::c {
+
+class SimulationObject final : public Object {
+ public:
+  static constexpr const char* kName = "simulation";
+
+  /// Makes the backend of a problem.
+  using Create = std::function<CreatedBackend(std::shared_ptr<const Problem>, Needs)>;
+
+  SimulationObject(const SceneObject& scene, const sunder_callbacks& callbacks,
+                   const Create& create);
+
+  /// Throws SUNDER_ERROR_CANCELLED, besides what Simulation::step throws.
+  [[nodiscard]] StepReport step();
+  void cancel() noexcept { cancelled_.store(true); }
+
+  [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
+  [[nodiscard]] Simulation& simulation() { return *simulation_; }
+  [[nodiscard]] const Problem& problem() const { return simulation_->problem(); }
+  [[nodiscard]] bool solved() const { return solved_; }
+  [[nodiscard]] std::vector<std::string> warnings() const;
+
+ private:
+  void log(std::int32_t level, const std::string& text) const;
+  void log_warnings();
+  /// False: the host cancels.
+  [[nodiscard]] bool tell(std::int32_t phase, int events) const;
+  void enter(std::int32_t phase) const;
+
+  sunder_callbacks callbacks_;
+  std::unique_ptr<Simulation> simulation_;
+  std::vector<std::string> creation_warnings_;
+  std::set<std::string> told_;
+  std::size_t warning_count_ = 0;
+  int steps_;
+  int events_ = 0;  // of this step
+  bool solved_ = false;
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace sunder::c

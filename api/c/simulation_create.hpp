@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "c/simulation.hpp"
+#include "c/structs.hpp"
+
+namespace sunder::c {
+
+/// A simulation of a scene on the backend that `create` makes.
+[[nodiscard]] sunder_status create_simulation(sunder_scene scene, const sunder_callbacks* callbacks,
+                                              const SimulationObject::Create& create,
+                                              sunder_simulation* simulation);
+
+}  // namespace sunder::c

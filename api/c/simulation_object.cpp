@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "c/simulation.hpp"
+#include "c/structs.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::c {
+
+SimulationObject::SimulationObject(const SceneObject& scene, const sunder_callbacks& callbacks,
+                                   const Create& create)
+    : callbacks_(callbacks), steps_(scene.scene.steps) {
+  enter(SUNDER_PHASE_CHECK);
+  const auto problem = scene.problem();
+  enter(SUNDER_PHASE_PREPARE);
+  CreatedBackend created = create(problem, needs_of(*problem));
+  creation_warnings_ = std::move(created.warnings);
+  simulation_ = std::make_unique<Simulation>(problem, std::move(created.backend));
+  simulation_->attribute_events(scene.attribution);
+  simulation_->observe_events([this](std::span<const DestroyedElement>) {
+    ++events_;
+    return tell(SUNDER_PHASE_STEP, events_) && !cancelled_.load();
+  });
+  const BackendInfo info = simulation_->backend().info();
+  log(SUNDER_LOG_INFO, "backend " + info.backend + " " + info.precision + " on " + info.device +
+                           ", route " + info.route + ": " + info.why);
+  log_warnings();
+}
+
+StepReport SimulationObject::step() {
+  events_ = 0;
+  StepReport report;
+  try {
+    report = simulation_->step();
+  } catch (const NumericalError& error) {
+    log(SUNDER_LOG_ERROR, error.what());
+    throw;
+  }
+  solved_ = true;
+  if (simulation_->interrupted()) cancelled_.store(false);
+  log_warnings();
+  return report;
+}
+
+std::vector<std::string> SimulationObject::warnings() const {
+  std::vector<std::string> all = creation_warnings_;
+  for (std::string& text : simulation_->warnings()) all.push_back(std::move(text));
+  return all;
+}
+
+void SimulationObject::log(std::int32_t level, const std::string& text) const {
+  if (callbacks_.log) callbacks_.log(callbacks_.log_user, level, text.c_str());
+}
+
+/// Findings that are new. Those that count steps change their text with every step; they are told
+/// again only beside a new one.
+void SimulationObject::log_warnings() {
+  if (!callbacks_.log) return;
+  const auto all = warnings();
+  const bool more = all.size() > warning_count_;
+  warning_count_ = all.size();
+  for (const std::string& text : all) {
+    if (told_.insert(text).second && more) log(SUNDER_LOG_WARNING, text);
+  }
+}
+
+bool SimulationObject::tell(std::int32_t phase, int events) const {
+  if (!callbacks_.progress) return true;
+  auto progress = sized<sunder_progress>();
+  progress.phase = phase;
+  progress.steps = steps_;
+  progress.events = events;
+  if (simulation_) {
+    progress.step = simulation_->steps_done();
+    progress.destroyed = static_cast<std::int32_t>(simulation_->destroyed().size());
+  }
+  return callbacks_.progress(callbacks_.progress_user, &progress) == 0;
+}
+
+void SimulationObject::enter(std::int32_t phase) const {
+  if (!tell(phase, 0)) throw Failure(SUNDER_ERROR_CANCELLED, "the creation was cancelled");
+}
+
+}  // namespace sunder::c

@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C interface of Sunder: soft tissue that tears, from arrays. C99 and C++; Python ctypes and C#
+// P/Invoke read the same declarations. Units: mm, N, MPa; angles in degrees; times in milliseconds.
+//
+// Rules that hold for every function:
+// - It returns a status and never aborts, throws or exits. On failure nothing has changed, unless
+//   the function says otherwise; sunder_last_error() has one sentence about it.
+// - A handle is a number that is looked up, not a pointer that is followed: null, forged and
+//   destroyed handles, and handles of another kind, give SUNDER_ERROR_HANDLE.
+// - Ids are 0-based and 32-bit. Arrays are dense, row by row; the caller owns them, and they are
+//   copied before the call returns. The size of an array is its number of values, and it must be
+//   exactly what the function states (else SUNDER_ERROR_SIZE).
+// - Text goes out as UTF-8 into a buffer of the caller's: at most `capacity` bytes with the closing
+//   zero are written, `length` (may be null) receives the length without it. A null buffer with
+//   capacity 0 asks for the length alone.
+// - Option and result structs begin with `struct_size`, which the caller sets to sizeof(the
+//   struct) as it was compiled. Later versions append members: what an older caller leaves out
+//   has its default, what a newer caller adds must be zero. The *_init functions set struct_size
+//   and all defaults.
+//
+// Threads: different handles may be used by different threads at once. One handle serves one
+// call at a time: a second one returns SUNDER_ERROR_BUSY at once and does nothing. Only
+// sunder_simulation_cancel may be called for a handle that is in use. Callbacks run on the thread
+// that made the call, during it, and find their own handle busy.
+#ifndef SUNDER_SUNDER_H
+#define SUNDER_SUNDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define SUNDER_VERSION_MAJOR 0
+#define SUNDER_VERSION_MINOR 1
+#define SUNDER_VERSION_PATCH 0
+
+#if defined(_WIN32)
+#define SUNDER_API
+#else
+#define SUNDER_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Status ---------------------------------------------------------------------------------- */
+
+typedef int32_t sunder_status;
+enum {
+  SUNDER_OK = 0,
+  SUNDER_ERROR_INTERNAL = 1,     ///< a defect of the library
+  SUNDER_ERROR_ORDER = 2,        ///< a call that does not fit what was done before
+  SUNDER_ERROR_INPUT = 3,        ///< the scene is wrong; the text names the place and the value
+  SUNDER_ERROR_DEVICE = 4,       ///< no such device, backend, route, or a feature is missing
+  SUNDER_ERROR_NUMERICAL = 5,    ///< the promised accuracy cannot be kept; results so far stay
+  SUNDER_ERROR_NULL = 6,         ///< a pointer that is needed is null
+  SUNDER_ERROR_HANDLE = 7,       ///< no such handle (any more), or one of another kind
+  SUNDER_ERROR_SIZE = 8,         ///< an array of another size
+  SUNDER_ERROR_STRUCT_SIZE = 9,  ///< a struct_size that no version has, or unknown members set
+  SUNDER_ERROR_VALUE = 10,       ///< an index or an enumeration value outside what is allowed
+  SUNDER_ERROR_BUSY = 11,        ///< the handle is in use by another call
+  SUNDER_ERROR_MEMORY = 12,      ///< out of memory
+  SUNDER_ERROR_CANCELLED = 13    ///< a callback or sunder_simulation_cancel asked for it
+};
+
+/// One line for a status; "unknown status" for any other number. Never null.
+SUNDER_API const char* sunder_status_text(sunder_status status);
+/// The last failure on this thread, one sentence; "" if there was none. Valid until the next
+/// failure on this thread.
+SUNDER_API const char* sunder_last_error(void);
+/// The last failure of calls on one handle (a sunder_scene, sunder_plan or sunder_simulation).
+SUNDER_API sunder_status sunder_error_of(const void* handle, char* text, size_t capacity,
+                                         size_t* length);
+/// Version of the library at run time; each may be null. See SUNDER_VERSION_MAJOR: with the same
+/// major number (from 1 on) everything stays callable.
+SUNDER_API void sunder_version(int32_t* major, int32_t* minor, int32_t* patch);
+
+/* ---- Devices --------------------------------------------------------------------------------- */
+
+typedef int32_t sunder_backend;
+enum { SUNDER_BACKEND_AUTO = 0, SUNDER_BACKEND_CPU = 1, SUNDER_BACKEND_VULKAN = 2 };
+
+typedef struct sunder_device {
+  uint32_t struct_size;
+  sunder_backend backend;
+  int32_t index;   ///< among the devices of its backend, for sunder_solver_options::device
+  int32_t chosen;  ///< 1: SUNDER_BACKEND_AUTO takes it
+  char name[256];
+  char driver[256];
+  char precisions[32];  ///< "fp32 fp64"
+  char why[256];        ///< why it is chosen, or why not
+} sunder_device;
+
+SUNDER_API sunder_status sunder_device_count(int32_t* count);
+SUNDER_API sunder_status sunder_device_at(int32_t index, sunder_device* device);
+
+/* ---- Scene: the model and what acts on it ---------------------------------------------------- */
+
+typedef struct sunder_scene_handle* sunder_scene;
+
+SUNDER_API sunder_status sunder_scene_create(sunder_scene* scene);
+SUNDER_API sunder_status sunder_scene_destroy(sunder_scene scene);
+
+/// The body. `nodes`: (nodes x 3) coordinates [mm]. `tets`: (tets x 4) node ids, positive volume:
+/// (x1-x0) x (x2-x0) . (x3-x0) > 0. `material_of`: one index of sunder_scene_add_material per
+/// tetrahedron, or null with size 0: all 0. Sizes in values: 3 * nodes, 4 * tets, tets. Replaces
+/// the mesh that was there. Shape and ids are checked when a plan or a simulation is made.
+SUNDER_API sunder_status sunder_scene_set_mesh(sunder_scene scene, const double* nodes,
+                                               size_t nodes_size, const int32_t* tets,
+                                               size_t tets_size, const int32_t* material_of,
+                                               size_t material_of_size);
+
+typedef struct sunder_material {
+  uint32_t struct_size;
+  uint32_t reserved;
+  double young;      ///< E [MPa], above 0
+  double poisson;    ///< nu, above -1 and below 0.5
+  double yield;      ///< [MPa]; 0: unbreakable
+  const char* name;  ///< for messages; null: its index
+} sunder_material;
+
+SUNDER_API void sunder_material_init(sunder_material* material);
+/// `index` (may be null) receives 0, 1, ... in the order of calls.
+SUNDER_API sunder_status sunder_scene_add_material(sunder_scene scene,
+                                                   const sunder_material* material, int32_t* index);
+
+typedef int32_t sunder_selection_kind;
+enum {
+  SUNDER_SELECT_IDS = 0,  ///< ids, id_count
+  SUNDER_SELECT_BOX = 1,  ///< min <= x <= max of nodes, or of the centroids of elements
+  SUNDER_SELECT_BALL = 2  ///< |x - min| <= radius; nodes only
+};
+/// Nodes or elements. This struct has no version: it never changes.
+typedef struct sunder_selection {
+  sunder_selection_kind kind;
+  int32_t reserved;
+  const int32_t* ids;
+  size_t id_count;
+  double min[3];  ///< least corner of the box, or the ball's centre [mm]
+  double max[3];
+  double radius;
+} sunder_selection;
+
+enum { SUNDER_AXIS_X = 1, SUNDER_AXIS_Y = 2, SUNDER_AXIS_Z = 4, SUNDER_AXES_ALL = 7 };
+
+typedef struct sunder_support {
+  uint32_t struct_size;
+  uint32_t axes;  ///< held axes, a sum of SUNDER_AXIS_*
+  sunder_selection nodes;
+} sunder_support;
+
+SUNDER_API void sunder_support_init(sunder_support* support);
+SUNDER_API sunder_status sunder_scene_add_support(sunder_scene scene,
+                                                  const sunder_support* support);
+
+typedef int32_t sunder_instrument_kind;
+enum {
+  SUNDER_FORCE = 0,         ///< expansion: a total force in equal parts on its nodes
+  SUNDER_DISPLACEMENT = 1,  ///< expansion: a grip that moves its nodes along `axes`
+  SUNDER_PRESSURE = 2       ///< presses on a face of a crack (method.md 7)
+};
+enum { SUNDER_SIDE_UPPER = 0, SUNDER_SIDE_LOWER = 1 };
+
+typedef struct sunder_instrument {
+  uint32_t struct_size;
+  sunder_instrument_kind kind;
+  const char* name;        ///< unique; null: its index
+  sunder_selection nodes;  ///< unused by SUNDER_PRESSURE
+  double value[3];         ///< force [N] or displacement [mm]
+  uint32_t axes;           ///< SUNDER_DISPLACEMENT: held axes
+  int32_t side;            ///< SUNDER_PRESSURE: SUNDER_SIDE_*
+  int32_t crack;           ///< SUNDER_PRESSURE: id
+  int32_t has_ramp;        ///< 0: acts fully from the start
+  double at[3];            ///< SUNDER_PRESSURE: the pressed place [mm]
+  double ramp[2];          ///< scene times of no and full action; time of step i of N is (i + 1)/N
+} sunder_instrument;
+
+SUNDER_API void sunder_instrument_init(sunder_instrument* instrument);
+/// `index` (may be null) receives 0, 1, ...
+SUNDER_API sunder_status sunder_scene_add_instrument(sunder_scene scene,
+                                                     const sunder_instrument* instrument,
+                                                     int32_t* index);
+
+/// A crack that is there from the start. Edge crack: a mouth and one tip; internal: two tips.
+typedef struct sunder_preset_crack {
+  uint32_t struct_size;
+  int32_t has_mouth;
+  sunder_selection elements;  ///< by ids or box
+  double mouth[3];
+  double tips[2][3];  ///< the second only without mouth
+} sunder_preset_crack;
+
+SUNDER_API void sunder_preset_crack_init(sunder_preset_crack* crack);
+SUNDER_API sunder_status sunder_scene_add_crack(sunder_scene scene,
+                                                const sunder_preset_crack* crack);
+/// Elements (by ids or box) taken out before the first solve of a step (0-based): a cut.
+SUNDER_API sunder_status sunder_scene_add_removal(sunder_scene scene, int32_t step,
+                                                  const sunder_selection* elements);
+
+enum { SUNDER_FRACTURE_NONE = 0, SUNDER_FRACTURE_A = 1, SUNDER_FRACTURE_B = 2 };
+enum { SUNDER_YIELD_MAX_SHEAR = 0, SUNDER_YIELD_TRESCA = 1 };
+enum { SUNDER_SIGMA0_LINE = 0, SUNDER_SIGMA0_TIP = 1 };
+enum { SUNDER_LENGTH_PATH = 0, SUNDER_LENGTH_TOOL = 1 };
+enum { SUNDER_BIRTH_ELEMENT = 0, SUNDER_BIRTH_THROUGH = 1 };
+enum { SUNDER_SIF_FORMULA = 0, SUNDER_SIF_FIELD = 1 };
+
+/// docs/method.md says what each reading means.
+typedef struct sunder_fracture_options {
+  uint32_t struct_size;
+  int32_t model;          ///< none (default), A: maximum shear stress, B: with stress intensity
+  double alpha;           ///< remaining share of a destroyed element's stiffness, 1e-6
+  int32_t yield_measure;  ///< SUNDER_YIELD_*
+  int32_t sigma0;         ///< SUNDER_SIGMA0_*
+  int32_t crack_length;   ///< SUNDER_LENGTH_*
+  int32_t birth;          ///< SUNDER_BIRTH_*
+  int32_t sif;            ///< SUNDER_SIF_*
+  int32_t max_events;     ///< of one step, 10000
+  int32_t has_plane_normal;
+  int32_t attribution;  ///< 1: say which instrument broke an element; one more solve an event
+  double plane_normal[3];
+} sunder_fracture_options;
+
+SUNDER_API void sunder_fracture_options_init(sunder_fracture_options* options);
+SUNDER_API sunder_status sunder_scene_set_fracture(sunder_scene scene,
+                                                   const sunder_fracture_options* options);
+
+enum {
+  SUNDER_ROUTE_AUTO = 0,
+  SUNDER_ROUTE_INVERSE = 1,
+  SUNDER_ROUTE_CONDENSED = 2,
+  SUNDER_ROUTE_FACTOR = 3,
+  SUNDER_ROUTE_CG = 4
+};
+enum { SUNDER_UPDATE_AUTO = 0, SUNDER_UPDATE_EAGER = 1, SUNDER_UPDATE_DEFERRED = 2 };
+enum { SUNDER_PRECISION_AUTO = 0, SUNDER_PRECISION_FP32 = 1, SUNDER_PRECISION_FP64 = 2 };
+
+typedef struct sunder_solver_options {
+  uint32_t struct_size;
+  sunder_backend backend;
+  int32_t device;  ///< index among the backend's devices; -1: it chooses
+  int32_t route;
+  int32_t update;
+  int32_t precision;
+  double tolerance;  ///< promised relative stress error of every frame, 1e-4
+} sunder_solver_options;
+
+SUNDER_API void sunder_solver_options_init(sunder_solver_options* options);
+SUNDER_API sunder_status sunder_scene_set_solver(sunder_scene scene,
+                                                 const sunder_solver_options* options);
+/// Number of steps, at least 1 (default 1). INT32_MAX for a host that decides when to stop.
+SUNDER_API sunder_status sunder_scene_set_steps(sunder_scene scene, int32_t steps);
+/// Whether stress is wanted (default 1). With 0 it is left out unless the fracture model needs it.
+SUNDER_API sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted);
+
+/* ---- Plan: what a scene needs, before it runs ------------------------------------------------ */
+
+typedef struct sunder_plan_handle* sunder_plan;
+
+typedef struct sunder_engine {
+  uint32_t struct_size;
+  sunder_backend backend;
+  int64_t nodes, tets;
+  int64_t unknowns;       ///< degrees of freedom that no support holds
+  uint64_t memory_bytes;  ///< that the solver holds
+  char device[256];
+  char driver[256];
+  char precision[32];
+  char route[32];
+  char update[32];
+  char why[512];  ///< why this route
+} sunder_engine;
+
+/// Checks the scene and sets up its solver to tell what it takes; nothing of it stays.
+SUNDER_API sunder_status sunder_plan_create(sunder_scene scene, sunder_plan* plan);
+SUNDER_API sunder_status sunder_plan_destroy(sunder_plan plan);
+SUNDER_API sunder_status sunder_plan_engine(sunder_plan plan, sunder_engine* engine);
+/// How many buffers the solver holds, how many parts are left out as the scene does not need them.
+SUNDER_API sunder_status sunder_plan_counts(sunder_plan plan, int32_t* buffers, int32_t* left_out);
+SUNDER_API sunder_status sunder_plan_buffer(sunder_plan plan, int32_t index, uint64_t* bytes,
+                                            char* name, size_t capacity, size_t* length);
+SUNDER_API sunder_status sunder_plan_left_out(sunder_plan plan, int32_t index, char* text,
+                                              size_t capacity, size_t* length);
+
+/* ---- Simulation ------------------------------------------------------------------------------ */
+
+typedef struct sunder_simulation_handle* sunder_simulation;
+
+enum { SUNDER_LOG_INFO = 0, SUNDER_LOG_WARNING = 1, SUNDER_LOG_ERROR = 2 };
+typedef void (*sunder_log_function)(void* user, int32_t level, const char* text);
+
+enum { SUNDER_PHASE_CHECK = 0, SUNDER_PHASE_PREPARE = 1, SUNDER_PHASE_STEP = 2 };
+typedef struct sunder_progress {
+  uint32_t struct_size;
+  int32_t phase;  ///< of creation: check the scene, prepare the solver; then steps
+  int32_t step, steps;
+  int32_t events;     ///< of this step, so far
+  int32_t destroyed;  ///< elements, so far
+} sunder_progress;
+/// Called before each phase of creation and after each event of a step. Another value than 0
+/// cancels: creation fails, a step ends after that event, with SUNDER_ERROR_CANCELLED.
+typedef int32_t (*sunder_progress_function)(void* user, const sunder_progress* progress);
+
+typedef struct sunder_callbacks {
+  uint32_t struct_size;
+  uint32_t reserved;
+  sunder_log_function log;  ///< null: silent
+  void* log_user;
+  sunder_progress_function progress;  ///< null: none
+  void* progress_user;
+} sunder_callbacks;
+
+/// Checks the scene and prepares its solver. The scene may be destroyed or changed afterwards.
+/// `callbacks` may be null; the struct is copied.
+SUNDER_API sunder_status sunder_simulation_create(sunder_scene scene,
+                                                  const sunder_callbacks* callbacks,
+                                                  sunder_simulation* simulation);
+SUNDER_API sunder_status sunder_simulation_destroy(sunder_simulation simulation);
+SUNDER_API sunder_status sunder_simulation_engine(sunder_simulation simulation,
+                                                  sunder_engine* engine);
+
+typedef struct sunder_step {
+  uint32_t struct_size;
+  int32_t step;        ///< its number, from 0
+  double load_factor;  ///< scene time
+  int32_t events;      ///< of this step
+  int32_t destroyed;   ///< elements, in total
+  int32_t iterations;  ///< of conjugate gradients, where they ran
+  int32_t polished;    ///< 1: a frame was over the tolerance and was refined
+  double compliance;   ///< work of the instruments [N mm]
+  double residual;     ///< |f - K u| / |f|
+  double error;        ///< estimate of the relative stress error
+  double max_yield_ratio;
+  double ms_load, ms_solve, ms_stress, ms_decide, ms_update, ms_total;
+} sunder_step;
+
+/// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
+/// `step` may be null. SUNDER_ERROR_ORDER when all steps are done. SUNDER_ERROR_CANCELLED: the step
+/// ended early, counts as done, and its results can be read. SUNDER_ERROR_NUMERICAL: the results of
+/// the last good solve can be read.
+SUNDER_API sunder_status sunder_simulation_step(sunder_simulation simulation, sunder_step* step);
+/// Ends the running step after its current event. Any thread, any time. When nothing breaks in it
+/// any more, or no step is running: the next step in which something breaks.
+SUNDER_API sunder_status sunder_simulation_cancel(sunder_simulation simulation);
+/// Drives an instrument by hand from the next step on: force [N] or displacement [mm], in place of
+/// its value and ramp.
+SUNDER_API sunder_status sunder_simulation_drive(sunder_simulation simulation, int32_t instrument,
+                                                 const double value[3]);
+
+/* Fields of the last solve. Zero before the first step. */
+
+/// (nodes x 3), size 3 * nodes [mm].
+SUNDER_API sunder_status sunder_simulation_displacement(sunder_simulation simulation,
+                                                        double* values, size_t size);
+/// (tets x 6), Voigt order xx yy zz xy yz zx, size 6 * tets [MPa]; alpha times that where
+/// destroyed. SUNDER_ERROR_ORDER when stress was left out.
+SUNDER_API sunder_status sunder_simulation_stress(sunder_simulation simulation, double* values,
+                                                  size_t size);
+/// (tets): maximum shear stress [MPa].
+SUNDER_API sunder_status sunder_simulation_max_shear(sunder_simulation simulation, double* values,
+                                                     size_t size);
+/// (tets): yield measure over yield stress; 0 where unbreakable or destroyed.
+SUNDER_API sunder_status sunder_simulation_yield_ratio(sunder_simulation simulation, double* values,
+                                                       size_t size);
+/// (tets): 1 where destroyed.
+SUNDER_API sunder_status sunder_simulation_destroyed(sunder_simulation simulation, uint8_t* values,
+                                                     size_t size);
+/// (instruments x 3): force of each instrument on the body [N]. Zero before the first step.
+SUNDER_API sunder_status sunder_simulation_reactions(sunder_simulation simulation, double* values,
+                                                     size_t size);
+/// (3): force of the supports on the body [N]. SUNDER_ERROR_ORDER before the first step.
+SUNDER_API sunder_status sunder_simulation_support_reaction(sunder_simulation simulation,
+                                                            double* values, size_t size);
+
+/* What broke, and why. */
+
+enum {
+  SUNDER_CAUSE_MSS = 0,
+  SUNDER_CAUSE_SIF = 1,
+  SUNDER_CAUSE_PRESET = 2,
+  SUNDER_CAUSE_SCRIPT = 3
+};
+
+/// One destroyed element. `order` counts them over the whole run, as the index does.
+typedef struct sunder_event {
+  uint32_t struct_size;
+  int32_t order;
+  int32_t step;
+  int32_t event;  ///< one decision with one update; several elements may share it
+  int32_t element;
+  int32_t cause;            ///< SUNDER_CAUSE_*: which hypothesis
+  int32_t crack;            ///< id; -1: none
+  int32_t instrument;       ///< with the largest share of its maximum shear stress; -1: not known
+  double instrument_share;  ///< that share of the whole; 0: not known
+  double load_factor;
+  double ratio;  ///< mss: measure / yield; sif: r_e / max(rho, h/2); else 0
+  int32_t has_sif;
+  int32_t tip;                ///< with has_sif: which tip of the crack
+  double k, k_a, k_b, k_c;    ///< Eq. 2 to 4 [MPa sqrt(mm)]
+  double theta;               ///< of growth [deg]
+  double reach;               ///< r_e [mm]
+  double sigma0, beta, a, b;  ///< [MPa], [deg], [mm], [mm]
+  double k_1, k_2;            ///< from the field; 0 with SUNDER_SIF_FORMULA
+} sunder_event;
+
+SUNDER_API sunder_status sunder_simulation_event_count(sunder_simulation simulation,
+                                                       int32_t* count);
+SUNDER_API sunder_status sunder_simulation_event_at(sunder_simulation simulation, int32_t index,
+                                                    sunder_event* event);
+
+enum { SUNDER_CRACK_EDGE = 0, SUNDER_CRACK_INTERNAL = 1 };
+
+/// Geometry in space, at mid-thickness of the undeformed body [mm].
+typedef struct sunder_crack {
+  uint32_t struct_size;
+  int32_t id;
+  int32_t kind;
+  int32_t tip_count;      ///< 1 (edge) or 2
+  int32_t path_count;     ///< points of the path, from the mouth or first tip
+  int32_t element_count;  ///< destroyed elements that belong to it
+  int32_t tip_ended[2];
+  double mouth[3];  ///< edge cracks
+  double tips[2][3];
+  double directions[2][3];  ///< unit, forward
+  double length;            ///< of the path
+} sunder_crack;
+
+SUNDER_API sunder_status sunder_simulation_crack_count(sunder_simulation simulation,
+                                                       int32_t* count);
+SUNDER_API sunder_status sunder_simulation_crack_at(sunder_simulation simulation, int32_t index,
+                                                    sunder_crack* crack);
+/// (path_count x 3), size 3 * path_count.
+SUNDER_API sunder_status sunder_simulation_crack_path(sunder_simulation simulation, int32_t index,
+                                                      double* values, size_t size);
+/// (element_count), in the order of destruction.
+SUNDER_API sunder_status sunder_simulation_crack_elements(sunder_simulation simulation,
+                                                          int32_t index, int32_t* values,
+                                                          size_t size);
+
+SUNDER_API sunder_status sunder_simulation_warning_count(sunder_simulation simulation,
+                                                         int32_t* count);
+SUNDER_API sunder_status sunder_simulation_warning_at(sunder_simulation simulation, int32_t index,
+                                                      char* text, size_t capacity, size_t* length);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
