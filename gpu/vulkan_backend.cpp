@@ -21,7 +21,7 @@ constexpr double kFp32Error = 5e-4;  // however large the tolerance
 constexpr int kRefinements = 6;
 constexpr double kUnchecked = -1;
 constexpr double kSameLoad = 1e-14;  // relative: rounding of a ramp's factor
-// Read back node by node up to here, whole beyond.
+// Read back node by node up to here, gathered on the device beyond.
 constexpr std::size_t kFewNodes = 64;
 
 class VulkanBackend final : public Backend {
@@ -72,6 +72,7 @@ class VulkanBackend final : public Backend {
   }
 
   std::vector<vulkan::PassTime> pass_times() const { return route_->pass_times(); }
+  std::size_t bytes_read() const { return device_->bytes_read(); }
 
  private:
   void do_set_load(const Load& load) override {
@@ -228,11 +229,7 @@ class VulkanBackend final : public Backend {
       }
       return;
     }
-    std::vector<double> all(3 * problem().mesh().nodes.size());
-    fields_.read_displacement(all);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      displacement[i] = Vec3(&all[3 * static_cast<std::size_t>(nodes[i])]);
-    }
+    fields_.read_displacement(nodes, displacement);
   }
 
   void do_read_stress(std::span<Voigt> stress) const override { fields_.read_stress(stress); }
@@ -280,6 +277,11 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
 std::vector<vulkan::PassTime> pass_times(const Backend& backend) {
   const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
   return vulkan_backend ? vulkan_backend->pass_times() : std::vector<vulkan::PassTime>{};
+}
+
+std::size_t bytes_read(const Backend& backend) {
+  const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
+  return vulkan_backend ? vulkan_backend->bytes_read() : 0;
 }
 
 }  // namespace sunder::gpu

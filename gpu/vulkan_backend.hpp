@@ -38,4 +38,8 @@ struct VulkanOptions {
 /// Device time per pass of the last solve, of a backend that create() returned; else empty.
 [[nodiscard]] std::vector<vulkan::PassTime> pass_times(const Backend& backend);
 
+/// Bytes of fields read back to the host so far, by such a backend; else 0. What a frame returns
+/// by itself (its summary) does not count.
+[[nodiscard]] std::size_t bytes_read(const Backend& backend);
+
 }  // namespace sunder::gpu

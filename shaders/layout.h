@@ -52,6 +52,10 @@ struct HoldPush {
   uint to_zero;
 };
 
+struct GatherPush {
+  uint count;
+};
+
 struct ElementPush {
   double alpha;
   uint store;   // 1: keep the stress of every element

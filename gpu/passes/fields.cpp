@@ -156,6 +156,8 @@ void Fields::create_kernels() {
       kernels_.make_fp64("summary", {plain, plain, plain}, sizeof(shaders::SummaryPush));
   summary_pass_.binding =
       bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_});
+  displacement_gather_ = std::make_unique<Gather>(kernels_, displacement_);
+  balance_gather_ = std::make_unique<Gather>(kernels_, balance_);
 }
 
 shaders::ElementPush Fields::element_push(bool store) const {
@@ -288,6 +290,19 @@ Vec3 Fields::read_displacement(Index node) const {
   return {value[0], value[1], value[2]};
 }
 
+void Fields::read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const {
+  std::vector<std::uint32_t> places;
+  places.reserve(3 * nodes.size());
+  for (Index n : nodes) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      places.push_back(4 * static_cast<std::uint32_t>(n) + axis);
+    }
+  }
+  std::vector<double> values(places.size());
+  displacement_gather_->read(places, values);
+  for (std::size_t i = 0; i < nodes.size(); ++i) displacement[i] = Vec3(&values[3 * i]);
+}
+
 namespace {
 
 template <class T>
@@ -326,9 +341,9 @@ Voigt Fields::read_stress(Index element) const {
 
 void Fields::read_reactions(std::span<const Index> dofs, std::span<double> reactions) const {
   if (dofs.empty()) return;
-  std::vector<double> balance(static_cast<std::size_t>(problem_.dof_count()));
-  balance_.read(std::span<double>(balance));
-  for (std::size_t i = 0; i < dofs.size(); ++i) reactions[i] = -balance[dofs[i]];
+  const std::vector<std::uint32_t> places(dofs.begin(), dofs.end());
+  balance_gather_->read(places, reactions);
+  for (double& r : reactions) r = -r;
 }
 
 std::vector<BufferPlan> Fields::buffers() const {

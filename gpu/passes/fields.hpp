@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gpu/kernels.hpp"
+#include "gpu/passes/gather.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "shaders/layout.h"
 #include "sunder/backend.hpp"
@@ -69,6 +70,8 @@ class Fields {
 
   void read_displacement(std::span<double> nodal) const;
   [[nodiscard]] Vec3 read_displacement(Index node) const;
+  /// At some nodes; only they cross to the host.
+  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;
   /// A field at some unknowns.
   [[nodiscard]] Eigen::VectorXd read_unknowns(Field field, std::span<const Index> dofs) const;
   void read_stress(std::span<Voigt> stress) const;
@@ -108,6 +111,7 @@ class Fields {
   vulkan::Buffer held_, prescribed_;  // gripped dofs
   std::unique_ptr<vulkan::Binding> correction_hold_;
   std::unique_ptr<vulkan::Binding> correction_stress_;
+  std::unique_ptr<Gather> displacement_gather_, balance_gather_;
 };
 
 }  // namespace sunder::gpu

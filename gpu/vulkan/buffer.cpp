@@ -129,6 +129,7 @@ void Buffer::write(std::size_t offset, std::span<const std::byte> data) {
 
 void Buffer::read(std::size_t offset, std::span<std::byte> data) const {
   if (data.empty()) return;
+  device_->count_read(data.size());
   if (mapped_) {
     std::memcpy(data.data(), begin() + offset, data.size());
     return;

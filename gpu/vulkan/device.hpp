@@ -58,6 +58,10 @@ class Device {
   /// Submits and waits. Throws DeviceLost, or DeviceError with the first validation message.
   void submit(VkCommandBuffer commands);
 
+  /// Bytes that buffers have handed to the host.
+  [[nodiscard]] std::size_t bytes_read() const { return bytes_read_; }
+  void count_read(std::size_t bytes) { bytes_read_ += bytes; }
+
   /// Throws DeviceError when `bytes` more than the device's memory are asked for.
   void require_memory(VkDeviceSize bytes, const std::string& purpose) const;
 
@@ -69,6 +73,7 @@ class Device {
   std::shared_ptr<Messages> messages_;
   DeviceProbe probe_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::size_t bytes_read_ = 0;
   Queue queue_;
 };
 
