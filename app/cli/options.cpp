@@ -57,6 +57,14 @@ void add_mesh_options(CLI::App& mesh, Options& o) {
       ->type_name("FILE");
 }
 
+void add_reproduce_options(CLI::App& command, Options& o) {
+  command.add_option("--out", o.out, "Folder for the results (default out/reproduce)")
+      ->type_name("DIR");
+  command.add_option("--backend", o.backend, "auto, cpu (default) or vulkan")->type_name("B");
+  command.add_flag("--quick", o.quick, "Fewer sizes, lengths and positions");
+  command.add_flag("--quiet", o.quiet, "No progress on stderr");
+}
+
 SceneArguments scene_arguments(const Options& o) {
   SceneArguments arguments;
   arguments.scene = o.scene;
@@ -90,6 +98,17 @@ RunArguments run_arguments(const Options& o) {
   return arguments;
 }
 
+ReproduceArguments reproduce_arguments(const Options& o) {
+  ReproduceArguments arguments;
+  if (o.out && o.out->empty()) throw UsageError("--out is \"\"; allowed is the name of a folder");
+  if (o.out) arguments.out = *o.out;
+  if (o.backend) check_word("--backend", *o.backend, {"auto", "cpu", "vulkan"});
+  arguments.backend = o.backend.value_or(arguments.backend);
+  arguments.quick = o.quick;
+  arguments.quiet = o.quiet;
+  return arguments;
+}
+
 BoardArguments board_arguments(const Options& o) {
   BoardArguments arguments;
   BoardOptions& board = arguments.options;
@@ -113,6 +132,9 @@ void add_commands(CLI::App& app, Options& options) {
   CLI::App& plan_command = *app.add_subcommand("plan", "What a scene needs and what is left out");
   add_scene_options(plan_command, options);
   add_output_options(plan_command, options);
+  add_reproduce_options(
+      *app.add_subcommand("reproduce", "The paper's experiments with figures and verdicts"),
+      options);
   add_mesh_options(*app.add_subcommand("mesh", "Make meshes"), options);
   app.add_subcommand("devices", "Devices and backends, and what would be chosen");
   app.add_subcommand("help", "Help for a command")
@@ -123,6 +145,7 @@ void add_commands(CLI::App& app, Options& options) {
 int carry_out(const CLI::App& app, const Options& options) {
   if (app.got_subcommand("run")) return run(run_arguments(options));
   if (app.got_subcommand("plan")) return plan(run_arguments(options).scene);
+  if (app.got_subcommand("reproduce")) return reproduce_paper(reproduce_arguments(options));
   if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options));
   return list_devices();
 }

@@ -16,6 +16,8 @@ struct Options {
   Text out, backend, device, route, update, precision, steps, snapshots;
   std::vector<std::string> set;
   bool series = false, quiet = false;
+  // reproduce
+  bool quick = false;
   // mesh board
   Text nx, ny, nz, tets, thickness;
   std::string mesh_file;

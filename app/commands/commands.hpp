@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/commands/scene_arguments.hpp"
@@ -27,9 +28,17 @@ struct BoardArguments {
   std::filesystem::path file;
 };
 
+struct ReproduceArguments {
+  std::filesystem::path out = "out/reproduce";
+  std::string backend = "cpu";  ///< the verdicts do not depend on the machine's devices
+  bool quick = false;
+  bool quiet = false;
+};
+
 int run(const RunArguments& arguments);
 int plan(const SceneArguments& arguments);
 int list_devices();
+int reproduce_paper(const ReproduceArguments& arguments);
 int mesh_board(const BoardArguments& arguments);
 
 }  // namespace sunder::app

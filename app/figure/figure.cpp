@@ -112,30 +112,54 @@ FigurePainter::FigurePainter(const Problem& problem)
 
 FigurePainter::~FigurePainter() = default;
 
-std::string FigurePainter::svg(const State& state) const {
-  const Pose pose = pose_of(problem_, plane_, state);
-  const std::vector<BodyFace> faces = faces_->surface(state.destroyed);
-  const std::vector<Visible> visible = visible_faces(faces, pose, plane_, state);
-  const std::optional<StressScale> scale = stress_scale(problem_, state);
-  const std::vector<Arrow> arrows = instrument_arrows(plane_, pose, state);
-
+/// What one state puts into a picture.
+struct FigurePainter::Scenery {
+  Pose pose;
+  std::vector<BodyFace> faces;
+  std::vector<Visible> visible;
+  std::optional<StressScale> scale;
+  std::vector<Arrow> arrows;
   Bounds bounds;
-  bounds.add(plane_.outline_min);
-  bounds.add(plane_.outline_max);
-  for (const Visible& v : visible)
-    for (const Vec2& p : v.corners) bounds.add(p);
-  for (const Arrow& arrow : arrows)
-    for (const Vec2& p : {arrow.from, arrow.to}) bounds.add(p);
-  const Canvas canvas(bounds);
+};
 
+FigurePainter::Scenery FigurePainter::scenery(const State& state) const {
+  Scenery scene;
+  scene.pose = pose_of(problem_, plane_, state);
+  scene.faces = faces_->surface(state.destroyed);
+  scene.visible = visible_faces(scene.faces, scene.pose, plane_, state);
+  scene.scale = stress_scale(problem_, state);
+  scene.arrows = instrument_arrows(plane_, scene.pose, state);
+  scene.bounds.add(plane_.outline_min);
+  scene.bounds.add(plane_.outline_max);
+  for (const Visible& v : scene.visible)
+    for (const Vec2& p : v.corners) scene.bounds.add(p);
+  for (const Arrow& arrow : scene.arrows)
+    for (const Vec2& p : {arrow.from, arrow.to}) scene.bounds.add(p);
+  return scene;
+}
+
+std::string FigurePainter::draw_body(const State& state, const Scenery& scene,
+                                     const Canvas& canvas) const {
+  std::string out = undeformed_outline(plane_, canvas);
+  out += surface(scene.visible, element_colors(problem_, state, scene.scale), canvas);
+  out += held_edges(problem_, plane_, scene.pose, scene.faces, canvas);
+  out += crack_paths(problem_.mesh(), plane_, scene.pose, state, canvas);
+  return out + draw(scene.arrows, canvas);
+}
+
+Bounds FigurePainter::bounds(const State& state) const { return scenery(state).bounds; }
+
+std::string FigurePainter::drawing(const State& state, const Canvas& canvas) const {
+  return draw_body(state, scenery(state), canvas);
+}
+
+std::string FigurePainter::svg(const State& state) const {
+  const Scenery scene = scenery(state);
+  const Canvas canvas(scene.bounds);
   std::string out = canvas.open(problem_.scene().title);
-  out += undeformed_outline(plane_, canvas);
-  out += surface(visible, element_colors(problem_, state, scale), canvas);
-  out += held_edges(problem_, plane_, pose, faces, canvas);
-  out += crack_paths(problem_.mesh(), plane_, pose, state, canvas);
-  out += draw(arrows, canvas);
-  if (scale) out += color_bar(*scale, canvas);
-  out += caption(problem_, pose, state, canvas);
+  out += draw_body(state, scene, canvas);
+  if (scene.scale) out += color_bar(*scene.scale, canvas);
+  out += caption(problem_, scene.pose, state, canvas);
   return out + "</svg>\n";
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "app/figure/canvas.hpp"
 #include "app/output/state.hpp"
 #include "sunder/board_plane.hpp"
 
@@ -21,10 +22,19 @@ class FigurePainter {
 
   /// A complete SVG document; deterministic.
   [[nodiscard]] std::string svg(const State& state) const;
+  /// What the picture of a state covers in the plane [mm].
+  [[nodiscard]] Bounds bounds(const State& state) const;
+  /// The state alone, without title, colour bar and caption: to be set among others.
+  [[nodiscard]] std::string drawing(const State& state, const Canvas& canvas) const;
   /// The same picture as PNG.
   [[nodiscard]] static std::string png(const std::string& svg);
 
  private:
+  struct Scenery;
+  [[nodiscard]] Scenery scenery(const State& state) const;
+  [[nodiscard]] std::string draw_body(const State& state, const Scenery& scene,
+                                      const Canvas& canvas) const;
+
   const Problem& problem_;
   BoardPlane plane_;
   std::unique_ptr<FaceTable> faces_;

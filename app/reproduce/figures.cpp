@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/reproduce/figures.hpp"
+
+#include <algorithm>
+
+#include "app/figure/canvas.hpp"
+#include "app/figure/figure.hpp"
+#include "app/figure/shading.hpp"
+#include "app/figure/svg.hpp"
+#include "app/output/text.hpp"
+
+namespace sunder::app::reproduce {
+namespace {
+
+constexpr double kPanel = 300, kGap = 14, kTop = 52, kRowTitle = 24, kPanelTitle = 20;
+constexpr double kLegend = 60, kInset = 6;
+
+std::vector<Panel> all_panels(const std::vector<PanelRow>& rows) {
+  std::vector<Panel> panels;
+  for (const PanelRow& row : rows)
+    for (const Panel& panel : row.panels)
+      if (panel.state) panels.push_back(panel);
+  return panels;
+}
+
+Bounds common_bounds(const std::vector<PanelRow>& rows) {
+  Bounds bounds;
+  for (const Panel& panel : all_panels(rows)) {
+    const Bounds own = FigurePainter(*panel.run->problem).bounds(*panel.state);
+    bounds.add(own.min);
+    bounds.add(own.max);
+  }
+  return bounds;
+}
+
+std::string panel_drawing(const Panel& panel, const Canvas& canvas, const Vec2& at, double height) {
+  const Vec2 corner = canvas.corner() - Vec2::Constant(kInset);
+  const Vec2 size = canvas.size() + Vec2::Constant(2 * kInset);
+  const auto c = [](double v) { return svg::coordinate(v); };
+  return svg::text({at.x() + 2, at.y() + 14}, panel.title, "fill=\"#222\"") + "<svg x=\"" +
+         c(at.x()) + "\" y=\"" + c(at.y() + kPanelTitle) + "\" width=\"" + c(kPanel) +
+         "\" height=\"" + c(height) + "\" viewBox=\"" + c(corner.x()) + " " + c(corner.y()) + " " +
+         c(size.x()) + " " + c(size.y()) + "\">\n" +
+         FigurePainter(*panel.run->problem).drawing(*panel.state, canvas) + "</svg>\n";
+}
+
+std::string legend(double top, bool cracks) {
+  constexpr int steps = 40;
+  constexpr double width = 160;
+  std::string out = svg::text({kGap, top + 12}, "max. shear / yield: 0", "fill=\"#333\"");
+  const double left = kGap + 150;
+  for (int i = 0; i < steps; ++i)
+    out += svg::rect({left + width * i / steps, top}, {width / steps + 0.5, 14},
+                     "fill=\"" + hex(red((i + 0.5) / steps)) + "\"");
+  out += svg::text({left + width + 6, top + 12}, "1", "fill=\"#333\"");
+  return out + svg::text({kGap, top + 36},
+                         std::string("Black: destroyed; grey: unbreakable; yellow: instruments; ") +
+                             (cracks ? "blue line: crack path; " : "") +
+                             "dark line: held; dashed: undeformed.",
+                         "fill=\"#666\"");
+}
+
+}  // namespace
+
+std::string montage(const std::string& title, const std::vector<PanelRow>& rows) {
+  const Canvas canvas(common_bounds(rows));
+  const double height =
+      kPanel * (canvas.size().y() + 2 * kInset) / (canvas.size().x() + 2 * kInset);
+  std::size_t columns = 1;
+  bool cracks = false;
+  for (const PanelRow& row : rows) columns = std::max(columns, row.panels.size());
+  for (const Panel& panel : all_panels(rows)) cracks = cracks || !panel.state->cracks.empty();
+  const double row_height = kRowTitle + kPanelTitle + height + kGap;
+  const Vec2 page(kGap + static_cast<double>(columns) * (kPanel + kGap),
+                  kTop + static_cast<double>(rows.size()) * row_height + kLegend);
+  std::string out =
+      svg::open(page.x(), page.y(),
+                "font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"12.5\"") +
+      "<title>" + escaped(title) + "</title>\n" + svg::rect({0, 0}, page, "fill=\"#fff\"") +
+      svg::text({kGap, 32}, title, "font-size=\"17\" font-weight=\"bold\" fill=\"#222\"");
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const double top = kTop + static_cast<double>(r) * row_height;
+    out += svg::text({kGap, top + 15}, rows[r].title, "font-weight=\"bold\" fill=\"#222\"");
+    for (std::size_t p = 0; p < rows[r].panels.size(); ++p) {
+      const Vec2 at(kGap + static_cast<double>(p) * (kPanel + kGap), top + kRowTitle);
+      const Panel& panel = rows[r].panels[p];
+      out += panel.state ? panel_drawing(panel, canvas, at, height)
+                         : svg::text({at.x() + 2, at.y() + 14}, panel.title, "fill=\"#888\"");
+    }
+  }
+  return out + legend(page.y() - kLegend + 8, cracks) + "</svg>\n";
+}
+
+}  // namespace sunder::app::reproduce

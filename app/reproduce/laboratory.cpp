@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/reproduce/laboratory.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "app/input/scene_toml.hpp"
+#include "app/reproduce/notch_mesh.hpp"
+#include "app/reproduce/paper_files.hpp"
+#include "sunder/backends.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder::app::reproduce {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void scale_forces(Scene& scene, double factor) {
+  for (Instrument& instrument : scene.instruments) {
+    if (auto* pull = std::get_if<Pull>(&instrument.action)) pull->force *= factor;
+    if (auto* press = std::get_if<Press>(&instrument.action)) press->force *= factor;
+  }
+}
+
+/// Takes the snapshots of one run.
+struct Snapshooter {
+  const Simulation& simulation;
+  int& frames;
+  std::vector<int> wanted;
+  std::vector<State>& taken;
+
+  void operator()() {
+    ++frames;
+    int fractures = 0;
+    for (const DestroyedElement& row : simulation.destroyed())
+      fractures += row.cause == Cause::preset ? 0 : 1;
+    bool reached = false;
+    while (!wanted.empty() && wanted.front() <= fractures) {
+      wanted.erase(wanted.begin());
+      reached = true;
+    }
+    if (reached) taken.push_back(capture(simulation, simulation.steps_done()));
+  }
+};
+
+}  // namespace
+
+std::vector<DestroyedElement> RunResult::fractures() const {
+  std::vector<DestroyedElement> rows;
+  for (const DestroyedElement& row : destroyed) {
+    if (row.cause != Cause::preset) rows.push_back(row);
+  }
+  return rows;
+}
+
+Laboratory::Laboratory(std::string backend, std::function<bool()> stop,
+                       std::function<void(const std::string&)> tell)
+    : backend_(std::move(backend)), stop_(std::move(stop)), tell_(std::move(tell)) {}
+
+void Laboratory::check_interrupt() const {
+  if (stop_()) throw Interrupted();
+}
+
+const Mesh& Laboratory::mesh_of(const std::string& file) const {
+  const auto known = meshes_.find(file);
+  if (known != meshes_.end()) return known->second;
+  return meshes_.emplace(file, read_embedded_mesh(file)).first->second;
+}
+
+Scene Laboratory::scene(const RunPlan& plan) const {
+  std::vector<std::string> overrides = plan.overrides;
+  overrides.push_back("solver.backend=" + backend_);
+  ParsedScene parsed =
+      parse_scene(paper_file(plan.scene + ".toml"), plan.scene + ".toml", overrides);
+  parsed.scene.mesh = plan.mesh ? *plan.mesh : mesh_of(parsed.mesh_path);
+  scale_forces(parsed.scene, plan.load);
+  return std::move(parsed.scene);
+}
+
+RunResult Laboratory::run(const RunPlan& plan) const {
+  check_interrupt();
+  RunResult result;
+  result.problem = std::make_shared<const Problem>(scene(plan));
+  const Problem& problem = *result.problem;
+  result.plane = board_plane(problem.mesh(), problem.scene().fracture.plane_normal);
+
+  const auto start = Clock::now();
+  CreatedBackend created = create_backend(result.problem, needs_of(problem));
+  result.prepare_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+
+  Simulation simulation(result.problem, std::move(created.backend));
+  int frames = 0;
+  simulation.observe_frames(Snapshooter{simulation, frames, plan.snapshots, result.snapshots});
+  simulation.observe_events([this](std::span<const DestroyedElement>) { return !stop_(); });
+  while (!simulation.done()) {
+    result.steps.push_back(simulation.step());
+    result.frames.push_back(std::exchange(frames, 0));
+    check_interrupt();
+  }
+  result.last = capture(simulation, simulation.steps_done() - 1);
+  result.destroyed = simulation.destroyed();
+  result.cracks = simulation.cracks();
+  result.backend = simulation.backend().info();
+  result.warnings = simulation.warnings();
+  return result;
+}
+
+}  // namespace sunder::app::reproduce

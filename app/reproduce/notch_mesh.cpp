@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/reproduce/notch_mesh.hpp"
+
+#include <gmsh.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "app/input/child_process.hpp"
+#include "app/input/gmsh_reader.hpp"
+#include "app/input/mesh_import.hpp"
+#include "app/output/result_file.hpp"
+#include "app/output/text.hpp"
+#include "app/reproduce/paper_files.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::app::reproduce {
+namespace {
+
+/// A file that gmsh can open; gone with the object.
+class TemporaryFile {
+ public:
+  TemporaryFile(const std::string& extension, std::string_view text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("sunder-reproduce-" + std::to_string(::getpid()) + extension)) {
+    write_file(path_, text);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string mesh_to_bytes(const std::string& geometry) {
+  try {
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::open(geometry);
+    gmsh::model::mesh::generate(3);
+    return "M" + to_bytes(read_model());
+  } catch (const std::string& message) {
+    return "E" + message;
+  }
+}
+
+void replace_once(std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos)
+    throw std::logic_error("the notch's geometry does not hold \"" + from + "\" once");
+  text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+std::string notch_geometry(const NotchMesh& wanted) {
+  std::string text(paper_file("meshes/board1954_notch.geo"));
+  replace_once(text, "h=3.939;", "h=" + number(wanted.size) + ";");
+  replace_once(text, "a0=4.04;", "a0=" + number(wanted.length) + ";");
+  replace_once(text, "Mesh.Algorithm=5;",
+               "Mesh.Algorithm=" + std::to_string(wanted.plane_mesher) + ";");
+  return text;
+}
+
+std::shared_ptr<const Mesh> mesh_notch(const NotchMesh& wanted) {
+  const TemporaryFile geometry(".geo", notch_geometry(wanted));
+  ChildLimits limits;
+  limits.timeout = std::chrono::minutes(2);
+  const ChildOutcome outcome =
+      run_in_child([&] { return mesh_to_bytes(geometry.path().string()); }, limits);
+  const bool done = outcome.end == ChildOutcome::End::done && outcome.result.starts_with('M');
+  const auto raw =
+      done ? from_bytes(std::string_view(outcome.result).substr(1)) : std::optional<RawMesh>();
+  if (!raw)
+    throw Error(1, "gmsh failed to mesh the notched board: " +
+                       (outcome.result.empty() ? outcome.error_text : outcome.result.substr(1)));
+  return std::make_shared<const Mesh>(to_mesh(*raw, nullptr, "notched board", nullptr));
+}
+
+Mesh read_embedded_mesh(const std::string& file) {
+  const TemporaryFile copy(".msh", paper_file(file));
+  return import_mesh(copy.path());
+}
+
+}  // namespace sunder::app::reproduce

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/reproduce/reproduce.hpp"
+
+#include <chrono>
+
+#include "app/figure/figure.hpp"
+#include "app/output/result_file.hpp"
+#include "app/reproduce/study_files.hpp"
+
+namespace sunder::app::reproduce {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using ChapterFunction = std::function<Chapter(const Laboratory&, const Effort&)>;
+
+/// A chapter that has no shorter version.
+ChapterFunction plain(Chapter (*chapter)(const Laboratory&)) {
+  return [chapter](const Laboratory& lab, const Effort&) { return chapter(lab); };
+}
+
+const std::vector<ChapterFunction>& all_chapters() {
+  static const std::vector<ChapterFunction> chapters = {plain(pulled_board),
+                                                        plain(notched_board),
+                                                        plain(pressure_distance),
+                                                        plain(pressure_side),
+                                                        plain(paper_times),
+                                                        plain(k_along_crack),
+                                                        notch_length,
+                                                        pressure_position,
+                                                        pressure_angle,
+                                                        mesh_study};
+  return chapters;
+}
+
+std::string device_of(const Laboratory& lab) {
+  const RunResult run = lab.run({"notch-b", {"time.steps=1"}, nullptr, 1, {}});
+  return run.backend.device + " (" + run.backend.backend + ", " + run.backend.precision + ")";
+}
+
+}  // namespace
+
+Study carry_out_study(
+    const Effort& effort, const std::string& backend, const std::function<bool()>& stop,
+    const std::function<void(const std::string&, std::size_t, std::size_t)>& tell) {
+  const auto start = Clock::now();
+  std::size_t done = 0;
+  const Laboratory lab(backend, stop,
+                       [&](const std::string& what) { tell(what, done, all_chapters().size()); });
+  Study study;
+  study.quick = effort.quick;
+  study.device = device_of(lab);
+  for (const ChapterFunction& chapter : all_chapters()) {
+    study.chapters.push_back(chapter(lab, effort));
+    ++done;
+    lab.check_interrupt();
+  }
+  study.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return study;
+}
+
+std::vector<std::string> write_study(const Study& study, const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  const auto write = [&](const std::string& name, std::string_view text) {
+    write_file(folder / name, text);
+    names.push_back(name);
+  };
+  std::map<std::string, std::string> pngs;
+  for (const Chapter& chapter : study.chapters) {
+    for (const Drawing& drawing : chapter.drawings) {
+      write(drawing.name + ".svg", standalone(drawing));
+      if (!drawing.chart) pngs[drawing.name] = FigurePainter::png(drawing.svg);
+    }
+    for (const DataTable& table : chapter.tables) write(table.name + ".csv", csv(table));
+  }
+  for (const auto& [name, png] : pngs) write(name + ".png", png);
+  write("reproduction.md", study_markdown(study));
+  write("index.html", study_page(study, pngs));
+  write("reproduce.json", study_json(study));
+  return names;
+}
+
+}  // namespace sunder::app::reproduce

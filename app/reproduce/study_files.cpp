@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/reproduce/study_files.hpp"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "app/output/text.hpp"
+
+namespace sunder::app::reproduce {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A number where the whole cell is one.
+Json json_cell(const std::string& text) {
+  if (text.empty()) return nullptr;
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc() && stopped == end) return value;
+  return text;
+}
+
+Json json_of(const Statement& statement) {
+  Json numbers = Json::array();
+  for (const Figure& figure : statement.judgement.numbers)
+    numbers.push_back(
+        {{"name", figure.name}, {"value", figure.value ? Json(*figure.value) : Json(nullptr)}});
+  return {{"id", statement.id},
+          {"statement", statement.text},
+          {"by", statement.by},
+          {"verdict", to_string(statement.judgement.verdict)},
+          {"rule", statement.judgement.rule},
+          {"numbers", std::move(numbers)}};
+}
+
+Json json_of(const DataTable& table) {
+  Json rows = Json::array();
+  for (const auto& row : table.rows) {
+    Json cells = Json::array();
+    for (const std::string& text : row) cells.push_back(json_cell(text));
+    rows.push_back(std::move(cells));
+  }
+  return {{"name", table.name},
+          {"file", table.name + ".csv"},
+          {"caption", table.caption},
+          {"columns", table.head},
+          {"rows", std::move(rows)}};
+}
+
+Json json_of(const Chapter& chapter) {
+  Json statements = Json::array(), tables = Json::array(), figures = Json::array();
+  for (const Statement& s : chapter.statements) statements.push_back(json_of(s));
+  for (const DataTable& t : chapter.tables) tables.push_back(json_of(t));
+  for (const Drawing& d : chapter.drawings)
+    figures.push_back({{"file", d.name + ".svg"}, {"caption", d.caption}});
+  return {{"id", chapter.id},
+          {"title", chapter.title},
+          {"setup", chapter.setup},
+          {"statements", std::move(statements)},
+          {"findings", chapter.findings},
+          {"figures", std::move(figures)},
+          {"tables", std::move(tables)}};
+}
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string csv_row(const std::vector<std::string>& cells) {
+  std::string row;
+  for (std::size_t i = 0; i < cells.size(); ++i) row += (i ? "," : "") + csv_cell(cells[i]);
+  return row + "\n";
+}
+
+std::string numbers_of(const Judgement& judgement) {
+  std::string text;
+  for (const Figure& figure : judgement.numbers) {
+    if (!text.empty()) text += "; ";
+    text += figure.name + ": " + (figure.value ? rounded(*figure.value, 3) : "none");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string study_json(const Study& study) {
+  Json chapters = Json::array();
+  for (const Chapter& chapter : study.chapters) chapters.push_back(json_of(chapter));
+  const Json all = {{"program", "sunder " SUNDER_VERSION},
+                    {"command", std::string("sunder reproduce") + (study.quick ? " --quick" : "")},
+                    {"quick", study.quick},
+                    {"device", study.device},
+                    {"seconds", study.seconds},
+                    {"chapters", std::move(chapters)}};
+  return all.dump(1) + "\n";
+}
+
+std::string csv(const DataTable& table) {
+  std::string text = csv_row(table.head);
+  for (const auto& row : table.rows) text += csv_row(row);
+  return text;
+}
+
+std::string study_markdown(const Study& study) {
+  std::string text =
+      "# The paper's statements and what comes out here\n\nWritten by `sunder reproduce" +
+      std::string(study.quick ? " --quick" : "") +
+      "` (`reproduction.md` in its result folder; `index.html` beside it has the figures, the "
+      "rules "
+      "of the verdicts and every number). Statements in our words.\n\n"
+      "| | statement | K | verdict | numbers |\n|---|---|---|---|---|\n";
+  for (const Chapter& chapter : study.chapters)
+    for (const Statement& s : chapter.statements)
+      text += "| " + s.id + " | " + s.text + " | " + s.by + " | **" +
+              to_string(s.judgement.verdict) + "** | " + numbers_of(s.judgement) + " |\n";
+  for (const Chapter& chapter : study.chapters) {
+    if (chapter.findings.empty()) continue;
+    text += "\n## " + chapter.title + "\n" + chapter.setup + "\n\n";
+    for (const std::string& finding : chapter.findings) text += "- " + finding + "\n";
+  }
+  return text;
+}
+
+std::string standalone(const Drawing& drawing) {
+  if (!drawing.chart || !drawing.svg.starts_with("<svg ")) return drawing.svg;
+  // The colours of the page's light scheme (app/report/style.hpp).
+  static constexpr std::string_view style =
+      "<style>text{fill:#667078;font:12px DejaVu Sans,sans-serif}.label{fill:#22262a}"
+      ".grid{stroke:#dedcd8}.axis{stroke:#667078}polyline{fill:none;stroke-width:1.8}"
+      ".s0{stroke:#4e79a7}.s1{stroke:#e15759}.s2{stroke:#f2a93b}.s3{stroke:#59a14f}"
+      ".s4{stroke:#9c6bb0}.f0{fill:#4e79a7}.f1{fill:#e15759}.f2{fill:#f2a93b}.f3{fill:#59a14f}"
+      ".f4{fill:#9c6bb0}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
+  std::string svg = drawing.svg;
+  svg.insert(5, "xmlns=\"http://www.w3.org/2000/svg\" ");
+  return svg.insert(svg.find('\n') + 1, style);
+}
+
+}  // namespace sunder::app::reproduce
