@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The results folder: rows of Google Benchmark programs and cells of the stability study.
+
+results.json  {"machine": {...}, "rows": [row], "cells": [cell]}
+results.csv   one line per row: program, name, minimum, median, CPU time [ms], samples, counters
+stability.csv as bench_stability writes it
+"""
+import csv
+import io
+import json
+import math
+import os
+import pathlib
+import statistics
+
+UNITS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
+_KNOWN = {"name", "family_index", "per_family_instance_index", "run_name", "run_type", "repetitions",
+          "repetition_index", "threads", "iterations", "real_time", "cpu_time", "time_unit",
+          "label", "error_occurred", "error_message", "aggregate_name", "aggregate_unit"}
+
+
+class BadResults(Exception):
+    """A results folder or a program's output that cannot be used; the text says why."""
+
+
+def rows_of(program, output):
+    """Rows of one program's JSON output; repetitions become the samples of one row."""
+    rows = {}
+    for run in output.get("benchmarks", []):
+        if run.get("run_type", "iteration") != "iteration":
+            continue
+        name = run["run_name"]
+        row = rows.setdefault(name, {"program": program, "name": name, "samples_ms": [],
+                                     "cpu_samples_ms": [], "counters": {}})
+        if run.get("error_occurred"):
+            row["failure"] = run.get("error_message", "failed")
+            continue
+        unit = UNITS[run["time_unit"]]
+        row["samples_ms"].append(run["real_time"] * unit)
+        row["cpu_samples_ms"].append(run["cpu_time"] * unit)
+        for key, value in run.items():
+            if key not in _KNOWN and isinstance(value, (int, float)):
+                row["counters"][key] = value
+    return list(rows.values())
+
+
+def minimum(row):
+    return min(row["samples_ms"]) if row["samples_ms"] else math.nan
+
+
+def median(row):
+    return statistics.median(row["samples_ms"]) if row["samples_ms"] else math.nan
+
+
+def cells_of(text):
+    """Cells of the stability study from its CSV text; numbers become numbers."""
+    words = {"study", "pattern", "method", "verdict", "reason"}
+    cells = list(csv.DictReader(io.StringIO(text)))
+    for cell in cells:
+        for key in cell.keys() - words:
+            cell[key] = float(cell[key])
+    return cells
+
+
+def write_text(path, text):
+    """Writes to a temporary name and renames: a file appears complete or not at all."""
+    temporary = path.with_name(path.name + ".partial")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, path)
+
+
+def rows_csv(rows):
+    counters = sorted({key for row in rows for key in row["counters"]})
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["program", "name", "min_ms", "median_ms", "cpu_ms", "samples", *counters])
+    for row in rows:
+        cpu = min(row["cpu_samples_ms"]) if row["cpu_samples_ms"] else math.nan
+        writer.writerow([row["program"], row["name"], f"{minimum(row):.6g}", f"{median(row):.6g}",
+                         f"{cpu:.6g}", len(row["samples_ms"]),
+                         *(f"{row['counters'][c]:.6g}" if c in row["counters"] else ""
+                           for c in counters)])
+    return out.getvalue()
+
+
+def read(folder):
+    """The results of a folder. Raises BadResults."""
+    path = pathlib.Path(folder) / "results.json"
+    try:
+        results = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise BadResults(f"{path} is missing; name a folder that bench/run has written") from None
+    except (OSError, ValueError) as error:
+        raise BadResults(f"{path} cannot be read: {error}") from None
+    if not isinstance(results, dict) or not {"machine", "rows", "cells"} <= results.keys():
+        raise BadResults(f"{path} is not a results file of bench/run")
+    return results
+
+
+def write(folder, results):
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / "results.csv", rows_csv(results["rows"]))
+    write_text(folder / "results.json", json.dumps(results, indent=1, allow_nan=True) + "\n")
