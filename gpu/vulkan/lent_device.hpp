@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A host's own Vulkan device, lent for as long as a backend lives. Nothing of it is ever destroyed
+// here.
+#pragma once
+
+#include "gpu/vulkan/device.hpp"
+
+namespace sunder::vulkan {
+
+struct LentDevice {
+  PFN_vkGetInstanceProcAddr get = nullptr;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t family = 0;       ///< of the queue
+  std::uint32_t api_version = 0;  ///< that the instance was created for
+  // Features that the host enabled.
+  bool float64 = false, int64 = false, timeline_semaphore = false;
+  QueueLock lock;
+};
+
+/// Throws DeviceError naming what is missing: a handle, Vulkan 1.2, a feature, compute on the
+/// queue.
+[[nodiscard]] std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe = {});
+
+}  // namespace sunder::vulkan
