@@ -24,6 +24,7 @@ StressSummary summarize(const Problem& problem, std::span<const std::uint8_t> de
     if (destroyed[e] || !problem.breakable(e)) continue;
     const double ratio = fem::yield_measure(stress[e], measure) / problem.yield(e);
     if (ratio > summary.any.ratio) summary.any = {e, ratio};
+    if (ratio >= 1) ++summary.over;
     if (!excluded[e] && ratio > summary.candidate.ratio) summary.candidate = {e, ratio};
   }
   return summary;

@@ -18,10 +18,10 @@ constexpr double kCorrection = 1e-6;
 
 }  // namespace
 
-CgRoute::CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields)
+CgRoute::CgRoute(const KernelFactory& kernels, Fields& fields)
     : kernels_(kernels),
       fields_(fields),
-      matrix_(kernels, problem),
+      matrix_(fields.matrix()),
       add_(kernels, fields),
       commands_(kernels.device()) {
   const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;
@@ -80,7 +80,7 @@ int CgRoute::run(double reduction) {
   static_assert(kIterations % 2 == 0);  // parity goes on where the last submit ended
   for (int submits = 0;; ++submits) {
     commands_.begin();
-    commands_.pass("conjugate gradients");
+    commands_.pass("solve");
     if (submits == 0) record_start(reduction);
     record_iterations();
     commands_.end();
@@ -105,7 +105,7 @@ void CgRoute::refresh_state(bool add) {
   commands_.begin();
   fields_.record_keep(commands_);
   if (add) {
-    commands_.pass("refinement");
+    commands_.pass("refine");
     add_.record(commands_);
     commands_.barrier();
   }
@@ -115,7 +115,7 @@ void CgRoute::refresh_state(bool add) {
   commands_.submit();
 }
 
-int CgRoute::solve(const Load&) {
+int CgRoute::solve(const Load&, bool) {
   refresh_state(false);  // the last displacement is the first guess
   const int iterations = run(kSolution);
   refresh_state(true);
@@ -133,15 +133,10 @@ int CgRoute::correct() {
 
 void CgRoute::add_correction() { refresh_state(true); }
 
-void CgRoute::destroy(std::span<const Index> elements, std::span<const Index>) {
-  matrix_.destroy(elements);
-}
-
 std::vector<BufferPlan> CgRoute::buffers() const {
   const std::size_t vectors = r_.bytes() + p_.bytes() + q_.bytes() + z_.bytes() + pq_.bytes() +
                               rz_.bytes() + state_.bytes() + arguments_.bytes();
-  return {{"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},
-          {"conjugate gradient vectors (device)", vectors}};
+  return {{"conjugate gradient vectors (device)", vectors}};
 }
 
 }  // namespace sunder::gpu

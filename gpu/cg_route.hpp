@@ -11,12 +11,13 @@ namespace sunder::gpu {
 
 class CgRoute final : public DeviceRoute {
  public:
-  CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields);
+  CgRoute(const KernelFactory& kernels, Fields& fields);
 
-  int solve(const Load& load) override;
+  int solve(const Load& load, bool balance) override;
   int correct() override;
   void add_correction() override;
-  void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
+  void destroy(std::span<const Index>, std::span<const Index>) override {
+  }  // Fields' matrix follows
   bool leaves_at(double, std::span<const Index>) override { return false; }
   bool restart(std::span<const Index>) override { return false; }
 
@@ -35,7 +36,7 @@ class CgRoute final : public DeviceRoute {
 
   const KernelFactory& kernels_;
   Fields& fields_;
-  BlockMatrix matrix_;
+  const BlockMatrix& matrix_;
   AddCorrection add_;
   vulkan::Buffer r_, p_, q_, z_, pq_, rz_, state_, arguments_;
   struct Pass {

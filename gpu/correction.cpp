@@ -102,10 +102,29 @@ Eigen::VectorXd Correction::take_exact(Loaded& load) const {
 
 Eigen::VectorXd Correction::project(const Loaded& load) const {
   Eigen::VectorXd a = Eigen::VectorXd::Zero(count());
+  Loaded rest;
   for (std::size_t i = 0; i < load.dofs.size(); ++i) {
-    a += load.values[i] * columns_.row(load.dofs[i]).head(count()).transpose();
+    const Index at = place_[load.dofs[i]];
+    if (at != kNone) {
+      a += load.values[i] * x_.col(at);
+    } else {
+      rest.dofs.push_back(load.dofs[i]);
+      rest.values.push_back(load.values[i]);
+    }
+  }
+  for (Index j = 0; j < count(); ++j) {
+    double sum = 0;
+    for (std::size_t i = 0; i < rest.dofs.size(); ++i) {
+      sum += rest.values[i] * columns_(rest.dofs[i], j);
+    }
+    a[j] += sum;
   }
   return a;
+}
+
+double Correction::energy(const Eigen::VectorXd& projection) const {
+  if (count() == 0) return 0;
+  return projection.dot(m_ * projection);
 }
 
 Eigen::VectorXd Correction::coefficients(const Eigen::VectorXd& projection,

@@ -51,6 +51,9 @@ class Correction {
   [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& projection,
                                              std::span<const double> displacement) const;
 
+  /// What the damage adds to r^T X r, for X_E^T r: r^T A^-1 r = r^T X r + energy.
+  [[nodiscard]] double energy(const Eigen::VectorXd& projection) const;
+
   [[nodiscard]] std::size_t bytes() const;
 
  private:

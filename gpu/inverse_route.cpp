@@ -2,7 +2,7 @@
 #include "gpu/inverse_route.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 #include "fem/event_factor.hpp"
 #include "sunder/error.hpp"
@@ -10,38 +10,18 @@
 namespace sunder::gpu {
 namespace {
 
-// Up to this many unknowns the host keeps the dense inverse as well (288 MB): a fracture then
-// copies its columns instead of solving for them.
-constexpr Index kHostDense = 6000;
 // A pivot of C below this means that the event isolates something: fp32 has no digits left there
 // (method.md "Stability"), so the eager inverse must not take it in.
 constexpr double kLeastPivot32 = 1e-3;
+// Room for the exact columns of so much damage from the start, if it takes no more memory than
+// that.
+constexpr Index kExactRoom = 512;
+constexpr std::size_t kExactRoomBytes = std::size_t{64} << 20;
 // A load on up to so many dofs is multiplied by exact columns: fp32 columns alone would cost 1e-4
 // of the board's largest stress, in its stiff frame.
 constexpr std::size_t kExactLoads = 64;
 
 }  // namespace
-
-HostInverse::HostInverse(const fem::SparseMatrix& lower, bool keep_dense) : factor_(lower) {
-  if (keep_dense && lower.rows() <= kHostDense) dense_ = factor_.inverse();
-}
-
-Eigen::MatrixXd HostInverse::columns(std::span<const Index> dofs) const {
-  if (dense_.size() == 0) return factor_.inverse_columns(dofs);
-  const std::vector<Index> list(dofs.begin(), dofs.end());
-  return dense_(Eigen::all, list);
-}
-
-Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
-  if (dense_.size() > 0) return dense_.middleCols(first, count);
-  std::vector<Index> list(static_cast<std::size_t>(count));
-  std::iota(list.begin(), list.end(), first);
-  return factor_.inverse_columns(list);
-}
-
-std::size_t HostInverse::bytes() const {
-  return factor_.bytes() + static_cast<std::size_t>(dense_.size()) * sizeof(double);
-}
 
 InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
                            std::shared_ptr<const HostInverse> intact, const InverseOptions& options)
@@ -53,8 +33,11 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem,
       eager_(options.eager),
       base_(kernels, problem.dof_count(), fields.rows(), options.panel_bytes),
       exact_(kernels, fields.rows()),
+      partials_(kernels, fields.rows()),
       add_(kernels, fields),
-      commands_(kernels.device()) {
+      commands_(kernels.device()),
+      quiet_(kernels.device()),
+      checked_(kernels.device()) {
   upload_base();
   if (eager_) {
     bind();
@@ -65,50 +48,66 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem,
 }
 
 void InverseRoute::upload_base() {
-  base_.upload([this](Index first, Index count) { return host_->range(first, count); });
+  std::vector<double> roots(fields_.rows(), 0.0);
+  base_.upload([&](Index first, Index count) {
+    Eigen::MatrixXd columns = host_->range(first, count);
+    for (Index c = 0; c < count; ++c) {
+      roots[static_cast<std::size_t>(first + c)] = std::sqrt(columns(first + c, c));
+    }
+    return columns;
+  });
+  fields_.set_roots(roots);
 }
 
 void InverseRoute::bind() {
-  sum_displacement_.reset();
-  sum_correction_.reset();
   // The loaded columns never need more chunks than all columns do, one per panel aside.
-  partials_ = std::make_unique<PartialSums>(
-      kernels_, fields_.rows(), base_.chunks() + base_.loaded_chunks({}) + exact_.chunk_capacity());
-  base_.bind(*partials_, fields_.residual());
-  exact_.bind(*partials_, fields_.residual());
-  sum_displacement_ = partials_->bind_sum(fields_.positions(), fields_.nodal(Field::displacement));
-  sum_correction_ = partials_->bind_sum(fields_.positions(), fields_.nodal(Field::correction));
+  partials_.reserve(base_.chunks() + base_.loaded_chunks({}) + exact_.chunk_capacity());
+  base_.bind(partials_, fields_.residual());
+  exact_.bind(partials_, fields_.residual());
+  exact_.bind_solve(fields_.positions(), fields_.nodal(Field::displacement));
+  sum_displacement_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::displacement));
+  sum_correction_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::correction));
+  quiet_.columns = checked_.columns = kNone;
 }
 
 void InverseRoute::extend_exact() {
   const bool moved = exact_.extend(correction_->columns(), correction_->count());
-  if (moved || !partials_) bind();
+  if (moved || !sum_displacement_) bind();
 }
 
 void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) {
   commands_.barrier();
-  partials_->record_sum(
+  partials_.record_sum(
       commands_, field == Field::displacement ? *sum_displacement_ : *sum_correction_, chunks, add);
   commands_.barrier();
 }
 
-void InverseRoute::record_state() {
-  fields_.record_state(commands_);
-  if (eager_) return;
-  commands_.pass("projection");
+void InverseRoute::record_state(bool balance) {
+  fields_.record_state(commands_, balance);
+  if (!balance || eager_) return;
+  commands_.pass("residual");
   exact_.record_project(commands_);
 }
 
-int InverseRoute::solve(const Load& load) {
+int InverseRoute::solve(const Load& load, bool balance) {
+  last_ = &commands_;
   if (eager_) {
-    solve_eager(load);
+    solve_eager(load, balance);
   } else {
-    solve_deferred(load);
+    solve_deferred(load, balance);
   }
   return 0;
 }
 
-void InverseRoute::solve_deferred(const Load& load) {
+std::optional<double> InverseRoute::energy_bound() const {
+  if (eager_) return std::nullopt;
+  // A^-1 = X + X_E M X_E^T, and r^T X r <= (sum of |r_j| sqrt(X_jj))^2 in the norm of X.
+  const double of_base = fields_.state().energy_root;
+  const double of_damage = correction_->energy(exact_.projection());
+  return std::sqrt(of_base * of_base + of_damage);
+}
+
+void InverseRoute::solve_deferred(const Load& load, bool balance) {
   Loaded loaded{load.force_dofs, load.forces};
   const Index added = correction_->new_dofs(loaded.dofs);
   if (added > 0 && loaded.dofs.size() <= kExactLoads &&
@@ -118,8 +117,12 @@ void InverseRoute::solve_deferred(const Load& load) {
   }
   Eigen::VectorXd c = correction_->coefficients(correction_->project(loaded), load.displacements);
   c += correction_->take_exact(loaded);
-  base_.set_loaded(loaded);
   exact_.set_coefficients(c);
+  if (loaded.dofs.empty() && exact_.whole_in_one()) {
+    solve_on_exact(balance);
+    return;
+  }
+  base_.set_loaded(loaded);
   commands_.begin();
   fields_.record_keep(commands_);
   commands_.pass("solve");
@@ -128,12 +131,38 @@ void InverseRoute::solve_deferred(const Load& load) {
   chunks += exact_.record_apply(commands_, chunks);
   record_solution(Field::displacement, chunks, false);
   fields_.record_hold(commands_, Field::displacement);
-  record_state();
+  record_state(balance);
   commands_.end();
   commands_.submit();
 }
 
-void InverseRoute::solve_eager(const Load& load) {
+void InverseRoute::solve_on_exact(bool balance) {
+  Recorded& frame = balance ? checked_ : quiet_;
+  const bool keep = fields_.keeps_next(), timed = kernels_.device().timing();
+  if (frame.columns != exact_.count() || frame.keep != keep || frame.timed != timed) {
+    frame.columns = exact_.count();
+    frame.keep = keep;
+    frame.timed = timed;
+    vulkan::Commands& commands = frame.commands;
+    commands.begin();
+    fields_.record_keep(commands);
+    commands.pass("solve");
+    exact_.record_solve(commands);
+    commands.barrier();
+    fields_.record_hold(commands, Field::displacement);
+    fields_.record_state(commands, balance);
+    if (balance) {
+      commands.pass("residual");
+      exact_.record_project(commands);
+    }
+    commands.end();
+  }
+  fields_.kept();
+  frame.commands.submit();
+  last_ = &frame.commands;
+}
+
+void InverseRoute::solve_eager(const Load& load, bool balance) {
   Loaded loaded{load.force_dofs, load.forces};
   base_.set_loaded(loaded);
   commands_.begin();
@@ -149,7 +178,7 @@ void InverseRoute::solve_eager(const Load& load) {
     record_solution(Field::displacement, base_.record_loaded(commands_, 0), true);
   }
   fields_.record_hold(commands_, Field::displacement);
-  record_state();
+  record_state(balance);
   commands_.end();
   commands_.submit();
 }
@@ -159,7 +188,7 @@ int InverseRoute::correct() {
     exact_.set_coefficients(correction_->coefficients(exact_.projection(), {}));
   }
   commands_.begin();
-  commands_.pass("dense product");
+  commands_.pass("estimate");
   std::uint32_t chunks = base_.record_dense(commands_, 0);
   if (!eager_) {
     commands_.barrier();
@@ -171,7 +200,7 @@ int InverseRoute::correct() {
     commands_.submit();
     base_.set_loaded(grip_forces(Field::correction, {}));
     commands_.begin();
-    commands_.pass("dense product");
+    commands_.pass("estimate");
     record_solution(Field::correction, base_.record_loaded(commands_, 0), true);
   }
   fields_.record_hold(commands_, Field::correction);
@@ -183,10 +212,10 @@ int InverseRoute::correct() {
 
 void InverseRoute::add_correction() {
   commands_.begin();
-  commands_.pass("refinement");
+  commands_.pass("refine");
   add_.record(commands_);
   commands_.barrier();
-  record_state();
+  record_state(true);
   commands_.end();
   commands_.submit();
 }
@@ -267,7 +296,15 @@ void InverseRoute::defer(std::span<const Index> destroyed) {
     return;
   }
   if (overwritten) upload_base();
+  make_exact();
+}
+
+/// The correction's columns on the device, from the first one on.
+void InverseRoute::make_exact() {
   exact_.clear();
+  const std::size_t column = std::size_t{fields_.rows()} * sizeof(double);
+  exact_.reserve(std::min(kExactRoom, static_cast<Index>(kExactRoomBytes / column)));
+  sum_displacement_.reset();
   extend_exact();
 }
 
@@ -279,8 +316,7 @@ void InverseRoute::rebase(std::span<const Index> destroyed) {
   upload_base();
   correction_ = std::make_unique<Correction>(
       problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });
-  exact_.clear();
-  extend_exact();
+  make_exact();
   eager_ = false;
   rebased_ = true;
 }
@@ -288,7 +324,7 @@ void InverseRoute::rebase(std::span<const Index> destroyed) {
 std::vector<BufferPlan> InverseRoute::buffers() const {
   std::vector<BufferPlan> plan = {
       {kernels_.fp64() ? "inverse (device, fp64)" : "inverse (device, fp32)", base_.bytes()},
-      {"partial sums (device)", partials_->buffer().bytes()},
+      {"partial sums (device)", partials_.buffer().bytes()},
       {"intact factor and inverse (host)", host_->bytes()}};
   if (correction_) {
     plan.push_back({"exact columns (device)", exact_.bytes()});
@@ -297,6 +333,6 @@ std::vector<BufferPlan> InverseRoute::buffers() const {
   return plan;
 }
 
-std::vector<vulkan::PassTime> InverseRoute::pass_times() const { return commands_.pass_times(); }
+std::vector<vulkan::PassTime> InverseRoute::pass_times() const { return last_->pass_times(); }
 
 }  // namespace sunder::gpu

@@ -5,27 +5,13 @@
 
 #include <memory>
 
-#include "fem/factor.hpp"
 #include "gpu/correction.hpp"
+#include "gpu/host_inverse.hpp"
 #include "gpu/passes/add.hpp"
 #include "gpu/passes/exact_columns.hpp"
 #include "gpu/route.hpp"
 
 namespace sunder::gpu {
-
-/// Exact columns of an inverse on the host: from the dense inverse when that is kept and small,
-/// else from the factor.
-class HostInverse {
- public:
-  HostInverse(const fem::SparseMatrix& lower, bool keep_dense);
-  [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
-  [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
-  [[nodiscard]] std::size_t bytes() const;
-
- private:
-  fem::Factor factor_;
-  Eigen::MatrixXd dense_;  // empty: too large
-};
 
 struct InverseOptions {
   bool eager = false;
@@ -38,7 +24,8 @@ class InverseRoute final : public DeviceRoute {
   InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
                std::shared_ptr<const HostInverse> intact, const InverseOptions& options);
 
-  int solve(const Load& load) override;
+  int solve(const Load& load, bool balance) override;
+  std::optional<double> energy_bound() const override;
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
@@ -53,11 +40,13 @@ class InverseRoute final : public DeviceRoute {
  private:
   void upload_base();
   void bind();
+  void make_exact();
   void extend_exact();
   void record_solution(Field field, std::uint32_t chunks, bool add);
-  void record_state();
-  void solve_deferred(const Load& load);
-  void solve_eager(const Load& load);
+  void record_state(bool balance);
+  void solve_deferred(const Load& load, bool balance);
+  void solve_on_exact(bool balance);
+  void solve_eager(const Load& load, bool balance);
   bool update_eager(std::span<const Index> elements);
   void factor_grips();
   [[nodiscard]] Loaded grip_forces(Field field, std::span<const double> displacement) const;
@@ -73,11 +62,20 @@ class InverseRoute final : public DeviceRoute {
   DenseInverse base_;
   ExactColumns exact_;
   std::unique_ptr<Correction> correction_;
-  std::unique_ptr<PartialSums> partials_;
+  PartialSums partials_;
   std::unique_ptr<vulkan::Binding> sum_displacement_, sum_correction_;
   AddCorrection add_;
   Eigen::LLT<Eigen::MatrixXd> grips_;  // eager: X_GG
   vulkan::Commands commands_;
+  /// A frame whose loads lie on exact columns: recorded once, submitted until its shape changes.
+  struct Recorded {
+    explicit Recorded(vulkan::Device& device) : commands(device) {}
+    vulkan::Commands commands;
+    Index columns = kNone;  // of the recording; kNone: none
+    bool keep = false, timed = false;
+  };
+  Recorded quiet_, checked_;
+  vulkan::Commands* last_ = &commands_;  // what pass_times() asks
 };
 
 }  // namespace sunder::gpu

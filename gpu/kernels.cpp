@@ -31,9 +31,13 @@ std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool 
   for (Reads r : bindings) accesses.push_back(access(r, variant_, fp64));
   code.bindings = accesses;
   code.push_bytes = static_cast<std::uint32_t>(push_bytes);
-  const std::uint32_t constants[] = {group};
+  const std::uint32_t constants[] = {group, device_.physical().subgroup};
   code.constants = constants;
   return std::make_unique<vulkan::Kernel>(device_, code);
+}
+
+std::uint32_t KernelFactory::parts() const {
+  return variant_ == Variant::gpu ? 1 : shaders::kGroup / device_.physical().subgroup;
 }
 
 Variant choose_variant(const vulkan::PhysicalDevice& device) {
@@ -45,7 +49,9 @@ Variant choose_variant(const vulkan::PhysicalDevice& device) {
     throw UsageError("SUNDER_SHADER_VARIANT is \"" + std::string(name) +
                      "\"; it may be gpu or lvp");
   }
-  return device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE ? Variant::lvp : Variant::gpu;
+  // The lvp variant stores fp32 in 64-bit words; a host may not have enabled them.
+  return device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE && device.int64 ? Variant::lvp
+                                                                        : Variant::gpu;
 }
 
 }  // namespace sunder::gpu

@@ -11,6 +11,10 @@
 
 namespace sunder::gpu {
 
+[[nodiscard]] constexpr std::uint32_t round_up(std::uint32_t value, std::uint32_t to) {
+  return (value + to - 1) / to * to;
+}
+
 /// How kernels read (shaders/common.glsl).
 enum class Variant { gpu, lvp };
 
@@ -45,6 +49,8 @@ class KernelFactory {
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
   [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }
+  /// Partial results that a workgroup leaves behind (shaders/reduce.glsl).
+  [[nodiscard]] std::uint32_t parts() const;
   /// Invocations that share 256 rows in the low-rank update (shaders/low_rank.comp).
   [[nodiscard]] std::uint32_t low_rank_group() const {
     return variant_ == Variant::lvp && !fp64_ ? shaders::kGroup / 2 : shaders::kGroup;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,12 @@ class DeviceRoute {
   DeviceRoute(const DeviceRoute&) = delete;
   DeviceRoute& operator=(const DeviceRoute&) = delete;
 
-  /// Displacement under a load, and Fields' state of it. Returns iterations.
-  virtual int solve(const Load& load) = 0;
+  /// Displacement under a load, and Fields' state of it, with f - K u if `balance`. Returns
+  /// iterations.
+  virtual int solve(const Load& load, bool balance) = 0;
+  /// Bound on the energy norm sqrt(r^T A^-1 r) of the last solve's residual, where the route has
+  /// one for less than correct() costs.
+  [[nodiscard]] virtual std::optional<double> energy_bound() const { return std::nullopt; }
   /// Correction = A^-1 r with grips at 0, and Fields' summary of it. Returns iterations.
   virtual int correct() = 0;
   /// Displacement += correction, and Fields' state anew.

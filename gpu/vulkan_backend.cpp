@@ -24,13 +24,17 @@ constexpr double kSameLoad = 1e-14;  // relative: rounding of a ramp's factor
 // Read back node by node up to here, gathered on the device beyond.
 constexpr std::size_t kFewNodes = 64;
 
+std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int asked) {
+  if (options.lent) return vulkan::borrow_device(*options.lent, options.probe);
+  const auto instance = std::make_shared<vulkan::Instance>(options.instance);
+  return vulkan::create_device(instance, choose_device(*instance, asked), options.probe);
+}
+
 class VulkanBackend final : public Backend {
  public:
   VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
       : Backend(problem, std::move(needs)),
-        instance_(std::make_shared<vulkan::Instance>(options.instance)),
-        device_(vulkan::create_device(
-            instance_, choose_device(*instance_, problem->scene().solver.device), options.probe)),
+        device_(open_device(options, problem->scene().solver.device)),
         plan_(make_plan(*problem, this->needs(), device_->physical())),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
@@ -43,8 +47,14 @@ class VulkanBackend final : public Backend {
           *problem, [host = intact_](std::span<const Index> dofs) { return host->columns(dofs); });
     }
     force_.assign(fields_.rows(), 0.0);
+    stress_of_energy_ = stress_of_energy(*problem);
+    device_->set_timing(false);
+    if (options.lent) {
+      display_ = std::make_unique<Display>(kernels_, *problem, fields_, this->needs().stress,
+                                           options.display, options.lent->timeline_semaphore);
+    }
     if (plan_.cg) {
-      route_ = std::make_unique<CgRoute>(kernels_, *problem, fields_);
+      route_ = std::make_unique<CgRoute>(kernels_, fields_);
       return;
     }
     route_ = std::make_unique<InverseRoute>(
@@ -71,11 +81,27 @@ class VulkanBackend final : public Backend {
     return plan;
   }
 
-  std::vector<vulkan::PassTime> pass_times() const { return route_->pass_times(); }
+  void time_passes(bool on) override { device_->set_timing(on); }
+  std::vector<PassTime> take_pass_times() override {
+    std::vector<PassTime> times;
+    for (const vulkan::PassTime& t : device_->take_times()) {
+      times.push_back({t.pass, t.milliseconds});
+    }
+    return times;
+  }
+
+  std::vector<Index> over_yield() const { return fields_.over_yield(); }
   std::size_t bytes_read() const { return device_->bytes_read(); }
+  Display* display() { return display_.get(); }
 
  private:
+  /// What a host's submit still reads must not be written.
+  void finish_display() {
+    if (display_) display_->finish();
+  }
+
   void do_set_load(const Load& load) override {
+    finish_display();
     for (Index d : load_.force_dofs) force_[d] = 0;
     load_ = load;
     force_squared_ = 0;
@@ -87,7 +113,8 @@ class VulkanBackend final : public Backend {
   }
 
   SolveReport do_solve() override {
-    fields_.keep_next();
+    finish_display();
+    if (!is_multiple_of_checked()) fields_.keep_next();
     try {
       return solve_within_tolerance();
     } catch (const NumericalError&) {
@@ -115,14 +142,16 @@ class VulkanBackend final : public Backend {
   /// One solve, refined while that helps and is needed.
   SolveReport attempt() {
     SolveReport report;
-    report.iterations = route_->solve(load_);
     const double target = std::min(plan_.fp64 ? kFp64Error : kFp32Error, tolerance() / 2);
     if (is_multiple_of_checked()) {
+      report.iterations = route_->solve(load_, !problem().gripped_dofs().empty());
       report.error = checked_error_;
-      report.residual = residual();
-      if (std::isfinite(report.residual)) return report;
+      report.residual = checked_residual_;
+      if (std::isfinite(fields_.state().stress_squared)) return report;
     }
     checked_error_ = kUnchecked;
+    report.iterations += route_->solve(load_, true);
+    if (within_bound(target, report)) return report;
     for (int refinement = 0;; ++refinement) {
       report.iterations += route_->correct();
       const double error = estimate();
@@ -134,13 +163,43 @@ class VulkanBackend final : public Backend {
       // A correction that no longer shrinks is rounding: stop there if the promise holds.
       const bool stalled = refinement > 0 && !(error < report.error / 2);
       report.error = error;
-      if (refinement == 0 && error <= target) {
-        checked_ = load_;
-        checked_error_ = error;
-      }
+      if (refinement == 0 && error <= target) remember(report);
       if (error <= target || refinement == kRefinements || stalled) return report;
       route_->add_correction();
     }
+  }
+
+  /// Whether a bound on the error, which costs less than the estimate, is good enough already.
+  bool within_bound(double target, SolveReport& report) {
+    const auto energy = route_->energy_bound();
+    if (!energy) return false;
+    const double bound =
+        *energy == 0 ? 0.0
+                     : stress_of_energy_ * *energy / std::sqrt(fields_.state().stress_squared);
+    if (!(bound <= target)) return false;
+    report.error = bound;
+    report.residual = residual();
+    remember(report);
+    return true;
+  }
+
+  void remember(const SolveReport& report) {
+    checked_ = load_;
+    checked_error_ = report.error;
+    checked_residual_ = report.residual;
+  }
+
+  /// Largest |stress| of an element, Frobenius, for a strain energy norm sqrt(u^T K u) of 1:
+  /// |s|^2 <= (3 lambda + 2 mu) s:e, and V s:e is the element's share of u^T K u.
+  static double stress_of_energy(const Problem& problem) {
+    double largest = 0;
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      const Material& m = problem.material(e);
+      const double bulk = m.young / (1 - 2 * m.poisson);  // 3 lambda + 2 mu
+      const double stiffest = std::max(bulk, m.young / (1 + m.poisson));
+      largest = std::max(largest, stiffest / problem.shape(e).volume);
+    }
+    return std::sqrt(largest);
   }
 
   /// Whether the load is a multiple of one whose solution needed no refinement, on the same damage:
@@ -172,6 +231,7 @@ class VulkanBackend final : public Backend {
     const double of_u = std::sqrt(fields_.state().stress_squared);
     const double of_du = std::sqrt(fields_.correction().stress_squared);
     if (!std::isfinite(residual())) return residual();
+    if (!std::isfinite(of_u)) return of_u;
     return of_du == 0 ? 0.0 : of_du / of_u;
   }
 
@@ -189,10 +249,12 @@ class VulkanBackend final : public Backend {
     const auto worst = [](double ratio, std::uint32_t element) {
       return ratio > 0 ? Worst{static_cast<Index>(element), ratio} : Worst{};
     };
-    return {worst(s.any_ratio, s.any_element), worst(s.candidate_ratio, s.candidate_element)};
+    return {worst(s.any_ratio, s.any_element), worst(s.candidate_ratio, s.candidate_element),
+            static_cast<Index>(s.over)};
   }
 
   void do_destroy(std::span<const Index> elements) override {
+    finish_display();
     checked_error_ = kUnchecked;
     destroyed_list_.insert(destroyed_list_.end(), elements.begin(), elements.end());
     fields_.destroy(elements);
@@ -200,6 +262,7 @@ class VulkanBackend final : public Backend {
   }
 
   void do_exclude_candidates(std::span<const Index> elements) override {
+    finish_display();
     fields_.exclude(elements);
   }
 
@@ -239,20 +302,21 @@ class VulkanBackend final : public Backend {
     fields_.read_reactions(problem().gripped_dofs(), reactions);
   }
 
-  std::shared_ptr<vulkan::Instance> instance_;
   std::unique_ptr<vulkan::Device> device_;
   Plan plan_;
   KernelFactory kernels_;
   Fields fields_;
   std::shared_ptr<const HostInverse> intact_;
   std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
+  std::unique_ptr<Display> display_;
   std::unique_ptr<DeviceRoute> route_;
   Load load_;
   std::vector<double> force_;  // over the padded unknowns
   double force_squared_ = 0;
   std::vector<Index> destroyed_list_;
   Load checked_;  // the last load whose error was estimated and needed no refinement
-  double checked_error_ = kUnchecked;
+  double checked_error_ = kUnchecked, checked_residual_ = 0;
+  double stress_of_energy_ = 0;
 };
 
 }  // namespace
@@ -274,9 +338,14 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
   return std::make_unique<VulkanBackend>(std::move(problem), std::move(needs), options);
 }
 
-std::vector<vulkan::PassTime> pass_times(const Backend& backend) {
+Display* display_of(Backend& backend) {
+  auto* of_vulkan = dynamic_cast<VulkanBackend*>(&backend);
+  return of_vulkan ? of_vulkan->display() : nullptr;
+}
+
+std::vector<Index> over_yield(const Backend& backend) {
   const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
-  return vulkan_backend ? vulkan_backend->pass_times() : std::vector<vulkan::PassTime>{};
+  return vulkan_backend ? vulkan_backend->over_yield() : std::vector<Index>{};
 }
 
 std::size_t bytes_read(const Backend& backend) {

@@ -7,17 +7,21 @@
 #include <vector>
 
 #include "gpu/kernels.hpp"
+#include "gpu/passes/display.hpp"
 #include "gpu/vulkan/commands.hpp"
+#include "gpu/vulkan/lent_device.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::gpu {
 
-/// What tests set beside the scene's options.
+/// What a host or a test sets beside the scene's options.
 struct VulkanOptions {
   vulkan::InstanceOptions instance;
   vulkan::DeviceProbe probe;
-  std::optional<Variant> variant;  ///< none: chosen by driver (choose_variant)
-  std::size_t panel_bytes = 0;     ///< largest buffer of the inverse, 0: the device's limit
+  std::optional<Variant> variant;          ///< none: chosen by driver (choose_variant)
+  std::size_t panel_bytes = 0;             ///< largest buffer of the inverse, 0: the device's limit
+  std::optional<vulkan::LentDevice> lent;  ///< a host's device; none: one of our own
+  DisplayTargets display;                  ///< on a host's device: where to put what it draws
 };
 
 /// Options from the environment: SUNDER_VULKAN_VALIDATION=1 turns the validation layers on and
@@ -35,8 +39,12 @@ struct VulkanOptions {
 [[nodiscard]] std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
                                               const VulkanOptions& options);
 
-/// Device time per pass of the last solve, of a backend that create() returned; else empty.
-[[nodiscard]] std::vector<vulkan::PassTime> pass_times(const Backend& backend);
+/// What a host draws, of a backend on a lent device; else null.
+[[nodiscard]] Display* display_of(Backend& backend);
+
+/// Live breakable elements at or over yield after the last solve, ascending, as the device listed
+/// them: only they cross to the host. Of a backend that create() returned; else empty.
+[[nodiscard]] std::vector<Index> over_yield(const Backend& backend);
 
 /// Bytes of fields read back to the host so far, by such a backend; else 0. What a frame returns
 /// by itself (its summary) does not count.

@@ -27,6 +27,17 @@ SUNDER_CONST kBreakable = 2u;
 SUNDER_CONST kExcluded = 4u;  // never a candidate
 SUNDER_CONST kAbsent = 8u;    // padding
 
+// What the stress pass leaves behind beside its partial results.
+SUNDER_CONST kKeepStress = 1u;  // the stress of every element
+SUNDER_CONST kListOver = 2u;    // the list of elements at or over yield
+
+// What an element is and does, beside its shape.
+struct ElementFacts {
+  uint state;
+  uint unused;
+  uint yield_low, yield_high;  // [MPa], fp64, in two words; 0: unbreakable
+};
+
 // One loaded dof: coefficient times a column of the inverse.
 struct Entry {
   uint column;
@@ -58,8 +69,13 @@ struct GatherPush {
 
 struct ElementPush {
   double alpha;
-  uint store;   // 1: keep the stress of every element
+  uint keep;    // kKeepStress, kListOver
   uint tresca;  // 1: measure s1 - s3 instead of half of it
+};
+
+struct DisplayPush {
+  uint nodes, elements;
+  uint stress;  // 1: it is there
 };
 
 struct ProjectPush {
@@ -67,9 +83,14 @@ struct ProjectPush {
 };
 
 struct SummaryPush {
-  uint element_groups;
-  uint node_groups;
+  uint element_parts;  // partial results of the stress pass
+  uint node_parts;     // of the residual pass; 0: none
   uint slot;
+};
+
+struct SolvePush {
+  uint packs;
+  uint columns;
 };
 
 struct PickPush {
@@ -116,20 +137,33 @@ struct StressPartial {
   uint any_element, candidate_element;
 };
 
-// What a frame sends back.
-struct Summary {
-  double any_ratio, candidate_ratio;
-  double stress_squared;
+// Sums over the nodes of one workgroup.
+struct NodePartial {
   double residual_squared;  // over dofs that no grip holds
   double reaction_squared;  // over those that one holds
+  double energy_root;       // sum of |r_j| sqrt(X_jj): bounds sqrt(r^T X r) from above
+  double unused;
+};
+
+// All that a frame sends back by itself: 64 bytes.
+struct Summary {
+  double any_ratio, candidate_ratio;
+  double stress_squared;    // infinite when a stress is no number
+  double residual_squared;  // of the nodes' partial sums
+  double reaction_squared;
+  double energy_root;
   uint any_element, candidate_element;
+  uint over;  // live breakable elements at or over yield
+  uint unused;
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(Entry) == 16);
 static_assert(sizeof(ElementPush) == 16);
 static_assert(sizeof(StressPartial) == 32);
-static_assert(sizeof(Summary) == 48);
+static_assert(sizeof(NodePartial) == 32);
+static_assert(sizeof(ElementFacts) == 16);
+static_assert(sizeof(Summary) == 64);
 static_assert(sizeof(CgPush) == 16);
 static_assert(sizeof(CgState) == 40);
 #undef SUNDER_CONST

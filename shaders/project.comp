@@ -1,26 +1,36 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// a_t = X(:, t)^T r, one workgroup a column of the exact columns.
+// a_t = X(:, t)^T r: a column for every part (reduce.glsl), a subgroup or a workgroup.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
+#include "reduce.glsl"
 
 IN_DVEC4(0, Matrix, matrix)
 IN_DVEC4(1, Vector, vector)
 OUT(2, Result, double, result)
 layout(push_constant) uniform Push { ProjectPush p; };
 
+#ifndef SUNDER_LVP
 shared double sums[kGroup];
+#endif
 
 void main() {
-  const uint lane = gl_LocalInvocationID.x;
+#ifdef SUNDER_LVP
+  const uint lane = gl_SubgroupInvocationID, lanes = kSubgroup;
+#else
+  const uint lane = gl_LocalInvocationID.x, lanes = kGroup;
+#endif
+  const uint column = part();
   dvec4 sum = dvec4(0);
-  for (uint pack = lane; pack < p.packs; pack += kGroup) {
-    sum += DVEC4(matrix, gl_WorkGroupID.x * p.packs + pack) * DVEC4(vector, pack);
+  for (uint pack = lane; pack < p.packs; pack += lanes) {
+    sum += DVEC4(matrix, column * p.packs + pack) * DVEC4(vector, pack);
   }
-  sums[lane] = (sum.x + sum.y) + (sum.z + sum.w);
-  for (uint half_ = kGroup / 2u; half_ > 0u; half_ /= 2u) {
-    barrier();
-    if (lane < half_) sums[lane] += sums[lane + half_];
-  }
-  if (lane == 0u) result.data[gl_WorkGroupID.x] = sums[0];
+  double all = subgroupAdd((sum.x + sum.y) + (sum.z + sum.w));
+#ifndef SUNDER_LVP
+  if (subgroupElect()) sums[gl_SubgroupID] = all;
+  barrier();
+  all = sums[0];
+  for (uint s = 1u; s < gl_NumSubgroups; ++s) all += sums[s];
+#endif
+  if (leads_part()) result.data[column] = all;  // columns are padded to whole workgroups
 }

@@ -1,49 +1,59 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// r = f - K u over the unknowns, gathered node by node in the order of the elements. At a gripped
-// dof f - K u is minus the grip's reaction, and r = 0.
+// r = f - K u over the unknowns, from the 3 x 3 blocks of K (block_matrix.hpp) and displacement
+// differences: K's rows sum to zero, so (K u)_i = sum_j K_ij (u_j - u_i) and a rigid offset costs no
+// digits. At a gripped dof f - K u is minus the grip's reaction, and r = 0. Reads 100 bytes a block.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
+#include "reduce.glsl"
 
-IN_DVEC4(0, Force, force)
-IN_WORDS(1, Start, start)      // of each node's corners
-IN_WORDS(2, Corner, corners)   // 4 * element + corner
-IN_UVEC4(3, Dofs, dofs)        // x, y, z; w: gripped axes as bits
-layout(std430, set = 0, binding = 4) readonly buffer Load { double data[]; } load;
-OUT(5, Balance, double, balance)    // f - K u
-OUT(6, Residual, double, residual)  // r
-OUT(7, NodePartial, dvec2, node_partial)
-layout(push_constant) uniform Push { ElementPush p; };
+IN_DVEC4(0, Nodal, u)
+IN_DVEC4(1, Blocks, blocks)  // three rows a block
+IN_WORDS(2, Columns, columns)
+IN_WORDS(3, Slices, slices)  // first block of each slice, / 64
+IN_UVEC4(4, Dofs, dofs)      // x, y, z; w: gripped axes as bits
+IN_DVEC4(5, Load, load)      // of each node
+IN_DVEC4(6, Roots, roots)    // sqrt(X_jj) of each node's unknowns
+OUT(7, Balance, dvec4, balance)     // f - K u of each node
+OUT(8, Residual, double, residual)  // r of each unknown
+OUT(9, NodePartials, NodePartial, partials)
 
-shared double residual_sum[kGroup];
-shared double reaction_sum[kGroup];
+#ifndef SUNDER_LVP
+shared dvec3 subgroup_sums[kGroup];
+#endif
+
+void leave(dvec3 sums) {
+  sums = dvec3(subgroupAdd(sums.x), subgroupAdd(sums.y), subgroupAdd(sums.z));
+#ifndef SUNDER_LVP
+  if (subgroupElect()) subgroup_sums[gl_SubgroupID] = sums;
+  barrier();
+  sums = subgroup_sums[0];
+  for (uint s = 1u; s < gl_NumSubgroups; ++s) sums += subgroup_sums[s];
+#endif
+  if (leads_part()) partials.data[part()] = NodePartial(sums.x, sums.y, sums.z, 0.0LF);
+}
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = gl_GlobalInvocationID.x, slice = gl_WorkGroupID.x;
+  const dvec3 own = DVEC4(u, n).xyz;
   dvec3 k_u = dvec3(0);
-  const uint last = start.data[n + 1u];
-  for (uint c = start.data[n]; c < last; ++c) k_u += DVEC4(force, corners.data[c]).xyz;
+  const uint last = slices.data[slice + 1u];
+  for (uint k = slices.data[slice]; k < last; ++k) {
+    const uint at = k * kGroup + gl_LocalInvocationID.x;
+    const dvec3 d = DVEC4(u, columns.data[at]).xyz - own;
+    k_u += dvec3(dot(DVEC4(blocks, 3u * at).xyz, d), dot(DVEC4(blocks, 3u * at + 1u).xyz, d),
+                 dot(DVEC4(blocks, 3u * at + 2u).xyz, d));
+  }
   const uvec4 dof = UVEC4(dofs, n);
-  double free_squared = 0, held_squared = 0;
+  const dvec3 gap = DVEC4(load, n).xyz - k_u, root = DVEC4(roots, n).xyz;
+  balance.data[n] = dvec4(gap, 0);
+  dvec3 sums = dvec3(0);  // free squared, held squared, energy root
   [[unroll]] for (int axis = 0; axis < 3; ++axis) {
-    if (dof[axis] != kHeld) {
-      const double gap = load.data[dof[axis]] - k_u[axis];
-      const bool gripped = (dof.w >> axis & 1u) != 0u;
-      balance.data[dof[axis]] = gap;
-      residual.data[dof[axis]] = gripped ? 0.0LF : gap;
-      if (gripped) held_squared += gap * gap;
-      else free_squared += gap * gap;
-    }
+    const bool held = dof[axis] == kHeld, gripped = (dof.w >> axis & 1u) != 0u;
+    const double squared = held ? 0.0LF : gap[axis] * gap[axis];
+    sums += dvec3(gripped ? 0.0LF : squared, gripped ? squared : 0.0LF,
+                  held || gripped ? 0.0LF : abs(gap[axis]) * root[axis]);
+    if (!held) residual.data[dof[axis]] = gripped ? 0.0LF : gap[axis];
   }
-  const uint lane = gl_LocalInvocationID.x;
-  residual_sum[lane] = free_squared;
-  reaction_sum[lane] = held_squared;
-  for (uint half_ = kGroup / 2u; half_ > 0u; half_ /= 2u) {
-    barrier();
-    if (lane < half_) {
-      residual_sum[lane] += residual_sum[lane + half_];
-      reaction_sum[lane] += reaction_sum[lane + half_];
-    }
-  }
-  if (lane == 0u) node_partial.data[gl_WorkGroupID.x] = dvec2(residual_sum[0], reaction_sum[0]);
+  leave(sums);
 }

@@ -2,72 +2,113 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stress a_e D B u of every element, principal stresses, ratio to yield, and the worst of each
 // workgroup. The displacement gradient is taken in fp64 from differences: neither a rigid offset
-// nor a rigid rotation (of a frame 100 times stiffer, say) costs accuracy in fp32 stress.
+// nor a rigid rotation (of a frame 10,000 times stiffer, say) costs accuracy in fp32 stress.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_ARB_gpu_shader_int64 : enable
 #include "common.glsl"
+#include "reduce.glsl"
 
 IN_DVEC4(0, Nodal, u)
 IN_UVEC4(1, Nodes, nodes)
 IN_DVEC4(2, Shape, shape)  // three an element: (grad N_1, lambda), (grad N_2, mu), (grad N_3, V)
-IN_WORDS(3, State, state)
+IN_UVEC4(3, Facts, facts)
+#if defined(SUNDER_LVP) && !defined(SUNDER_FP64)
+OUT(4, Stress, u64vec4, stress)  // eight floats at once: lavapipe stores lane by lane
+#else
 OUT(4, Stress, REAL4, stress)  // two an element: (xx, yy, zz, xy), (yz, zx, measure, ratio)
+#endif
 OUT(5, StressPartials, StressPartial, partials)
-layout(std430, set = 0, binding = 6) readonly buffer Yield { double data[]; } yield_;
+layout(std430, set = 0, binding = 6) buffer Over {
+  uint count;
+  uint elements[];
+} over;
 layout(push_constant) uniform Push { ElementPush p; };
 
 #ifdef SUNDER_FP64
-const int kSweeps = 5;
+const int kNewton = 2;  // 1e-16
 #else
-const int kSweeps = 4;
+const int kNewton = 1;  // 3e-9
 #endif
 
-// One Jacobi rotation that zeroes m[i][j]; k is the third index. Principal stresses from rotations
-// keep full accuracy where two of them are near each other (uniaxial tension), where invariants
-// lose half the digits. Divisions and square roots are correctly rounded, sines are not.
-void rotate(inout REAL a_ii, inout REAL a_jj, inout REAL a_ij, inout REAL a_ik, inout REAL a_jk) {
-  const bool small = a_ij == REAL(0);
-  const REAL theta = (a_jj - a_ii) / (small ? REAL(1) : REAL(2) * a_ij);
-  const REAL size = abs(theta);
-  // For a huge theta its square may overflow to infinity; t is then 0, as it should be.
-  const REAL t_size = REAL(1) / (size + sqrt(size * size + REAL(1)));
-  const REAL t = small ? REAL(0) : (theta < REAL(0) ? -t_size : t_size);
-  const REAL c = REAL(1) / sqrt(t * t + REAL(1));
-  const REAL s = t * c;
-  a_ii -= t * a_ij;
-  a_jj += t * a_ij;
-  a_ij = REAL(0);
-  const REAL ik = c * a_ik - s * a_jk;
-  a_jk = s * a_ik + c * a_jk;
-  a_ik = ik;
+// s1 - s3 of a symmetric tensor, as |s| sqrt(2) cos(psi) with the unit deviator s and the part Q of
+// s^2 that is normal to both s and the unit tensor: cos(3 psi) = sqrt(6) |Q|, as |dev(s^2)|^2 = 1/6.
+// Invariants lose half the digits where two principal values are near each other (uniaxial tension):
+// there cos(3 psi) = sqrt(1 - r^2) comes from a difference of squares; |Q| does not. The cubic
+// 4 w^3 - 3 w = cos(3 psi) for w = cos(psi) in [sqrt(3)/2, 1] is well conditioned throughout. No
+// arc cosine: the driver's is off by 1,300 ulp.
+REAL principal_range(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
+  const REAL third = REAL(1) / REAL(3);
+  normal -= (normal.x + normal.y + normal.z) * third;
+  const REAL3 a = abs(normal), b = abs(shear);
+  const REAL largest = max(max(a.x, max(a.y, a.z)), max(b.x, max(b.y, b.z)));
+  const REAL scale = largest > REAL(0) ? REAL(1) / largest : REAL(0);
+  normal *= scale;
+  shear *= scale;
+  const REAL size = sqrt(dot(normal, normal) + REAL(2) * dot(shear, shear));
+  const REAL unit = size > REAL(0) ? REAL(1) / size : REAL(0);
+  normal *= unit;
+  shear *= unit;
+  const REAL xy = shear.x, yz = shear.y, zx = shear.z;
+  // dev(s^2), with s:s = 1.
+  REAL3 n2 = REAL3(normal.x * normal.x + xy * xy + zx * zx, normal.y * normal.y + xy * xy + yz * yz,
+                   normal.z * normal.z + zx * zx + yz * yz) - third;
+  REAL3 s2 = REAL3(xy * (normal.x + normal.y) + zx * yz, yz * (normal.y + normal.z) + xy * zx,
+                   zx * (normal.x + normal.z) + xy * yz);
+  const REAL along = dot(n2, normal) + REAL(2) * dot(s2, shear);
+  n2 -= along * normal;
+  s2 -= along * shear;
+  const REAL cos_3psi = sqrt(REAL(6) * (dot(n2, n2) + REAL(2) * dot(s2, s2)));
+  // A cubic through four Chebyshev points, within 4e-5.
+  REAL w = REAL(0.8660663295331917) +
+           cos_3psi * (REAL(0.1653303502208454) +
+                       cos_3psi * (REAL(-0.040691197422887695) +
+                                   cos_3psi * REAL(0.00931968389748192)));
+  [[unroll]] for (int i = 0; i < kNewton; ++i) {
+    const REAL w2 = w * w;
+    w -= ((REAL(4) * w2 - REAL(3)) * w - cos_3psi) / (REAL(12) * w2 - REAL(3));
+  }
+  return REAL(1.4142135623730951) * largest * size * w;
 }
 
-// s1 - s3.
-REAL principal_range(REAL xx, REAL yy, REAL zz, REAL xy, REAL yz, REAL zx) {
-  [[unroll]] for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    rotate(xx, yy, xy, zx, yz);
-    rotate(xx, zz, zx, xy, yz);
-    rotate(yy, zz, yz, xy, zx);
-  }
-  return max(xx, max(yy, zz)) - min(xx, min(yy, zz));
+void store(uint e, REAL4 a, REAL4 b) {
+#if defined(SUNDER_LVP) && !defined(SUNDER_FP64)
+  stress.data[e] =
+      u64vec4(packUint2x32(floatBitsToUint(a.xy)), packUint2x32(floatBitsToUint(a.zw)),
+              packUint2x32(floatBitsToUint(b.xy)), packUint2x32(floatBitsToUint(b.zw)));
+#else
+  stress.data[2u * e] = a;
+  stress.data[2u * e + 1u] = b;
+#endif
 }
 
-shared StressPartial worst[kGroup];
+#ifndef SUNDER_LVP
+shared Worst shared_any[kGroup], shared_candidate[kGroup];
+shared REAL shared_norm[kGroup];
+#endif
 
-void keep_worse(uint to, uint from) {
-  const StressPartial b = worst[from];
-  StressPartial a = worst[to];
-  if (b.any_ratio > a.any_ratio ||
-      (b.any_ratio == a.any_ratio && b.any_element < a.any_element)) {
-    a.any_ratio = b.any_ratio;
-    a.any_element = b.any_element;
+// One partial result of the invocations that share a part.
+void leave(Worst any, Worst candidate, REAL norm) {
+  any = subgroup_worst(any);
+  candidate = subgroup_worst(candidate);
+  norm = subgroupMax(norm);
+#ifndef SUNDER_LVP
+  if (subgroupElect()) {
+    shared_any[gl_SubgroupID] = any;
+    shared_candidate[gl_SubgroupID] = candidate;
+    shared_norm[gl_SubgroupID] = norm;
   }
-  if (b.candidate_ratio > a.candidate_ratio ||
-      (b.candidate_ratio == a.candidate_ratio && b.candidate_element < a.candidate_element)) {
-    a.candidate_ratio = b.candidate_ratio;
-    a.candidate_element = b.candidate_element;
+  barrier();
+  for (uint s = 0u; s < gl_NumSubgroups; ++s) {
+    keep_worse(any, shared_any[s]);
+    keep_worse(candidate, shared_candidate[s]);
+    norm = max(norm, shared_norm[s]);
   }
-  a.stress_squared = max(a.stress_squared, b.stress_squared);
-  worst[to] = a;
+#endif
+  if (leads_part()) {
+    const double norm_ = double(norm);
+    partials.data[part()] = StressPartial(double(any.ratio), double(candidate.ratio), norm_ * norm_,
+                                          any.element, candidate.element);
+  }
 }
 
 void main() {
@@ -76,40 +117,35 @@ void main() {
   const dvec4 s1 = DVEC4(shape, 3u * e), s2 = DVEC4(shape, 3u * e + 1u),
               s3 = DVEC4(shape, 3u * e + 2u);
   const dvec3 u0 = DVEC4(u, n.x).xyz;
-  const dvec3 d1 = DVEC4(u, n.y).xyz - u0, d2 = DVEC4(u, n.z).xyz - u0,
-              d3 = DVEC4(u, n.w).xyz - u0;
+  const dvec3 d1 = DVEC4(u, n.y).xyz - u0, d2 = DVEC4(u, n.z).xyz - u0, d3 = DVEC4(u, n.w).xyz - u0;
   const REAL3 hx = REAL3(d1 * s1.x + d2 * s2.x + d3 * s3.x);  // derivatives along x
   const REAL3 hy = REAL3(d1 * s1.y + d2 * s2.y + d3 * s3.y);
   const REAL3 hz = REAL3(d1 * s1.z + d2 * s2.z + d3 * s3.z);
-  const REAL pressure = REAL(s1.w) * (hx.x + hy.y + hz.z);
-  const REAL mu = REAL(s2.w);
-  const REAL xx = pressure + REAL(2) * mu * hx.x, yy = pressure + REAL(2) * mu * hy.y,
-             zz = pressure + REAL(2) * mu * hz.z;
-  const REAL xy = mu * (hy.x + hx.y), yz = mu * (hz.y + hy.z), zx = mu * (hx.z + hz.x);
-  const uint bits = state.data[e];
+  const REAL mu = REAL(s2.w), pressure = REAL(s1.w) * (hx.x + hy.y + hz.z);
+  const REAL3 strain = REAL3(hx.x, hy.y, hz.z);
+  const REAL3 normal = pressure + REAL(2) * mu * strain;
+  const REAL3 twice_shear = REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x);
+  const REAL3 shear = mu * twice_shear;  // xy, yz, zx
+  const uvec4 fact = UVEC4(facts, e);
+  const uint bits = fact.x;
   const bool live = (bits & (kDestroyed | kAbsent)) == 0u;
-  const REAL range = principal_range(xx, yy, zz, xy, yz, zx);
+  // Of the strain: the pressure of a nearly incompressible body would hide it in rounding.
+  const REAL range = REAL(2) * mu * principal_range(strain, twice_shear / REAL(2));
   const REAL measure = p.tresca != 0u ? range : range / REAL(2);
   const bool counts = live && (bits & kBreakable) != 0u;
-  const REAL ratio = counts ? measure / REAL(yield_.data[e]) : REAL(0);
-  if (p.store != 0u) {
+  const REAL ratio = counts ? measure / REAL(packDouble2x32(fact.zw)) : REAL(0);
+  if ((p.keep & kKeepStress) != 0u) {
     const REAL scale = (bits & kDestroyed) != 0u ? REAL(p.alpha) : REAL(1);
-    stress.data[2u * e] = scale * REAL4(xx, yy, zz, xy);
-    stress.data[2u * e + 1u] = REAL4(scale * yz, scale * zx, scale * measure, ratio);
+    store(e, scale * REAL4(normal, shear.x),
+          REAL4(scale * shear.yz, scale * measure, ratio));
   }
-  const double dxx = double(xx), dyy = double(yy), dzz = double(zz), dxy = double(xy),
-               dyz = double(yz), dzx = double(zx);
-  const uint lane = gl_LocalInvocationID.x;
-  worst[lane].any_ratio = double(ratio);
-  worst[lane].any_element = ratio > REAL(0) ? e : kHeld;
-  const bool candidate = ratio > REAL(0) && (bits & kExcluded) == 0u;
-  worst[lane].candidate_ratio = candidate ? double(ratio) : 0.0LF;
-  worst[lane].candidate_element = candidate ? e : kHeld;
-  worst[lane].stress_squared =
-      live ? dxx * dxx + dyy * dyy + dzz * dzz + 2 * (dxy * dxy + dyz * dyz + dzx * dzx) : 0.0LF;
-  for (uint half_ = kGroup / 2u; half_ > 0u; half_ /= 2u) {
-    barrier();
-    if (lane < half_) keep_worse(lane, lane + half_);
+  if ((p.keep & kListOver) != 0u && ratio >= REAL(1)) {
+    over.elements[atomicAdd(over.count, 1u)] = e;  // the host sorts
   }
-  if (lane == 0u) partials.data[gl_WorkGroupID.x] = worst[0];
+  const REAL norm = sqrt(dot(normal, normal) + REAL(2) * dot(shear, shear));
+  const REAL infinity = REAL(uintBitsToFloat(0x7f800000u));
+  const bool some = ratio > REAL(0), candidate = some && (bits & kExcluded) == 0u;
+  leave(Worst(some ? ratio : REAL(0), some ? e : kHeld),
+        Worst(candidate ? ratio : REAL(0), candidate ? e : kHeld),
+        !live ? REAL(0) : (norm < infinity ? norm : infinity));  // NaN included
 }

@@ -1,55 +1,57 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// One workgroup: the worst of all workgroups, and the sums of f - K u, in a fixed order.
+// One workgroup: the worst of all partial results, and the sums of f - K u, in a fixed order.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
+#include "reduce.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer StressPartials { StressPartial data[]; } partials;
-layout(std430, set = 0, binding = 1) readonly buffer NodePartial { dvec2 data[]; } node_partial;
+layout(std430, set = 0, binding = 1) readonly buffer NodePartials { NodePartial data[]; } node_partials;
 OUT(2, Summaries, Summary, summaries)
+layout(std430, set = 0, binding = 3) buffer Over {
+  uint count;
+  uint elements[];
+} over;
 layout(push_constant) uniform Push { SummaryPush p; };
 
-shared Summary found[kGroup];
+struct Found {
+  Worst any, candidate;
+  double stress_squared;
+  dvec3 sums;
+};
+shared Found found[kGroup];
 
-void keep_worse(inout Summary a, double any_ratio, uint any_element, double candidate_ratio,
-                uint candidate_element, double stress_squared) {
-  if (any_ratio > a.any_ratio || (any_ratio == a.any_ratio && any_element < a.any_element)) {
-    a.any_ratio = any_ratio;
-    a.any_element = any_element;
-  }
-  if (candidate_ratio > a.candidate_ratio ||
-      (candidate_ratio == a.candidate_ratio && candidate_element < a.candidate_element)) {
-    a.candidate_ratio = candidate_ratio;
-    a.candidate_element = candidate_element;
-  }
-  a.stress_squared = max(a.stress_squared, stress_squared);
+void join(inout Found a, Found b) {
+  keep_worse(a.any, b.any);
+  keep_worse(a.candidate, b.candidate);
+  a.stress_squared = max(a.stress_squared, b.stress_squared);
+  a.sums += b.sums;
 }
 
 void main() {
   const uint lane = gl_LocalInvocationID.x;
-  Summary mine = Summary(0.0LF, 0.0LF, 0.0LF, 0.0LF, 0.0LF, kHeld, kHeld);
-  for (uint g = lane; g < p.element_groups; g += kGroup) {
+  Found mine = Found(Worst(0.0LF, kHeld), Worst(0.0LF, kHeld), 0.0LF, dvec3(0));
+  for (uint g = lane; g < p.element_parts; g += kGroup) {
     const StressPartial b = partials.data[g];
-    keep_worse(mine, b.any_ratio, b.any_element, b.candidate_ratio, b.candidate_element,
-               b.stress_squared);
+    join(mine, Found(Worst(b.any_ratio, b.any_element), Worst(b.candidate_ratio, b.candidate_element),
+                     b.stress_squared, dvec3(0)));
   }
-  for (uint g = lane; g < p.node_groups; g += kGroup) {
-    const dvec2 b = node_partial.data[g];
-    mine.residual_squared += b.x;
-    mine.reaction_squared += b.y;
+  for (uint g = lane; g < p.node_parts; g += kGroup) {
+    const NodePartial b = node_partials.data[g];
+    mine.sums += dvec3(b.residual_squared, b.reaction_squared, b.energy_root);
   }
-  found[lane] = mine;
-  for (uint half_ = kGroup / 2u; half_ > 0u; half_ /= 2u) {
-    barrier();
-    if (lane < half_) {
-      const Summary b = found[lane + half_];
-      Summary a = found[lane];
-      keep_worse(a, b.any_ratio, b.any_element, b.candidate_ratio, b.candidate_element,
-                 b.stress_squared);
-      a.residual_squared += b.residual_squared;
-      a.reaction_squared += b.reaction_squared;
-      found[lane] = a;
-    }
+  mine.any = subgroup_worst(mine.any);
+  mine.candidate = subgroup_worst(mine.candidate);
+  mine.stress_squared = subgroupMax(mine.stress_squared);
+  mine.sums = dvec3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupAdd(mine.sums.z));
+  if (subgroupElect()) found[gl_SubgroupID] = mine;
+  barrier();
+  if (lane == 0u) {
+    Found all = found[0];
+    for (uint s = 1u; s < gl_NumSubgroups; ++s) join(all, found[s]);
+    summaries.data[p.slot] =
+        Summary(all.any.ratio, all.candidate.ratio, all.stress_squared, all.sums.x, all.sums.y,
+                all.sums.z, all.any.element, all.candidate.element, over.count, 0u);
+    if (p.slot == 0u) over.count = 0u;  // the next frame's list begins anew
   }
-  if (lane == 0u) summaries.data[p.slot] = found[0];
 }

@@ -4,6 +4,7 @@
 // Public functions check their arguments once and call the do_* of the backend.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -48,6 +49,7 @@ struct Worst {
 struct StressSummary {
   Worst any;        ///< of all live breakable elements
   Worst candidate;  ///< of those not excluded (exclude_candidates)
+  Index over = 0;   ///< how many of all are at or over yield
 };
 
 struct BackendInfo {
@@ -58,6 +60,16 @@ struct BackendInfo {
   std::string route, update;
   std::string why;               ///< one sentence: why this route
   std::size_t memory_bytes = 0;  ///< held by the backend
+};
+
+/// Passes that a device times by its own clock, in the order of a frame; the names that
+/// take_pass_times() uses.
+inline constexpr std::array<const char*, 6> kPasses = {"solve",    "stress", "residual",
+                                                       "estimate", "refine", "update"};
+
+struct PassTime {
+  const char* pass = "";
+  double milliseconds = 0;
 };
 
 /// A device on which a backend can run, as `sunder devices` lists it.
@@ -86,6 +98,12 @@ class Backend {
 
   [[nodiscard]] virtual BackendInfo info() const = 0;
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+
+  /// Turns the device's clock on or off. Off at first: reading it may cost a frame more than the
+  /// passes themselves (lavapipe: 15 us each).
+  virtual void time_passes(bool) {}
+  /// Device time per pass since the last call; empty: no device clock, or it is off.
+  [[nodiscard]] virtual std::vector<PassTime> take_pass_times() { return {}; }
 
   /// Loads for the following solves. Throws UsageError when sizes or dofs do not fit.
   void set_load(const Load& load);

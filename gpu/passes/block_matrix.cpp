@@ -6,7 +6,6 @@
 #include <set>
 
 #include "fem/element.hpp"
-#include "gpu/passes/fields.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -33,9 +32,9 @@ BlockMatrix::BlockMatrix(const KernelFactory& kernels, const Problem& problem)
   const std::size_t bytes = columns.size() * kBlockDoubles * sizeof(double);
   const auto limit = std::min<std::size_t>(device.largest_buffer, device.largest_allocation);
   if (bytes > limit) {
-    throw DeviceError("route cg needs a buffer of " + std::to_string(bytes) +
-                      " bytes for the stiffness, but the device \"" + device.name +
-                      "\" takes buffers of " + std::to_string(limit) + "; use backend cpu");
+    throw DeviceError("the stiffness needs a buffer of " + std::to_string(bytes) +
+                      " bytes, but the device \"" + device.name + "\" takes buffers of " +
+                      std::to_string(limit) + "; use backend cpu");
   }
   std::vector<double> blocks(columns.size() * kBlockDoubles, 0.0);
   std::vector<double> preconditioner(std::size_t{groups_} * shaders::kGroup * kBlockDoubles, 0.0);

@@ -26,10 +26,18 @@ std::unique_ptr<Binding> bind_buffers(const KernelFactory& kernels, const vulkan
 PartialSums::PartialSums(const KernelFactory& kernels, std::uint32_t rows, std::uint32_t chunks)
     : kernels_(kernels),
       rows_(rows),
-      chunks_(chunks),
-      buffer_(kernels.device(), std::size_t{chunks} * rows * sizeof(double), Placement::device),
       sum_(kernels.make_fp64("sum", {Reads::doubles, Reads::words, Reads::plain},
-                             sizeof(shaders::SumPush))) {}
+                             sizeof(shaders::SumPush))) {
+  reserve(chunks);
+}
+
+bool PartialSums::reserve(std::uint32_t chunks) {
+  if (chunks <= chunks_) return false;
+  chunks_ = chunks;
+  buffer_ =
+      Buffer(kernels_.device(), std::size_t{chunks} * rows_ * sizeof(double), Placement::device);
+  return true;
+}
 
 std::unique_ptr<Binding> PartialSums::bind_sum(const Buffer& positions, const Buffer& nodal) const {
   return bind_buffers(kernels_, *sum_, {&buffer_, &positions, &nodal});

@@ -18,7 +18,9 @@ namespace sunder::gpu {
 /// Sums of 64 columns each that `sum` adds up in order; shared by all who take part in u = X f.
 class PartialSums {
  public:
-  PartialSums(const KernelFactory& kernels, std::uint32_t rows, std::uint32_t chunks);
+  PartialSums(const KernelFactory& kernels, std::uint32_t rows, std::uint32_t chunks = 0);
+  /// Room for so many chunks. Returns true when the buffer moved: bind anew.
+  bool reserve(std::uint32_t chunks);
   [[nodiscard]] const vulkan::Buffer& buffer() const { return buffer_; }
   [[nodiscard]] std::uint32_t chunks() const { return chunks_; }
   /// field (+)= sum of the first `chunks`.
@@ -29,7 +31,7 @@ class PartialSums {
 
  private:
   const KernelFactory& kernels_;
-  std::uint32_t rows_, chunks_;
+  std::uint32_t rows_, chunks_ = 0;
   vulkan::Buffer buffer_;
   std::unique_ptr<vulkan::Kernel> sum_;
 };

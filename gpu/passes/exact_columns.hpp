@@ -23,16 +23,24 @@ class ExactColumns {
   /// sent again. Returns true when buffers moved: bind() anew.
   bool extend(const Eigen::MatrixXd& all, Index count);
   void clear() { count_ = 0; }
+  /// Room for `count` columns, so that a frame need not allocate (less where memory is short).
+  void reserve(Index count);
 
   [[nodiscard]] Index count() const { return count_; }
   [[nodiscard]] std::uint32_t chunks() const;
   /// Chunks that the present capacity may need.
   [[nodiscard]] std::uint32_t chunk_capacity() const { return capacity_ / shaders::kChunk; }
   void bind(const PartialSums& partials, const vulkan::Buffer& vector);
+  /// For record_solve(): places of the unknowns in `nodal`.
+  void bind_solve(const vulkan::Buffer& positions, const vulkan::Buffer& nodal);
 
   void set_coefficients(const Eigen::VectorXd& coefficients);
   /// partials from `first_chunk` on = columns times coefficients; returns how many.
   std::uint32_t record_apply(vulkan::Commands& commands, std::uint32_t first_chunk) const;
+  /// One pass may do the whole product: few columns, or a device with few cores.
+  [[nodiscard]] bool whole_in_one() const;
+  /// nodal = columns times coefficients, without partial sums.
+  void record_solve(vulkan::Commands& commands) const;
   /// projection() = columns^T times the bound vector.
   void record_project(vulkan::Commands& commands) const;
   [[nodiscard]] Eigen::VectorXd projection() const;
@@ -43,9 +51,11 @@ class ExactColumns {
   const KernelFactory& kernels_;
   std::uint32_t rows_, capacity_ = 0;
   Index count_ = 0;
-  std::unique_ptr<vulkan::Kernel> dense_, project_;
+  void allocate(std::uint32_t capacity);
+
+  std::unique_ptr<vulkan::Kernel> dense_, project_, solve_;
   vulkan::Buffer columns_, coefficients_, projection_;
-  std::unique_ptr<vulkan::Binding> apply_binding_, project_binding_;
+  std::unique_ptr<vulkan::Binding> apply_binding_, project_binding_, solve_binding_;
 };
 
 }  // namespace sunder::gpu

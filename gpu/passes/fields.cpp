@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace sunder::gpu {
 namespace {
@@ -25,9 +26,11 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
     : kernels_(kernels),
       problem_(problem),
       keep_stress_(needs.stress),
+      list_over_(needs.yield),
       rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
       elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
-      nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)) {
+      nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
+      matrix_(kernels, problem) {
   vulkan::Device& device = kernels.device();
   const auto make = [&](std::size_t bytes, Placement placement = Placement::device) {
     Buffer buffer(device, bytes, placement);
@@ -38,30 +41,36 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   displacement_ = make(nodal_bytes);
   kept_ = make(nodal_bytes);
   correction_ = make(nodal_bytes);
-  load_ = make(rows_ * sizeof(double));
+  load_ = make(std::size_t{4} * nodes_ * sizeof(double), Placement::host);
+  roots_ = make(std::size_t{4} * nodes_ * sizeof(double));
   residual_ = make(rows_ * sizeof(double));
-  balance_ = make(rows_ * sizeof(double));
-  element_force_ = make(std::size_t{elements_} * 16 * sizeof(double));
+  balance_ = make(std::size_t{4} * nodes_ * sizeof(double));
   stress_ = make(keep_stress_ ? std::size_t{elements_} * 8 * kernels.real_bytes() : 16);
-  stress_partials_ = make(elements_ / shaders::kGroup * sizeof(shaders::StressPartial));
-  node_partials_ = make(nodes_ / shaders::kGroup * 2 * sizeof(double));
+  over_ = make((1 + std::size_t{elements_}) * sizeof(std::uint32_t));
+  element_parts_ = elements_ / shaders::kGroup * kernels.parts();
+  node_parts_ = nodes_ / shaders::kGroup * kernels.parts();
+  stress_partials_ = make(element_parts_ * sizeof(shaders::StressPartial));
+  node_partials_ = make(node_parts_ * sizeof(shaders::NodePartial));
   summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
   upload_mesh();
   upload_shapes();
-  upload_corners();
   create_kernels();
   create_hold();
 }
 
 void Fields::upload_mesh() {
   std::vector<std::uint32_t> nodes_of(std::size_t{4} * elements_, 0);
-  states_.assign(elements_, shaders::kAbsent);
+  facts_host_.assign(elements_, {shaders::kAbsent, 0, 0, 0});
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     for (int a = 0; a < 4; ++a) {
       nodes_of[4 * static_cast<std::size_t>(e) + a] =
           static_cast<std::uint32_t>(problem_.mesh().tets[e][a]);
     }
-    states_[e] = problem_.breakable(e) ? shaders::kBreakable : 0;
+    const auto yield =
+        std::bit_cast<std::uint64_t>(problem_.breakable(e) ? problem_.yield(e) : 1.0);
+    facts_host_[static_cast<std::size_t>(e)] = {problem_.breakable(e) ? shaders::kBreakable : 0, 0,
+                                                static_cast<std::uint32_t>(yield),
+                                                static_cast<std::uint32_t>(yield >> 32)};
   }
   std::vector<std::uint32_t> dofs(std::size_t{4} * nodes_, shaders::kHeld);
   // Padding rows write behind the nodes, where nothing reads.
@@ -84,14 +93,16 @@ void Fields::upload_mesh() {
     buffer.write(std::span<const std::uint32_t>(words));
   };
   upload(nodes_of_, nodes_of);
-  upload(state_, states_);
+  facts_ = Buffer(kernels_.device(), facts_host_.size() * sizeof(shaders::ElementFacts),
+                  Placement::device);
+  facts_.write(std::span<const shaders::ElementFacts>(facts_host_));
   upload(dofs_, dofs);
   upload(positions_, positions);
   place_ = std::move(positions);
 }
 
 void Fields::upload_shapes() {
-  std::vector<double> shape(std::size_t{12} * elements_, 0.0), yield(elements_, 1.0);
+  std::vector<double> shape(std::size_t{12} * elements_, 0.0);
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     const TetShape& s = problem_.shape(e);
     const Lame m = lame(problem_.material(e));
@@ -101,32 +112,9 @@ void Fields::upload_shapes() {
       for (int axis = 0; axis < 3; ++axis) to[axis] = s.gradient(axis, corner);
       to[3] = last[corner - 1];
     }
-    if (problem_.breakable(e)) yield[e] = problem_.yield(e);
   }
   shape_ = Buffer(kernels_.device(), shape.size() * sizeof(double), Placement::device);
   shape_.write(std::span<const double>(shape));
-  yield_ = Buffer(kernels_.device(), yield.size() * sizeof(double), Placement::device);
-  yield_.write(std::span<const double>(yield));
-}
-
-void Fields::upload_corners() {
-  // Corners of each node, ordered by element: the order of the sum in residual.comp.
-  std::vector<std::uint32_t> start(nodes_ + 1, 0), corners(4 * problem_.mesh().tets.size());
-  for (const auto& tet : problem_.mesh().tets) {
-    for (Index n : tet) ++start[n + 1];
-  }
-  for (std::uint32_t n = 0; n < nodes_; ++n) start[n + 1] += start[n];
-  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
-    for (int a = 0; a < 4; ++a) {
-      corners[next[problem_.mesh().tets[e][a]]++] = static_cast<std::uint32_t>(4 * e + a);
-    }
-  }
-  corner_start_ =
-      Buffer(kernels_.device(), start.size() * sizeof(std::uint32_t), Placement::device);
-  corner_start_.write(std::span<const std::uint32_t>(start));
-  corners_ = Buffer(kernels_.device(), corners.size() * sizeof(std::uint32_t), Placement::device);
-  corners_.write(std::span<const std::uint32_t>(corners));
 }
 
 void Fields::create_kernels() {
@@ -136,39 +124,49 @@ void Fields::create_kernels() {
     return std::make_unique<vulkan::Binding>(device, kernel, std::vector<const Buffer*>(list));
   };
   stress_pass_.kernel =
-      kernels_.make("stress", {doubles, words, doubles, plain, plain, plain, plain},
+      kernels_.make("stress", {doubles, words, doubles, words, plain, plain, plain},
                     sizeof(shaders::ElementPush));
-  stress_pass_.binding = bind(*stress_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &state_,
-                                                     &stress_, &stress_partials_, &yield_});
-  correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &state_,
-                                                   &stress_, &stress_partials_, &yield_});
-  force_pass_.kernel = kernels_.make_fp64("element_force", {doubles, words, doubles, plain, plain},
-                                          sizeof(shaders::ElementPush));
-  force_pass_.binding =
-      bind(*force_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &state_, &element_force_});
-  residual_pass_.kernel =
-      kernels_.make_fp64("residual", {doubles, plain, plain, words, plain, plain, plain, plain},
-                         sizeof(shaders::ElementPush));
+  stress_pass_.binding = bind(*stress_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &facts_,
+                                                     &stress_, &stress_partials_, &over_});
+  correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &facts_,
+                                                   &stress_, &stress_partials_, &over_});
+  residual_pass_.kernel = kernels_.make_fp64(
+      "residual", {doubles, doubles, plain, plain, words, doubles, doubles, plain, plain, plain},
+      0);
   residual_pass_.binding =
-      bind(*residual_pass_.kernel, {&element_force_, &corner_start_, &corners_, &dofs_, &load_,
-                                    &balance_, &residual_, &node_partials_});
+      bind(*residual_pass_.kernel,
+           {&displacement_, &matrix_.blocks(), &matrix_.columns(), &matrix_.slices(), &dofs_,
+            &load_, &roots_, &balance_, &residual_, &node_partials_});
   summary_pass_.kernel =
-      kernels_.make_fp64("summary", {plain, plain, plain}, sizeof(shaders::SummaryPush));
+      kernels_.make_fp64("summary", {plain, plain, plain, plain}, sizeof(shaders::SummaryPush));
   summary_pass_.binding =
-      bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_});
+      bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_, &over_});
   displacement_gather_ = std::make_unique<Gather>(kernels_, displacement_);
   balance_gather_ = std::make_unique<Gather>(kernels_, balance_);
 }
 
-shaders::ElementPush Fields::element_push(bool store) const {
+shaders::ElementPush Fields::element_push(std::uint32_t keep) const {
   const FractureOptions& fracture = problem_.scene().fracture;
-  return {fracture.alpha, store ? 1u : 0u,
-          fracture.yield_measure == YieldMeasure::tresca ? 1u : 0u};
+  return {fracture.alpha, keep, fracture.yield_measure == YieldMeasure::tresca ? 1u : 0u};
 }
 
 void Fields::set_load(std::span<const double> force, std::span<const double> displacements) {
-  load_.write(force);
+  auto* load = load_.mapped<double>();
+  for (Index d = 0; d < problem_.dof_count(); ++d) load[place_[d]] = force[d];
   if (!displacements.empty()) prescribed_.write(displacements);
+}
+
+void Fields::set_roots(std::span<const double> roots) {
+  std::vector<double> nodal(std::size_t{4} * nodes_, 0.0);
+  for (Index d = 0; d < problem_.dof_count(); ++d) nodal[place_[d]] = roots[d];
+  roots_.write(std::span<const double>(nodal));
+}
+
+std::vector<Index> Fields::over_yield() const {
+  std::vector<std::uint32_t> found(state().over);
+  over_.read(std::span<std::uint32_t>(found), 1);
+  std::sort(found.begin(), found.end());
+  return {found.begin(), found.end()};
 }
 
 void Fields::create_hold() {
@@ -219,15 +217,15 @@ void Fields::record_hold(vulkan::Commands& commands, Field field) const {
 }
 
 void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits) {
-  if (elements.empty()) return;
-  for (Index e : elements) states_[e] |= bits;
-  const auto [first, last] = std::minmax_element(elements.begin(), elements.end());
-  state_.write(std::span<const std::uint32_t>(states_).subspan(
-                   static_cast<std::size_t>(*first), static_cast<std::size_t>(*last - *first + 1)),
-               static_cast<std::size_t>(*first));
+  for (Index e : elements) {
+    const auto at = static_cast<std::size_t>(e);
+    facts_host_[at].state |= bits;
+    facts_.write(std::span<const shaders::ElementFacts>(&facts_host_[at], 1), at);
+  }
 }
 
 void Fields::destroy(std::span<const Index> elements) {
+  matrix_.destroy(elements);
   set_state_bits(elements, shaders::kDestroyed);
 }
 
@@ -235,27 +233,30 @@ void Fields::exclude(std::span<const Index> elements) {
   set_state_bits(elements, shaders::kExcluded);
 }
 
-void Fields::record_state(vulkan::Commands& commands) const {
+void Fields::record_state(vulkan::Commands& commands, bool balance) const {
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
   const std::uint32_t node_groups = nodes_ / shaders::kGroup;
   commands.pass("stress");
-  commands.dispatch(*stress_pass_.binding, element_push(keep_stress_), element_groups);
-  commands.pass("residual");
-  commands.dispatch(*force_pass_.binding, element_push(false), element_groups);
+  commands.dispatch(*stress_pass_.binding,
+                    element_push((keep_stress_ ? shaders::kKeepStress : 0) |
+                                 (list_over_ ? shaders::kListOver : 0)),
+                    element_groups);
+  if (balance) {
+    commands.pass("residual");
+    commands.dispatch(*residual_pass_.binding, node_groups);
+  }
   commands.barrier();
-  commands.dispatch(*residual_pass_.binding, element_push(false), node_groups);
-  commands.barrier();
-  commands.pass("summary");
-  commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_groups, node_groups, 0},
-                    1);
+  commands.pass("stress");
+  commands.dispatch(*summary_pass_.binding,
+                    shaders::SummaryPush{element_parts_, balance ? node_parts_ : 0, 0}, 1);
 }
 
 void Fields::record_correction(vulkan::Commands& commands) const {
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
-  commands.pass("error estimate");
-  commands.dispatch(*correction_stress_, element_push(false), element_groups);
+  commands.pass("estimate");
+  commands.dispatch(*correction_stress_, element_push(0), element_groups);
   commands.barrier();
-  commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_groups, 0, 1}, 1);
+  commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_parts_, 0, 1}, 1);
 }
 
 void Fields::write_displacement(std::span<const double> nodal) {
@@ -341,7 +342,8 @@ Voigt Fields::read_stress(Index element) const {
 
 void Fields::read_reactions(std::span<const Index> dofs, std::span<double> reactions) const {
   if (dofs.empty()) return;
-  const std::vector<std::uint32_t> places(dofs.begin(), dofs.end());
+  std::vector<std::uint32_t> places;
+  for (Index d : dofs) places.push_back(place_[d]);
   balance_gather_->read(places, reactions);
   for (double& r : reactions) r = -r;
 }
@@ -352,15 +354,14 @@ std::vector<BufferPlan> Fields::buffers() const {
     for (const Buffer* b : list) bytes += b->bytes();
     return bytes;
   };
-  return {
-      {"mesh and element state (device)", sum({&nodes_of_, &shape_, &yield_, &state_,
-                                               &corner_start_, &corners_, &dofs_, &positions_})},
-      {"displacement, correction, load, residual (device)",
-       sum({&displacement_, &kept_, &correction_, &load_, &residual_, &balance_})},
-      {"element forces (device)", element_force_.bytes()},
-      {"element stress (device)", stress_.bytes()},
-      {"partial results and summary (device)",
-       sum({&stress_partials_, &node_partials_, &summaries_})}};
+  return {{"mesh and element state (device)",
+           sum({&nodes_of_, &shape_, &facts_, &dofs_, &positions_, &roots_})},
+          {"displacement, correction, load, residual (device)",
+           sum({&displacement_, &kept_, &correction_, &load_, &residual_, &balance_})},
+          {"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},
+          {"element stress (device)", stress_.bytes()},
+          {"partial results and summary (device)",
+           sum({&stress_partials_, &node_partials_, &summaries_, &over_})}};
 }
 
 }  // namespace sunder::gpu

@@ -9,16 +9,13 @@
 #include <vector>
 
 #include "gpu/kernels.hpp"
+#include "gpu/passes/block_matrix.hpp"
 #include "gpu/passes/gather.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "shaders/layout.h"
 #include "sunder/backend.hpp"
 
 namespace sunder::gpu {
-
-[[nodiscard]] constexpr std::uint32_t round_up(std::uint32_t value, std::uint32_t to) {
-  return (value + to - 1) / to * to;
-}
 
 /// Displacements that the device holds, in nodal layout (four values a node).
 enum class Field { displacement, correction };
@@ -32,23 +29,29 @@ class Fields {
   [[nodiscard]] std::uint32_t packs() const { return rows_ / 4; }
 
   void set_load(std::span<const double> force, std::span<const double> displacements);
+  /// sqrt(X_jj) of every unknown: with them the summary bounds the energy of X r.
+  void set_roots(std::span<const double> roots);
   void destroy(std::span<const Index> elements);
   void exclude(std::span<const Index> elements);
 
   /// The next record_keep() sets the displacement aside, for restore() when the solve fails.
   void keep_next() { keep_ = true; }
+  [[nodiscard]] bool keeps_next() const { return keep_; }
+  void kept() { keep_ = false; }
   void record_keep(vulkan::Commands& commands);
   /// The displacement that was set aside, with its state.
   void restore();
   /// The field at gripped dofs as prescribed (displacement), or 0 (correction).
   void record_hold(vulkan::Commands& commands, Field field) const;
-  /// Stress of the displacement, its summary, and f - K u with r (0 at grips).
-  void record_state(vulkan::Commands& commands) const;
+  /// Stress of the displacement and its summary; with `balance` f - K u with r (0 at grips) too.
+  void record_state(vulkan::Commands& commands, bool balance = true) const;
   /// Largest stress of the correction.
   void record_correction(vulkan::Commands& commands) const;
 
   /// After record_state() and record_correction() ran.
   [[nodiscard]] shaders::Summary state() const { return summaries_.mapped<shaders::Summary>()[0]; }
+  /// Live breakable elements at or over yield, ascending.
+  [[nodiscard]] std::vector<Index> over_yield() const;
   [[nodiscard]] shaders::Summary correction() const {
     return summaries_.mapped<shaders::Summary>()[1];
   }
@@ -59,6 +62,11 @@ class Fields {
   [[nodiscard]] vulkan::Buffer& nodal(Field field) {
     return field == Field::displacement ? displacement_ : correction_;
   }
+  /// Two texels an element (shaders/stress.comp); 16 bytes where stress was left out.
+  [[nodiscard]] const vulkan::Buffer& stress() const { return stress_; }
+  [[nodiscard]] const vulkan::Buffer& facts() const { return facts_; }
+  /// The damaged stiffness.
+  [[nodiscard]] const BlockMatrix& matrix() const { return matrix_; }
   [[nodiscard]] const vulkan::Buffer& positions() const { return positions_; }
   [[nodiscard]] const vulkan::Buffer& residual() const { return residual_; }
   /// Of each node: unknowns along x, y, z (kHeld: a support), gripped axes as bits.
@@ -84,30 +92,31 @@ class Fields {
  private:
   void upload_mesh();
   void upload_shapes();
-  void upload_corners();
   void set_state_bits(std::span<const Index> elements, std::uint32_t bits);
   void create_kernels();
   void create_hold();
-  [[nodiscard]] shaders::ElementPush element_push(bool store) const;
+  [[nodiscard]] shaders::ElementPush element_push(std::uint32_t keep) const;
 
   const KernelFactory& kernels_;
   const Problem& problem_;
-  bool keep_stress_;
-  std::uint32_t rows_, elements_, nodes_;  // padded
-  std::vector<std::uint32_t> states_;      // host copy of state_
-  std::vector<std::uint32_t> place_;       // host copy of positions_
+  bool keep_stress_, list_over_;
+  std::uint32_t rows_, elements_, nodes_;             // padded
+  std::uint32_t element_parts_ = 0, node_parts_ = 0;  // partial results
+  std::vector<shaders::ElementFacts> facts_host_;     // copy of facts_
+  std::vector<std::uint32_t> place_;                  // host copy of positions_
 
-  vulkan::Buffer nodes_of_, shape_, yield_, state_;
-  vulkan::Buffer corner_start_, corners_, dofs_, positions_;
+  vulkan::Buffer nodes_of_, shape_, facts_;
+  vulkan::Buffer dofs_, positions_, roots_;
+  BlockMatrix matrix_;
   bool keep_ = false;
   vulkan::Buffer displacement_, kept_, correction_, load_, residual_, balance_;
-  vulkan::Buffer element_force_, stress_, stress_partials_, node_partials_, summaries_;
+  vulkan::Buffer stress_, stress_partials_, node_partials_, summaries_, over_;
 
   struct Pass {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::unique_ptr<vulkan::Binding> binding;
   };
-  Pass stress_pass_, force_pass_, residual_pass_, summary_pass_, hold_pass_;
+  Pass stress_pass_, residual_pass_, summary_pass_, hold_pass_;
   vulkan::Buffer held_, prescribed_;  // gripped dofs
   std::unique_ptr<vulkan::Binding> correction_hold_;
   std::unique_ptr<vulkan::Binding> correction_stress_;

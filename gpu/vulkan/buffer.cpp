@@ -39,6 +39,14 @@ Buffer::Buffer(Device& device, std::size_t bytes, Placement placement)
   }
 }
 
+Buffer Buffer::lent(VkBuffer buffer, std::size_t offset, std::size_t bytes) {
+  Buffer result;
+  result.handle_ = buffer;
+  result.guard_ = offset;
+  result.bytes_ = bytes;
+  return result;
+}
+
 Buffer::~Buffer() { release(); }
 
 Buffer::Buffer(Buffer&& other) noexcept { *this = std::move(other); }
@@ -69,7 +77,7 @@ void Buffer::create() {
   info.size = bytes_ + 2 * guard_;
   info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
                VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
   info.sharingMode = VK_SHARING_MODE_EXCLUSIVE;
   check(device_->vk().CreateBuffer(device_->handle(), &info, nullptr, &handle_), "vkCreateBuffer");
 }

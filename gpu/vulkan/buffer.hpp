@@ -22,6 +22,8 @@ class Buffer {
   Buffer() = default;
   /// Uninitialised memory; `bytes` at least 1. Throws DeviceError when the memory is not there.
   Buffer(Device& device, std::size_t bytes, Placement placement);
+  /// A part of a host's buffer, which stays the host's. The host cannot read or write it from here.
+  [[nodiscard]] static Buffer lent(VkBuffer buffer, std::size_t offset, std::size_t bytes);
   ~Buffer();
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
@@ -30,7 +32,7 @@ class Buffer {
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
   /// Where the bytes begin in the VkBuffer, and the range that kernels see.
   [[nodiscard]] std::size_t offset() const { return guard_; }
-  [[nodiscard]] std::size_t range() const { return bytes_ + guard_; }
+  [[nodiscard]] std::size_t range() const { return bytes_ + (device_ ? guard_ : 0); }
 
   void write(std::size_t offset, std::span<const std::byte> data);
   void read(std::size_t offset, std::span<std::byte> data) const;

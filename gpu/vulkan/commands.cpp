@@ -47,10 +47,13 @@ void Commands::end() {
   check(device_.vk().EndCommandBuffer(handle_), "vkEndCommandBuffer");
 }
 
-void Commands::submit() { device_.submit(handle_); }
+void Commands::submit() {
+  device_.submit(handle_);
+  for (const PassTime& time : pass_times()) device_.add_time(time.pass, time.milliseconds);
+}
 
 void Commands::pass(const char* name) {
-  if (device_.physical().timestamp_bits == 0 || passes_.size() + 1 >= kMaxTimes) return;
+  if (!device_.timing() || passes_.size() + 1 >= kMaxTimes) return;
   if (!queries_) {
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
@@ -61,7 +64,7 @@ void Commands::pass(const char* name) {
     device_.vk().CmdResetQueryPool(handle_, queries_, 0, kMaxTimes);
   }
   write_time();
-  passes_.emplace_back(name);
+  passes_.push_back(name);
 }
 
 void Commands::write_time() {
@@ -127,7 +130,7 @@ std::vector<PassTime> Commands::pass_times() const {
     const double ms = static_cast<double>((ticks[p + 1] - ticks[p]) & mask) *
                       device_.physical().timestamp_period * 1e-6;
     const auto same = std::find_if(times.begin(), times.end(),
-                                   [&](const PassTime& t) { return t.pass == passes_[p]; });
+                                   [&](const PassTime& t) { return t.is(passes_[p]); });
     if (same == times.end()) {
       times.push_back({passes_[p], ms});
     } else {

@@ -2,17 +2,11 @@
 // One command buffer: recorded, submitted as often as wanted, its passes timed on the device.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "gpu/vulkan/kernel.hpp"
 
 namespace sunder::vulkan {
-
-struct PassTime {
-  std::string pass;
-  double milliseconds = 0;
-};
 
 class Commands {
  public:
@@ -24,14 +18,20 @@ class Commands {
   /// Starts anew; forgets what was recorded.
   void begin();
   void end();
+  /// Waits, and adds its pass times to the device's sums.
   void submit();
 
-  /// Names what follows, for pass_times().
+  /// Names what follows, for pass_times(); `name` must live on. Only while the device times passes:
+  /// lavapipe waits for all work at every time stamp (15 us).
   void pass(const char* name);
   template <class Push>
   void dispatch(const Binding& binding, const Push& push, std::uint32_t x, std::uint32_t y = 1) {
     bind(binding, &push, sizeof(Push));
     dispatch(x, y);
+  }
+  void dispatch(const Binding& binding, std::uint32_t x) {
+    bind(binding, nullptr, 0);
+    dispatch(x, 1u);
   }
   /// The size comes from three words of `arguments` at `offset`, which a kernel may have written.
   template <class Push>
@@ -58,7 +58,7 @@ class Commands {
   Device& device_;
   VkCommandBuffer handle_ = VK_NULL_HANDLE;
   VkQueryPool queries_ = VK_NULL_HANDLE;
-  std::vector<std::string> passes_;
+  std::vector<const char*> passes_;
 };
 
 }  // namespace sunder::vulkan

@@ -64,6 +64,7 @@ Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<M
       physical_(std::move(physical)),
       messages_(std::move(messages)),
       probe_(probe),
+      timing_(physical_.timestamp_bits > 0),
       queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock) {
   VkCommandPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
@@ -89,6 +90,15 @@ void Device::require_memory(VkDeviceSize bytes, const std::string& purpose) cons
   throw DeviceError(purpose + " needs " + std::to_string(bytes) + " bytes on the device \"" +
                     physical_.name + "\", which has " + std::to_string(physical_.memory) +
                     "; use precision fp32, route cg or a smaller mesh");
+}
+
+void Device::add_time(const char* pass, double milliseconds) {
+  for (PassTime& sum : times_) {
+    if (!sum.is(pass)) continue;
+    sum.milliseconds += milliseconds;
+    return;
+  }
+  times_.push_back({pass, milliseconds});
 }
 
 void Device::submit(VkCommandBuffer commands) {

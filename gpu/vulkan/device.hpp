@@ -3,7 +3,10 @@
 // `owner` ever destroys them, so a trainer can lend instance, device and queue.
 #pragma once
 
+#include <cstring>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "gpu/vulkan/physical_device.hpp"
 #include "gpu/vulkan/queue.hpp"
@@ -20,6 +23,14 @@ struct DeviceHandles {
   VkPhysicalDeviceMemoryProperties memory{};
   bool int64 = false;           ///< shaderInt64 was enabled
   std::shared_ptr<void> owner;  ///< keeps instance and device alive; does nothing when borrowed
+};
+
+/// Time of a pass by the device's clock.
+struct PassTime {
+  const char* pass;
+  double milliseconds = 0;
+
+  [[nodiscard]] bool is(const char* name) const { return std::strcmp(pass, name) == 0; }
 };
 
 /// What tests ask of a device.
@@ -45,6 +56,13 @@ class Device {
   [[nodiscard]] std::size_t guard_bytes() const { return probe_.guard_bytes; }
   /// Reports a finding as a validation layer would.
   void report(std::string message) { messages_->texts.push_back(std::move(message)); }
+  /// Whether command buffers recorded from now on time their passes; from the start on a device
+  /// with a clock.
+  [[nodiscard]] bool timing() const { return timing_; }
+  void set_timing(bool on) { timing_ = on && physical_.timestamp_bits > 0; }
+  void add_time(const char* pass, double milliseconds);
+  /// Sums over all submits since the last call.
+  [[nodiscard]] std::vector<PassTime> take_times() { return std::exchange(times_, {}); }
   [[nodiscard]] VkCommandPool command_pool() const { return pool_; }
 
   /// Memory type with all of `required`, preferring those with `preferred`. Throws DeviceError.
@@ -57,6 +75,9 @@ class Device {
   [[nodiscard]] const Queue& queue() const { return queue_; }
   /// Submits and waits. Throws DeviceLost, or DeviceError with the first validation message.
   void submit(VkCommandBuffer commands);
+
+  /// Submits without waiting; `done` is signalled at the end.
+  void hand_over(const VkSubmitInfo& info, VkFence done) { queue_.submit(info, done); }
 
   /// Bytes that buffers have handed to the host.
   [[nodiscard]] std::size_t bytes_read() const { return bytes_read_; }
@@ -74,6 +95,8 @@ class Device {
   DeviceProbe probe_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::size_t bytes_read_ = 0;
+  bool timing_;
+  std::vector<PassTime> times_;
   Queue queue_;
 };
 

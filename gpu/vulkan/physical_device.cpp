@@ -12,9 +12,12 @@ void read_properties(const InstanceFunctions& vk, PhysicalDevice& device) {
   VkPhysicalDeviceMaintenance3Properties maintenance{};
   maintenance.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
   maintenance.pNext = &driver;
+  VkPhysicalDeviceSubgroupProperties subgroup{};
+  subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+  subgroup.pNext = &maintenance;
   VkPhysicalDeviceProperties2 properties{};
   properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  properties.pNext = &maintenance;
+  properties.pNext = &subgroup;
   vk.GetPhysicalDeviceProperties2(device.handle, &properties);
   const VkPhysicalDeviceProperties& p = properties.properties;
   device.name = p.deviceName;
@@ -26,6 +29,11 @@ void read_properties(const InstanceFunctions& vk, PhysicalDevice& device) {
   device.largest_buffer = p.limits.maxStorageBufferRange;
   device.largest_texel_buffer = p.limits.maxTexelBufferElements;
   device.largest_allocation = maintenance.maxMemoryAllocationSize;
+  device.subgroup = subgroup.subgroupSize;
+  constexpr VkSubgroupFeatureFlags needed =
+      VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
+  device.subgroup_arithmetic = (subgroup.supportedOperations & needed) == needed &&
+                               (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
 }
 
 void read_features(const InstanceFunctions& vk, PhysicalDevice& device) {
@@ -67,20 +75,25 @@ std::string PhysicalDevice::shortcoming() const {
            std::to_string(VK_API_VERSION_MINOR(api_version)) + " only; 1.2 is needed";
   }
   if (compute_family < 0) return "it has no compute queue";
+  if (!subgroup_arithmetic) return "its subgroups offer no arithmetic in compute kernels";
   if (!float64) return "it lacks shaderFloat64, which the fp64 sums of every route need";
   return {};
+}
+
+PhysicalDevice describe_device(const InstanceFunctions& vk, VkPhysicalDevice handle) {
+  PhysicalDevice device;
+  device.handle = handle;
+  read_properties(vk, device);
+  read_features(vk, device);
+  read_memory(vk, device);
+  read_queues(vk, device);
+  return device;
 }
 
 std::vector<PhysicalDevice> list_devices(const Instance& instance) {
   std::vector<PhysicalDevice> devices;
   for (VkPhysicalDevice handle : instance.physical_devices()) {
-    PhysicalDevice device;
-    device.handle = handle;
-    read_properties(instance.vk(), device);
-    read_features(instance.vk(), device);
-    read_memory(instance.vk(), device);
-    read_queues(instance.vk(), device);
-    devices.push_back(std::move(device));
+    devices.push_back(describe_device(instance.vk(), handle));
   }
   return devices;
 }

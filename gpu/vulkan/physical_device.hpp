@@ -24,6 +24,8 @@ struct PhysicalDevice {
   VkDeviceSize largest_buffer = 0;         ///< storage buffer range [bytes]
   VkDeviceSize largest_allocation = 0;     ///< [bytes]
   std::uint32_t largest_texel_buffer = 0;  ///< [texels]
+  std::uint32_t subgroup = 0;              ///< invocations of a subgroup
+  bool subgroup_arithmetic = true;         ///< sums and extrema over one, in compute kernels
 
   /// A processor that emulates a GPU (lavapipe, say).
   [[nodiscard]] bool is_cpu() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
@@ -34,6 +36,8 @@ struct PhysicalDevice {
   /// Why the kernels cannot run there; empty: they can.
   [[nodiscard]] std::string shortcoming() const;
 };
+
+[[nodiscard]] PhysicalDevice describe_device(const InstanceFunctions& vk, VkPhysicalDevice handle);
 
 /// In the driver's order.
 [[nodiscard]] std::vector<PhysicalDevice> list_devices(const Instance& instance);

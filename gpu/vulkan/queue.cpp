@@ -45,6 +45,11 @@ void Queue::submit(VkCommandBuffer commands) {
   check(vk_.QueueSubmit(queue_, 1, &info, done_), "vkQueueSubmit");
 }
 
+void Queue::submit(const VkSubmitInfo& info, VkFence done) {
+  const Hold hold(lock_);
+  check(vk_.QueueSubmit(queue_, 1, &info, done), "vkQueueSubmit");
+}
+
 void Queue::wait() {
   check(vk_.WaitForFences(device_, 1, &done_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   ++submits_;

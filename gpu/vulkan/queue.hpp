@@ -24,6 +24,8 @@ class Queue {
 
   /// Hands over `commands` and returns. One submit at a time: wait() before the next.
   void submit(VkCommandBuffer commands);
+  /// Hands over work that signals `done` itself; nobody waits for it here.
+  void submit(const VkSubmitInfo& info, VkFence done);
   /// Until the last submit is done and its results are visible to the host.
   void wait();
   /// Waited-for submits so far.

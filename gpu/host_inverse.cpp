@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/host_inverse.hpp"
+
+#include <numeric>
+#include <vector>
+
+namespace sunder::gpu {
+namespace {
+
+// Up to this many unknowns the host keeps the dense inverse as well (288 MB): a fracture then
+// copies its columns instead of solving for them.
+constexpr Index kHostDense = 6000;
+
+}  // namespace
+
+HostInverse::HostInverse(const fem::SparseMatrix& lower, bool keep_dense) : factor_(lower) {
+  if (keep_dense && lower.rows() <= kHostDense) dense_ = factor_.inverse();
+}
+
+Eigen::MatrixXd HostInverse::columns(std::span<const Index> dofs) const {
+  if (dense_.size() == 0) return factor_.inverse_columns(dofs);
+  const std::vector<Index> list(dofs.begin(), dofs.end());
+  return dense_(Eigen::all, list);
+}
+
+Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
+  if (dense_.size() > 0) return dense_.middleCols(first, count);
+  std::vector<Index> list(static_cast<std::size_t>(count));
+  std::iota(list.begin(), list.end(), first);
+  return factor_.inverse_columns(list);
+}
+
+std::size_t HostInverse::bytes() const {
+  return factor_.bytes() + static_cast<std::size_t>(dense_.size()) * sizeof(double);
+}
+
+}  // namespace sunder::gpu

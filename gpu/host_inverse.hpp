@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exact columns of an inverse on the host: from the dense inverse when that is kept and small, else
+// from the factor.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "fem/factor.hpp"
+
+namespace sunder::gpu {
+
+class HostInverse {
+ public:
+  HostInverse(const fem::SparseMatrix& lower, bool keep_dense);
+  [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
+  [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
+  [[nodiscard]] const fem::Factor& factor() const { return factor_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  fem::Factor factor_;
+  Eigen::MatrixXd dense_;  // empty: too large
+};
+
+}  // namespace sunder::gpu
