@@ -24,6 +24,8 @@ class FailoverBackend final : public Backend {
     return info;
   }
   std::vector<BufferPlan> buffers() const override { return current_->buffers(); }
+  void time_passes(bool on) override { current_->time_passes(on); }
+  std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
 
  private:
   void do_set_load(const Load& load) override {

@@ -143,6 +143,7 @@ StepReport Simulation::step() {
   report.events = events_this_step_;
   report.destroyed = static_cast<int>(destroyed_.size());
   report.compliance = compliance();
+  report.passes = backend_->take_pass_times();
   ++next_step_;
   return report;
 }

@@ -132,6 +132,8 @@ void add_commands(CLI::App& app, Options& options) {
   CLI::App& plan_command = *app.add_subcommand("plan", "What a scene needs and what is left out");
   add_scene_options(plan_command, options);
   add_output_options(plan_command, options);
+  plan_command.add_flag("--measure", options.measure,
+                        "Run the first steps and print the time of every stage and device pass");
   add_reproduce_options(
       *app.add_subcommand("reproduce", "The paper's experiments with figures and verdicts"),
       options);
@@ -144,7 +146,7 @@ void add_commands(CLI::App& app, Options& options) {
 
 int carry_out(const CLI::App& app, const Options& options) {
   if (app.got_subcommand("run")) return run(run_arguments(options));
-  if (app.got_subcommand("plan")) return plan(run_arguments(options).scene);
+  if (app.got_subcommand("plan")) return plan(run_arguments(options).scene, options.measure);
   if (app.got_subcommand("reproduce")) return reproduce_paper(reproduce_arguments(options));
   if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options));
   return list_devices();

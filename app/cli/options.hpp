@@ -15,7 +15,7 @@ struct Options {
   std::string scene;
   Text out, backend, device, route, update, precision, steps, snapshots;
   std::vector<std::string> set;
-  bool series = false, quiet = false;
+  bool series = false, quiet = false, measure = false;
   // reproduce
   bool quick = false;
   // mesh board

@@ -36,7 +36,8 @@ struct ReproduceArguments {
 };
 
 int run(const RunArguments& arguments);
-int plan(const SceneArguments& arguments);
+/// `measure`: run the first steps and print the time of each stage and pass.
+int plan(const SceneArguments& arguments, bool measure);
 int list_devices();
 int reproduce_paper(const ReproduceArguments& arguments);
 int mesh_board(const BoardArguments& arguments);

@@ -70,12 +70,35 @@ void print_list(const std::string& title, const std::vector<std::string>& items)
   if (items.empty()) std::cout << "  nothing\n";
 }
 
+constexpr int kMeasuredSteps = 5;
+
+/// Times of the first steps, stage by stage on the host and pass by pass on the device.
+void measure_steps(const OpenedScene& scene, std::unique_ptr<Backend> backend) {
+  backend->time_passes(true);
+  Simulation simulation(scene.problem, std::move(backend));
+  std::cout << "Measured [ms], the first steps\n";
+  while (!simulation.done() && simulation.steps_done() < kMeasuredSteps) {
+    const StepReport report = simulation.step();
+    const StageTimes& ms = report.times;
+    line("step " + std::to_string(report.step) + ", " + counted(report.events, "event"),
+         "load " + rounded(ms.load, 3) + ", solve " + rounded(ms.solve, 3) + ", stress " +
+             rounded(ms.stress, 3) + ", decide " + rounded(ms.decide, 3) + ", update " +
+             rounded(ms.update, 3) + ", total " + rounded(ms.total, 3));
+    std::string passes;
+    for (const PassTime& time : report.passes) {
+      passes += (passes.empty() ? "" : ", ") + std::string(time.pass) + " " +
+                rounded(time.milliseconds, 3);
+    }
+    if (!passes.empty()) line("  device", passes);
+  }
+}
+
 }  // namespace
 
-int plan(const SceneArguments& arguments) {
+int plan(const SceneArguments& arguments, bool measure) {
   const OpenedScene scene = open_scene(arguments);
   const Problem& problem = *scene.problem;
-  const CreatedBackend created = create_backend(scene.problem, needs_of(problem));
+  CreatedBackend created = create_backend(scene.problem, needs_of(problem));
   const Backend& backend = *created.backend;
   std::cout << problem.scene().title << "\n\n";
   print_sizes(problem);
@@ -86,6 +109,7 @@ int plan(const SceneArguments& arguments) {
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), problem.warnings().begin(), problem.warnings().end());
   warnings.insert(warnings.end(), created.warnings.begin(), created.warnings.end());
+  if (measure) measure_steps(scene, std::move(created.backend));
   for (const std::string& warning : warnings) std::cerr << "sunder: warning: " << warning << "\n";
   return 0;
 }

@@ -79,6 +79,7 @@ std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene) {
   record_.warnings = scene.warnings;
   CreatedBackend created = create_backend(scene.problem, std::move(needs));
   add_new(record_.warnings, created.warnings);
+  created.backend->time_passes(true);
   return std::make_unique<Simulation>(scene.problem, std::move(created.backend));
 }
 

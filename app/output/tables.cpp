@@ -15,6 +15,16 @@ std::string row(std::initializer_list<std::string> cells) {
   return line;
 }
 
+/// Empty without a device clock.
+std::string gpu_time(const StepReport& report, const std::string& pass) {
+  if (report.passes.empty()) return {};
+  double sum = 0;
+  for (const PassTime& time : report.passes) {
+    if (pass == time.pass) sum += time.milliseconds;
+  }
+  return number(sum);
+}
+
 }  // namespace
 
 std::string events_header() {
@@ -58,18 +68,24 @@ std::string events_row(const DestroyedElement& record) {
 }
 
 std::string frames_header() {
-  return "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
-         "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations\n";
+  std::string line =
+      "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
+      "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations";
+  for (const char* pass : kPasses) line += std::string(",ms_gpu_") + pass;
+  return line + "\n";
 }
 
 std::string frames_row(const StepReport& report) {
   const StageTimes& ms = report.times;
-  return row({std::to_string(report.step), number(report.load_factor),
-              std::to_string(report.events), std::to_string(report.destroyed),
-              number(report.compliance), number(report.residual), number(report.error),
-              number(report.max_yield_ratio), number(ms.load), number(ms.solve), number(ms.stress),
-              number(ms.decide), number(ms.update), number(ms.total),
-              std::to_string(report.iterations)});
+  std::string line =
+      row({std::to_string(report.step), number(report.load_factor), std::to_string(report.events),
+           std::to_string(report.destroyed), number(report.compliance), number(report.residual),
+           number(report.error), number(report.max_yield_ratio), number(ms.load), number(ms.solve),
+           number(ms.stress), number(ms.decide), number(ms.update), number(ms.total),
+           std::to_string(report.iterations)});
+  line.pop_back();
+  for (const char* pass : kPasses) line += "," + gpu_time(report, pass);
+  return line + "\n";
 }
 
 }  // namespace sunder::app

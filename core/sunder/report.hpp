@@ -49,6 +49,9 @@ struct StepReport {
   int iterations = 0;
   bool polished = false;
   StageTimes times;
+  /// Device time per pass of all solves and updates of the step; empty without a device clock
+  /// (Backend::time_passes).
+  std::vector<PassTime> passes;
 };
 
 }  // namespace sunder
