@@ -72,11 +72,15 @@ def page(outcome):
         _figure("Inverse reconstruction", "Update and solution after one event of k connected "
                 "elements, one thread, fp64. Dashed: CHOLMOD (METIS where it has it, OpenBLAS with "
                 "one thread), measured in the same run.", plots.reconstruction(rows)),
+        _figure("The intact inverse", "Dense inverse of the intact stiffness, one thread, fp64; "
+                "dashed: OpenBLAS and Eigen, measured in the same run.", plots.inversion(rows)),
         _figure("Error against run time", "Every method on the study's board: stress error against "
                 "a fresh fp64 factorisation refined in extended precision.",
                 plots.error_against_time(cells)),
         _figure("Stability", "One difficulty at a time, then pairs. Grey: refused with a reason.",
                 plots.heat_map(cells)),
+        _figure("Size", "Dotted: the time in which the machine copies what the backend holds.",
+                plots.scaling(rows)),
         "<h2>Verdicts</h2>", _verdicts(cells),
         "<h2>All rows</h2>", _rows(rows), "</html>\n"])
 

@@ -55,6 +55,53 @@ def reconstruction(rows):
     return _svg(figure)
 
 
+def scaling(rows):
+    """Set-up, quiet and fracture frame and memory against the number of tetrahedra."""
+    parsed = []
+    for row in rows:
+        found = re.match(r"scaling/([^/]+)/(\d+)", row["name"])
+        if found and row["samples_ms"]:
+            parsed.append((found[1], int(found[2]), dict(row["counters"], fracture_ms=minimum(row))))
+    if not parsed:
+        return None
+    panels = (("setup_ms", "set-up [ms]"), ("quiet_ms", "quiet frame [ms]"),
+              ("fracture_ms", "fracture frame [ms]"), ("MiB", "memory [MiB]"))
+    figure, axes = pyplot.subplots(1, 4, figsize=(15, 3.6))
+    for axis, (key, title) in zip(axes, panels):
+        for i, method in enumerate(dict.fromkeys(p[0] for p in parsed)):
+            own = sorted((p for p in parsed if p[0] == method), key=lambda p: p[1])
+            axis.loglog([p[1] for p in own], [p[2][key] for p in own], marker="o", color=f"C{i}",
+                        label=method)
+            if key == "quiet_ms":
+                axis.loglog([p[1] for p in own], [p[2]["floor_ms"] for p in own], linestyle=":",
+                            color=f"C{i}")
+        axis.set(title=title, xlabel="tetrahedra")
+        axis.grid(True, which="major", alpha=0.3)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="upper center", ncols=4,
+                  bbox_to_anchor=(0.5, 0.0))
+    return _svg(figure)
+
+
+def inversion(rows):
+    """The intact inverse by each method, per number of unknowns."""
+    parsed = []
+    for row in rows:
+        found = re.match(r"inversion/(\w+)/\d+", row["name"])
+        if found and row["samples_ms"]:
+            parsed.append((found[1], row["counters"]["unknowns"], minimum(row)))
+    if not parsed:
+        return None
+    figure, axis = pyplot.subplots(figsize=(5, 3.6))
+    for method in dict.fromkeys(p[0] for p in parsed):
+        points = sorted(p[1:] for p in parsed if p[0] == method)
+        axis.loglog(*zip(*points), marker="o", label=method,
+                    linestyle="-" if method == "sunder" else "--")
+    axis.set(xlabel="unknowns", ylabel="inverse [ms], minimum")
+    axis.grid(True, which="major", alpha=0.3)
+    axis.legend(fontsize=8)
+    return _svg(figure)
+
+
 def pareto(points):
     """Points (time, error) that no other beats in both, by time."""
     front, best = [], math.inf

@@ -23,7 +23,9 @@ class Program:
 PROGRAMS = [
     Program("bench_program", ".", (25, 60), "start of the program to its files"),
     Program("bench_field_sif", ".", (10, 60), "time to decide the rupture element"),
-    Program("bench_engine", "/1944/|/7776/k1$", (60, 900), "inverse reconstruction against CHOLMOD"),
+    Program("bench_engine", "/1944/k|/7776/k1/", (60, 900), "inverse reconstruction against CHOLMOD"),
+    Program("bench_inversion", "/(486|1944)/", (10, 60), "the intact inverse against OpenBLAS, Eigen"),
+    Program("bench_scaling", "/(486|1944)/", (30, 900), "sizes against frames and memory"),
     Program("bench_vulkan", "board", (40, 300), "kernels and frames on the Vulkan device"),
     Program("bench_c_abi", ".", (10, 60), "a step through the C interface"),
 ]

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Size of the board against set-up, quiet frame, fracture frame and memory, every route. The time
+// of a row is that of a frame in which one element breaks; the others are counters. floor_ms is the
+// time in which the machine copies as many bytes as the backend holds: no route that reads all it
+// holds can be faster. Rows above 200,000 tetrahedra take minutes: choose them by
+// --benchmark_filter.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cstring>
+
+#include "bench/study/method.hpp"
+#include "sunder/backends.hpp"
+#include "sunder/error.hpp"
+#include "tearing_board.hpp"
+
+namespace sunder::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Bytes read per millisecond by a large copy, one thread.
+double copy_rate() {
+  static const double rate = [] {
+    const std::size_t bytes = std::size_t{256} << 20;
+    std::vector<char> from(bytes, 1), to(bytes);
+    double best = 1e300;
+    for (int i = 0; i < 5; ++i) {
+      const auto start = Clock::now();
+      std::memcpy(to.data(), from.data(), bytes);
+      benchmark::DoNotOptimize(to.data());
+      best = std::min(best, milliseconds_since(start));
+    }
+    return static_cast<double>(bytes) / best;
+  }();
+  return rate;
+}
+
+struct Frames {
+  double quiet = 0, fracture = 0;  ///< minima, ms
+};
+
+double frame(Backend& backend, const Load& load, std::span<const Index> broken) {
+  const auto start = Clock::now();
+  if (!broken.empty()) backend.destroy(broken);
+  backend.set_load(load);
+  backend.solve();
+  backend.stress();
+  return milliseconds_since(start);
+}
+
+void size_row(benchmark::State& state, const Method& method, Index cells) {
+  const TearingBoard board(cells);
+  Scene scene = board.problem->scene();
+  scene.solver = method.options;
+  const auto problem = std::make_shared<Problem>(std::move(scene));
+  Needs needs;
+  needs.stress = needs.damage = true;
+  try {
+    const auto start = Clock::now();
+    const auto backend = create_backend(problem, needs).backend;
+    Load load{board.load_dofs, board.load_values, {}};
+    frame(*backend, load, {});
+    state.counters["setup_ms"] = milliseconds_since(start);
+    double quiet = 1e300;
+    std::size_t next = 0;
+    const auto order = board.connected(40);
+    for (auto _ : state) {
+      const double ms = frame(*backend, load, order.subspan(next++, 1));
+      state.SetIterationTime(1e-3 * ms);
+      load.forces[0] *= 1.001;
+      quiet = std::min(quiet, frame(*backend, load, {}));
+    }
+    const auto bytes = static_cast<double>(backend->info().memory_bytes);
+    state.counters["quiet_ms"] = quiet;
+    state.counters["MiB"] = bytes / 1048576;
+    state.counters["floor_ms"] = bytes / copy_rate();
+    state.counters["unknowns"] = static_cast<double>(problem->dof_count());
+  } catch (const Error& error) {
+    state.SkipWithError(error.what());
+  }
+}
+
+/// Unknowns up to which a route is worth its rows: memory n^2, or iterations on one core.
+Index most_cells(const Method& method) {
+  if (method.options.route == Route::inverse)
+    return method.options.update == Update::eager ? 18 : 36;
+  if (method.options.backend == "vulkan") return 71;
+  return 409;
+}
+
+void register_rows() {
+  bool vulkan = false;
+  for (const DeviceInfo& device : devices()) vulkan |= device.backend == "vulkan";
+  for (const Method& method : methods(vulkan)) {
+    if (method.options.route == Route::condensed) continue;  // a matter of the scene, not of size
+    for (Index cells : {9, 18, 36, 71, 141, 289, 409}) {
+      if (cells > most_cells(method)) break;
+      const std::string name = "scaling/" + method.name + "/" + std::to_string(6 * cells * cells);
+      benchmark::RegisterBenchmark(name.c_str(),
+                                   [=](auto& state) { size_row(state, method, cells); })
+          ->UseManualTime()
+          ->Iterations(cells > 141 ? 3 : 10)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sunder::bench
+
+int main(int argc, char** argv) {
+  sunder::bench::register_rows();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+}
