@@ -149,6 +149,10 @@ std::string FigurePainter::draw_body(const State& state, const Scenery& scene,
 
 Bounds FigurePainter::bounds(const State& state) const { return scenery(state).bounds; }
 
+double FigurePainter::displacement_scale(const State& state) const {
+  return pose_of(problem_, plane_, state).scale;
+}
+
 std::string FigurePainter::drawing(const State& state, const Canvas& canvas) const {
   return draw_body(state, scenery(state), canvas);
 }

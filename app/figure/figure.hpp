@@ -24,6 +24,8 @@ class FigurePainter {
   [[nodiscard]] std::string svg(const State& state) const;
   /// What the picture of a state covers in the plane [mm].
   [[nodiscard]] Bounds bounds(const State& state) const;
+  /// By which displacements are magnified or reduced in it.
+  [[nodiscard]] double displacement_scale(const State& state) const;
   /// The state alone, without title, colour bar and caption: to be set among others.
   [[nodiscard]] std::string drawing(const State& state, const Canvas& canvas) const;
   /// The same picture as PNG.

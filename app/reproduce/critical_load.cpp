@@ -33,9 +33,7 @@ double rise(const Laboratory& lab, const RunPlan& plan, const BoardPlane& plane,
   return std::asin(std::clamp(std::sin(angle), -1.0, 1.0)) / kRadians;
 }
 
-}  // namespace
-
-std::optional<CriticalLoad> critical_load(const Laboratory& lab, RunPlan plan) {
+std::optional<CriticalLoad> first_rupture(const Laboratory& lab, RunPlan plan, bool growth) {
   plan.overrides.insert(plan.overrides.end(), {"time.steps=1", "fracture.max_events=1"});
   plan.snapshots.clear();
   const double begin = plan.load;
@@ -43,7 +41,7 @@ std::optional<CriticalLoad> critical_load(const Laboratory& lab, RunPlan plan) {
     plan.load = begin * raise;
     const RunResult result = lab.run(plan);
     const std::vector<DestroyedElement> rows = result.fractures();
-    if (rows.empty()) continue;
+    if (rows.empty() || (growth && rows.front().cause != Cause::sif)) continue;
     const DestroyedElement& first = rows.front();
     const double less = first.cause == Cause::sif ? 1 / std::sqrt(*first.ratio) : 1 / *first.ratio;
     CriticalLoad critical{raise * less, first.cause, first.sif, 0, result.plane.edge_length};
@@ -56,10 +54,14 @@ std::optional<CriticalLoad> critical_load(const Laboratory& lab, RunPlan plan) {
   return std::nullopt;
 }
 
+}  // namespace
+
+std::optional<CriticalLoad> critical_load(const Laboratory& lab, RunPlan plan) {
+  return first_rupture(lab, std::move(plan), false);
+}
+
 std::optional<CriticalLoad> critical_growth(const Laboratory& lab, RunPlan plan) {
-  auto critical = critical_load(lab, std::move(plan));
-  if (critical && critical->cause != Cause::sif) return std::nullopt;
-  return critical;
+  return first_rupture(lab, std::move(plan), true);
 }
 
 }  // namespace sunder::app::reproduce

@@ -22,7 +22,9 @@ struct CriticalLoad {
 /// the plan's forces.
 [[nodiscard]] std::optional<CriticalLoad> critical_load(const Laboratory& lab, RunPlan plan);
 
-/// The same, none unless it is a crack that grows.
+/// The load at which a crack grows first, whatever ruptures elsewhere under less: growth goes
+/// before rupture (method.md 11), so that a load high enough always shows it. None: no growth under
+/// 4,096 times the plan's forces.
 [[nodiscard]] std::optional<CriticalLoad> critical_growth(const Laboratory& lab, RunPlan plan);
 
 }  // namespace sunder::app::reproduce

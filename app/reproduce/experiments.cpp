@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/figure/figure.hpp"
 #include "app/output/text.hpp"
 #include "app/reproduce/chapters.hpp"
 #include "app/reproduce/critical_load.hpp"
@@ -31,8 +32,10 @@ std::vector<Model> run_models(const Laboratory& lab, const std::string& stem) {
 std::string panel_title(const RunResult& run, const State& state) {
   int presets = 0;
   for (const DestroyedElement& row : run.destroyed) presets += row.cause == Cause::preset ? 1 : 0;
+  const double scale = FigurePainter(*run.problem).displacement_scale(state);
   return counted(state.destroyed_count - presets, "fracture") + ", " +
-         rounded(100 * state.load_factor, 3) + " % of the time";
+         "t = " + rounded(state.load_factor, 3) +
+         (scale == 1 ? "" : ", drawn x " + rounded(scale, 2));
 }
 
 PanelRow panel_row(const Model& model, std::size_t columns) {
@@ -175,10 +178,12 @@ Chapter pulled_board(const Laboratory& lab) {
         {name, cell(force ? std::optional(*force / points) : std::nullopt), cell(force)});
   }
   chapter.tables = {first, events_table("experiment-1-fractures", models)};
-  chapter.drawings.push_back({"experiment-1",
-                              "Stress and destroyed elements after 5, 10, 20 and 40 fractures; a "
-                              "row that ends earlier closes with the run's end.",
-                              picture("Board pulled at its lower right corner", models)});
+  chapter.drawings.push_back(
+      {"experiment-1",
+       "Stress and destroyed elements after 5, 10, 20 and 40 fractures, or at the "
+       "first event beyond; one event of B may pass two of these. t: scene "
+       "time; x: displacements drawn smaller than they are.",
+       picture("Board pulled at its lower right corner", models)});
   return chapter;
 }
 
@@ -265,6 +270,7 @@ Chapter pressure_side(const Laboratory& lab) {
       {},
       {},
       {}};
+  const std::vector<std::string> sides = {"upper", "balanced", "under"};
   std::vector<Model> models;
   for (const KChoice& k : both_k()) {
     const std::vector<std::string> by = {k.override};
@@ -293,9 +299,9 @@ Chapter pressure_side(const Laboratory& lab) {
         {"4c", "Pressure with the expansion raises the stress, against it lowers it.", k.name,
          judge_side_forces(
              {force(under, "pressure-under"), f_none, force(upper, "pressure-upper")})});
-    for (const char* side : {"upper", "balanced", "under"})
-      models.push_back({std::string(side) + ", " + k.name,
-                        lab.run({std::string("pressure-") + side, by, nullptr, 1, kSnapshots})});
+    for (const std::string& side : sides)
+      models.push_back(
+          {side + ", " + k.name, lab.run({"pressure-" + side, by, nullptr, 1, kSnapshots})});
   }
   chapter.tables = {path_table("experiment-4-paths", models),
                     events_table("experiment-4-fractures", models)};
@@ -306,7 +312,8 @@ Chapter pressure_side(const Laboratory& lab) {
       const Model& model = models[3 * k + side];
       const State& state =
           model.run.snapshots.empty() ? model.run.last : model.run.snapshots.back();
-      row.panels.push_back({&model.run, &state, model.name + ": " + panel_title(model.run, state)});
+      row.panels.push_back(
+          {&model.run, &state, sides[side] + ": " + panel_title(model.run, state)});
     }
     rows.push_back(std::move(row));
   }

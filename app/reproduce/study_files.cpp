@@ -135,7 +135,12 @@ std::string standalone(const Drawing& drawing) {
       ".s4{stroke:#9c6bb0}.f0{fill:#4e79a7}.f1{fill:#e15759}.f2{fill:#f2a93b}.f3{fill:#59a14f}"
       ".f4{fill:#9c6bb0}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   std::string svg = drawing.svg;
-  svg.insert(5, "xmlns=\"http://www.w3.org/2000/svg\" ");
+  // Width and height of the view box, for programs that ask for a size.
+  const std::size_t box = svg.find("viewBox=\"0 0 ") + 13, end = svg.find('"', box);
+  const std::size_t space = svg.find(' ', box);
+  const std::string size = "width=\"" + svg.substr(box, space - box) + "\" height=\"" +
+                           svg.substr(space + 1, end - space - 1) + "\" ";
+  svg.insert(5, size + "xmlns=\"http://www.w3.org/2000/svg\" ");
   return svg.insert(svg.find('\n') + 1, style);
 }
 
