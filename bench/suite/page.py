@@ -77,6 +77,9 @@ def page(outcome):
         _figure("Error against run time", "Every method on the study's board: stress error against "
                 "a fresh fp64 factorisation refined in extended precision.",
                 plots.error_against_time(cells)),
+        _figure("Error against run time on scenes", "Every method at tolerances 1e-2, 1e-4 and 1e-8; "
+                "runs that break other elements than the reference are left out here and listed in "
+                "scenes.csv.", plots.scenes(outcome.get("points", []))),
         _figure("Stability", "One difficulty at a time, then pairs. Grey: refused with a reason.",
                 plots.heat_map(cells)),
         _figure("Size", "Dotted: the time in which the machine copies what the backend holds.",

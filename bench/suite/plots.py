@@ -141,6 +141,38 @@ def error_against_time(cells):
     return _svg(figure)
 
 
+def scenes(points):
+    """Stress error of a scene's last frame against the time of its frames, a panel a scene."""
+    good = [p for p in points if p["verdict"] in ("ok", "polished")]
+    names = sorted({p["scene"] for p in good})
+    if not names:
+        return None
+    methods = sorted({p["method"] for p in good})
+    columns = min(4, len(names))
+    lines = -(-len(names) // columns)
+    figure, axes = pyplot.subplots(lines, columns, figsize=(3.6 * columns, 3.2 * lines),
+                                   squeeze=False, layout="constrained")
+    for axis in axes.flat[len(names):]:
+        axis.remove()
+    for axis, name in zip(axes.flat, names):
+        here = [(p["method"], p["frame_ms"], max(p["stress_error"], FLOOR)) for p in good
+                if p["scene"] == name]
+        for i, method in enumerate(methods):
+            own = [p[1:] for p in here if p[0] == method]
+            if own:
+                axis.loglog(*zip(*own), linestyle="", color=f"C{i}", label=method,
+                            marker="o" if method.startswith("cpu") else "s")
+        axis.step(*zip(*pareto([p[1:] for p in here])), where="post", color="black", linewidth=1)
+        axis.set_title(name, fontsize=9)
+        axis.grid(True, which="major", alpha=0.3)
+    figure.supxlabel("frame [ms], median of the steps", fontsize=9)
+    figure.supylabel("stress error of the last frame", fontsize=9)
+    handles = {h.get_label(): h for a in figure.axes for h in a.get_lines()
+               if not h.get_label().startswith("_")}
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3, fontsize=8)
+    return _svg(figure)
+
+
 def _label(cell):
     value = cell.get(cell["study"])
     if " x " in cell["study"]:

@@ -30,6 +30,8 @@ PROGRAMS = [
     Program("bench_c_abi", ".", (10, 60), "a step through the C interface"),
 ]
 STABILITY_SECONDS = (60, 1200)
+SCENES_SECONDS = (60, 1200)
+QUICK_SCENE = "notch-b.toml"
 
 
 def present(build):
@@ -82,3 +84,14 @@ def run_stability(build, quick, folder):
     if done.returncode not in (0, 1):
         raise results.BadResults(f"bench_stability ended with {done.returncode}")
     return results.cells_of(file.read_text())
+
+
+def run_scenes(build, quick, folder, scenes):
+    """Points of error against run time; quick: one scene."""
+    file = pathlib.Path(folder) / "scenes.csv"
+    program = pathlib.Path(build) / "bench" / "bench_scenes"
+    chosen = [str(pathlib.Path(scenes) / QUICK_SCENE)] if quick else []
+    done = subprocess.run([str(program), str(file), *chosen])
+    if done.returncode != 0:
+        raise results.BadResults(f"bench_scenes ended with {done.returncode}")
+    return results.points_of(file.read_text())

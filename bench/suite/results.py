@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The results folder: rows of Google Benchmark programs and cells of the stability study.
 
-results.json  {"machine": {...}, "rows": [row], "cells": [cell]}
+results.json  {"machine": {...}, "rows": [row], "cells": [cell], "points": [point]}
 results.csv   one line per row: program, name, minimum, median, CPU time [ms], samples, counters
-stability.csv as bench_stability writes it
+stability.csv as bench_stability writes it, scenes.csv as bench_scenes does
 """
 import csv
 import io
@@ -60,6 +60,15 @@ def cells_of(text):
         for key in cell.keys() - words:
             cell[key] = float(cell[key])
     return cells
+
+
+def points_of(text):
+    """Points of error against run time on scenes; a refusal has no numbers."""
+    points = list(csv.DictReader(io.StringIO(text)))
+    for point in points:
+        for key in ("tolerance", "frame_ms", "u_error", "stress_error", "fractures"):
+            point[key] = float(point[key]) if point[key] else None
+    return points
 
 
 def write_text(path, text):

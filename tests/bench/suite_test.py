@@ -106,6 +106,15 @@ class Page(unittest.TestCase):
         for tag in ("<script src", "<link", "<img src=\"http"):
             self.assertNotIn(tag, text)
 
+    def test_draws_the_scenes_that_ran(self):
+        text = ("scene,method,tolerance,frame_ms,u_error,stress_error,fractures,verdict,reason\n"
+                "notch-b,cpu cg fp64,1e-4,2.5,1e-9,1e-8,51,ok,\n"
+                'notch-b,cpu condensed deferred fp64,1e-4,,,,,refused,"not offered, choose"\n')
+        points = results.points_of(text)
+        self.assertIsNone(points[1]["frame_ms"])
+        self.assertIn("notch-b", plots.scenes(points))
+        self.assertIsNone(plots.scenes(points[1:]))
+
     def test_is_the_same_twice(self):
         made = outcome([row(n) for n in NAMES], [cell()])
         self.assertEqual(page.page(made), page.page(made))
