@@ -42,7 +42,9 @@ PanelRow panel_row(const Model& model, std::size_t columns) {
   PanelRow row{model.name, {}};
   for (const State& state : model.run.snapshots)
     row.panels.push_back({&model.run, &state, panel_title(model.run, state)});
-  if (row.panels.size() < columns)
+  const bool more = model.run.snapshots.empty() ||
+                    model.run.snapshots.back().destroyed_count < model.run.last.destroyed_count;
+  if (row.panels.size() < columns && more)
     row.panels.push_back(
         {&model.run, &model.run.last, "end: " + panel_title(model.run, model.run.last)});
   return row;

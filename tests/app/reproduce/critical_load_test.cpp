@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// The critical load from one step against trying loads just below and just above it.
+#include "app/reproduce/critical_load.hpp"
+
+#include <gtest/gtest.h>
+
+#include "app/reproduce/notch_mesh.hpp"
+#include "app/reproduce/paper_files.hpp"
+
+namespace sunder::test {
+namespace {
+
+using namespace app::reproduce;
+
+Laboratory laboratory() {
+  return {"cpu", [] { return false; }, [](const std::string&) {}};
+}
+
+int broken_at(const Laboratory& lab, RunPlan plan, double load) {
+  plan.overrides.insert(plan.overrides.end(), {"time.steps=1", "fracture.max_events=1"});
+  plan.load = load;
+  return static_cast<int>(lab.run(plan).fractures().size());
+}
+
+class CriticalLoads : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(CriticalLoads, LieBetweenWhatHoldsAndWhatBreaks) {
+  const Laboratory lab = laboratory();
+  const auto& [scene, sif] = GetParam();
+  const RunPlan plan{scene, {sif}, nullptr, 1, {}};
+  const auto critical = critical_load(lab, plan);
+  ASSERT_TRUE(critical.has_value());
+  EXPECT_EQ(broken_at(lab, plan, critical->factor * 0.999), 0);
+  EXPECT_GT(broken_at(lab, plan, critical->factor * 1.001), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CriticalLoads,
+                         ::testing::Values(std::pair{"notch-b", "fracture.sif=formula"},
+                                           std::pair{"notch-b", "fracture.sif=field"},
+                                           std::pair{"pressure-near", "fracture.sif=formula"},
+                                           std::pair{"notch-a", "fracture.model=A"}));
+
+TEST(CriticalLoad, ScalesTheTermsToItself) {
+  const Laboratory lab = laboratory();
+  const RunPlan plan{"notch-b", {}, nullptr, 1, {}};
+  const auto low = critical_growth(lab, plan);
+  RunPlan higher = plan;
+  higher.load = 3;
+  const auto high = critical_growth(lab, higher);
+  ASSERT_TRUE(low && high && low->sif && high->sif);
+  EXPECT_NEAR(high->factor * 3, low->factor, 1e-9 * low->factor);
+  EXPECT_NEAR(high->sif->k, low->sif->k, 1e-9 * low->sif->k);
+  EXPECT_NEAR(*high->sif->k_field, *low->sif->k_field, 1e-6 * *low->sif->k_field);
+  EXPECT_NEAR(high->rise_deg, low->rise_deg, 1e-6);
+  EXPECT_LT(low->rise_deg, 0);  // theta > 0 turns a crack that runs to the left downwards
+  EXPECT_GT(low->sif->theta, 0);
+}
+
+TEST(CriticalLoad, StopsWhenAsked) {
+  const Laboratory lab(
+      "cpu", [] { return true; }, [](const std::string&) {});
+  EXPECT_THROW(static_cast<void>(critical_load(lab, {"notch-b", {}, nullptr, 1, {}})), Interrupted);
+}
+
+TEST(NotchMesh, TakesSizeLengthAndMesher) {
+  const auto mesh = mesh_notch({6.0, 10.0, 6});
+  double least = 50;
+  int in_notch = 0;
+  for (Index e = 0; e < mesh->tet_count(); ++e) {
+    if (mesh->volumes[static_cast<std::size_t>(mesh->volume_of[e])].name != "preset-crack")
+      continue;
+    ++in_notch;
+    for (const Index node : mesh->tets[e]) least = std::min(least, mesh->nodes[node].x());
+  }
+  EXPECT_GT(in_notch, 0);
+  EXPECT_NEAR(least, 40, 1e-9);
+  EXPECT_LT(mesh->tet_count(), 1200);
+  EXPECT_EQ(mesh_notch({6.0, 10.0, 6})->tets, mesh->tets);  // the same again
+}
+
+TEST(NotchMesh, DefaultsAreTheScenesOwnGeometry) {
+  EXPECT_EQ(notch_geometry({}), paper_file("meshes/board1954_notch.geo"));
+  EXPECT_EQ(mesh_notch({})->tet_count(), 1954);
+}
+
+}  // namespace
+}  // namespace sunder::test
