@@ -169,7 +169,8 @@ def scenes(points):
     figure.supylabel("stress error of the last frame", fontsize=9)
     handles = {h.get_label(): h for a in figure.axes for h in a.get_lines()
                if not h.get_label().startswith("_")}
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3, fontsize=8)
+    figure.legend(handles.values(), handles.keys(), loc="upper center", ncols=3, fontsize=8,
+                  bbox_to_anchor=(0.5, 0.0))
     return _svg(figure)
 
 
