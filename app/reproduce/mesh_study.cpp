@@ -23,9 +23,9 @@ struct Board {
 
 /// Element sizes that give 4 and 16 times the 1954 elements.
 std::vector<Board> boards(bool quick) {
-  std::vector<Board> all = {{"1x, Delaunay", {3.939, 4.04, 5}, 1, true},
-                            {"1x, Frontal", {3.939, 4.04, 6}, 1, false},
-                            {"1x, MeshAdapt", {3.939, 4.04, 1}, 1, false},
+  std::vector<Board> all = {{"1x Delaunay", {3.939, 4.04, 5}, 1, true},
+                            {"1x Frontal", {3.939, 4.04, 6}, 1, false},
+                            {"1x MeshAdapt", {3.939, 4.04, 1}, 1, false},
                             {"4x", {1.86, 4.04, 5}, 2, true}};
   if (!quick) all.push_back({"16x", {1.117, 4.04, 5}, 4, true});
   return all;

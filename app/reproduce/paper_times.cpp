@@ -46,8 +46,8 @@ DataTable table_2(const std::vector<Times>& t) {
   return {"table-2",
           "One reconstruction. The paper: s, 3.2 GHz Xeon, as printed. Ours: ms, median over the "
           "steps in which something broke.",
-          {"", "paper A [s]", "paper B, expansion [s]", "paper B, expansion + pressure [s]",
-           "ours A [ms]", "ours B, expansion [ms]", "ours B, expansion + pressure [ms]"},
+          {"", "paper A [s]", "paper B expansion [s]", "paper B expansion + pressure [s]",
+           "ours A [ms]", "ours B expansion [ms]", "ours B expansion + pressure [ms]"},
           {{"stiffness matrix", "1.43", "1.40", "1.41", "-", "-", "-"},
            {"stress-displacement matrix", "9.37", "9.33", "9.70", "-", "-", "-"},
            {"inverse matrix (ours: update of what carries the damage)", "55.2", "54.8", "56.7",
@@ -61,17 +61,17 @@ DataTable table_2(const std::vector<Times>& t) {
 }
 
 DataTable table_3(const std::vector<Times>& t) {
-  return {"table-3",
-          "Deciding which element ruptures. The paper: s. Ours: ms, median.",
-          {"", "paper A [s]", "paper B [s]", "ours A [ms]", "ours B, formula [ms]",
-           "ours B, field [ms]"},
-          {{"stress distribution", "", "0.03", shown(t[0].stress), shown(t[1].stress),
-            shown(t[3].stress)},
-           {"stress intensity, comparison, choice of elements", "", "2.83", shown(t[0].decide),
-            shown(t[1].decide), shown(t[3].decide)},
-           {"in all", "0.03", "2.86", shown(*t[0].stress + *t[0].decide),
-            shown(*t[1].stress + *t[1].decide), shown(*t[3].stress + *t[3].decide)}},
-          true};
+  return {
+      "table-3",
+      "Deciding which element ruptures. The paper: s. Ours: ms, median.",
+      {"", "paper A [s]", "paper B [s]", "ours A [ms]", "ours B formula [ms]", "ours B field [ms]"},
+      {{"stress distribution", "", "0.03", shown(t[0].stress), shown(t[1].stress),
+        shown(t[3].stress)},
+       {"stress intensity, comparison, choice of elements", "", "2.83", shown(t[0].decide),
+        shown(t[1].decide), shown(t[3].decide)},
+       {"in all", "0.03", "2.86", shown(*t[0].stress + *t[0].decide),
+        shown(*t[1].stress + *t[1].decide), shown(*t[3].stress + *t[3].decide)}},
+      true};
 }
 
 }  // namespace

@@ -204,9 +204,9 @@ Chapter k_along_crack(const Laboratory& lab) {
                   {}};
   DataTable table{"k-along-crack",
                   "One row per advance.",
-                  {"driven by", "length a [mm]", "pull [N]", "K, formula [MPa sqrt(mm)]",
-                   "K, field [MPa sqrt(mm)]", "K_I [MPa sqrt(mm)]", "K_II [MPa sqrt(mm)]",
-                   "angle, formula [deg]", "angle, field [deg]", "field's note"},
+                  {"driven by", "length a [mm]", "pull [N]", "formula K [MPa sqrt(mm)]",
+                   "field K [MPa sqrt(mm)]", "K_I [MPa sqrt(mm)]", "K_II [MPa sqrt(mm)]",
+                   "angle by formula K [deg]", "angle by field K [deg]", "field's note"},
                   {},
                   true};
   for (const KChoice& k : both_k()) {
