@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fracture/field_sif/field_intensity.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "fracture/crack_path.hpp"
+#include "fracture/stress_intensity.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -47,6 +49,49 @@ Vec2 mean_direction(const Crack& crack, std::size_t tip, double length) {
   const Vec2 back =
       tail.path.empty() ? Vec2(Vec2::Zero()) : Vec2(tail.path.back() - tail.path.front());
   return back.norm() > 0 ? Vec2(back.normalized()) : crack.tips[tip].direction;
+}
+
+/// Points of the path at equal distances behind the tip, the tip left out; none when the path is
+/// shorter than `length`.
+std::vector<Vec2> sampled_tail(const Crack& crack, std::size_t tip, double length, int count) {
+  const std::vector<Vec2> points = path_from_tip(crack, tip);
+  std::vector<Vec2> samples;
+  double passed = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Vec2 step = points[i + 1] - points[i];
+    const double size = step.norm();
+    for (double next = length / count * static_cast<double>(samples.size() + 1);
+         next <= passed + size && static_cast<int>(samples.size()) < count;
+         next = length / count * static_cast<double>(samples.size() + 1))
+      samples.push_back(points[i] + step * ((next - passed) / size));
+    passed += size;
+  }
+  if (static_cast<int>(samples.size()) < count) samples.clear();
+  return samples;
+}
+
+/// Direction at the tip of a path that bends smoothly: tangent of the parabola through the tip that
+/// fits the path's last R best. Its mean direction over R/2 lags behind by a quarter of R, which on
+/// a curved path turns K_I into K_II. None where no parabola fits (a kink, a short path).
+std::optional<Vec2> fitted_direction(const Crack& crack, std::size_t tip, double radius, double h) {
+  constexpr int kSamples = 12;
+  constexpr double kFits = 0.15;  // largest rms distance to the parabola, in h
+  const TipFrame frame{crack.tips[tip].position, mean_direction(crack, tip, radius / 2)};
+  const auto samples = sampled_tail(crack, tip, radius, kSamples);
+  if (samples.empty()) return std::nullopt;
+  Eigen::Matrix<double, kSamples, 2> powers;
+  Eigen::Matrix<double, kSamples, 1> offsets;
+  for (int k = 0; k < kSamples; ++k) {
+    const Vec2 x = frame.local(samples[static_cast<std::size_t>(k)]);
+    powers.row(k) << x.x(), x.x() * x.x();
+    offsets[k] = x.y();
+  }
+  const Eigen::Matrix2d normal = powers.transpose() * powers;
+  if (!(normal.determinant() > 0)) return std::nullopt;
+  const Vec2 fit = normal.inverse() * (powers.transpose() * offsets);
+  const double rms = (powers * fit - offsets).norm() / std::sqrt(double{kSamples});
+  if (!(rms <= kFits * h)) return std::nullopt;
+  return Vec2(frame.direction + fit.x() * left_of(frame.direction)).normalized();
 }
 
 bool straight(const Crack& tail, const TipFrame& frame, double tolerance) {
@@ -149,7 +194,8 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   const Vec2& position = crack.tips[tip].position;
   FieldIntensity result;
   result.radius = radius;
-  result.frame = {position, mean_direction(crack, tip, radius / 2)};
+  result.frame = {position, fitted_direction(crack, tip, radius, board_.h())
+                                .value_or(mean_direction(crack, tip, radius / 2))};
   const auto part = thin(radius) ? FreeSurface::Part::outline : FreeSurface::Part::all;
   const TipDomain domain = builder_.collect(position, radius, view.destroyed, part, stretch);
   if (domain.elements.empty()) return result;  // nothing left to carry a field

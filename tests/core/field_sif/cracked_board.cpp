@@ -108,6 +108,9 @@ std::vector<Support> supports(const GridLines& g, const Mesh& mesh,
            Axes{1}));
   if (options.held_flat)
     held.push_back(hold(nodes_where(mesh, [](const Vec3&) { return true; }), Axes{4}));
+  if (options.held_in_plane)
+    held = {hold(nodes_where(mesh, [](const Vec3&) { return true; }), Axes{3}),
+            hold({lower_right}, Axes{4})};
   return held;
 }
 
@@ -120,6 +123,7 @@ Scene board_scene(const GridLines& lines, double from, double to, double y,
   if (options.jitter > 0) shake(lines, options.jitter, scene.mesh);
   scene.materials["board"] = {options.young, options.poisson, 2.0};
   scene.supports = supports(lines, scene.mesh, options);
+  scene.fracture.alpha = options.alpha;
   return scene;
 }
 
@@ -187,6 +191,19 @@ CrackedBoard::CrackedBoard(const GridLines& lines, double from, double to, doubl
   const auto elements =
       options.made == CrackMade::deleted ? row_elements(lines, from, to, y) : std::vector<Index>{};
   set_crack(edge ? CrackKind::edge : CrackKind::internal, {from, y}, {to, y}, elements);
+}
+
+void CrackedBoard::load_antiplane(double s_yz) {
+  const auto& x = problem().mesh().nodes;
+  double top = 0;
+  for (const Vec3& p : x) top = std::max(top, p.y());
+  for (const FreeFace& face : free_faces(problem().mesh())) {
+    const auto& [a, b, c] = face.nodes;
+    const Vec3 area = (x[b] - x[a]).cross(x[c] - x[a]) / 2;
+    const double y = (x[a] + x[b] + x[c]).y() / 3;
+    if (std::abs(std::abs(y) - top) > kClose) continue;
+    for (Index n : face.nodes) add_force(n, Vec3(0, 0, s_yz * area.y() / 3));
+  }
 }
 
 void CrackedBoard::load_pair(double at, double per_thickness) {

@@ -43,25 +43,52 @@ void CrackedBody::set_crack(CrackKind kind, const Vec2& from, const Vec2& to,
   for (Index e : elements) destroyed_[e] = 1;
 }
 
+void CrackedBody::find_fine_part() {
+  if (fine_) return;
+  const Mesh& mesh = problem_->mesh();
+  std::vector<double> size;  // longest edge
+  for (const auto& tet : mesh.tets) {
+    size.push_back(0);
+    for (Index a : tet)
+      for (Index b : tet)
+        size.back() = std::max(size.back(), (mesh.nodes[a] - mesh.nodes[b]).norm());
+  }
+  std::vector<double> sorted = size;
+  const auto tenth = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
+  std::nth_element(sorted.begin(), tenth, sorted.end());
+  const double fine = 1.6 * *tenth;
+  fine_mesh_ = std::make_unique<Mesh>();
+  fine_mesh_->nodes = mesh.nodes;
+  fine_mesh_->volumes = mesh.volumes;
+  for (Index e = 0; e < mesh.tet_count(); ++e) {
+    if (size[static_cast<std::size_t>(e)] > fine) continue;
+    fine_elements_.push_back(e);
+    fine_mesh_->tets.push_back(mesh.tets[e]);
+    fine_mesh_->volume_of.push_back(0);
+  }
+  fine_ = std::make_unique<fracture::Board>(*fine_mesh_, Vec3(0, 0, 1));
+}
+
 void CrackedBody::grow(std::size_t tip, const Vec2& direction, double length) {
   const Vec2 g = in_plane(direction).normalized();
-  const double h = board_->h();
-  const fracture::ElementView view{[&](Index e) { return !destroyed_[e]; },
+  find_fine_part();
+  const double h = fine_->h();
+  const fracture::ElementView view{[&](Index e) { return !destroyed_[fine_elements_[e]]; },
                                    [](Index) { return 1.0; }};
   const int sense = fracture::orientation(crack_, tip);
   for (double left = length; left > h / 2;) {
     const fracture::Ray ray{crack_.tips[tip].position, g, &crack_, sense};
-    const fracture::Band band = fracture::find_band(*board_, ray, view);
+    const fracture::Band band = fracture::find_band(*fine_, ray, view);
     // The K whose reach is what is left (Eq. 1 at theta = 0, yield 1).
     const double k = std::sqrt(2 * std::numbers::pi * left);
     const fracture::Walk walk = fracture::walk_band(band, h, k, 0, view);
     if (!(walk.advance > 0)) throw std::runtime_error("the crack finds nothing ahead of it");
     std::map<Index, std::int8_t> labels;
     for (const fracture::Passed& passed : walk.passed) {
-      destroyed_[passed.element] = 1;
-      crack_.elements.push_back(passed.element);
-      for (Index n : problem_->mesh().tets[passed.element])
-        if (const int side = fracture::node_side(*board_, ray, band.near_side, n))
+      destroyed_[fine_elements_[passed.element]] = 1;
+      crack_.elements.push_back(fine_elements_[passed.element]);
+      for (Index n : fine_mesh_->tets[passed.element])
+        if (const int side = fracture::node_side(*fine_, ray, band.near_side, n))
           labels[n] = static_cast<std::int8_t>(side * sense);
     }
     for (const auto& [node, side] : labels) crack_.side[node] = side;

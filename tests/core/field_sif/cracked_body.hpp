@@ -22,7 +22,8 @@ class CrackedBody {
   void set_crack(CrackKind kind, const Vec2& from, const Vec2& to,
                  const std::vector<Index>& elements);
   /// Moves a tip along `direction` (in x and y) by as much as rule 10 of method.md makes of
-  /// `length`: the elements that the ray separates are taken out.
+  /// `length`: the elements that the ray separates are taken out. h is that of the finest elements:
+  /// a body that grows coarser far away would have a larger mean.
   void grow(std::size_t tip, const Vec2& direction, double length);
 
   /// Uniform stress on the outer faces: s_xx on the sides, s_yy on top and bottom, s_xy on all.
@@ -40,6 +41,8 @@ class CrackedBody {
 
   [[nodiscard]] const Problem& problem() const { return *problem_; }
   [[nodiscard]] const fracture::Board& board() const { return *board_; }
+  /// Of the finest elements, what grow() takes for h; after the first grow().
+  [[nodiscard]] double fine_h() const { return fine_->h(); }
   [[nodiscard]] const Crack& crack() const { return crack_; }
   [[nodiscard]] fracture::FieldIntensityMeter& meter() { return *meter_; }
   [[nodiscard]] fracture::FieldView view() const;
@@ -60,9 +63,14 @@ class CrackedBody {
     return board_->plane().project(Vec3(p.x(), p.y(), 0));
   }
 
+  void find_fine_part();
+
   std::unique_ptr<Problem> problem_;
   std::unique_ptr<fracture::Board> board_;
   std::unique_ptr<fracture::FieldIntensityMeter> meter_;
+  std::unique_ptr<Mesh> fine_mesh_;  // of the finest elements, all nodes
+  std::unique_ptr<fracture::Board> fine_;
+  std::vector<Index> fine_elements_;
   Crack crack_;
   std::vector<std::uint8_t> destroyed_;
   std::vector<double> force_, displacement_;  // shape (3 * nodes)

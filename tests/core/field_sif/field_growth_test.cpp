@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/field_sif/held_strip.hpp"
+#include "fracture/field_sif/field_intensity.hpp"
 
 namespace sunder {
 namespace {
@@ -84,6 +85,93 @@ TEST(FieldGrowth, ShearTurnsTheCrack) {
   EXPECT_LT(std::abs(first(up).theta), 10);
   EXPECT_GT(std::abs(first(right).theta), std::abs(first(up).theta) + 5);
   EXPECT_LT(first(right).theta * *first(right).k_2, 0);
+}
+
+/// Runs a scene to its end; every K told must be a number.
+Torn run(Scene scene) {
+  auto problem = std::make_shared<const Problem>(std::move(scene));
+  Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
+  while (!simulation.done()) simulation.step();
+  for (const DestroyedElement& row : simulation.destroyed()) {
+    if (!row.sif) continue;
+    EXPECT_TRUE(std::isfinite(row.sif->k) && std::isfinite(row.sif->theta)) << row.element;
+    EXPECT_TRUE(row.sif->k_1 && std::isfinite(*row.sif->k_1)) << row.element;
+  }
+  return {simulation.destroyed(), simulation.cracks()};
+}
+
+TEST(FieldGrowth, EndsAtTheFarEdge) {
+  const Torn torn = run(test::HeldStrip{}.scene(SifSource::field, {0, 14, 0}));
+  EXPECT_TRUE(torn.cracks[0].tips[0].ended);
+  EXPECT_GT(torn.cracks[0].length, 19);
+}
+
+TEST(FieldGrowth, RestsAtMaterialThatHolds) {
+  Scene scene = test::HeldStrip{}.scene(SifSource::field, {0, 8, 0});
+  scene.mesh = test::structured_board({20, 21, 1, 20, 21, 1}, [](const Vec3& x) {
+    return std::string(x.x() > 12 ? "holding" : "board");
+  });
+  scene.materials["holding"] = {500, 0.3, std::nullopt};
+  const Torn torn = run(std::move(scene));
+  EXPECT_GT(torn.cracks[0].length, 8);
+  EXPECT_LT(torn.cracks[0].length, 12.5);
+  EXPECT_FALSE(torn.cracks[0].tips[0].ended);
+  std::string first, last;
+  for (const DestroyedElement& row : torn.rows) {
+    if (!row.sif) continue;
+    if (last.empty() && row.sif->a < 7) first = row.sif->field_note;
+    last = row.sif->field_note;
+  }
+  EXPECT_EQ(first, "");  // 6 h away the ring shrinks to what is free of it
+  EXPECT_EQ(last, "material");
+}
+
+TEST(FieldGrowth, TwoCracksMeet) {
+  Scene scene = test::HeldStrip{}.scene(SifSource::field, {0, 10, 0});
+  PresetCrack other;
+  other.elements = Box{{14, 10, -1}, {21, 11, 2}};
+  other.mouth = Vec3(20, 10.5, 0.5);
+  other.tips = {Vec3(14, 10.5, 0.5)};
+  scene.cracks.push_back(other);
+  const Torn torn = run(std::move(scene));
+  ASSERT_EQ(torn.cracks.size(), 2u);
+  EXPECT_GT(torn.cracks[0].length + torn.cracks[1].length, 18);
+  bool warned = false;
+  for (const DestroyedElement& row : torn.rows)
+    warned |= row.sif && row.sif->field_note.find("damage") != std::string::npos;
+  EXPECT_TRUE(warned);
+}
+
+TEST(FieldGrowth, GripsOnTheFacesBelongToTheField) {
+  // Forceps hold the notch's upper face 2.5 h behind the tip, within the ring, and pull.
+  Scene scene = test::HeldStrip{}.scene(SifSource::field, {0, 0, 0});
+  Instrument forceps;
+  forceps.name = "forceps";
+  forceps.action = Grip{Box{{2.9, 10.99, -1}, {4.1, 11.01, 2}}, Vec3(0, 6, 0), Axes{2}};
+  scene.instruments.push_back(forceps);
+  scene.steps = 1;
+  auto problem = std::make_shared<const Problem>(std::move(scene));
+  Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
+  const fracture::Board board(problem->mesh(), {});
+  fracture::FieldIntensityMeter meter(*problem, board);
+  std::vector<double> without, small;
+  simulation.observe_frames([&] {
+    const fracture::FieldView view{simulation.backend().destroyed(),
+                                   [&](std::span<const Index> nodes, std::span<Vec3> u) {
+                                     simulation.backend().read_displacement(nodes, u);
+                                   },
+                                   {}};
+    without.push_back(meter.at(simulation.cracks()[0], 0, view).factors.k_1);
+    small.push_back(meter.at(simulation.cracks()[0], 0, view, 1.9).factors.k_1);
+  });
+  simulation.step();
+  for (const DestroyedElement& row : simulation.destroyed()) {
+    if (!row.sif) continue;
+    EXPECT_NEAR(*row.sif->k_1 / small[0], 1, 0.1);  // a ring that ends before the forceps
+    EXPECT_GT(std::abs(without[0] / small[0] - 1), 0.3);
+    return;
+  }
+  FAIL() << "the notch did not grow";
 }
 
 TEST(FieldGrowth, SameRunTwice) {

@@ -15,6 +15,19 @@ inline double tada_edge(double x) {
          std::cos(t);
 }
 
+/// The same from a singular integral equation, exact to the digits printed (Kaya and Erdogan 1987,
+/// Quarterly of Applied Mathematics 45:105); a/W = .1 to .6.
+inline double kaya_erdogan_edge(int tenths) {
+  constexpr double kFactor[] = {1.1892, 1.3673, 1.6599, 2.1114, 2.8246, 4.0332};
+  return kFactor[tenths - 1];
+}
+
+/// Edge crack under antiplane shear in a strip, K_III / (t sqrt(pi a)); exact (Tada, Paris, Irwin).
+inline double antiplane_edge(double x) {
+  const double t = std::numbers::pi * x / 2;
+  return std::sqrt(std::tan(t) / t);
+}
+
 /// The same as a polynomial, 0.5 % up to a/W = 0.6 (Gross and Srawley 1964; Brown and Srawley
 /// 1966).
 inline double polynomial_edge(double x) {

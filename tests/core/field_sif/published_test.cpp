@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/field_sif/grown_cracks.hpp"
 #include "core/field_sif/published.hpp"
 #include "core/field_sif/verification_cases.hpp"
 
@@ -22,6 +23,8 @@ constexpr double kIrregular = 0.03;  // nodes shifted by a quarter of h
 constexpr double kEnergy = 0.04;
 constexpr double kAngled = 0.04;
 constexpr double kForcePair = 0.03;
+constexpr double kAntiplane = 0.02;
+constexpr double kCurved = 0.04;  // of sqrt(K_I^2 + K_II^2), radius 28 h
 
 CrackedBoard pulled(Notch notch, int n, double share, const CrackedBoardOptions& options = {}) {
   CrackedBoard board = notched_strip(notch, n, share, options);
@@ -122,6 +125,51 @@ TEST(Published, AngledCrack) {
     const auto k = board.intensity(kRing, tip).factors;
     EXPECT_NEAR(k.k_1 / (scale * c * c), 1, kAngled);
     EXPECT_NEAR(k.k_2 / (scale * s * c), 1, kAngled);
+  }
+}
+
+TEST(Published, WithTheProgramsAlpha) {
+  CrackedBoardOptions options;
+  options.alpha = 1e-6;
+  auto board = pulled(Notch::edge, 40, 0.6, options);
+  EXPECT_NEAR(board.intensity(kRing).factors.k_1 / published_intensity(Notch::edge, 40, 0.6), 1,
+              kFortieth);
+}
+
+TEST(Published, AntiplaneShear) {
+  auto board = antiplane_strip(40, 0.4);
+  const auto k = board.intensity(kRing).factors;
+  const double reference = antiplane_edge(0.4) * std::sqrt(std::numbers::pi * 16);
+  EXPECT_NEAR(std::abs(k.k_3) / reference, 1, kAntiplane);
+  EXPECT_LT(std::hypot(k.k_1, k.k_2), 1e-4 * reference);
+}
+
+TEST(Published, CrackGrownAcrossTheGrid) {
+  const double angle = std::numbers::pi / 6, c = std::cos(angle), s = std::sin(angle);
+  auto plate = square_plate(18, 100);
+  grow_inclined(plate, 30, 10);
+  plate.load_uniform(0, 1, 0);
+  plate.solve();
+  const double scale = std::sqrt(std::numbers::pi * plate.crack().length / 2);
+  for (int tip : {0, 1}) {
+    const auto k = plate.intensity(kRing, tip).factors;
+    EXPECT_NEAR(k.k_1 / (scale * c * c), 1, kAngled);
+    EXPECT_NEAR(k.k_2 / (scale * s * c), 1, kAngled);
+  }
+}
+
+TEST(Published, CurvedCrack) {
+  const double radius = 28;
+  auto plate = square_plate(16, 280);
+  grow_arc(plate, radius, radius * std::numbers::pi / 12);
+  plate.load_uniform(0, 1, 0);
+  plate.solve();
+  const ArcIntensity exact = arc_intensity(radius, plate.crack().length / 2 / radius);
+  const double scale = std::hypot(exact.k_1, exact.k_2);
+  for (int tip : {0, 1}) {
+    const auto k = plate.intensity(kRing, tip).factors;
+    EXPECT_NEAR(k.k_1 / scale, exact.k_1 / scale, kCurved);
+    EXPECT_NEAR(std::abs(k.k_2) / scale, exact.k_2 / scale, kCurved);
   }
 }
 

@@ -32,19 +32,28 @@ double published_intensity(Notch notch, int n, double share) {
   return factor * std::sqrt(std::numbers::pi * a);
 }
 
-double energy_release_intensity(Notch notch, int n, double share) {
+double energy_release_intensity(Notch notch, int n, double share, int layers, double constraint) {
   const CrackedBoardOptions options;
   double energy[2];
   for (int k = 0; k < 2; ++k) {
-    CrackedBoard board = strip(notch, n, crack_cells(n, share) + 2 * k - 1, options);
+    CrackedBoard board = strip(notch, n, crack_cells(n, share) + 2 * k - 1, options, layers);
     board.load_uniform(0, 1, 0);
     board.solve();
     energy[k] = board.energy();
   }
   // Under a fixed load the strain energy grows by what the crack takes: G t da = dU.
-  const double thickness = 1;
-  const double release = (energy[1] - energy[0]) / (2 * thickness);
-  return std::sqrt(options.young * release);  // plane stress
+  const double release = (energy[1] - energy[0]) / (2.0 * layers);
+  const fracture::TipMaterial material{options.young, options.poisson, constraint};
+  return std::sqrt(material.effective_young() * release);
+}
+
+CrackedBoard antiplane_strip(int n, double share) {
+  CrackedBoardOptions options;
+  options.held_in_plane = true;
+  CrackedBoard board = strip(Notch::edge, n, crack_cells(n, share), options);
+  board.load_antiplane(1);
+  board.solve();
+  return board;
 }
 
 CrackedBoard thick_strip(int n, double share, int layers, bool held_flat) {

@@ -18,8 +18,10 @@ enum class Notch { edge, centre };
                                          const CrackedBoardOptions& options = {});
 [[nodiscard]] double published_intensity(Notch notch, int n, double share);
 
-/// K from the energy release between cracks one cell shorter and one cell longer.
-[[nodiscard]] double energy_release_intensity(Notch notch, int n, double share);
+/// K from the energy release between cracks one cell shorter and one cell longer; `constraint` as
+/// in TipMaterial.
+[[nodiscard]] double energy_release_intensity(Notch notch, int n, double share, int layers = 1,
+                                              double constraint = 0);
 
 /// A crack of length 2a, a = `cells` cells, in the middle of a plate 20 a wide; cells grow with the
 /// distance from the crack.
@@ -27,6 +29,10 @@ enum class Notch { edge, centre };
 
 /// As notched_strip with an edge notch, `layers` cells thick.
 [[nodiscard]] CrackedBoard thick_strip(int n, double share, int layers, bool held_flat);
+
+/// A strip held in its plane and sheared along its thickness by unit stress at top and bottom: mode
+/// III alone, the same in every plane.
+[[nodiscard]] CrackedBoard antiplane_strip(int n, double share);
 
 /// Ring radii in cells [mm for h = 1].
 inline constexpr double kRing = 6.0;
