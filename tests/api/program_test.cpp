@@ -166,7 +166,7 @@ class CProgram : public testing::TestWithParam<const char*> {};
 
 TEST_P(CProgram, GivesTheSameBits) {
   const std::string path = std::string(SUNDER_SCENES "/") + GetParam() + ".toml";
-  const std::vector<std::string> overrides = {"time.steps=15"};
+  const std::vector<std::string> overrides = {"time.steps=20"};
   const TempFolder folder;
   const Outcome run = run_program({"run", path, "--backend", "cpu", "--set", overrides[0], "--out",
                                    (folder / "out").string(), "--quiet"});

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sunder on a host's own Vulkan device: the solver's fields land in vertex buffers on the device,
+// for the host's shaders, with no read-back. Needs no Vulkan header: dispatchable handles
+// (VkInstance, VkPhysicalDevice, VkDevice, VkQueue, VkCommandBuffer) are passed as void*, others
+// (VkBuffer, VkSemaphore) as 64-bit numbers.
+//
+// The library creates its own buffers, pipelines and command buffers on the device, submits to the
+// one queue that it is lent, and destroys what it created with the simulation, which must happen
+// before the host destroys the device. It never destroys, resets or waits for anything of the
+// host's. After any failure the host's device is as usable as before.
+//
+// sunder_simulation_step submits its compute work to the lent queue and waits for it, under the
+// lock if one is given. Then either sunder_vulkan_record or sunder_vulkan_submit brings the fields
+// to the buffers.
+#ifndef SUNDER_SUNDER_VULKAN_H
+#define SUNDER_SUNDER_VULKAN_H
+
+#include <sunder/sunder.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Features of VkPhysicalDeviceFeatures and VkPhysicalDeviceVulkan12Features that the host enabled.
+enum {
+  SUNDER_VULKAN_SHADER_FLOAT64 = 1,     ///< needed
+  SUNDER_VULKAN_SHADER_INT64 = 2,       ///< used on lavapipe when it is there
+  SUNDER_VULKAN_TIMELINE_SEMAPHORE = 4  ///< needed by sunder_vulkan_submit with a semaphore
+};
+
+/// Part of a VkBuffer. This struct has no version: it never changes.
+typedef struct sunder_vulkan_buffer {
+  uint64_t buffer;  ///< VkBuffer; 0: none
+  uint64_t offset;  ///< [bytes]
+  uint64_t size;    ///< [bytes]
+} sunder_vulkan_buffer;
+
+typedef void (*sunder_vulkan_function)(void);
+/// PFN_vkGetInstanceProcAddr.
+typedef sunder_vulkan_function (*sunder_vulkan_get_function)(void* instance, const char* name);
+typedef void (*sunder_vulkan_lock_function)(void* user);
+
+typedef struct sunder_vulkan_host {
+  uint32_t struct_size;
+  uint32_t api_version;  ///< VkApplicationInfo::apiVersion of the instance, at least 1.2
+  sunder_vulkan_get_function get_instance_proc_addr;
+  void* instance;
+  void* physical_device;
+  void* device;
+  void* queue;            ///< must be able to compute
+  uint32_t queue_family;  ///< of the queue
+  uint32_t features;      ///< a sum of SUNDER_VULKAN_*
+  /// Called around each vkQueueSubmit, when other threads of the host use the queue. Both or none.
+  sunder_vulkan_lock_function lock, unlock;
+  void* lock_user;
+  /// Buffers of the host's to write to, with usage STORAGE_BUFFER, offset a multiple of 256, at
+  /// least the sizes that sunder_vulkan_display states; 0: the library makes its own, with usage
+  /// VERTEX_BUFFER | STORAGE_BUFFER | TRANSFER_SRC.
+  sunder_vulkan_buffer displacement, stress, live;
+} sunder_vulkan_host;
+
+/// A simulation on the host's device. The scene's backend must be auto or vulkan.
+/// SUNDER_ERROR_DEVICE names a feature that is missing.
+SUNDER_API sunder_status sunder_vulkan_create(sunder_scene scene, const sunder_vulkan_host* host,
+                                              const sunder_callbacks* callbacks,
+                                              sunder_simulation* simulation);
+
+typedef struct sunder_vulkan_display {
+  uint32_t struct_size;
+  uint32_t nodes, tets;
+  uint32_t reserved;
+  sunder_vulkan_buffer displacement;  ///< per node, stride 16: x, y, z [mm] in fp32, and 0
+  sunder_vulkan_buffer stress;  ///< per element, stride 8: yield measure [MPa], its ratio to yield
+  sunder_vulkan_buffer live;    ///< per element, stride 4: uint32, 1, or 0 where destroyed
+} sunder_vulkan_display;
+
+/// Where the fields are. Stress is 0 when it was left out of the scene.
+SUNDER_API sunder_status sunder_vulkan_get_display(sunder_simulation simulation,
+                                                   sunder_vulkan_display* display);
+/// Records one dispatch into `command_buffer` (VkCommandBuffer of the lent queue's family, in the
+/// recording state, outside a render pass) that brings the fields of the last step to the buffers.
+/// It waits for all earlier commands of the queue; all later commands of the queue, in any stage,
+/// see what it wrote. It leaves bound: a compute pipeline, descriptor set 0 of its layout, push
+/// constants. Nothing is copied or submitted. The host must have the command buffer executed and
+/// completed before the next step of this simulation; it may execute it again then.
+SUNDER_API sunder_status sunder_vulkan_record(sunder_simulation simulation, void* command_buffer);
+
+typedef struct sunder_vulkan_signals {
+  uint32_t struct_size;
+  uint32_t reserved;
+  uint64_t wait_semaphore;  ///< timeline VkSemaphore; 0: none
+  uint64_t wait_value;      ///< the buffers are written after this is reached
+  uint64_t signal_semaphore;
+  uint64_t signal_value;  ///< reached when the buffers hold the fields
+} sunder_vulkan_signals;
+
+/// The same in a submit of its own: waits, writes the buffers, signals, and returns at once. The
+/// next step waits for it, so what it waits for must be under way.
+SUNDER_API sunder_status sunder_vulkan_submit(sunder_simulation simulation,
+                                              const sunder_vulkan_signals* signals);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// On a host's own Vulkan device: the same bits as on a device of ours, fields in buffers without
+// submit or copy, typed refusals, and a host whose device survives all of it.
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+
+#include "api/c_scene.hpp"
+#include "api/vulkan_host.hpp"
+
+namespace sunder::test {
+namespace {
+
+constexpr int kTets = 96, kNodes = 50;
+
+class CVulkan : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("SUNDER_EXPECT_NO_VULKAN")) {
+      GTEST_SKIP() << "no Vulkan device is expected";
+    }
+    host.emplace();
+    scene = board_scene(SUNDER_BACKEND_VULKAN);
+  }
+  void TearDown() override {
+    if (!host) return;
+    if (simulation) {
+      EXPECT_OK(sunder_simulation_destroy(simulation));
+    }
+    EXPECT_OK(sunder_scene_destroy(scene));
+    EXPECT_FALSE(VulkanHost::calls.nested);
+    EXPECT_FALSE(VulkanHost::calls.submitted_unlocked);
+    EXPECT_EQ(VulkanHost::calls.device_waits, 0);
+  }
+  void create() { create(host->lend()); }
+  void create(const sunder_vulkan_host& lent) {
+    ASSERT_OK(sunder_vulkan_create(scene, &lent, nullptr, &simulation));
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  }
+  [[nodiscard]] sunder_vulkan_display display() const {
+    sunder_vulkan_display d{};
+    d.struct_size = sizeof d;
+    EXPECT_OK(sunder_vulkan_get_display(simulation, &d));
+    return d;
+  }
+  [[nodiscard]] static std::vector<double> displacement(sunder_simulation of) {
+    std::vector<double> u(3 * kNodes);
+    EXPECT_OK(sunder_simulation_displacement(of, u.data(), u.size()));
+    return u;
+  }
+  /// The display buffers hold what the fields are.
+  void expect_shown(const std::vector<std::byte>& u, const std::vector<std::byte>& stress,
+                    const std::vector<std::byte>& live) const {
+    const std::vector<double> nodal = displacement(simulation);
+    std::vector<double> ratio(kTets);
+    std::vector<std::uint8_t> destroyed(kTets);
+    EXPECT_OK(sunder_simulation_yield_ratio(simulation, ratio.data(), ratio.size()));
+    EXPECT_OK(sunder_simulation_destroyed(simulation, destroyed.data(), destroyed.size()));
+    std::vector<float> shown(4 * kNodes), colour(2 * kTets);
+    std::vector<std::uint32_t> alive(kTets);
+    ASSERT_EQ(u.size(), shown.size() * 4);
+    ASSERT_EQ(stress.size(), colour.size() * 4);
+    ASSERT_EQ(live.size(), alive.size() * 4);
+    std::memcpy(shown.data(), u.data(), u.size());
+    std::memcpy(colour.data(), stress.data(), stress.size());
+    std::memcpy(alive.data(), live.data(), live.size());
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(shown[4 * n + axis], static_cast<float>(nodal[3 * n + axis]));
+      }
+    }
+    for (std::size_t e = 0; e < kTets; ++e) {
+      EXPECT_EQ(alive[e], destroyed[e] ? 0u : 1u);
+      // Two ways to a principal stress in fp32.
+      EXPECT_NEAR(static_cast<double>(colour[2 * e + 1]), ratio[e], 1e-5 * (1 + ratio[e]));
+    }
+  }
+  void expect_shown() const {
+    const auto d = display();
+    expect_shown(host->read(d.displacement), host->read(d.stress), host->read(d.live));
+  }
+  void record() {
+    host->run(
+        [&](VkCommandBuffer commands) { EXPECT_OK(sunder_vulkan_record(simulation, commands)); });
+  }
+
+  std::optional<VulkanHost> host;
+  sunder_scene scene = nullptr;
+  sunder_simulation simulation = nullptr;
+};
+
+TEST_F(CVulkan, GivesTheSameBitsAsADeviceOfItsOwn) {
+  create();
+  sunder_simulation own = nullptr;
+  ASSERT_OK(sunder_simulation_create(scene, nullptr, &own));
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+    ASSERT_OK(sunder_simulation_step(own, nullptr));
+    EXPECT_EQ(displacement(simulation), displacement(own)) << i;
+  }
+  std::int32_t count = 0;
+  ASSERT_OK(sunder_simulation_event_count(simulation, &count));
+  EXPECT_GT(count, 0);
+  EXPECT_OK(sunder_simulation_destroy(own));
+}
+
+TEST_F(CVulkan, BringsTheFieldsToItsBuffersInTheHostsCommands) {
+  create();
+  for (int i = 0; i < 4; ++i) {
+    steps(1);
+    record();
+    expect_shown();
+  }
+}
+
+TEST_F(CVulkan, AddsNoSubmitAndNoCopyToTheFrame) {
+  create();
+  steps(1);
+  record();
+  const Calls before = VulkanHost::calls;
+  record();
+  EXPECT_EQ(VulkanHost::calls.submits, before.submits);
+  EXPECT_EQ(VulkanHost::calls.copies, before.copies);
+  EXPECT_EQ(VulkanHost::calls.dispatches, before.dispatches + 1);
+  EXPECT_EQ(VulkanHost::calls.locks, VulkanHost::calls.submits) << "one lock a submit";
+}
+
+TEST_F(CVulkan, WritesToTheHostsBuffersAndNotBeside) {
+  constexpr VkDeviceSize kBefore = 256, kAfter = 64;
+  constexpr VkBufferUsageFlags kUsage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
+  auto lent = host->lend();
+  const VkDeviceSize sizes[] = {16 * kNodes, 8 * kTets, 4 * kTets};
+  sunder_vulkan_buffer* const parts[] = {&lent.displacement, &lent.stress, &lent.live};
+  std::vector<VulkanHost::Memory> memory;
+  for (std::size_t i = 0; i < 3; ++i) {
+    memory.push_back(host->allocate(kBefore + sizes[i] + kAfter, kUsage));
+    *parts[i] = {reinterpret_cast<std::uint64_t>(memory[i].buffer), kBefore, sizes[i]};
+  }
+  create(lent);
+  EXPECT_EQ(display().stress.buffer, lent.stress.buffer);
+  EXPECT_EQ(display().stress.offset, kBefore);
+  steps(3);
+  record();
+  std::vector<std::vector<std::byte>> shown;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto* bytes = static_cast<const std::byte*>(memory[i].mapped);
+    shown.emplace_back(bytes + kBefore, bytes + kBefore + sizes[i]);
+    const auto untouched = [](std::byte b) { return b == std::byte{0xa5}; };
+    EXPECT_TRUE(std::all_of(bytes, bytes + kBefore, untouched));
+    EXPECT_TRUE(std::all_of(bytes + kBefore + sizes[i], bytes + memory[i].size, untouched));
+  }
+  expect_shown(shown[0], shown[1], shown[2]);
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+  simulation = nullptr;
+  for (const auto& m : memory) host->free(m);
+}
+
+TEST_F(CVulkan, SubmitsBetweenTimelineSemaphores) {
+  create();
+  steps(1);
+  const VkSemaphore wait = host->timeline(), signal = host->timeline();
+  sunder_vulkan_signals signals{};
+  signals.struct_size = sizeof signals;
+  signals.wait_semaphore = reinterpret_cast<std::uint64_t>(wait);
+  signals.wait_value = 3;
+  signals.signal_semaphore = reinterpret_cast<std::uint64_t>(signal);
+  signals.signal_value = 7;
+  const int before = VulkanHost::calls.submits;
+  ASSERT_OK(sunder_vulkan_submit(simulation, &signals));
+  EXPECT_EQ(VulkanHost::calls.submits, before + 1);
+  std::uint64_t value = 99;
+  ASSERT_EQ(vkGetSemaphoreCounterValue(host->device, signal, &value), VK_SUCCESS);
+  EXPECT_EQ(value, 0u) << "it has not waited";
+  VkSemaphoreSignalInfo go{};
+  go.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO;
+  go.semaphore = wait;
+  go.value = 3;
+  ASSERT_EQ(vkSignalSemaphore(host->device, &go), VK_SUCCESS);
+  VkSemaphoreWaitInfo done{};
+  done.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+  done.semaphoreCount = 1;
+  done.pSemaphores = &signal;
+  done.pValues = &signals.signal_value;
+  ASSERT_EQ(vkWaitSemaphores(host->device, &done, 10'000'000'000), VK_SUCCESS);
+  expect_shown();
+  // Without semaphores: the next step waits for it by itself.
+  sunder_vulkan_signals none{};
+  none.struct_size = sizeof none;
+  ASSERT_OK(sunder_vulkan_submit(simulation, &none));
+  steps(1);
+  ASSERT_OK(sunder_vulkan_submit(simulation, &none));
+}
+
+TEST_F(CVulkan, RunsWithoutTheFeaturesThatItCanDoWithout) {
+  VulkanHost::Options few;
+  few.int64 = few.timeline = false;
+  sunder_simulation there = nullptr;
+  std::optional<VulkanHost> other(few);
+  const auto lent = other->lend();
+  ASSERT_OK(sunder_vulkan_create(scene, &lent, nullptr, &there));
+  ASSERT_OK(sunder_simulation_step(there, nullptr));
+  sunder_vulkan_signals signals{};
+  signals.struct_size = sizeof signals;
+  signals.signal_semaphore = 1;
+  EXPECT_EQ(sunder_vulkan_submit(there, &signals), SUNDER_ERROR_DEVICE);
+  EXPECT_NE(std::string(sunder_last_error()).find("timelineSemaphore"), std::string::npos);
+  EXPECT_OK(sunder_simulation_destroy(there));
+}
+
+struct Refusal {
+  const char* name;
+  sunder_status status;
+  const char* says;
+  void (*change)(sunder_vulkan_host&);
+};
+
+TEST_F(CVulkan, RefusesByName) {
+  const Refusal refusals[] = {
+      {"float64", SUNDER_ERROR_DEVICE, "shaderFloat64",
+       [](auto& h) { h.features = SUNDER_VULKAN_SHADER_INT64; }},
+      {"version", SUNDER_ERROR_DEVICE, "Vulkan 1.1",
+       [](auto& h) { h.api_version = VK_API_VERSION_1_1; }},
+      {"get", SUNDER_ERROR_DEVICE, "vkGetInstanceProcAddr",
+       [](auto& h) { h.get_instance_proc_addr = nullptr; }},
+      {"instance", SUNDER_ERROR_DEVICE, "the instance", [](auto& h) { h.instance = nullptr; }},
+      {"physical", SUNDER_ERROR_DEVICE, "physical device",
+       [](auto& h) { h.physical_device = nullptr; }},
+      {"device", SUNDER_ERROR_DEVICE, "the device", [](auto& h) { h.device = nullptr; }},
+      {"queue", SUNDER_ERROR_DEVICE, "the queue", [](auto& h) { h.queue = nullptr; }},
+      {"family", SUNDER_ERROR_DEVICE, "queue family 77", [](auto& h) { h.queue_family = 77; }},
+      {"lock", SUNDER_ERROR_NULL, "pairs", [](auto& h) { h.unlock = nullptr; }},
+      {"size", SUNDER_ERROR_DEVICE, "800",
+       [](auto& h) {
+         h.displacement = {1, 0, 16};
+       }},
+      {"offset", SUNDER_ERROR_DEVICE, "multiple of 256",
+       [](auto& h) {
+         h.live = {1, 4, 4096};
+       }},
+      {"struct", SUNDER_ERROR_STRUCT_SIZE, "host", [](auto& h) { h.struct_size = 1; }},
+  };
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(refusal.name);
+    auto lent = host->lend();
+    refusal.change(lent);
+    EXPECT_EQ(sunder_vulkan_create(scene, &lent, nullptr, &simulation), refusal.status);
+    EXPECT_NE(std::string(sunder_last_error()).find(refusal.says), std::string::npos)
+        << sunder_last_error();
+    ASSERT_EQ(simulation, nullptr);
+  }
+  EXPECT_EQ(sunder_vulkan_create(scene, nullptr, nullptr, &simulation), SUNDER_ERROR_NULL);
+  create();  // and the device works all the same
+  steps(1);
+}
+
+TEST_F(CVulkan, MisuseGivesStatuses) {
+  auto lent = host->lend();
+  const sunder_scene on_cpu = board_scene(SUNDER_BACKEND_CPU);
+  EXPECT_EQ(sunder_vulkan_create(on_cpu, &lent, nullptr, &simulation), SUNDER_ERROR_VALUE);
+  EXPECT_EQ(sunder_vulkan_create(nullptr, &lent, nullptr, &simulation), SUNDER_ERROR_HANDLE);
+  EXPECT_OK(sunder_scene_destroy(on_cpu));
+  create();
+  EXPECT_EQ(sunder_vulkan_record(simulation, nullptr), SUNDER_ERROR_NULL);
+  host->run([&](VkCommandBuffer commands) {
+    EXPECT_EQ(sunder_vulkan_record(simulation, commands), SUNDER_ERROR_ORDER) << "no step yet";
+  });
+  EXPECT_EQ(sunder_vulkan_submit(simulation, nullptr), SUNDER_ERROR_NULL);
+  EXPECT_EQ(sunder_vulkan_get_display(simulation, nullptr), SUNDER_ERROR_NULL);
+  const sunder_simulation elsewhere = board_simulation();
+  sunder_vulkan_display d{};
+  d.struct_size = sizeof d;
+  EXPECT_EQ(sunder_vulkan_get_display(elsewhere, &d), SUNDER_ERROR_ORDER);
+  EXPECT_OK(sunder_simulation_destroy(elsewhere));
+}
+
+TEST_F(CVulkan, CyclesLeaveNothing) {
+  const char* asked = std::getenv("SUNDER_CYCLES");
+  const int count = asked ? std::atoi(asked) : 20;
+  const sunder_scene small = board_scene(SUNDER_BACKEND_VULKAN, 2);
+  const auto lent = host->lend();
+  for (int i = 0; i < count; ++i) {
+    sunder_simulation s = nullptr;
+    ASSERT_OK(sunder_vulkan_create(small, &lent, nullptr, &s));
+    ASSERT_OK(sunder_simulation_step(s, nullptr));
+    ASSERT_OK(sunder_simulation_destroy(s));
+  }
+  EXPECT_OK(sunder_scene_destroy(small));
+  // ~VulkanHost asks the validation layer for objects that were left behind.
+}
+
+}  // namespace
+}  // namespace sunder::test
