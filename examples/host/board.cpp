@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "board.hpp"
+
+#include <algorithm>
+
+namespace {
+
+constexpr int kCells = 16, kRow = kCells + 1;
+constexpr double kWidth = 50, kThickness = 2, kFrame = 5;  // mm
+constexpr double kPull = -24;                              // mm
+enum Material { kUpper, kLower, kStiff };
+
+void add_material(sunder_scene scene, double young, double yield) {
+  sunder_material material;
+  sunder_material_init(&material);
+  material.young = young;
+  material.poisson = 0.4;
+  material.yield = yield;  // 0: unbreakable
+  check(sunder_scene_add_material(scene, &material, nullptr));
+}
+
+sunder_selection box(double x0, double y0, double x1, double y1) {
+  sunder_selection s{};
+  s.kind = SUNDER_SELECT_BOX;
+  s.min[0] = x0, s.min[1] = y0, s.min[2] = 0;
+  s.max[0] = x1, s.max[1] = y1, s.max[2] = kThickness;
+  return s;
+}
+
+void add_tools(sunder_scene scene) {
+  sunder_support top;
+  sunder_support_init(&top);
+  top.nodes = box(0, kWidth, kWidth, kWidth);
+  check(sunder_scene_add_support(scene, &top));
+  sunder_instrument forceps;
+  sunder_instrument_init(&forceps);
+  forceps.name = "right forceps";
+  forceps.nodes = box(kWidth, 0, kWidth, 0);
+  forceps.kind = SUNDER_DISPLACEMENT;
+  forceps.axes = SUNDER_AXIS_Y;
+  forceps.value[1] = kPull;
+  forceps.has_ramp = 1;
+  forceps.ramp[1] = 0.75;
+  check(sunder_scene_add_instrument(scene, &forceps, nullptr));
+}
+
+}  // namespace
+
+Board::Board() {
+  static constexpr int kCut[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
+                                     {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+  for (int n = 0; n < 2 * kRow * kRow; ++n) {
+    nodes.push_back(n % kRow * kWidth / kCells);
+    nodes.push_back(n / kRow % kRow * kWidth / kCells);
+    nodes.push_back(n / (kRow * kRow) * kThickness);
+  }
+  for (int cell = 0; cell < kCells * kCells; ++cell) {
+    const int first = cell % kCells + cell / kCells * kRow;
+    const double y = (cell / kCells + 0.5) * kWidth / kCells;
+    const bool frame = y < kFrame || y > kWidth - kFrame;
+    for (const auto& cut : kCut) {
+      for (const int c : cut) {
+        tets.push_back(first + c % 2 + c / 2 % 2 * kRow + c / 4 * kRow * kRow);
+      }
+      material_of.push_back(frame ? kStiff : y > kWidth / 2 ? kUpper : kLower);
+    }
+  }
+  pulled_node = kRow * kRow + kCells;
+}
+
+sunder_scene make_scene(const Board& board, std::int32_t steps) {
+  sunder_scene scene = nullptr;
+  check(sunder_scene_create(&scene));
+  check(sunder_scene_set_mesh(scene, board.nodes.data(), board.nodes.size(), board.tets.data(),
+                              board.tets.size(), board.material_of.data(),
+                              board.material_of.size()));
+  add_material(scene, 5, 2);
+  add_material(scene, 8, 4);
+  add_material(scene, 500, 0);
+  add_tools(scene);
+  sunder_fracture_options fracture;
+  sunder_fracture_options_init(&fracture);
+  fracture.model = SUNDER_FRACTURE_B;
+  fracture.birth = SUNDER_BIRTH_THROUGH;
+  fracture.max_events = 1;  // so that the tear can be watched
+  check(sunder_scene_set_fracture(scene, &fracture));
+  check(sunder_scene_set_steps(scene, steps));
+  return scene;
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// A trainer in small: its own Vulkan device and renderer, and a board that tears on that device.
+//   host PICTURE.png
+#include <cstdio>
+#include <exception>
+#include <iterator>
+
+#include "board.hpp"
+#include "device.hpp"
+#include "renderer.hpp"
+
+namespace {
+
+constexpr int kSteps = 40;
+constexpr int kPanelEnds[] = {24, 29, kSteps};  // steps that each part of the picture shows last
+
+sunder_simulation lend(const Device& device, sunder_scene scene) {
+  sunder_vulkan_host host{};
+  host.struct_size = sizeof host;
+  host.api_version = VK_API_VERSION_1_2;
+  host.get_instance_proc_addr = reinterpret_cast<sunder_vulkan_get_function>(vkGetInstanceProcAddr);
+  host.instance = device.instance;
+  host.physical_device = device.physical;
+  host.device = device.handle;
+  host.queue = device.queue;
+  host.queue_family = device.family;
+  host.features = SUNDER_VULKAN_SHADER_FLOAT64 | (device.int64 ? SUNDER_VULKAN_SHADER_INT64 : 0);
+  sunder_simulation simulation = nullptr;
+  check(sunder_vulkan_create(scene, &host, nullptr, &simulation));
+  return simulation;
+}
+
+void run(Device& device, const char* path) {
+  const Board board;
+  const sunder_scene scene = make_scene(board, kSteps);
+  const sunder_simulation simulation = lend(device, scene);
+  check(sunder_scene_destroy(scene));
+  sunder_vulkan_display display{};
+  display.struct_size = sizeof display;
+  check(sunder_vulkan_get_display(simulation, &display));
+  {
+    Renderer renderer(device, board, display, std::size(kPanelEnds));
+    sunder_step step{};
+    step.struct_size = sizeof step;
+    std::uint32_t panel = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      check(sunder_simulation_step(simulation, &step));
+      renderer.frame(simulation, panel);
+      if (i + 1 == kPanelEnds[panel]) {
+        std::printf("part %u: step %d, %d elements destroyed\n", panel++, i + 1, step.destroyed);
+      }
+    }
+    renderer.save(path);
+  }
+  check(sunder_simulation_destroy(simulation));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 2) return std::fprintf(stderr, "usage: host PICTURE.png\n"), 2;
+  Device device;
+  run(device, argv[1]);
+  for (const std::string& message : device.messages) std::fprintf(stderr, "%s\n", message.c_str());
+  return device.messages.empty() ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "host: %s\n", error.what());
+  return 1;
+}

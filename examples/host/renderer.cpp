@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer.hpp"
+
+#include <cmath>
+
+#include "picture.hpp"
+
+namespace {
+
+#include "body_vert.h"
+#include "flat_frag.h"
+#include "mark_vert.h"
+
+constexpr VkFormat kColour = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFLOAT;
+constexpr VkClearColorValue kBackground{{1, 1, 1, 1}};
+
+struct Push {
+  std::array<float, 16> view;  // columns
+  std::array<float, 4> along;
+  std::uint32_t node;
+};
+
+/// Parallel projection of the board, turned a little so that its thickness is seen [mm -> clip].
+std::array<float, 16> view() {
+  const float scale = 1.0f / 41, c = std::cos(0.25f), s = std::sin(0.25f);
+  const float aspect = static_cast<float>(Renderer::kPanel) / Renderer::kHeight;
+  // x' = c x + s z, y' = -y (down), z' = -s x + c z; middle of the picture at (22, 14).
+  return {c * scale,
+          0,
+          -s / 200,
+          0,
+          0,
+          -scale * aspect,
+          0,
+          0,
+          s * scale,
+          0,
+          -c / 200,
+          0,
+          -22 * c * scale,
+          14 * scale * aspect,
+          0.5f + 22 * s / 200,
+          1};
+}
+
+VkShaderModule shader(const Device& device, std::span<const std::uint32_t> words) {
+  VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+  info.codeSize = words.size_bytes();
+  info.pCode = words.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(device.handle, &info, nullptr, &module), "vkCreateShaderModule");
+  return module;
+}
+
+std::vector<float> padded(const std::vector<double>& nodes) {
+  std::vector<float> result;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    result.push_back(static_cast<float>(nodes[n]));
+    if (n % 3 == 2) result.push_back(0);
+  }
+  return result;
+}
+
+}  // namespace
+
+Renderer::Renderer(Device& device, const Board& board, const sunder_vulkan_display& display,
+                   std::uint32_t panels)
+    : device_(device),
+      width_(panels * kPanel),
+      vertices_(static_cast<std::uint32_t>(12 * board.tet_count())),
+      pulled_node_(static_cast<std::uint32_t>(board.pulled_node)) {
+  const auto rest = padded(board.nodes);
+  rest_ =
+      device.buffer(rest.size() * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, rest.data());
+  tets_ = device.buffer(board.tets.size() * sizeof(std::int32_t),
+                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, board.tets.data());
+  pixels_ =
+      device.buffer(VkDeviceSize{4} * width_ * kHeight, VK_BUFFER_USAGE_TRANSFER_DST_BIT, nullptr);
+  create_image(kColour,
+               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                   VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+               VK_IMAGE_ASPECT_COLOR_BIT, colour_, colour_memory_, colour_view_);
+  create_image(kDepth, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT,
+               depth_, depth_memory_, depth_view_);
+  create_pass();
+  create_descriptors(display);
+  body_ = create_pipeline(body_vert);
+  mark_ = create_pipeline(mark_vert);
+  create_commands();
+  clear_picture();
+}
+
+Renderer::~Renderer() {
+  const VkDevice d = device_.handle;
+  vkDestroyFence(d, done_, nullptr);
+  vkDestroyCommandPool(d, command_pool_, nullptr);
+  vkDestroyPipeline(d, body_, nullptr);
+  vkDestroyPipeline(d, mark_, nullptr);
+  vkDestroyPipelineLayout(d, layout_, nullptr);
+  vkDestroyDescriptorPool(d, pool_, nullptr);
+  vkDestroyDescriptorSetLayout(d, set_layout_, nullptr);
+  vkDestroyFramebuffer(d, frame_, nullptr);
+  vkDestroyRenderPass(d, pass_, nullptr);
+  for (VkImageView view : {colour_view_, depth_view_}) vkDestroyImageView(d, view, nullptr);
+  for (VkImage image : {colour_, depth_}) vkDestroyImage(d, image, nullptr);
+  for (VkDeviceMemory memory : {colour_memory_, depth_memory_}) vkFreeMemory(d, memory, nullptr);
+  for (const Buffer& buffer : {rest_, tets_, pixels_}) device_.destroy(buffer);
+}
+
+void Renderer::create_image(VkFormat format, VkImageUsageFlags usage, VkImageAspectFlags aspect,
+                            VkImage& image, VkDeviceMemory& memory, VkImageView& view) {
+  VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = format;
+  info.extent = {width_, kHeight, 1};
+  info.mipLevels = info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = usage;
+  check(vkCreateImage(device_.handle, &info, nullptr, &image), "vkCreateImage");
+  VkMemoryRequirements needed{};
+  vkGetImageMemoryRequirements(device_.handle, image, &needed);
+  VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  allocate.allocationSize = needed.size;
+  allocate.memoryTypeIndex =
+      device_.memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  check(vkAllocateMemory(device_.handle, &allocate, nullptr, &memory), "vkAllocateMemory");
+  check(vkBindImageMemory(device_.handle, image, memory, 0), "vkBindImageMemory");
+  VkImageViewCreateInfo of{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+  of.image = image;
+  of.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  of.format = format;
+  of.subresourceRange = {aspect, 0, 1, 0, 1};
+  check(vkCreateImageView(device_.handle, &of, nullptr, &view), "vkCreateImageView");
+}
+
+void Renderer::create_pass() {
+  VkAttachmentDescription images[2]{};
+  images[0].format = kColour;
+  images[0].samples = images[1].samples = VK_SAMPLE_COUNT_1_BIT;
+  images[0].loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;  // the other panels stay
+  images[0].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  images[0].initialLayout = images[0].finalLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  images[1].format = kDepth;
+  images[1].loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  images[1].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  images[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+  const VkAttachmentReference colour{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+  VkSubpassDescription subpass{};
+  subpass.colorAttachmentCount = 1;
+  subpass.pColorAttachments = &colour;
+  subpass.pDepthStencilAttachment = &depth;
+  VkRenderPassCreateInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  info.attachmentCount = 2;
+  info.pAttachments = images;
+  info.subpassCount = 1;
+  info.pSubpasses = &subpass;
+  check(vkCreateRenderPass(device_.handle, &info, nullptr, &pass_), "vkCreateRenderPass");
+  const VkImageView views[] = {colour_view_, depth_view_};
+  VkFramebufferCreateInfo frame{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  frame.renderPass = pass_;
+  frame.attachmentCount = 2;
+  frame.pAttachments = views;
+  frame.width = width_;
+  frame.height = kHeight;
+  frame.layers = 1;
+  check(vkCreateFramebuffer(device_.handle, &frame, nullptr, &frame_), "vkCreateFramebuffer");
+}
+
+void Renderer::create_descriptors(const sunder_vulkan_display& display) {
+  constexpr std::uint32_t kCount = 5;
+  VkDescriptorSetLayoutBinding bindings[kCount]{};
+  for (std::uint32_t b = 0; b < kCount; ++b) {
+    bindings[b] = {b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, nullptr};
+  }
+  VkDescriptorSetLayoutCreateInfo layout{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  layout.bindingCount = kCount;
+  layout.pBindings = bindings;
+  check(vkCreateDescriptorSetLayout(device_.handle, &layout, nullptr, &set_layout_), "set layout");
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCount};
+  VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  pool.maxSets = pool.poolSizeCount = 1;
+  pool.pPoolSizes = &size;
+  check(vkCreateDescriptorPool(device_.handle, &pool, nullptr, &pool_), "descriptor pool");
+  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+  allocate.descriptorPool = pool_;
+  allocate.descriptorSetCount = 1;
+  allocate.pSetLayouts = &set_layout_;
+  check(vkAllocateDescriptorSets(device_.handle, &allocate, &set_), "descriptor set");
+
+  const auto of = [](const sunder_vulkan_buffer& b) {
+    return VkDescriptorBufferInfo{reinterpret_cast<VkBuffer>(b.buffer), b.offset, b.size};
+  };
+  const VkDescriptorBufferInfo buffers[kCount] = {{rest_.handle, 0, VK_WHOLE_SIZE},
+                                                  {tets_.handle, 0, VK_WHOLE_SIZE},
+                                                  of(display.displacement),
+                                                  of(display.stress),
+                                                  of(display.live)};
+  VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+  write.dstSet = set_;
+  write.descriptorCount = kCount;
+  write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  write.pBufferInfo = buffers;
+  vkUpdateDescriptorSets(device_.handle, 1, &write, 0, nullptr);
+
+  const VkPushConstantRange push{VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(Push)};
+  VkPipelineLayoutCreateInfo pipeline{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+  pipeline.setLayoutCount = pipeline.pushConstantRangeCount = 1;
+  pipeline.pSetLayouts = &set_layout_;
+  pipeline.pPushConstantRanges = &push;
+  check(vkCreatePipelineLayout(device_.handle, &pipeline, nullptr, &layout_), "pipeline layout");
+}
+
+VkPipeline Renderer::create_pipeline(std::span<const std::uint32_t> vertex) {
+  const VkShaderModule modules[] = {shader(device_, vertex), shader(device_, flat_frag)};
+  VkPipelineShaderStageCreateInfo stages[2]{};
+  for (int s = 0; s < 2; ++s) {
+    stages[s].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    stages[s].stage = s == 0 ? VK_SHADER_STAGE_VERTEX_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
+    stages[s].module = modules[s];
+    stages[s].pName = "main";
+  }
+  const VkPipelineVertexInputStateCreateInfo input{
+      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  VkPipelineInputAssemblyStateCreateInfo assembly{
+      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
+  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
+  viewport.viewportCount = viewport.scissorCount = 1;
+  VkPipelineRasterizationStateCreateInfo raster{
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+  raster.lineWidth = 1;
+  VkPipelineMultisampleStateCreateInfo samples{
+      VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
+  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  VkPipelineDepthStencilStateCreateInfo depth{
+      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
+  depth.depthCompareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
+  VkPipelineColorBlendAttachmentState opaque{};
+  opaque.colorWriteMask = 0xf;
+  VkPipelineColorBlendStateCreateInfo blend{
+      VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+  blend.attachmentCount = 1;
+  blend.pAttachments = &opaque;
+  const VkDynamicState states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
+  dynamic.dynamicStateCount = 2;
+  dynamic.pDynamicStates = states;
+  VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
+  info.stageCount = 2;
+  info.pStages = stages;
+  info.pVertexInputState = &input;
+  info.pInputAssemblyState = &assembly;
+  info.pViewportState = &viewport;
+  info.pRasterizationState = &raster;
+  info.pMultisampleState = &samples;
+  info.pDepthStencilState = &depth;
+  info.pColorBlendState = &blend;
+  info.pDynamicState = &dynamic;
+  info.layout = layout_;
+  info.renderPass = pass_;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device_.handle, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines");
+  for (VkShaderModule module : modules) vkDestroyShaderModule(device_.handle, module, nullptr);
+  return pipeline;
+}
+
+void Renderer::create_commands() {
+  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  pool.queueFamilyIndex = device_.family;
+  check(vkCreateCommandPool(device_.handle, &pool, nullptr, &command_pool_), "vkCreateCommandPool");
+  VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  info.commandPool = command_pool_;
+  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  info.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device_.handle, &info, &commands_), "vkAllocateCommandBuffers");
+  const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  check(vkCreateFence(device_.handle, &fence, nullptr, &done_), "vkCreateFence");
+}
+
+void Renderer::begin() {
+  const VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
+}
+
+void Renderer::submit() {
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  VkSubmitInfo info{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands_;
+  check(vkQueueSubmit(device_.queue, 1, &info, done_), "vkQueueSubmit");
+  check(vkWaitForFences(device_.handle, 1, &done_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check(vkResetFences(device_.handle, 1, &done_), "vkResetFences");
+}
+
+void Renderer::clear_picture() {
+  begin();
+  VkImageMemoryBarrier to{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+  to.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+  to.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  to.image = colour_;
+  to.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  to.srcQueueFamilyIndex = to.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                       0, 0, nullptr, 0, nullptr, 1, &to);
+  vkCmdClearColorImage(commands_, colour_, to.newLayout, &kBackground, 1, &to.subresourceRange);
+  to.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+  to.dstAccessMask = VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+  to.oldLayout = to.newLayout;
+  to.newLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                       VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                       &to);
+  submit();
+}
+
+void Renderer::frame(sunder_simulation simulation, std::uint32_t panel) {
+  begin();
+  check(sunder_vulkan_record(simulation, commands_));
+  VkClearValue depth{};
+  depth.depthStencil.depth = 1;
+  const VkClearValue clear[] = {{}, depth};
+  VkRenderPassBeginInfo info{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+  info.renderPass = pass_;
+  info.framebuffer = frame_;
+  info.renderArea.extent = {width_, kHeight};
+  info.clearValueCount = 2;
+  info.pClearValues = clear;
+  vkCmdBeginRenderPass(commands_, &info, VK_SUBPASS_CONTENTS_INLINE);
+  draw(panel);
+  vkCmdEndRenderPass(commands_);
+  submit();
+}
+
+void Renderer::draw(std::uint32_t panel) {
+  const VkRect2D area{{static_cast<std::int32_t>(panel * kPanel), 0}, {kPanel, kHeight}};
+  const VkViewport viewport{static_cast<float>(panel * kPanel), 0, kPanel, kHeight, 0, 1};
+  vkCmdSetViewport(commands_, 0, 1, &viewport);
+  vkCmdSetScissor(commands_, 0, 1, &area);
+  VkClearAttachment clear{};
+  clear.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+  clear.clearValue.color = kBackground;
+  const VkClearRect rect{area, 0, 1};
+  vkCmdClearAttachments(commands_, 1, &clear, 1, &rect);
+  vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0,
+                          nullptr);
+  const Push push{view(), {0, -9, 0, 0}, pulled_node_};
+  vkCmdPushConstants(commands_, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
+  vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, body_);
+  vkCmdDraw(commands_, vertices_, 1, 0, 0);
+  vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, mark_);
+  vkCmdDraw(commands_, 9, 1, 0, 0);
+}
+
+void Renderer::save(const std::string& path) {
+  begin();
+  VkImageMemoryBarrier to{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+  to.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+  to.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+  to.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  to.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  to.image = colour_;
+  to.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  to.srcQueueFamilyIndex = to.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                       VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &to);
+  VkBufferImageCopy whole{};
+  whole.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  whole.imageExtent = {width_, kHeight, 1};
+  vkCmdCopyImageToBuffer(commands_, colour_, to.newLayout, pixels_.handle, 1, &whole);
+  submit();
+  write_png(path, width_, kHeight,
+            {static_cast<const std::uint8_t*>(pixels_.mapped), std::size_t{4} * width_ * kHeight});
+}

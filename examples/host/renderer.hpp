@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws the body off screen, several moments side by side, from the solver's buffers.
+#pragma once
+
+#include <sunder/sunder_vulkan.h>
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "board.hpp"
+#include "device.hpp"
+
+class Renderer {
+ public:
+  static constexpr std::uint32_t kPanel = 600, kHeight = 700;  // pixels
+
+  Renderer(Device& device, const Board& board, const sunder_vulkan_display& display,
+           std::uint32_t panels);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// One frame in one submit: lets `simulation` bring its fields, then draws them into a panel.
+  void frame(sunder_simulation simulation, std::uint32_t panel);
+  void save(const std::string& path);
+
+ private:
+  void create_image(VkFormat format, VkImageUsageFlags usage, VkImageAspectFlags aspect,
+                    VkImage& image, VkDeviceMemory& memory, VkImageView& view);
+  void create_pass();
+  void create_descriptors(const sunder_vulkan_display& display);
+  [[nodiscard]] VkPipeline create_pipeline(std::span<const std::uint32_t> vertex);
+  void create_commands();
+  void begin();
+  void submit();
+  void draw(std::uint32_t panel);
+  void clear_picture();
+
+  Device& device_;
+  std::uint32_t width_, vertices_, pulled_node_;
+  Buffer rest_, tets_, pixels_;
+  VkImage colour_{}, depth_{};
+  VkDeviceMemory colour_memory_{}, depth_memory_{};
+  VkImageView colour_view_{}, depth_view_{};
+  VkRenderPass pass_{};
+  VkFramebuffer frame_{};
+  VkDescriptorSetLayout set_layout_{};
+  VkDescriptorPool pool_{};
+  VkDescriptorSet set_{};
+  VkPipelineLayout layout_{};
+  VkPipeline body_{}, mark_{};
+  VkCommandPool command_pool_{};
+  VkCommandBuffer commands_{};
+  VkFence done_{};
+};
