@@ -233,7 +233,8 @@ Chapter pressure_distance(const Laboratory& lab) {
                   "Scenes pressure-near and pressure-far: two instruments press the notch's faces "
                   "apart with 30 N each, at x = 46.5 mm and at its mouth, while a third pulls with "
                   "30 N. The paper takes the pressure \"from the stress distribution\"; here it is "
-                  "the applied force.",
+                  "the applied force. Eq. 4 is the K of a pair of forces on a crack in an infinite "
+                  "body; on a board the pair bends the halves open the more the farther it is.",
                   {},
                   {},
                   {},
@@ -301,6 +302,13 @@ Chapter pressure_side(const Laboratory& lab) {
         {"4c", "Pressure with the expansion raises the stress, against it lowers it.", k.name,
          judge_side_forces(
              {force(under, "pressure-under"), f_none, force(upper, "pressure-upper")})});
+    const auto f_upper = force(upper, "pressure-upper");
+    if (f_upper && f_none && *f_upper < *f_none)
+      chapter.findings.push_back(k.name +
+                                 ": a push on the upper face lowers the critical pull from " +
+                                 rounded(*f_none, 3) + " to " + rounded(*f_upper, 3) +
+                                 " N: against the expansion as it is, it opens the crack. Eq. 2 "
+                                 "takes it off by its sign.");
     for (const std::string& side : sides)
       models.push_back(
           {side + ", " + k.name, lab.run({"pressure-" + side, by, nullptr, 1, kSnapshots})});

@@ -13,6 +13,7 @@ constexpr double kAtTip = 3.0;  // h: within the band that the criterion itself 
 constexpr double kMostSnapshots = 0.75, kHalf = 0.5;
 constexpr double kFewShared = 0.5, kManyShared = 0.8;
 constexpr double kTurn = 5.0;      // deg: a deviation the eye sees on the paper's pictures
+constexpr double kDip = 0.1;       // of the height: not a turn of its own
 constexpr double kClearly = 0.05;  // 5 %: of forces, lengths
 constexpr double kAngleStep = 2.0, kStraight = 10.0;  // deg
 
@@ -73,12 +74,14 @@ Judgement judge_models_differ(std::optional<double> overlap) {
 }
 
 Judgement judge_up_then_down(const std::optional<Turns>& turns) {
-  const bool up = turns && turns->rise_deg >= kTurn;
+  const bool first = turns && -turns->dip <= kDip * turns->highest;
+  const bool up = turns && turns->rise_deg >= kTurn && first;
   const bool down = up && turns->fall_deg <= -kTurn;
   Judgement judgement{verdict_of(up && down, up),
                       "reproduced: mean slope at least " + rounded(kTurn, 2) +
-                          " deg up to the highest point and at least " + rounded(kTurn, 2) +
-                          " deg down from there; partly: up only",
+                          " deg up to the highest point, before it never lower than " +
+                          percent(kDip) + " of that height below the begin, and at least " +
+                          rounded(kTurn, 2) + " deg down from there; partly: up only",
                       {}};
   const auto number = [&](double Turns::*which) {
     return turns ? std::optional<double>((*turns).*which) : std::nullopt;
@@ -86,6 +89,7 @@ Judgement judge_up_then_down(const std::optional<Turns>& turns) {
   judgement.numbers = {{"slope to the highest point [deg]", number(&Turns::rise_deg)},
                        {"slope from there [deg]", number(&Turns::fall_deg)},
                        {"highest point [mm]", number(&Turns::highest)},
+                       {"lowest before it [mm]", number(&Turns::dip)},
                        {"height at the end [mm]", number(&Turns::end)}};
   return judgement;
 }

@@ -65,8 +65,10 @@ Turns turns_of(const GrownPath& path) {
   if (path.points.size() < 2) return {};
   const auto top = std::max_element(path.points.begin(), path.points.end(),
                                     [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); });
+  double dip = 0;
+  for (auto p = path.points.begin(); p != top; ++p) dip = std::min(dip, p->y());
   return {slope_deg(path.points.front(), *top), slope_deg(*top, path.points.back()), top->y(),
-          path.points.back().y()};
+          path.points.back().y(), dip};
 }
 
 Deviation deviation(const GrownPath& a, const GrownPath& b) {

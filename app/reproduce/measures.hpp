@@ -30,6 +30,7 @@ struct Turns {
   double fall_deg = 0;  ///< mean slope from there to the end, falling is negative
   double highest = 0;   ///< [mm]
   double end = 0;       ///< height of the last point [mm]
+  double dip = 0;       ///< lowest height before the highest point, 0 or below [mm]
 };
 [[nodiscard]] Turns turns_of(const GrownPath& path);
 

@@ -107,11 +107,14 @@ std::string csv(const DataTable& table) {
 
 std::string study_markdown(const Study& study) {
   std::string text =
-      "# The paper's statements and what comes out here\n\nWritten by `sunder reproduce" +
+      "<!-- SPDX-License-Identifier: Apache-2.0 -->\n# The paper's statements and what comes out "
+      "here\n\nWritten by `sunder reproduce" +
       std::string(study.quick ? " --quick" : "") +
       "` (`reproduction.md` in its result folder; `index.html` beside it has the figures, the "
       "rules "
-      "of the verdicts and every number). Statements in our words.\n\n"
+      "of the verdicts and every number), computed on " +
+      study.device + " in " + rounded(study.seconds, 3) +
+      " s. Statements in our words; times depend on what else the machine did.\n\n"
       "| | statement | K | verdict | numbers |\n|---|---|---|---|---|\n";
   for (const Chapter& chapter : study.chapters)
     for (const Statement& s : chapter.statements)

@@ -39,10 +39,11 @@ TEST(Judgement, ModelsDiffer) {
 }
 
 TEST(Judgement, UpThenDown) {
-  EXPECT_EQ(judge_up_then_down(Turns{6, -6, 3, 1}).verdict, reproduced);
-  EXPECT_EQ(judge_up_then_down(Turns{6, -4.9, 3, 2}).verdict, partly);
-  EXPECT_EQ(judge_up_then_down(Turns{4.9, -6, 3, 1}).verdict, no);
-  EXPECT_EQ(judge_up_then_down(Turns{0, -20, 0, -9}).verdict, no);  // down only
+  EXPECT_EQ(judge_up_then_down(Turns{6, -6, 3, 1, -0.2}).verdict, reproduced);
+  EXPECT_EQ(judge_up_then_down(Turns{6, -4.9, 3, 2, 0}).verdict, partly);
+  EXPECT_EQ(judge_up_then_down(Turns{4.9, -6, 3, 1, 0}).verdict, no);
+  EXPECT_EQ(judge_up_then_down(Turns{0, -20, 0, -9, 0}).verdict, no);  // down only
+  EXPECT_EQ(judge_up_then_down(Turns{6, 0, 3, 3, -1}).verdict, no);    // down, then up
   EXPECT_EQ(judge_up_then_down(none).verdict, no);
 }
 

@@ -41,6 +41,8 @@ TEST(GrownPath, TurnsAtItsHighestPoint) {
   EXPECT_NEAR(turns.fall_deg, -45, 1e-12);
   EXPECT_DOUBLE_EQ(turns.highest, 10);
   EXPECT_DOUBLE_EQ(turns.end, 0);
+  EXPECT_DOUBLE_EQ(turns.dip, 0);
+  EXPECT_DOUBLE_EQ(turns_of({{{0, 0}, {5, -2}, {9, 3}, {10, -7}}}).dip, -2);
   const Turns down = turns_of({{{0, 0}, {10, -10}}});
   EXPECT_DOUBLE_EQ(down.rise_deg, 0);
   EXPECT_NEAR(down.fall_deg, -45, 1e-12);
