@@ -35,6 +35,20 @@ FieldView field_view(const FractureState& state) {
           state.forces ? state.forces() : std::vector<NodalForce>{}};
 }
 
+/// The terms of the field with those of the formula beside them.
+SifTerms with_formula(SifTerms terms, const SifTerms& formula) {
+  terms.k_a = formula.k_a;
+  terms.k_b = formula.k_b;
+  terms.k_c = formula.k_c;
+  terms.sigma0 = formula.sigma0;
+  terms.beta = formula.beta;
+  terms.a = formula.a;
+  terms.b = formula.b;
+  terms.k_formula = formula.k_formula;
+  terms.theta_formula = formula.theta_formula;
+  return terms;
+}
+
 bool any_tip_left(const std::vector<Crack>& cracks) {
   return std::any_of(cracks.begin(), cracks.end(), [](const Crack& crack) {
     return std::any_of(crack.tips.begin(), crack.tips.end(),
@@ -78,33 +92,41 @@ std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& stat
                                                        std::vector<std::string>& warnings) {
   std::vector<DrivenTip> driven;
   if (!any_tip_left(cracks_)) return driven;
-  const PristineField field(problem_, board_, state.pristine_displacement());
-  const bool by_field = problem_.scene().fracture.sif == SifSource::field;
-  const FieldView view = by_field ? field_view(state) : FieldView{};
+  // The remote field of the intact body costs a solve; the field's K does without it.
+  std::optional<PristineField> remote;
+  if (!by_field()) remote.emplace(problem_, board_, state.pristine_displacement());
+  const FieldView view = by_field() ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
     const FacePressure pressure = face_pressure(board_, crack, state, warnings);
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
-      auto growth = tip_growth(board_, field, crack, tip, pressure, state);
-      if (by_field) {
-        const SifTerms terms =
-            growth ? growth->terms : formula_terms(board_, field, crack, tip, pressure, state);
-        growth = field_growth(meter_, crack, tip, view, terms, warnings);
-      }
+      auto growth = by_field() ? field_growth(meter_, crack, tip, view, warnings)
+                               : tip_growth(board_, *remote, crack, tip, pressure, state);
       if (growth) driven.push_back({crack.id, std::move(*growth)});
     }
   }
   return driven;
 }
 
-void Combined::add_field_terms(std::vector<DrivenTip>& driven, const FractureState& state) {
-  if (problem_.scene().fracture.sif == SifSource::field || !state.displacement) return;
-  const FieldView view = field_view(state);
+void Combined::add_other_terms(std::vector<DrivenTip>& driven, const FractureState& state) {
   std::vector<std::string> untold;  // the notes in the rows say it; nothing rests on these values
-  for (auto& [crack, growth] : driven) {
-    SifTerms& terms = growth.terms;
-    fracture::add_field_terms(meter_, cracks_[crack], static_cast<std::size_t>(terms.tip), view,
-                              terms, untold);
+  if (!by_field()) {
+    if (!state.displacement) return;
+    const FieldView view = field_view(state);
+    for (auto& [crack, growth] : driven)
+      add_field_terms(meter_, cracks_[crack], static_cast<std::size_t>(growth.terms.tip), view,
+                      growth.terms, untold);
+    return;
+  }
+  const PristineField remote(problem_, board_, state.pristine_displacement());
+  for (auto& [id, growth] : driven) {
+    const Crack& crack = cracks_[id];
+    const auto tip = static_cast<std::size_t>(growth.terms.tip);
+    const FacePressure pressure = face_pressure(board_, crack, state, untold);
+    const auto formula = tip_growth(board_, remote, crack, tip, pressure, state);
+    growth.terms = with_formula(
+        growth.terms,
+        formula ? formula->terms : formula_terms(board_, remote, crack, tip, pressure, state));
   }
 }
 
@@ -126,7 +148,7 @@ void Combined::grow(std::vector<DrivenTip>& driven, std::size_t which, const Fra
   }
   const Walk walk = walk_band(band, board_.h(), growth.terms.k, growth.theta, view);
   if (walk.passed.empty()) return;
-  if (decision.elements.empty()) add_field_terms(driven, state);  // no tip has moved yet
+  if (decision.elements.empty()) add_other_terms(driven, state);  // no tip has moved yet
   std::map<Index, std::int8_t> labels;  // all from the sides before this step
   for (const Passed& passed : walk.passed) {
     for (Index n : problem_.mesh().tets[passed.element])

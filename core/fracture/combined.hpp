@@ -33,8 +33,9 @@ class Combined final : public FractureCriterion {
   /// K and direction of all tips that have not ended, from one state.
   [[nodiscard]] std::vector<DrivenTip> driven_tips(const FractureState& state,
                                                    std::vector<std::string>& warnings);
-  /// With sif = "formula": what the field says of the same tips, for the rows that will tell.
-  void add_field_terms(std::vector<DrivenTip>& driven, const FractureState& state);
+  [[nodiscard]] bool by_field() const { return problem_.scene().fracture.sif == SifSource::field; }
+  /// What the other criterion says of the same tips, for the rows that will tell.
+  void add_other_terms(std::vector<DrivenTip>& driven, const FractureState& state);
   /// Moves one tip as far as it goes; its elements are added to the decision.
   void grow(std::vector<DrivenTip>& driven, std::size_t which, const FractureState& state,
             Decision& decision);

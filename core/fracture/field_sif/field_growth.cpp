@@ -33,9 +33,9 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
 
 std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& crack,
                                       std::size_t tip, const FieldView& view,
-                                      const SifTerms& formula, std::vector<std::string>& warnings) {
+                                      std::vector<std::string>& warnings) {
   TipGrowth growth;
-  growth.terms = formula;
+  growth.terms.tip = static_cast<int>(tip);
   const auto theta = add_field_terms(meter, crack, tip, view, growth.terms, warnings);
   if (!theta) return std::nullopt;
   growth.theta = *theta;

@@ -18,11 +18,10 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
                                       std::size_t tip, const FieldView& view, SifTerms& terms,
                                       std::vector<std::string>& warnings);
 
-/// K and direction of one tip by the field; none when nothing opens it. `formula`: the terms of
-/// Eq. 1 to 4, which are kept.
+/// K and direction of one tip by the field; none when nothing opens it. The terms of Eq. 2 to 4 are
+/// left at 0.
 [[nodiscard]] std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& crack,
                                                     std::size_t tip, const FieldView& view,
-                                                    const SifTerms& formula,
                                                     std::vector<std::string>& warnings);
 
 }  // namespace sunder::fracture
