@@ -8,27 +8,11 @@
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
 #include "support/direct_solution.hpp"
+#include "support/loads.hpp"
 #include "support/sequences.hpp"
-#include "support/table1_board.hpp"
 
 namespace sunder::test {
 namespace {
-
-constexpr double kPull = -60;  // [N]
-
-std::vector<double> corner_force(const Problem& problem) {
-  std::vector<double> force(3 * problem.mesh().nodes.size(), 0.0);
-  const Box box = lower_right_corner();
-  std::vector<Index> nodes;
-  for (Index n = 0; n < problem.node_count(); ++n) {
-    const Vec3& x = problem.mesh().nodes[n];
-    if ((x.array() >= box.min.array()).all() && (x.array() <= box.max.array()).all()) {
-      nodes.push_back(n);
-    }
-  }
-  for (Index n : nodes) force[3 * n + 1] = kPull / static_cast<double>(nodes.size());
-  return force;
-}
 
 double work(std::span<const double> f, std::span<const double> u) {
   double sum = 0;
@@ -62,7 +46,7 @@ TEST_P(Damage, FollowsAFreshFactorisation) {
   scene.solver.route = GetParam().route;
   if (GetParam().route == Route::inverse) scene.solver.update = Update::eager;
   Body body(std::move(scene));
-  const auto force = corner_force(*body.problem);
+  const auto force = corner_force(body.problem->mesh());
   const auto sequence = GetParam().crack ? crack_sequence(*body.problem, 200, 12)
                                          : scattered_sequence(*body.problem, 200);
   ASSERT_EQ(sequence.size(), 200u);
@@ -135,7 +119,7 @@ TEST_P(Cut, KeepsTheAttachedPartRight) {
   for (double v : body.displacement()) ASSERT_TRUE(std::isfinite(v));
   expect_accurate(body, force, kCutTolerance, ignored, "cut, load on the attached part");
 
-  const auto below = corner_force(*body.problem);  // 60 N on a piece held by 1e-6 of a row
+  const auto below = corner_force(body.problem->mesh());  // 60 N on a piece held by 1e-6 of a row
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += below[i] / 1e4;
   body.load(force);
   body.backend->solve();
@@ -164,12 +148,10 @@ TEST_P(Extremes, AreSolvedInDoublePrecision) {
   scene.solver.route = GetParam().route;
   if (GetParam().route == Route::inverse) scene.solver.update = Update::eager;
   scene.fracture.alpha = GetParam().alpha;
-  for (auto& [name, m] : scene.materials) {
-    m.poisson = GetParam().poisson;
-    if (!m.yield) m.young = 5 * GetParam().contrast;
-  }
+  set_poisson(scene, GetParam().poisson);
+  set_contrast(scene, GetParam().contrast);
   Body body(std::move(scene));
-  const auto force = corner_force(*body.problem);
+  const auto force = corner_force(body.problem->mesh());
   const auto sequence = crack_sequence(*body.problem, 50, 12);
   body.load(force);
   body.backend->solve();
@@ -199,13 +181,11 @@ TEST_P(BeyondExtremes, AreRightOrRefused) {
   scene.solver.route = GetParam().route;
   if (GetParam().route == Route::inverse) scene.solver.update = Update::eager;
   scene.fracture.alpha = GetParam().alpha;
-  for (auto& [name, m] : scene.materials) {
-    m.poisson = GetParam().poisson;
-    if (!m.yield) m.young = 5 * GetParam().contrast;
-  }
+  set_poisson(scene, GetParam().poisson);
+  set_contrast(scene, GetParam().contrast);
   try {
     Body body(std::move(scene));
-    const auto force = corner_force(*body.problem);
+    const auto force = corner_force(body.problem->mesh());
     body.backend->destroy(crack_sequence(*body.problem, 50, 12));
     body.load(force);
     body.backend->solve();

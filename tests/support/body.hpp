@@ -10,15 +10,9 @@
 #include "cpu_reference/cpu_reference.hpp"
 #include "sunder/backend.hpp"
 #include "sunder/problem.hpp"
+#include "support/loads.hpp"
 
 namespace sunder::test {
-
-/// Everything that a backend can be asked for.
-inline Needs all_needs() {
-  Needs needs;
-  needs.stress = needs.yield = needs.damage = needs.pristine = true;
-  return needs;
-}
 
 struct Body {
   explicit Body(Scene scene, Needs needs = all_needs())
@@ -27,15 +21,7 @@ struct Body {
 
   /// Sets nodal forces (3 * nodes; entries at supports are dropped) and the grips' displacements.
   void load(std::span<const double> force, std::vector<double> displacements = {}) const {
-    Load load;
-    for (std::size_t i = 0; i < force.size(); ++i) {
-      const Index d = problem->dofs()[i];
-      if (d == kNone || force[i] == 0) continue;
-      load.force_dofs.push_back(d);
-      load.forces.push_back(force[i]);
-    }
-    load.displacements = std::move(displacements);
-    backend->set_load(load);
+    backend->set_load(load_of(*problem, force, std::move(displacements)));
   }
 
   [[nodiscard]] std::vector<double> displacement() const {

@@ -33,6 +33,17 @@ inline Scene held_board() {
   return scene;
 }
 
+inline void set_poisson(Scene& scene, double poisson) {
+  for (auto& [name, material] : scene.materials) material.poisson = poisson;
+}
+
+/// Frames `contrast` times as stiff as the upper half; Table 1 has 100.
+inline void set_contrast(Scene& scene, double contrast) {
+  for (auto& [name, material] : scene.materials) {
+    if (!material.yield) material.young = 5 * contrast;
+  }
+}
+
 inline Scene pulled_board(const Vec3& force = Vec3(0, -60, 0)) {
   Scene scene = held_board();
   Instrument forceps;
