@@ -1,24 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Vulkan backend against the CPU reference: intact, after scattered removals, along a crack,
 // after a cut, at extreme contrast and compressibility, with grips, at odd sizes.
+#include <functional>
+#include <map>
+#include <numeric>
+#include <random>
 #include <set>
+#include <sstream>
 
 #include "fem/supports.hpp"
 #include "gpu_body.hpp"
+#include "pieces.hpp"
 
 namespace sunder::test {
 namespace {
 
 // Fp32 storage by the mixed recipe, any damage (design of the accuracy table).
 constexpr double kFp32Tolerance = 1e-4;
+// Eager fp32, intact and up to ten scattered fractures.
+constexpr double kEagerFp32Tolerance = 1e-3;
 
 class Agreement : public WithVulkan<testing::TestWithParam<Way>> {
  protected:
   [[nodiscard]] bool fp64() const { return GetParam().precision == Precision::fp64; }
   [[nodiscard]] bool eager() const { return GetParam().update == Update::eager; }
-  /// Eager fp32 promises its own tolerance only.
-  [[nodiscard]] double allowed(double of_fp64) const {
-    return fp64() ? of_fp64 : std::max(kFp32Tolerance, eager() ? GetParam().tolerance : 0.0);
+  /// Eager fp32 keeps 1e-3 over a few scattered fractures, and leaves for the mixed recipe before
+  /// its own tolerance is passed.
+  [[nodiscard]] double allowed(double of_fp64, bool short_scene = false) const {
+    if (fp64()) return of_fp64;
+    if (!eager()) return kFp32Tolerance;
+    return short_scene ? kEagerFp32Tolerance : GetParam().tolerance;
   }
   static void expect(const Pair::Errors& e, double allowed, const std::string& where) {
     EXPECT_TRUE(e.u <= allowed) << where << ": displacement error " << e.u;
@@ -31,38 +42,40 @@ class Agreement : public WithVulkan<testing::TestWithParam<Way>> {
     EXPECT_EQ(e.summary.candidate.element, e.reference_summary.candidate.element);
   }
 
-  /// Destroys a sequence one by one, and compares at some counts.
-  void follow(Pair& pair, const std::vector<Index>& sequence, std::vector<std::size_t> counts,
-              double tolerance) {
+  /// Destroys a sequence one by one, and compares at the accuracy table's counts up to `last`.
+  void follow(Pair& pair, const std::vector<Index>& sequence, std::size_t last, double tolerance,
+              bool scattered = false) {
     std::size_t done = 0;
-    for (std::size_t count : counts) {
+    for (std::size_t count : {1, 10, 50, 100, 200}) {
+      if (count > last) break;
       ASSERT_LE(count, sequence.size());
       for (; done < count; ++done) pair.destroy({&sequence[done], 1});
       const auto errors = pair.solve();
-      expect(errors, allowed(tolerance), std::to_string(count) + " fractures");
-      expect_same_summary(errors, allowed(tolerance));
+      const double most = allowed(tolerance, scattered && count <= 10);
+      expect(errors, most, std::to_string(count) + " fractures");
+      expect_same_summary(errors, most);
+      record(count, errors);
     }
+  }
+  /// The drift curve, in the test's report.
+  static void record(std::size_t count, const Pair::Errors& errors) {
+    const auto text = [](double value) { return (std::ostringstream() << value).str(); };
+    RecordProperty("u_after_" + std::to_string(count), text(errors.u));
+    RecordProperty("stress_after_" + std::to_string(count), text(errors.stress));
   }
 };
 
 TEST_P(Agreement, AlongACrack) {
   Pair pair(held_board(), GetParam());
   pair.load(corner_pull(pair.problem()));
-  expect(pair.solve(), allowed(kIntactTolerance), "intact");
-  // The eager update rewrites the whole inverse each time: fewer of them on a processor.
-  follow(
-      pair, crack_sequence(pair.problem(), 200, 10),
-      eager() ? std::vector<std::size_t>{1, 10, 50} : std::vector<std::size_t>{1, 10, 50, 100, 200},
-      kCrackTolerance);
+  expect(pair.solve(), allowed(kIntactTolerance, true), "intact");
+  follow(pair, crack_sequence(pair.problem(), 200, 10), 200, kCrackTolerance);
 }
 
 TEST_P(Agreement, Scattered) {
   Pair pair(held_board(), GetParam());
   pair.load(corner_pull(pair.problem()));
-  follow(
-      pair, scattered_sequence(pair.problem(), 200),
-      eager() ? std::vector<std::size_t>{1, 10, 20} : std::vector<std::size_t>{1, 10, 50, 100, 200},
-      kIntactTolerance);
+  follow(pair, scattered_sequence(pair.problem(), 200), 200, kIntactTolerance, true);
 }
 
 TEST_P(Agreement, AfterACutInOneEvent) {
@@ -85,6 +98,24 @@ TEST_P(Agreement, AfterACutInOneEvent) {
   }
 }
 
+// The force on the attached part keeps its field one worth checking; a little hangs below.
+TEST_P(Agreement, AfterACutElementByElement) {
+  Pair pair(held_board(), GetParam());
+  const Mesh& mesh = pair.problem().mesh();
+  std::vector<double> force =
+      shared_force(mesh, nodes_in(mesh, {Vec3(49.9, 35, -1), Vec3(51, 45, 3)}), Vec3(5, 0, 0));
+  const auto below = corner_force(mesh, Vec3(0, -6e-3, 0));
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += below[i];
+  pair.load(load_of(pair.problem(), force, {}));
+  for (Index e : elements_across(mesh, 26.5)) pair.destroy({&e, 1});
+  const auto pieces = find_loose_parts(pair.problem(), pair.reference->destroyed()).pieces;
+  ASSERT_EQ(pieces.size(), 1u);
+  std::vector<std::uint8_t> loose(mesh.tets.size(), 0);
+  for (Index e : pieces.front()) loose[static_cast<std::size_t>(e)] = 1;
+  expect(pair.solve(loose), allowed(kCutTolerance), "attached part");
+  for (double u : Pair::displacement(*pair.vulkan)) ASSERT_TRUE(std::isfinite(u));
+}
+
 TEST_P(Agreement, ManyElementsInOneEvent) {
   Pair pair(held_board(), GetParam());
   pair.load(corner_pull(pair.problem()));
@@ -94,26 +125,20 @@ TEST_P(Agreement, ManyElementsInOneEvent) {
 
 TEST_P(Agreement, ContrastOf10000) {
   Scene scene = held_board();
-  for (auto& [name, material] : scene.materials) {
-    if (!material.yield) material.young = 5e4;
-  }
+  set_contrast(scene, 1e4);
   Pair pair(std::move(scene), GetParam());
   pair.load(corner_pull(pair.problem()));
-  const auto crack = crack_sequence(pair.problem(), 20, 10);
   expect(pair.solve(), allowed(kCrackTolerance), "intact");
-  pair.destroy(crack);
-  expect(pair.solve(), allowed(kCrackTolerance), "20 fractures");
+  follow(pair, crack_sequence(pair.problem(), 50, 10), 50, kCrackTolerance);
 }
 
 TEST_P(Agreement, NearlyIncompressible) {
   Scene scene = held_board();
-  for (auto& [name, material] : scene.materials) material.poisson = 0.499;
+  set_poisson(scene, 0.499);
   Pair pair(std::move(scene), GetParam());
   pair.load(corner_pull(pair.problem()));
-  const auto crack = crack_sequence(pair.problem(), 20, 10);
   expect(pair.solve(), allowed(kCrackTolerance), "intact");
-  pair.destroy(crack);
-  expect(pair.solve(), allowed(kCrackTolerance), "20 fractures");
+  follow(pair, crack_sequence(pair.problem(), 50, 10), 50, kCrackTolerance);
 }
 
 TEST_P(Agreement, EveryNodeLoaded) {
@@ -198,6 +223,58 @@ Scene odd_scene(Index nx, Index ny, Index nz, const std::vector<Index>& keep) {
   }
   scene.materials["board"] = {5, 0.4, 2.0};
   return scene;
+}
+
+/// What is left of a random board when a third of its elements is taken away: of the pieces that
+/// hang together by faces, the largest.
+std::vector<Index> ragged(const Mesh& mesh, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::vector<std::uint8_t> gone(mesh.tets.size(), 0);
+  for (auto& g : gone) g = generator() % 3 == 0;
+  std::map<std::array<Index, 3>, std::vector<Index>> faces;
+  for (Index e = 0; e < mesh.tet_count(); ++e) {
+    if (gone[e]) continue;
+    for (int skip = 0; skip < 4; ++skip) {
+      std::array<Index, 3> face{};
+      for (int a = 0, f = 0; a < 4; ++a) {
+        if (a != skip) face[f++] = mesh.tets[e][a];
+      }
+      std::sort(face.begin(), face.end());
+      faces[face].push_back(e);
+    }
+  }
+  std::vector<Index> piece(mesh.tets.size());
+  std::iota(piece.begin(), piece.end(), 0);
+  const std::function<Index(Index)> root = [&](Index e) {
+    return piece[e] == e ? e : piece[e] = root(piece[e]);
+  };
+  for (const auto& [face, of] : faces) {
+    if (of.size() == 2) piece[root(of[1])] = root(of[0]);
+  }
+  std::map<Index, std::vector<Index>> pieces;
+  for (Index e = 0; e < mesh.tet_count(); ++e) {
+    if (!gone[e]) pieces[root(e)].push_back(e);
+  }
+  return std::max_element(
+             pieces.begin(), pieces.end(),
+             [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); })
+      ->second;
+}
+
+TEST_P(Agreement, RaggedMeshesOfOddSizes) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const auto cells = static_cast<Index>(3 + seed);
+    Scene whole = odd_scene(cells, 4, 2, {});
+    Scene scene = odd_scene(cells, 4, 2, ragged(whole.mesh, seed));
+    EXPECT_NE(scene.mesh.tets.size() % 64, 0u);
+    const auto& held = scene.mesh.tets[scene.mesh.tets.size() / 2];
+    scene.supports.push_back({std::vector<Index>{held.begin(), held.end()}, Axes{7}});
+    Pair pair(std::move(scene), GetParam());
+    std::vector<Index> nodes;
+    for (Index n = 0; n < pair.problem().node_count(); n += 3) nodes.push_back(n);
+    pair.load(pull(pair.problem(), nodes, Vec3(0.01, -0.02, 0.03)));
+    expect(pair.solve(), allowed(kIntactTolerance, true), "seed " + std::to_string(seed));
+  }
 }
 
 TEST_P(Agreement, OddSizes) {

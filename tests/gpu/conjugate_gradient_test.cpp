@@ -24,13 +24,21 @@ TEST_P(ConjugateGradient, IntactAndAlongACrack) {
   const auto intact = pair.solve();
   expect(intact, kIntactTolerance, "intact");
   EXPECT_GT(intact.report.iterations, 0);
-  const auto crack = crack_sequence(pair.problem(), 100, 10);
+  const auto crack = crack_sequence(pair.problem(), 200, 10);
   std::size_t done = 0;
-  for (const std::size_t count : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) {
+  for (const std::size_t count : {1, 10, 50, 100, 200}) {
     pair.destroy({&crack[done], count - done});
     done = count;
     expect(pair.solve(), kCrackTolerance, std::to_string(count) + " fractures");
   }
+}
+
+TEST_P(ConjugateGradient, Scattered) {
+  Pair pair(held_board(), way());
+  pair.load(corner_pull(pair.problem()));
+  const auto sequence = scattered_sequence(pair.problem(), 100);
+  pair.destroy(sequence);
+  expect(pair.solve(), kIntactTolerance, "100 fractures");
 }
 
 TEST_P(ConjugateGradient, GripsWithReactions) {
@@ -69,7 +77,7 @@ TEST_P(ConjugateGradient, AnUpdateOfTheInverseIsRefused) {
   Scene scene = held_board();
   scene.solver = {.backend = "vulkan", .route = Route::cg, .update = Update::eager};
   const auto problem = std::make_shared<const Problem>(std::move(scene));
-  EXPECT_THROW(static_cast<void>(gpu::create(problem, everything())), DeviceError);
+  EXPECT_THROW(static_cast<void>(gpu::create(problem, all_needs())), DeviceError);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ConjugateGradient,

@@ -11,18 +11,13 @@
 
 #include "cpu_reference/cpu_reference.hpp"
 #include "gpu/vulkan_backend.hpp"
+#include "sunder/simulation.hpp"
 #include "support/accuracy.hpp"
+#include "support/loads.hpp"
 #include "support/sequences.hpp"
 #include "support/structured_board.hpp"
-#include "support/table1_board.hpp"
 
 namespace sunder::test {
-
-inline Needs everything() {
-  Needs needs;
-  needs.stress = needs.yield = needs.damage = needs.pristine = true;
-  return needs;
-}
 
 /// Fails without a Vulkan device, unless SUNDER_EXPECT_NO_VULKAN says beforehand that there is
 /// none.
@@ -59,27 +54,59 @@ inline std::vector<Way> all_ways() {
 }
 
 inline std::string name_of(const Way& s) {
+  const char* how = s.route == Route::cg           ? "_cg"
+                    : s.update == Update::eager    ? "_eager"
+                    : s.update == Update::deferred ? "_deferred"
+                                                   : "";
   return std::string(s.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
-         (s.precision == Precision::fp64 ? "_fp64" : "_fp32") +
-         (s.update == Update::eager ? "_eager" : "_deferred");
+         (s.precision == Precision::fp64 ? "_fp64" : "_fp32") + how;
 }
 
-class Pair {
+inline std::shared_ptr<const Problem> vulkan_problem(Scene scene, const Way& way) {
+  scene.solver.backend = "vulkan";
+  scene.solver.precision = way.precision;
+  scene.solver.update = way.update;
+  scene.solver.tolerance = way.tolerance;
+  scene.solver.route = way.route;
+  return std::make_shared<Problem>(std::move(scene));
+}
+
+/// Makes Vulkan backends under validation with sentinels round every buffer. What these report
+/// while a backend lives or when it ends fails the test.
+class WatchedBackend {
  public:
-  Pair(Scene scene, const Way& way, Needs needs = everything())
-      : problem_(cpu_problem(scene)), vulkan_problem_(vulkan_problem(scene, way)) {
-    reference = cpu_reference::create(problem_, needs);
-    gpu::VulkanOptions options;
+  WatchedBackend(Scene scene, const Way& way) : problem(vulkan_problem(std::move(scene), way)) {
     options.instance.validation = true;
     options.instance.messages = messages_;
     options.probe.guard_bytes = 256;
     options.variant = way.variant;
     options.panel_bytes = way.panel_bytes;
-    vulkan = gpu::create(vulkan_problem_, needs, options);
   }
-  ~Pair() {
-    vulkan.reset();  // reports sentinels and what was left undestroyed
+  /// Every backend must be gone by then.
+  ~WatchedBackend() {
     for (const std::string& m : messages_->texts) ADD_FAILURE() << m;
+  }
+  WatchedBackend(const WatchedBackend&) = delete;
+  WatchedBackend& operator=(const WatchedBackend&) = delete;
+
+  [[nodiscard]] std::unique_ptr<Backend> create() const { return create(needs_of(*problem)); }
+  [[nodiscard]] std::unique_ptr<Backend> create(Needs needs) const {
+    return gpu::create(problem, std::move(needs), options);
+  }
+
+  std::shared_ptr<const Problem> problem;
+  gpu::VulkanOptions options;
+
+ private:
+  std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();
+};
+
+class Pair {
+ public:
+  Pair(Scene scene, const Way& way, const Needs& needs = all_needs())
+      : problem_(cpu_problem(scene)), watched_(std::move(scene), way) {
+    reference = cpu_reference::create(problem_, needs);
+    vulkan = watched_.create(needs);
   }
   Pair(const Pair&) = delete;
   Pair& operator=(const Pair&) = delete;
@@ -126,55 +153,17 @@ class Pair {
     return s;
   }
 
-  std::unique_ptr<Backend> reference, vulkan;
-
  private:
   static std::shared_ptr<const Problem> cpu_problem(Scene scene) {
     scene.solver = {};
     scene.solver.backend = "cpu";
     return std::make_shared<Problem>(std::move(scene));
   }
-  static std::shared_ptr<const Problem> vulkan_problem(Scene scene, const Way& way) {
-    scene.solver.backend = "vulkan";
-    scene.solver.precision = way.precision;
-    scene.solver.update = way.update;
-    scene.solver.tolerance = way.tolerance;
-    scene.solver.route = way.route;
-    return std::make_shared<Problem>(std::move(scene));
-  }
+  std::shared_ptr<const Problem> problem_;
+  WatchedBackend watched_;
 
-  std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();
-  std::shared_ptr<const Problem> problem_, vulkan_problem_;
+ public:
+  std::unique_ptr<Backend> reference, vulkan;  // gone before what watches them
 };
-
-/// A force shared equally by some nodes.
-inline Load pull(const Problem& problem, const std::vector<Index>& nodes, const Vec3& force) {
-  Load load;
-  for (Index n : nodes) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (force[axis] == 0 || problem.dof(n, axis) == kNone) continue;
-      load.force_dofs.push_back(problem.dof(n, axis));
-      load.forces.push_back(force[axis] / static_cast<double>(nodes.size()));
-    }
-  }
-  load.displacements.assign(problem.gripped_dofs().size(), 0.0);
-  return load;
-}
-
-inline std::vector<Index> nodes_in(const Mesh& mesh, const Box& box) {
-  std::vector<Index> nodes;
-  for (Index n = 0; n < mesh.node_count(); ++n) {
-    const Vec3& x = mesh.nodes[n];
-    if ((x.array() >= box.min.array()).all() && (x.array() <= box.max.array()).all()) {
-      nodes.push_back(n);
-    }
-  }
-  return nodes;
-}
-
-/// The pull of the board's lower right corner.
-inline Load corner_pull(const Problem& problem, const Vec3& force = Vec3(0, -60, 0)) {
-  return pull(problem, nodes_in(problem.mesh(), lower_right_corner()), force);
-}
 
 }  // namespace sunder::test

@@ -10,55 +10,10 @@
 #include "gpu/passes/dense_inverse.hpp"
 #include "gpu/passes/exact_columns.hpp"
 #include "gpu/passes/fields.hpp"
-#include "gpu_body.hpp"
+#include "kernels_fixture.hpp"
 
 namespace sunder::test {
 namespace {
-
-constexpr double kEps32 = 1.1920928955078125e-7;
-constexpr double kEps64 = 2.220446049250313e-16;
-
-struct Numbers {
-  gpu::Variant variant;
-  bool fp64;
-  [[nodiscard]] double eps() const { return fp64 ? kEps64 : kEps32; }
-};
-
-class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
- protected:
-  void SetUp() override {
-    WithVulkan<testing::TestWithParam<Numbers>>::SetUp();
-    if (IsSkipped()) return;
-    vulkan::InstanceOptions options;
-    options.validation = true;
-    options.messages = messages_;
-    const auto instance = std::make_shared<vulkan::Instance>(options);
-    device_ = vulkan::create_device(instance, vulkan::list_devices(*instance).front(), {-1, 256});
-    factory_ = std::make_unique<gpu::KernelFactory>(*device_, GetParam().variant, GetParam().fp64);
-  }
-  void TearDown() override {
-    for (const std::string& m : messages_->texts) ADD_FAILURE() << m;
-  }
-
-  /// Symmetric, entries in [-1, 1], representable in storage precision.
-  Eigen::MatrixXd random_symmetric(Index n) {
-    Eigen::MatrixXd m(n, n);
-    for (Index j = 0; j < n; ++j) {
-      for (Index i = 0; i <= j; ++i) m(i, j) = m(j, i) = random();
-    }
-    return m;
-  }
-  double random() {
-    const double v = uniform_(generator_);
-    return GetParam().fp64 ? v : static_cast<double>(static_cast<float>(v));
-  }
-
-  std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();
-  std::unique_ptr<vulkan::Device> device_;
-  std::unique_ptr<gpu::KernelFactory> factory_;
-  std::mt19937 generator_{42};
-  std::uniform_real_distribution<double> uniform_{-1, 1};
-};
 
 TEST_P(Kernels, PickAndLowRankUpdateInOneAndSeveralPanels) {
   for (const Index n : {1, 43, 300, 597}) {
@@ -99,7 +54,7 @@ TEST_P(Kernels, DenseAndFewColumnProducts) {
   scene.materials["board"] = {5, 0.4, 2.0};
   scene.supports.push_back({Box{Vec3(-1, 9.9, -1), Vec3(11, 11, 2)}, Axes{7}});
   const Problem problem(scene);
-  gpu::Fields fields(*factory_, problem, everything());
+  gpu::Fields fields(*factory_, problem, all_needs());
   const Index n = problem.dof_count();
   ASSERT_NE(n % 64, 0);
   const Eigen::MatrixXd x = random_symmetric(n);
@@ -172,7 +127,7 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     scene.materials["board"] = {5, nu, 2.0};
     scene.supports.push_back({Box{Vec3(-1, 9.5, -1), Vec3(11, 11, 2)}, Axes{7}});
     const Problem problem(scene);
-    gpu::Fields fields(*factory_, problem, everything());
+    gpu::Fields fields(*factory_, problem, all_needs());
     std::vector<double> u(3 * problem.mesh().nodes.size());
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = 10 + 0.01 * uniform_(generator_);
     fields.write_displacement(u);
@@ -233,7 +188,7 @@ TEST_P(Kernels, YieldRatioOfKnownStates) {
   scene.supports.push_back({std::vector<Index>{0}, Axes{7}});
   scene.supports.push_back({std::vector<Index>{1, 2}, Axes{7}});
   const Problem problem(scene);
-  gpu::Fields fields(*factory_, problem, everything());
+  gpu::Fields fields(*factory_, problem, all_needs());
   fields.set_load(std::vector<double>(fields.rows(), 0.0), {});
   const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   for (const Vec3& strain : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(0, 0, 0),
@@ -260,14 +215,12 @@ TEST_P(Kernels, YieldRatioOfKnownStates) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, Kernels,
-    testing::Values(Numbers{gpu::Variant::gpu, false}, Numbers{gpu::Variant::gpu, true},
-                    Numbers{gpu::Variant::lvp, false}, Numbers{gpu::Variant::lvp, true}),
-    [](const auto& tested) {
-      return std::string(tested.param.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
-             (tested.param.fp64 ? "_fp64" : "_fp32");
-    });
+INSTANTIATE_TEST_SUITE_P(All, Kernels,
+                         testing::Values(Numbers{gpu::Variant::gpu, false},
+                                         Numbers{gpu::Variant::gpu, true},
+                                         Numbers{gpu::Variant::lvp, false},
+                                         Numbers{gpu::Variant::lvp, true}),
+                         [](const auto& tested) { return name_of(tested.param); });
 
 }  // namespace
 }  // namespace sunder::test

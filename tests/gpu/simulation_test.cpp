@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole runs on Vulkan: the reference's fracture lists, and a device lost in the middle.
+// Whole runs and frames on Vulkan, by the frame's own interface.
 #include "sunder/simulation.hpp"
-#include "failover_backend.hpp"
 #include "gpu_body.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
@@ -20,73 +19,49 @@ Scene torn_board(FractureModel model) {
   return scene;
 }
 
-std::shared_ptr<const Problem> problem_of(Scene scene, const SolverOptions& solver) {
-  scene.solver = solver;
-  return std::make_shared<const Problem>(std::move(scene));
-}
-
-std::vector<Index> destroyed_by(std::shared_ptr<const Problem> problem,
+std::vector<Index> destroyed_by(const std::shared_ptr<const Problem>& problem,
                                 std::unique_ptr<Backend> backend) {
-  Simulation simulation(std::move(problem), std::move(backend));
+  Simulation simulation(problem, std::move(backend));
   while (!simulation.done()) simulation.step();
   std::vector<Index> list;
   for (const DestroyedElement& d : simulation.destroyed()) list.push_back(d.element);
   return list;
 }
 
-TEST_F(Runs, SameFractureListsAsTheReference) {
+// The scenes' tests do so by the deferred update.
+TEST_F(Runs, SameFractureListsAsTheReferenceByEagerUpdates) {
   for (const FractureModel model : {FractureModel::a, FractureModel::b}) {
-    const Scene scene = torn_board(model);
-    const auto on_cpu = problem_of(scene, {.backend = "cpu"});
+    Scene scene = torn_board(model);
+    scene.solver.backend = "cpu";
+    const auto on_cpu = std::make_shared<const Problem>(scene);
     const auto reference = destroyed_by(on_cpu, cpu_reference::create(on_cpu, needs_of(*on_cpu)));
     EXPECT_GE(reference.size(), 10u);
-    for (const Precision precision : {Precision::fp32, Precision::fp64}) {
-      const auto problem = problem_of(scene, {.backend = "vulkan", .precision = precision});
-      EXPECT_EQ(destroyed_by(problem, gpu::create(problem, needs_of(*problem), {})), reference)
-          << (precision == Precision::fp64 ? "fp64" : "fp32");
+    for (const Way& way : all_ways()) {
+      if (way.update != Update::eager) continue;
+      const WatchedBackend watched(scene, way);
+      EXPECT_EQ(destroyed_by(watched.problem, watched.create()), reference) << name_of(way);
     }
   }
 }
 
-TEST_F(Runs, ALostDeviceLosesNothing) {
-  const Scene scene = torn_board(FractureModel::a);
-  const auto problem = problem_of(scene, {.backend = "vulkan", .precision = Precision::fp64});
-  const auto on_cpu = problem_of(scene, {.backend = "cpu"});
-  const auto reference = destroyed_by(on_cpu, cpu_reference::create(on_cpu, needs_of(*on_cpu)));
-  for (const int submits : {0, 1, 9, 14}) {
-    gpu::VulkanOptions options;
-    options.probe.submits_until_lost = submits;
-    auto primary = gpu::create(problem, needs_of(*problem), options);
-    auto backend = with_failover(problem, std::move(primary),
-                                 [&] { return cpu_reference::create(on_cpu, needs_of(*on_cpu)); });
-    const Backend& watched = *backend;
-    Simulation simulation(problem, std::move(backend));
-    while (!simulation.done()) simulation.step();
-    std::vector<Index> list;
-    for (const DestroyedElement& d : simulation.destroyed()) list.push_back(d.element);
-    EXPECT_EQ(list, reference) << "lost after " << submits << " submits";
-    EXPECT_EQ(watched.info().backend, "cpu");
-    EXPECT_NE(watched.info().why.find("device was lost"), std::string::npos);
-  }
-}
-
 TEST_F(Runs, VulkanByNameGoesThroughTheListOfBackends) {
-  const auto problem = problem_of(torn_board(FractureModel::a), {.backend = "vulkan"});
+  Scene scene = torn_board(FractureModel::a);
+  scene.solver.backend = "vulkan";
+  const auto problem = std::make_shared<const Problem>(scene);
   const auto created = create_backend(problem, needs_of(*problem));
   EXPECT_EQ(created.backend->info().backend, "vulkan");
   EXPECT_EQ(created.backend->info().route, "inverse");
 }
 
 TEST_F(Runs, ASolveThatCannotKeepItsPromiseLeavesTheLastOneReadable) {
-  Scene scene = held_board();
   for (const Route route : {Route::inverse, Route::cg}) {
-    const auto problem =
-        problem_of(scene, {.backend = "vulkan", .route = route, .tolerance = 1e-18});
-    const auto backend = gpu::create(problem, everything(), {});
+    Way way{.update = Update::automatic, .tolerance = 1e-18, .route = route};
+    const WatchedBackend watched(held_board(), way);
+    const auto backend = watched.create(all_needs());
     backend->set_load({{}, {}, {}});
     backend->solve();
     backend->stress();
-    backend->set_load(corner_pull(*problem));
+    backend->set_load(corner_pull(*watched.problem));
     EXPECT_THROW(backend->solve(), NumericalError);
     for (double u : Pair::displacement(*backend)) ASSERT_EQ(u, 0);
     for (const Voigt& s : Pair::stress(*backend)) ASSERT_EQ(s, Voigt::Zero());

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Vulkan layer by itself: what is missing is named, what goes wrong is noticed.
-#include <sys/wait.h>
-
-#include <unistd.h>
-
-#include <array>
-#include <bit>
-#include <cstdio>
 #include <functional>
 
 #include "gpu/vulkan/check.hpp"
 #include "gpu_body.hpp"
+#include "run_again.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/layout.h"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
+#include "validation_watch.hpp"
 
 namespace sunder::test {
 namespace {
@@ -22,20 +17,6 @@ namespace {
 using vulkan::Access;
 using vulkan::Buffer;
 using vulkan::Placement;
-
-/// Output and exit code of this program, run again with other variables and tests.
-std::pair<std::string, int> run_again(const std::string& variables, const std::string& filter) {
-  std::array<char, 4096> path{};
-  EXPECT_GT(readlink("/proc/self/exe", path.data(), path.size() - 1), 0);
-  const std::string command = variables + " '" + path.data() +
-                              "' --gtest_also_run_disabled_tests --gtest_filter='" + filter +
-                              "' 2>&1";
-  std::FILE* pipe = popen(command.c_str(), "r");
-  std::string output;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
-  const int status = pclose(pipe);
-  return {output, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
-}
 
 std::string message_of(const std::function<void()>& f) {
   try {
@@ -81,25 +62,38 @@ TEST(VulkanWithoutDriver, DISABLED_AutoTakesTheCpuAndVulkanSaysWhy) {
   scene.solver.backend = "vulkan";
   const auto problem = std::make_shared<const Problem>(scene);
   const std::string message =
-      message_of([&] { static_cast<void>(create_backend(problem, everything())); });
+      message_of([&] { static_cast<void>(create_backend(problem, all_needs())); });
   EXPECT_NE(message.find("no Vulkan driver"), std::string::npos) << message;
   scene.solver.backend = "auto";
-  const auto created = create_backend(std::make_shared<const Problem>(scene), everything());
+  const auto created = create_backend(std::make_shared<const Problem>(scene), all_needs());
   EXPECT_EQ(created.backend->info().backend, "cpu");
   EXPECT_TRUE(created.warnings.empty());
 }
 
 TEST(VulkanMissing, DriverIsNamed) {
-  const auto [output, code] = run_again(
-      "VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent", "VulkanWithoutDriver.*");
+  const auto [output, code] = run_again(kNoDriver, "VulkanWithoutDriver.*");
   EXPECT_EQ(code, 0) << output;
   EXPECT_NE(output.find("[  PASSED  ] 1 test"), std::string::npos) << output;
 }
 
-TEST(VulkanMissing, ADeviceThatIsExpectedFailsTheTests) {
-  const auto [output, code] =
-      run_again("VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent", "VulkanExpected.*");
+TEST(VulkanMissing, WhereNoneIsExpectedTheTestsAreLeftOut) {
+  const auto [output, code] = run_again(std::string(kNoDriver) + " SUNDER_EXPECT_NO_VULKAN=1",
+                                        "Vulkan*.*-*DISABLED*:VulkanMissing.*");
+  EXPECT_EQ(code, 0) << output;
+  EXPECT_NE(output.find("[  SKIPPED ] "), std::string::npos) << output;
+}
+
+TEST(VulkanMissing, ADeviceWhereNoneIsExpectedFailsTheTests) {
+  const bool none = std::getenv("SUNDER_EXPECT_NO_VULKAN") != nullptr;
+  const auto [output, code] = run_again(
+      none ? "env -u SUNDER_EXPECT_NO_VULKAN" : "SUNDER_EXPECT_NO_VULKAN=1", "VulkanExpected.*");
   EXPECT_NE(code, 0) << output;
+}
+
+TEST(VulkanMissing, ADeviceThatIsExpectedFailsTheTests) {
+  const auto [output, code] = run_again(kNoDriver, "VulkanExpected.*");
+  EXPECT_NE(code, 0) << output;
+  EXPECT_NE(output.find("a Vulkan device is missing"), std::string::npos) << output;
 }
 
 using VulkanDevices = WithVulkan<>;
@@ -123,7 +117,7 @@ TEST_F(VulkanDevices, AnUnknownDeviceIsAnError) {
   scene.solver.device = 99;
   const auto problem = std::make_shared<const Problem>(scene);
   const std::string message =
-      message_of([&] { static_cast<void>(gpu::create(problem, everything())); });
+      message_of([&] { static_cast<void>(gpu::create(problem, all_needs())); });
   EXPECT_NE(message.find("there is no Vulkan device 99; devices 0 to"), std::string::npos)
       << message;
 }
@@ -145,15 +139,22 @@ TEST_F(VulkanDevices, PrecisionFollowsTheToleranceAndIsSaid) {
     Scene scene = small_scene();
     scene.solver.tolerance = tolerance;
     const auto problem = std::make_shared<const Problem>(scene);
-    const auto backend = gpu::create(problem, everything(), {});
+    const auto backend = gpu::create(problem, all_needs(), {});
     EXPECT_EQ(backend->info().precision, tolerance == 1e-4 ? "fp32" : "fp64");
     EXPECT_NE(backend->info().why.find("tolerance"), std::string::npos);
     EXPECT_GT(backend->info().memory_bytes, 0u);
   }
 }
 
+// Run by the test below.
+TEST(VulkanVariant, DISABLED_FromTheEnvironment) {
+  Scene scene = small_scene();
+  scene.solver.backend = "vulkan";
+  static_cast<void>(gpu::create(std::make_shared<const Problem>(scene), all_needs()));
+}
+
 TEST_F(VulkanDevices, AnUnknownShaderVariantIsAnError) {
-  const auto [output, code] = run_again("SUNDER_SHADER_VARIANT=fast", "DeterminismState.*");
+  const auto [output, code] = run_again("SUNDER_SHADER_VARIANT=fast", "VulkanVariant.*");
   EXPECT_NE(code, 0);
   EXPECT_NE(output.find("SUNDER_SHADER_VARIANT is \"fast\"; it may be gpu or lvp"),
             std::string::npos)
@@ -162,9 +163,9 @@ TEST_F(VulkanDevices, AnUnknownShaderVariantIsAnError) {
 
 /// A device under validation, with the kernel `add` on two buffers.
 struct Adder {
-  explicit Adder(std::size_t guard_bytes = 0) {
+  explicit Adder(std::size_t guard_bytes = 0, bool validation = true) {
     vulkan::InstanceOptions options;
-    options.validation = true;
+    options.validation = validation;
     options.messages = messages;
     instance = std::make_shared<vulkan::Instance>(options);
     device =
@@ -189,10 +190,8 @@ struct Adder {
   std::unique_ptr<vulkan::Binding> binding;
 };
 
-using VulkanWatch = WithVulkan<>;
-
-TEST_F(VulkanWatch, AMissingBarrierIsNoticed) {
-  Adder adder;
+/// Reads what it has just written, without a barrier.
+void record_a_hazard(Adder& adder) {
   const Buffer* swapped[] = {&adder.to, &adder.from};
   const vulkan::Binding back(*adder.device, *adder.kernel, swapped);
   vulkan::Commands commands(*adder.device);
@@ -200,8 +199,29 @@ TEST_F(VulkanWatch, AMissingBarrierIsNoticed) {
   commands.dispatch(*adder.binding, 64u, 1);
   commands.dispatch(back, 64u, 1);
   commands.end();
-  const std::string message = message_of([&] { commands.submit(); });
+  commands.submit();
+}
+
+using VulkanWatch = WithVulkan<>;
+
+TEST_F(VulkanWatch, AMissingBarrierIsNoticed) {
+  Adder adder;
+  const std::string message = message_of([&] { record_a_hazard(adder); });
   EXPECT_NE(message.find("SYNC-HAZARD"), std::string::npos) << message;
+  EXPECT_NE(take_validation_messages().find("SYNC-HAZARD"), std::string::npos);
+}
+
+// Run by the test below: it never asks for validation itself.
+TEST(VulkanWatched, DISABLED_AHazardOfUnwatchedCode) {
+  Adder adder(0, false);
+  record_a_hazard(adder);
+}
+
+TEST_F(VulkanWatch, AHazardFailsATestThatNeverAskedForValidation) {
+  const auto [output, code] = run_again("", "VulkanWatched.*");
+  EXPECT_NE(code, 0);
+  EXPECT_NE(output.find("Vulkan validation during this test"), std::string::npos) << output;
+  EXPECT_NE(output.find("SYNC-HAZARD-READ-AFTER-WRITE"), std::string::npos) << output;
 }
 
 TEST_F(VulkanWatch, ABarrierIsEnough) {
@@ -259,51 +279,6 @@ TEST_F(VulkanWatch, MoreMemoryThanThereIsIsRefusedBeforeAllocation) {
   EXPECT_NE(message.find("the dense inverse needs 4611686018427387904 bytes on the device"),
             std::string::npos)
       << message;
-}
-
-using Determinism = WithVulkan<>;
-
-/// One step of FNV-1a over the bits of doubles.
-std::uint64_t hash(std::uint64_t h, std::span<const double> values) {
-  for (double v : values) {
-    for (std::uint64_t bits = std::bit_cast<std::uint64_t>(v), i = 0; i < 8; ++i, bits >>= 8) {
-      h = (h ^ (bits & 0xff)) * 1099511628211ull;
-    }
-  }
-  return h;
-}
-
-// Prints a hash of displacement and stress after a crack; run by the test below.
-TEST(DeterminismState, DISABLED_Print) {
-  std::uint64_t h = 14695981039346656037ull;
-  for (const Update update : {Update::deferred, Update::eager}) {
-    Scene scene = held_board();
-    scene.solver.precision = update == Update::eager ? Precision::fp64 : Precision::fp32;
-    scene.solver.update = update;
-    const auto problem = std::make_shared<const Problem>(scene);
-    const auto backend = gpu::create(problem, everything(), {});
-    backend->set_load(corner_pull(*problem));
-    for (Index e : crack_sequence(*problem, 10, 10)) backend->destroy({&e, 1});
-    backend->solve();
-    backend->stress();
-    h = hash(h, Pair::displacement(*backend));
-    for (const Voigt& s : Pair::stress(*backend)) h = hash(h, {s.data(), 6});
-  }
-  std::printf("state %016llx\n", static_cast<unsigned long long>(h));
-}
-
-TEST_F(Determinism, SameBitsInEveryRunAndForEveryThreadCount) {
-  std::string first;
-  for (const char* threads : {"0", "1", "2", "2"}) {
-    const auto [output, code] =
-        run_again(std::string("LP_NUM_THREADS=") + threads, "DeterminismState.*");
-    ASSERT_EQ(code, 0) << output;
-    const auto at = output.find("state ");
-    ASSERT_NE(at, std::string::npos) << output;
-    const std::string state = output.substr(at, 22);
-    if (first.empty()) first = state;
-    EXPECT_EQ(state, first) << "with " << threads << " threads";
-  }
 }
 
 }  // namespace

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// K p by the blocked matrix of route cg, intact and with destroyed elements patched in place,
+// against the assembled stiffness.
+#include <random>
+
+#include "fem/assembly.hpp"
+#include "gpu/passes/block_matrix.hpp"
+#include "gpu/passes/fields.hpp"
+#include "gpu_body.hpp"
+#include "kernels_fixture.hpp"
+
+namespace sunder::test {
+namespace {
+
+/// cg_multiply with vectors of its own: four values a node.
+class Multiply {
+ public:
+  Multiply(vulkan::Device& device, const gpu::KernelFactory& kernels, const gpu::Fields& fields,
+           const gpu::BlockMatrix& matrix)
+      : groups_(matrix.groups()), commands_(device) {
+    const std::size_t bytes = std::size_t{groups_} * shaders::kGroup * 4 * sizeof(double);
+    p_ = vulkan::Buffer(device, bytes, vulkan::Placement::device);
+    q_ = vulkan::Buffer(device, bytes, vulkan::Placement::device);
+    sums_ = vulkan::Buffer(device, groups_ * sizeof(double), vulkan::Placement::device);
+    using enum gpu::Reads;
+    kernel_ =
+        kernels.make_fp64("cg_multiply", {doubles, plain, plain, words, doubles, plain, plain},
+                          sizeof(shaders::CgPush));
+    const vulkan::Buffer* buffers[] = {
+        &matrix.blocks(), &matrix.columns(), &matrix.slices(), &fields.dofs(), &p_, &q_, &sums_};
+    binding_ = std::make_unique<vulkan::Binding>(device, *kernel_, buffers);
+  }
+
+  struct Result {
+    std::vector<double> q;  // four values a node
+    double pq = 0;
+  };
+  Result operator()(std::span<const double> p) {
+    p_.write(p);
+    commands_.begin();
+    commands_.dispatch(*binding_, shaders::CgPush{groups_, 0, 0}, groups_);
+    commands_.end();
+    commands_.submit();
+    Result result{std::vector<double>(p.size()), 0};
+    q_.read(std::span<double>(result.q));
+    std::vector<double> sums(groups_);
+    sums_.read(std::span<double>(sums));
+    for (double s : sums) result.pq += s;
+    return result;
+  }
+
+ private:
+  std::uint32_t groups_;
+  vulkan::Buffer p_, q_, sums_;
+  std::unique_ptr<vulkan::Kernel> kernel_;
+  std::unique_ptr<vulkan::Binding> binding_;
+  vulkan::Commands commands_;
+};
+
+class CgKernels : public Kernels {};
+
+TEST_P(CgKernels, MultiplyByTheDamagedStiffness) {
+  Scene scene;
+  scene.mesh = structured_board({7, 5, 3});
+  for (Vec3& x : scene.mesh.nodes) x += 0.1 * Vec3(random(), random(), random());
+  scene.materials["board"] = {5, 0.49, 2.0};
+  // Nodes held along some axes only, too.
+  scene.supports.push_back({Box{Vec3(-1, 9.5, -1), Vec3(11, 11, 2)}, Axes{5}});
+  scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(11, 0.5, 2)}, Axes{2}});
+  const Problem problem(scene);
+  const gpu::Fields fields(*factory_, problem, all_needs());
+  gpu::BlockMatrix matrix(*factory_, problem);
+  Multiply multiply(*device_, *factory_, fields, matrix);
+  std::vector<double> scale(problem.mesh().tets.size(), 1.0);
+  const std::vector<Index> gone = {0, 17, 18, 19, 300, 629};
+  for (const bool damaged : {false, true}) {
+    if (damaged) {
+      matrix.destroy(gone);
+      for (Index e : gone) scale[static_cast<std::size_t>(e)] = problem.scene().fracture.alpha;
+    }
+    const auto padded = std::size_t{matrix.groups()} * shaders::kGroup * 4;
+    std::vector<double> p(padded, 0.0);
+    Eigen::VectorXd x(problem.dof_count());
+    for (Index n = 0; n < problem.node_count(); ++n) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem.dof(n, axis);
+        if (d != kNone) p[static_cast<std::size_t>(4 * n + axis)] = x[d] = uniform_(generator_);
+      }
+    }
+    const auto [q, pq] = multiply(p);
+    const fem::SparseMatrix k = fem::assemble_lower(problem, scale);
+    const Eigen::MatrixXd full = Eigen::MatrixXd(k).selfadjointView<Eigen::Lower>();
+    const Eigen::VectorXd expected = full * x;
+    // A row sums three products for each of some 30 neighbours, each entry 24 elements or fewer.
+    const Eigen::VectorXd size = full.cwiseAbs() * x.cwiseAbs();
+    const double units = 3 * 30 + 24 + 16;
+    for (Index n = 0; n < problem.node_count(); ++n) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem.dof(n, axis);
+        const double value = q[static_cast<std::size_t>(4 * n + axis)];
+        if (d == kNone) {
+          EXPECT_EQ(value, 0) << "held axis of node " << n;
+        } else {
+          EXPECT_TRUE(std::abs(value - expected[d]) <= units * kEps64 * size[d])
+              << "node " << n << ": " << value << " against " << expected[d];
+        }
+      }
+    }
+    EXPECT_NEAR(pq, x.dot(expected),
+                (units + static_cast<double>(x.size())) * kEps64 * x.cwiseAbs().dot(size));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CgKernels,
+                         testing::Values(Numbers{gpu::Variant::gpu, true},
+                                         Numbers{gpu::Variant::lvp, true}),
+                         [](const auto& tested) { return name_of(tested.param); });
+
+}  // namespace
+}  // namespace sunder::test

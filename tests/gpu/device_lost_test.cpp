@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device lost at any submit of a run: the CPU goes on from the last frame, and nothing that the
+// run tells is lost or told twice.
+#include "failover_backend.hpp"
+#include "gpu_body.hpp"
+#include "sunder/error.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder::test {
+namespace {
+
+Scene torn_board(FractureModel model, int steps, int max_events) {
+  Scene scene = pulled_board(Vec3(0, -130, 0));
+  scene.instruments.front().ramp = Ramp{0, 1};
+  scene.fracture.model = model;
+  scene.fracture.birth = CrackBirth::through;
+  scene.fracture.max_events = max_events;
+  scene.removals.push_back({1, std::vector<Index>{700, 701}});
+  scene.steps = steps;
+  return scene;
+}
+
+struct Told {
+  std::vector<DestroyedElement> destroyed;
+  std::vector<Crack> cracks;
+  std::vector<StepReport> steps;
+  std::vector<Vec3> displacement;
+  std::vector<Voigt> stress;
+  std::vector<std::string> warnings;
+  BackendInfo backend;
+};
+
+Told tell(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backend> backend) {
+  Simulation simulation(problem, std::move(backend));
+  Told told;
+  while (!simulation.done()) told.steps.push_back(simulation.step());
+  told.destroyed = simulation.destroyed();
+  told.cracks = simulation.cracks();
+  told.displacement = simulation.displacement();
+  told.stress = simulation.stress();
+  told.warnings = simulation.warnings();
+  told.backend = simulation.backend().info();
+  return told;
+}
+
+void expect_same(const Told& told, const Told& reference) {
+  ASSERT_EQ(told.destroyed.size(), reference.destroyed.size());
+  std::vector<std::uint8_t> out(reference.stress.size(), 0);
+  for (std::size_t i = 0; i < told.destroyed.size(); ++i) {
+    const DestroyedElement &a = told.destroyed[i], &b = reference.destroyed[i];
+    ASSERT_EQ(a.element, b.element) << "fracture " << i;
+    EXPECT_EQ(a.step, b.step);
+    EXPECT_EQ(a.event, b.event);
+    EXPECT_EQ(a.cause, b.cause);
+    EXPECT_EQ(a.crack, b.crack);
+    ASSERT_EQ(a.ratio.has_value(), b.ratio.has_value());
+    if (a.ratio) {
+      EXPECT_NEAR(*a.ratio, *b.ratio, 1e-6 * *b.ratio);
+    }
+    out[static_cast<std::size_t>(a.element)] = 1;
+  }
+  ASSERT_EQ(told.cracks.size(), reference.cracks.size());
+  for (std::size_t c = 0; c < told.cracks.size(); ++c) {
+    EXPECT_EQ(told.cracks[c].elements, reference.cracks[c].elements);
+    EXPECT_EQ(told.cracks[c].path.size(), reference.cracks[c].path.size());
+    EXPECT_NEAR(told.cracks[c].length, reference.cracks[c].length, 1e-6);
+  }
+  ASSERT_EQ(told.steps.size(), reference.steps.size());
+  for (std::size_t s = 0; s < told.steps.size(); ++s) {
+    EXPECT_EQ(told.steps[s].events, reference.steps[s].events);
+    EXPECT_EQ(told.steps[s].destroyed, reference.steps[s].destroyed);
+    EXPECT_NEAR(told.steps[s].compliance, reference.steps[s].compliance,
+                1e-7 * reference.steps[s].compliance);
+  }
+  EXPECT_TRUE(stress_error(out, told.stress, reference.stress) <= kCrackTolerance);
+  EXPECT_EQ(told.warnings, reference.warnings);
+}
+
+struct Lost {
+  const char* name;
+  FractureModel model;
+  Route route;
+  Update update;
+  int steps = 4, max_events = 6;
+};
+
+class DeviceLost : public WithVulkan<testing::TestWithParam<Lost>> {};
+
+TEST_P(DeviceLost, LosesNothingWheneverItHappens) {
+  Scene scene = torn_board(GetParam().model, GetParam().steps, GetParam().max_events);
+  scene.solver.backend = "cpu";
+  const auto on_cpu = std::make_shared<const Problem>(scene);
+  const auto create_cpu = [&] { return cpu_reference::create(on_cpu, needs_of(*on_cpu)); };
+  const Told reference = tell(on_cpu, create_cpu());
+  ASSERT_GE(reference.destroyed.size(), 4u);
+  WatchedBackend watched(scene, {.update = GetParam().update, .route = GetParam().route});
+  int losses = 0, submits = 0;
+  // Fibonacci's distances, until a run ends before its device is lost.
+  for (int next = 1; submits < 100000; std::swap(submits, next), next += submits) {
+    watched.options.probe.submits_until_lost = submits;
+    std::unique_ptr<Backend> primary;
+    try {
+      primary = watched.create();
+    } catch (const sunder::DeviceLost&) {
+      continue;  // while it was being created: create_backend tells the caller
+    }
+    SCOPED_TRACE("lost after " + std::to_string(submits) + " submits");
+    const Told told =
+        tell(watched.problem, with_failover(watched.problem, std::move(primary), create_cpu));
+    expect_same(told, reference);
+    if (told.backend.backend == "vulkan") break;
+    EXPECT_EQ(told.backend.backend, "cpu");
+    EXPECT_NE(told.backend.why.find("device was lost"), std::string::npos) << told.backend.why;
+    ++losses;
+  }
+  EXPECT_GE(losses, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, DeviceLost,
+    testing::Values(Lost{"A_deferred", FractureModel::a, Route::inverse, Update::deferred},
+                    Lost{"B_deferred", FractureModel::b, Route::inverse, Update::deferred},
+                    Lost{"B_eager", FractureModel::b, Route::inverse, Update::eager},
+                    Lost{"A_cg", FractureModel::a, Route::cg, Update::automatic, 2, 2}),
+    [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace sunder::test

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A watched device with kernels of one variant and precision, for tests of single kernels.
+#pragma once
+
+#include <random>
+
+#include "gpu_body.hpp"
+
+namespace sunder::test {
+
+inline constexpr double kEps32 = 1.1920928955078125e-7;
+inline constexpr double kEps64 = 2.220446049250313e-16;
+
+struct Numbers {
+  gpu::Variant variant;
+  bool fp64;
+  [[nodiscard]] double eps() const { return fp64 ? kEps64 : kEps32; }
+};
+
+inline std::string name_of(const Numbers& numbers) {
+  return std::string(numbers.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
+         (numbers.fp64 ? "_fp64" : "_fp32");
+}
+
+class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
+ protected:
+  void SetUp() override {
+    WithVulkan<testing::TestWithParam<Numbers>>::SetUp();
+    if (IsSkipped()) return;
+    vulkan::InstanceOptions options;
+    options.validation = true;
+    options.messages = messages_;
+    const auto instance = std::make_shared<vulkan::Instance>(options);
+    device_ = vulkan::create_device(instance, vulkan::list_devices(*instance).front(), {-1, 256});
+    factory_ = std::make_unique<gpu::KernelFactory>(*device_, GetParam().variant, GetParam().fp64);
+  }
+  void TearDown() override {
+    factory_.reset();
+    device_.reset();
+    for (const std::string& m : messages_->texts) ADD_FAILURE() << m;
+  }
+
+  /// Symmetric, entries in [-1, 1], representable in storage precision.
+  Eigen::MatrixXd random_symmetric(Index n) {
+    Eigen::MatrixXd m(n, n);
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i <= j; ++i) m(i, j) = m(j, i) = random();
+    }
+    return m;
+  }
+  double random() {
+    const double v = uniform_(generator_);
+    return GetParam().fp64 ? v : static_cast<double>(static_cast<float>(v));
+  }
+
+  std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();
+  std::unique_ptr<vulkan::Device> device_;
+  std::unique_ptr<gpu::KernelFactory> factory_;
+  std::mt19937 generator_{42};
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+};
+
+}  // namespace sunder::test

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program on Vulkan as a user starts it, under validation as every test here; and what it does
+// on machines without a loader, without a driver, without a GPU.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <optional>
+
+#include "app/output/program.hpp"
+
+namespace sunder::test {
+namespace {
+
+/// Sets a variable for the processes started while it lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() {
+    if (before_) {
+      setenv(name_, before_->c_str(), 1);
+    } else {
+      unsetenv(name_);
+    }
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+struct Board {
+  TempFolder folder;
+  TearingBoard board{folder};
+
+  [[nodiscard]] Outcome run(const std::string& out, std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"run", board.scene.string(), "--quiet", "--out",
+                                          (folder / out).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+  /// events.csv without its floating-point columns, which follow the precision.
+  [[nodiscard]] std::vector<std::vector<std::string>> events(const std::string& out) const {
+    auto rows = read_csv(folder / out / "events.csv");
+    for (auto& row : rows) row.resize(5);  // step, event, element, criterion, crack
+    return rows;
+  }
+  [[nodiscard]] nlohmann::ordered_json summary(const std::string& out) const {
+    return read_json(folder / out / "summary.json");
+  }
+};
+
+class Program : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("SUNDER_EXPECT_NO_VULKAN")) GTEST_SKIP() << "no Vulkan device is expected";
+  }
+};
+
+TEST_F(Program, TearsTheBoardAsOnTheCpuByEveryRouteAndPrecision) {
+  const Board board;
+  ASSERT_EQ(board.run("cpu", {"--backend", "cpu"}).exit_code, 0);
+  ASSERT_GE(board.events("cpu").size(), 10u);
+  using Options = std::vector<std::string>;
+  const Options ways[] = {{"--precision", "fp32"},
+                          {"--precision", "fp64"},
+                          {"--precision", "fp64", "--update", "eager"},
+                          {"--precision", "fp64", "--route", "cg"}};
+  for (const char* variant : {"gpu", "lvp"}) {
+    const Variable chosen("SUNDER_SHADER_VARIANT", variant);
+    for (Options options : ways) {
+      SCOPED_TRACE(variant + (" " + options[1]) + (options.size() > 2 ? " " + options[3] : ""));
+      options.insert(options.end(), {"--backend", "vulkan"});
+      const Outcome run = board.run("vulkan", options);
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+      EXPECT_EQ(board.events("vulkan"), board.events("cpu"));
+      EXPECT_EQ(board.summary("vulkan")["device"]["backend"], "vulkan");
+      EXPECT_EQ(board.summary("vulkan")["device"]["precision"], options[1]);
+    }
+  }
+}
+
+TEST_F(Program, GivesTheSameBytesAgain) {
+  const Board board;
+  for (const char* precision : {"fp32", "fp64"}) {
+    for (const char* out : {"one", "two"}) {
+      ASSERT_EQ(board.run(out, {"--backend", "vulkan", "--precision", precision}).exit_code, 0);
+    }
+    for (const char* file : {"events.csv", "result.vtu", "figure.svg"}) {
+      EXPECT_TRUE(read_file(board.folder / "one" / file) == read_file(board.folder / "two" / file))
+          << file << " in " << precision;
+    }
+  }
+}
+
+TEST_F(Program, RunsUnderTheValidationLayerHere) {
+  const Variable debug("VK_LOADER_DEBUG", "layer");
+  const Outcome run = run_program({"devices"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_NE(run.err.find("VK_LAYER_KHRONOS_validation"), std::string::npos) << run.err;
+  EXPECT_NE(run.out.find("vulkan"), std::string::npos) << run.out;
+}
+
+/// What every machine without a Vulkan device does, however that comes about.
+void expect_cpu_only(const std::string& reason) {
+  const Board board;
+  const Outcome asked = board.run("vulkan", {"--backend", "vulkan"});
+  EXPECT_EQ(asked.exit_code, 4);
+  EXPECT_NE(asked.err.find(reason), std::string::npos) << asked.err;
+  const Outcome automatic = board.run("auto", {});
+  EXPECT_EQ(automatic.exit_code, 0) << automatic.err;
+  EXPECT_EQ(board.summary("auto")["device"]["backend"], "cpu");
+  const Outcome devices = run_program({"devices"});
+  EXPECT_EQ(devices.exit_code, 0);
+  EXPECT_EQ(devices.out.find("vulkan"), std::string::npos) << devices.out;
+}
+
+TEST(ProgramWithout, ADriverTakesTheCpu) {
+  const Variable files("VK_DRIVER_FILES", "/nonexistent");
+  const Variable icds("VK_ICD_FILENAMES", "/nonexistent");
+  expect_cpu_only("no Vulkan driver");
+}
+
+TEST(ProgramWithout, ALoaderTakesTheCpu) {
+  const TempFolder folder;
+  write_text(folder / "libvulkan.so.1", "no library");  // found first, and not what it seems
+  const Variable path("LD_LIBRARY_PATH", folder.path().string());
+  expect_cpu_only("no Vulkan loader was found");
+}
+
+TEST_F(Program, AutoTakesTheCpuWhereTheOnlyDeviceIsAProcessor) {
+  const Outcome devices = run_program({"devices"});
+  if (devices.out.find("* vulkan") != std::string::npos) GTEST_SKIP() << "a GPU is there";
+  const Board board;
+  ASSERT_EQ(board.run("auto", {}).exit_code, 0);
+  EXPECT_EQ(board.summary("auto")["device"]["backend"], "cpu");
+}
+
+}  // namespace
+}  // namespace sunder::test
