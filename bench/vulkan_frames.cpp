@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// The board of Table 1 as a user meets it: a quiet frame, a frame with one fracture, the start.
+#include <chrono>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include "cpu_reference/cpu_reference.hpp"
+#include "gpu/vulkan_backend.hpp"
+#include "sunder/simulation.hpp"
+#include "support/loads.hpp"
+#include "support/sequences.hpp"
+#include "vulkan_rows.hpp"
+
+namespace sunder::bench {
+namespace {
+
+constexpr std::size_t kFractures = 20;  // of one backend, then a fresh one
+
+std::shared_ptr<const Problem> board(const std::string& backend, bool fp64, int device) {
+  Scene scene = test::pulled_board();
+  scene.fracture.model = FractureModel::a;
+  scene.solver.backend = backend;
+  if (backend == "vulkan") {
+    scene.solver.precision = fp64 ? Precision::fp64 : Precision::fp32;
+    scene.solver.device = device;
+  }
+  return std::make_shared<const Problem>(std::move(scene));
+}
+
+std::unique_ptr<Backend> create(const std::shared_ptr<const Problem>& problem) {
+  return problem->scene().solver.backend == "cpu"
+             ? cpu_reference::create(problem, needs_of(*problem))
+             : gpu::create(problem, needs_of(*problem), {});
+}
+
+/// The work of a frame on one backend: a load, its solution, stress with the summary.
+class Frames {
+ public:
+  explicit Frames(std::shared_ptr<const Problem> problem)
+      : problem_(std::move(problem)), crack_(test::crack_sequence(*problem_, kFractures, 10)) {
+    renew();
+  }
+  void renew() {
+    backend_.reset();
+    backend_ = create(problem_);
+    broken_ = 0;
+    quiet();
+  }
+  /// The load grows and falls a little, as a hand's does.
+  void quiet() {
+    backend_->set_load(test::corner_pull(*problem_, Vec3(0, -60 - ++frames_ % 7, 0)));
+    backend_->solve();
+    benchmark::DoNotOptimize(backend_->stress());
+  }
+  void prepare_fracture() {
+    if (broken_ == crack_.size()) renew();
+  }
+  void fracture() {
+    backend_->destroy({&crack_[broken_++], 1});
+    backend_->solve();
+    benchmark::DoNotOptimize(backend_->stress());
+  }
+
+ private:
+  std::shared_ptr<const Problem> problem_;
+  std::vector<Index> crack_;
+  std::unique_ptr<Backend> backend_;
+  std::size_t broken_ = 0;
+  int frames_ = 0;
+};
+
+void board_frame(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
+                 bool fracture) {
+  Frames vulkan(board("vulkan", fp64, rows.device)), cpu(board("cpu", true, kNone));
+  Work work;
+  if (fracture) {
+    work.prepare = [&] { vulkan.prepare_fracture(); };
+    work.run = [&] { vulkan.fracture(); };
+    work.prepare_reference = [&] { cpu.prepare_fracture(); };
+    work.reference = [&] { cpu.fracture(); };
+  } else {
+    work.run = [&] { vulkan.quiet(); };
+    work.reference = [&] { cpu.quiet(); };
+  }
+  rows.table.measure(state, name, work);
+}
+
+/// Runs this program again as a process that only starts up, with a shader cache of its own.
+double start_up_of_child(bool fp64, int device, const std::filesystem::path& cache) {
+  const std::string command = "MESA_SHADER_CACHE_DIR='" + cache.string() + "' '" +
+                              std::filesystem::read_symlink("/proc/self/exe").string() +
+                              "' --start-up=" + (fp64 ? "fp64" : "fp32") +
+                              " --device=" + std::to_string(device);
+  std::FILE* pipe = popen(command.c_str(), "r");
+  double ms = 0;
+  const int read = pipe ? std::fscanf(pipe, "%lf", &ms) : 0;
+  if (!pipe || pclose(pipe) != 0 || read != 1) throw std::runtime_error("no start-up time");
+  return ms;
+}
+
+void start_up(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
+              bool cold) {
+  const auto cache = std::filesystem::temp_directory_path() / "sunder-bench-shaders";
+  std::filesystem::remove_all(cache);
+  double ms = 0;
+  if (!cold) start_up_of_child(fp64, rows.device, cache);
+  Work work;
+  work.prepare = [&] {
+    if (cold) std::filesystem::remove_all(cache);
+  };
+  work.run = [&] { ms = start_up_of_child(fp64, rows.device, cache); };
+  work.milliseconds = [&] { return ms; };
+  const auto problem = board("cpu", true, kNone);
+  work.reference = [&] { Frames frames(problem); };
+  rows.table.measure(state, name, work);
+  std::filesystem::remove_all(cache);
+}
+
+}  // namespace
+
+double start_up_ms(bool fp64, int device) {
+  const auto problem = board("vulkan", fp64, device);
+  const auto start = std::chrono::steady_clock::now();
+  const Frames frames(problem);
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+void register_frame_rows(const Rows& rows) {
+  for (const bool fp64 : {false, true}) {
+    const std::string precision = fp64 ? "/fp64" : "/fp32";
+    for (const bool fracture : {false, true}) {
+      const std::string name =
+          (fracture ? "board_fracture_frame" : "board_quiet_frame") + precision;
+      add_row(name, [=, &rows](auto& s) { board_frame(s, rows, name, fp64, fracture); });
+    }
+    for (const bool cold : {true, false}) {
+      const std::string name = (cold ? "start_up_cold" : "start_up_warm") + precision;
+      add_row(
+          name, [=, &rows](auto& s) { start_up(s, rows, name, fp64, cold); }, 2.0);
+    }
+  }
+}
+
+}  // namespace sunder::bench

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+// Single kernels, on a GPU by its own clock: low-rank update, dense and few-column products, stress
+// and residual, conjugate gradients. Traffic is what an ideal cache would leave: every input read
+// once, every result written once.
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "cpu_reference/conjugate_gradient.hpp"
+#include "cpu_reference/stress.hpp"
+#include "fem/assembly.hpp"
+#include "gpu/cg_route.hpp"
+#include "gpu/passes/dense_inverse.hpp"
+#include "support/structured_board.hpp"
+#include "vulkan_rows.hpp"
+
+namespace sunder::bench {
+namespace {
+
+using gpu::DenseInverse;
+using gpu::Fields;
+
+constexpr Index kReferenceLimit = 6000;  // unknowns up to which the host holds a dense matrix too
+
+/// Values of no meaning: a kernel's time does not depend on them.
+double value_at(Index i, Index j) { return 1e-3 * ((7 * i + 7 * j + i * j) % 97 - 48); }
+
+Eigen::MatrixXd values(Index rows, Index first, Index columns) {
+  Eigen::MatrixXd m(rows, columns);
+  for (Index j = 0; j < columns; ++j) {
+    for (Index i = 0; i < rows; ++i) m(i, j) = value_at(i, first + j);
+  }
+  return m;
+}
+
+struct Inverse {
+  Inverse(const Gpu& g, bool fp64, Index size)
+      : n(size),
+        rows(gpu::round_up(static_cast<std::uint32_t>(size), shaders::kRowPad)),
+        matrix(g.kernels(fp64), size, rows, 0) {
+    matrix.upload([&](Index first, Index count) { return values(n, first, count); });
+  }
+  [[nodiscard]] double entries() const { return static_cast<double>(n) * static_cast<double>(n); }
+  Index n;
+  std::uint32_t rows;
+  DenseInverse matrix;
+};
+
+/// By the device's clock, without what a submit costs; by the wall where that clock is off.
+std::function<double()> device_clock(vulkan::Device& device, const char* pass) {
+  if (!device.timing()) return {};
+  return [&device, pass] {
+    double ms = 0;
+    for (const vulkan::PassTime& t : device.take_times()) ms += t.is(pass) ? t.milliseconds : 0;
+    return ms;
+  };
+}
+
+std::string precision(bool fp64) { return fp64 ? "fp64" : "fp32"; }
+double real_bytes(bool fp64) { return fp64 ? 8 : 4; }
+
+/// X += Z Z^T with its update vectors, as an eager event does it: rank 6 an element, 12 dofs each.
+void low_rank(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
+              Index n, Index rank) {
+  Inverse inverse(rows.gpu, fp64, n);
+  std::vector<Index> dofs(static_cast<std::size_t>(2 * rank));
+  for (std::size_t t = 0; t < dofs.size(); ++t) {
+    dofs[t] = static_cast<Index>(t) * (n / static_cast<Index>(dofs.size()));
+  }
+  const Eigen::MatrixXd v = 1e-3 * values(2 * rank, 0, rank);
+  Work work;
+  work.run = [&] { inverse.matrix.update(dofs, v); };
+  work.milliseconds = device_clock(rows.gpu.device(), "low-rank update");
+  work.bytes = 2 * inverse.entries() * real_bytes(fp64);
+  Eigen::MatrixXd x;
+  if (n <= kReferenceLimit) {
+    x = values(n, 0, n);
+    work.reference = [&] {
+      const Eigen::MatrixXd z = x(Eigen::all, dofs) * v;
+      x.noalias() += z * z.transpose();
+    };
+  }
+  rows.table.measure(state, name, work);
+}
+
+/// A product's buffers: the inverse, the board's fields that receive it, partial sums.
+struct Product {
+  Product(const Gpu& g, bool fp64, const Problem& problem, const Needs& needs)
+      : fields(g.kernels(fp64), problem, needs),
+        inverse(g, fp64, problem.dof_count()),
+        partials(g.kernels(fp64), fields.rows(),
+                 inverse.matrix.chunks() + inverse.matrix.loaded_chunks({}) + 1),
+        commands(g.device()) {
+    inverse.matrix.bind(partials, fields.residual());
+    sum = partials.bind_sum(fields.positions(), fields.nodal(gpu::Field::displacement));
+    std::vector<double> r(fields.rows(), 0.0);
+    std::fill_n(r.begin(), problem.dof_count(), 0.25);
+    fields.write_residual(r);
+  }
+  template <class Record>
+  void record(const Record& first) {
+    commands.begin();
+    commands.pass("product");
+    const std::uint32_t chunks = first();
+    commands.barrier();
+    partials.record_sum(commands, *sum, chunks, false);
+    commands.end();
+  }
+  Fields fields;
+  Inverse inverse;
+  gpu::PartialSums partials;
+  std::unique_ptr<vulkan::Binding> sum;
+  vulkan::Commands commands;
+};
+
+void dense_product(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
+                   Index cells) {
+  const auto problem = plain_board(cells);
+  Product product(rows.gpu, fp64, *problem, {});
+  product.record([&] { return product.inverse.matrix.record_dense(product.commands, 0); });
+  Work work;
+  work.run = [&] { product.commands.submit(); };
+  work.milliseconds = device_clock(rows.gpu.device(), "product");
+  work.bytes = product.inverse.entries() * real_bytes(fp64);
+  Eigen::MatrixXd x;
+  Eigen::VectorXd r, u;
+  const Index n = problem->dof_count();
+  if (n <= kReferenceLimit) {
+    x = values(n, 0, n);
+    r = Eigen::VectorXd::Constant(n, 0.25);
+    work.reference = [&] { u.noalias() = x * r; };
+  }
+  rows.table.measure(state, name, work);
+}
+
+void few_columns(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
+                 Index cells) {
+  constexpr Index kColumns = 12;
+  const auto problem = plain_board(cells);
+  Product product(rows.gpu, fp64, *problem, {});
+  const Index n = problem->dof_count();
+  gpu::Loaded load;
+  for (Index c = 0; c < kColumns; ++c) {
+    load.dofs.push_back(c * (n / kColumns));
+    load.values.push_back(0.5);
+  }
+  product.inverse.matrix.set_loaded(load);
+  product.record([&] { return product.inverse.matrix.record_loaded(product.commands, 0); });
+  Work work;
+  work.run = [&] { product.commands.submit(); };
+  work.milliseconds = device_clock(rows.gpu.device(), "product");
+  work.bytes = kColumns * static_cast<double>(n) * real_bytes(fp64);
+  Eigen::MatrixXd x;
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
+  if (n <= kReferenceLimit) {
+    x = values(n, 0, n);
+    work.reference = [&] {
+      u.setZero();
+      for (std::size_t c = 0; c < load.dofs.size(); ++c) u += load.values[c] * x.col(load.dofs[c]);
+    };
+  }
+  rows.table.measure(state, name, work);
+}
+
+Needs field_needs() {
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  return needs;
+}
+
+/// Stress of every element with its ratios and the summary; `balance`: f - K u in fp64 as well.
+void element_fields(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
+                    Index cells, bool balance) {
+  const auto problem = plain_board(cells);
+  const auto tets = static_cast<double>(problem->tet_count());
+  Fields fields(rows.gpu.kernels(fp64), *problem, field_needs());
+  std::vector<double> u(3 * problem->mesh().nodes.size());
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = 1e-3 * static_cast<double>(i % 101);
+  fields.write_displacement(u);
+  fields.set_load(std::vector<double>(fields.rows(), 0.0), {});
+  vulkan::Commands commands(rows.gpu.device());
+  commands.begin();
+  if (balance) {
+    fields.record_state(commands);
+  } else {
+    fields.record_correction(commands);
+  }
+  commands.end();
+  Work work;
+  work.run = [&] { commands.submit(); };
+  // Of an element: four nodes and 12 numbers of its shape in, stress (and corner forces) out.
+  const double nodal = 32 * static_cast<double>(problem->node_count());
+  work.bytes = tets * (16 + 96 + 12) + nodal;
+  if (balance) work.bytes += tets * (8 * real_bytes(fp64) + 112 + 2 * 128) + 3 * nodal;
+  std::vector<Voigt> stress(problem->mesh().tets.size());
+  std::vector<double> k_u(u.size());
+  const std::vector<double> scale(stress.size(), 1.0);
+  const std::vector<std::uint8_t> none(stress.size(), 0);
+  work.reference = [&] {
+    cpu_reference::element_stress(*problem, scale, u, stress);
+    benchmark::DoNotOptimize(cpu_reference::summarize(*problem, none, none, stress));
+    if (balance) fem::apply_stiffness(*problem, scale, u, k_u);
+  };
+  rows.table.measure(state, name, work);
+}
+
+/// Block-Jacobi conjugate gradients on an assembled matrix: what route cg does, on the CPU.
+class AssembledCg {
+ public:
+  explicit AssembledCg(const Problem& problem) : k_(fem::assemble_lower(problem, {})) {
+    const Eigen::VectorXd d = k_.diagonal();
+    inverse_ = d.cwiseInverse();
+  }
+  int solve(const Eigen::VectorXd& f, double reduction) const {
+    Eigen::VectorXd x;
+    const auto a = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+      out.noalias() = k_.selfadjointView<Eigen::Lower>() * in;
+    };
+    const auto m = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+      out = inverse_.cwiseProduct(in);
+    };
+    return cpu_reference::conjugate_gradient(a, m, f, {.relative = reduction}, x).iterations;
+  }
+
+ private:
+  fem::SparseMatrix k_;
+  Eigen::VectorXd inverse_;
+};
+
+/// Time per iteration, of a solution to ten digits.
+void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::string& name,
+                         Index cells) {
+  const auto problem = plain_board(cells);
+  Fields fields(rows.gpu.kernels(true), *problem, field_needs());
+  gpu::CgRoute route(rows.gpu.kernels(true), fields);
+  std::vector<double> force(fields.rows(), 0.0);
+  Load load;
+  for (Index d = 1; d < problem->dof_count(); d += 3) {
+    load.force_dofs.push_back(d);
+    load.forces.push_back(d % 2 == 0 ? 1e-3 : -1e-3);
+    force[static_cast<std::size_t>(d)] = load.forces.back();
+  }
+  fields.set_load(force, {});
+  const std::vector<double> rest(3 * problem->mesh().nodes.size(), 0.0);
+  int iterations = 1;
+  double wall = 0;
+  Work work;
+  work.prepare = [&] { fields.write_displacement(rest); };
+  work.run = [&] {
+    const auto start = std::chrono::steady_clock::now();
+    iterations = std::max(1, route.solve(load, true));
+    wall =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  };
+  work.milliseconds = [&] { return wall / iterations; };
+  // The matrix once, and some twelve passes over vectors of four values a node.
+  work.bytes = static_cast<double>(fields.matrix().bytes()) +
+               12 * 32 * static_cast<double>(problem->node_count());
+  Row& row = rows.table.measure(state, name, work);
+  state.counters["iterations"] = iterations;
+  const AssembledCg reference(*problem);
+  const Eigen::Map<const Eigen::VectorXd> f(force.data(), problem->dof_count());
+  const auto start = std::chrono::steady_clock::now();
+  const int steps = std::max(1, reference.solve(f, 1e-4));
+  row.reference_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() /
+      steps;
+  state.counters["reference_ms"] = row.reference_ms;
+}
+
+}  // namespace
+
+std::shared_ptr<const Problem> plain_board(Index cells) {
+  static std::map<Index, std::shared_ptr<const Problem>> boards;
+  auto& board = boards[cells];
+  if (!board) {
+    Scene scene;
+    scene.mesh = test::structured_board({cells, cells, 1, 50, 50, 2.5});
+    scene.materials["board"] = {5, 0.4, 2.0};
+    scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
+    board = std::make_shared<const Problem>(std::move(scene));
+  }
+  return board;
+}
+
+void register_kernel_rows(const Rows& rows) {
+  const auto update = [&](bool fp64, Index n, Index rank) {
+    const std::string name = "low_rank_update/" + precision(fp64) + "/n" + std::to_string(n) +
+                             "/rank" + std::to_string(rank);
+    add_row(name, [=, &rows](auto& s) { low_rank(s, rows, name, fp64, n, rank); });
+  };
+  for (const bool fp64 : {false, true}) {
+    update(fp64, 2100, 6);
+    update(fp64, 6000, 6);
+  }
+  update(false, 2100, 24);
+  update(false, 2100, 60);
+  if (rows.big) {
+    for (const Index n : {2000, 20000, 50000}) update(false, n, 6);
+    update(true, 20000, 6);
+  }
+  for (const bool fp64 : {false, true}) {
+    // 18 cells: 2,052 unknowns; 31: 5,952; 100: 60,600.
+    for (const Index cells : rows.big ? std::vector<Index>{18, 31, 57} : std::vector<Index>{18}) {
+      const std::string n = "/n" + std::to_string(6 * cells * (cells + 1));
+      const std::string dense = "dense_product/" + precision(fp64) + n;
+      add_row(dense, [=, &rows](auto& s) { dense_product(s, rows, dense, fp64, cells); });
+      const std::string few = "few_columns/" + precision(fp64) + n;
+      add_row(few, [=, &rows](auto& s) { few_columns(s, rows, few, fp64, cells); });
+    }
+  }
+  // 18 cells: 1,944 tetrahedra; 129: 99,846; 409: 1,003,686.
+  for (const Index cells :
+       rows.big ? std::vector<Index>{18, 129, 409} : std::vector<Index>{18, 129}) {
+    const std::string tets = "/tets" + std::to_string(6 * cells * cells);
+    for (const bool fp64 : {false, true}) {
+      for (const bool balance : {false, true}) {
+        const std::string name =
+            (balance ? "stress_and_residual/" : "stress/") + precision(fp64) + tets;
+        add_row(name, [=, &rows](auto& s) { element_fields(s, rows, name, fp64, cells, balance); });
+      }
+    }
+  }
+  for (const Index cells :
+       rows.big ? std::vector<Index>{18, 129, 409} : std::vector<Index>{18, 77}) {
+    const std::string name = "cg_iteration/fp64/tets" + std::to_string(6 * cells * cells);
+    add_row(name, [=, &rows](auto& s) { conjugate_gradients(s, rows, name, cells); });
+  }
+}
+
+}  // namespace sunder::bench

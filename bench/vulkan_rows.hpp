@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the Vulkan benchmark's rows share: the device, and where rows go.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "gpu/kernels.hpp"
+#include "sunder/problem.hpp"
+#include "vulkan_table.hpp"
+
+namespace sunder::bench {
+
+/// The device that a scene would get, with kernels of both storage precisions.
+class Gpu {
+ public:
+  explicit Gpu(int device);
+  [[nodiscard]] vulkan::Device& device() const { return *device_; }
+  [[nodiscard]] const gpu::KernelFactory& kernels(bool fp64) const { return fp64 ? *k64_ : *k32_; }
+  [[nodiscard]] Machine machine() const;
+  /// Measured once, over buffers far larger than caches; read plus written.
+  [[nodiscard]] double copy_gigabytes_per_second() const;
+
+ private:
+  std::unique_ptr<vulkan::Device> device_;
+  gpu::Variant variant_;
+  std::unique_ptr<gpu::KernelFactory> k32_, k64_;
+  mutable double copy_ = 0;
+};
+
+struct Rows {
+  const Gpu& gpu;
+  Table& table;
+  bool big = false;  ///< sizes that take a large GPU as well
+  int device = 0;
+};
+
+/// Registers what to measure with Google Benchmark; `rows` must outlive the run.
+void register_kernel_rows(const Rows& rows);
+void register_frame_rows(const Rows& rows);
+
+/// The child process of a start-up row: milliseconds from nothing to the board's first stresses.
+double start_up_ms(bool fp64, int device);
+
+/// A square board of 6 cells^2 tetrahedra of one material, held at its top.
+[[nodiscard]] std::shared_ptr<const Problem> plain_board(Index cells);
+
+void add_row(const std::string& name, const std::function<void(benchmark::State&)>& run,
+             double seconds = 0.3);
+
+}  // namespace sunder::bench
