@@ -26,11 +26,19 @@ class Renderer {
   void save(const std::string& path);
 
  private:
+  static constexpr VkFormat kColour = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFLOAT;
+  struct Push {
+    std::array<float, 16> view;  // columns
+    std::array<float, 4> along;
+    std::uint32_t node;
+  };
+
   void create_image(VkFormat format, VkImageUsageFlags usage, VkImageAspectFlags aspect,
                     VkImage& image, VkDeviceMemory& memory, VkImageView& view);
   void create_pass();
   void create_descriptors(const sunder_vulkan_display& display);
   [[nodiscard]] VkPipeline create_pipeline(std::span<const std::uint32_t> vertex);
+  void create_pipelines();
   void create_commands();
   void begin();
   void submit();
