@@ -146,7 +146,11 @@ void Problem::resolve_elements() {
   for (std::size_t c = 0; c < scene_.cracks.size(); ++c) {
     const PresetCrack& crack = scene_.cracks[c];
     const std::string what = "crack " + std::to_string(c);
-    crack_elements_.push_back(select_elements(mesh(), crack.elements, what));
+    // A crack of split nodes is in the mesh already and takes no elements: an empty list says so.
+    const auto* ids = std::get_if<std::vector<Index>>(&crack.elements);
+    const bool split = ids && ids->empty();
+    crack_elements_.push_back(split ? std::vector<Index>{}
+                                    : select_elements(mesh(), crack.elements, what));
     const std::size_t tips = crack.tips.size();
     if (crack.mouth ? tips != 1 : tips != 2) {
       throw InputError(InputFault::missing_key,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "core/field_sif/held_strip.hpp"
 #include "fracture/field_sif/field_intensity.hpp"
@@ -124,6 +125,37 @@ TEST(FieldGrowth, RestsAtMaterialThatHolds) {
   }
   EXPECT_EQ(first, "");  // 6 h away the ring shrinks to what is free of it
   EXPECT_EQ(last, "material");
+}
+
+TEST(FieldGrowth, ACrackOfSplitNodesGrowsOn) {
+  Scene scene = test::HeldStrip{}.scene(SifSource::field, {0, 8, 0});
+  Mesh& mesh = scene.mesh;
+  std::map<Index, Index> copy;
+  for (Index n = 0, count = mesh.node_count(); n < count; ++n) {
+    const Vec3 x = mesh.nodes[n];
+    if (x.y() != 10 || x.x() >= 6) continue;
+    copy[n] = mesh.node_count();
+    mesh.nodes.push_back(x);
+  }
+  for (auto& tet : mesh.tets) {
+    double height = 0;
+    for (Index n : tet) height += mesh.nodes[n].y() / 4;
+    for (Index& n : tet)
+      if (height > 10 && copy.contains(n)) n = copy[n];
+  }
+  scene.cracks[0].elements = std::vector<Index>{};
+  scene.cracks[0].mouth = Vec3(0, 10, 0.5);
+  scene.cracks[0].tips = {Vec3(6, 10, 0.5)};
+  const Torn torn = run(std::move(scene));
+  EXPECT_GT(torn.cracks[0].length, 12);
+  int compared = 0;
+  for (const DestroyedElement& row : torn.rows) {
+    EXPECT_EQ(row.cause, Cause::sif);
+    if (!row.sif || row.sif->a < 7 || row.sif->a > 12) continue;
+    EXPECT_NEAR(*row.sif->k_1 / test::HeldStrip{}.rice(8 * row.load_factor), 1, 0.1) << row.sif->a;
+    ++compared;
+  }
+  EXPECT_GT(compared, 5);
 }
 
 TEST(FieldGrowth, TwoCracksMeet) {
