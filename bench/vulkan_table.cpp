@@ -8,6 +8,7 @@
 #include <ctime>
 #include <fstream>
 #include <ostream>
+#include <thread>
 
 namespace sunder::bench {
 namespace {
@@ -63,16 +64,20 @@ std::string processor() {
 
 using Field = std::array<std::string, 2>;
 
-std::vector<Field> head(const Machine& machine) {
+double load_average() {
   double load = 0;
   std::ifstream("/proc/loadavg") >> load;
+  return load;
+}
+
+std::vector<Field> head(const Machine& machine) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%.1f GB/s", machine.copy_gigabytes_per_second);
   const std::string commit =
       output_of("git -C '" SUNDER_SOURCE "' describe --always --dirty --abbrev=10 2>/dev/null");
   return {{"date", output_of("date -u +%Y-%m-%d")},
           {"processor", processor()},
-          {"load at the end", std::to_string(load).substr(0, 4)},
+          {"load at the end", std::to_string(load_average()).substr(0, 4)},
           {"device", machine.device},
           {"driver", machine.driver},
           {"shader variant", machine.variant},
@@ -174,6 +179,10 @@ void Table::write_markdown(std::ostream& out, const Machine& machine) const {
          "CPU time of all threads;\n`reference_ms` is the CPU reference (double precision, one "
          "thread) on the same work in the same run.\n\n";
   for (const Field& f : head(machine)) out << "- " << f[0] << ": " << f[1] << "\n";
+  // lavapipe's own threads and this one account for the processors.
+  if (load_average() > 1.5 * std::thread::hardware_concurrency()) {
+    out << "\n**Other work kept the processors busy: every time is an upper bound.**\n";
+  }
   out << "\n|";
   for (const std::string& c : kColumns) out << " " << c << " |";
   out << "\n|---|";
