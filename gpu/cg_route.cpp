@@ -37,6 +37,14 @@ CgRoute::CgRoute(const KernelFactory& kernels, Fields& fields)
   create_kernels(fields);
 }
 
+std::size_t CgRoute::planned_bytes(const Problem& problem) {
+  const std::size_t nodes =
+      round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
+  return 4 * nodes * 4 * sizeof(double) +
+         2 * Buffer::padded(nodes / shaders::kGroup * sizeof(double)) +
+         Buffer::padded(sizeof(shaders::CgState)) + Buffer::padded(4 * sizeof(std::uint32_t));
+}
+
 void CgRoute::create_kernels(const Fields& fields) {
   using enum Reads;
   const auto make = [&](Pass& pass, const char* name, std::initializer_list<Reads> reads,

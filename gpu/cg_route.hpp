@@ -13,6 +13,9 @@ class CgRoute final : public DeviceRoute {
  public:
   CgRoute(const KernelFactory& kernels, Fields& fields);
 
+  /// Device bytes of the route, before they exist.
+  [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
+
   int solve(const Load& load, bool balance) override;
   int correct() override;
   void add_correction() override;

@@ -32,7 +32,8 @@ DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen)
   const std::string shortcoming = device.shortcoming();
   info.precisions = shortcoming.empty() ? "fp32 fp64" : "none";
   info.limits = megabytes(device.memory) + " memory, buffers up to " +
-                megabytes(device.largest_buffer) + ", routes inverse, cg";
+                megabytes(device.largest_buffer) + ", subgroups of " +
+                std::to_string(device.subgroup) + ", routes inverse, cg";
   info.chosen = index == chosen;
   if (!shortcoming.empty()) {
     info.why = "cannot be used: " + shortcoming;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/assembly.hpp"
 #include "fem/event_factor.hpp"
+#include "gpu/passes/block_inversion.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -13,15 +15,34 @@ namespace {
 // A pivot of C below this means that the event isolates something: fp32 has no digits left there
 // (method.md "Stability"), so the eager inverse must not take it in.
 constexpr double kLeastPivot32 = 1e-3;
-// Room for the exact columns of so much damage from the start, if it takes no more memory than
-// that.
-constexpr Index kExactRoom = 512;
-constexpr std::size_t kExactRoomBytes = std::size_t{64} << 20;
 // A load on up to so many dofs is multiplied by exact columns: fp32 columns alone would cost 1e-4
 // of the board's largest stress, in its stiff frame.
 constexpr std::size_t kExactLoads = 64;
 
 }  // namespace
+
+std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Problem& problem,
+                                        const InverseOptions& options) {
+  const Index n = problem.dof_count();
+  const auto rows = round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
+  const auto base = DenseInverse::planned(kernels, n, rows, options.panel_bytes);
+  std::size_t bytes = base.bytes;
+  std::uint32_t capacity = 0;
+  const std::size_t grips = problem.gripped_dofs().size();
+  if (options.eager) {
+    if (grips > 0) bytes += DenseInverse::planned_pick(grips, grips);
+  } else {
+    capacity = ExactColumns::planned_capacity(kernels.device().physical(), rows,
+                                              static_cast<Index>(grips));
+    bytes += ExactColumns::planned_bytes(rows, capacity);
+  }
+  const std::size_t sums =
+      std::size_t{base.chunks + base.panels + capacity / shaders::kChunk} * rows * sizeof(double);
+  if (!options.on_device) return bytes + sums;
+  // While it is computed: the fp64 matrix beside the stored one, before the rest exists.
+  const auto swept = DenseInverse::planned(kernels.in_fp64(), n, rows, options.panel_bytes);
+  return std::max(bytes + sums, base.bytes + swept.bytes);
+}
 
 InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
                            std::shared_ptr<const HostInverse> intact, const InverseOptions& options)
@@ -38,7 +59,7 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem,
       commands_(kernels.device()),
       quiet_(kernels.device()),
       checked_(kernels.device()) {
-  upload_base();
+  make_base({});
   if (eager_) {
     bind();
     factor_grips();
@@ -47,16 +68,31 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem,
   }
 }
 
-void InverseRoute::upload_base() {
+/// X of the body with the elements `destroyed`, and the roots of its diagonal.
+void InverseRoute::make_base(std::span<const Index> destroyed) {
   std::vector<double> roots(fields_.rows(), 0.0);
-  base_.upload([&](Index first, Index count) {
-    Eigen::MatrixXd columns = host_->range(first, count);
-    for (Index c = 0; c < count; ++c) {
-      roots[static_cast<std::size_t>(first + c)] = std::sqrt(columns(first + c, c));
-    }
-    return columns;
-  });
+  if (options_.on_device) {
+    invert_on_device(kernels_, fem::assemble_lower(problem_, scale_of(destroyed)), fields_.rows(),
+                     options_.panel_bytes, base_);
+    const std::vector<double> diagonal = base_.diagonal();
+    std::transform(diagonal.begin(), diagonal.end(), roots.begin(),
+                   [](double x) { return std::sqrt(x); });
+  } else {
+    base_.upload([&](Index first, Index count) {
+      Eigen::MatrixXd columns = host_->range(first, count);
+      for (Index c = 0; c < count; ++c) {
+        roots[static_cast<std::size_t>(first + c)] = std::sqrt(columns(first + c, c));
+      }
+      return columns;
+    });
+  }
   fields_.set_roots(roots);
+}
+
+std::vector<double> InverseRoute::scale_of(std::span<const Index> destroyed) const {
+  std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
+  for (Index e : destroyed) scale[e] = problem_.scene().fracture.alpha;
+  return scale;
 }
 
 void InverseRoute::bind() {
@@ -295,25 +331,23 @@ void InverseRoute::defer(std::span<const Index> destroyed) {
     rebase(destroyed);
     return;
   }
-  if (overwritten) upload_base();
+  if (overwritten) make_base({});
   make_exact();
 }
 
 /// The correction's columns on the device, from the first one on.
 void InverseRoute::make_exact() {
   exact_.clear();
-  const std::size_t column = std::size_t{fields_.rows()} * sizeof(double);
-  exact_.reserve(std::min(kExactRoom, static_cast<Index>(kExactRoomBytes / column)));
+  exact_.reserve();
   sum_displacement_.reset();
   extend_exact();
 }
 
 /// A new base: the inverse of the body as damaged now, from a factor of its own.
 void InverseRoute::rebase(std::span<const Index> destroyed) {
-  std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
-  for (Index e : destroyed) scale[e] = problem_.scene().fracture.alpha;
-  host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale), true);
-  upload_base();
+  host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale_of(destroyed)),
+                                        !options_.on_device);
+  make_base(destroyed);
   correction_ = std::make_unique<Correction>(
       problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });
   make_exact();

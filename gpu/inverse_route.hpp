@@ -17,12 +17,19 @@ struct InverseOptions {
   bool eager = false;
   double tolerance = 1e-4;
   std::size_t panel_bytes = 0;  ///< largest buffer wanted, 0: the device's limit
+  bool on_device = false;       ///< the inverse is computed there
 };
 
 class InverseRoute final : public DeviceRoute {
  public:
   InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
                std::shared_ptr<const HostInverse> intact, const InverseOptions& options);
+
+  /// Device bytes that the route begins with, before they exist (a page of small things aside
+  /// while the inverse is computed there).
+  [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
+                                                 const Problem& problem,
+                                                 const InverseOptions& options);
 
   int solve(const Load& load, bool balance) override;
   std::optional<double> energy_bound() const override;
@@ -38,7 +45,8 @@ class InverseRoute final : public DeviceRoute {
   std::vector<vulkan::PassTime> pass_times() const override;
 
  private:
-  void upload_base();
+  void make_base(std::span<const Index> destroyed);
+  [[nodiscard]] std::vector<double> scale_of(std::span<const Index> destroyed) const;
   void bind();
   void make_exact();
   void extend_exact();

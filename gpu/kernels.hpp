@@ -46,6 +46,8 @@ class KernelFactory {
     return make(name, true, bindings, push_bytes, shaders::kGroup);
   }
 
+  /// The same kernels with fp64 as storage precision.
+  [[nodiscard]] KernelFactory in_fp64() const { return {device_, variant_, true}; }
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
   [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }

@@ -12,6 +12,9 @@ namespace {
 constexpr double kFp32Tolerance = 1e-4;
 // Above this many unknowns an inverse is not computed unless asked for: the host takes n^2 nnz(L).
 constexpr Index kDenseLimit = 6000;
+// From so many unknowns on a GPU computes the inverse itself: the host's n^2 nnz(L) then takes more
+// than a second. Never on a processor that emulates a GPU, where the host is quicker at every size.
+constexpr Index kInvertOnDevice = 3000;
 
 std::string number(double value) {
   std::ostringstream out;
@@ -65,6 +68,8 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
     throw DeviceError("route cg has no inverse to update; use update auto with it");
   }
   plan.eager = solver.update == Update::eager;
+  plan.invert_on_device = !plan.cg && !device.is_cpu() && problem.dof_count() >= kInvertOnDevice;
+  if (plan.invert_on_device) plan.why += "; the device computes it";
   if (needs.damage && !plan.cg) {
     plan.why += plan.eager ? "; the eager update was asked for"
                            : "; the deferred update never overwrites the inverse";

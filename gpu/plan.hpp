@@ -10,9 +10,10 @@
 namespace sunder::gpu {
 
 struct Plan {
-  bool fp64 = false;   ///< storage of the inverse and of element stress
-  bool eager = false;  ///< the update
-  bool cg = false;     ///< the route: conjugate gradients instead of the inverse
+  bool fp64 = false;              ///< storage of the inverse and of element stress
+  bool eager = false;             ///< the update
+  bool cg = false;                ///< the route: conjugate gradients instead of the inverse
+  bool invert_on_device = false;  ///< the inverse is computed there
   std::string why;
 };
 

@@ -38,9 +38,12 @@ class VulkanBackend final : public Backend {
         plan_(make_plan(*problem, this->needs(), device_->physical())),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
-        fields_(kernels_, *problem, this->needs()) {
+        inverse_{plan_.eager, problem->scene().solver.tolerance, options.panel_bytes,
+                 options.invert_on_device.value_or(plan_.invert_on_device)},
+        fields_(kernels_, *problem, this->needs(), route_needs(*problem)) {
     if (!plan_.cg || this->needs().pristine) {
-      intact_ = std::make_shared<HostInverse>(fem::assemble_lower(*problem, {}), !plan_.cg);
+      intact_ = std::make_shared<HostInverse>(fem::assemble_lower(*problem, {}),
+                                              !plan_.cg && !inverse_.on_device);
     }
     if (this->needs().pristine) {
       pristine_ = std::make_unique<Correction>(
@@ -57,9 +60,7 @@ class VulkanBackend final : public Backend {
       route_ = std::make_unique<CgRoute>(kernels_, fields_);
       return;
     }
-    route_ = std::make_unique<InverseRoute>(
-        kernels_, *problem, fields_, intact_,
-        InverseOptions{plan_.eager, problem->scene().solver.tolerance, options.panel_bytes});
+    route_ = std::make_unique<InverseRoute>(kernels_, *problem, fields_, intact_, inverse_);
   }
 
   BackendInfo info() const override {
@@ -90,6 +91,10 @@ class VulkanBackend final : public Backend {
     return times;
   }
 
+  DeviceUse device_use() const {
+    return {device_->held_bytes(), device_->most_bytes(), device_->queue().submits(),
+            device_->pipelines()};
+  }
   std::vector<Index> over_yield() const { return fields_.over_yield(); }
   std::size_t bytes_read() const { return device_->bytes_read(); }
   Display* display() { return display_.get(); }
@@ -98,6 +103,11 @@ class VulkanBackend final : public Backend {
   /// What a host's submit still reads must not be written.
   void finish_display() {
     if (display_) display_->finish();
+  }
+
+  [[nodiscard]] Fields::RouteNeeds route_needs(const Problem& problem) const {
+    if (plan_.cg) return {CgRoute::planned_bytes(problem), true};
+    return {InverseRoute::planned_bytes(kernels_, problem, inverse_), false};
   }
 
   void do_set_load(const Load& load) override {
@@ -305,6 +315,7 @@ class VulkanBackend final : public Backend {
   std::unique_ptr<vulkan::Device> device_;
   Plan plan_;
   KernelFactory kernels_;
+  InverseOptions inverse_;  // of route inverse
   Fields fields_;
   std::shared_ptr<const HostInverse> intact_;
   std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
@@ -341,6 +352,11 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
 Display* display_of(Backend& backend) {
   auto* of_vulkan = dynamic_cast<VulkanBackend*>(&backend);
   return of_vulkan ? of_vulkan->display() : nullptr;
+}
+
+DeviceUse device_use(const Backend& backend) {
+  const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
+  return vulkan_backend ? vulkan_backend->device_use() : DeviceUse{};
 }
 
 std::vector<Index> over_yield(const Backend& backend) {

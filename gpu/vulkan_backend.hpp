@@ -20,6 +20,7 @@ struct VulkanOptions {
   vulkan::DeviceProbe probe;
   std::optional<Variant> variant;          ///< none: chosen by driver (choose_variant)
   std::size_t panel_bytes = 0;             ///< largest buffer of the inverse, 0: the device's limit
+  std::optional<bool> invert_on_device;    ///< none: on a GPU, for larger scenes
   std::optional<vulkan::LentDevice> lent;  ///< a host's device; none: one of our own
   DisplayTargets display;                  ///< on a host's device: where to put what it draws
 };
@@ -41,6 +42,15 @@ struct VulkanOptions {
 
 /// What a host draws, of a backend on a lent device; else null.
 [[nodiscard]] Display* display_of(Backend& backend);
+
+/// What a backend that create() returned holds and has held on its device; else nothing.
+struct DeviceUse {
+  std::size_t bytes = 0;       ///< of buffers, now
+  std::size_t most_bytes = 0;  ///< at any time so far
+  std::size_t submits = 0;     ///< so far
+  int pipelines = 0;           ///< created so far
+};
+[[nodiscard]] DeviceUse device_use(const Backend& backend);
 
 /// Live breakable elements at or over yield after the last solve, ascending, as the device listed
 /// them: only they cross to the host. Of a backend that create() returned; else empty.

@@ -112,6 +112,15 @@ struct LowRankPush {
   uint packs;
   uint blocks;
   uint first_column;  // of this panel
+  float sign;         // 1 or -1
+};
+
+struct ComplementPush {
+  double scale;
+  uint packs, unknowns;
+  uint from, to;      // first column in either panel
+  uint first_column;  // the same in the matrix
+  uint unused;
 };
 
 struct CgPush {
@@ -165,6 +174,7 @@ static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 64);
 static_assert(sizeof(CgPush) == 16);
+static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 40);
 #undef SUNDER_CONST
 }  // namespace sunder::shaders

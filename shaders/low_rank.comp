@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// X += Z Z^T, rank 6 k, in one pass over X: a workgroup holds eight columns of 256 rows while it
+// X += Z Z^T (or -=), rank 6 k, in one pass over X: a workgroup holds eight columns of 256 rows while it
 // walks through the rank. Memory traffic: X read and written once, Z from the cache.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_gpu_shader_int64 : enable
@@ -52,10 +52,11 @@ void main() {
 #endif
     [[unroll]] for (uint k = 0u; k < kRankBlock; ++k) {
 #ifdef SUNDER_LVP  // a barrier would spill all sums to memory
-      const REAL4 low = LOAD_REAL4(z, at_columns + k * p.packs),
-                  high = LOAD_REAL4(z, at_columns + k * p.packs + 1u);
+      const REAL4 low = REAL(p.sign) * LOAD_REAL4(z, at_columns + k * p.packs),
+                  high = REAL(p.sign) * LOAD_REAL4(z, at_columns + k * p.packs + 1u);
 #else
-      const REAL4 low = z_column[2u * k], high = z_column[2u * k + 1u];
+      const REAL4 low = REAL(p.sign) * z_column[2u * k],
+                  high = REAL(p.sign) * z_column[2u * k + 1u];
 #endif
       [[unroll]] for (uint q = 0u; q < PACKS; ++q) {
         const REAL4 row = LOAD_REAL4(z, (base + k) * p.packs + first + q);

@@ -19,15 +19,28 @@ Index corner_of(const std::array<Index, 4>& tet, Index node) {
 
 }  // namespace
 
-BlockMatrix::BlockMatrix(const KernelFactory& kernels, const Problem& problem)
+BlockMatrix::BlockMatrix(const Problem& problem)
     : problem_(problem),
       groups_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup) /
               shaders::kGroup),
       scale_(problem.mesh().tets.size(), 1.0),
       elements_of_(problem.mesh().nodes.size()),
       neighbours_(problem.mesh().nodes.size()) {
+  build_pattern();
+}
+
+std::size_t BlockMatrix::planned_bytes(bool preconditioner) const {
+  const std::size_t rows = std::size_t{groups_} * shaders::kGroup;
+  return columns_of_.size() * kBlockDoubles * sizeof(double) +
+         vulkan::Buffer::padded(columns_of_.size() * sizeof(std::uint32_t)) +
+         vulkan::Buffer::padded(first_.size() * sizeof(std::uint32_t)) +
+         (preconditioner ? rows * kBlockDoubles * sizeof(double) : 0);
+}
+
+void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wanted) {
+  const Problem& problem = problem_;
   std::vector<std::uint32_t> columns;
-  build_pattern(columns);
+  columns.swap(columns_of_);
   const vulkan::PhysicalDevice& device = kernels.device().physical();
   const std::size_t bytes = columns.size() * kBlockDoubles * sizeof(double);
   const auto limit = std::min<std::size_t>(device.largest_buffer, device.largest_allocation);
@@ -37,7 +50,8 @@ BlockMatrix::BlockMatrix(const KernelFactory& kernels, const Problem& problem)
                       std::to_string(limit) + "; use backend cpu");
   }
   std::vector<double> blocks(columns.size() * kBlockDoubles, 0.0);
-  std::vector<double> preconditioner(std::size_t{groups_} * shaders::kGroup * kBlockDoubles, 0.0);
+  std::vector<double> preconditioner(
+      preconditioner_wanted ? std::size_t{groups_} * shaders::kGroup * kBlockDoubles : 0, 0.0);
   for (Index n = 0; n < problem.node_count(); ++n) {
     const auto row = static_cast<std::size_t>(n);
     for (std::size_t k = 0; k < neighbours_[row].size(); ++k) {
@@ -45,7 +59,7 @@ BlockMatrix::BlockMatrix(const KernelFactory& kernels, const Problem& problem)
       const std::size_t at =
           (first_[row / shaders::kGroup] + k) * shaders::kGroup + row % shaders::kGroup;
       pack(value, &blocks[at * kBlockDoubles]);
-      if (neighbours_[row][k] == n) {
+      if (preconditioner_wanted && neighbours_[row][k] == n) {
         pack(inverse_of_free(n, value), &preconditioner[row * kBlockDoubles]);
       }
     }
@@ -58,10 +72,10 @@ BlockMatrix::BlockMatrix(const KernelFactory& kernels, const Problem& problem)
   upload(blocks_, blocks);
   upload(columns_, columns);
   upload(slices_, first_);
-  upload(preconditioner_, preconditioner);
+  if (preconditioner_wanted) upload(preconditioner_, preconditioner);
 }
 
-void BlockMatrix::build_pattern(std::vector<std::uint32_t>& columns) {
+void BlockMatrix::build_pattern() {
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     for (Index n : problem_.mesh().tets[e]) elements_of_[n].push_back(e);
   }
@@ -82,10 +96,10 @@ void BlockMatrix::build_pattern(std::vector<std::uint32_t>& columns) {
     }
     first_[slice + 1] = first_[slice] + static_cast<std::uint32_t>(width);
   }
-  columns.assign(std::size_t{first_[groups_]} * shaders::kGroup, 0);  // padding: zero blocks
+  columns_of_.assign(std::size_t{first_[groups_]} * shaders::kGroup, 0);  // padding: zero blocks
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     for (std::size_t k = 0; k < neighbours_[n].size(); ++k) {
-      columns[(first_[n / shaders::kGroup] + k) * shaders::kGroup + n % shaders::kGroup] =
+      columns_of_[(first_[n / shaders::kGroup] + k) * shaders::kGroup + n % shaders::kGroup] =
           static_cast<std::uint32_t>(neighbours_[n][k]);
     }
   }
@@ -155,7 +169,7 @@ void BlockMatrix::destroy(std::span<const Index> elements) {
     blocks_.write(std::span<const double>(packed),
                   ((first_[n / shaders::kGroup] + k) * shaders::kGroup + n % shaders::kGroup) *
                       kBlockDoubles);
-    if (i != j) continue;
+    if (i != j || preconditioner_.bytes() == 0) continue;
     pack(inverse_of_free(i, value), packed.data());
     preconditioner_.write(std::span<const double>(packed), n * kBlockDoubles);
   }

@@ -14,8 +14,16 @@ namespace sunder::gpu {
 
 class BlockMatrix {
  public:
+  /// The pattern alone, on the host.
+  explicit BlockMatrix(const Problem& problem);
+  /// The whole, with preconditioner, on the device.
+  BlockMatrix(const KernelFactory& kernels, const Problem& problem) : BlockMatrix(problem) {
+    upload(kernels, true);
+  }
+  /// Of upload() to come.
+  [[nodiscard]] std::size_t planned_bytes(bool preconditioner) const;
   /// Throws DeviceError when the device's buffers cannot hold it.
-  BlockMatrix(const KernelFactory& kernels, const Problem& problem);
+  void upload(const KernelFactory& kernels, bool preconditioner);
 
   void destroy(std::span<const Index> elements);
 
@@ -28,7 +36,7 @@ class BlockMatrix {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  void build_pattern(std::vector<std::uint32_t>& columns);
+  void build_pattern();
   [[nodiscard]] Mat3 block(Index row, Index column) const;
   void pack(const Mat3& block, double* to) const;
   [[nodiscard]] Mat3 inverse_of_free(Index node, const Mat3& diagonal) const;
@@ -39,6 +47,7 @@ class BlockMatrix {
   std::vector<std::vector<Index>> elements_of_;  // per node, ascending
   std::vector<std::vector<Index>> neighbours_;   // per node, ascending, itself included
   std::vector<std::uint32_t> first_;             // of each slice, in rows of 64 blocks
+  std::vector<std::uint32_t> columns_of_;        // of every block; empty once uploaded
   vulkan::Buffer blocks_, columns_, slices_, preconditioner_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 #include "gpu/passes/fields.hpp"
 #include "sunder/error.hpp"
@@ -19,6 +20,25 @@ std::uint32_t u32(std::size_t value) { return static_cast<std::uint32_t>(value);
 std::unique_ptr<Binding> bind_buffers(const KernelFactory& kernels, const vulkan::Kernel& kernel,
                                       std::initializer_list<const Buffer*> list) {
   return std::make_unique<Binding>(kernels.device(), kernel, std::vector<const Buffer*>(list));
+}
+
+constexpr std::size_t kFirstEntries = 64;
+
+/// Columns of the largest panel that a device takes. Throws DeviceError when it takes none.
+std::uint32_t panel_columns(const KernelFactory& kernels, std::uint32_t rows,
+                            std::size_t panel_bytes) {
+  const vulkan::PhysicalDevice& device = kernels.device().physical();
+  const std::size_t column_bytes = rows * kernels.real_bytes();
+  const std::size_t limit = std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
+                                                   std::size_t{device.largest_texel_buffer} * 16,
+                                                   panel_bytes > 0 ? panel_bytes : SIZE_MAX});
+  const std::size_t most = limit / column_bytes / shaders::kColumnPad * shaders::kColumnPad;
+  if (most == 0) {
+    throw DeviceError("the device \"" + device.name + "\" takes buffers of " +
+                      std::to_string(limit) + " bytes, but 64 columns of the inverse need " +
+                      std::to_string(64 * column_bytes) + "; use route cg");
+  }
+  return u32(std::min<std::size_t>(most, UINT32_MAX / shaders::kColumnPad * shaders::kColumnPad));
 }
 
 }  // namespace
@@ -57,26 +77,25 @@ DenseInverse::DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t 
                          sizeof(shaders::ApplyPush));
   dense_ = kernels_.make("dense", {Reads::reals, Reads::doubles, Reads::plain},
                          sizeof(shaders::ApplyPush));
-  entries_ = Buffer(kernels_.device(), 64 * sizeof(shaders::Entry), Placement::host);
+  entries_ = Buffer(kernels_.device(), kFirstEntries * sizeof(shaders::Entry), Placement::host);
+}
+
+DenseInverse::Planned DenseInverse::planned(const KernelFactory& kernels, Index n,
+                                            std::uint32_t rows, std::size_t panel_bytes) {
+  const std::uint32_t columns = round_up(u32(n), shaders::kColumnPad);
+  const std::uint32_t most = panel_columns(kernels, rows, panel_bytes);
+  return {std::size_t{columns} * rows * kernels.real_bytes() +
+              Buffer::padded(kFirstEntries * sizeof(shaders::Entry)),
+          (columns - 1) / most + 1, columns / shaders::kChunk};
 }
 
 void DenseInverse::create_panels(std::size_t panel_bytes) {
-  const vulkan::PhysicalDevice& device = kernels_.device().physical();
   const std::size_t column_bytes = rows_ * kernels_.real_bytes();
-  const std::size_t limit = std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
-                                                   std::size_t{device.largest_texel_buffer} * 16,
-                                                   panel_bytes > 0 ? panel_bytes : SIZE_MAX});
-  const std::size_t most = limit / column_bytes / shaders::kColumnPad * shaders::kColumnPad;
-  kernels_.device().require_memory(columns_ * column_bytes, "the dense inverse");
-  if (most == 0) {
-    throw DeviceError("the device \"" + device.name + "\" takes buffers of " +
-                      std::to_string(limit) + " bytes, but 64 columns of the inverse need " +
-                      std::to_string(64 * column_bytes) + "; use route cg");
-  }
+  const std::uint32_t most = panel_columns(kernels_, rows_, panel_bytes);
   for (std::uint32_t first = 0; first < columns_;) {
     Panel panel;
     panel.first = first;
-    panel.columns = std::min(u32(most), columns_ - first);
+    panel.columns = std::min(most, columns_ - first);
     panel.matrix = Buffer(kernels_.device(), panel.columns * column_bytes, Placement::device);
     first += panel.columns;
     panels_.push_back(std::move(panel));
@@ -167,6 +186,10 @@ std::uint32_t DenseInverse::record_dense(vulkan::Commands& commands,
                       rows_ / shaders::kRowPad, panel.columns / shaders::kChunk);
   }
   return chunks();
+}
+
+std::size_t DenseInverse::planned_pick(std::size_t rows, std::size_t columns) {
+  return Buffer::padded(2 * (rows + columns) * 4) + Buffer::padded(2 * rows * columns * 8);
 }
 
 void DenseInverse::reserve_pick(std::size_t dofs, std::size_t values) {
@@ -265,23 +288,55 @@ void DenseInverse::record_vectors(vulkan::Commands& commands, std::span<const In
   }
 }
 
-void DenseInverse::update(std::span<const Index> dofs, const Eigen::MatrixXd& v) {
+void DenseInverse::update(std::span<const Index> dofs, const Eigen::MatrixXd& v, float sign) {
   const std::uint32_t blocks = round_up(u32(v.cols()), shaders::kRankBlock) / shaders::kRankBlock;
   reserve_update(dofs.size(), blocks);
   std::copy(dofs.begin(), dofs.end(), update_dofs_.mapped<Index>());
   write_factors(v, blocks);
   vulkan::Commands commands(kernels_.device());
   commands.begin();
-  commands.pass("update vectors");
+  commands.pass("update");
   record_vectors(commands, dofs, blocks);
-  commands.pass("low-rank update");
   for (const Panel& panel : panels_) {
-    commands.dispatch(*panel.low_rank, shaders::LowRankPush{rows_ / 4, blocks, panel.first},
+    commands.dispatch(*panel.low_rank, shaders::LowRankPush{rows_ / 4, blocks, panel.first, sign},
                       rows_ / shaders::kRowPad, panel.columns / shaders::kUpdateColumns);
   }
   commands.end();
   commands.submit();
-  times_ = commands.pass_times();
+}
+
+void DenseInverse::take_complement(const DenseInverse& other, double scale) {
+  const auto kernel =
+      kernels_.make("complement", {Reads::doubles, Reads::plain}, sizeof(shaders::ComplementPush));
+  for (const Panel& from : other.panels_) {
+    for (const Panel& to : panels_) {
+      const std::uint32_t first = std::max(from.first, to.first);
+      const std::uint32_t last = std::min(from.first + from.columns, to.first + to.columns);
+      if (first >= last) continue;
+      const auto binding = bind_buffers(kernels_, *kernel, {&from.matrix, &to.matrix});
+      vulkan::Commands commands(kernels_.device());
+      commands.begin();
+      commands.dispatch(*binding,
+                        shaders::ComplementPush{scale, rows_ / 4, u32(n_), first - from.first,
+                                                first - to.first, first, 0},
+                        rows_ / shaders::kRowPad, last - first);
+      commands.end();
+      commands.submit();
+    }
+  }
+}
+
+std::vector<double> DenseInverse::diagonal() {
+  constexpr Index kBlock = 128;
+  std::vector<double> values;
+  std::vector<Index> dofs;
+  for (Index first = 0; first < n_; first += kBlock) {
+    dofs.resize(static_cast<std::size_t>(std::min(kBlock, n_ - first)));
+    std::iota(dofs.begin(), dofs.end(), first);
+    const Eigen::VectorXd block = pick(dofs, dofs).diagonal();
+    values.insert(values.end(), block.begin(), block.end());
+  }
+  return values;
 }
 
 std::size_t DenseInverse::bytes() const {

@@ -51,6 +51,17 @@ class DenseInverse {
   /// anything is allocated, when the device cannot hold it.
   DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t rows, std::size_t panel_bytes);
 
+  /// Bytes of an inverse to come, and in how many panels.
+  struct Planned {
+    std::size_t bytes = 0;
+    std::uint32_t panels = 0, chunks = 0;
+  };
+  [[nodiscard]] static Planned planned(const KernelFactory& kernels, Index n, std::uint32_t rows,
+                                       std::size_t panel_bytes);
+
+  /// Bytes that the first pick() of such a block takes.
+  [[nodiscard]] static std::size_t planned_pick(std::size_t rows, std::size_t columns);
+
   /// Fills the matrix from the host.
   void upload(const Columns& columns);
 
@@ -68,12 +79,15 @@ class DenseInverse {
 
   /// X(rows, columns) as it stands on the device.
   [[nodiscard]] Eigen::MatrixXd pick(std::span<const Index> rows, std::span<const Index> columns);
-  /// X += Z Z^T with Z = X(:, dofs) V; V: shape (dofs x rank).
-  void update(std::span<const Index> dofs, const Eigen::MatrixXd& v);
+  /// X += sign Z Z^T with Z = X(:, dofs) V; V: shape (dofs x rank).
+  void update(std::span<const Index> dofs, const Eigen::MatrixXd& v, float sign = 1);
+  /// X = scale (I - other), of the same size; `other` in fp64.
+  void take_complement(const DenseInverse& other, double scale);
+
+  /// The diagonal, as it stands on the device.
+  [[nodiscard]] std::vector<double> diagonal();
 
   [[nodiscard]] std::size_t bytes() const;
-  /// Device time of the last update.
-  [[nodiscard]] const std::vector<vulkan::PassTime>& update_times() const { return times_; }
 
  private:
   struct Panel {
@@ -98,7 +112,6 @@ class DenseInverse {
   const PartialSums* partials_ = nullptr;
   std::unique_ptr<vulkan::Kernel> apply_, dense_, pick_, vectors_, low_rank_;
   vulkan::Buffer entries_, pick_dofs_, picked_, update_dofs_, factors_, z_;
-  std::vector<vulkan::PassTime> times_;
 };
 
 }  // namespace sunder::gpu

@@ -21,11 +21,45 @@ ExactColumns::ExactColumns(const KernelFactory& kernels, std::uint32_t rows)
                                {Reads::doubles, Reads::doubles, Reads::words, Reads::plain},
                                sizeof(shaders::SolvePush))) {}
 
-Index ExactColumns::most() const {
-  const vulkan::PhysicalDevice& device = kernels_.device().physical();
+namespace {
+
+// Room for so much damage from the start, if it takes no more memory than that.
+constexpr std::size_t kRoom = 512;
+constexpr std::size_t kRoomBytes = std::size_t{64} << 20;
+
+std::uint32_t most_columns(const vulkan::PhysicalDevice& device, std::uint32_t rows) {
   const std::size_t limit = std::min<std::size_t>(device.largest_buffer, device.largest_allocation);
-  const std::size_t most = limit / (rows_ * sizeof(double)) / shaders::kChunk * shaders::kChunk;
-  return static_cast<Index>(std::min<std::size_t>(most, 1u << 20));
+  const std::size_t most = limit / (rows * sizeof(double)) / shaders::kChunk * shaders::kChunk;
+  return static_cast<std::uint32_t>(std::min<std::size_t>(most, 1u << 20));
+}
+
+std::uint32_t reserved(const vulkan::PhysicalDevice& device, std::uint32_t rows) {
+  const std::size_t room = std::min(kRoom, kRoomBytes / (rows * sizeof(double)));
+  return std::min(round_up(static_cast<std::uint32_t>(room), shaders::kChunk),
+                  most_columns(device, rows));
+}
+
+/// Capacity for `count` columns beyond `capacity`: doubled, so that growth is rare.
+std::uint32_t grown(std::uint32_t capacity, std::uint32_t count, std::uint32_t most) {
+  return std::min(round_up(std::max(count, 2 * capacity), 2 * shaders::kChunk),
+                  std::max(most, round_up(count, shaders::kChunk)));
+}
+
+}  // namespace
+
+Index ExactColumns::most() const {
+  return static_cast<Index>(most_columns(kernels_.device().physical(), rows_));
+}
+
+std::uint32_t ExactColumns::planned_capacity(const vulkan::PhysicalDevice& device,
+                                             std::uint32_t rows, Index count) {
+  const std::uint32_t first = reserved(device, rows), wanted = static_cast<std::uint32_t>(count);
+  return wanted <= first ? first : grown(first, wanted, most_columns(device, rows));
+}
+
+std::size_t ExactColumns::planned_bytes(std::uint32_t rows, std::uint32_t capacity) {
+  const std::size_t vector = capacity * sizeof(double);
+  return vector * rows + 2 * Buffer::padded(vector);
 }
 
 std::uint32_t ExactColumns::chunks() const {
@@ -46,19 +80,16 @@ void ExactColumns::allocate(std::uint32_t capacity) {
   count_ = 0;
 }
 
-void ExactColumns::reserve(Index count) {
-  const auto wanted = std::min(round_up(static_cast<std::uint32_t>(count), shaders::kChunk),
-                               static_cast<std::uint32_t>(most()));
-  if (wanted > capacity_) allocate(wanted);
+void ExactColumns::reserve() {
+  const std::uint32_t room = reserved(kernels_.device().physical(), rows_);
+  if (room > capacity_) allocate(room);
 }
 
 bool ExactColumns::extend(const Eigen::MatrixXd& all, Index count) {
   bool moved = false;
   if (static_cast<std::uint32_t>(count) > capacity_) {
-    const auto wanted = std::max(static_cast<std::uint32_t>(count), 2 * capacity_);
-    allocate(std::min(round_up(wanted, 2 * shaders::kChunk),
-                      std::max(static_cast<std::uint32_t>(most()),
-                               round_up(static_cast<std::uint32_t>(count), shaders::kChunk))));
+    allocate(
+        grown(capacity_, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(most())));
     moved = true;
   }
   if (kernels_.device().physical().unified()) {

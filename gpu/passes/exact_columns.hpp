@@ -23,8 +23,12 @@ class ExactColumns {
   /// sent again. Returns true when buffers moved: bind() anew.
   bool extend(const Eigen::MatrixXd& all, Index count);
   void clear() { count_ = 0; }
-  /// Room for `count` columns, so that a frame need not allocate (less where memory is short).
-  void reserve(Index count);
+  /// Room for the damage to come, so that a frame need not allocate.
+  void reserve();
+  /// Columns that reserve() and then extend() to `count` make room for, and their bytes.
+  [[nodiscard]] static std::uint32_t planned_capacity(const vulkan::PhysicalDevice& device,
+                                                      std::uint32_t rows, Index count);
+  [[nodiscard]] static std::size_t planned_bytes(std::uint32_t rows, std::uint32_t capacity);
 
   [[nodiscard]] Index count() const { return count_; }
   [[nodiscard]] std::uint32_t chunks() const;

@@ -22,7 +22,8 @@ Lame lame(const Material& m) {
 
 }  // namespace
 
-Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs& needs)
+Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs& needs,
+               const RouteNeeds& route)
     : kernels_(kernels),
       problem_(problem),
       keep_stress_(needs.stress),
@@ -30,8 +31,12 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
       elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
       nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
-      matrix_(kernels, problem) {
+      element_parts_(elements_ / shaders::kGroup * kernels.parts()),
+      node_parts_(nodes_ / shaders::kGroup * kernels.parts()),
+      matrix_(problem) {
   vulkan::Device& device = kernels.device();
+  device.require_memory(planned_bytes(route.preconditioner) + route.bytes, "this scene");
+  matrix_.upload(kernels, route.preconditioner);
   const auto make = [&](std::size_t bytes, Placement placement = Placement::device) {
     Buffer buffer(device, bytes, placement);
     buffer.fill_zero();
@@ -47,8 +52,6 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   balance_ = make(std::size_t{4} * nodes_ * sizeof(double));
   stress_ = make(keep_stress_ ? std::size_t{elements_} * 8 * kernels.real_bytes() : 16);
   over_ = make((1 + std::size_t{elements_}) * sizeof(std::uint32_t));
-  element_parts_ = elements_ / shaders::kGroup * kernels.parts();
-  node_parts_ = nodes_ / shaders::kGroup * kernels.parts();
   stress_partials_ = make(element_parts_ * sizeof(shaders::StressPartial));
   node_partials_ = make(node_parts_ * sizeof(shaders::NodePartial));
   summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
@@ -56,6 +59,30 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   upload_shapes();
   create_kernels();
   create_hold();
+}
+
+std::size_t Fields::planned_bytes(bool preconditioner) const {
+  const std::size_t nodal = std::size_t{4} * nodes_ * sizeof(double);
+  const std::size_t unknowns = rows_ * sizeof(double);
+  const std::size_t elements = elements_, grips = problem_.gripped_dofs().size();
+  std::size_t sum = matrix_.planned_bytes(preconditioner);
+  for (const std::size_t bytes :
+       {3 * (nodal + unknowns),  // displacement, kept, correction
+        3 * nodal + unknowns,    // load, roots, balance; residual
+        keep_stress_ ? elements * 8 * kernels_.real_bytes() : 16,
+        (1 + elements) * sizeof(std::uint32_t),  // over yield
+        element_parts_ * sizeof(shaders::StressPartial), node_parts_ * sizeof(shaders::NodePartial),
+        2 * sizeof(shaders::Summary),
+        4 * elements * sizeof(std::uint32_t),  // nodes of elements
+        elements * sizeof(shaders::ElementFacts), 12 * elements * sizeof(double),
+        std::size_t{4} * nodes_ * sizeof(std::uint32_t),  // dofs
+        rows_ * sizeof(std::uint32_t)}) {                 // positions
+    sum += Buffer::padded(bytes);
+  }
+  if (grips > 0) {
+    sum += Buffer::padded(grips * sizeof(std::uint32_t)) + Buffer::padded(grips * sizeof(double));
+  }
+  return sum;
 }
 
 void Fields::upload_mesh() {

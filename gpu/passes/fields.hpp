@@ -22,7 +22,20 @@ enum class Field { displacement, correction };
 
 class Fields {
  public:
-  Fields(const KernelFactory& kernels, const Problem& problem, const Needs& needs);
+  /// What the route over these fields needs.
+  struct RouteNeeds {
+    std::size_t bytes = 0;        ///< of its own buffers, at most
+    bool preconditioner = false;  ///< of the stiffness
+  };
+  /// Throws DeviceError, before anything is allocated, when the device's memory cannot hold the
+  /// fields and the route's buffers together.
+  Fields(const KernelFactory& kernels, const Problem& problem, const Needs& needs,
+         const RouteNeeds& route);
+  Fields(const KernelFactory& kernels, const Problem& problem, const Needs& needs)
+      : Fields(kernels, problem, needs, RouteNeeds{}) {}
+
+  /// Device bytes of the fields, before they exist.
+  [[nodiscard]] std::size_t planned_bytes(bool preconditioner) const;
 
   /// Rows of a vector over the unknowns, padded.
   [[nodiscard]] std::uint32_t rows() const { return rows_; }
@@ -100,10 +113,10 @@ class Fields {
   const KernelFactory& kernels_;
   const Problem& problem_;
   bool keep_stress_, list_over_;
-  std::uint32_t rows_, elements_, nodes_;             // padded
-  std::uint32_t element_parts_ = 0, node_parts_ = 0;  // partial results
-  std::vector<shaders::ElementFacts> facts_host_;     // copy of facts_
-  std::vector<std::uint32_t> place_;                  // host copy of positions_
+  std::uint32_t rows_, elements_, nodes_;          // padded
+  std::uint32_t element_parts_, node_parts_;       // partial results
+  std::vector<shaders::ElementFacts> facts_host_;  // copy of facts_
+  std::vector<std::uint32_t> place_;               // host copy of positions_
 
   vulkan::Buffer nodes_of_, shape_, facts_;
   vulkan::Buffer dofs_, positions_, roots_;

@@ -26,13 +26,12 @@ void copy(Device& device, VkBuffer from, std::size_t from_offset, VkBuffer to,
 }  // namespace
 
 Buffer::Buffer(Device& device, std::size_t bytes, Placement placement)
-    : device_(&device),
-      bytes_((std::max<std::size_t>(bytes, 1) + 15) / 16 * 16),  // whole texels
-      guard_(device.guard_bytes()) {
+    : device_(&device), bytes_(padded(bytes)), guard_(device.guard_bytes()) {
   try {
     create();
     allocate(placement);
     write_guards();
+    device_->count_buffer(static_cast<std::ptrdiff_t>(bytes_));
   } catch (...) {
     release();
     throw;
@@ -66,6 +65,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 void Buffer::release() noexcept {
   if (!device_) return;
   check_guards();
+  if (memory_) device_->count_buffer(-static_cast<std::ptrdiff_t>(bytes_));
   device_->vk().DestroyBuffer(device_->handle(), handle_, nullptr);
   device_->vk().FreeMemory(device_->handle(), memory_, nullptr);
   device_ = nullptr;

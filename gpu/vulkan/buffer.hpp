@@ -28,6 +28,10 @@ class Buffer {
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
 
+  /// Bytes that a buffer for so many takes: whole texels.
+  [[nodiscard]] static constexpr std::size_t padded(std::size_t bytes) {
+    return (bytes == 0 ? 1 : bytes) / 16 * 16 + ((bytes == 0 ? 1 : bytes) % 16 > 0 ? 16 : 0);
+  }
   [[nodiscard]] VkBuffer handle() const { return handle_; }
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
   /// Where the bytes begin in the VkBuffer, and the range that kernels see.

@@ -66,6 +66,7 @@ Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<M
       probe_(probe),
       timing_(physical_.timestamp_bits > 0),
       queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock) {
+  if (probe_.memory > 0) physical_.memory = probe_.memory;
   VkCommandPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool.queueFamilyIndex = handles_.family;

@@ -3,6 +3,8 @@
 // `owner` ever destroys them, so a trainer can lend instance, device and queue.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -39,6 +41,8 @@ struct DeviceProbe {
   int submits_until_lost = -1;
   /// Sentinel bytes before and after every buffer, a multiple of 256; a changed one is a message.
   std::size_t guard_bytes = 0;
+  /// The device claims to have no more memory than this. 0: what it has.
+  VkDeviceSize memory = 0;
 };
 
 class Device {
@@ -83,6 +87,16 @@ class Device {
   [[nodiscard]] std::size_t bytes_read() const { return bytes_read_; }
   void count_read(std::size_t bytes) { bytes_read_ += bytes; }
 
+  /// Bytes that buffers hold now, and the most they ever held; pipelines created so far.
+  [[nodiscard]] std::size_t held_bytes() const { return held_bytes_; }
+  [[nodiscard]] std::size_t most_bytes() const { return most_bytes_; }
+  [[nodiscard]] int pipelines() const { return pipelines_; }
+  void count_buffer(std::ptrdiff_t bytes) {
+    held_bytes_ += static_cast<std::size_t>(bytes);
+    most_bytes_ = std::max(most_bytes_, held_bytes_);
+  }
+  void count_pipeline() { ++pipelines_; }
+
   /// Throws DeviceError when `bytes` more than the device's memory are asked for.
   void require_memory(VkDeviceSize bytes, const std::string& purpose) const;
 
@@ -94,7 +108,8 @@ class Device {
   std::shared_ptr<Messages> messages_;
   DeviceProbe probe_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::size_t bytes_read_ = 0;
+  std::size_t bytes_read_ = 0, held_bytes_ = 0, most_bytes_ = 0;
+  int pipelines_ = 0;
   bool timing_;
   std::vector<PassTime> times_;
   Queue queue_;

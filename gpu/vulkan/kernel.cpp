@@ -86,6 +86,7 @@ void Kernel::create_pipeline(const KernelCode& code) {
                                                               &info, nullptr, &pipeline_);
   device_.vk().DestroyShaderModule(device_.handle(), shader, nullptr);
   check(result, "vkCreateComputePipelines");
+  device_.count_pipeline();
 }
 
 Binding::Binding(Device& device, const Kernel& kernel, std::span<const Buffer* const> buffers)

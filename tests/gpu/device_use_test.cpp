@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a backend takes of its device: memory known before it is allocated, only the pipelines that
+// the scene needs, one submit a frame, no field read back in a quiet one.
+#include <algorithm>
+#include <cmath>
+
+#include "fem/element.hpp"
+#include "gpu_body.hpp"
+#include "sunder/error.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::test {
+namespace {
+
+using DeviceUse = WithVulkan<>;
+
+Needs needs_with(bool damage) {
+  Needs needs;
+  needs.stress = needs.yield = true;
+  needs.damage = damage;
+  return needs;
+}
+
+/// Validation is on, with sentinels round every buffer.
+gpu::VulkanOptions watched(const Way& way = {}) {
+  gpu::VulkanOptions options;
+  options.instance.validation = true;
+  options.variant = way.variant;
+  options.probe.guard_bytes = 256;
+  return options;
+}
+
+std::shared_ptr<const Problem> problem_for(Scene scene, const Way& way) {
+  scene.solver.backend = "vulkan";
+  scene.solver.precision = way.precision;
+  scene.solver.update = way.update;
+  scene.solver.route = way.route;
+  scene.solver.tolerance = way.tolerance;
+  return std::make_shared<const Problem>(std::move(scene));
+}
+
+/// No size of it is a multiple of 64.
+Scene small_scene(bool gripped) {
+  Scene scene;
+  scene.mesh = structured_board({9, 6, 1});
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, 9.9, -1), Vec3(11, 11, 2)}, Axes{7}});
+  if (gripped) {
+    Instrument low;
+    low.name = "low";
+    low.action = Grip{Box{Vec3(-1, -0.1, -1), Vec3(11, 0.1, 2)}, Vec3(1, -2, 0.5), Axes{7}};
+    scene.instruments.push_back(low);
+  }
+  return scene;
+}
+
+std::string refusal(const std::shared_ptr<const Problem>& problem,
+                    const gpu::VulkanOptions& options) {
+  try {
+    static_cast<void>(gpu::create(problem, needs_with(true), options));
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::vector<Way> ways_of_all_routes() {
+  std::vector<Way> ways = all_ways();
+  for (gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
+    for (Precision precision : {Precision::fp32, Precision::fp64}) {
+      ways.push_back({variant, precision, Update::automatic, 1e-4, 0, Route::cg});
+    }
+  }
+  return ways;
+}
+
+TEST_F(DeviceUse, MemoryIsKnownToTheByteBeforeItIsAllocated) {
+  for (const bool gripped : {false, true}) {
+    for (const Way& way : ways_of_all_routes()) {
+      const auto problem = problem_for(small_scene(gripped), way);
+      gpu::VulkanOptions options = watched(way);
+      const std::size_t bytes =
+          gpu::device_use(*gpu::create(problem, needs_with(true), options)).bytes;
+      options.probe.memory = bytes;
+      EXPECT_EQ(refusal(problem, options), "");
+      options.probe.memory = bytes - 1;
+      const std::string message = refusal(problem, options);
+      EXPECT_NE(message.find("needs " + std::to_string(bytes) + " bytes"), std::string::npos)
+          << message;
+      EXPECT_NE(message.find("which has " + std::to_string(bytes - 1)), std::string::npos)
+          << message;
+    }
+  }
+}
+
+TEST_F(DeviceUse, OnlyThePipelinesThatTheSceneNeedsAreCreated) {
+  const auto pipelines = [](const Scene& scene, const Way& way, bool damage) {
+    const auto problem = problem_for(scene, way);
+    const auto backend = gpu::create(problem, needs_with(damage), watched(way));
+    if (damage) {
+      const Index first = 100;
+      backend->destroy({&first, 1});
+    }
+    return gpu::device_use(*backend).pipelines;
+  };
+  const Way eager{gpu::Variant::lvp, Precision::fp64, Update::eager};
+  // Damage of the eager inverse: pick, update vectors, low rank.
+  EXPECT_EQ(pipelines(small_scene(false), eager, true),
+            pipelines(small_scene(false), eager, false) + 3);
+  // Deferred damage needs none of its own.
+  EXPECT_EQ(pipelines(small_scene(false), {}, true), pipelines(small_scene(false), {}, false));
+  // Grips: one that holds them.
+  EXPECT_EQ(pipelines(small_scene(true), {}, false), pipelines(small_scene(false), {}, false) + 1);
+}
+
+TEST_F(DeviceUse, AFrameIsOneSubmitAndAQuietOneReadsNoFieldBack) {
+  const auto problem = problem_for(held_board(), {gpu::Variant::lvp, Precision::fp32});
+  const auto backend = gpu::create(problem, needs_with(true), watched());
+  const auto nodes = nodes_in(problem->mesh(), lower_right_corner());
+  const auto frame = [&](double force) {
+    backend->set_load(pull(*problem, nodes, Vec3(0, -force, 0)));
+    const std::size_t before = gpu::device_use(*backend).submits;
+    backend->solve();
+    EXPECT_EQ(gpu::device_use(*backend).submits, before + 1) << "force " << force;
+    return backend->stress();
+  };
+  frame(10);
+  const std::size_t read = gpu::bytes_read(*backend), held = gpu::device_use(*backend).bytes;
+  for (int i = 1; i < 5; ++i) {
+    const StressSummary summary = frame(10 * i);
+    EXPECT_GT(summary.any.ratio, 0);
+  }
+  for (Index e : crack_sequence(*problem, 10, 10)) {
+    backend->destroy({&e, 1});
+    frame(40);
+  }
+  EXPECT_EQ(gpu::bytes_read(*backend), read);
+  EXPECT_EQ(gpu::device_use(*backend).bytes, held) << "a frame allocated device memory";
+}
+
+TEST_F(DeviceUse, TheDeviceListsWhatIsOverYield) {
+  for (const gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
+    for (const Precision precision : {Precision::fp32, Precision::fp64}) {
+      const Way way{variant, precision};
+      const auto problem = problem_for(held_board(), way);
+      const auto backend = gpu::create(problem, needs_with(true), watched(way));
+      const Index gone = crack_sequence(*problem, 1, 10).front();
+      backend->destroy({&gone, 1});
+      for (const double force : {10.0, 2000.0, 800.0}) {
+        backend->set_load(
+            pull(*problem, nodes_in(problem->mesh(), lower_right_corner()), Vec3(0, -force, 0)));
+        backend->solve();
+        const StressSummary summary = backend->stress();
+        std::vector<Voigt> stress(problem->mesh().tets.size());
+        backend->read_stress(stress);
+        std::vector<Index> expected;
+        for (Index e = 0; e < problem->tet_count(); ++e) {
+          if (e == gone || !problem->breakable(e)) continue;
+          const double ratio = fem::max_shear(stress[e]) / problem->yield(e);
+          ASSERT_GT(std::abs(ratio - 1), 1e-5) << "element " << e << " is too near to yield";
+          if (ratio >= 1) expected.push_back(e);
+        }
+        EXPECT_EQ(gpu::over_yield(*backend), expected);
+        EXPECT_EQ(summary.over, static_cast<Index>(expected.size()));
+        if (force == 2000.0) {
+          EXPECT_GT(expected.size(), 20u);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(DeviceUse, PassesAreTimedWhenAskedFor) {
+  const auto problem = problem_for(held_board(), {});
+  const auto backend = gpu::create(problem, needs_with(true), watched());
+  backend->set_load(corner_pull(*problem));
+  backend->solve();
+  EXPECT_TRUE(backend->take_pass_times().empty());
+  backend->time_passes(true);
+  backend->solve();
+  const auto times = backend->take_pass_times();
+  for (const char* pass : {"solve", "stress"}) {
+    const auto found = std::find_if(times.begin(), times.end(), [&](const PassTime& t) {
+      return std::string(t.pass) == pass && t.milliseconds > 0;
+    });
+    EXPECT_NE(found, times.end()) << pass;
+  }
+  EXPECT_TRUE(backend->take_pass_times().empty());
+}
+
+}  // namespace
+}  // namespace sunder::test
