@@ -28,7 +28,8 @@ TEST_P(WrongUsageTest, IsOneSentenceAndExitCode2) {
   EXPECT_NE(run.err.find(GetParam().message), std::string::npos) << run.err;
 }
 
-const std::string kCommands = R"(allowed is "run", "plan", "mesh", "devices" or "help")";
+const std::string kCommands =
+    R"(allowed is "run", "plan", "reproduce", "mesh", "devices" or "help")";
 
 INSTANTIATE_TEST_SUITE_P(
     All, WrongUsageTest,
