@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Precompiled headers: the parsing of Eigen, GoogleTest and the standard library is about half of a
-# cold build. One compile in CI runs without them, so that no file lives on what they happen to bring.
+# cold build. Off: every file must include what it uses, and does.
 option(SUNDER_PRECOMPILE "Precompile the headers of others" ON)
 
 set(SUNDER_STANDARD_HEADERS
