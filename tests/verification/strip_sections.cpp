@@ -50,8 +50,9 @@ void write_strips(std::ostream& out, Notch notch) {
   out << "\n## " << (edge ? "Single edge notch" : "Centre crack") << " in tension, F(a/W)\n"
       << (edge ? "References: Tada, Paris and Irwin, The Stress Analysis of Cracks Handbook (0.5 % "
                  "for any a/W); the polynomial 1.12 - 0.231 x + ... (Brown and Srawley 1966, 0.5 % "
-                 "up to 0.6); Kaya and Erdogan 1987, an integral equation solved to the digits "
-                 "printed. Errors are against Tada. At a/W = 0.1 Tada's formula itself is 0.5 % "
+                 "up to 0.6); Kaya and Erdogan 1987 (an integral equation), values as "
+                 "commonly quoted, not checked against the paper. Errors are against Tada. At a/W "
+                 "= 0.1 Tada's formula itself is 0.5 % "
                  "high, at 0.6 0.25 %.\n"
                : "Reference: Tada's modification of Feddersen's formula (0.1 % for any a/W).\n")
       << head(strip_columns(edge));
