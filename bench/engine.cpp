@@ -14,6 +14,7 @@
 #include "engine/deferred.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
+#include "run_rows.hpp"
 
 extern "C" void openblas_set_num_threads(int);
 
@@ -205,7 +206,5 @@ void register_rows() {
 int main(int argc, char** argv) {
   openblas_set_num_threads(1);
   sunder::bench::register_rows();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
+  return sunder::bench::run_rows(argc, argv);
 }

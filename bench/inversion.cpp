@@ -8,6 +8,7 @@
 #include <map>
 
 #include "fem/factor.hpp"
+#include "run_rows.hpp"
 #include "tearing_board.hpp"
 
 extern "C" {
@@ -102,7 +103,5 @@ void register_rows() {
 int main(int argc, char** argv) {
   openblas_set_num_threads(1);
   sunder::bench::register_rows();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
+  return sunder::bench::run_rows(argc, argv);
 }

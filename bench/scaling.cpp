@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "bench/study/method.hpp"
+#include "run_rows.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
 #include "tearing_board.hpp"
@@ -115,7 +116,5 @@ void register_rows() {
 
 int main(int argc, char** argv) {
   sunder::bench::register_rows();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
+  return sunder::bench::run_rows(argc, argv);
 }
