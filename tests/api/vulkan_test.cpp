@@ -7,6 +7,8 @@
 
 #include "api/c_scene.hpp"
 #include "api/vulkan_host.hpp"
+#include "c/simulation.hpp"
+#include "gpu/vulkan_backend.hpp"
 
 namespace sunder::test {
 namespace {
@@ -274,6 +276,25 @@ TEST_F(CVulkan, MisuseGivesStatuses) {
   d.struct_size = sizeof d;
   EXPECT_EQ(sunder_vulkan_get_display(elsewhere, &d), SUNDER_ERROR_ORDER);
   EXPECT_OK(sunder_simulation_destroy(elsewhere));
+}
+
+// What the host counts at its queue is what the same steps submit on a device of their own.
+TEST_F(CVulkan, AStepSubmitsNoMoreThanOnItsOwnDevice) {
+  create();
+  const auto lent = c::find<c::SimulationObject>(simulation, "simulation");
+  const auto problem = std::make_shared<const Problem>(lent->problem().scene());
+  Simulation own(problem, gpu::create(problem, needs_of(*problem)));
+  std::size_t before = gpu::device_use(own.backend()).submits;
+  for (int i = 0; i < 3; ++i) {
+    const int host_before = VulkanHost::calls.submits;
+    own.step();
+    EXPECT_EQ(VulkanHost::calls.submits, host_before) << "own device, yet the host's queue";
+    steps(1);
+    const std::size_t now = gpu::device_use(own.backend()).submits;
+    EXPECT_GT(now, before);
+    EXPECT_EQ(static_cast<std::size_t>(VulkanHost::calls.submits - host_before), now - before);
+    before = now;
+  }
 }
 
 TEST_F(CVulkan, CyclesLeaveNothing) {
