@@ -5,15 +5,18 @@
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <numeric>
 
 #include "cholmod_peer.hpp"
-#include "cpu_reference/routes.hpp"
+#include "cpu_reference/cpu_reference.hpp"
+#include "cpu_reference/stress.hpp"
 #include "engine/deferred.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
+#include "engine/stress_kernel.hpp"
 #include "run_rows.hpp"
 
 extern "C" void openblas_set_num_threads(int);
@@ -95,7 +98,7 @@ void cholmod_row(benchmark::State& state, const char* name, Index cells, std::si
 void engine_row(benchmark::State& state, const char* name, Index cells, std::size_t k,
                 const std::function<std::unique_ptr<engine::Base>(const fem::Factor&)>& base) {
   const TearingBoard& board = board_of(cells);
-  engine::Deferred deferred(base(factor_of(cells)), {});
+  engine::Deferred deferred(*board.problem, base(factor_of(cells)));
   const auto elements = board.connected(k);
   Eigen::VectorXd u;
   measure(
@@ -104,7 +107,7 @@ void engine_row(benchmark::State& state, const char* name, Index cells, std::siz
         if (deferred.events() > 0) deferred.take_back();
       },
       [&] {
-        if (!deferred.destroy(*board.problem, elements)) state.SkipWithError("not definite");
+        if (!deferred.destroy(elements)) state.SkipWithError("not definite");
         deferred.solve({board.load_dofs, board.load_values}, {}, u);
       });
   state.counters["rank"] = deferred.rank();
@@ -125,36 +128,69 @@ void own_refactor(benchmark::State& state, Index cells) {
   state.counters["nnz_L"] = static_cast<double>(factor_of(cells).entries());
 }
 
-/// 640 fractures one by one: first, median, 99th percentile and worst frame, last hundred's median.
-void accumulated(benchmark::State& state, Index cells, bool dense) {
+double median_of(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+/// A cascade: fractures one by one, each with its frame (update, solution with its check, stress
+/// with its summary), as the backend does them.
+void cascade(benchmark::State& state, Index cells, std::size_t fractures, Route route) {
+  Scene scene = board_of(cells).problem->scene();
+  scene.solver.route = route;
+  const auto problem = std::make_shared<Problem>(std::move(scene));
   const TearingBoard& board = board_of(cells);
-  const cpu_reference::IntactBody intact(*board.problem);
-  Load load{board.load_dofs, board.load_values, {}};
-  const Eigen::VectorXd none;
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  const Load load{board.load_dofs, board.load_values, {}};
   for (auto _ : state) {
-    cpu_reference::DamagedBody body(board.problem);
-    const auto route = cpu_reference::deferred_route(body, intact, dense);
+    const auto backend = cpu_reference::create(problem, needs);
+    backend->set_load(load);
+    backend->solve();
+    backend->stress();
     std::vector<double> ms;
-    Eigen::VectorXd u;
-    for (const Index& e : board.connected(640)) {
+    for (const Index& e : board.connected(fractures)) {
       const auto start = Clock::now();
-      body.destroy({&e, 1});
-      route->destroy({&e, 1});
-      route->solve(load, none, u);
+      backend->destroy({&e, 1});
+      backend->set_load(load);
+      backend->solve();
+      backend->stress();
       ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     }
     state.SetIterationTime(1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0));
-    const auto median = [](std::vector<double> v) {
-      std::sort(v.begin(), v.end());
-      return v[v.size() / 2];
-    };
-    state.counters["first_ms"] = median({ms.begin(), ms.begin() + 5});
-    state.counters["median_ms"] = median(ms);
-    state.counters["last_ms"] = median({ms.end() - 100, ms.end()});
+    const std::size_t tail = std::min<std::size_t>(100, ms.size() / 2);
+    state.counters["first_ms"] = median_of({ms.begin(), ms.begin() + 5});
+    state.counters["last_ms"] = median_of({ms.end() - static_cast<std::ptrdiff_t>(tail), ms.end()});
     std::sort(ms.begin(), ms.end());
-    state.counters["p99_ms"] = ms[633];
+    const double median = ms[ms.size() / 2], p99 = ms[ms.size() * 99 / 100];
+    state.counters["median_ms"] = median;
+    state.counters["p99_ms"] = p99;
     state.counters["worst_ms"] = ms.back();
+    state.counters["p99_over_median"] = p99 / median;
+    state.counters["min_ms"] = ms.front();
   }
+}
+
+/// Element stress of the board: the vectorised kernel on one thread and on all, and the plain loop.
+void stress_row(benchmark::State& state, Index cells, int threads) {
+  const auto& problem = board_of(cells).problem;
+  engine::StressKernel kernel(problem, {}, threads);
+  kernel.keep_bounds();
+  std::vector<double> u(problem->dofs().size());
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = std::sin(0.1 * static_cast<double>(i));
+  std::vector<Voigt> stress(problem->mesh().tets.size());
+  const std::vector<double> scale(stress.size(), 1.0);
+  measure(
+      state, row("stress", cells, static_cast<std::size_t>(threads)), cells, 0, [] {},
+      [&] {
+        if (threads > 0) {
+          kernel.run(u, stress);
+        } else {
+          cpu_reference::element_stress(*problem, scale, u, stress);
+        }
+      });
+  state.counters["ns_per_tet"] =
+      1e6 * state.counters["min_ms"] / static_cast<double>(problem->tet_count());
 }
 
 void add(const std::string& name, double seconds,
@@ -188,14 +224,23 @@ void register_rows() {
     add(row("sunder_factor_anew", cells, 1), 0.1, [=](auto& s) { own_refactor(s, cells); });
   }
   for (Index cells : {18, 36, 71}) {
-    for (bool dense : {true, false}) {
-      if (dense && cells > 36) continue;
-      const std::string name = dense ? "accumulated_640_inverse" : "accumulated_640_factor";
-      benchmark::RegisterBenchmark((name + "/" + std::to_string(6 * cells * cells)).c_str(),
-                                   [=](auto& s) { accumulated(s, cells, dense); })
-          ->UseManualTime()
-          ->Iterations(1)
-          ->Unit(benchmark::kMillisecond);
+    for (std::size_t fractures : {std::size_t{200}, std::size_t{640}}) {
+      for (Route route : {Route::inverse, Route::factor}) {
+        if (route == Route::inverse && cells > 36) continue;
+        const std::string name =
+            std::string("cascade_") + (route == Route::inverse ? "inverse" : "factor") + "/" +
+            std::to_string(6 * cells * cells) + "/" + std::to_string(fractures);
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [=](auto& s) { cascade(s, cells, fractures, route); })
+            ->UseManualTime()
+            ->Iterations(1)
+            ->Unit(benchmark::kMillisecond);
+      }
+    }
+    for (int threads : {0, 1, 2}) {
+      const std::string name = threads == 0 ? "stress_plain" : "stress_threads";
+      add(name + "/" + std::to_string(6 * cells * cells) + "/" + std::to_string(threads), 0.1,
+          [=](auto& s) { stress_row(s, cells, threads); });
     }
   }
 }

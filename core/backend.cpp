@@ -56,7 +56,8 @@ StressSummary Backend::stress() {
 void Backend::destroy(std::span<const Index> elements) {
   require(needs_.damage, "damage was left out of this backend's needs");
   if (elements.empty()) return;
-  std::vector<Index> sorted(elements.begin(), elements.end());
+  std::vector<Index>& sorted = sorted_;  // kept: a frame allocates nothing
+  sorted.assign(elements.begin(), elements.end());
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     require(sorted[i] >= 0 && sorted[i] < problem_->tet_count(),

@@ -3,12 +3,14 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include "cpu_reference/choose_route.hpp"
 #include "cpu_reference/cpu_reference.hpp"
+#include "cpu_reference/frame_check.hpp"
 #include "cpu_reference/routes.hpp"
-#include "cpu_reference/stress.hpp"
+#include "engine/stress_kernel.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::cpu_reference {
@@ -40,12 +42,32 @@ class CpuBackend final : public Backend {
         intact_(*problem) {
     const auto n = problem->dof_count();
     route_ = make_route();
+    if (route_->deferred()) check_.emplace(*problem);
     force_.setZero(n);
     u_.setZero(n);
     reactions_.assign(problem->gripped_dofs().size(), 0.0);
+    anchors_.assign(reactions_.size(), 0.0);
+    for (Index d : problem->anchored_dofs()) {
+      const auto gripped = problem->gripped_dofs();
+      const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
+      anchors_[static_cast<std::size_t>(g)] = problem->anchor_stiffness();
+    }
+    if (check_ && !anchors_.empty()) {
+      instruments_ = std::make_shared<InstrumentForces>(anchors_);
+      grip_forces_.setZero(static_cast<Eigen::Index>(anchors_.size()));
+    }
     nodal_.assign(problem->dofs().size(), 0.0);
-    if (this->needs().stress) stress_.assign(problem->mesh().tets.size(), Voigt::Zero());
-    if (this->needs().yield) excluded_.assign(problem->mesh().tets.size(), 0);
+    next_nodal_ = nodal_;
+    if (this->needs().stress || this->needs().damage)
+      kernel_.emplace(problem, std::vector<Index>{}, 0);
+    if (this->needs().stress) {
+      stress_.assign(problem->mesh().tets.size(), Voigt::Zero());
+      next_stress_ = stress_;
+    }
+    if (this->needs().yield) {
+      excluded_.assign(problem->mesh().tets.size(), 0);
+      kernel_->keep_bounds();
+    }
   }
 
   BackendInfo info() const override {
@@ -69,8 +91,12 @@ class CpuBackend final : public Backend {
       plan.push_back({"compliance columns of grips", intact_.grips.bytes()});
     }
     plan.push_back({"displacement and forces",
-                    bytes(nodal_) * 3 + 2 * sizeof(double) * static_cast<std::size_t>(u_.size())});
-    if (!stress_.empty()) plan.push_back({"element stress", bytes(stress_)});
+                    bytes(nodal_) * 4 + 2 * sizeof(double) * static_cast<std::size_t>(u_.size())});
+    if (!stress_.empty()) {
+      plan.push_back({"element stress", bytes(stress_)});
+      plan.push_back({"element stress of the next frame", bytes(next_stress_)});
+    }
+    if (kernel_) plan.push_back({"shapes and elasticity of elements", kernel_->bytes()});
     return plan;
   }
 
@@ -88,12 +114,77 @@ class CpuBackend final : public Backend {
       force_[load.force_dofs[i]] = load.forces[i];
   }
 
+  std::shared_ptr<InstrumentForces> instrument_forces() override { return instruments_; }
+
   SolveReport do_solve() override {
+    SolveReport report = solve_and_check();
+    report.waited_ms = route_->waited_ms() - waited_ms_;
+    waited_ms_ = route_->waited_ms();
+    if (instruments_) publish_instruments();
+    return report;
+  }
+
+  void publish_instruments() {
+    const auto gripped = problem().gripped_dofs();
+    for (std::size_t g = 0; g < gripped.size(); ++g) {  // anchors pull as well
+      grip_forces_[static_cast<Eigen::Index>(g)] =
+          reactions_[g] + anchors_[g] * load_.displacements[g];
+    }
+    const engine::Deferred& deferred = *route_->deferred();
+    deferred.free_grips(grip_forces_, load_.displacements, free_grips_);
+    instruments_->publish(deferred.grip_factor(), free_grips_);
+  }
+
+  SolveReport solve_and_check() {
+    fresh_ = false;
+    if (const auto known = solve_cheaply()) {
+      nodal_.swap(next_nodal_);
+      return *known;
+    }
+    if (check_) route_->set_enough(0);
+    const SolveReport report = solve_checked();
+    hand_out();
+    nodal_.swap(next_nodal_);
+    if (check_)
+      check_->checked(load_, report, unrefined_, route_->bases(), largest_u(nodal_), largest_);
+    return report;
+  }
+
+  /// The solution without a full check, where one like it has had its check.
+  std::optional<SolveReport> solve_cheaply() {
+    if (!check_) return std::nullopt;
+    const auto scale = check_->scale_of(load_, *route_);
+    if (!scale) return std::nullopt;
+    route_->set_enough(check_->enough(*scale));
+    route_->solve(load_, force_, u_);
+    hand_out();
+    const auto gripped = problem().gripped_dofs();
+    for (std::size_t g = 0; g < gripped.size(); ++g) {
+      reactions_[g] = route_->deferred()->grip_forces()[static_cast<Eigen::Index>(g)] -
+                      anchors_[g] * u_[gripped[g]];  // the anchor's share
+    }
+    return check_->known(*scale, *route_, largest_u(next_nodal_), largest_);
+  }
+
+  static double largest_u(std::span<const double> u) {
+    double largest = 0;
+    for (double v : u) largest = std::max(largest, std::abs(v));
+    return largest;
+  }
+
+  /// Displacement at all nodes, and its stress, which do_stress() publishes.
+  void hand_out() {
+    fem::scatter(problem(), {u_.data(), static_cast<std::size_t>(u_.size())}, next_nodal_);
+    if (!kernel_) return;
+    largest_ = kernel_->run(next_nodal_, next_stress_);
+    fresh_ = true;
+  }
+
+  SolveReport solve_checked() {
     SolveReport report;
     refine(*route_, report);
     if (!(report.error <= tolerance())) polish(report);
     if (!(report.error <= tolerance())) fail(report);
-    fem::scatter(problem(), {u_.data(), static_cast<std::size_t>(u_.size())}, nodal_);
     return report;
   }
 
@@ -103,6 +194,7 @@ class CpuBackend final : public Backend {
     report.error = std::numeric_limits<double>::infinity();
     for (int attempt = 0;; ++attempt) {
       const double error = correction(route, report);
+      if (attempt == 0) unrefined_ = error;
       if (attempt == 0) report.polished = report.polished || !(error <= tolerance());
       // A correction that no longer shrinks is rounding.
       const bool stalled = attempt > 0 && !(error < report.error / 2);
@@ -155,13 +247,16 @@ class CpuBackend final : public Backend {
   double tolerance() const { return problem().scene().solver.tolerance; }
 
   StressSummary do_stress() override {
-    element_stress(problem(), body_.scale(), nodal_, stress_);
+    if (fresh_) std::swap(stress_, next_stress_);
+    fresh_ = false;
     if (!needs().yield) return {};
-    return summarize(problem(), body_.destroyed(), excluded_, stress_);
+    return kernel_->summarize(excluded_, stress_);
   }
 
   void do_destroy(std::span<const Index> elements) override {
     body_.destroy(elements);
+    kernel_->destroy(elements);
+    if (check_) check_->event();
     route_->destroy(elements);
   }
 
@@ -203,8 +298,17 @@ class CpuBackend final : public Backend {
   std::unique_ptr<InverseRoute> route_;
   Load load_;
   Eigen::VectorXd force_, u_, du_, product_;
-  std::vector<double> reactions_, nodal_;
-  std::vector<Voigt> stress_;
+  std::shared_ptr<InstrumentForces> instruments_;
+  Eigen::VectorXd grip_forces_, free_grips_;
+  double unrefined_ = 0;         // error of the last full check's solution before it was refined
+  double waited_ms_ = 0;         // for rebases, as reported so far
+  std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
+  std::vector<double> reactions_, nodal_, next_nodal_;  // next: of a solution not yet vouched for
+  std::optional<engine::StressKernel> kernel_;
+  std::optional<FrameCheck> check_;
+  std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
+  bool fresh_ = false;                       // next_stress_ is to be published
+  double largest_ = 0;                       // stress of the last solution
   std::vector<std::uint8_t> excluded_;
 };
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <numeric>
 
+#include "cpu_reference/background_rebase.hpp"
 #include "cpu_reference/routes.hpp"
-#include "engine/deferred.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
 #include "fem/assembly.hpp"
@@ -10,73 +13,107 @@
 namespace sunder::cpu_reference {
 namespace {
 
-// Columns of update vectors that may gather before events are made one, beyond twice what the
-// last such event left; and the rank above which a new base is cheaper than carrying the damage.
-constexpr Index kLooseRank = 300;
-constexpr Index kRebaseRank = 500;
+// Events between the start of a rebase and the frame that takes it: a factor takes as long as some
+// 30 to 60 frames, whatever the size.
+constexpr int kRebaseEvents = 64;
+
+// An event that touches more new unknowns than this costs more than a new factor.
+constexpr std::size_t kLargestEvent = 600;
 
 class DeferredRoute final : public InverseRoute {
  public:
   DeferredRoute(const DamagedBody& body, const IntactBody& intact, bool dense)
-      : body_(body), dense_(dense), all_(static_cast<std::size_t>(body.problem().dof_count())) {
+      : body_(body), all_(static_cast<std::size_t>(body.problem().dof_count())) {
     std::iota(all_.begin(), all_.end(), 0);
-    lay_over(intact.factor);
+    std::unique_ptr<engine::Base> base;
+    if (dense) {
+      base = std::make_unique<engine::InverseBase>(intact.factor);
+    } else {
+      base = std::make_unique<engine::FactorBase>(intact.factor);
+    }
+    based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base));
+    set_threshold(intact.factor);
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
-    deferred_->solve({load.force_dofs, load.forces}, load.displacements, u);
+    based_.deferred->solve({load.force_dofs, load.forces}, load.displacements, u, enough_);
     return {};
   }
 
   Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& u) override {
-    deferred_->solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
+    based_.deferred->solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
     return {};
   }
 
   void destroy(std::span<const Index> elements) override {
-    if (!deferred_->destroy(body_.problem(), elements)) {
+    if (4 * elements.size() > kLargestEvent || !based_.deferred->destroy(elements)) {
       rebase();
       return;
     }
-    if (deferred_->rank() <= 2 * compact_rank_ + kLooseRank) return;
-    if (!deferred_->compact(body_.problem()) || deferred_->rank() > kRebaseRank) {
-      rebase();
-      return;
+    if (coming_) {
+      coming_->follow(elements);
+      if (coming_->followed() == kRebaseEvents) take_rebase();
+    } else if (static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
+      const auto scale = body_.scale();
+      coming_ = std::make_unique<BackgroundRebase>(body_.problem(),
+                                                   std::vector<double>(scale.begin(), scale.end()));
     }
-    compact_rank_ = deferred_->rank();
   }
 
   bool rebase() override {
-    deferred_.reset();
-    damaged_ = std::make_unique<fem::Factor>(fem::assemble_lower(body_.problem(), body_.scale()));
-    lay_over(*damaged_);
+    coming_.reset();
+    based_ = {};  // frees the old base first
+    based_ = based_on(body_.problem(), body_.scale());
+    rebased();
     return true;
   }
 
+  const engine::Deferred* deferred() const override { return based_.deferred.get(); }
+  void set_enough(double energy) override { enough_ = energy; }
+  int bases() const override { return bases_; }
+  double waited_ms() const override { return waited_ms_; }
+
   std::vector<BufferPlan> buffers() const override {
-    std::vector<BufferPlan> plan = deferred_->buffers();
-    if (damaged_) plan.push_back({"damaged factor (sparse Cholesky)", damaged_->bytes()});
+    std::vector<BufferPlan> plan = based_.deferred->buffers();
+    if (based_.factor) {
+      plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
+    }
     return plan;
   }
 
  private:
-  void lay_over(const fem::Factor& factor) {
-    std::unique_ptr<engine::Base> base;
-    if (dense_) {
-      base = std::make_unique<engine::InverseBase>(factor);
-    } else {
-      base = std::make_unique<engine::FactorBase>(factor);
-    }
-    deferred_ = std::make_unique<engine::Deferred>(std::move(base), body_.problem().gripped_dofs());
-    compact_rank_ = 0;
+  void take_rebase() {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    Based next = coming_->take();
+    waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    coming_.reset();
+    if (!next.deferred) return;  // what there is still holds; the next event tries again
+    based_ = {std::move(next.factor), std::move(next.deferred)};
+    rebased();
+  }
+
+  void rebased() {
+    ++bases_;
+    set_threshold(*based_.factor);
+  }
+
+  /// The small matrices cost a frame some 4 T^2 values, a factor's solution its entries: past a
+  /// third of them a new base is worth it.
+  void set_threshold(const fem::Factor& factor) {
+    const double share = 0.3 * std::sqrt(static_cast<double>(factor.entries()));
+    threshold_ = body_.problem().gripped_dofs().size() +
+                 static_cast<std::size_t>(std::clamp(share, 128.0, 512.0));
   }
 
   const DamagedBody& body_;
-  bool dense_;
   std::vector<Index> all_;  // every unknown: the loads of a residual
-  std::unique_ptr<fem::Factor> damaged_;
-  std::unique_ptr<engine::Deferred> deferred_;
-  Index compact_rank_ = 0;
+  Based based_;
+  std::unique_ptr<BackgroundRebase> coming_;
+  std::size_t threshold_ = 0;
+  int bases_ = 1;
+  double waited_ms_ = 0;
+  double enough_ = 0;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/deferred.hpp"
 #include "fem/factor.hpp"
 #include "sunder/backend.hpp"
 
@@ -73,6 +74,14 @@ class InverseRoute {
   virtual void destroy(std::span<const Index> elements) = 0;
   /// Computes anew what updates have worn out; false: this route has nothing of the kind.
   virtual bool rebase() { return false; }
+  /// The deferred update, where there is one: it makes a frame's check cheap.
+  [[nodiscard]] virtual const engine::Deferred* deferred() const { return nullptr; }
+  /// A deferred update may stop refining at this energy of the defect [N mm].
+  virtual void set_enough(double) {}
+  /// Bases there have been so far: another one needs a full check.
+  [[nodiscard]] virtual int bases() const { return 1; }
+  /// Milliseconds that frames have waited for a rebase so far.
+  [[nodiscard]] virtual double waited_ms() const { return 0; }
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
 };
 

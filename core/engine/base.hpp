@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pristine inverse X = K0^-1, whatever holds it, and the update vectors laid over it.
+// The pristine inverse X = K0^-1, whatever holds it, and the columns of it that damage and grips
+// need.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fem/event_factor.hpp"
+#include "engine/difference_basis.hpp"
+#include "fem/row_product.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::engine {
@@ -18,8 +20,8 @@ struct Forces {
   std::span<const double> values;
 };
 
-/// X is never overwritten. Blocks of vectors V = [V_1 V_2 ...] (update vectors of events, unit
-/// vectors of grips) are pushed and popped like a stack.
+/// X is never overwritten. Vectors B = [B_1 B_2 ...] whose columns X B are at hand are pushed and
+/// popped like a stack.
 class Base {
  public:
   virtual ~Base() = default;
@@ -28,13 +30,14 @@ class Base {
   Base& operator=(const Base&) = delete;
 
   [[nodiscard]] virtual Index size() const = 0;
-  /// Lays a block over the base; returns V^T X V_new, shape (columns with the new x new).
-  virtual Eigen::MatrixXd push(const fem::EventFactor& block) = 0;
-  /// Takes the last block away.
+  /// Adds vectors. B^T X B_new, B with the new ones, fills the leading block of `gram`, whose
+  /// columns are as many as the new ones rounded up to a multiple of 8, or more.
+  virtual void push(std::span<const Difference> vectors, fem::RowMajor& gram) = 0;
+  /// Takes the last push away.
   virtual void pop() = 0;
-  /// Takes a load and returns V^T X f.
+  /// Takes a load and returns B^T X f. The same load as last time costs nothing.
   virtual const Eigen::VectorXd& load(const Forces& forces) = 0;
-  /// u = X (f + V c) with the f of the last load().
+  /// u = X (f + B c) with the f of the last load().
   virtual void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) = 0;
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
 };

@@ -42,4 +42,19 @@ void add_columns(const Eigen::MatrixXd& x, std::span<const Index> columns,
   }
 }
 
+SUNDER_VECTORISED
+void add_product(const double* v, Eigen::Index stride, Eigen::Index rows, const double* c,
+                 Eigen::Index columns, double* y) {
+  Eigen::Index j = 0;
+  for (; j + 4 <= columns; j += 4, v += 4 * stride) {
+    const double *a = v, *b = v + stride, *d = v + 2 * stride, *e = v + 3 * stride;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      y[i] += (c[j] * a[i] + c[j + 1] * b[i]) + (c[j + 2] * d[i] + c[j + 3] * e[i]);
+    }
+  }
+  for (; j < columns; ++j, v += stride) {
+    for (Eigen::Index i = 0; i < rows; ++i) y[i] += c[j] * v[i];
+  }
+}
+
 }  // namespace sunder::engine

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel of every frame on a dense base: a sum of some columns.
+// Products with a vector, compiled for the vector width at hand.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,5 +13,9 @@ namespace sunder::engine {
 /// sum is fixed by the order of the columns alone.
 void add_columns(const Eigen::MatrixXd& x, std::span<const Index> columns,
                  std::span<const double> values, Eigen::VectorXd& y);
+
+/// y += V c; V has `rows` rows, its columns begin `stride` apart.
+void add_product(const double* v, Eigen::Index stride, Eigen::Index rows, const double* c,
+                 Eigen::Index columns, double* y);
 
 }  // namespace sunder::engine

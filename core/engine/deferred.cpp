@@ -3,103 +3,330 @@
 
 #include <algorithm>
 
+#include "engine/columns.hpp"
 #include "engine/update_vectors.hpp"
+#include "fem/element.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::engine {
+namespace {
 
-Deferred::Deferred(std::unique_ptr<Base> base, std::span<const Index> gripped)
-    : base_(std::move(base)), gripped_(gripped.begin(), gripped.end()) {
-  const auto g = static_cast<Eigen::Index>(gripped_.size());
-  grip_rows_.resize(0, g);
-  if (g == 0) return;
-  grip_x_ = base_->push({gripped_, Eigen::MatrixXd::Identity(g, g)});
+// Room reserved for touched unknowns: more than a rebase lets gather.
+constexpr Index kReserved = 1024;
+
+/// Rows and columns are processed in full vectors.
+Eigen::Index padded(Eigen::Index n) { return (n + 7) / 8 * 8; }
+
+/// At least so large; what it held is lost when it grows.
+void make_room(fem::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
+  if (a.rows() >= rows && a.cols() >= columns) return;
+  a.setZero(std::max(rows, a.rows()), std::max(columns, a.cols()));
+}
+
+/// y = S x for the leading n rows and columns of a symmetric S.
+void multiply(const fem::RowMajor& s, Eigen::Index n, const Eigen::VectorXd& x,
+              Eigen::VectorXd& y) {
+  y.setZero(n);
+  add_product(s.data(), s.outerStride(), n, x.data(), n, y.data());
+}
+
+}  // namespace
+
+Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base)
+    : problem_(problem),
+      base_(std::move(base)),
+      basis_(problem),
+      is_touched_(static_cast<std::size_t>(problem.dof_count()), 0) {
+  const auto gripped = problem.gripped_dofs();
+  grips_ = static_cast<Eigen::Index>(gripped.size());
+  reserve(std::min(problem.dof_count(), kReserved) + static_cast<Index>(grips_));
+  touched_.reserve(is_touched_.size());
+  // What single fractures need, so that they allocate nothing.
+  constexpr Eigen::Index kRows = 128;
+  rows_.reserve(kRows);
+  make_room(u_, kRows, 8);
+  make_room(columns_, kRows, m_.cols());
+  make_room(product_, kRows, m_.cols());
+  make_room(gram_, m_.rows(), 16);
+  events_.reserve(kReserved);
+  elements_.reserve(kReserved);
+  if (grips_ == 0) return;
+  touched_.assign(gripped.begin(), gripped.end());
+  count_ = static_cast<Index>(grips_);
+  std::vector<Difference> units;
+  for (Index d : gripped) {
+    is_touched_[d] = 1;
+    units.push_back({d, kNone});
+  }
+  make_room(gram_, grips_, padded(grips_));
+  base_->push(units, gram_);
+  compliance_.topLeftCorner(grips_, grips_) = gram_.topLeftCorner(grips_, grips_);
+  replay();
   if (!factor_grips()) {
     throw NumericalError("the compliance of the gripped nodes is singular in double precision");
   }
 }
 
+void Deferred::reserve(Index columns) {
+  const Eigen::Index room = padded(columns) + 8;  // no power of two: rows share no cache set
+  if (room <= m_.rows()) return;
+  const Eigen::Index size = std::max(room, m_.rows() * 3 / 2);
+  compliance_.conservativeResize(size, padded(size));
+  m_.conservativeResize(size, padded(size));
+  d_.conservativeResize(size, padded(size));
+}
+
 bool Deferred::factor_grips() {
-  if (gripped_.empty()) return true;
-  grip_block_.compute(grip_x_ + grip_rows_.transpose() * grip_rows_);
+  if (grips_ == 0) return true;
+  grip_block_.compute(grip_compliance_.leftCols(grips_));
   return grip_block_.info() == Eigen::Success && grip_block_.matrixLLT().allFinite();
 }
 
-bool Deferred::destroy(const Problem& problem, std::span<const Index> elements) {
-  const fem::EventFactor event = compressed(fem::event_factor(problem, elements));
-  const auto g = static_cast<Eigen::Index>(gripped_.size());
-  const Eigen::Index k = event.w.cols(), before = small_.size();
-  const Eigen::MatrixXd gram = base_->push(event);
-  Eigen::MatrixXd block = -gram.bottomRows(k);
-  block.diagonal().array() += 1;
-  ranks_.push_back(static_cast<Index>(before));
-  elements_.emplace_back(elements.begin(), elements.end());
-  if (!small_.append(-gram.middleRows(g, before), block)) {
-    base_->pop();
-    ranks_.pop_back();
-    elements_.pop_back();
-    return false;
-  }
-  if (g > 0) {
-    // The rows of earlier events stay: forward substitution reaches them first.
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(before + k, g);
-    rows.topRows(before) = grip_rows_;
-    rows.bottomRows(k) = gram.topRows(g).transpose();
-    small_.solve_lower_from(before, rows);
-    grip_rows_ = std::move(rows);
-  }
-  if (factor_grips()) return true;
+bool Deferred::destroy(std::span<const Index> elements) {
+  push(elements);
+  if (update(elements) && factor_grips()) return true;
   take_back();
   return false;
 }
 
-void Deferred::take_back() {
-  if (ranks_.empty()) throw UsageError("there is no event to take back");
+void Deferred::touch(Index element) {
+  for (Index n : problem_.mesh().tets[element]) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem_.dof(n, axis);
+      if (d == kNone || is_touched_[d]) continue;
+      is_touched_[d] = 1;
+      touched_.push_back(d);
+    }
+  }
+}
+
+/// Brings the differences of an event to hand.
+void Deferred::push(std::span<const Index> elements) {
+  Event event{elements_.size(), touched_.size(), basis_.differences().size(), false};
+  elements_.insert(elements_.end(), elements.begin(), elements.end());
+  for (Index e : elements) {
+    touch(e);
+    basis_.add(e);
+  }
+  const auto differences = basis_.differences().subspan(event.differences);
+  event.pushed = !differences.empty();
+  events_.push_back(event);
+  if (!event.pushed) return;
+  const Eigen::Index before = count_, added = static_cast<Eigen::Index>(differences.size());
+  count_ += static_cast<Index>(added);
+  reserve(count_);
+  make_room(gram_, m_.rows(), padded(added));
+  base_->push(differences, gram_);
+  compliance_.block(0, before, count(), added) = gram_.topLeftCorner(count(), added);
+  for (Eigen::Index j = 0; j < added; ++j) {
+    for (Eigen::Index i = 0; i < before; ++i) compliance_(before + j, i) = gram_(i, j);
+  }
+  for (fem::RowMajor* a : {&m_, &d_}) {
+    a->block(0, before, before, padded(count()) - before).setZero();
+    a->block(before, 0, added, padded(count())).setZero();
+  }
+}
+
+void Deferred::pop() {
+  const Event event = events_.back();
+  events_.pop_back();
+  elements_.resize(event.elements);
+  for (std::size_t i = event.touched; i < touched_.size(); ++i) is_touched_[touched_[i]] = 0;
+  touched_.resize(event.touched);
+  if (!event.pushed) return;
+  count_ -= static_cast<Index>(basis_.differences().size() - event.differences);
+  basis_.shrink(event.differences);
   base_->pop();
-  small_.shrink(ranks_.back());
-  ranks_.pop_back();
-  elements_.pop_back();
-  grip_rows_.conservativeResize(small_.size(), Eigen::NoChange);
+}
+
+void Deferred::take_back() {
+  if (events_.empty()) throw UsageError("there is no event to take back");
+  pop();
+  replay();
   if (!factor_grips()) throw NumericalError("the compliance of the gripped nodes is singular");
 }
 
-bool Deferred::compact(const Problem& problem) {
-  std::vector<Index> all;
-  for (const auto& event : elements_) all.insert(all.end(), event.begin(), event.end());
-  while (!elements_.empty()) take_back();
-  std::sort(all.begin(), all.end());
-  return all.empty() || destroy(problem, all);
+/// Adds all events up again, in order: the same sums as the first time.
+void Deferred::replay() {
+  m_.topLeftCorner(count(), padded(count())).setZero();
+  d_.topLeftCorner(count(), padded(count())).setZero();
+  grip_compliance_.setZero(grips_, padded(grips_));
+  grip_compliance_.leftCols(grips_) = compliance_.topLeftCorner(grips_, grips_);
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    const std::size_t end = i + 1 < events_.size() ? events_[i + 1].elements : elements_.size();
+    const std::size_t begin = events_[i].elements;
+    static_cast<void>(update(std::span(elements_).subspan(begin, end - begin)));
+  }
 }
 
-void Deferred::solve(const Forces& forces, std::span<const double> displacement,
-                     Eigen::VectorXd& u) {
-  const Eigen::VectorXd& projected = base_->load(forces);
-  const auto g = static_cast<Eigen::Index>(gripped_.size());
-  const Eigen::Index rank = small_.size();
-  coefficients_.resize(g + rank);
-  auto c = coefficients_.tail(rank);
-  c = projected.tail(rank);
-  small_.solve_lower(c);  // L^-1 W^T X f
-  if (g > 0) {
-    forces_ = -projected.head(g);
-    forces_.noalias() -= grip_rows_.transpose() * c;
-    for (std::size_t i = 0; i < displacement.size(); ++i) {
-      forces_[static_cast<Eigen::Index>(i)] += displacement[i];
-    }
-    grip_block_.solveInPlace(forces_);
-    c.noalias() += grip_rows_ * forces_;
-    coefficients_.head(g) = forces_;
+/// The event's update vectors: where they act in B, and U, padded to full vectors.
+void Deferred::gather(std::span<const Index> elements) {
+  rank_ = 6;
+  if (elements.size() == 1) {
+    basis_.coordinates(elements[0], rows_, u_);
+  } else {
+    gather_event(elements);
   }
-  small_.solve_upper(c);
-  base_->expand(coefficients_, u);
-  for (std::size_t i = 0; i < gripped_.size(); ++i) {
-    u[gripped_[i]] = displacement.empty() ? 0.0 : displacement[i];  // free of rounding
+  for (Index& row : rows_) row += static_cast<Index>(grips_);
+}
+
+void Deferred::gather_event(std::span<const Index> elements) {
+  fem::EventFactor event;
+  std::vector<std::pair<std::vector<Index>, fem::RowMajor>> parts;
+  for (Index e : elements) {
+    basis_.coordinates(e, rows_, u_);
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    parts.emplace_back(rows_, u_.topLeftCorner(rows, 6));
+    event.dofs.insert(event.dofs.end(), rows_.begin(), rows_.end());
+  }
+  std::sort(event.dofs.begin(), event.dofs.end());
+  event.dofs.erase(std::unique(event.dofs.begin(), event.dofs.end()), event.dofs.end());
+  event.w.setZero(static_cast<Index>(event.dofs.size()), 6 * static_cast<Index>(elements.size()));
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (std::size_t i = 0; i < parts[p].first.size(); ++i) {
+      const auto row = std::lower_bound(event.dofs.begin(), event.dofs.end(), parts[p].first[i]);
+      event.w.block<1, 6>(row - event.dofs.begin(), 6 * static_cast<Eigen::Index>(p)) =
+          parts[p].second.row(static_cast<Eigen::Index>(i));
+    }
+  }
+  if (event.w.cols() > event.w.rows()) event = compressed(std::move(event));
+  rank_ = event.w.cols();
+  make_room(u_, event.w.rows(), padded(rank_));
+  u_.topLeftCorner(event.w.rows(), rank_) = event.w;
+  u_.block(0, rank_, event.w.rows(), padded(rank_) - rank_).setZero();
+  rows_ = event.dofs;
+}
+
+/// M += Z C^-1 Z^T; false, with M as it was, when C is not positive definite.
+bool Deferred::update(std::span<const Index> elements) {
+  gather(elements);
+  if (rows_.empty()) return true;  // every corner is held: nothing changes
+  const Eigen::Index n = count(), width = padded(rank_), room = m_.rows();
+  const auto rows = static_cast<Eigen::Index>(rows_.size());
+  make_room(columns_, rows, padded(room));
+  make_room(xu_, room, width);
+  make_room(z_, room, width);
+  make_room(zt_, width, padded(room));
+  make_room(product_, width, padded(room));
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    columns_.row(i).head(n) = compliance_.row(rows_[static_cast<std::size_t>(i)]).head(n);
+  }
+  // B^T X B U, from rows: X is symmetric.
+  fem::row_product({columns_.data(), n, rows, 1, columns_.outerStride()}, u_.data(),
+                   u_.outerStride(), width, xu_.data(), xu_.outerStride());
+  fem::row_product({m_.data(), n, n, m_.outerStride(), 1}, xu_.data(), xu_.outerStride(), width,
+                   z_.data(), z_.outerStride());
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    z_.row(rows_[static_cast<std::size_t>(i)]).head(width) += u_.row(i).head(width);
+  }
+  if (c_.rows() < width) c_.resize(width, width);
+  fem::RowMajor& product = product_;
+  fem::row_product({xu_.data(), width, n, 1, xu_.outerStride()}, z_.data(), z_.outerStride(), width,
+                   product.data(), product.outerStride());
+  auto c = c_.topLeftCorner(width, width);
+  c = -product.topLeftCorner(width, width);
+  c.diagonal().array() += 1;
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(c);
+  if (llt.info() != Eigen::Success || !c.diagonal().allFinite()) return false;
+  zt_.topLeftCorner(width, padded(n)).setZero();
+  zt_.topLeftCorner(width, n) = z_.topLeftCorner(n, width).transpose();
+  fem::lower_solve(c_.data(), c_.outerStride(), width, zt_.data(), zt_.outerStride(), padded(n),
+                   product.data());
+  if (!zt_.topLeftCorner(width, n).allFinite()) return false;
+  fem::row_product_add({zt_.data(), n, width, 1, zt_.outerStride()}, zt_.data(), zt_.outerStride(),
+                       padded(n), m_.data(), m_.outerStride());
+  if (grips_ > 0) add_to_grips(width);
+  add_to_d();
+  return true;
+}
+
+/// D += U U^T.
+void Deferred::add_to_d() {
+  const auto rows = static_cast<Eigen::Index>(rows_.size()), width = padded(rank_);
+  make_room(zt_, width, padded(rows));
+  make_room(product_, rows, padded(rows));
+  zt_.topLeftCorner(width, padded(rows)).setZero();
+  zt_.topLeftCorner(width, rows) = u_.topLeftCorner(rows, width).transpose();
+  fem::row_product({u_.data(), rows, width, u_.outerStride(), 1}, zt_.data(), zt_.outerStride(),
+                   padded(rows), product_.data(), product_.outerStride());
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    double* row = d_.row(rows_[static_cast<std::size_t>(i)]).data();
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      row[rows_[static_cast<std::size_t>(j)]] += product_(i, j);
+    }
+  }
+}
+
+/// (A^-1)_GG grows by the event's share of it.
+void Deferred::add_to_grips(Eigen::Index width) {
+  const Eigen::Index g = padded(grips_);
+  make_room(at_grips_, width, g);
+  fem::row_product({zt_.data(), width, count(), zt_.outerStride(), 1}, compliance_.data(),
+                   compliance_.outerStride(), g, at_grips_.data(), at_grips_.outerStride());
+  fem::row_product_add({at_grips_.data(), grips_, width, 1, at_grips_.outerStride()},
+                       at_grips_.data(), at_grips_.outerStride(), g, grip_compliance_.data(),
+                       grip_compliance_.outerStride());
+}
+
+void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
+                     double enough) {
+  constexpr int kRefinements = 4;
+  const Eigen::VectorXd& p = base_->load(forces);
+  x_.setZero(count());
+  defect_energy_ = 0;
+  if (count() > 0) static_cast<void>(refine(p, displacement));
+  for (int pass = 0; pass < kRefinements && !events_.empty(); ++pass) {
+    const double before = defect_energy_;
+    defect_energy_ = refine(p, displacement);
+    if (defect_energy_ <= enough || (pass > 0 && !(defect_energy_ < before / 4))) break;
+  }
+  base_->expand(x_, u);
+  for (Eigen::Index i = 0; i < grips_; ++i) {  // free of rounding
+    u[touched_[static_cast<std::size_t>(i)]] =
+        displacement.empty() ? 0.0 : displacement[static_cast<std::size_t>(i)];
+  }
+}
+
+/// One step towards x = D B^T u, u_G = displacement; returns the energy of what was lacking.
+double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displacement) {
+  const Eigen::Index n = count();
+  multiply(compliance_, n, x_, v_);
+  v_ += p;                     // B^T u
+  multiply(d_, n, v_, lack_);  // D B^T u - x
+  lack_.tail(n - grips_) -= x_.tail(n - grips_);
+  multiply(compliance_, n, lack_, gx_);
+  multiply(m_, n, gx_, mgx_);
+  double energy = lack_.dot(gx_) + gx_.dot(mgx_);
+  x_ += lack_;
+  x_ += mgx_;
+  if (grips_ == 0) return energy;
+  // What the grips must add: u_G there is off by `forces_`.
+  forces_ = -v_.head(grips_) - gx_.head(grips_);
+  forces_.noalias() -= compliance_.topLeftCorner(grips_, n) * mgx_;
+  const Eigen::Index g = grips_;
+  for (Eigen::Index i = 0; i < g && !displacement.empty(); ++i) {
+    forces_[i] += displacement[static_cast<std::size_t>(i)];
+  }
+  grip_block_.solveInPlace(forces_);
+  gx_.noalias() = compliance_.topLeftCorner(n, g) * forces_;
+  multiply(m_, n, gx_, mgx_);
+  x_ += mgx_;
+  x_.head(g) += forces_;
+  return energy;
+}
+
+void Deferred::free_grips(const Eigen::VectorXd& forces, std::span<const double> displacement,
+                          Eigen::VectorXd& u_0) const {
+  u_0.noalias() = -(grip_compliance_.leftCols(grips_) * forces);
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    u_0[static_cast<Eigen::Index>(i)] += displacement[i];
   }
 }
 
 std::vector<BufferPlan> Deferred::buffers() const {
   std::vector<BufferPlan> plan = base_->buffers();
-  plan.push_back({"small matrix of the damage", small_.bytes()});
+  const auto n = static_cast<std::size_t>(count());
+  plan.push_back({"small matrix of the damage", 3 * n * n * sizeof(double)});
   return plan;
 }
 

@@ -1,56 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
-// Update `deferred`: damage carried by a small matrix over a base that stays pristine
-// (Sherman-Morrison-Woodbury). With A = K0 - W W^T and S = I - W^T X W,
-// A^-1 f = X (f + W S^-1 W^T X f); grips add forces h on the gripped unknowns G so that u_G = d.
+// Update `deferred`: damage carried by a small matrix over a base that stays pristine. With X the
+// base and B differences between unknowns that damage touches (difference_basis.hpp),
+// A^-1 = X + X B M B^T X. An element with update vectors B U (method.md "Elasticity" 3) changes M
+// by M += Z C^-1 Z^T, Z = U + M B^T X B U, C = I - U^T B^T X B Z: what a frame pays grows with the
+// number of touched unknowns, not with the number of fractures. M is only as good as its entries
+// 1/alpha larger allow; the forces x = D B^T u that make up for the stiffness D that is gone
+// (u = X (f + B x)) are refined in these coordinates, to the base's accuracy. Grips add forces h on
+// the gripped unknowns G so that u_G = d; their unit vectors come first in B.
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "engine/base.hpp"
-#include "engine/bordered_cholesky.hpp"
+#include "engine/difference_basis.hpp"
 
 namespace sunder::engine {
 
 class Deferred {
  public:
-  /// `gripped`: unknowns with prescribed displacement, ascending.
-  Deferred(std::unique_ptr<Base> base, std::span<const Index> gripped);
+  /// The problem must outlive it.
+  Deferred(const Problem& problem, std::unique_ptr<Base> base);
 
   /// Follows an event. Returns false and changes nothing when the damaged stiffness is not
   /// positive definite in double precision.
-  [[nodiscard]] bool destroy(const Problem& problem, std::span<const Index> elements);
+  [[nodiscard]] bool destroy(std::span<const Index> elements);
   /// Takes the last event back: every later result is bit by bit what it was before the event.
   void take_back();
-  /// Makes one event of all, so that unknowns that events share count once: 200 fractures of a
-  /// crack have rank 1200 one by one and about 250 together. What was compacted cannot be taken
-  /// back one by one. Returns false when the whole is not positive definite in double precision;
-  /// the damage is then unusable.
-  [[nodiscard]] bool compact(const Problem& problem);
 
-  /// u = A^-1 f with u_G = displacement (empty: 0).
-  void solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u);
+  /// u = A^-1 f with u_G = displacement (empty: 0). The forces of the damage are refined until
+  /// what they lack has no more energy than `enough` [N mm], or rounding.
+  void solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
+             double enough = 0);
+  /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
+  /// residual where damage acts, in the base's arithmetic.
+  [[nodiscard]] double defect_energy() const { return defect_energy_; }
+  /// Forces of the grips on the base in the last solution, anchors included.
+  [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType grip_forces() const {
+    return x_.head(grips_);
+  }
 
-  [[nodiscard]] Index events() const { return static_cast<Index>(ranks_.size()); }
-  /// Columns of W: what a frame pays for the damage.
-  [[nodiscard]] Index rank() const { return static_cast<Index>(small_.size()); }
+  /// L with L L^T = (A^-1)_GG.
+  [[nodiscard]] const Eigen::MatrixXd& grip_factor() const { return grip_block_.matrixLLT(); }
+  /// u_G without the grips that pull it to `displacement` with `forces`.
+  void free_grips(const Eigen::VectorXd& forces, std::span<const double> displacement,
+                  Eigen::VectorXd& u_0) const;
+
+  [[nodiscard]] Index events() const { return static_cast<Index>(events_.size()); }
+  /// Unknowns of destroyed elements, gripped ones first.
+  [[nodiscard]] std::span<const Index> touched() const { return touched_; }
+  /// Columns of B: what a frame pays for the damage.
+  [[nodiscard]] Index rank() const { return count_; }
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 
  private:
-  [[nodiscard]] bool factor_grips();
+  /// An event, by what held before it.
+  struct Event {
+    std::size_t elements, touched, differences;
+    bool pushed;
+  };
 
+  void reserve(Index columns);
+  void push(std::span<const Index> elements);
+  void pop();
+  [[nodiscard]] bool update(std::span<const Index> elements);
+  void gather(std::span<const Index> elements);
+  void gather_event(std::span<const Index> elements);
+  void add_to_d();
+  [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
+  void add_to_grips(Eigen::Index width);
+  void replay();
+  [[nodiscard]] bool factor_grips();
+  [[nodiscard]] Eigen::Index count() const { return count_; }
+  void touch(Index element);
+
+  const Problem& problem_;
   std::unique_ptr<Base> base_;
-  std::vector<Index> gripped_;
-  std::vector<Index> ranks_;                  // rank before each event
-  std::vector<std::vector<Index>> elements_;  // of each event
-  BorderedCholesky small_;                    // S = L L^T
-  Eigen::MatrixXd grip_x_;                    // X_GG
-  Eigen::MatrixXd grip_rows_;                 // L^-1 W^T X_G, shape (rank x grips)
-  Eigen::LLT<Eigen::MatrixXd> grip_block_{
-      Eigen::MatrixXd(0, 0)};  // (A^-1)_GG = X_GG + grip_rows^T grip_rows
-  Eigen::VectorXd coefficients_, forces_;
+  Eigen::Index grips_ = 0;
+  DifferenceBasis basis_;
+  Index count_ = 0;                       // columns of B: grips and differences
+  std::vector<Index> touched_;            // gripped unknowns, then by event
+  std::vector<std::uint8_t> is_touched_;  // per unknown
+  std::vector<Event> events_;
+  std::vector<Index> elements_;       // of all events, one after the other
+  fem::RowMajor compliance_, m_, d_;  // G = B^T X B, M and the stiffness D that is gone, in B
+  fem::RowMajor grip_compliance_;     // (A^-1)_GG
+  Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
+  // The event in work: its update vectors and where they act, and what comes of them.
+  std::vector<Index> rows_;
+  Eigen::Index rank_ = 0;
+  fem::RowMajor u_, columns_, xu_, z_, zt_, product_, gram_, at_grips_;
+  Eigen::MatrixXd c_;
+  // A solution: (X f) and u in B, the forces x on B, what they lack, and its products.
+  Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_;
+  double defect_energy_ = 0;
 };
 
 }  // namespace sunder::engine

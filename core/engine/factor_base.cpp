@@ -4,128 +4,99 @@
 #include <algorithm>
 
 namespace sunder::engine {
+namespace {
 
-FactorBase::FactorBase(const fem::Factor& factor) : l_(factor.cholesky()) {
+// Columns that go through the factor together: wide enough for the panels' products.
+constexpr Index kGroup = 32;
+
+/// Columns are processed in full vectors.
+Index padded(Index columns) { return (columns + 7) / 8 * 8; }
+
+}  // namespace
+
+FactorBase::FactorBase(const fem::Factor& factor)
+    : l_(factor.cholesky()), columns_(l_.supernodes()) {
+  rows_.setZero(l_.size(), kGroup);
   of_load_.setZero(l_.size());
   y_.resize(l_.size());
+  block_.resize(1024, kGroup);
+  groups_.reserve(1024);
+  places_.reserve(1024);
+  path_.reserve(static_cast<std::size_t>(l_.supernodes().count()));
 }
 
-std::vector<FactorBase::Run> FactorBase::runs_of(std::span<const Index> supernodes) const {
-  std::vector<Run> runs;
-  Index place = 0;
-  for (Index s : supernodes) {
-    const Index first = l_.supernodes().first[s], width = l_.supernodes().width(s);
-    if (!runs.empty() && runs.back().row + runs.back().length == first) {
-      runs.back().length += width;
-    } else {
-      runs.push_back({first, width, place});
-    }
-    place += width;
+void FactorBase::push(std::span<const Difference> vectors, fem::RowMajor& gram) {
+  const auto k = static_cast<Index>(vectors.size());
+  const Index before = columns_.size();
+  groups_.push_back((k + kGroup - 1) / kGroup);
+  for (Index begin = 0; begin < k; begin += kGroup) {
+    const Index count = std::min(kGroup, k - begin);
+    push_group(vectors.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(count)),
+               begin, gram);
   }
-  return runs;
+  // A group sees those before it; those after it follow by symmetry.
+  for (Index j = 0; j < k; ++j) {
+    for (Index i = j + 1; i < k; ++i) gram(before + i, j) = gram(before + j, i);
+  }
 }
 
-FactorBase::Block FactorBase::reduce(const fem::EventFactor& block) {
+void FactorBase::push_group(std::span<const Difference> vectors, Index column,
+                            fem::RowMajor& gram) {
+  const auto count = static_cast<Index>(vectors.size());
   places_.clear();
-  for (Index d : block.dofs) places_.push_back(l_.supernodes().place[d]);
-  const std::vector<Index> path = l_.reach(places_);
-  Block added;
-  added.runs = runs_of(path);
-  const Eigen::Index k = block.w.cols();
-  if (work_.cols() != k) work_.setZero(l_.size(), k);
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    work_.row(places_[i]) = block.w.row(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const auto column_of = static_cast<Index>(i);
+    places_.push_back(l_.supernodes().place[vectors[i].dof]);
+    rows_(places_.back(), column_of) = 1;
+    if (vectors[i].other == kNone) continue;
+    places_.push_back(l_.supernodes().place[vectors[i].other]);
+    rows_(places_.back(), column_of) = -1;
   }
-  l_.forward(path, work_);
-  added.v.resize(added.runs.empty() ? 0 : added.runs.back().place + added.runs.back().length, k);
-  for (const Run& run : added.runs) {
-    added.v.middleRows(run.place, run.length) = work_.middleRows(run.row, run.length);
-    work_.middleRows(run.row, run.length).setZero();
+  l_.reach(places_, path_, work_);
+  l_.forward(path_, rows_.leftCols(padded(count)), work_);
+  columns_.append(path_, rows_, count);
+  if (block_.rows() < columns_.size()) block_.resize(2 * columns_.size() + 256, kGroup);
+  columns_.multiply(path_, rows_, padded(count), block_);
+  gram.block(0, column, columns_.size(), count) = block_.topLeftCorner(columns_.size(), count);
+  for (Index s : path_) {
+    rows_.middleRows(l_.supernodes().first[s], l_.supernodes().width(s)).setZero();
   }
-  return added;
-}
-
-Eigen::MatrixXd FactorBase::push(const fem::EventFactor& block) {
-  blocks_.push_back(reduce(block));
-  const Block& added = blocks_.back();
-  const Eigen::Index k = added.v.cols();
-  columns_ += k;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_, k);
-  fem::RowMajor product;
-  Eigen::Index row = 0;
-  for (const Block& b : blocks_) {
-    auto target = gram.middleRows(row, b.v.cols());
-    row += b.v.cols();
-    // The rows that both paths have: they share everything from where they meet up to the root.
-    for (std::size_t i = 0, j = 0; i < b.runs.size() && j < added.runs.size();) {
-      const Run &r = b.runs[i], &s = added.runs[j];
-      const Index begin = std::max(r.row, s.row);
-      const Index end = std::min(r.row + r.length, s.row + s.length);
-      if (begin < end) {
-        const double* left = b.v.row(r.place + begin - r.row).data();
-        const double* right = added.v.row(s.place + begin - s.row).data();
-        product.resize(b.v.cols(), k);
-        fem::row_product({left, b.v.cols(), end - begin, 1, b.v.outerStride()}, right,
-                         added.v.outerStride(), k, product.data(), k);
-        target += product;
-      }
-      if (r.row + r.length <= s.row + s.length) {
-        ++i;
-      } else {
-        ++j;
-      }
-    }
-  }
-  return gram;
 }
 
 void FactorBase::pop() {
-  columns_ -= blocks_.back().v.cols();
-  blocks_.pop_back();
+  for (Index g = 0; g < groups_.back(); ++g) columns_.pop();
+  groups_.pop_back();
 }
 
-const Eigen::VectorXd& FactorBase::load(const Forces& forces) {
-  of_load_.setZero();
+/// y = L^-1 P f; path_ is where it is not zero.
+void FactorBase::forward(const Forces& forces, Eigen::VectorXd& y) {
+  y.setZero();
   places_.clear();
   for (std::size_t i = 0; i < forces.dofs.size(); ++i) {
     places_.push_back(l_.supernodes().place[forces.dofs[i]]);
-    of_load_[places_.back()] = forces.values[i];
+    y[places_.back()] = forces.values[i];
   }
-  l_.forward(l_.reach(places_), of_load_);
-  projected_.resize(columns_);
-  Eigen::Index row = 0;
-  for (const Block& b : blocks_) {
-    gathered_.resize(b.v.rows());
-    for (const Run& run : b.runs) {
-      gathered_.segment(run.place, run.length) = of_load_.segment(run.row, run.length);
-    }
-    projected_.segment(row, b.v.cols()).noalias() = b.v.transpose() * gathered_;
-    row += b.v.cols();
-  }
+  l_.reach(places_, path_, work_);
+  l_.forward(path_, y, work_);
+}
+
+const Eigen::VectorXd& FactorBase::load(const Forces& forces) {
+  if (load_.take(forces)) forward(forces, of_load_);
+  columns_.project(of_load_, projected_);
   return projected_;
 }
 
 void FactorBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
   y_ = of_load_;
-  Eigen::Index row = 0;
-  for (const Block& b : blocks_) {
-    gathered_.resize(b.v.rows());
-    gathered_.noalias() = b.v * c.segment(row, b.v.cols());
-    row += b.v.cols();
-    for (const Run& run : b.runs) {
-      y_.segment(run.row, run.length) += gathered_.segment(run.place, run.length);
-    }
-  }
-  l_.backward(y_);
+  columns_.add(c, y_);
+  l_.backward(y_, work_);
   const auto& place = l_.supernodes().place;
   u.resize(size());
   for (std::size_t i = 0; i < place.size(); ++i) u[static_cast<Eigen::Index>(i)] = y_[place[i]];
 }
 
 std::vector<BufferPlan> FactorBase::buffers() const {
-  std::size_t values = 0;
-  for (const Block& b : blocks_) values += static_cast<std::size_t>(b.v.size());
-  return {{"update vectors along the elimination paths", values * sizeof(double)}};
+  return {{"update vectors along the elimination paths", columns_.bytes()}};
 }
 
 }  // namespace sunder::engine

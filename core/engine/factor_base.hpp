@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Base `factor`: X = P^T L^-T L^-1 P by sparse Cholesky. A block of vectors is kept as L^-1 P V on
-// its paths in the elimination tree, which is all that it can reach.
+// Base `factor`: X = P^T L^-T L^-1 P by sparse Cholesky. A column is kept as L^-1 P e on its path
+// in the elimination tree, which is all that it can reach.
 #pragma once
 
-#include "engine/base.hpp"
+#include "engine/last_load.hpp"
+#include "engine/path_columns.hpp"
 #include "fem/factor.hpp"
 
 namespace sunder::engine {
@@ -14,32 +15,25 @@ class FactorBase final : public Base {
   explicit FactorBase(const fem::Factor& factor);
 
   [[nodiscard]] Index size() const override { return l_.size(); }
-  Eigen::MatrixXd push(const fem::EventFactor& block) override;
+  void push(std::span<const Difference> vectors, fem::RowMajor& gram) override;
   void pop() override;
   const Eigen::VectorXd& load(const Forces& forces) override;
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
  private:
-  /// Rows of L that follow each other: `place` counts the block's own rows.
-  struct Run {
-    Index row, length, place;
-  };
-  struct Block {
-    std::vector<Run> runs;  // ascending
-    fem::RowMajor v;        // L^-1 P V on those rows
-  };
-
-  [[nodiscard]] std::vector<Run> runs_of(std::span<const Index> supernodes) const;
-  [[nodiscard]] Block reduce(const fem::EventFactor& block);
+  void push_group(std::span<const Difference> vectors, Index column, fem::RowMajor& gram);
+  void forward(const Forces& forces, Eigen::VectorXd& y);
 
   const fem::SupernodalCholesky& l_;
-  std::vector<Block> blocks_;
-  Eigen::Index columns_ = 0;
-  std::vector<Index> places_;    // of a block's unknowns in L
-  fem::RowMajor work_;           // rows of L, all zero between calls
+  PathColumns columns_;
+  std::vector<Index> groups_;         // of each push
+  std::vector<Index> places_, path_;  // of the group in L
+  fem::RowMajor rows_, block_;        // rows of L, all zero between calls; part of the compliance
+  LastLoad load_;
   Eigen::VectorXd of_load_, y_;  // L^-1 P f; the sum to solve back
-  Eigen::VectorXd projected_, gathered_;
+  Eigen::VectorXd projected_;
+  fem::SolveWork work_;
 };
 
 }  // namespace sunder::engine

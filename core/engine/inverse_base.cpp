@@ -8,97 +8,97 @@
 
 namespace sunder::engine {
 
-InverseBase::InverseBase(const fem::Factor& factor)
-    : factor_(factor), touched_(factor.cholesky().size()) {
+InverseBase::InverseBase(const fem::Factor& factor) : factor_(factor) {
   std::vector<Index> all(static_cast<std::size_t>(factor.cholesky().size()));
   std::iota(all.begin(), all.end(), 0);
   // Not made symmetric: each column as solved is good to 1e-12 of stress, the mean of column and
   // row to 3e-11.
   x_ = factor.inverse_columns(all);
+  of_load_.setZero(x_.rows());
+  right_side_.setZero(x_.rows());
+  place_.assign(static_cast<std::size_t>(x_.rows()), kNone);
+  touched_.reserve(place_.size());
+  forces_.reserve(place_.size());
+  vectors_.reserve(1024);
+  pushes_.reserve(1024);
 }
 
-Eigen::MatrixXd InverseBase::push(const fem::EventFactor& block) {
-  Block added{touched_.push(block.dofs), block.w};
-  // X_T,new W_new over all touched rows, from the columns of the new unknowns.
-  const auto rows = touched_.list();
-  Eigen::MatrixXd x(touched_.size(), static_cast<Index>(block.dofs.size()));
-  for (Eigen::Index j = 0; j < x.cols(); ++j) {
-    const double* column = x_.col(block.dofs[static_cast<std::size_t>(j)]).data();
-    for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, j) = column[rows[static_cast<std::size_t>(i)]];
+// Two solves read the factor twice, value and index; a column of X costs n.
+bool InverseBase::too_many(std::size_t columns) const {
+  return columns * static_cast<std::size_t>(size()) > 4 * factor_.entries();
+}
+
+void InverseBase::push(std::span<const Difference> vectors, fem::RowMajor& gram) {
+  pushes_.push_back(vectors_.size());
+  vectors_.insert(vectors_.end(), vectors.begin(), vectors.end());
+  for (const Difference& v : vectors) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || place_[d] != kNone) continue;
+      place_[d] = static_cast<Index>(touched_.size());
+      touched_.push_back(d);
+    }
   }
-  const fem::RowMajor xw = fem::row_product(fem::plain(x), fem::RowMajor(added.w));
-  blocks_.push_back(std::move(added));
-  columns_ += block.w.cols();
-  Eigen::MatrixXd gram(columns_, block.w.cols());
-  Eigen::Index row = 0;
-  for (const Block& b : blocks_) {
-    gram.middleRows(row, b.w.cols()) =
-        fem::row_product(fem::transposed(b.w), fem::RowMajor(xw(b.places, Eigen::all)));
-    row += b.w.cols();
+  for (std::size_t j = 0; j < vectors.size(); ++j) {
+    const double* a = x_.col(vectors[j].dof).data();
+    const double* b = vectors[j].other == kNone ? nullptr : x_.col(vectors[j].other).data();
+    for (std::size_t i = 0; i < vectors_.size(); ++i) {
+      const auto [dof, other] = vectors_[i];
+      double value = b ? a[dof] - b[dof] : a[dof];
+      if (other != kNone) value -= b ? a[other] - b[other] : a[other];
+      gram(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = value;
+    }
   }
-  return gram;
 }
 
 void InverseBase::pop() {
-  columns_ -= blocks_.back().w.cols();
-  blocks_.pop_back();
-  touched_.pop();
+  vectors_.resize(pushes_.back());
+  pushes_.pop_back();
+  for (Index d : touched_) place_[d] = kNone;
+  touched_.clear();
+  for (const Difference& v : vectors_) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || place_[d] != kNone) continue;
+      place_[d] = static_cast<Index>(touched_.size());
+      touched_.push_back(d);
+    }
+  }
+}
+
+void InverseBase::apply(std::span<const Index> dofs, std::span<const double> values,
+                        Eigen::VectorXd& u) {
+  if (too_many(dofs.size())) {
+    right_side_.setZero();
+    for (std::size_t i = 0; i < dofs.size(); ++i) right_side_[dofs[i]] += values[i];
+    factor_.solve(right_side_, u, work_);
+  } else {
+    u.setZero(size());
+    add_columns(x_, dofs, values, u);
+  }
+}
+
+void InverseBase::project(const Eigen::VectorXd& u, Eigen::VectorXd& projected) const {
+  projected.resize(static_cast<Index>(vectors_.size()));
+  for (std::size_t i = 0; i < vectors_.size(); ++i) {
+    const auto [dof, other] = vectors_[i];
+    projected[static_cast<Eigen::Index>(i)] = other == kNone ? u[dof] : u[dof] - u[other];
+  }
 }
 
 const Eigen::VectorXd& InverseBase::load(const Forces& forces) {
-  load_dofs_.assign(forces.dofs.begin(), forces.dofs.end());
-  load_values_.assign(forces.values.begin(), forces.values.end());
-  // Two solves read the factor twice, index and value; a column of X costs n.
-  dense_load_ = forces.dofs.size() * static_cast<std::size_t>(size()) > 4 * factor_.entries();
-  const auto rows = touched_.list();
-  at_touched_.setZero(touched_.size());
-  if (dense_load_) {
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(size());
-    for (std::size_t i = 0; i < load_dofs_.size(); ++i) f[load_dofs_[i]] = load_values_[i];
-    of_load_ = factor_.solve(f);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      at_touched_[static_cast<Eigen::Index>(i)] = of_load_[rows[i]];
-    }
-  } else {
-    for (std::size_t l = 0; l < load_dofs_.size(); ++l) {
-      const double* column = x_.col(load_dofs_[l]).data();
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        at_touched_[static_cast<Eigen::Index>(i)] += load_values_[l] * column[rows[i]];
-      }
-    }
-  }
-  projected_.resize(columns_);
-  Eigen::Index row = 0;
-  for (const Block& b : blocks_) {
-    for (Eigen::Index c = 0; c < b.w.cols(); ++c) {
-      double sum = 0;
-      for (std::size_t i = 0; i < b.places.size(); ++i) {
-        sum += b.w(static_cast<Eigen::Index>(i), c) * at_touched_[b.places[i]];
-      }
-      projected_[row++] = sum;
-    }
-  }
+  if (load_.take(forces)) apply(load_.dofs(), load_.values(), of_load_);
+  project(of_load_, projected_);
   return projected_;
 }
 
 void InverseBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
-  at_touched_.setZero(touched_.size());  // V c
-  Eigen::Index row = 0;
-  for (const Block& b : blocks_) {
-    for (Eigen::Index k = 0; k < b.w.cols(); ++k, ++row) {
-      for (std::size_t i = 0; i < b.places.size(); ++i) {
-        at_touched_[b.places[i]] += b.w(static_cast<Eigen::Index>(i), k) * c[row];
-      }
-    }
+  forces_.assign(touched_.size(), 0.0);
+  for (std::size_t i = 0; i < vectors_.size(); ++i) {
+    const double force = c[static_cast<Eigen::Index>(i)];
+    forces_[place_[vectors_[i].dof]] += force;
+    if (vectors_[i].other != kNone) forces_[place_[vectors_[i].other]] -= force;
   }
-  if (dense_load_) {
-    u = of_load_;
-  } else {
-    u.setZero(size());
-    add_columns(x_, load_dofs_, load_values_, u);
-  }
-  add_columns(x_, touched_.list(),
-              {at_touched_.data(), static_cast<std::size_t>(at_touched_.size())}, u);
+  apply(touched_, forces_, u);
+  u += of_load_;
 }
 
 std::vector<BufferPlan> InverseBase::buffers() const {

@@ -2,41 +2,42 @@
 // Base `inverse`: X dense. Only the columns that carry load or damage are read.
 #pragma once
 
-#include "engine/base.hpp"
-#include "engine/touched_dofs.hpp"
+#include "engine/last_load.hpp"
 #include "fem/factor.hpp"
 
 namespace sunder::engine {
 
 class InverseBase final : public Base {
  public:
-  /// Computes X from the factor, which must outlive the base: loads on so many unknowns that their
-  /// columns cost more than two triangular solves go through it.
+  /// Computes X from the factor, which must outlive the base: where so many columns are needed
+  /// that they cost more than two triangular solves, it takes their place.
   explicit InverseBase(const fem::Factor& factor);
 
   [[nodiscard]] Index size() const override { return static_cast<Index>(x_.rows()); }
-  Eigen::MatrixXd push(const fem::EventFactor& block) override;
+  void push(std::span<const Difference> vectors, fem::RowMajor& gram) override;
   void pop() override;
   const Eigen::VectorXd& load(const Forces& forces) override;
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
  private:
-  struct Block {
-    std::vector<Index> places;  // of its rows among the touched unknowns
-    Eigen::MatrixXd w;
-  };
+  /// Whether so many columns cost more than solving with the factor.
+  [[nodiscard]] bool too_many(std::size_t columns) const;
+  /// u = X f; u may be any vector but right_side_.
+  void apply(std::span<const Index> dofs, std::span<const double> values, Eigen::VectorXd& u);
+  void project(const Eigen::VectorXd& u, Eigen::VectorXd& projected) const;
 
   const fem::Factor& factor_;
   Eigen::MatrixXd x_;
-  TouchedDofs touched_;
-  std::vector<Block> blocks_;
-  Eigen::Index columns_ = 0;
-  std::vector<Index> load_dofs_;
-  std::vector<double> load_values_;
-  bool dense_load_ = false;
-  Eigen::VectorXd of_load_;  // X f of a dense load
-  Eigen::VectorXd projected_, at_touched_;
+  std::vector<Difference> vectors_;
+  std::vector<std::size_t> pushes_;  // vectors_.size() before each
+  std::vector<double> forces_;       // B c on the unknowns that B touches
+  std::vector<Index> touched_;       // those unknowns, each once
+  std::vector<Index> place_;         // of each unknown in touched_
+  LastLoad load_;
+  Eigen::VectorXd of_load_;  // X f
+  Eigen::VectorXd projected_, right_side_;
+  fem::SolveWork work_;
 };
 
 }  // namespace sunder::engine

@@ -23,13 +23,21 @@ Factor::Factor(const SparseMatrix& lower) : cholesky_(lower) {
 }
 
 Eigen::VectorXd Factor::solve(const Eigen::VectorXd& rhs) const {
-  const auto& place = cholesky_.supernodes().place;
-  Eigen::VectorXd y(rhs.size()), x(rhs.size());
-  for (std::size_t i = 0; i < place.size(); ++i) y[place[i]] = rhs[static_cast<Eigen::Index>(i)];
-  cholesky_.forward(y);
-  cholesky_.backward(y);
-  for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y[place[i]];
+  SolveWork work;
+  Eigen::VectorXd x;
+  solve(rhs, x, work);
   return x;
+}
+
+void Factor::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& work) const {
+  const auto& place = cholesky_.supernodes().place;
+  Eigen::VectorXd& y = work.permuted;
+  y.resize(rhs.size());
+  x.resize(rhs.size());
+  for (std::size_t i = 0; i < place.size(); ++i) y[place[i]] = rhs[static_cast<Eigen::Index>(i)];
+  cholesky_.forward(y, work);
+  cholesky_.backward(y, work);
+  for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y[place[i]];
 }
 
 Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
@@ -42,16 +50,19 @@ Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
             [&](Index a, Index b) { return place[columns[a]] < place[columns[b]]; });
   Eigen::MatrixXd result(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
   RowMajor block;
+  SolveWork work;
+  std::vector<Index> seeds, path;
   for (std::size_t start = 0; start < columns.size(); start += kBlock) {
     const std::size_t width = std::min(kBlock, columns.size() - start);
     block.setZero(cholesky_.size(), static_cast<Index>(width));
-    std::vector<Index> seeds;
+    seeds.clear();
     for (std::size_t c = 0; c < width; ++c) {
       seeds.push_back(place[columns[order[start + c]]]);
       block(seeds.back(), static_cast<Index>(c)) = 1;
     }
-    cholesky_.forward(cholesky_.reach(seeds), block);
-    cholesky_.backward(block);
+    cholesky_.reach(seeds, path, work);
+    cholesky_.forward(path, block, work);
+    cholesky_.backward(block, work);
     for (std::size_t c = 0; c < width; ++c) {
       auto column = result.col(order[start + c]);
       for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -18,6 +18,8 @@ class Factor {
   explicit Factor(const SparseMatrix& lower);
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
+  /// The same into x, which is another vector than rhs; allocates only until `work` has grown.
+  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& work) const;
   /// Inverse as a dense matrix, shape (n x n). Cost 2 n nnz(L) multiply-adds.
   [[nodiscard]] Eigen::MatrixXd inverse() const;
   /// Some columns of the inverse, shape (n x columns).

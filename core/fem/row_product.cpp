@@ -22,10 +22,13 @@ inline __attribute__((always_inline)) void store(double* p, const Lanes& v) {
 }
 
 /// Rows x (Vectors * kLanes) entries of c, kept in registers.
-template <int Rows, int Vectors>
+template <bool Add, int Rows, int Vectors>
 inline __attribute__((always_inline)) void tile(const LeftFactor& a, Index row, const double* b,
                                                 Index b_stride, double* c, Index c_stride) {
   Lanes sum[Rows][Vectors] = {};
+  for (int r = 0; Add && r < Rows; ++r) {
+    for (int v = 0; v < Vectors; ++v) load(c + r * c_stride + v * kLanes, sum[r][v]);
+  }
   const double* left = a.data + row * a.row_stride;
   for (Index k = 0; k < a.columns; ++k, left += a.column_stride, b += b_stride) {
     Lanes right[Vectors];
@@ -40,25 +43,26 @@ inline __attribute__((always_inline)) void tile(const LeftFactor& a, Index row, 
   }
 }
 
-template <int Vectors>
+template <bool Add, int Vectors>
 inline __attribute__((always_inline)) void strip(const LeftFactor& a, const double* b,
                                                  Index b_stride, double* c, Index c_stride) {
   constexpr int kRows = 4;
   Index i = 0;
   for (; i + kRows <= a.rows; i += kRows) {
-    tile<kRows, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+    tile<Add, kRows, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
   }
-  for (; i < a.rows; ++i) tile<1, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+  for (; i < a.rows; ++i) tile<Add, 1, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
 }
 
-}  // namespace
-
-SUNDER_VECTORISED
-void row_product(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
-                 Index c_stride) {
+template <bool Add>
+inline __attribute__((always_inline)) void product(const LeftFactor& a, const double* b,
+                                                   Index b_stride, Index width, double* c,
+                                                   Index c_stride) {
   Index j = 0;
-  for (; j + 2 * kLanes <= width; j += 2 * kLanes) strip<2>(a, b + j, b_stride, c + j, c_stride);
-  for (; j + kLanes <= width; j += kLanes) strip<1>(a, b + j, b_stride, c + j, c_stride);
+  for (; j + 2 * kLanes <= width; j += 2 * kLanes) {
+    strip<Add, 2>(a, b + j, b_stride, c + j, c_stride);
+  }
+  for (; j + kLanes <= width; j += kLanes) strip<Add, 1>(a, b + j, b_stride, c + j, c_stride);
   if (j == width) return;
   // The last columns, padded with zeros to a full vector.
   const Index rest = width - j;
@@ -67,9 +71,52 @@ void row_product(const LeftFactor& a, const double* b, Index b_stride, Index wid
     std::copy_n(b + k * b_stride + j, rest, &padded[static_cast<std::size_t>(k * kLanes)]);
   }
   double* result = padded.data() + a.columns * kLanes;
-  strip<1>(a, padded.data(), kLanes, result, kLanes);
+  for (Index i = 0; Add && i < a.rows; ++i) {
+    std::copy_n(c + i * c_stride + j, rest, result + i * kLanes);
+  }
+  strip<Add, 1>(a, padded.data(), kLanes, result, kLanes);
   for (Index i = 0; i < a.rows; ++i) {
     std::copy_n(result + i * kLanes, rest, c + i * c_stride + j);
+  }
+}
+
+}  // namespace
+
+SUNDER_VECTORISED
+void row_product(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
+                 Index c_stride) {
+  product<false>(a, b, b_stride, width, c, c_stride);
+}
+
+SUNDER_VECTORISED
+void row_product_add(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
+                     Index c_stride) {
+  product<true>(a, b, b_stride, width, c, c_stride);
+}
+
+// Blocks of columns: their own triangle row by row, the rest by a product.
+SUNDER_VECTORISED
+void lower_solve(const double* l, Index l_stride, Index n, double* x, Index x_stride, Index width,
+                 double* product_room) {
+  constexpr Index kColumns = 16;
+  for (Index begin = 0; begin < n; begin += kColumns) {
+    const Index end = std::min(begin + kColumns, n);
+    for (Index j = begin; j < end; ++j) {
+      const double* column = l + j * l_stride;
+      double* solved = x + j * x_stride;
+      for (Index c = 0; c < width; ++c) solved[c] /= column[j];
+      for (Index i = j + 1; i < end; ++i) {
+        double* row = x + i * x_stride;
+        for (Index c = 0; c < width; ++c) row[c] -= column[i] * solved[c];
+      }
+    }
+    if (end == n) return;
+    product<false>({l + begin * l_stride + end, n - end, end - begin, 1, l_stride},
+                   x + begin * x_stride, x_stride, width, product_room, width);
+    for (Index i = end; i < n; ++i) {
+      const double* from = product_room + (i - end) * width;
+      for (Index c = 0; c < width; ++c) x[i * x_stride + c] -= from[c];
+    }
   }
 }
 

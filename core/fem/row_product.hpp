@@ -29,6 +29,15 @@ struct LeftFactor {
 void row_product(const LeftFactor& a, const double* b, Eigen::Index b_stride, Eigen::Index width,
                  double* c, Eigen::Index c_stride);
 
+/// c += A b, each entry summed in the order of A's columns, beginning with c.
+void row_product_add(const LeftFactor& a, const double* b, Eigen::Index b_stride,
+                     Eigen::Index width, double* c, Eigen::Index c_stride);
+
+/// x <- L^-1 x for a lower triangle L by columns, n x n at stride l_stride; x row by row, n x
+/// width. `product` is room for n * width values.
+void lower_solve(const double* l, Eigen::Index l_stride, Eigen::Index n, double* x,
+                 Eigen::Index x_stride, Eigen::Index width, double* product);
+
 /// A b for a row-major b.
 [[nodiscard]] inline RowMajor row_product(const LeftFactor& a, const RowMajor& b) {
   RowMajor c(a.rows, b.cols());

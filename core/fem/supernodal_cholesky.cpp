@@ -75,91 +75,73 @@ bool SupernodalCholesky::factorise(const SparseMatrix& a) {
   return true;
 }
 
-std::vector<Index> SupernodalCholesky::reach(std::span<const Index> rows) const {
-  std::vector<Index> path;
-  std::vector<std::uint8_t> seen(static_cast<std::size_t>(nodes_.count()), 0);
+void SupernodalCholesky::reach(std::span<const Index> rows, std::vector<Index>& path,
+                               SolveWork& work) const {
+  path.clear();
+  work.seen.resize(static_cast<std::size_t>(nodes_.count()), 0);
   for (Index row : rows) {
-    for (Index s = nodes_.of[row]; s != kNone && !seen[s]; s = nodes_.parent[s]) {
-      seen[s] = 1;
+    for (Index s = nodes_.of[row]; s != kNone && !work.seen[s]; s = nodes_.parent[s]) {
+      work.seen[s] = 1;
       path.push_back(s);
     }
   }
+  for (Index s : path) work.seen[s] = 0;
   std::sort(path.begin(), path.end());
-  return path;
 }
 
-void SupernodalCholesky::forward_panel(Index s, Eigen::VectorXd& y,
-                                       std::vector<double>& work) const {
+void SupernodalCholesky::forward_panel(Index s, Eigen::VectorXd& y, SolveWork& work) const {
   const auto below = nodes_.below(s);
-  std::fill_n(work.begin(), below.size(), 0.0);
+  std::fill_n(work.below.begin(), below.size(), 0.0);
   panel_forward(values_.data() + nodes_.value_begin[s], nodes_.width(s), nodes_.height(s),
-                y.data() + nodes_.first[s], work.data());
-  for (std::size_t i = 0; i < below.size(); ++i) y[below[i]] -= work[i];
+                y.data() + nodes_.first[s], work.below.data());
+  for (std::size_t i = 0; i < below.size(); ++i) y[below[i]] -= work.below[i];
 }
 
-void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::VectorXd& y) const {
-  std::vector<double> work(static_cast<std::size_t>(tallest_));
+void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::VectorXd& y,
+                                 SolveWork& work) const {
+  work.below.resize(static_cast<std::size_t>(tallest_));
   for (Index s : supernodes) forward_panel(s, y, work);
 }
 
-void SupernodalCholesky::forward(Eigen::VectorXd& y) const {
-  std::vector<double> work(static_cast<std::size_t>(tallest_));
+void SupernodalCholesky::forward(Eigen::VectorXd& y, SolveWork& work) const {
+  work.below.resize(static_cast<std::size_t>(tallest_));
   for (Index s = 0; s < nodes_.count(); ++s) forward_panel(s, y, work);
 }
 
-void SupernodalCholesky::backward(Eigen::VectorXd& y) const {
-  std::vector<double> work(static_cast<std::size_t>(tallest_));
+void SupernodalCholesky::backward(Eigen::VectorXd& y, SolveWork& work) const {
+  work.below.resize(static_cast<std::size_t>(tallest_));
   for (Index s = nodes_.count() - 1; s >= 0; --s) {
     const auto below = nodes_.below(s);
-    for (std::size_t i = 0; i < below.size(); ++i) work[i] = y[below[i]];
+    for (std::size_t i = 0; i < below.size(); ++i) work.below[i] = y[below[i]];
     panel_backward(values_.data() + nodes_.value_begin[s], nodes_.width(s), nodes_.height(s),
-                   y.data() + nodes_.first[s], work.data());
+                   y.data() + nodes_.first[s], work.below.data());
   }
 }
 
-// Blocks of columns: their own triangle row by row, the rest of the panel's triangle by a product.
-void SupernodalCholesky::forward_triangle(Index s, Eigen::Ref<RowMajor> y,
-                                          RowMajor& product) const {
-  constexpr Index kColumns = 16;
-  const ConstPanel p = panel(s);
-  const Index width = nodes_.width(s);
-  auto x = y.middleRows(nodes_.first[s], width);
-  for (Index begin = 0; begin < width; begin += kColumns) {
-    const Index end = std::min(begin + kColumns, width);
-    for (Index j = begin; j < end; ++j) {
-      x.row(j) /= p(j, j);
-      for (Index i = j + 1; i < end; ++i) x.row(i) -= p(i, j) * x.row(j);
-    }
-    if (end == width) return;
-    product.resize(width - end, y.cols());
-    row_product({p.col(begin).data() + end, width - end, end - begin, 1, p.outerStride()},
-                x.row(begin).data(), x.outerStride(), y.cols(), product.data(),
-                product.outerStride());
-    x.bottomRows(width - end) -= product;
-  }
-}
-
-void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y) const {
-  RowMajor product;
+void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y,
+                                 SolveWork& work) const {
+  work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * y.cols())));
   for (Index s : supernodes) {
     const ConstPanel p = panel(s);
     const Index width = nodes_.width(s);
     auto x = y.middleRows(nodes_.first[s], width);
-    forward_triangle(s, y, product);
+    lower_solve(p.data(), p.outerStride(), width, x.data(), y.outerStride(), y.cols(),
+                work.product.data());
     const auto below = nodes_.below(s);
     if (below.empty()) continue;
     const auto under = static_cast<Eigen::Index>(below.size());
-    product.resize(under, y.cols());
     row_product({p.data() + width, under, width, 1, p.outerStride()}, x.data(), x.outerStride(),
-                y.cols(), product.data(), product.outerStride());
-    for (std::size_t i = 0; i < below.size(); ++i) {
-      y.row(below[i]) -= product.row(static_cast<Eigen::Index>(i));
+                y.cols(), work.product.data(), y.cols());
+    const ConstRows product(work.product.data(), under, y.cols());
+    for (Eigen::Index i = 0; i < under; ++i) {
+      y.row(below[static_cast<std::size_t>(i)]) -= product.row(i);
     }
   }
 }
 
-void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y) const {
-  RowMajor gathered, product;
+void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y, SolveWork& work) const {
+  RowMajor gathered;
+  work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * y.cols())));
   for (Index s = nodes_.count() - 1; s >= 0; --s) {
     const ConstPanel p = panel(s);
     const Index width = nodes_.width(s);
@@ -170,10 +152,9 @@ void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y) const {
       for (std::size_t i = 0; i < below.size(); ++i) {
         gathered.row(static_cast<Eigen::Index>(i)) = y.row(below[i]);
       }
-      product.resize(width, y.cols());
       row_product({p.data() + width, width, gathered.rows(), p.outerStride(), 1}, gathered.data(),
-                  gathered.outerStride(), y.cols(), product.data(), product.outerStride());
-      x -= product;
+                  gathered.outerStride(), y.cols(), work.product.data(), y.cols());
+      x -= ConstRows(work.product.data(), width, y.cols());
     }
     p.topRows(width).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
   }

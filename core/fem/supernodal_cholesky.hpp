@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,13 @@
 #include "fem/supernodes.hpp"
 
 namespace sunder::fem {
+
+/// Room for triangular solves; kept by the caller, it stops allocating after the first ones.
+struct SolveWork {
+  std::vector<double> below, product;
+  std::vector<std::uint8_t> seen;
+  Eigen::VectorXd permuted;
+};
 
 class SupernodalCholesky {
  public:
@@ -24,25 +32,25 @@ class SupernodalCholesky {
   [[nodiscard]] std::size_t bytes() const;
 
   /// The supernodes that L^-1 b can reach from some rows of L, ascending: their paths to the root.
-  [[nodiscard]] std::vector<Index> reach(std::span<const Index> rows) const;
+  void reach(std::span<const Index> rows, std::vector<Index>& path, SolveWork& work) const;
 
   /// y <- L^-1 y over the listed supernodes (ascending and closed under parents), y in the order of
   /// L and zero elsewhere.
-  void forward(std::span<const Index> supernodes, Eigen::VectorXd& y) const;
-  void forward(Eigen::VectorXd& y) const;
+  void forward(std::span<const Index> supernodes, Eigen::VectorXd& y, SolveWork& work) const;
+  void forward(Eigen::VectorXd& y, SolveWork& work) const;
   /// y <- L^-T y.
-  void backward(Eigen::VectorXd& y) const;
+  void backward(Eigen::VectorXd& y, SolveWork& work) const;
   /// The same for several right sides at once, shape (size() x right sides).
-  void forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y) const;
-  void backward(Eigen::Ref<RowMajor> y) const;
+  void forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y, SolveWork& work) const;
+  void backward(Eigen::Ref<RowMajor> y, SolveWork& work) const;
 
  private:
   using Panel = Eigen::Map<Eigen::MatrixXd>;
   using ConstPanel = Eigen::Map<const Eigen::MatrixXd>;
+  using ConstRows = Eigen::Map<const RowMajor>;
   [[nodiscard]] ConstPanel panel(Index s) const;
   [[nodiscard]] bool factorise(const SparseMatrix& permuted);
-  void forward_panel(Index s, Eigen::VectorXd& y, std::vector<double>& work) const;
-  void forward_triangle(Index s, Eigen::Ref<RowMajor> y, RowMajor& product) const;
+  void forward_panel(Index s, Eigen::VectorXd& y, SolveWork& work) const;
 
   Supernodes nodes_;
   std::vector<double> values_;

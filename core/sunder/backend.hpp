@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "sunder/instrument_forces.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder {
@@ -38,6 +39,7 @@ struct SolveReport {
   double error = 0;     ///< estimate: largest |stress(du)| / largest |stress(u)| over live elements
   int iterations = 0;   ///< of conjugate gradients, when they ran
   bool polished = false;  ///< the frame was over tolerance and was refined
+  double waited_ms = 0;   ///< for a new base from another thread, since the last solve
 };
 
 struct Worst {
@@ -104,6 +106,9 @@ class Backend {
   virtual void time_passes(bool) {}
   /// Device time per pass since the last call; empty: no device clock, or it is off.
   [[nodiscard]] virtual std::vector<PassTime> take_pass_times() { return {}; }
+  /// Reaction forces of the grips between frames, for another thread; after each solve() they
+  /// belong to its solution. Null: there are no grips, or the backend has nothing of the kind.
+  [[nodiscard]] virtual std::shared_ptr<InstrumentForces> instrument_forces() { return nullptr; }
 
   /// Loads for the following solves. Throws UsageError when sizes or dofs do not fit.
   void set_load(const Load& load);
@@ -157,6 +162,8 @@ class Backend {
   virtual void do_read_stress(std::span<Voigt> stress) const = 0;
   virtual Voigt do_read_stress(Index element) const = 0;
   virtual void do_read_reactions(std::span<double> reactions) const = 0;
+
+  std::vector<Index> sorted_;  // of destroy()
 
   enum class Stage { created, loaded, solved, stressed };
   void require(bool condition, const char* what) const;

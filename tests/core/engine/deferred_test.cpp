@@ -65,18 +65,18 @@ std::vector<Engine> engines(const Board& board, std::vector<std::size_t> batches
   for (const char* name : {"inverse", "factor"}) {
     for (std::size_t batch : batches) {
       all.push_back({std::string(name) + " in batches of " + std::to_string(batch), batch,
-                     Deferred(board.base(name), board.problem.gripped_dofs())});
+                     Deferred(board.problem, board.base(name))});
     }
   }
   return all;
 }
 
-void destroy_up_to(const Board& board, Engine& engine, std::span<const Index> sequence,
-                   std::size_t from, std::size_t to) {
+void destroy_up_to(Engine& engine, std::span<const Index> sequence, std::size_t from,
+                   std::size_t to) {
   for (std::size_t i = from - from % engine.batch; i < to; i += engine.batch) {
     const std::size_t end = std::min(i + engine.batch, sequence.size());
     if (end <= from || end > to) continue;
-    ASSERT_TRUE(engine.deferred.destroy(board.problem, sequence.subspan(i, end - i)));
+    ASSERT_TRUE(engine.deferred.destroy(sequence.subspan(i, end - i)));
   }
 }
 
@@ -122,7 +122,7 @@ void follow(const Board& board, std::span<const Index> sequence, double toleranc
   std::size_t done = 0;
   for (std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{10}, std::size_t{50},
                         std::size_t{100}, std::size_t{200}}) {
-    for (Engine& engine : all) destroy_up_to(board, engine, sequence, done, k);
+    for (Engine& engine : all) destroy_up_to(engine, sequence, done, k);
     compare(board, all, sequence.first(k), tolerance);
     done = k;
   }
@@ -150,7 +150,7 @@ TEST(Deferred, KeepsTheAttachedPartRightAfterACut) {
   const Board board(std::move(scene));
   const std::vector<Index> cut = test::elements_across(board.problem.mesh(), 26.5);
   std::vector<Engine> all = engines(board, {1, cut.size()});
-  for (Engine& engine : all) destroy_up_to(board, engine, cut, 0, cut.size());
+  for (Engine& engine : all) destroy_up_to(engine, cut, 0, cut.size());
   compare(board, all, cut, test::kCutTolerance);
 }
 
@@ -163,7 +163,7 @@ TEST(Deferred, TakesEventsBackBitByBit) {
   for (Engine& engine : engines(board, {1, 10})) {
     std::vector<Eigen::VectorXd> solutions;
     for (std::size_t k = 0; k < crack.size(); k += 10) {
-      destroy_up_to(board, engine, crack, k, k + 10);
+      destroy_up_to(engine, crack, k, k + 10);
       engine.deferred.solve({board.dofs, board.values}, grips, solutions.emplace_back());
     }
     const Index events = engine.deferred.events();
@@ -179,7 +179,7 @@ TEST(Deferred, TakesEventsBackBitByBit) {
 
 TEST(Deferred, HasNothingToTakeBackAtTheStart) {
   const Board board(test::pulled_board());
-  Deferred deferred(board.base("factor"), {});
+  Deferred deferred(board.problem, board.base("factor"));
   EXPECT_THROW(deferred.take_back(), UsageError);
 }
 

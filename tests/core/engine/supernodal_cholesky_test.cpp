@@ -74,8 +74,11 @@ TEST(SupernodalCholesky, ForwardSolutionStaysOnItsPath) {
     const std::vector<Index> seeds{row};
     Eigen::VectorXd on_path = Eigen::VectorXd::Zero(597), full = on_path;
     on_path[row] = full[row] = 1;
-    l.forward(l.reach(seeds), on_path);
-    l.forward(full);
+    SolveWork work;
+    std::vector<Index> path;
+    l.reach(seeds, path, work);
+    l.forward(path, on_path, work);
+    l.forward(full, work);
     EXPECT_EQ(on_path, full) << "row " << row;
   }
 }

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/stress_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "engine/vectorised.hpp"
+#include "fem/element.hpp"
+
+namespace sunder::engine {
+namespace {
+
+// Below this many elements a thread more costs as much as it saves (some 10 us to wake one).
+constexpr std::size_t kElementsPerThread = 8000;
+
+// The maximum shear stress lies between sqrt(3)/2 and 1 times sqrt(J_2); squared, and rounded off.
+constexpr double kShearRange = 0.75 * (1 - 1e-9);
+
+int threads_for(std::size_t elements) {
+  const auto machine = std::max(1U, std::thread::hardware_concurrency());
+  return static_cast<int>(std::clamp<std::size_t>(elements / kElementsPerThread, 1, machine));
+}
+
+}  // namespace
+
+StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<Index> elements,
+                           int threads)
+    : problem_(std::move(problem)) {
+  const auto all = static_cast<std::size_t>(problem_->tet_count());
+  if (elements.empty()) {
+    elements.resize(all);
+    std::iota(elements.begin(), elements.end(), 0);
+  }
+  place_.assign(all, kNone);
+  blocks_.resize((elements.size() + kLanes - 1) / kLanes, Block{});
+  for (std::size_t i = 0; i < blocks_.size() * kLanes; ++i) {
+    Block& b = blocks_[i / kLanes];
+    const auto l = i % kLanes;
+    if (i >= elements.size()) {
+      b.element[l] = kNone;  // zeros compute zeros
+      continue;
+    }
+    const Index e = elements[i];
+    const Material& m = problem_->material(e);
+    place_[e] = static_cast<Index>(i);
+    b.element[l] = e;
+    for (int g = 0; g < 9; ++g) b.gradient[g][l] = problem_->shape(e).gradient(g % 3, g / 3 + 1);
+    b.mu[l] = m.young / (2 * (1 + m.poisson));
+    b.lambda[l] = m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
+    b.scale[l] = b.live[l] = 1;
+    b.strength[l] = m.yield ? 1 / (*m.yield * *m.yield) : 0;
+    for (int a = 0; a < 4; ++a) b.corner[a][l] = 3 * problem_->mesh().tets[e][a];
+  }
+  workers_ = std::make_unique<Workers>(threads > 0 ? threads : threads_for(elements.size()));
+  partials_.resize(static_cast<std::size_t>(workers_->count()));
+}
+
+void StressKernel::keep_bounds() { bounds_.assign(blocks_.size() * kLanes, 0.0); }
+
+void StressKernel::destroy(std::span<const Index> elements) {
+  for (Index e : elements) {
+    if (place_[e] == kNone) continue;
+    Block& b = blocks_[static_cast<std::size_t>(place_[e] / kLanes)];
+    const int l = place_[e] % kLanes;
+    b.scale[l] = problem_->scene().fracture.alpha;
+    b.live[l] = b.strength[l] = 0;
+  }
+}
+
+SUNDER_VECTORISED
+void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u,
+                              Voigt* stress, double* bounds, Partial& partial) {
+  double largest[kLanes] = {}, check[kLanes] = {};
+  for (std::size_t k = 0; k < count; ++k) {
+    const Block& b = blocks[k];
+    double d[9][kLanes];  // displacement of corners 1..3 against corner 0
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int l = 0; l < kLanes; ++l) {
+        const double u0 = u[b.corner[0][l] + axis];
+        d[axis][l] = u[b.corner[1][l] + axis] - u0;
+        d[3 + axis][l] = u[b.corner[2][l] + axis] - u0;
+        d[6 + axis][l] = u[b.corner[3][l] + axis] - u0;
+      }
+    }
+    double s[6][kLanes], bound[kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      double h[3][3];  // du_i/dx_j
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          // Eigen's orders, so that the bits are those of fem::stress.
+          const double a = d[i][l] * b.gradient[j][l], c = d[3 + i][l] * b.gradient[3 + j][l],
+                       e = d[6 + i][l] * b.gradient[6 + j][l];
+          h[i][j] = i < 2 ? (a + c) + e : a + (c + e);
+        }
+      }
+      const double mu = b.mu[l], two_mu = 2 * mu, scale = b.scale[l];
+      const double pressure = b.lambda[l] * (h[0][0] + (h[1][1] + h[2][2]));
+      const double xx = pressure + two_mu * h[0][0], yy = pressure + two_mu * h[1][1],
+                   zz = pressure + two_mu * h[2][2], xy = mu * (h[0][1] + h[1][0]),
+                   yz = mu * (h[1][2] + h[2][1]), zx = mu * (h[2][0] + h[0][2]);
+      const double normal = xx * xx + yy * yy + zz * zz, shear = xy * xy + yz * yz + zx * zx;
+      const double norm = b.live[l] != 0 ? normal + 2 * shear : 0.0;
+      largest[l] = norm > largest[l] ? norm : largest[l];
+      check[l] += norm * 0;  // not a number if norm is not finite
+      const double j2 =
+          ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 6 + shear;
+      bound[l] = b.strength[l] != 0 ? j2 * b.strength[l] : 0.0;
+      s[0][l] = scale * xx;
+      s[1][l] = scale * yy;
+      s[2][l] = scale * zz;
+      s[3][l] = scale * xy;
+      s[4][l] = scale * yz;
+      s[5][l] = scale * zx;
+    }
+    if (bounds) {
+      for (int l = 0; l < kLanes; ++l) bounds[k * kLanes + static_cast<std::size_t>(l)] = bound[l];
+    }
+    if (!stress) continue;
+    for (int l = 0; l < kLanes; ++l) {
+      if (b.element[l] == kNone) break;
+      double* to = stress[b.element[l]].data();
+      for (int i = 0; i < 6; ++i) to[i] = s[i][l];
+    }
+  }
+  for (int l = 0; l < kLanes; ++l) {
+    partial.largest = std::max(partial.largest, largest[l]);
+    partial.check += check[l];
+  }
+}
+
+double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
+  workers_->run([&](int worker) {
+    const auto w = static_cast<std::size_t>(worker), all = partials_.size();
+    const std::size_t begin = blocks_.size() * w / all, end = blocks_.size() * (w + 1) / all;
+    partials_[w] = {};
+    run_blocks(blocks_.data() + begin, end - begin, u.data(),
+               stress.empty() ? nullptr : stress.data(),
+               bounds_.empty() ? nullptr : bounds_.data() + begin * kLanes, partials_[w]);
+  });
+  Partial sum;
+  for (const Partial& p : partials_) {
+    sum.largest = std::max(sum.largest, p.largest);
+    sum.check += p.check;
+  }
+  if (!(sum.check == 0)) return std::numeric_limits<double>::quiet_NaN();
+  return std::sqrt(sum.largest);
+}
+
+Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
+                          std::span<const Voigt> stress) const {
+  const auto counts = [&](std::size_t i) {
+    const Index e = blocks_[i / kLanes].element[i % kLanes];
+    return e != kNone && (excluded.empty() || !excluded[e]);
+  };
+  double largest = 0;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    if (bounds_[i] > largest && counts(i)) largest = bounds_[i];
+  }
+  Worst worst;
+  if (!(largest > 0)) return worst;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    if (!(bounds_[i] >= kShearRange * largest) || !counts(i)) continue;
+    const Index e = blocks_[i / kLanes].element[i % kLanes];
+    const double ratio = fem::yield_measure(stress[e], problem_->scene().fracture.yield_measure) /
+                         problem_->yield(e);
+    if (ratio > worst.ratio) worst = {e, ratio};
+  }
+  return worst;
+}
+
+StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
+                                      std::span<const Voigt> stress) const {
+  StressSummary summary;
+  summary.any = worst({}, stress);
+  summary.candidate = worst(excluded, stress);
+  if (!(summary.any.ratio >= 1)) return summary;
+  // At or over yield for sure, for sure not, or to be looked at; the bound is J_2 / yield^2.
+  const YieldMeasure measure = problem_->scene().fracture.yield_measure;
+  const double least = measure == YieldMeasure::tresca ? 0.25 : 1.0;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    if (!(bounds_[i] >= least * (1 - 1e-9))) continue;
+    const Index e = blocks_[i / kLanes].element[i % kLanes];
+    if (bounds_[i] * kShearRange > least ||
+        fem::yield_measure(stress[e], measure) / problem_->yield(e) >= 1) {
+      ++summary.over;
+    }
+  }
+  return summary;
+}
+
+std::size_t StressKernel::bytes() const {
+  return blocks_.size() * sizeof(Block) + bounds_.size() * sizeof(double) +
+         place_.size() * sizeof(Index);
+}
+
+}  // namespace sunder::engine

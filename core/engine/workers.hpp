@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A few threads that wait for loops to share. Starting a loop allocates nothing.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace sunder::engine {
+
+class Workers {
+ public:
+  /// `count` threads share a loop, the caller's among them; at least one.
+  explicit Workers(int count);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  [[nodiscard]] int count() const { return static_cast<int>(threads_.size()) + 1; }
+
+  /// Calls body(worker) once for each worker 0 ... count() - 1 and returns when all are done. The
+  /// body must not throw.
+  template <class Body>
+  void run(Body&& body) {
+    if (threads_.empty()) {
+      body(0);
+      return;
+    }
+    start([](void* b, int worker) { (*static_cast<std::remove_reference_t<Body>*>(b))(worker); },
+          &body);
+    body(0);
+    finish();
+  }
+
+ private:
+  using Call = void (*)(void* body, int worker);
+  void start(Call call, void* body);
+  void finish();
+  void work(int worker);
+
+  std::vector<std::thread> threads_;
+  std::atomic<std::uint32_t> round_{0}, working_{0};
+  Call call_ = nullptr;  // nullptr: the end
+  void* body_ = nullptr;
+};
+
+}  // namespace sunder::engine

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vectorised stress against the plain one, bit by bit, for any number of threads and for
+// elements that do not fill the last vector.
+#include "engine/stress_kernel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "fem/element.hpp"
+#include "support/accuracy.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::engine {
+namespace {
+
+struct Field {
+  Field() : problem(std::make_shared<Problem>(test::pulled_board())) {
+    std::mt19937 generator(7);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (std::size_t i = 0; i < problem->dofs().size(); ++i) u.push_back(5 + any(generator));
+    for (Index e = 3; e < problem->tet_count(); e += 17) destroyed.push_back(e);
+    live.assign(problem->mesh().tets.size(), 1);
+    for (Index e : destroyed) live[e] = 0;
+  }
+  [[nodiscard]] Voigt plain(Index e) const {
+    const Voigt s = fem::stress(problem->shape(e), problem->material(e),
+                                fem::corner_displacement(problem->mesh(), e, u));
+    return (live[e] ? 1.0 : problem->scene().fracture.alpha) * s;
+  }
+
+  std::shared_ptr<const Problem> problem;
+  std::vector<double> u;
+  std::vector<Index> destroyed;
+  std::vector<std::uint8_t> live;
+};
+
+TEST(StressKernel, EqualsThePlainStressBitByBitForAnyNumberOfThreads) {
+  const Field field;
+  for (int threads : {1, 2, 4, 7}) {
+    StressKernel kernel(field.problem, {}, threads);
+    kernel.destroy(field.destroyed);
+    std::vector<Voigt> stress(field.live.size());
+    const double largest = kernel.run(field.u, stress);
+    double expected = 0;
+    for (Index e = 0; e < field.problem->tet_count(); ++e) {
+      ASSERT_EQ(stress[e], field.plain(e)) << "element " << e << ", " << threads << " threads";
+      if (field.live[e]) expected = std::max(expected, test::tensor_norm(field.plain(e)));
+    }
+    EXPECT_NEAR(largest, expected, 4e-16 * expected) << threads << " threads";
+  }
+}
+
+TEST(StressKernel, FindsTheWorstRatiosThatALoopFinds) {
+  const Field field;
+  StressKernel kernel(field.problem, {}, 2);
+  kernel.keep_bounds();
+  kernel.destroy(field.destroyed);
+  std::vector<Voigt> stress(field.live.size());
+  std::vector<std::uint8_t> excluded(stress.size(), 0);
+  for (int round = 0; round < 40; ++round) {
+    kernel.run(field.u, stress);
+    StressSummary expected;
+    for (Index e = 0; e < field.problem->tet_count(); ++e) {
+      if (!field.live[e] || !field.problem->breakable(e)) continue;
+      const double ratio = fem::max_shear(stress[e]) / field.problem->yield(e);
+      if (ratio >= 1) ++expected.over;
+      if (ratio > expected.any.ratio) expected.any = {e, ratio};
+      if (!excluded[e] && ratio > expected.candidate.ratio) expected.candidate = {e, ratio};
+    }
+    const StressSummary found = kernel.summarize(excluded, stress);
+    EXPECT_EQ(found.over, expected.over);
+    EXPECT_EQ(found.any.element, expected.any.element);
+    EXPECT_EQ(found.any.ratio, expected.any.ratio);
+    ASSERT_EQ(found.candidate.element, expected.candidate.element);
+    EXPECT_EQ(found.candidate.ratio, expected.candidate.ratio);
+    excluded[found.candidate.element] = 1;
+  }
+}
+
+TEST(StressKernel, SaysWhenALiveElementIsNotFinite) {
+  Field field;
+  const Index e = field.problem->tet_count() - 1;
+  StressKernel kernel(field.problem, {}, 1);
+  field.u[3 * static_cast<std::size_t>(field.problem->mesh().tets[e][2])] = std::nan("");
+  EXPECT_TRUE(std::isnan(kernel.run(field.u, {})));
+}
+
+TEST(StressKernel, TakesSomeElementsOnly) {
+  const Field field;
+  const std::vector<Index> some{1, 5, 6, 700, 701, 702, 703, 704, 1500};
+  StressKernel kernel(field.problem, some, 1);
+  std::vector<Voigt> stress(field.live.size(), Voigt::Constant(-1));
+  kernel.run(field.u, stress);
+  for (Index e = 0; e < field.problem->tet_count(); ++e) {
+    const bool taken = std::find(some.begin(), some.end(), e) != some.end();
+    const Voigt expected =
+        taken ? fem::stress(field.problem->shape(e), field.problem->material(e),
+                            fem::corner_displacement(field.problem->mesh(), e, field.u))
+              : Voigt(Voigt::Constant(-1));
+    EXPECT_EQ(stress[e], expected);
+  }
+}
+
+}  // namespace
+}  // namespace sunder::engine

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// A long tear: bases that come from another thread, at the same event whatever that takes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cpu_reference/routes.hpp"
+#include "support/accuracy.hpp"
+#include "support/body.hpp"
+#include "support/direct_solution.hpp"
+#include "support/sequences.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::test {
+namespace {
+
+std::vector<double> corner_pull(const Problem& problem) {
+  std::vector<double> force(problem.dofs().size(), 0.0);
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    const Vec3& x = problem.mesh().nodes[n];
+    if (x.x() > 49.999 && x.y() < 0.001) force[3 * static_cast<std::size_t>(n) + 1] = -3;
+  }
+  return force;
+}
+
+/// Displacements along a tear of 240 elements, every 40.
+std::vector<std::vector<double>> tear(Route route, int& bases, bool grips, bool check) {
+  Scene scene = pulled_board();
+  scene.solver.route = route;
+  if (grips) {
+    scene.instruments[0].action = Grip{lower_right_corner(), Vec3::Constant(0.25), Axes{7}};
+  }
+  const Body body(std::move(scene));
+  const auto force =
+      grips ? std::vector<double>(body.problem->dofs().size(), 0.0) : corner_pull(*body.problem);
+  const std::vector<double> moved(body.problem->gripped_dofs().size(), 0.25);
+  const auto sequence = crack_sequence(*body.problem, 240, 8);
+  std::vector<std::vector<double>> all;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    body.backend->destroy({&sequence[i], 1});
+    body.load(force, moved);
+    const SolveReport report = body.backend->solve();
+    EXPECT_LE(report.error, kCrackTolerance) << i;
+    if ((i + 1) % 40 != 0) continue;
+    all.push_back(body.displacement());
+    if (!check || (i + 1) % 120 != 0) continue;
+    Known known;
+    for (std::size_t d = 0; grips && d < body.problem->dofs().size(); ++d) {
+      const auto gripped = body.problem->gripped_dofs();
+      if (std::binary_search(gripped.begin(), gripped.end(), body.problem->dofs()[d])) {
+        known[static_cast<Index>(d)] = 0.25;
+      }
+    }
+    const DirectSolution direct(*body.problem, body.scale(), known);
+    const auto reference = direct.solve(force);
+    EXPECT_LE(
+        displacement_error(body.problem->mesh(), body.backend->destroyed(), all.back(), reference),
+        kCrackTolerance);
+    EXPECT_LE(stress_error(body.backend->destroyed(), body.stress(), direct.stress(reference)),
+              kCrackTolerance);
+  }
+  for (const BufferPlan& b : body.backend->buffers()) bases += b.name.starts_with("damaged factor");
+  return all;
+}
+
+TEST(Cascade, StaysRightThroughRebasesAndRepeatsBitByBit) {
+  for (Route route : {Route::inverse, Route::factor}) {
+    for (bool grips : {false, true}) {
+      int bases = 0;
+      const auto once = tear(route, bases, grips, true);
+      EXPECT_EQ(bases, 1) << "the tear is long enough for a new base";
+      EXPECT_EQ(once, tear(route, bases, grips, false));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sunder::test
