@@ -26,6 +26,9 @@ class FailoverBackend final : public Backend {
   std::vector<BufferPlan> buffers() const override { return current_->buffers(); }
   void time_passes(bool on) override { current_->time_passes(on); }
   std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
+  std::shared_ptr<InstrumentForces> instrument_forces() override {
+    return current_->instrument_forces();
+  }
 
  private:
   void do_set_load(const Load& load) override {

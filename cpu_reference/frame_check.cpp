@@ -76,6 +76,7 @@ double FrameCheck::enough(double scale) const {
 
 std::optional<SolveReport> FrameCheck::known(double scale, const InverseRoute& route,
                                              double largest_u, double largest) {
+  if (!std::isfinite(largest)) return std::nullopt;  // the load is so large that stress overflows
   if (!changed_) return last_;
   if (!(largest_u <= kGrowth * scale * largest_u_)) return std::nullopt;
   SolveReport report = report_;

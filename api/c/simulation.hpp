@@ -32,6 +32,8 @@ class SimulationObject final : public Object {
   [[nodiscard]] bool solved() const { return solved_; }
   [[nodiscard]] std::vector<std::string> warnings() const;
 
+  std::weak_ptr<Object> grips;  ///< the handle for forces between frames: one thread may ask
+
  private:
   void log(std::int32_t level, const std::string& text) const;
   void log_warnings();

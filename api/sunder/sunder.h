@@ -370,6 +370,24 @@ SUNDER_API sunder_status sunder_simulation_reactions(sunder_simulation simulatio
 SUNDER_API sunder_status sunder_simulation_support_reaction(sunder_simulation simulation,
                                                             double* values, size_t size);
 
+/* Forces of the grips between frames, for a haptic device. */
+
+/// For a thread of its own: a call neither waits for a step nor makes one wait. Belongs to no other
+/// call's handle, so a step does not make it busy; outlives the simulation.
+typedef struct sunder_grips_handle* sunder_grips;
+
+/// One handle a simulation at a time. SUNDER_ERROR_ORDER: the scene has no grip, or there is a
+/// handle already. SUNDER_ERROR_DEVICE: this backend, route or update has nothing of the kind.
+SUNDER_API sunder_status sunder_grips_create(sunder_simulation simulation, sunder_grips* grips);
+SUNDER_API sunder_status sunder_grips_destroy(sunder_grips grips);
+/// Force of each grip on the body [N] if it were at a displacement [mm], by the body as the last
+/// solve left it. Both (instruments x 3), size 3 * instruments; what is no grip, or an axis that it
+/// leaves free, is not read and has force 0. With the displacements of that solve: its reactions.
+/// Never other than finite. SUNDER_ERROR_ORDER before the first solve, SUNDER_ERROR_VALUE for a
+/// displacement that is not finite; the forces are 0 then.
+SUNDER_API sunder_status sunder_grips_forces(sunder_grips grips, const double* displacements,
+                                             double* forces, size_t size);
+
 /* What broke, and why. */
 
 enum {

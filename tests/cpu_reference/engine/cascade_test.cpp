@@ -63,16 +63,27 @@ std::vector<std::vector<double>> tear(Route route, int& bases, bool grips, bool 
   return all;
 }
 
-TEST(Cascade, StaysRightThroughRebasesAndRepeatsBitByBit) {
-  for (Route route : {Route::inverse, Route::factor}) {
-    for (bool grips : {false, true}) {
-      int bases = 0;
-      const auto once = tear(route, bases, grips, true);
-      EXPECT_EQ(bases, 1) << "the tear is long enough for a new base";
-      EXPECT_EQ(once, tear(route, bases, grips, false));
-    }
-  }
+struct Case {
+  const char* name;
+  Route route;
+  bool grips;
+};
+
+class Cascade : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Cascade, StaysRightThroughRebasesAndRepeatsBitByBit) {
+  int bases = 0;
+  const auto once = tear(GetParam().route, bases, GetParam().grips, true);
+  EXPECT_EQ(bases, 1) << "the tear is long enough for a new base";
+  EXPECT_EQ(once, tear(GetParam().route, bases, GetParam().grips, false));
 }
+
+INSTANTIATE_TEST_SUITE_P(Tears, Cascade,
+                         ::testing::Values(Case{"Inverse", Route::inverse, false},
+                                           Case{"InverseGrips", Route::inverse, true},
+                                           Case{"Factor", Route::factor, false},
+                                           Case{"FactorGrips", Route::factor, true}),
+                         [](const auto& p) { return p.param.name; });
 
 }  // namespace
 }  // namespace sunder::test
