@@ -30,6 +30,8 @@ class Base {
   Base& operator=(const Base&) = delete;
 
   [[nodiscard]] virtual Index size() const = 0;
+  /// Makes room for vectors, so that a first push() allocates nothing.
+  virtual void make_room() {}
   /// Adds vectors. B^T X B_new, B with the new ones, fills the leading block of `gram`, whose
   /// columns are as many as the new ones rounded up to a multiple of 8, or more.
   virtual void push(std::span<const Difference> vectors, fem::RowMajor& gram) = 0;
@@ -39,6 +41,11 @@ class Base {
   virtual const Eigen::VectorXd& load(const Forces& forces) = 0;
   /// u = X (f + B c) with the f of the last load().
   virtual void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) = 0;
+  /// Computes what push() will need of these vectors, in place of what was prepared before. push()
+  /// gives the same bits with it and without.
+  virtual void prepare(std::span<const Difference>) {}
+  /// Milliseconds that push() has been spared so far.
+  [[nodiscard]] virtual double saved_ms() const { return 0; }
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
 };
 

@@ -32,25 +32,16 @@ void multiply(const fem::RowMajor& s, Eigen::Index n, const Eigen::VectorXd& x,
 
 }  // namespace
 
-Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base)
+Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage)
     : problem_(problem),
       base_(std::move(base)),
       basis_(problem),
       is_touched_(static_cast<std::size_t>(problem.dof_count()), 0) {
   const auto gripped = problem.gripped_dofs();
   grips_ = static_cast<Eigen::Index>(gripped.size());
-  reserve(std::min(problem.dof_count(), kReserved) + static_cast<Index>(grips_));
-  touched_.reserve(is_touched_.size());
-  // What single fractures need, so that they allocate nothing.
-  constexpr Eigen::Index kRows = 128;
-  rows_.reserve(kRows);
-  make_room(u_, kRows, 8);
-  make_room(columns_, kRows, m_.cols());
-  make_room(product_, kRows, m_.cols());
-  make_room(gram_, m_.rows(), 16);
-  events_.reserve(kReserved);
-  elements_.reserve(kReserved);
+  if (damage) reserve_for_fractures();
   if (grips_ == 0) return;
+  reserve(static_cast<Index>(grips_));
   touched_.assign(gripped.begin(), gripped.end());
   count_ = static_cast<Index>(grips_);
   std::vector<Difference> units;
@@ -65,6 +56,21 @@ Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base)
   if (!factor_grips()) {
     throw NumericalError("the compliance of the gripped nodes is singular in double precision");
   }
+}
+
+/// What single fractures need, so that they allocate nothing.
+void Deferred::reserve_for_fractures() {
+  constexpr Eigen::Index kRows = 128;
+  base_->make_room();
+  reserve(std::min(problem_.dof_count(), kReserved) + static_cast<Index>(grips_));
+  touched_.reserve(is_touched_.size());
+  rows_.reserve(kRows);
+  make_room(u_, kRows, 8);
+  make_room(columns_, kRows, m_.cols());
+  make_room(product_, kRows, m_.cols());
+  make_room(gram_, m_.rows(), 16);
+  events_.reserve(kReserved);
+  elements_.reserve(kReserved);
 }
 
 void Deferred::reserve(Index columns) {
@@ -125,6 +131,18 @@ void Deferred::push(std::span<const Index> elements) {
     a->block(0, before, before, padded(count()) - before).setZero();
     a->block(before, 0, added, padded(count())).setZero();
   }
+}
+
+void Deferred::prepare(std::span<const Index> elements) {
+  const std::size_t before = basis_.differences().size();
+  std::vector<Difference> wanted;
+  for (Index e : elements) {
+    basis_.add(e);
+    const auto added = basis_.differences().subspan(before);
+    wanted.insert(wanted.end(), added.begin(), added.end());
+    basis_.shrink(before);
+  }
+  base_->prepare(wanted);
 }
 
 void Deferred::pop() {

@@ -22,12 +22,16 @@ namespace sunder::engine {
 
 class Deferred {
  public:
-  /// The problem must outlive it.
-  Deferred(const Problem& problem, std::unique_ptr<Base> base);
+  /// The problem must outlive it. Without `damage` nothing will be destroyed, and there is no room
+  /// for it.
+  Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage = true);
 
   /// Follows an event. Returns false and changes nothing when the damaged stiffness is not
   /// positive definite in double precision.
   [[nodiscard]] bool destroy(std::span<const Index> elements);
+  /// Prepares the base for the removal of live elements, each by itself.
+  void prepare(std::span<const Index> elements);
+  [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
   /// Takes the last event back: every later result is bit by bit what it was before the event.
   void take_back();
 
@@ -63,6 +67,7 @@ class Deferred {
     bool pushed;
   };
 
+  void reserve_for_fractures();
   void reserve(Index columns);
   void push(std::span<const Index> elements);
   void pop();

@@ -2,6 +2,8 @@
 #include "engine/factor_base.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <numeric>
 
 namespace sunder::engine {
 namespace {
@@ -15,17 +17,24 @@ Index padded(Index columns) { return (columns + 7) / 8 * 8; }
 }  // namespace
 
 FactorBase::FactorBase(const fem::Factor& factor)
-    : l_(factor.cholesky()), columns_(l_.supernodes()) {
-  rows_.setZero(l_.size(), kGroup);
+    : l_(factor.cholesky()), columns_(l_.supernodes()), prepared_(l_.supernodes()) {
   of_load_.setZero(l_.size());
   y_.resize(l_.size());
-  block_.resize(1024, kGroup);
   groups_.reserve(1024);
   places_.reserve(1024);
+  missing_.reserve(kGroup);
   path_.reserve(static_cast<std::size_t>(l_.supernodes().count()));
 }
 
+void FactorBase::make_room() {
+  if (rows_.rows() > 0) return;
+  rows_.setZero(l_.size(), kGroup);
+  block_.resize(1024, kGroup);
+  columns_.make_room();
+}
+
 void FactorBase::push(std::span<const Difference> vectors, fem::RowMajor& gram) {
+  make_room();
   const auto k = static_cast<Index>(vectors.size());
   const Index before = columns_.size();
   groups_.push_back((k + kGroup - 1) / kGroup);
@@ -40,26 +49,94 @@ void FactorBase::push(std::span<const Difference> vectors, fem::RowMajor& gram) 
   }
 }
 
+void FactorBase::forward_group(std::span<const Difference> vectors, std::span<const Index> which) {
+  const auto& place = l_.supernodes().place;
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    const Difference& v = vectors[static_cast<std::size_t>(which[i])];
+    rows_(place[v.dof], static_cast<Index>(i)) = 1;
+    if (v.other != kNone) rows_(place[v.other], static_cast<Index>(i)) = -1;
+  }
+  l_.forward(path_, rows_.leftCols(padded(static_cast<Index>(which.size()))), work_);
+}
+
+void FactorBase::find_path(std::span<const Difference> vectors) {
+  places_.clear();
+  for (const Difference& v : vectors) {
+    places_.push_back(l_.supernodes().place[v.dof]);
+    if (v.other != kNone) places_.push_back(l_.supernodes().place[v.other]);
+  }
+  l_.reach(places_, path_, work_);
+}
+
+void FactorBase::clear_rows() {
+  for (Index s : path_) {
+    rows_.middleRows(l_.supernodes().first[s], l_.supernodes().width(s)).setZero();
+  }
+}
+
 void FactorBase::push_group(std::span<const Difference> vectors, Index column,
                             fem::RowMajor& gram) {
   const auto count = static_cast<Index>(vectors.size());
-  places_.clear();
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    const auto column_of = static_cast<Index>(i);
-    places_.push_back(l_.supernodes().place[vectors[i].dof]);
-    rows_(places_.back(), column_of) = 1;
-    if (vectors[i].other == kNone) continue;
-    places_.push_back(l_.supernodes().place[vectors[i].other]);
-    rows_(places_.back(), column_of) = -1;
+  find_path(vectors);
+  missing_.clear();
+  for (Index i = 0; i < count; ++i) {
+    if (!prepared_.holds(vectors[static_cast<std::size_t>(i)])) missing_.push_back(i);
   }
-  l_.reach(places_, path_, work_);
-  l_.forward(path_, rows_.leftCols(padded(count)), work_);
+  if (!missing_.empty()) forward_group(vectors, missing_);
+  spread_missing();
+  for (Index i = 0, m = 0; i < count; ++i) {
+    if (m < static_cast<Index>(missing_.size()) && missing_[static_cast<std::size_t>(m)] == i) {
+      ++m;
+    } else {
+      prepared_.restore(vectors[static_cast<std::size_t>(i)], rows_, i);
+    }
+  }
   columns_.append(path_, rows_, count);
   if (block_.rows() < columns_.size()) block_.resize(2 * columns_.size() + 256, kGroup);
   columns_.multiply(path_, rows_, padded(count), block_);
   gram.block(0, column, columns_.size(), count) = block_.topLeftCorner(columns_.size(), count);
-  for (Index s : path_) {
-    rows_.middleRows(l_.supernodes().first[s], l_.supernodes().width(s)).setZero();
+  clear_rows();
+}
+
+/// Moves the columns that were computed from the front to where they belong, the last one first.
+void FactorBase::spread_missing() {
+  for (std::size_t j = missing_.size(); j-- > 0;) {
+    const Index from = static_cast<Index>(j), to = missing_[j];
+    if (to == from) continue;
+    for (Index s : path_) {
+      for (Index r = l_.supernodes().first[s]; r < l_.supernodes().first[s + 1]; ++r) {
+        rows_(r, to) = rows_(r, from);
+        rows_(r, from) = 0;
+      }
+    }
+  }
+}
+
+void FactorBase::prepare(std::span<const Difference> vectors) {
+  using Clock = std::chrono::steady_clock;
+  make_room();
+  prepared_.clear();
+  std::vector<Difference> once;
+  for (const Difference& v : vectors) {
+    const bool known = std::ranges::any_of(
+        once, [&](const Difference& o) { return o.dof == v.dof && o.other == v.other; });
+    if (!known) once.push_back(v);
+  }
+  std::vector<Index> all;
+  for (std::size_t begin = 0; begin < once.size(); begin += kGroup) {
+    const auto group =
+        std::span(once).subspan(begin, std::min<std::size_t>(kGroup, once.size() - begin));
+    all.resize(group.size());
+    std::iota(all.begin(), all.end(), 0);
+    const auto start = Clock::now();
+    find_path(group);
+    forward_group(group, all);
+    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count() /
+                      static_cast<double>(group.size());
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      prepared_.keep(group[i], path_, rows_, static_cast<Index>(i), ms);
+    }
+    clear_rows();
   }
 }
 
@@ -96,7 +173,9 @@ void FactorBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
 }
 
 std::vector<BufferPlan> FactorBase::buffers() const {
-  return {{"update vectors along the elimination paths", columns_.bytes()}};
+  std::vector<BufferPlan> plan{{"update vectors along the elimination paths", columns_.bytes()}};
+  if (prepared_.bytes() > 0) plan.push_back({"columns of predicted fractures", prepared_.bytes()});
+  return plan;
 }
 
 }  // namespace sunder::engine

@@ -5,6 +5,7 @@
 
 #include "engine/last_load.hpp"
 #include "engine/path_columns.hpp"
+#include "engine/prepared_columns.hpp"
 #include "fem/factor.hpp"
 
 namespace sunder::engine {
@@ -15,18 +16,28 @@ class FactorBase final : public Base {
   explicit FactorBase(const fem::Factor& factor);
 
   [[nodiscard]] Index size() const override { return l_.size(); }
+  void make_room() override;
   void push(std::span<const Difference> vectors, fem::RowMajor& gram) override;
   void pop() override;
   const Eigen::VectorXd& load(const Forces& forces) override;
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
+  void prepare(std::span<const Difference> vectors) override;
+  [[nodiscard]] double saved_ms() const override { return prepared_.saved_ms(); }
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
  private:
+  /// Puts some of the vectors into the first columns of rows_, and solves forward.
+  void forward_group(std::span<const Difference> vectors, std::span<const Index> which);
+  void find_path(std::span<const Difference> vectors);
+  void spread_missing();
+  void clear_rows();
   void push_group(std::span<const Difference> vectors, Index column, fem::RowMajor& gram);
   void forward(const Forces& forces, Eigen::VectorXd& y);
 
   const fem::SupernodalCholesky& l_;
   PathColumns columns_;
+  PreparedColumns prepared_;
+  std::vector<Index> missing_;        // of the group: not prepared
   std::vector<Index> groups_;         // of each push
   std::vector<Index> places_, path_;  // of the group in L
   fem::RowMajor rows_, block_;        // rows of L, all zero between calls; part of the compliance

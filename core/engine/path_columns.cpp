@@ -41,7 +41,9 @@ T* PathColumns::Arena<T>::take(std::size_t count) {
 }
 
 PathColumns::PathColumns(const fem::Supernodes& nodes)
-    : nodes_(nodes), blocks_(static_cast<std::size_t>(nodes.count())) {
+    : nodes_(nodes), blocks_(static_cast<std::size_t>(nodes.count())) {}
+
+void PathColumns::make_room() {
   reached_.reserve(blocks_.size());
   pushes_.reserve(1024);
   paths_.reserve(std::size_t{1} << 16);

@@ -15,6 +15,8 @@ namespace sunder::engine {
 class PathColumns {
  public:
   explicit PathColumns(const fem::Supernodes& nodes);
+  /// So that first columns allocate nothing.
+  void make_room();
 
   /// Appends the first `count` columns of `rows` (all rows of L, zero off the path), which reach
   /// the supernodes of `path` (ascending).

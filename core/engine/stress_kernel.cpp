@@ -33,6 +33,7 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
     elements.resize(all);
     std::iota(elements.begin(), elements.end(), 0);
   }
+  size_ = elements.size();
   place_.assign(all, kNone);
   blocks_.resize((elements.size() + kLanes - 1) / kLanes, Block{});
   for (std::size_t i = 0; i < blocks_.size() * kLanes; ++i) {
@@ -120,7 +121,7 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
     if (!stress) continue;
     for (int l = 0; l < kLanes; ++l) {
       if (b.element[l] == kNone) break;
-      double* to = stress[b.element[l]].data();
+      double* to = stress[k * kLanes + static_cast<std::size_t>(l)].data();
       for (int i = 0; i < 6; ++i) to[i] = s[i][l];
     }
   }
@@ -136,7 +137,7 @@ double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
     const std::size_t begin = blocks_.size() * w / all, end = blocks_.size() * (w + 1) / all;
     partials_[w] = {};
     run_blocks(blocks_.data() + begin, end - begin, u.data(),
-               stress.empty() ? nullptr : stress.data(),
+               stress.empty() ? nullptr : stress.data() + begin * kLanes,
                bounds_.empty() ? nullptr : bounds_.data() + begin * kLanes, partials_[w]);
   });
   Partial sum;
@@ -163,7 +164,7 @@ Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     if (!(bounds_[i] >= kShearRange * largest) || !counts(i)) continue;
     const Index e = blocks_[i / kLanes].element[i % kLanes];
-    const double ratio = fem::yield_measure(stress[e], problem_->scene().fracture.yield_measure) /
+    const double ratio = fem::yield_measure(stress[i], problem_->scene().fracture.yield_measure) /
                          problem_->yield(e);
     if (ratio > worst.ratio) worst = {e, ratio};
   }
@@ -183,7 +184,7 @@ StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
     if (!(bounds_[i] >= least * (1 - 1e-9))) continue;
     const Index e = blocks_[i / kLanes].element[i % kLanes];
     if (bounds_[i] * kShearRange > least ||
-        fem::yield_measure(stress[e], measure) / problem_->yield(e) >= 1) {
+        fem::yield_measure(stress[i], measure) / problem_->yield(e) >= 1) {
       ++summary.over;
     }
   }

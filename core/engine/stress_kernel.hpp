@@ -24,14 +24,18 @@ class StressKernel {
   void destroy(std::span<const Index> elements);
 
   /// Stress a_e D B u from the displacement at all nodes (3 * nodes), bit by bit that of
-  /// fem::stress; empty `stress`: not stored. Returns the largest norm of the tensor over live
-  /// elements; not finite when one of them is not.
+  /// fem::stress, one value per listed element in that order; empty `stress`: not stored. Returns
+  /// the largest norm of the tensor over live elements; not finite when one of them is not.
   double run(std::span<const double> u, std::span<Voigt> stress);
 
   /// Worst ratios of the stress that the last run() stored.
   [[nodiscard]] StressSummary summarize(std::span<const std::uint8_t> excluded,
                                         std::span<const Voigt> stress) const;
 
+  /// Where run() puts the stress of an element; kNone: it is not listed.
+  [[nodiscard]] Index place(Index element) const { return place_[element]; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] int threads() const { return workers_->count(); }
   /// Makes run() keep what summarize() reads.
   void keep_bounds();
   [[nodiscard]] std::size_t bytes() const;
@@ -55,6 +59,7 @@ class StressKernel {
                             std::span<const Voigt> stress) const;
 
   std::shared_ptr<const Problem> problem_;
+  std::size_t size_ = 0;  // listed elements
   std::vector<Block> blocks_;
   std::vector<Index> place_;    // of each element, kNone: not in here
   std::vector<double> bounds_;  // J_2 / yield^2 per place

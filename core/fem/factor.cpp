@@ -51,7 +51,9 @@ Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
   Eigen::MatrixXd result(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
   RowMajor block;
   SolveWork work;
-  std::vector<Index> seeds, path;
+  std::vector<Index> seeds, path, wanted;
+  for (Index r : rows) seeds.push_back(place[r]);
+  cholesky_.reach(seeds, wanted, work);
   for (std::size_t start = 0; start < columns.size(); start += kBlock) {
     const std::size_t width = std::min(kBlock, columns.size() - start);
     block.setZero(cholesky_.size(), static_cast<Index>(width));
@@ -62,7 +64,7 @@ Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
     }
     cholesky_.reach(seeds, path, work);
     cholesky_.forward(path, block, work);
-    cholesky_.backward(block, work);
+    cholesky_.backward(wanted, block, work);
     for (std::size_t c = 0; c < width; ++c) {
       auto column = result.col(order[start + c]);
       for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -71,6 +73,17 @@ Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
     }
   }
   return result;
+}
+
+std::size_t Factor::path_entries(std::span<const Index> dofs) const {
+  const Supernodes& nodes = cholesky_.supernodes();
+  std::vector<Index> rows, path;
+  for (Index d : dofs) rows.push_back(nodes.place[d]);
+  SolveWork work;
+  cholesky_.reach(rows, path, work);
+  std::size_t entries = 0;
+  for (Index s : path) entries += nodes.value_begin[s + 1] - nodes.value_begin[s];
+  return entries;
 }
 
 Eigen::MatrixXd Factor::inverse_columns(std::span<const Index> columns) const {

@@ -29,6 +29,8 @@ class Factor {
                                               std::span<const Index> columns) const;
   /// Entries of L: a triangular solve reads each once.
   [[nodiscard]] std::size_t entries() const { return cholesky_.entries(); }
+  /// Entries of L that a solution with forces on some unknowns reads on its way forward.
+  [[nodiscard]] std::size_t path_entries(std::span<const Index> dofs) const;
   [[nodiscard]] std::size_t bytes() const { return cholesky_.bytes(); }
   [[nodiscard]] const SupernodalCholesky& cholesky() const { return cholesky_; }
 

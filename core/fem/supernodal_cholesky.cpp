@@ -140,9 +140,17 @@ void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<R
 }
 
 void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y, SolveWork& work) const {
+  std::vector<Index> all(static_cast<std::size_t>(nodes_.count()));
+  std::iota(all.begin(), all.end(), 0);
+  backward(all, y, work);
+}
+
+void SupernodalCholesky::backward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y,
+                                  SolveWork& work) const {
   RowMajor gathered;
   work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * y.cols())));
-  for (Index s = nodes_.count() - 1; s >= 0; --s) {
+  for (std::size_t at = supernodes.size(); at-- > 0;) {
+    const Index s = supernodes[at];
     const ConstPanel p = panel(s);
     const Index width = nodes_.width(s);
     const auto below = nodes_.below(s);

@@ -43,6 +43,8 @@ class SupernodalCholesky {
   /// The same for several right sides at once, shape (size() x right sides).
   void forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y, SolveWork& work) const;
   void backward(Eigen::Ref<RowMajor> y, SolveWork& work) const;
+  /// The rows of L^-T y at the listed supernodes (ascending and closed under parents) alone.
+  void backward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y, SolveWork& work) const;
 
  private:
   using Panel = Eigen::Map<Eigen::MatrixXd>;

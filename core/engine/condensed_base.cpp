@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/condensed_base.hpp"
+
+#include <algorithm>
+
+#include "engine/columns.hpp"
+
+namespace sunder::engine {
+
+CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs)
+    : factor_(std::move(factor)),
+      dofs_(dofs.begin(), dofs.end()),
+      place_(static_cast<std::size_t>(factor_->cholesky().size()), kNone) {
+  for (std::size_t i = 0; i < dofs_.size(); ++i) place_[dofs_[i]] = static_cast<Index>(i);
+  x_ = factor_->inverse_block(dofs_, dofs_);
+  is_touched_.assign(dofs_.size(), kNone);
+  of_load_.setZero(x_.rows());
+  u_.setZero(x_.rows());
+  touched_.reserve(dofs_.size());
+  loaded_.reserve(dofs_.size());
+  forces_.reserve(dofs_.size());
+  vectors_.reserve(1024);
+  pushes_.reserve(1024);
+}
+
+void CondensedBase::grow(std::span<const Difference> vectors) {
+  const std::size_t before = dofs_.size();
+  for (const Difference& v : vectors) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || place_[d] != kNone) continue;
+      place_[d] = static_cast<Index>(dofs_.size());
+      dofs_.push_back(d);
+    }
+  }
+  if (dofs_.size() == before) return;
+  const auto added = std::span(dofs_).subspan(before);
+  const auto old = static_cast<Eigen::Index>(before),
+             size = static_cast<Eigen::Index>(dofs_.size());
+  const Eigen::MatrixXd columns = factor_->inverse_block(dofs_, added);
+  x_.conservativeResize(size, size);
+  x_.rightCols(size - old) = columns;
+  x_.bottomLeftCorner(size - old, old) = columns.topRows(old).transpose();
+  is_touched_.resize(dofs_.size(), kNone);
+  load_ = {};
+  u_.setZero(size);
+}
+
+void CondensedBase::push(std::span<const Difference> vectors, fem::RowMajor& gram) {
+  grow(vectors);
+  pushes_.push_back(vectors_.size());
+  vectors_.insert(vectors_.end(), vectors.begin(), vectors.end());
+  for (const Difference& v : vectors) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || is_touched_[place_[d]] != kNone) continue;
+      is_touched_[place_[d]] = static_cast<Index>(touched_.size());
+      touched_.push_back(place_[d]);
+    }
+  }
+  for (std::size_t j = 0; j < vectors.size(); ++j) {
+    const double* a = x_.col(place_[vectors[j].dof]).data();
+    const double* b = vectors[j].other == kNone ? nullptr : x_.col(place_[vectors[j].other]).data();
+    for (std::size_t i = 0; i < vectors_.size(); ++i) {
+      const Index dof = place_[vectors_[i].dof];
+      double value = b ? a[dof] - b[dof] : a[dof];
+      if (vectors_[i].other != kNone) {
+        const Index other = place_[vectors_[i].other];
+        value -= b ? a[other] - b[other] : a[other];
+      }
+      gram(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = value;
+    }
+  }
+}
+
+void CondensedBase::pop() {
+  vectors_.resize(pushes_.back());
+  pushes_.pop_back();
+  for (Index p : touched_) is_touched_[p] = kNone;
+  touched_.clear();
+  for (const Difference& v : vectors_) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || is_touched_[place_[d]] != kNone) continue;
+      is_touched_[place_[d]] = static_cast<Index>(touched_.size());
+      touched_.push_back(place_[d]);
+    }
+  }
+}
+
+void CondensedBase::apply_inside(std::span<const Index> dofs, std::span<const double> values) {
+  loaded_.clear();
+  for (Index d : dofs) loaded_.push_back(place_[d]);
+  of_load_.setZero(x_.rows());
+  add_columns(x_, loaded_, values, of_load_);
+}
+
+const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
+  if (load_.take(forces)) {
+    if (std::ranges::all_of(forces.dofs, [&](Index d) { return place_[d] != kNone; })) {
+      apply_inside(forces.dofs, forces.values);
+    } else {
+      right_side_.setZero(size());
+      for (std::size_t i = 0; i < forces.dofs.size(); ++i) {
+        right_side_[forces.dofs[i]] += forces.values[i];
+      }
+      factor_->solve(right_side_, solution_, work_);
+      of_load_.resize(x_.rows());
+      for (std::size_t i = 0; i < dofs_.size(); ++i) {
+        of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
+      }
+    }
+  }
+  projected_.resize(static_cast<Eigen::Index>(vectors_.size()));
+  for (std::size_t i = 0; i < vectors_.size(); ++i) {
+    const auto [dof, other] = vectors_[i];
+    const double u = of_load_[place_[dof]];
+    projected_[static_cast<Eigen::Index>(i)] = other == kNone ? u : u - of_load_[place_[other]];
+  }
+  return projected_;
+}
+
+void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
+  forces_.assign(touched_.size(), 0.0);
+  for (std::size_t i = 0; i < vectors_.size(); ++i) {
+    const double force = c[static_cast<Eigen::Index>(i)];
+    forces_[is_touched_[place_[vectors_[i].dof]]] += force;
+    if (vectors_[i].other != kNone) forces_[is_touched_[place_[vectors_[i].other]]] -= force;
+  }
+  u_.setZero();
+  add_columns(x_, touched_, forces_, u_);
+  u_ += of_load_;
+  if (u.size() != size()) u.setZero(size());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = u_[static_cast<Eigen::Index>(i)];
+}
+
+void CondensedBase::equilibrium(Equilibrium& of) const {
+  of.factor = factor_;
+  of.dofs.assign(load_.dofs().begin(), load_.dofs().end());
+  of.forces.assign(load_.values().begin(), load_.values().end());
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    of.dofs.push_back(dofs_[touched_[i]]);
+    of.forces.push_back(forces_[i]);
+  }
+}
+
+std::vector<BufferPlan> CondensedBase::buffers() const {
+  return {{"condensed inverse (dense, |S| x |S|)",
+           static_cast<std::size_t>(x_.size()) * sizeof(double)}};
+}
+
+}  // namespace sunder::engine

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Base `condensed`: X_SS, the inverse restricted to the unknowns S that damage and instruments
+// touch. With forces on S alone u_S = X_SS f_S exactly, and an update between unknowns of S stays
+// in it: a frame costs what the region is large, whatever the body around it. What u is elsewhere
+// is solved for with the factor when somebody asks.
+#pragma once
+
+#include <memory>
+
+#include "engine/last_load.hpp"
+#include "fem/factor.hpp"
+
+namespace sunder::engine {
+
+/// Forces [N] on the pristine body whose solution is that of the damaged one: f + B c. An unknown
+/// may come twice.
+struct Equilibrium {
+  std::shared_ptr<const fem::Factor> factor;
+  std::vector<Index> dofs;
+  std::vector<double> forces;
+};
+
+class CondensedBase final : public Base {
+ public:
+  /// Over the unknowns `dofs`, ascending.
+  CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs);
+
+  [[nodiscard]] Index size() const override { return factor_->cholesky().size(); }
+  /// Vectors that leave S make S grow: one solve per unknown.
+  void push(std::span<const Difference> vectors, fem::RowMajor& gram) override;
+  void pop() override;
+  /// A load that leaves S costs one solve; the same load as last time costs nothing.
+  const Eigen::VectorXd& load(const Forces& forces) override;
+  /// Only the entries of S are written; the others keep what they held (0 at first).
+  void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
+  /// What stands behind the last expand().
+  void equilibrium(Equilibrium& of) const;
+  /// S; at first the unknowns given.
+  [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
+  [[nodiscard]] std::vector<BufferPlan> buffers() const override;
+
+ private:
+  void grow(std::span<const Difference> vectors);
+  void apply_inside(std::span<const Index> dofs, std::span<const double> values);
+
+  std::shared_ptr<const fem::Factor> factor_;
+  std::vector<Index> dofs_, place_;  // S, and where in it each unknown is
+  Eigen::MatrixXd x_;                // X_SS
+  std::vector<Difference> vectors_;
+  std::vector<std::size_t> pushes_;          // vectors_.size() before each
+  std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_
+  std::vector<double> forces_;               // B c on them
+  LastLoad load_;
+  std::vector<Index> loaded_;  // places that the load touches
+  Eigen::VectorXd of_load_;    // (X f)_S
+  Eigen::VectorXd u_, projected_, right_side_, solution_;
+  fem::SolveWork work_;
+};
+
+}  // namespace sunder::engine

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Columns of L^-1 P B computed ahead of the fracture that may need them. A column depends on the
+// factor and its vector alone, so that taking it from here changes no bit.
+#pragma once
+
+#include <vector>
+
+#include "engine/difference_basis.hpp"
+#include "fem/row_product.hpp"
+#include "fem/supernodes.hpp"
+
+namespace sunder::engine {
+
+class PreparedColumns {
+ public:
+  explicit PreparedColumns(const fem::Supernodes& nodes) : nodes_(nodes) {}
+
+  void clear() { used_ = 0; }
+  [[nodiscard]] bool holds(const Difference& vector) const { return find(vector) != nullptr; }
+  /// Keeps one column of `rows` on the supernodes of `path`, which took so long to compute.
+  void keep(const Difference& vector, std::span<const Index> path, const fem::RowMajor& rows,
+            Index column, double milliseconds);
+  /// Copies a column that it holds to one of `rows`.
+  void restore(const Difference& vector, fem::RowMajor& rows, Index column);
+
+  /// What the restored columns had taken to compute.
+  [[nodiscard]] double saved_ms() const { return saved_ms_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct Column {
+    Difference vector;
+    std::vector<Index> path;
+    std::vector<double> values;
+    double milliseconds = 0;
+  };
+  [[nodiscard]] const Column* find(const Difference& vector) const;
+
+  const fem::Supernodes& nodes_;
+  std::vector<Column> columns_;  // room is kept from one prediction to the next
+  std::size_t used_ = 0;
+  double saved_ms_ = 0;
+};
+
+}  // namespace sunder::engine

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/region.hpp"
+
+#include <algorithm>
+
+namespace sunder::engine {
+namespace {
+
+void mark(const Problem& problem, Index element, std::vector<std::uint8_t>& inside) {
+  for (Index n : problem.mesh().tets[element]) inside[n] = 1;
+}
+
+void mark_elements(const Problem& problem, const Needs& needs, Region& region) {
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (!problem.breakable(e)) continue;
+    mark(problem, e, region.inside);
+    region.tears = region.tears || problem.scene().fracture.model != FractureModel::none;
+  }
+  if (!needs.damage) return;
+  for (const auto* lists : {&problem.crack_elements(), &problem.removal_elements()}) {
+    for (const auto& elements : *lists) {
+      for (Index e : elements) mark(problem, e, region.inside);
+      region.tears = region.tears || !elements.empty();
+    }
+  }
+}
+
+}  // namespace
+
+Region region_of(const Problem& problem, const Needs& needs) {
+  Region region;
+  region.inside.assign(problem.mesh().nodes.size(), 0);
+  if (needs.damage || needs.yield) mark_elements(problem, needs, region);
+  for (const InstrumentNodes& instrument : problem.instrument_nodes()) {
+    for (Index n : instrument.nodes) region.inside[n] = 1;
+  }
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    const std::size_t before = region.dofs.size();
+    bool held = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem.dof(n, axis);
+      if (d == kNone) continue;
+      held = false;
+      if (region.inside[n]) region.dofs.push_back(d);
+    }
+    if (region.dofs.size() > before) region.nodes.push_back(n);
+    if (held) region.inside[n] = 1;
+  }
+  std::sort(region.dofs.begin(), region.dofs.end());
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const auto& tet = problem.mesh().tets[e];
+    if (std::all_of(tet.begin(), tet.end(), [&](Index n) { return region.inside[n] != 0; })) {
+      region.elements.push_back(e);
+    }
+  }
+  return region;
+}
+
+}  // namespace sunder::engine
