@@ -24,6 +24,8 @@ class FailoverBackend final : public Backend {
     return info;
   }
   std::vector<BufferPlan> buffers() const override { return current_->buffers(); }
+  bool prepares() const override { return current_->prepares(); }
+  PreparationReport preparation() const override { return current_->preparation(); }
   void time_passes(bool on) override { current_->time_passes(on); }
   std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
   std::shared_ptr<InstrumentForces> instrument_forces() override {
@@ -51,6 +53,9 @@ class FailoverBackend final : public Backend {
     attempt([&] { current_->destroy(elements); });
     events_.insert(events_.end(), elements.begin(), elements.end());
     solved_ = stressed_ = false;
+  }
+  void do_prepare(std::span<const Index> elements) override {
+    attempt([&] { current_->prepare(elements); });
   }
   void do_exclude_candidates(std::span<const Index> elements) override {
     attempt([&] { current_->exclude_candidates(elements); });

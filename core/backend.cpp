@@ -70,6 +70,14 @@ void Backend::destroy(std::span<const Index> elements) {
   if (stage_ != Stage::created) stage_ = Stage::loaded;
 }
 
+void Backend::prepare(std::span<const Index> elements) {
+  require(needs_.damage, "damage was left out of this backend's needs");
+  for (Index e : elements) {
+    require(e >= 0 && e < problem_->tet_count(), "prepare() names an element outside the mesh");
+  }
+  do_prepare(elements);
+}
+
 void Backend::exclude_candidates(std::span<const Index> elements) {
   require(needs_.yield, "the yield summary was left out of this backend's needs");
   for (Index e : elements) {

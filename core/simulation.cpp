@@ -101,6 +101,7 @@ StepReport Simulation::step() {
   pristine_.clear();
   StageTimes& times = report.times;
   const std::size_t destroyed_before = destroyed_.size();
+  StressSummary summary;
   {
     const Timer total(times.total);
     {
@@ -120,10 +121,9 @@ StepReport Simulation::step() {
         const Timer timer(times.solve);
         record_solve(backend_->solve(), report);
       }
-      StressSummary summary;
       {
         const Timer timer(times.stress);
-        if (backend_->needs().stress) summary = backend_->stress();
+        summary = backend_->needs().stress ? backend_->stress() : StressSummary{};
       }
       report.max_yield_ratio = summary.any.ratio;
       if (frame_observer_) frame_observer_();
@@ -145,6 +145,7 @@ StepReport Simulation::step() {
   report.compliance = compliance();
   report.passes = backend_->take_pass_times();
   ++next_step_;
+  prepare_next(summary);
   return report;
 }
 
@@ -157,19 +158,14 @@ void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
   if (solve.polished) polished_.add(next_step_);
 }
 
-Decision Simulation::decide(const StressSummary& summary) {
-  if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return {};
-  if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
-    capped_.add(next_step_);
-    return {};
-  }
+FractureState Simulation::fracture_state(const StressSummary& summary) {
   const auto forces = reactions();
   Vec3 resultant = Vec3::Zero();
   const auto& instruments = problem_->scene().instruments;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (!std::holds_alternative<Press>(instruments[i].action)) resultant += forces[i];
   }
-  const FractureState state{
+  return {
       *problem_,
       backend_->destroyed(),
       summary,
@@ -182,9 +178,26 @@ Decision Simulation::decide(const StressSummary& summary) {
       },
       [this] { return instrument_forces(); },
   };
+}
+
+Decision Simulation::decide(const StressSummary& summary) {
+  if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return {};
+  if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
+    capped_.add(next_step_);
+    return {};
+  }
+  const FractureState state = fracture_state(summary);
   Decision decision = criterion_->decide(state);
   if (!decision.elements.empty()) ++decisions_this_step_;
   return decision;
+}
+
+/// In a frame in which nothing breaks: brings to hand what the next fractures will need.
+void Simulation::prepare_next(const StressSummary& summary) {
+  const Scene& scene = problem_->scene();
+  if (!scene.solver.prepare || !backend_->prepares() || interrupted_ || done()) return;
+  if (scene.fracture.model == FractureModel::none) return;
+  backend_->prepare(criterion_->next_in_line(fracture_state(summary)));
 }
 
 std::vector<NodalForce> Simulation::instrument_forces() const {

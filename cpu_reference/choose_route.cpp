@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include "engine/region.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::cpu_reference {
@@ -12,6 +13,11 @@ namespace {
 // seconds to prepare, while the factor's frame is still within a millisecond of it.
 constexpr Index kDenseLimit = 6000;
 
+// A region is condensed by itself up to this share of all unknowns: a frame then reads a quarter of
+// what it would read of the dense inverse, and a few per cent of a large factor. Beyond, a picture,
+// which needs one solve with the factor, eats up the gain.
+constexpr std::size_t kRegionShare = 4;
+
 void check_options(const SolverOptions& solver) {
   if (solver.precision == Precision::fp32) {
     throw DeviceError("backend cpu computes in fp64 only; use precision fp64 or auto");
@@ -19,33 +25,34 @@ void check_options(const SolverOptions& solver) {
   if (solver.device > 0) {
     throw DeviceError("backend cpu has device 0 only, not " + std::to_string(solver.device));
   }
-  if (solver.route == Route::condensed) {
-    throw DeviceError(
-        "backend cpu offers the routes inverse, factor and cg; choose one of them or auto");
-  }
-  if (solver.update == Update::eager && solver.route == Route::factor) {
-    throw DeviceError(
-        "route factor has the update deferred only; use update deferred or auto, or route inverse");
+  if (solver.update == Update::eager &&
+      (solver.route == Route::factor || solver.route == Route::condensed)) {
+    throw DeviceError("route " + name_of(solver.route) +
+                      " has the update deferred only; use update deferred or auto, or route "
+                      "inverse");
   }
   if (solver.update != Update::automatic && solver.route == Route::cg) {
     throw DeviceError("route cg has no update to choose; use update auto, or route inverse");
   }
 }
 
-std::size_t dense_bytes(const Problem& problem) {
-  const auto n = static_cast<std::size_t>(problem.dof_count());
-  return n * n * sizeof(double);
-}
+std::size_t dense_bytes(std::size_t unknowns) { return unknowns * unknowns * sizeof(double); }
 
-void check_memory(const Problem& problem) {
-  const std::size_t needed = 2 * dense_bytes(problem);  // the inverse, and room to make it
+void check_memory(Route route, std::size_t unknowns) {
+  const std::size_t needed = 2 * dense_bytes(unknowns);  // the inverse, and room to make it
   const std::size_t available = available_memory();
   if (needed > available) {
     throw InputError(InputFault::too_large,
-                     "route inverse needs " + std::to_string(needed) + " bytes for " +
-                         std::to_string(problem.dof_count()) + " unknowns, but " +
+                     "route " + name_of(route) + " needs " + std::to_string(needed) +
+                         " bytes for " + std::to_string(unknowns) + " unknowns, but " +
                          std::to_string(available) + " are free; use route factor");
   }
+}
+
+std::string megabytes(std::size_t unknowns) {
+  const double mb = static_cast<double>(dense_bytes(unknowns)) / 1e6;
+  if (mb >= 10) return std::to_string(static_cast<long>(mb)) + " MB";
+  return std::to_string(static_cast<long>(1000 * mb)) + " kB";
 }
 
 Update update_of(Route route, Update asked) {
@@ -57,12 +64,20 @@ Update update_of(Route route, Update asked) {
 ChosenRoute choose_route(const Problem& problem, const Needs& needs) {
   const SolverOptions& solver = problem.scene().solver;
   check_options(solver);
+  const auto all = static_cast<std::size_t>(problem.dof_count());
   if (solver.route != Route::automatic) {
-    if (solver.route == Route::inverse) check_memory(problem);
+    if (solver.route == Route::inverse) check_memory(Route::inverse, all);
+    if (solver.route == Route::condensed) {
+      const engine::Region region = engine::region_of(problem, needs);
+      check_memory(Route::condensed, region.dofs.size());
+      return {Route::condensed, Update::deferred,
+              "asked for; " + std::to_string(region.dofs.size()) + " of " + std::to_string(all) +
+                  " unknowns can break, are loaded or held by instruments"};
+    }
     return {solver.route, update_of(solver.route, solver.update), "asked for"};
   }
   if (solver.update == Update::eager) {
-    check_memory(problem);
+    check_memory(Route::inverse, all);
     return {Route::inverse, Update::eager, "update eager was asked for: only an inverse has it"};
   }
   const std::string n = std::to_string(problem.dof_count()) + " unknowns";
@@ -70,12 +85,22 @@ ChosenRoute choose_route(const Problem& problem, const Needs& needs) {
     return {Route::factor, Update::deferred,
             n + " and nothing can be destroyed: two triangular solves a load"};
   }
-  if (problem.dof_count() <= kDenseLimit && 2 * dense_bytes(problem) <= available_memory()) {
+  const engine::Region region = engine::region_of(problem, needs);
+  const std::size_t inside = region.dofs.size();
+  if (region.tears && kRegionShare * inside <= all &&
+      inside <= static_cast<std::size_t>(kDenseLimit) &&
+      2 * dense_bytes(inside) <= available_memory()) {
+    return {Route::condensed, Update::deferred,
+            n + ", of which " + std::to_string(inside) +
+                " can break, are loaded or held by instruments: their inverse takes " +
+                megabytes(inside) + ", and a frame computes nothing else"};
+  }
+  if (problem.dof_count() <= kDenseLimit && 2 * dense_bytes(all) <= available_memory()) {
     return {Route::inverse, Update::deferred,
             n + ": a dense inverse is small, and a frame reads only its loaded and torn columns"};
   }
   return {Route::factor, Update::deferred,
-          n + ": a dense inverse would hold " + std::to_string(dense_bytes(problem) / 1000000) +
+          n + ": a dense inverse would hold " + std::to_string(dense_bytes(all) / 1000000) +
               " MB; a fracture updates the factor along its elimination path only"};
 }
 

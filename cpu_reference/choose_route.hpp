@@ -19,7 +19,7 @@ struct ChosenRoute {
 /// route asked for needs more memory than is free.
 [[nodiscard]] ChosenRoute choose_route(const Problem& problem, const Needs& needs);
 
-/// As in a scene: "inverse", "factor", "cg".
+/// As in a scene: "inverse", "condensed", "factor", "cg".
 [[nodiscard]] std::string name_of(Route route);
 /// "eager", "deferred"; "matrix" for cg, whose only update is the matrix itself.
 [[nodiscard]] std::string name_of_update(const ChosenRoute& chosen);

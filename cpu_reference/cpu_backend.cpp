@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -7,6 +8,8 @@
 #include <sstream>
 
 #include "cpu_reference/choose_route.hpp"
+#include "cpu_reference/condensed_fields.hpp"
+#include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/frame_check.hpp"
 #include "cpu_reference/routes.hpp"
@@ -41,6 +44,9 @@ class CpuBackend final : public Backend {
         body_(problem),
         intact_(*problem) {
     const auto n = problem->dof_count();
+    if (chosen_.route == Route::condensed) {
+      condensed_.emplace(*problem, engine::region_of(*problem, this->needs()));
+    }
     route_ = make_route();
     if (route_->deferred()) check_.emplace(*problem);
     force_.setZero(n);
@@ -58,16 +64,8 @@ class CpuBackend final : public Backend {
     }
     nodal_.assign(problem->dofs().size(), 0.0);
     next_nodal_ = nodal_;
-    if (this->needs().stress || this->needs().damage)
-      kernel_.emplace(problem, std::vector<Index>{}, 0);
-    if (this->needs().stress) {
-      stress_.assign(problem->mesh().tets.size(), Voigt::Zero());
-      next_stress_ = stress_;
-    }
-    if (this->needs().yield) {
-      excluded_.assign(problem->mesh().tets.size(), 0);
-      kernel_->keep_bounds();
-    }
+    make_stress();
+    if (condensed_) leave_out_the_rest();
   }
 
   BackendInfo info() const override {
@@ -80,6 +78,9 @@ class CpuBackend final : public Backend {
     info.update = needs().damage ? name_of_update(chosen_) : "none";
     info.why = chosen_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
+    const FrameCost cost = frame_cost(shape());
+    info.quiet_ms = cost.quiet_ms;
+    info.fracture_ms = cost.fracture_ms;
     return info;
   }
 
@@ -97,24 +98,114 @@ class CpuBackend final : public Backend {
       plan.push_back({"element stress of the next frame", bytes(next_stress_)});
     }
     if (kernel_) plan.push_back({"shapes and elasticity of elements", kernel_->bytes()});
+    if (condensed_ && condensed_->bytes() > 0) {
+      plan.push_back({"fields outside the condensed region, once asked for", condensed_->bytes()});
+    }
     return plan;
   }
 
  private:
+  FrameShape shape() const {
+    FrameShape shape;
+    shape.route = chosen_.route;
+    shape.eager = chosen_.route == Route::inverse && chosen_.update == Update::eager;
+    shape.damage = needs().damage;
+    shape.unknowns = static_cast<std::size_t>(problem().dof_count());
+    shape.kept = condensed_ ? condensed_->region().dofs.size() : shape.unknowns;
+    for (const InstrumentNodes& i : problem().instrument_nodes()) {
+      shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
+    }
+    shape.entries = intact_.factor.entries();
+    shape.path = intact_.factor.path_entries(an_element_that_can_break());
+    shape.elements = problem().mesh().tets.size();
+    shape.stressed = kernel_ ? kernel_->size() : 0;
+    shape.threads = kernel_ ? static_cast<std::size_t>(kernel_->threads()) : 1;
+    return shape;
+  }
+
+  /// Unknowns of one: the middle one that the scene itself can destroy, or of all.
+  std::vector<Index> an_element_that_can_break() const {
+    std::vector<Index> all, dofs;
+    for (Index e = 0; e < problem().tet_count(); ++e) {
+      if (problem().breakable(e)) all.push_back(e);
+    }
+    const Index e = all.empty() ? problem().tet_count() / 2 : all[all.size() / 2];
+    for (Index n : problem().mesh().tets[e]) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (problem().dof(n, axis) != kNone) dofs.push_back(problem().dof(n, axis));
+      }
+    }
+    return dofs;
+  }
+
+  void leave_out_the_rest() {
+    const engine::Region& region = condensed_->region();
+    leave_out("inverse of the other " +
+              std::to_string(static_cast<std::size_t>(problem().dof_count()) - region.dofs.size()) +
+              " unknowns: they cannot break and no instrument holds them");
+    leave_out("stress of the other " +
+              std::to_string(problem().mesh().tets.size() - region.elements.size()) +
+              " elements and displacement of the other nodes in a frame: solved for when a file or "
+              "a picture asks");
+  }
+
+  void make_stress() {
+    std::vector<Index> elements;  // none: all
+    if (condensed_) elements = condensed_->region().elements;
+    if (condensed_ && elements.empty()) return;
+    if (needs().stress || needs().damage) {
+      kernel_.emplace(body_.shared_problem(), std::move(elements), 0);
+    }
+    if (needs().stress) {
+      stress_.assign(kernel_->size(), Voigt::Zero());
+      next_stress_ = stress_;
+    }
+    if (needs().yield) {
+      excluded_.assign(problem().mesh().tets.size(), 0);
+      kernel_->keep_bounds();
+    }
+  }
+
   std::unique_ptr<InverseRoute> make_route() const {
     if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, intact_);
+    if (condensed_)
+      return condensed_route(body_, intact_, condensed_->region().dofs, needs().damage);
     if (chosen_.update == Update::eager) return dense_inverse_route(body_, intact_);
-    return deferred_route(body_, intact_, chosen_.route == Route::inverse);
+    return deferred_route(body_, intact_, chosen_.route == Route::inverse, needs().damage);
   }
 
   void do_set_load(const Load& load) override {
+    for (Index d : load_.force_dofs) force_[d] = 0;
     load_ = load;
-    force_.setZero();
     for (std::size_t i = 0; i < load.forces.size(); ++i)
       force_[load.force_dofs[i]] = load.forces[i];
   }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override { return instruments_; }
+
+  bool prepares() const override { return needs().damage && route_->prepares(); }
+
+  PreparationReport preparation() const override {
+    PreparationReport report = preparation_;
+    report.saved_ms = route_->saved_ms();
+    return report;
+  }
+
+  void do_prepare(std::span<const Index> elements) override {
+    using Clock = std::chrono::steady_clock;
+    if (!prepares()) return;
+    const auto start = Clock::now();
+    is_prepared_.assign(problem().mesh().tets.size(), 0);
+    prepared_.clear();
+    for (Index e : elements) {
+      if (body_.destroyed()[e] || is_prepared_[e]) continue;
+      is_prepared_[e] = 1;
+      prepared_.push_back(e);
+    }
+    route_->prepare(prepared_);
+    preparation_.spent_ms +=
+        std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  }
 
   SolveReport do_solve() override {
     SolveReport report = solve_and_check();
@@ -139,12 +230,14 @@ class CpuBackend final : public Backend {
     fresh_ = false;
     if (const auto known = solve_cheaply()) {
       nodal_.swap(next_nodal_);
+      if (condensed_) condensed_->take(*route_);
       return *known;
     }
     if (check_) route_->set_enough(0);
     const SolveReport report = solve_checked();
     hand_out();
     nodal_.swap(next_nodal_);
+    if (condensed_) take_everywhere();
     if (check_)
       check_->checked(load_, report, unrefined_, route_->bases(), largest_u(nodal_), largest_);
     return report;
@@ -166,15 +259,37 @@ class CpuBackend final : public Backend {
     return check_->known(*scale, *route_, largest_u(next_nodal_), largest_);
   }
 
-  static double largest_u(std::span<const double> u) {
+  /// Over the nodes that a frame computes.
+  double largest_u(std::span<const double> u) const {
     double largest = 0;
-    for (double v : u) largest = std::max(largest, std::abs(v));
+    if (!condensed_) {
+      for (double v : u) largest = std::max(largest, std::abs(v));
+      return largest;
+    }
+    for (Index n : condensed_->region().nodes) {
+      for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(u[3 * n + axis]));
+    }
     return largest;
+  }
+
+  /// The last solution holds at every node: it has had its full check.
+  void take_everywhere() {
+    fem::scatter(problem(), {u_.data(), static_cast<std::size_t>(u_.size())}, nodal_);
+    condensed_->take(nodal_);
   }
 
   /// Displacement at all nodes, and its stress, which do_stress() publishes.
   void hand_out() {
-    fem::scatter(problem(), {u_.data(), static_cast<std::size_t>(u_.size())}, next_nodal_);
+    if (condensed_) {
+      for (Index n : condensed_->region().nodes) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const Index d = problem().dof(n, axis);
+          if (d != kNone) next_nodal_[3 * n + axis] = u_[d];
+        }
+      }
+    } else {
+      fem::scatter(problem(), {u_.data(), static_cast<std::size_t>(u_.size())}, next_nodal_);
+    }
     if (!kernel_) return;
     largest_ = kernel_->run(next_nodal_, next_stress_);
     fresh_ = true;
@@ -191,6 +306,7 @@ class CpuBackend final : public Backend {
   /// Solves by a route and corrects the solution until the estimate is rounding's.
   void refine(InverseRoute& route, SolveReport& report) {
     report.iterations += route.solve(load_, force_, u_).iterations;
+    route.complete(u_);
     report.error = std::numeric_limits<double>::infinity();
     for (int attempt = 0;; ++attempt) {
       const double error = correction(route, report);
@@ -249,13 +365,26 @@ class CpuBackend final : public Backend {
   StressSummary do_stress() override {
     if (fresh_) std::swap(stress_, next_stress_);
     fresh_ = false;
-    if (!needs().yield) return {};
+    stressed_ = true;
+    if (condensed_) condensed_->publish_stress();
+    if (!needs().yield || !kernel_) return {};
     return kernel_->summarize(excluded_, stress_);
   }
 
   void do_destroy(std::span<const Index> elements) override {
+    // What lies outside the region and has a stress keeps it, whatever it is scaled by from now on.
+    if (condensed_ && stressed_ && !std::ranges::all_of(elements, [this](Index e) {
+          return kernel_ && kernel_->place(e) != kNone;
+        })) {
+      static_cast<void>(condensed_->stress(body_.scale()));
+    }
+    for (Index e : elements) {
+      if (is_prepared_.empty()) break;
+      ++preparation_.destroyed;
+      preparation_.predicted += is_prepared_[e];
+    }
     body_.destroy(elements);
-    kernel_->destroy(elements);
+    if (kernel_) kernel_->destroy(elements);
     if (check_) check_->event();
     route_->destroy(elements);
   }
@@ -272,21 +401,37 @@ class CpuBackend final : public Backend {
   }
 
   void do_read_displacement(std::span<double> displacement) const override {
+    if (condensed_) condensed_->complete(nodal_);
     std::copy(nodal_.begin(), nodal_.end(), displacement.begin());
   }
 
   void do_read_displacement(std::span<const Index> nodes,
                             std::span<Vec3> displacement) const override {
+    if (condensed_ && !std::ranges::all_of(
+                          nodes, [this](Index n) { return condensed_->region().inside[n] != 0; })) {
+      condensed_->complete(nodal_);
+    }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       displacement[i] = Vec3(&nodal_[3 * static_cast<std::size_t>(nodes[i])]);
     }
   }
 
   void do_read_stress(std::span<Voigt> stress) const override {
-    std::copy(stress_.begin(), stress_.end(), stress.begin());
+    if (!condensed_) {
+      std::copy(stress_.begin(), stress_.end(), stress.begin());
+      return;
+    }
+    const auto whole = condensed_->stress(body_.scale());
+    std::copy(whole.begin(), whole.end(), stress.begin());
+    const auto& elements = condensed_->region().elements;
+    for (std::size_t i = 0; i < elements.size(); ++i) stress[elements[i]] = stress_[i];
   }
 
-  Voigt do_read_stress(Index element) const override { return stress_[element]; }
+  Voigt do_read_stress(Index element) const override {
+    if (!condensed_) return stress_[element];
+    const Index place = kernel_ ? kernel_->place(element) : kNone;
+    return place != kNone ? stress_[place] : condensed_->stress(body_.scale())[element];
+  }
 
   void do_read_reactions(std::span<double> reactions) const override {
     std::copy(reactions_.begin(), reactions_.end(), reactions.begin());
@@ -303,13 +448,20 @@ class CpuBackend final : public Backend {
   double unrefined_ = 0;         // error of the last full check's solution before it was refined
   double waited_ms_ = 0;         // for rebases, as reported so far
   std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
-  std::vector<double> reactions_, nodal_, next_nodal_;  // next: of a solution not yet vouched for
+  std::vector<double> reactions_;
+  mutable std::vector<double> nodal_;  // published; outside a condensed region only once read
+  std::vector<double> next_nodal_;     // of a solution not yet vouched for
+  mutable std::optional<CondensedFields> condensed_;  // computes what is read
+  bool stressed_ = false;
   std::optional<engine::StressKernel> kernel_;
   std::optional<FrameCheck> check_;
   std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
   bool fresh_ = false;                       // next_stress_ is to be published
   double largest_ = 0;                       // stress of the last solution
   std::vector<std::uint8_t> excluded_;
+  PreparationReport preparation_;
+  std::vector<std::uint8_t> is_prepared_;  // per element; empty: nothing ever was
+  std::vector<Index> prepared_;
 };
 
 }  // namespace
@@ -320,8 +472,8 @@ DeviceInfo device() {
   info.name = cpu_name();
   info.driver = eigen_version();
   info.precisions = "fp64";
-  info.limits =
-      std::to_string(available_memory() / 1000000) + " MB free memory, routes inverse, factor, cg";
+  info.limits = std::to_string(available_memory() / 1000000) +
+                " MB free memory, routes inverse, condensed, factor, cg";
   info.chosen = true;
   info.why = "always available";
   return info;

@@ -22,8 +22,8 @@ constexpr std::size_t kLargestEvent = 600;
 
 class DeferredRoute final : public InverseRoute {
  public:
-  DeferredRoute(const DamagedBody& body, const IntactBody& intact, bool dense)
-      : body_(body), all_(static_cast<std::size_t>(body.problem().dof_count())) {
+  DeferredRoute(const DamagedBody& body, const IntactBody& intact, bool dense, bool damage)
+      : body_(body), dense_(dense), all_(static_cast<std::size_t>(body.problem().dof_count())) {
     std::iota(all_.begin(), all_.end(), 0);
     std::unique_ptr<engine::Base> base;
     if (dense) {
@@ -31,7 +31,7 @@ class DeferredRoute final : public InverseRoute {
     } else {
       base = std::make_unique<engine::FactorBase>(intact.factor);
     }
-    based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base));
+    based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), damage);
     set_threshold(intact.factor);
   }
 
@@ -62,11 +62,17 @@ class DeferredRoute final : public InverseRoute {
 
   bool rebase() override {
     coming_.reset();
+    saved_ms_ = saved_ms();
     based_ = {};  // frees the old base first
     based_ = based_on(body_.problem(), body_.scale());
     rebased();
     return true;
   }
+
+  // A column of the dense inverse is at hand without.
+  bool prepares() const override { return !dense_ || based_.factor; }
+  void prepare(std::span<const Index> elements) override { based_.deferred->prepare(elements); }
+  double saved_ms() const override { return saved_ms_ + based_.deferred->saved_ms(); }
 
   const engine::Deferred* deferred() const override { return based_.deferred.get(); }
   void set_enough(double energy) override { enough_ = energy; }
@@ -89,6 +95,7 @@ class DeferredRoute final : public InverseRoute {
     waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     coming_.reset();
     if (!next.deferred) return;  // what there is still holds; the next event tries again
+    saved_ms_ = saved_ms();
     based_ = {std::move(next.factor), std::move(next.deferred)};
     rebased();
   }
@@ -107,20 +114,22 @@ class DeferredRoute final : public InverseRoute {
   }
 
   const DamagedBody& body_;
+  bool dense_;              // the first base is an inverse
   std::vector<Index> all_;  // every unknown: the loads of a residual
   Based based_;
   std::unique_ptr<BackgroundRebase> coming_;
   std::size_t threshold_ = 0;
   int bases_ = 1;
   double waited_ms_ = 0;
+  double saved_ms_ = 0;  // by the bases before this one
   double enough_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body, const IntactBody& intact,
-                                             bool dense) {
-  return std::make_unique<DeferredRoute>(body, intact, dense);
+                                             bool dense, bool damage) {
+  return std::make_unique<DeferredRoute>(body, intact, dense, damage);
 }
 
 }  // namespace sunder::cpu_reference

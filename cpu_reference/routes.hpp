@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/condensed_base.hpp"
 #include "engine/deferred.hpp"
 #include "fem/factor.hpp"
 #include "sunder/backend.hpp"
@@ -46,6 +47,7 @@ class DamagedBody {
   /// Largest stress norm over live elements of the displacement x.
   [[nodiscard]] double largest_stress(const Eigen::VectorXd& x) const;
   [[nodiscard]] const Problem& problem() const { return *problem_; }
+  [[nodiscard]] const std::shared_ptr<const Problem>& shared_problem() const { return problem_; }
   /// a_e per element: 1 or alpha.
   [[nodiscard]] std::span<const double> scale() const { return scale_; }
   [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
@@ -70,8 +72,17 @@ class InverseRoute {
   virtual Applied solve(const Load& load, const Eigen::VectorXd& f, Eigen::VectorXd& x) = 0;
   /// x = A^-1 r with x_G = 0, to at least two digits.
   virtual Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& x) = 0;
+  /// Fills what solve() left out of x: a condensed route solves for its own unknowns only.
+  virtual void complete(Eigen::VectorXd&) {}
+  /// What complete() would need later on, for the last solve(); false: it left nothing out.
+  virtual bool equilibrium(engine::Equilibrium&) const { return false; }
   /// Follows an event; the body has destroyed the elements already.
   virtual void destroy(std::span<const Index> elements) = 0;
+  /// Whether prepare() is worth calling.
+  [[nodiscard]] virtual bool prepares() const { return false; }
+  virtual void prepare(std::span<const Index>) {}
+  /// Milliseconds that events have been spared so far.
+  [[nodiscard]] virtual double saved_ms() const { return 0; }
   /// Computes anew what updates have worn out; false: this route has nothing of the kind.
   virtual bool rebase() { return false; }
   /// The deferred update, where there is one: it makes a frame's check cheap.
@@ -99,7 +110,15 @@ struct IntactBody {
                                                                 const IntactBody& intact);
 /// Deferred update over a dense inverse (`dense`) or over the factor itself.
 [[nodiscard]] std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body,
-                                                           const IntactBody& intact, bool dense);
+                                                           const IntactBody& intact, bool dense,
+                                                           bool damage);
+/// Deferred update over the inverse restricted to some unknowns (ascending).
+[[nodiscard]] std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body,
+                                                            const IntactBody& intact,
+                                                            std::span<const Index> dofs,
+                                                            bool damage);
+/// u at all unknowns; `right_side` is room to work in.
+void solve_whole(const engine::Equilibrium& of, Eigen::VectorXd& right_side, Eigen::VectorXd& u);
 [[nodiscard]] std::unique_ptr<InverseRoute> conjugate_gradient_route(const DamagedBody& body,
                                                                      const IntactBody& intact);
 

@@ -27,10 +27,9 @@ sunder_status sunder_plan_create(sunder_scene scene, sunder_plan* plan) {
   return call<SceneObject>(scene, [&](SceneObject& object) {
     require(plan, "plan");
     const auto problem = object.problem();
-    sunder::Needs needs = sunder::needs_of(*problem);
     auto made = std::make_shared<PlanObject>();
-    made->left_out = needs.left_out;
-    const auto created = sunder::create_backend(problem, std::move(needs));
+    const auto created = sunder::create_backend(problem, sunder::needs_of(*problem));
+    made->left_out = created.backend->needs().left_out;
     made->engine = describe(*problem, created.backend->info());
     made->buffers = created.backend->buffers();
     *plan = new_handle<sunder_plan>(std::move(made));

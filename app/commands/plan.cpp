@@ -49,6 +49,11 @@ void print_engine(const Backend& backend) {
        info.backend + " " + info.precision + " on " + info.device + " (" + info.driver + ")");
   line("route", info.route + ", update " + info.update);
   line("why", info.why);
+  if (!(info.quiet_ms > 0)) return;
+  line("predicted frame [ms]",
+       rounded(info.quiet_ms, 3) + " quiet" +
+           (info.fracture_ms > 0 ? ", " + rounded(info.fracture_ms, 3) + " with a fracture"
+                                 : std::string()));
 }
 
 void print_buffers(const Backend& backend) {

@@ -74,10 +74,9 @@ class Run {
 };
 
 std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene) {
-  Needs needs = needs_of(problem_);
-  record_.left_out = needs.left_out;
   record_.warnings = scene.warnings;
-  CreatedBackend created = create_backend(scene.problem, std::move(needs));
+  CreatedBackend created = create_backend(scene.problem, needs_of(problem_));
+  record_.left_out = created.backend->needs().left_out;
   add_new(record_.warnings, created.warnings);
   created.backend->time_passes(true);
   return std::make_unique<Simulation>(scene.problem, std::move(created.backend));
@@ -138,6 +137,9 @@ int Run::carry_out() {
 void Run::close() {
   write_snapshots();
   record_.backend = simulation_->backend().info();
+  if (simulation_->backend().prepares() && problem_.scene().solver.prepare) {
+    record_.preparation = simulation_->backend().preparation();
+  }
   record_.destroyed = simulation_->destroyed();
   record_.cracks = simulation_->cracks();
   add_new(record_.warnings, simulation_->warnings());

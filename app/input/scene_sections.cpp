@@ -194,8 +194,9 @@ FractureOptions read_fracture(const TomlTable& root, const std::string& file) {
 }
 
 SolverOptions read_solver(const TomlTable& root, const std::string& file) {
-  const TomlTable table = section(
-      root, file, "solver", {"backend", "route", "update", "precision", "tolerance", "device"});
+  const TomlTable table =
+      section(root, file, "solver",
+              {"backend", "route", "update", "precision", "tolerance", "device", "prepare"});
   SolverOptions options;
   options.backend = table.text("backend").value_or(options.backend);
   options.device = table.integer("device", 0, std::numeric_limits<int>::max()).value_or(kNone);
@@ -217,6 +218,7 @@ SolverOptions read_solver(const TomlTable& root, const std::string& file) {
                                                            {"fp64", Precision::fp64}})
                           .value_or(options.precision);
   options.tolerance = table.number("tolerance").value_or(options.tolerance);
+  options.prepare = table.boolean("prepare").value_or(options.prepare);
   return options;
 }
 

@@ -123,6 +123,13 @@ std::optional<double> TomlTable::number(std::string_view key) const {
   return finite(*node, key, "a number");
 }
 
+std::optional<bool> TomlTable::boolean(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  if (!node) return std::nullopt;
+  if (!node->is_boolean()) fail_type(key, *node, "true or false");
+  return node->as_boolean()->get();
+}
+
 std::optional<int> TomlTable::integer(std::string_view key, int least, int most) const {
   const toml::node* node = table_.get(key);
   if (!node) return std::nullopt;

@@ -27,6 +27,7 @@ class TomlTable {
 
   // Absent keys give nullopt or null; a value of another type is an InputError.
   [[nodiscard]] std::optional<double> number(std::string_view key) const;  ///< finite
+  [[nodiscard]] std::optional<bool> boolean(std::string_view key) const;
   [[nodiscard]] std::optional<int> integer(std::string_view key, int least, int most) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;
   [[nodiscard]] std::optional<Vec3> vec3(std::string_view key) const;

@@ -15,6 +15,7 @@ struct RunRecord {
 
   const Problem& problem;
   BackendInfo backend;
+  std::optional<PreparationReport> preparation;  ///< of predicted fractures, where there was one
   std::vector<std::string> left_out;
   std::vector<StepReport> steps;         ///< those that are done
   std::optional<StepReport> unfinished;  ///< the step in which the run was interrupted

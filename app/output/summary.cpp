@@ -104,6 +104,12 @@ Json tree(const RunRecord& run) {
   out["events"] = run.event_count();
   out["max_yield_ratio"] = last.max_yield_ratio;
   out["interrupted"] = run.interrupted;
+  if (run.preparation) {
+    out["preparation"] = {{"destroyed", run.preparation->destroyed},
+                          {"predicted", run.preparation->predicted},
+                          {"spent_ms", run.preparation->spent_ms},
+                          {"saved_ms", run.preparation->saved_ms}};
+  }
   out["failure"] = run.failure ? Json(*run.failure) : Json(nullptr);
   return out;
 }

@@ -85,7 +85,36 @@ Decision Combined::decide(const FractureState& state) {
   for (std::size_t i = 0; i < driven.size(); ++i) grow(driven, i, state, decision);
   if (decision.elements.empty()) start_crack(state, decision);
   exclude_neighbours(decision);
+  driven_ = std::move(driven);
   return decision;
+}
+
+/// The band ahead of each tip, in the direction in which it wants to grow, and the element that
+/// would start a new crack.
+std::vector<Index> Combined::next_in_line(const FractureState& state) const {
+  constexpr std::size_t kAhead = 6;  // of a tip: what one event takes, rarely more
+  std::vector<Index> next;
+  const ElementView view{
+      [&](Index e) { return !state.destroyed[e]; },
+      [&](Index e) { return problem_.yield(e); },
+  };
+  for (const auto& [id, growth] : driven_) {
+    const Crack& crack = cracks_[id];
+    const CrackTip& tip = crack.tips[growth.terms.tip];
+    if (tip.ended) continue;
+    const Ray ray{tip.position, growth.direction, &crack, orientation(crack, growth.terms.tip)};
+    std::size_t taken = 0;
+    for (const BandElement& e : find_band(board_, ray, view).elements) {
+      if (!problem_.breakable(e.element) || taken++ == kAhead) break;
+      next.push_back(e.element);
+    }
+  }
+  if (state.summary.candidate.element != kNone) next.push_back(state.summary.candidate.element);
+  std::vector<Index> once;  // two tips may face the same element
+  for (Index e : next) {
+    if (std::find(once.begin(), once.end(), e) == once.end()) once.push_back(e);
+  }
+  return once;
 }
 
 std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& state,

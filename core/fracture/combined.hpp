@@ -19,6 +19,7 @@ class Combined final : public FractureCriterion {
   explicit Combined(const Problem& problem);
 
   [[nodiscard]] Decision decide(const FractureState& state) override;
+  [[nodiscard]] std::vector<Index> next_in_line(const FractureState& state) const override;
   [[nodiscard]] Decision preset() override;
   [[nodiscard]] std::vector<Index> pressed_nodes(
       const Press& press, std::span<const std::uint8_t> destroyed) const override;
@@ -50,6 +51,7 @@ class Combined final : public FractureCriterion {
   bool anything_breakable_ = false;
   std::vector<Crack> cracks_;
   std::vector<std::uint8_t> excluded_;  // shape (elements)
+  std::vector<DrivenTip> driven_;       // of the last decision
 };
 
 }  // namespace sunder::fracture

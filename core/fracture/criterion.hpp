@@ -62,6 +62,9 @@ class FractureCriterion {
   virtual ~FractureCriterion() = default;
   /// Names the next event and records it in the cracks (the caller always carries it out).
   [[nodiscard]] virtual Decision decide(const FractureState& state) = 0;
+  /// Elements that will break next if anything does, as far as can be told from a state in which
+  /// nothing breaks; the likeliest of each crack tip first.
+  [[nodiscard]] virtual std::vector<Index> next_in_line(const FractureState&) const { return {}; }
   /// Preset cracks; called once, before anything else, when the problem has any. Elements come in
   /// crack order; returns what must be excluded as candidates.
   [[nodiscard]] virtual Decision preset() = 0;

@@ -20,6 +20,11 @@ Decision MaxShear::decide(const FractureState& state) {
   return decision;
 }
 
+std::vector<Index> MaxShear::next_in_line(const FractureState& state) const {
+  if (state.summary.any.element == kNone) return {};
+  return {state.summary.any.element};
+}
+
 Decision MaxShear::preset() {
   Decision decision;
   decision.elements = preset_elements(problem_);

@@ -62,6 +62,9 @@ struct BackendInfo {
   std::string route, update;
   std::string why;               ///< one sentence: why this route
   std::size_t memory_bytes = 0;  ///< held by the backend
+  /// Predicted time of a frame without fracture and with the first one, the decision left out; 0:
+  /// the backend predicts nothing.
+  double quiet_ms = 0, fracture_ms = 0;
 };
 
 /// Passes that a device times by its own clock, in the order of a frame; the names that
@@ -92,6 +95,14 @@ struct BufferPlan {
   std::size_t bytes = 0;
 };
 
+/// What preparing predicted fractures has come to so far.
+struct PreparationReport {
+  Index destroyed = 0;  ///< elements, since something was first prepared
+  Index predicted = 0;  ///< of them: those that had been prepared
+  double spent_ms = 0;  ///< in quiet frames
+  double saved_ms = 0;  ///< in frames with a fracture: what the columns found ready had cost
+};
+
 class Backend {
  public:
   virtual ~Backend();
@@ -109,6 +120,13 @@ class Backend {
   /// Reaction forces of the grips between frames, for another thread; after each solve() they
   /// belong to its solution. Null: there are no grips, or the backend has nothing of the kind.
   [[nodiscard]] virtual std::shared_ptr<InstrumentForces> instrument_forces() { return nullptr; }
+
+  /// Whether preparing fractures saves this backend anything.
+  [[nodiscard]] virtual bool prepares() const { return false; }
+  [[nodiscard]] virtual PreparationReport preparation() const { return {}; }
+  /// Brings to hand what destroying these elements will need, in place of what was prepared before.
+  /// Nothing else changes, no later result by a bit. Those destroyed already are ignored.
+  void prepare(std::span<const Index> elements);
 
   /// Loads for the following solves. Throws UsageError when sizes or dofs do not fit.
   void set_load(const Load& load);
@@ -148,12 +166,15 @@ class Backend {
 
  protected:
   Backend(std::shared_ptr<const Problem> problem, Needs needs);
+  /// Says of something more that this backend leaves out for this scene.
+  void leave_out(std::string what) { needs_.left_out.push_back(std::move(what)); }
 
  private:
   virtual void do_set_load(const Load& load) = 0;
   virtual SolveReport do_solve() = 0;
   virtual StressSummary do_stress() = 0;
   virtual void do_destroy(std::span<const Index> elements) = 0;  // destroyed() is updated after it
+  virtual void do_prepare(std::span<const Index>) {}
   virtual void do_exclude_candidates(std::span<const Index> elements) = 0;
   virtual void do_solve_pristine(const Load& load, std::span<double> displacement) = 0;
   virtual void do_read_displacement(std::span<double> displacement) const = 0;

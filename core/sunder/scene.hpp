@@ -124,6 +124,8 @@ struct SolverOptions {
   Update update = Update::automatic;
   Precision precision = Precision::automatic;
   double tolerance = 1e-4;  ///< promised relative stress error of every frame
+  /// Prepares in quiet frames what the fractures next in line will need; no result changes.
+  bool prepare = true;
 };
 
 struct OutputOptions {

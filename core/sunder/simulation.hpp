@@ -17,6 +17,7 @@ namespace sunder {
 class FractureCriterion;
 class Loads;
 struct Decision;
+struct FractureState;
 struct NodalForce;
 
 /// Derives from a problem what a backend must offer and what it may leave out.
@@ -82,7 +83,9 @@ class Simulation {
   void apply_presets();
   void apply_removals();
   void record_solve(const SolveReport& solve, StepReport& report);
+  [[nodiscard]] FractureState fracture_state(const StressSummary& summary);
   [[nodiscard]] Decision decide(const StressSummary& summary);
+  void prepare_next(const StressSummary& summary);
   bool apply_event(Decision decision);  // false: nothing broke
   void attribute(Decision& decision);
   void find_loose();

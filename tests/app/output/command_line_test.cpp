@@ -175,8 +175,9 @@ TEST(CommandLine, PlanSaysWhatIsNeededAndLeftOut) {
   const Outcome plan = run_program(
       {"plan", board.scene.string(), "--set", "fracture.model=none", "--set", "destroy=[]"});
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
-  for (const char* part : {"242, 500", "660 (66 held by supports", "predicted memory", " bytes (",
-                           "route", "why", "Operations of a frame", "Left out"})
+  for (const char* part :
+       {"242, 500", "660 (66 held by supports", "predicted memory", " bytes (", "route", "why",
+        "predicted frame [ms]", "Operations of a frame", "Left out"})
     EXPECT_NE(plan.out.find(part), std::string::npos) << part << "\n" << plan.out;
   EXPECT_EQ(plan.out.find("destroy:"), std::string::npos) << plan.out;
   const Outcome torn = run_program({"plan", board.scene.string()});

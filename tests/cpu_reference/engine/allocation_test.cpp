@@ -73,9 +73,12 @@ TEST_P(Allocations, AreNoneInAWarmFrame) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Routes, Allocations, ::testing::Values(Route::inverse, Route::factor),
+INSTANTIATE_TEST_SUITE_P(Routes, Allocations,
+                         ::testing::Values(Route::inverse, Route::condensed, Route::factor),
                          [](const auto& p) {
-                           return p.param == Route::inverse ? "Inverse" : "Factor";
+                           return p.param == Route::inverse     ? "Inverse"
+                                  : p.param == Route::condensed ? "Condensed"
+                                                                : "Factor";
                          });
 
 }  // namespace

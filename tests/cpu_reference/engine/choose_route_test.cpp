@@ -53,6 +53,30 @@ TEST(ChooseRoute, TakesTheFactorForALargeBody) {
   EXPECT_TRUE(mentions(info.why, "774 MB")) << info.why;
 }
 
+/// A board of which a strip can tear, pulled at a corner.
+Scene strip(Index cells, double height) {
+  Scene scene;
+  scene.mesh = structured_board({cells, cells, 1, 10, 10, 1}, [height](const Vec3& x) {
+    return x.y() < height ? "tissue" : "organ";
+  });
+  scene.materials = {{"tissue", {5, 0.4, 2.0}}, {"organ", {5, 0.4, std::nullopt}}};
+  scene.supports.push_back({Box{Vec3(-1, 9.99, -1), Vec3(11, 11, 2)}, Axes{7}});
+  scene.solver.backend = "cpu";
+  scene.fracture.model = FractureModel::a;
+  return scene;
+}
+
+TEST(ChooseRoute, CondensesABodyThatTearsInASmallRegion) {
+  const BackendInfo info = info_of(strip(20, 2));  // five rows of nodes of 20
+  EXPECT_EQ(info.route, "condensed");
+  EXPECT_TRUE(mentions(info.why, "2520 unknowns, of which 630 can break")) << info.why;
+  EXPECT_TRUE(mentions(info.why, "3175 kB")) << info.why;
+  EXPECT_EQ(info_of(strip(20, 3)).route, "inverse") << "seven rows are too many";
+  Scene quiet = strip(20, 2);
+  quiet.fracture.model = FractureModel::none;
+  EXPECT_EQ(info_of(quiet).route, "inverse") << "any element may be destroyed by hand";
+}
+
 TEST(ChooseRoute, CanBeForced) {
   struct Pair {
     Route route;
@@ -62,6 +86,7 @@ TEST(ChooseRoute, CanBeForced) {
   for (const Pair& p : {Pair{Route::inverse, Update::eager, "inverse", "eager"},
                         Pair{Route::inverse, Update::deferred, "inverse", "deferred"},
                         Pair{Route::factor, Update::deferred, "factor", "deferred"},
+                        Pair{Route::condensed, Update::deferred, "condensed", "deferred"},
                         Pair{Route::cg, Update::automatic, "cg", "matrix"},
                         Pair{Route::automatic, Update::eager, "inverse", "eager"}}) {
     Scene scene = board(4, 4);
@@ -82,7 +107,7 @@ TEST(ChooseRoute, NamesWhatIsOfferedInsteadOfAnImpossiblePair) {
   for (const Impossible& i : {Impossible{Route::factor, Update::eager, "route inverse"},
                               Impossible{Route::cg, Update::eager, "update auto"},
                               Impossible{Route::cg, Update::deferred, "update auto"},
-                              Impossible{Route::condensed, Update::automatic, "factor"}}) {
+                              Impossible{Route::condensed, Update::eager, "route inverse"}}) {
     Scene scene = board(4, 4);
     scene.solver.route = i.route;
     scene.solver.update = i.update;

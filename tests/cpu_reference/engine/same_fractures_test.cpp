@@ -4,30 +4,10 @@
 
 #include "cpu_reference/cpu_reference.hpp"
 #include "sunder/simulation.hpp"
-#include "support/table1_board.hpp"
+#include "support/notch_board.hpp"
 
 namespace sunder::test {
 namespace {
-
-Scene notch_board(FractureModel model) {
-  Scene scene;
-  scene.mesh = read_msh22(SUNDER_SCENES "/meshes/board1954_notch.msh");
-  scene.materials = table1_materials();
-  scene.materials["preset-crack"] = {5, 0.4, 2.0};
-  scene.supports.push_back({top_edge(), Axes{7}});
-  Instrument forceps;
-  forceps.action = Pull{lower_right_corner(), Vec3(0, -60, 0)};
-  forceps.ramp = Ramp{0, 1};
-  scene.instruments.push_back(forceps);
-  PresetCrack crack;
-  crack.elements = VolumeName{"preset-crack"};
-  crack.mouth = Vec3(50, 25, 1);
-  crack.tips = {Vec3(45.96, 25, 1)};
-  scene.cracks.push_back(crack);
-  scene.fracture.model = model;
-  scene.steps = 20;
-  return scene;
-}
 
 struct Torn {
   std::vector<DestroyedElement> elements;
@@ -50,6 +30,7 @@ TEST_P(SameFractures, ByEveryRouteAndUpdate) {
   const Torn reference = tear(GetParam(), Route::inverse, Update::eager);
   ASSERT_GT(reference.elements.size(), 40u);
   const std::pair<Route, Update> others[] = {{Route::inverse, Update::deferred},
+                                             {Route::condensed, Update::deferred},
                                              {Route::factor, Update::deferred},
                                              {Route::cg, Update::automatic}};
   for (const auto& [route, update] : others) {

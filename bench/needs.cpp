@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene saves that needs less. One board of 2k, 30k and 120k tetrahedra, pulled at a corner:
+// everything can tear; only a patch of about 1,000 unknowns can, over the factor and condensed;
+// nothing can; nobody asks for stress. The time of a row is that of a frame with one fracture (a
+// quiet one where nothing can break), the least of all; predicted_* is what `sunder plan` says.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "cpu_reference/cpu_reference.hpp"
+#include "run_rows.hpp"
+#include "support/structured_board.hpp"
+
+namespace sunder::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+constexpr Index kPatch = 12;  // cells
+
+struct Variant {
+  const char* name;
+  Route route;
+  bool all_breakable;
+  bool stress, damage;
+};
+
+/// 50 x 50 x 2.5 mm, one layer of cells; the patch lies at the middle of the right edge.
+Scene scene_of(const Variant& variant, Index cells) {
+  const double h = 50.0 / cells;
+  Scene scene;
+  scene.mesh = test::structured_board({cells, cells, 1, 50, 50, 2.5}, [h](const Vec3& x) {
+    return x.x() > 50 - kPatch * h && std::abs(x.y() - 25) < 0.5 * kPatch * h ? "patch" : "organ";
+  });
+  scene.materials = {{"patch", {5, 0.4, 2.0}}, {"organ", {5, 0.4, std::nullopt}}};
+  if (variant.all_breakable) scene.materials["organ"].yield = 2.0;
+  scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
+  Instrument forceps;
+  forceps.name = "forceps";
+  forceps.action = Pull{Box{Vec3(49.999, -0.001, -1), Vec3(50.001, 0.001, 4)}, Vec3(0, -60, 0)};
+  scene.instruments.push_back(forceps);
+  scene.solver.backend = "cpu";
+  scene.solver.route = variant.route;
+  return scene;
+}
+
+/// Elements of the patch, row by row from its middle, from the edge inwards.
+std::vector<Index> tear(const Problem& problem) {
+  const Mesh& mesh = problem.mesh();
+  std::vector<std::pair<std::pair<double, double>, Index>> keys;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (mesh.volumes[mesh.volume_of[e]].name != "patch") continue;
+    Vec3 c = Vec3::Zero();
+    for (Index n : mesh.tets[e]) c += mesh.nodes[n] / 4;
+    keys.push_back({{std::round(std::abs(c.y() - 25.01)), -c.x()}, e});
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Index> order;
+  for (const auto& k : keys) order.push_back(k.second);
+  return order;
+}
+
+double frame(Backend& backend, const Load& load, std::span<const Index> broken) {
+  const auto start = Clock::now();
+  if (!broken.empty()) backend.destroy(broken);
+  backend.set_load(load);
+  backend.solve();
+  if (backend.needs().stress) backend.stress();
+  return milliseconds_since(start);
+}
+
+void row(benchmark::State& state, const Variant& variant, Index cells) {
+  const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
+  Needs needs;
+  needs.stress = needs.yield = variant.stress;
+  needs.damage = variant.damage;
+  const auto start = Clock::now();
+  const auto backend = cpu_reference::create(problem, needs);
+  state.counters["setup_ms"] = milliseconds_since(start);
+  Load load;
+  for (Index n : problem->instrument_nodes()[0].nodes) {
+    load.force_dofs.push_back(problem->dof(n, 1));
+    load.forces.push_back(-30);
+  }
+  frame(*backend, load, {});  // has the full check
+  const auto order = tear(*problem);
+  double quiet = 1e300, fracture = 1e300;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const auto broken = std::span(order).subspan(next, variant.damage ? 1 : 0);
+    next += broken.size();
+    const double ms = frame(*backend, load, broken);
+    for (double& f : load.forces) f *= 1.0009765625;
+    quiet = std::min(quiet, frame(*backend, load, {}));
+    fracture = std::min(fracture, ms);
+    state.SetIterationTime(1e-3 * (variant.damage ? ms : quiet));
+  }
+  const BackendInfo info = backend->info();
+  state.counters["min_ms"] = variant.damage ? fracture : quiet;
+  state.counters["quiet_ms"] = quiet;
+  state.counters["predicted_quiet_ms"] = info.quiet_ms;
+  state.counters["predicted_fracture_ms"] = info.fracture_ms;
+  state.counters["MiB"] = static_cast<double>(info.memory_bytes) / 1048576;
+  state.counters["unknowns"] = static_cast<double>(problem->dof_count());
+  double condensed = 0;
+  for (const BufferPlan& b : backend->buffers()) {
+    if (b.name.starts_with("condensed inverse")) condensed += static_cast<double>(b.bytes);
+  }
+  state.counters["inverse_MiB"] = condensed / 1048576;
+}
+
+double median_of(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+/// 640 fractures of the patch, one a frame.
+void cascade(benchmark::State& state, const Variant& variant, Index cells) {
+  const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  const auto order = tear(*problem);
+  const std::size_t count = std::min<std::size_t>(640, order.size());
+  Load load;
+  for (Index n : problem->instrument_nodes()[0].nodes) {
+    load.force_dofs.push_back(problem->dof(n, 1));
+    load.forces.push_back(-30);
+  }
+  for (auto _ : state) {
+    const auto backend = cpu_reference::create(problem, needs);
+    frame(*backend, load, {});
+    std::vector<double> ms;
+    for (std::size_t i = 0; i < count; ++i) ms.push_back(frame(*backend, load, {&order[i], 1}));
+    state.SetIterationTime(1e-3 * median_of(ms));
+    state.counters["first_ms"] = median_of({ms.begin(), ms.begin() + 5});
+    state.counters["last_ms"] = median_of({ms.end() - 50, ms.end()});
+    state.counters["median_ms"] = state.counters["min_ms"] = median_of(ms);
+    std::sort(ms.begin(), ms.end());
+    state.counters["p99_ms"] = ms[ms.size() * 99 / 100];
+    state.counters["worst_ms"] = ms.back();
+  }
+}
+
+void register_rows() {
+  for (Index cells : {18, 71, 141}) {
+    for (const Variant& v : {Variant{"all_tears_factor", Route::factor, true, true, true},
+                             Variant{"patch_tears_factor", Route::factor, false, true, true},
+                             Variant{"patch_tears_condensed", Route::condensed, false, true, true},
+                             Variant{"nothing_tears", Route::automatic, true, true, false},
+                             Variant{"displacement_only", Route::automatic, true, false, false}}) {
+      benchmark::RegisterBenchmark(
+          ("needs/" + std::string(v.name) + "/" + std::to_string(6 * cells * cells)).c_str(),
+          [=](auto& state) { row(state, v, cells); })
+          ->UseManualTime()
+          ->Iterations(40)
+          ->Unit(benchmark::kMillisecond);
+    }
+    for (Route route : {Route::factor, Route::condensed}) {
+      const Variant v{route == Route::factor ? "factor" : "condensed", route, false, true, true};
+      benchmark::RegisterBenchmark(
+          ("needs/patch_cascade_" + std::string(v.name) + "/" + std::to_string(6 * cells * cells))
+              .c_str(),
+          [=](auto& state) { cascade(state, v, cells); })
+          ->UseManualTime()
+          ->Iterations(1)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sunder::bench
+
+int main(int argc, char** argv) {
+  sunder::bench::register_rows();
+  return sunder::bench::run_rows(argc, argv);
+}

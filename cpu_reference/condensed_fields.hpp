@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Displacement and stress of a condensed body outside its region: a frame does not compute them; a
+// picture or a file that asks for them pays one solve with the factor.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cpu_reference/routes.hpp"
+#include "engine/region.hpp"
+
+namespace sunder::cpu_reference {
+
+class CondensedFields {
+ public:
+  CondensedFields(const Problem& problem, engine::Region region);
+  [[nodiscard]] const engine::Region& region() const { return region_; }
+
+  /// A solution of the route on the region.
+  void take(const InverseRoute& route);
+  /// A solution that is known at all nodes (3 * nodes).
+  void take(std::span<const double> nodal);
+  /// The stress of the last solution is now what stress() says.
+  void publish_stress();
+
+  /// Fills the entries outside the region.
+  void complete(std::span<double> nodal);
+  /// Stress at all elements, a_e = scale[e]; exact to the last bit in a frame's terms only outside
+  /// the region.
+  [[nodiscard]] std::span<const Voigt> stress(std::span<const double> scale);
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct Solution {
+    engine::Equilibrium of;
+    std::vector<double> nodal;
+    bool everywhere = false;  // `nodal` is filled
+  };
+  void solve(Solution& solution);
+
+  const Problem& problem_;
+  engine::Region region_;
+  Solution displacement_, of_stress_;
+  std::vector<Voigt> stress_;
+  bool stress_known_ = false;
+  Eigen::VectorXd right_side_, u_;
+};
+
+}  // namespace sunder::cpu_reference

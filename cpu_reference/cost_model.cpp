@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cpu_reference/cost_model.hpp"
+
+#include <algorithm>
+
+namespace sunder::cpu_reference {
+namespace {
+
+// Nominal rates of one core of a 2.4 GHz server of 2021.
+constexpr double kCacheBytes = 16e6;        // sets up to here stay in the cache between frames
+constexpr double kFromCache = 30e9;         // bytes a second
+constexpr double kFromMemory = 10e9;        // bytes a second
+constexpr double kFlops = 10e9;             // of panels with a dozen columns
+constexpr double kStressSeconds = 15e-9;    // per element, kernel of core/engine/stress_kernel.hpp
+constexpr double kProductSeconds = 120e-9;  // per element of a product K u
+constexpr double kCall = 5e-6;              // of a frame's small change
+
+constexpr double kValue = sizeof(double);
+constexpr double kTouched = 12;  // differences of a first fracture, each between two unknowns
+// Iterations of conjugate gradients preconditioned by the intact body: none broken, one broken.
+constexpr double kQuietIterations = 1, kFractureIterations = 6;
+
+double seconds(double values_read) {
+  const double bytes = kValue * values_read;
+  return bytes / (bytes > kCacheBytes ? kFromMemory : kFromCache);
+}
+
+/// Values read by one solution with `touched` unknowns of damage.
+double solution_values(const FrameShape& s, double touched) {
+  const double both = 2 * static_cast<double>(s.entries);
+  const double dense = static_cast<double>(s.kept) * (static_cast<double>(s.loaded) + touched);
+  if (s.route == Route::condensed) return dense;
+  return s.route == Route::inverse ? std::min(dense, both) : both;
+}
+
+double solution(const FrameShape& s, double touched, double iterations) {
+  if (s.route != Route::cg) return seconds(solution_values(s, touched));
+  const double product = kProductSeconds * static_cast<double>(s.elements);
+  return (iterations + 1) * (seconds(2 * static_cast<double>(s.entries)) + product);
+}
+
+double update(const FrameShape& s) {
+  const double n = static_cast<double>(s.kept);
+  if (s.eager) return seconds(2 * n * n);
+  if (s.route == Route::cg) return 0;
+  if (s.route == Route::factor) {
+    const double path = static_cast<double>(s.path);
+    return std::max(seconds(path), 2 * kTouched * path / kFlops);
+  }
+  return seconds(2 * kTouched * kTouched);
+}
+
+}  // namespace
+
+FrameCost frame_cost(const FrameShape& s) {
+  const bool region = s.route == Route::condensed;
+  const double vectors = 6 * static_cast<double>(region ? s.kept : s.unknowns);
+  const double rest = kCall + seconds(vectors) +
+                      kStressSeconds * static_cast<double>(s.stressed) /
+                          static_cast<double>(std::max<std::size_t>(s.threads, 1));
+  FrameCost cost;
+  cost.quiet_ms = 1e3 * (rest + solution(s, 0, kQuietIterations));
+  if (s.damage) {
+    cost.fracture_ms =
+        1e3 * (rest + kCall + update(s) + solution(s, 2 * kTouched, kFractureIterations));
+  }
+  return cost;
+}
+
+}  // namespace sunder::cpu_reference

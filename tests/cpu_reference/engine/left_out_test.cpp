@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene does not need does not exist: neither in the list of buffers nor on the heap.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <string>
+
+#include "support/body.hpp"
+#include "support/structured_board.hpp"
+#include "support/table1_board.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define SUNDER_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SUNDER_ADDRESS_SANITIZER
+#endif
+#endif
+#if defined(SUNDER_ADDRESS_SANITIZER)
+#include <sanitizer/allocator_interface.h>
+#endif
+
+namespace sunder::test {
+namespace {
+
+std::size_t heap() {
+#if defined(SUNDER_ADDRESS_SANITIZER)
+  return __sanitizer_get_current_allocated_bytes();
+#else
+  const auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+#endif
+}
+
+struct Held {
+  std::size_t heap = 0;
+  std::vector<BufferPlan> buffers;
+  [[nodiscard]] std::size_t of(const std::string& name) const {
+    for (const BufferPlan& b : buffers) {
+      if (b.name == name) return b.bytes;
+    }
+    return 0;
+  }
+};
+
+/// What the backend of a factor route holds after a frame, a fracture among them if one can be.
+Held held(const Needs& needs) {
+  Scene scene = pulled_board();
+  scene.solver.route = Route::factor;
+  const auto problem = std::make_shared<Problem>(std::move(scene));
+  const std::size_t before = heap();
+  const auto backend = cpu_reference::create(problem, needs);
+  backend->set_load(corner_pull(*problem));
+  if (needs.damage) backend->destroy(std::vector<Index>{700});
+  backend->solve();
+  if (needs.stress) backend->stress();
+  return {heap() - before, backend->buffers()};
+}
+
+TEST(LeftOut, StressBuffersWhenNobodyNeedsStress) {
+  Needs needs;
+  const Held without = held(needs);
+  needs.stress = true;
+  const Held with = held(needs);
+  constexpr std::size_t kStress = 1954 * sizeof(Voigt);
+  EXPECT_EQ(with.of("element stress"), kStress);
+  EXPECT_EQ(without.of("element stress"), 0u);
+  EXPECT_EQ(without.of("element stress of the next frame"), 0u);
+  EXPECT_EQ(without.of("shapes and elasticity of elements"), 0u);
+  const std::size_t kernel = with.of("shapes and elasticity of elements");
+  EXPECT_GT(kernel, 1954u * 100);
+  EXPECT_GE(with.heap, without.heap + 2 * kStress + kernel);
+}
+
+TEST(LeftOut, RoomForDamageWhenNothingCanBreak) {
+  Needs needs;
+  needs.stress = true;
+  const Held without = held(needs);
+  needs.damage = true;
+  const Held with = held(needs);
+  EXPECT_GT(with.of("update vectors along the elimination paths"), 0u);
+  EXPECT_EQ(without.of("update vectors along the elimination paths"), 0u);
+  EXPECT_EQ(without.of("small matrix of the damage"), 0u);
+  // Three square matrices for the first thousand differences.
+  EXPECT_GE(with.heap, without.heap + 3u * 1000 * 1000 * 8);
+}
+
+TEST(LeftOut, EverythingThatNobodyAsksForTogether) {
+  const Held least = held({});
+  std::size_t planned = 0;
+  for (const BufferPlan& b : least.buffers) planned += b.bytes;
+  // What is on the heap beyond the list: the body's flags, the list of all unknowns, work space.
+  EXPECT_LE(least.heap, planned + 256 * 1954) << planned;
+}
+
+}  // namespace
+}  // namespace sunder::test
