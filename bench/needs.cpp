@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene saves that needs less. One board of 2k, 30k and 120k tetrahedra, pulled at a corner:
-// everything can tear; only a patch of about 1,000 unknowns can, over the factor and condensed;
-// nothing can; nobody asks for stress. The time of a row is that of a frame with one fracture (a
-// quiet one where nothing can break), the least of all; predicted_* is what `sunder plan` says.
+// everything can tear (with each fracture prepared and without); only a patch of about 1,000
+// unknowns can, over the factor and condensed; nothing can; nobody asks for stress. The time of a
+// row is that of a frame with one fracture (a quiet one where nothing can break), the least of all;
+// predicted_* is what `sunder plan` says.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -28,6 +29,7 @@ struct Variant {
   Route route;
   bool all_breakable;
   bool stress, damage;
+  bool prepare = false;  ///< each fracture, before its frame
 };
 
 /// 50 x 50 x 2.5 mm, one layer of cells; the patch lies at the middle of the right edge.
@@ -94,6 +96,7 @@ void row(benchmark::State& state, const Variant& variant, Index cells) {
   for (auto _ : state) {
     const auto broken = std::span(order).subspan(next, variant.damage ? 1 : 0);
     next += broken.size();
+    if (variant.prepare) backend->prepare(broken);
     const double ms = frame(*backend, load, broken);
     for (double& f : load.forces) f *= 1.0009765625;
     quiet = std::min(quiet, frame(*backend, load, {}));
@@ -105,6 +108,11 @@ void row(benchmark::State& state, const Variant& variant, Index cells) {
   state.counters["quiet_ms"] = quiet;
   state.counters["predicted_quiet_ms"] = info.quiet_ms;
   state.counters["predicted_fracture_ms"] = info.fracture_ms;
+  const PreparationReport preparation = backend->preparation();
+  if (preparation.destroyed > 0) {
+    state.counters["prepare_ms"] = preparation.spent_ms / preparation.destroyed;
+    state.counters["spared_ms"] = preparation.saved_ms / preparation.destroyed;
+  }
   state.counters["MiB"] = static_cast<double>(info.memory_bytes) / 1048576;
   state.counters["unknowns"] = static_cast<double>(problem->dof_count());
   double condensed = 0;
@@ -138,7 +146,11 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
     for (std::size_t i = 0; i < count; ++i) ms.push_back(frame(*backend, load, {&order[i], 1}));
     state.SetIterationTime(1e-3 * median_of(ms));
     state.counters["first_ms"] = median_of({ms.begin(), ms.begin() + 5});
-    state.counters["last_ms"] = median_of({ms.end() - 50, ms.end()});
+    for (std::size_t k : {50, 100, 200, 400, 640}) {  // the median of the 20 before
+      if (k > ms.size()) break;
+      const auto end = ms.begin() + static_cast<std::ptrdiff_t>(k);
+      state.counters["at_" + std::to_string(k) + "_ms"] = median_of({end - 20, end});
+    }
     state.counters["median_ms"] = state.counters["min_ms"] = median_of(ms);
     std::sort(ms.begin(), ms.end());
     state.counters["p99_ms"] = ms[ms.size() * 99 / 100];
@@ -148,11 +160,13 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
 
 void register_rows() {
   for (Index cells : {18, 71, 141}) {
-    for (const Variant& v : {Variant{"all_tears_factor", Route::factor, true, true, true},
-                             Variant{"patch_tears_factor", Route::factor, false, true, true},
-                             Variant{"patch_tears_condensed", Route::condensed, false, true, true},
-                             Variant{"nothing_tears", Route::automatic, true, true, false},
-                             Variant{"displacement_only", Route::automatic, true, false, false}}) {
+    for (const Variant& v :
+         {Variant{"all_tears_factor", Route::factor, true, true, true},
+          Variant{"all_tears_factor_prepared", Route::factor, true, true, true, true},
+          Variant{"patch_tears_factor", Route::factor, false, true, true},
+          Variant{"patch_tears_condensed", Route::condensed, false, true, true},
+          Variant{"nothing_tears", Route::automatic, true, true, false},
+          Variant{"displacement_only", Route::automatic, true, false, false}}) {
       benchmark::RegisterBenchmark(
           ("needs/" + std::string(v.name) + "/" + std::to_string(6 * cells * cells)).c_str(),
           [=](auto& state) { row(state, v, cells); })

@@ -42,6 +42,13 @@ void print_sizes(const Problem& problem) {
   line("steps", grouped(problem.scene().steps));
 }
 
+std::string predicted(const BackendInfo& info) {
+  if (!(info.quiet_ms > 0)) return "not by backend " + info.backend + "; --measure measures it";
+  std::string text = rounded(info.quiet_ms, 3) + " quiet";
+  if (info.fracture_ms > 0) text += ", " + rounded(info.fracture_ms, 3) + " with a fracture";
+  return text;
+}
+
 void print_engine(const Backend& backend) {
   const BackendInfo info = backend.info();
   std::cout << "Engine\n";
@@ -49,11 +56,7 @@ void print_engine(const Backend& backend) {
        info.backend + " " + info.precision + " on " + info.device + " (" + info.driver + ")");
   line("route", info.route + ", update " + info.update);
   line("why", info.why);
-  if (!(info.quiet_ms > 0)) return;
-  line("predicted frame [ms]",
-       rounded(info.quiet_ms, 3) + " quiet" +
-           (info.fracture_ms > 0 ? ", " + rounded(info.fracture_ms, 3) + " with a fracture"
-                                 : std::string()));
+  line("predicted frame [ms]", predicted(info));
 }
 
 void print_buffers(const Backend& backend) {
