@@ -25,8 +25,7 @@ class CondensedFields {
 
   /// Fills the entries outside the region.
   void complete(std::span<double> nodal);
-  /// Stress at all elements, a_e = scale[e]; exact to the last bit in a frame's terms only outside
-  /// the region.
+  /// Stress at all elements, a_e = scale[e]; inside the region a frame has its own, which counts.
   [[nodiscard]] std::span<const Voigt> stress(std::span<const double> scale);
 
   [[nodiscard]] std::size_t bytes() const;

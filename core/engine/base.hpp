@@ -41,8 +41,8 @@ class Base {
   virtual const Eigen::VectorXd& load(const Forces& forces) = 0;
   /// u = X (f + B c) with the f of the last load().
   virtual void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) = 0;
-  /// Computes what push() will need of these vectors, in place of what was prepared before. push()
-  /// gives the same bits with it and without.
+  /// Computes what push() will need of these vectors, in place of others that were prepared before.
+  /// push() gives the same bits with it and without.
   virtual void prepare(std::span<const Difference>) {}
   /// Milliseconds that push() has been spared so far.
   [[nodiscard]] virtual double saved_ms() const { return 0; }

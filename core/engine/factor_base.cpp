@@ -115,12 +115,12 @@ void FactorBase::spread_missing() {
 void FactorBase::prepare(std::span<const Difference> vectors) {
   using Clock = std::chrono::steady_clock;
   make_room();
-  prepared_.clear();
+  prepared_.retain(vectors);
   std::vector<Difference> once;
   for (const Difference& v : vectors) {
     const bool known = std::ranges::any_of(
         once, [&](const Difference& o) { return o.dof == v.dof && o.other == v.other; });
-    if (!known) once.push_back(v);
+    if (!known && !prepared_.holds(v)) once.push_back(v);
   }
   std::vector<Index> all;
   for (std::size_t begin = 0; begin < once.size(); begin += kGroup) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/prepared_columns.hpp"
 
+#include <algorithm>
+
 namespace sunder::engine {
 
 const PreparedColumns::Column* PreparedColumns::find(const Difference& vector) const {
@@ -9,6 +11,21 @@ const PreparedColumns::Column* PreparedColumns::find(const Difference& vector) c
     if (v.dof == vector.dof && v.other == vector.other) return &columns_[i];
   }
   return nullptr;
+}
+
+void PreparedColumns::retain(std::span<const Difference> vectors) {
+  const auto wanted = [&](const Column& c) {
+    return std::ranges::any_of(vectors, [&](const Difference& v) {
+      return v.dof == c.vector.dof && v.other == c.vector.other;
+    });
+  };
+  for (std::size_t i = 0; i < used_;) {
+    if (wanted(columns_[i])) {
+      ++i;
+    } else {
+      std::swap(columns_[i], columns_[--used_]);
+    }
+  }
 }
 
 void PreparedColumns::keep(const Difference& vector, std::span<const Index> path,

@@ -3,6 +3,7 @@
 // factor and its vector alone, so that taking it from here changes no bit.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/difference_basis.hpp"
@@ -15,7 +16,8 @@ class PreparedColumns {
  public:
   explicit PreparedColumns(const fem::Supernodes& nodes) : nodes_(nodes) {}
 
-  void clear() { used_ = 0; }
+  /// Drops all columns but these.
+  void retain(std::span<const Difference> vectors);
   [[nodiscard]] bool holds(const Difference& vector) const { return find(vector) != nullptr; }
   /// Keeps one column of `rows` on the supernodes of `path`, which took so long to compute.
   void keep(const Difference& vector, std::span<const Index> path, const fem::RowMajor& rows,

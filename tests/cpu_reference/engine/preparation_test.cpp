@@ -71,6 +71,7 @@ TEST(PreparedColumns, MixWithOthersInAnEvent) {
     const auto event = std::span(sequence).subspan(i, 12);
     const std::vector<Index> guess{event[1], event[2], event[7], sequence[59]};
     prepared.prepare(guess);
+    prepared.prepare(guess);  // what is there stays
     ASSERT_TRUE(plain.destroy(event));
     ASSERT_TRUE(prepared.destroy(event));
     plain.solve({dofs, values}, {}, u);
