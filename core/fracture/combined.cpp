@@ -89,24 +89,32 @@ Decision Combined::decide(const FractureState& state) {
   return decision;
 }
 
+/// Where a tip wanted to grow at the last decision; straight on when nothing drove it then.
+Vec2 Combined::heading(const Crack& crack, std::size_t tip) const {
+  for (const auto& [id, growth] : driven_) {
+    if (id == crack.id && growth.terms.tip == static_cast<int>(tip)) return growth.direction;
+  }
+  return crack.tips[tip].direction;
+}
+
 /// The band ahead of each tip, in the direction in which it wants to grow, and the element that
 /// would start a new crack.
 std::vector<Index> Combined::next_in_line(const FractureState& state) const {
-  constexpr std::size_t kAhead = 6;  // of a tip: what one event takes, rarely more
+  constexpr std::size_t kAhead = 16;  // of a tip: what an event takes of a thin board
   std::vector<Index> next;
   const ElementView view{
       [&](Index e) { return !state.destroyed[e]; },
       [&](Index e) { return problem_.yield(e); },
   };
-  for (const auto& [id, growth] : driven_) {
-    const Crack& crack = cracks_[id];
-    const CrackTip& tip = crack.tips[growth.terms.tip];
-    if (tip.ended) continue;
-    const Ray ray{tip.position, growth.direction, &crack, orientation(crack, growth.terms.tip)};
-    std::size_t taken = 0;
-    for (const BandElement& e : find_band(board_, ray, view).elements) {
-      if (!problem_.breakable(e.element) || taken++ == kAhead) break;
-      next.push_back(e.element);
+  for (const Crack& crack : cracks_) {
+    for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
+      if (crack.tips[tip].ended) continue;
+      const Ray ray{crack.tips[tip].position, heading(crack, tip), &crack, orientation(crack, tip)};
+      std::size_t taken = 0;
+      for (const BandElement& e : find_band(board_, ray, view).elements) {
+        if (!problem_.breakable(e.element) || taken++ == kAhead) break;
+        next.push_back(e.element);
+      }
     }
   }
   if (state.summary.candidate.element != kNone) next.push_back(state.summary.candidate.element);

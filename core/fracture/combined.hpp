@@ -40,6 +40,7 @@ class Combined final : public FractureCriterion {
   /// Moves one tip as far as it goes; its elements are added to the decision.
   void grow(std::vector<DrivenTip>& driven, std::size_t which, const FractureState& state,
             Decision& decision);
+  [[nodiscard]] Vec2 heading(const Crack& crack, std::size_t tip) const;
   void cut_through(Crack& crack, const FractureState& state, Decision& decision);
   void start_crack(const FractureState& state, Decision& decision);
   /// Elements that the decision's elements touch, live and not excluded before.

@@ -65,6 +65,24 @@ TEST(BackendContract, ArgumentsOfDestroy) {
   EXPECT_EQ(body.backend->destroyed()[4], 0);
 }
 
+TEST(BackendContract, ArgumentsOfPrepare) {
+  for (Route route : {Route::inverse, Route::condensed, Route::factor, Route::cg}) {
+    Scene scene = small_board();
+    scene.solver.route = route;
+    Body body(std::move(scene));
+    EXPECT_EQ(body.backend->prepares(), route == Route::factor);
+    EXPECT_THROW(body.backend->prepare(std::vector<Index>{-1}), UsageError);
+    EXPECT_THROW(body.backend->prepare(std::vector<Index>{body.problem->tet_count()}), UsageError);
+    body.backend->destroy(std::vector<Index>{3});
+    body.backend->prepare(
+        std::vector<Index>{3, 4, 4});  // what is destroyed or named twice is no error
+    body.backend->destroy(std::vector<Index>{4, 5});
+    const PreparationReport report = body.backend->preparation();
+    EXPECT_EQ(report.destroyed, route == Route::factor ? 2 : 0);
+    EXPECT_EQ(report.predicted, route == Route::factor ? 1 : 0);
+  }
+}
+
 std::size_t bytes_of(const Body& body, const std::string& name) {
   for (const BufferPlan& b : body.backend->buffers()) {
     if (b.name.find(name) != std::string::npos) return b.bytes;
@@ -84,6 +102,7 @@ TEST(BackendContract, WhatIsLeftOutIsNeitherHeldNorOffered) {
   bare.backend->solve();
   EXPECT_THROW(bare.backend->stress(), UsageError);
   EXPECT_THROW(bare.backend->destroy(std::vector<Index>{0}), UsageError);
+  EXPECT_THROW(bare.backend->prepare(std::vector<Index>{0}), UsageError);
   EXPECT_THROW(bare.backend->exclude_candidates(std::vector<Index>{0}), UsageError);
   auto u = zero(bare);
   EXPECT_THROW(bare.backend->solve_pristine({}, u), UsageError);

@@ -12,14 +12,16 @@ Scene parse(const std::vector<std::string>& overrides) {
 }
 
 TEST(Overrides, ReplaceAndAddAnyKey) {
-  const Scene scene = parse({"fracture.model=A", "instrument.0.force=[0,-50,0]", "time.steps=7",
-                             "solver.tolerance=1e-5", "material.upper.yield=3", "title=two words",
-                             "output.fields=[\"stress\"]", "fixed.0.axes=xy",
-                             "instrument.0.force.1=-40", "solver.device=1"});
+  const Scene scene =
+      parse({"fracture.model=A", "instrument.0.force=[0,-50,0]", "time.steps=7",
+             "solver.tolerance=1e-5", "solver.prepare=false", "material.upper.yield=3",
+             "title=two words", "output.fields=[\"stress\"]", "fixed.0.axes=xy",
+             "instrument.0.force.1=-40", "solver.device=1"});
   EXPECT_EQ(scene.fracture.model, FractureModel::a);
   EXPECT_EQ(std::get<Pull>(scene.instruments[0].action).force, Vec3(0, -40, 0));
   EXPECT_EQ(scene.steps, 7);
   EXPECT_EQ(scene.solver.tolerance, 1e-5);
+  EXPECT_FALSE(scene.solver.prepare);
   EXPECT_EQ(scene.materials.at("upper").yield, 3.0);
   EXPECT_EQ(scene.title, "two words");
   EXPECT_FALSE(scene.output.displacement);
@@ -66,6 +68,7 @@ TEST(Overrides, NameTheirTextWhenWrong) {
       {"time.steps=many", F::wrong_type, {"time.steps takes an integer", "\"many\""}},
       {"time.steps=0", F::out_of_range, {"time.steps is 0"}},
       {"time.steps=1\nmesh=2", F::syntax, {R"(--set time.steps=1\nmesh=2)"}},
+      {"solver.prepare=1", F::wrong_type, {"solver.prepare", "true or false"}},
       {"solver.tolerance=nan", F::out_of_range, {"solver.tolerance", "finite"}},
       {"instrument.9.force=[0,0,0]", F::bad_id, {"\"9\"", "0 to 3"}},
       {"instrument.x.force=[0,0,0]", F::bad_id, {"\"x\"", "0 to 3"}},

@@ -32,6 +32,9 @@ std::size_t heap() {
 #endif
 }
 
+// What the allocator itself keeps back or rounds up; every buffer looked for here is larger.
+constexpr std::size_t kSlack = 64 << 10;
+
 struct Held {
   std::size_t heap = 0;
   std::vector<BufferPlan> buffers;
@@ -69,7 +72,7 @@ TEST(LeftOut, StressBuffersWhenNobodyNeedsStress) {
   EXPECT_EQ(without.of("shapes and elasticity of elements"), 0u);
   const std::size_t kernel = with.of("shapes and elasticity of elements");
   EXPECT_GT(kernel, 1954u * 100);
-  EXPECT_GE(with.heap, without.heap + 2 * kStress + kernel);
+  EXPECT_GE(with.heap + kSlack, without.heap + 2 * kStress + kernel);
 }
 
 TEST(LeftOut, RoomForDamageWhenNothingCanBreak) {
@@ -82,7 +85,7 @@ TEST(LeftOut, RoomForDamageWhenNothingCanBreak) {
   EXPECT_EQ(without.of("update vectors along the elimination paths"), 0u);
   EXPECT_EQ(without.of("small matrix of the damage"), 0u);
   // Three square matrices for the first thousand differences.
-  EXPECT_GE(with.heap, without.heap + 3u * 1000 * 1000 * 8);
+  EXPECT_GE(with.heap + kSlack, without.heap + 3u * 1000 * 1000 * 8);
 }
 
 TEST(LeftOut, EverythingThatNobodyAsksForTogether) {
