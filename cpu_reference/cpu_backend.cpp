@@ -11,6 +11,7 @@
 #include "cpu_reference/condensed_fields.hpp"
 #include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/cpu_reference.hpp"
+#include "cpu_reference/energy_check.hpp"
 #include "cpu_reference/frame_check.hpp"
 #include "cpu_reference/routes.hpp"
 #include "engine/stress_kernel.hpp"
@@ -19,9 +20,10 @@
 namespace sunder::cpu_reference {
 namespace {
 
-// The yardstick refines silently down to this stress error, a tenth of what double precision
-// promises for an intact body; only frames over the scene's tolerance count as polished.
-constexpr double kReferenceError = 1e-10;
+// A full check refines silently down to these stress errors, for the yardstick a tenth of what
+// double precision promises for an intact body; only frames over the scene's tolerance count as
+// polished.
+constexpr double kReferenceError = 1e-10, kDeferredError = 1e-9;
 constexpr int kRefinements = 4;
 std::string cpu_name() {
   std::ifstream in("/proc/cpuinfo");
@@ -48,7 +50,11 @@ class CpuBackend final : public Backend {
       condensed_.emplace(*problem, engine::region_of(*problem, this->needs()));
     }
     route_ = make_route();
-    if (route_->deferred()) check_.emplace(*problem);
+    if (condensed_) {
+      energy_check_.emplace(*problem);
+    } else if (route_->deferred()) {
+      check_.emplace(*problem);
+    }
     force_.setZero(n);
     u_.setZero(n);
     reactions_.assign(problem->gripped_dofs().size(), 0.0);
@@ -58,13 +64,17 @@ class CpuBackend final : public Backend {
       const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
       anchors_[static_cast<std::size_t>(g)] = problem->anchor_stiffness();
     }
-    if (check_ && !anchors_.empty()) {
+    if (route_->deferred() && !anchors_.empty()) {
       instruments_ = std::make_shared<InstrumentForces>(anchors_);
       grip_forces_.setZero(static_cast<Eigen::Index>(anchors_.size()));
     }
     nodal_.assign(problem->dofs().size(), 0.0);
     next_nodal_ = nodal_;
     make_stress();
+    if (check_ && kernel_) {
+      kernel_->keep_forces();
+      nodal_forces_ = nodal_;
+    }
     if (condensed_) leave_out_the_rest();
   }
 
@@ -228,27 +238,48 @@ class CpuBackend final : public Backend {
 
   SolveReport solve_and_check() {
     fresh_ = false;
-    if (const auto known = solve_cheaply()) {
+    if (condensed_) return solve_condensed();
+    SolveReport report;
+    const auto scale = check_ ? check_->scale_of(load_, *route_) : std::nullopt;
+    route_->set_enough(scale ? check_->enough(*scale) : 0);
+    solve_by(*route_, report);
+    const auto known =
+        scale && route_->deferred()->converged() ? check_->error(*scale, solution()) : std::nullopt;
+    if (known) {
+      report.error = *known;
+    } else {
+      check_fully(report);
+    }
+    if (!fast()) hand_out();
+    nodal_.swap(next_nodal_);
+    return report;
+  }
+
+  /// A condensed frame has no residual outside its region: the energy of what damage lacks bounds
+  /// its error.
+  SolveReport solve_condensed() {
+    if (const auto known = solve_on_region()) {
       nodal_.swap(next_nodal_);
-      if (condensed_) condensed_->take(*route_);
+      condensed_->take(*route_);
       return *known;
     }
-    if (check_) route_->set_enough(0);
-    const SolveReport report = solve_checked();
+    route_->set_enough(0);
+    SolveReport report;
+    solve_by(*route_, report);
+    check_fully(report);
     hand_out();
     nodal_.swap(next_nodal_);
-    if (condensed_) take_everywhere();
-    if (check_)
-      check_->checked(load_, report, unrefined_, route_->bases(), largest_u(nodal_), largest_);
+    take_everywhere();
+    energy_check_->checked(load_, report, unrefined_, route_->bases(), largest_in_region(nodal_),
+                           largest_);
     return report;
   }
 
   /// The solution without a full check, where one like it has had its check.
-  std::optional<SolveReport> solve_cheaply() {
-    if (!check_) return std::nullopt;
-    const auto scale = check_->scale_of(load_, *route_);
+  std::optional<SolveReport> solve_on_region() {
+    const auto scale = energy_check_->scale_of(load_, *route_);
     if (!scale) return std::nullopt;
-    route_->set_enough(check_->enough(*scale));
+    route_->set_enough(energy_check_->enough(*scale));
     route_->solve(load_, force_, u_);
     hand_out();
     const auto gripped = problem().gripped_dofs();
@@ -256,16 +287,22 @@ class CpuBackend final : public Backend {
       reactions_[g] = route_->deferred()->grip_forces()[static_cast<Eigen::Index>(g)] -
                       anchors_[g] * u_[gripped[g]];  // the anchor's share
     }
-    return check_->known(*scale, *route_, largest_u(next_nodal_), largest_);
+    return energy_check_->known(*scale, *route_, largest_in_region(next_nodal_), largest_);
   }
 
-  /// Over the nodes that a frame computes.
-  double largest_u(std::span<const double> u) const {
+  /// Whether residual and stress come from the kernel; the yardstick has loops of its own.
+  bool fast() const { return check_ && kernel_; }
+
+  FrameCheck::Solution solution() const { return {free_residual_, largest_u(), largest_}; }
+
+  void check_fully(SolveReport& report) {
+    refine(*route_, report);
+    if (!(report.error <= tolerance())) polish(report);
+    if (!(report.error <= tolerance())) fail(report);
+  }
+
+  double largest_in_region(std::span<const double> u) const {
     double largest = 0;
-    if (!condensed_) {
-      for (double v : u) largest = std::max(largest, std::abs(v));
-      return largest;
-    }
     for (Index n : condensed_->region().nodes) {
       for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(u[3 * n + axis]));
     }
@@ -277,6 +314,14 @@ class CpuBackend final : public Backend {
     fem::scatter(problem(), {u_.data(), static_cast<std::size_t>(u_.size())}, nodal_);
     condensed_->take(nodal_);
   }
+  /// The solution by a route, with its residual.
+  void solve_by(InverseRoute& route, SolveReport& report) {
+    report.iterations += route.solve(load_, force_, u_).iterations;
+    route.complete(u_);
+    look_at(report);
+  }
+
+  double largest_u() const { return u_.size() > 0 ? u_.cwiseAbs().maxCoeff() : 0.0; }
 
   /// Displacement at all nodes, and its stress, which do_stress() publishes.
   void hand_out() {
@@ -295,39 +340,42 @@ class CpuBackend final : public Backend {
     fresh_ = true;
   }
 
-  SolveReport solve_checked() {
-    SolveReport report;
-    refine(*route_, report);
-    if (!(report.error <= tolerance())) polish(report);
-    if (!(report.error <= tolerance())) fail(report);
-    return report;
-  }
-
-  /// Solves by a route and corrects the solution until the estimate is rounding's.
+  /// Corrects the solution by a route until the estimate is rounding's.
   void refine(InverseRoute& route, SolveReport& report) {
-    report.iterations += route.solve(load_, force_, u_).iterations;
-    route.complete(u_);
+    const double enough = check_ ? kDeferredError : kReferenceError;
     report.error = std::numeric_limits<double>::infinity();
     for (int attempt = 0;; ++attempt) {
-      const double error = correction(route, report);
-      if (attempt == 0) unrefined_ = error;
-      if (attempt == 0) report.polished = report.polished || !(error <= tolerance());
+      const double stress = correction(route, report);
+      const double error = stress == 0 ? 0.0 : stress / largest_;
+      if (attempt == 0) {
+        unrefined_ = error;
+        if (check_ && &route == route_.get()) {
+          check_->checked(load_, solution(), stress, route_->bases());
+        }
+        report.polished = report.polished || !(error <= tolerance());
+      }
       // A correction that no longer shrinks is rounding.
       const bool stalled = attempt > 0 && !(error < report.error / 2);
       report.error = error;
       if (!std::isfinite(error)) return;  // overflow: there is no correction
-      const bool enough = error <= kReferenceError && (attempt > 0 || !yardstick());
-      if (enough || attempt == kRefinements || stalled) return;
+      const bool done = error <= enough && (attempt > 0 || !yardstick());
+      if (done || attempt == kRefinements || stalled) return;
       u_ += du_;
+      look_at(report);
     }
   }
 
   /// Refinement converges only while the updated inverse is one; once it has drifted too far it is
   /// computed anew, and if that is not enough conjugate gradients on the intact base have the word.
   void polish(SolveReport& report) {
-    if (route_->rebase()) refine(*route_, report);
+    if (route_->rebase()) {
+      solve_by(*route_, report);
+      refine(*route_, report);
+    }
     if (report.error <= tolerance() || chosen_.route == Route::cg) return;
-    refine(*conjugate_gradient_route(body_, intact_), report);
+    const auto cg = conjugate_gradient_route(body_, intact_);
+    solve_by(*cg, report);
+    refine(*cg, report);
   }
 
   [[noreturn]] void fail(const SolveReport& report) const {
@@ -338,23 +386,37 @@ class CpuBackend final : public Backend {
     throw NumericalError(message.str());
   }
 
-  /// du = A^-1 (f - K u), and its stress relative to that of u; sets residual and reactions.
-  double correction(InverseRoute& route, SolveReport& report) {
-    body_.apply(u_, product_);
-    Eigen::VectorXd r = force_ - product_;
+  /// Residual f - K u and reactions of the solution, and its largest stress.
+  void look_at(SolveReport& report) {
+    if (fast()) {
+      hand_out();
+      kernel_->nodal_forces(nodal_forces_);
+      product_.resize(u_.size());
+      fem::gather(problem(), nodal_forces_,
+                  {product_.data(), static_cast<std::size_t>(product_.size())});
+    } else {
+      body_.apply(u_, product_);
+      largest_ = body_.largest_stress(u_);
+    }
+    r_ = force_ - product_;
     const auto gripped = problem().gripped_dofs();
     double load_norm = force_.squaredNorm();
     for (std::size_t g = 0; g < gripped.size(); ++g) {
-      reactions_[g] = -r[gripped[g]];  // what the grip adds to the applied force
+      reactions_[g] = -r_[gripped[g]];  // what the grip adds to the applied force
       load_norm += reactions_[g] * reactions_[g];
-      r[gripped[g]] = 0;
+      r_[gripped[g]] = 0;
     }
-    report.residual = load_norm > 0 ? r.norm() / std::sqrt(load_norm) : 0.0;
+    free_residual_ = r_.norm();
+    report.residual = load_norm > 0 ? free_residual_ / std::sqrt(load_norm) : 0.0;
+  }
+
+  /// du = A^-1 (f - K u); returns its largest stress over live elements.
+  double correction(InverseRoute& route, SolveReport& report) {
     if (!std::isfinite(report.residual)) return report.residual;
-    report.iterations += route.apply(r, du_).iterations;
-    const double largest = body_.largest_stress(u_);
-    const double of_du = body_.largest_stress(du_);
-    return of_du == 0 ? 0.0 : of_du / largest;
+    report.iterations += route.apply(r_, du_).iterations;
+    if (!fast()) return body_.largest_stress(du_);
+    fem::scatter(problem(), {du_.data(), static_cast<std::size_t>(du_.size())}, nodal_forces_);
+    return kernel_->largest(nodal_forces_);
   }
 
   /// The plain routes are what others are measured by: they refine once in any case.
@@ -385,7 +447,7 @@ class CpuBackend final : public Backend {
     }
     body_.destroy(elements);
     if (kernel_) kernel_->destroy(elements);
-    if (check_) check_->event();
+    if (energy_check_) energy_check_->event();
     route_->destroy(elements);
   }
 
@@ -442,19 +504,22 @@ class CpuBackend final : public Backend {
   IntactBody intact_;
   std::unique_ptr<InverseRoute> route_;
   Load load_;
-  Eigen::VectorXd force_, u_, du_, product_;
+  Eigen::VectorXd force_, u_, du_, product_, r_;
+  double free_residual_ = 0;  // |r_|
+  double unrefined_ = 0;      // error of the last full check's solution before it was refined
   std::shared_ptr<InstrumentForces> instruments_;
   Eigen::VectorXd grip_forces_, free_grips_;
-  double unrefined_ = 0;         // error of the last full check's solution before it was refined
   double waited_ms_ = 0;         // for rebases, as reported so far
   std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
   std::vector<double> reactions_;
   mutable std::vector<double> nodal_;  // published; outside a condensed region only once read
   std::vector<double> next_nodal_;     // of a solution not yet vouched for
+  std::vector<double> nodal_forces_;   // K u; also the nodes of du
   mutable std::optional<CondensedFields> condensed_;  // computes what is read
   bool stressed_ = false;
   std::optional<engine::StressKernel> kernel_;
-  std::optional<FrameCheck> check_;
+  std::optional<FrameCheck> check_;          // of a deferred update that knows u everywhere
+  std::optional<EnergyCheck> energy_check_;  // of a condensed one
   std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
   bool fresh_ = false;                       // next_stress_ is to be published
   double largest_ = 0;                       // stress of the last solution

@@ -41,7 +41,7 @@ class DeferredRoute final : public InverseRoute {
   }
 
   Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& u) override {
-    based_.deferred->solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
+    based_.deferred->correct({all_, {r.data(), static_cast<std::size_t>(r.size())}}, u);
     return {};
   }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The promise of a frame at the price of what the frame changed. A full check applies the inverse
-// to the whole residual. While the base and the direction of the load stay, damage can only spoil
-// the solution where it acts, and the energy of what the deferred update lacks there bounds the
-// stress that it misses.
+// The promise of a frame at the price of its residual. A full check applies the inverse to the
+// residual r = f - K u and takes the stress of what comes out. How much stress a residual of that
+// size is worth hardly changes while the base, the direction of the load and the stiffness of the
+// body stay, so frames until then are judged by their own residual.
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "cpu_reference/routes.hpp"
 
@@ -16,31 +15,33 @@ class FrameCheck {
  public:
   explicit FrameCheck(const Problem& problem);
 
-  /// Takes what a full check said of a load, and the error before it refined the solution: that is
-  /// what the base gives by itself. `largest`: the largest stress over live elements.
-  void checked(const Load& load, const SolveReport& report, double unrefined, int bases,
-               double largest_u, double largest);
-  /// The load in the direction of the last full check, as a multiple of it.
-  [[nodiscard]] std::optional<double> scale_of(const Load& load, const InverseRoute& route) const;
-  /// An event has changed the body.
-  void event() { changed_ = true; }
+  /// A solution as its check sees it.
+  struct Solution {
+    double residual = 0;        // |f - K u| over the unknowns that no grip holds [N]
+    double largest_u = 0;       // [mm]
+    double largest_stress = 0;  // over live elements [MPa]
+  };
 
-  /// Energy [N mm] of a defect that needs no refinement.
+  /// Takes what a full check said of a solution before refining it: `stress` [MPa] is the largest
+  /// of A^-1 (f - K u) over live elements.
+  void checked(const Load& load, const Solution& solution, double stress, int bases);
+  /// The load as a multiple of that of the last full check; nothing: another direction or base.
+  [[nodiscard]] std::optional<double> scale_of(const Load& load, const InverseRoute& route) const;
+
+  /// Energy [N mm] of a defect of the deferred update that needs no refinement.
   [[nodiscard]] double enough(double scale) const;
-  /// What is known of a solution without a full check; nothing when that is needed.
-  [[nodiscard]] std::optional<SolveReport> known(double scale, const InverseRoute& route,
-                                                 double largest_u, double largest);
+  /// Error estimate of a solution whose load is `scale` times that of the last full check; nothing
+  /// when that is too long ago or the estimate does not vouch for double precision.
+  [[nodiscard]] std::optional<double> error(double scale, const Solution& solution) const;
 
  private:
   const Problem& problem_;
   double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
-  Load load_;                // of the last full check
-  SolveReport report_;       // of it
-  double unrefined_ = 0;     // error of the base by itself
-  double largest_u_ = 0, largest_ = 0;
-  int bases_ = 0;        // of the last full check; 0: there was none
-  bool changed_ = true;  // since last_
-  SolveReport last_;     // of the last frame
+  // Of the last full check:
+  Load load_;
+  Solution solution_;
+  double stress_of_residual_ = 0;  // [MPa/N]
+  int bases_ = 0;                  // 0: there was none
 };
 
 }  // namespace sunder::cpu_reference

@@ -290,19 +290,35 @@ void Deferred::solve(const Forces& forces, std::span<const double> displacement,
                      double enough) {
   constexpr int kRefinements = 4;
   const Eigen::VectorXd& p = base_->load(forces);
-  x_.setZero(count());
+  start(p, displacement);
+  converged_ = events_.empty();
   defect_energy_ = 0;
-  if (count() > 0) static_cast<void>(refine(p, displacement));
-  for (int pass = 0; pass < kRefinements && !events_.empty(); ++pass) {
+  for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
     const double before = defect_energy_;
     defect_energy_ = refine(p, displacement);
-    if (defect_energy_ <= enough || (pass > 0 && !(defect_energy_ < before / 4))) break;
+    converged_ = defect_energy_ <= enough || (pass > 0 && !(defect_energy_ < before / 4));
   }
   base_->expand(x_, u);
   for (Eigen::Index i = 0; i < grips_; ++i) {  // free of rounding
     u[touched_[static_cast<std::size_t>(i)]] =
         displacement.empty() ? 0.0 : displacement[static_cast<std::size_t>(i)];
   }
+}
+
+void Deferred::correct(const Forces& residual, Eigen::VectorXd& du) {
+  const Eigen::VectorXd& p = base_->load(residual);
+  start(p, {});
+  base_->expand(x_, du);
+  for (Eigen::Index i = 0; i < grips_; ++i) du[touched_[static_cast<std::size_t>(i)]] = 0;
+}
+
+/// x = M p and what the grips add: A^-1 as it is stored.
+void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacement) {
+  multiply(m_, count(), p, x_);
+  if (grips_ == 0) return;
+  forces_ = -p.head(grips_);
+  forces_.noalias() -= compliance_.topLeftCorner(grips_, count()) * x_;
+  add_grips(displacement);
 }
 
 /// One step towards x = D B^T u, u_G = displacement; returns the energy of what was lacking.
@@ -314,14 +330,19 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
   lack_.tail(n - grips_) -= x_.tail(n - grips_);
   multiply(compliance_, n, lack_, gx_);
   multiply(m_, n, gx_, mgx_);
-  double energy = lack_.dot(gx_) + gx_.dot(mgx_);
+  const double energy = lack_.dot(gx_) + gx_.dot(mgx_);
   x_ += lack_;
   x_ += mgx_;
   if (grips_ == 0) return energy;
-  // What the grips must add: u_G there is off by `forces_`.
   forces_ = -v_.head(grips_) - gx_.head(grips_);
   forces_.noalias() -= compliance_.topLeftCorner(grips_, n) * mgx_;
-  const Eigen::Index g = grips_;
+  add_grips(displacement);
+  return energy;
+}
+
+/// Adds the grips' forces that move u_G, which is at -forces_, to the displacement.
+void Deferred::add_grips(std::span<const double> displacement) {
+  const Eigen::Index n = count(), g = grips_;
   for (Eigen::Index i = 0; i < g && !displacement.empty(); ++i) {
     forces_[i] += displacement[static_cast<std::size_t>(i)];
   }
@@ -330,7 +351,6 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
   multiply(m_, n, gx_, mgx_);
   x_ += mgx_;
   x_.head(g) += forces_;
-  return energy;
 }
 
 void Deferred::free_grips(const Eigen::VectorXd& forces, std::span<const double> displacement,

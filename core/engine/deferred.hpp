@@ -42,6 +42,10 @@ class Deferred {
   /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
   /// residual where damage acts, in the base's arithmetic.
   [[nodiscard]] double defect_energy() const { return defect_energy_; }
+  /// One application of A^-1 with u_G = 0, to the few digits that a correction needs.
+  void correct(const Forces& residual, Eigen::VectorXd& du);
+  /// Whether the last solution was refined down to `enough` or to rounding.
+  [[nodiscard]] bool converged() const { return converged_; }
   /// Forces of the grips on the base in the last solution, anchors included.
   [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType grip_forces() const {
     return x_.head(grips_);
@@ -75,7 +79,9 @@ class Deferred {
   void gather(std::span<const Index> elements);
   void gather_event(std::span<const Index> elements);
   void add_to_d();
+  void start(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
+  void add_grips(std::span<const double> displacement);
   void add_to_grips(Eigen::Index width);
   void replay();
   [[nodiscard]] bool factor_grips();
@@ -102,6 +108,7 @@ class Deferred {
   // A solution: (X f) and u in B, the forces x on B, what they lack, and its products.
   Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_;
   double defect_energy_ = 0;
+  bool converged_ = true;
 };
 
 }  // namespace sunder::engine

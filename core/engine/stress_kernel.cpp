@@ -15,6 +15,8 @@ namespace {
 // Below this many elements a thread more costs as much as it saves (some 10 us to wake one).
 constexpr std::size_t kElementsPerThread = 8000;
 
+constexpr std::size_t kForces = 12 * StressKernel::kLanes;  // of a block's elements
+
 // The maximum shear stress lies between sqrt(3)/2 and 1 times sqrt(J_2); squared, and rounded off.
 constexpr double kShearRange = 0.75 * (1 - 1e-9);
 
@@ -51,6 +53,7 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
     b.mu[l] = m.young / (2 * (1 + m.poisson));
     b.lambda[l] = m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
     b.scale[l] = b.live[l] = 1;
+    b.volume[l] = problem_->shape(e).volume;
     b.strength[l] = m.yield ? 1 / (*m.yield * *m.yield) : 0;
     for (int a = 0; a < 4; ++a) b.corner[a][l] = 3 * problem_->mesh().tets[e][a];
   }
@@ -59,6 +62,29 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
 }
 
 void StressKernel::keep_bounds() { bounds_.assign(blocks_.size() * kLanes, 0.0); }
+
+void StressKernel::keep_forces() {
+  forces_.assign(blocks_.size() * kForces, 0.0);
+  const auto nodes = problem_->mesh().nodes.size();
+  node_begin_.assign(nodes + 1, 0);
+  for (const Block& b : blocks_) {
+    for (const auto& corner : b.corner) {
+      for (int l = 0; l < kLanes && b.element[l] != kNone; ++l) ++node_begin_[corner[l] / 3 + 1];
+    }
+  }
+  for (std::size_t n = 0; n < nodes; ++n) node_begin_[n + 1] += node_begin_[n];
+  at_node_.resize(node_begin_.back());
+  std::vector<std::size_t> next(node_begin_.begin(), node_begin_.end() - 1);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Block& b = blocks_[k];
+    for (std::size_t l = 0; l < kLanes && b.element[l] != kNone; ++l) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        at_node_[next[static_cast<std::size_t>(b.corner[a][l] / 3)]++] =
+            static_cast<Index>(k * kForces + a * kLanes + l);
+      }
+    }
+  }
+}
 
 void StressKernel::destroy(std::span<const Index> elements) {
   for (Index e : elements) {
@@ -71,8 +97,8 @@ void StressKernel::destroy(std::span<const Index> elements) {
 }
 
 SUNDER_VECTORISED
-void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u,
-                              Voigt* stress, double* bounds, Partial& partial) {
+void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
+                              Partial& partial) {
   double largest[kLanes] = {}, check[kLanes] = {};
   for (std::size_t k = 0; k < count; ++k) {
     const Block& b = blocks[k];
@@ -115,14 +141,33 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
       s[4][l] = scale * yz;
       s[5][l] = scale * zx;
     }
-    if (bounds) {
-      for (int l = 0; l < kLanes; ++l) bounds[k * kLanes + static_cast<std::size_t>(l)] = bound[l];
+    if (to.bounds) {
+      double* at = to.bounds + k * kLanes;
+      for (int l = 0; l < kLanes; ++l) at[l] = bound[l];
     }
-    if (!stress) continue;
+    if (to.forces) {
+      constexpr int kRow[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};  // Voigt places of a tensor
+      double* at = to.forces + k * kForces;
+      for (int axis = 0; axis < 3; ++axis, at += 4 * kLanes) {
+        const double *x = s[kRow[axis][0]], *y = s[kRow[axis][1]], *z = s[kRow[axis][2]];
+        for (int l = 0; l < kLanes; ++l) {
+          double sum = 0;
+          for (int c = 0; c < 3; ++c) {
+            const double f =
+                b.volume[l] * (x[l] * b.gradient[3 * c][l] + y[l] * b.gradient[3 * c + 1][l] +
+                               z[l] * b.gradient[3 * c + 2][l]);
+            at[(c + 1) * kLanes + l] = f;
+            sum += f;
+          }
+          at[l] = -sum;  // the gradients sum to zero
+        }
+      }
+    }
+    if (!to.stress) continue;
     for (int l = 0; l < kLanes; ++l) {
       if (b.element[l] == kNone) break;
-      double* to = stress[k * kLanes + static_cast<std::size_t>(l)].data();
-      for (int i = 0; i < 6; ++i) to[i] = s[i][l];
+      double* at = to.stress[k * kLanes + static_cast<std::size_t>(l)].data();
+      for (int i = 0; i < 6; ++i) at[i] = s[i][l];
     }
   }
   for (int l = 0; l < kLanes; ++l) {
@@ -132,13 +177,23 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
 }
 
 double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
+  return run_storing(
+      u, {stress.empty() ? nullptr : stress.data(), bounds_.empty() ? nullptr : bounds_.data(),
+          forces_.empty() ? nullptr : forces_.data()});
+}
+
+double StressKernel::largest(std::span<const double> u) { return run_storing(u, Stores{}); }
+
+double StressKernel::run_storing(std::span<const double> u, Stores to) {
   workers_->run([&](int worker) {
     const auto w = static_cast<std::size_t>(worker), all = partials_.size();
     const std::size_t begin = blocks_.size() * w / all, end = blocks_.size() * (w + 1) / all;
+    Stores part = to;
+    if (part.bounds) part.bounds += begin * kLanes;
+    if (part.forces) part.forces += begin * kForces;
     partials_[w] = {};
-    run_blocks(blocks_.data() + begin, end - begin, u.data(),
-               stress.empty() ? nullptr : stress.data() + begin * kLanes,
-               bounds_.empty() ? nullptr : bounds_.data() + begin * kLanes, partials_[w]);
+    if (part.stress) part.stress += begin * kLanes;
+    run_blocks(blocks_.data() + begin, end - begin, u.data(), part, partials_[w]);
   });
   Partial sum;
   for (const Partial& p : partials_) {
@@ -147,6 +202,26 @@ double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
   }
   if (!(sum.check == 0)) return std::numeric_limits<double>::quiet_NaN();
   return std::sqrt(sum.largest);
+}
+
+/// Node by node, in the order of elements: the same sums for any number of threads.
+void StressKernel::nodal_forces(std::span<double> forces) {
+  workers_->run([&](int worker) {
+    const auto w = static_cast<std::size_t>(worker), all = partials_.size();
+    const std::size_t nodes = node_begin_.size() - 1;
+    for (std::size_t n = nodes * w / all; n < nodes * (w + 1) / all; ++n) {
+      double x = 0, y = 0, z = 0;
+      for (std::size_t i = node_begin_[n]; i < node_begin_[n + 1]; ++i) {
+        const double* f = forces_.data() + at_node_[i];
+        x += f[0];
+        y += f[4 * kLanes];
+        z += f[8 * kLanes];
+      }
+      forces[3 * n] = x;
+      forces[3 * n + 1] = y;
+      forces[3 * n + 2] = z;
+    }
+  });
 }
 
 Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
@@ -193,7 +268,8 @@ StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
 
 std::size_t StressKernel::bytes() const {
   return blocks_.size() * sizeof(Block) + bounds_.size() * sizeof(double) +
-         place_.size() * sizeof(Index);
+         (place_.size() + at_node_.size()) * sizeof(Index) + forces_.size() * sizeof(double) +
+         node_begin_.size() * sizeof(std::size_t);
 }
 
 }  // namespace sunder::engine

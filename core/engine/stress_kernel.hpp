@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Element stress, eight elements at a time, with what a frame wants to know of it: the largest
-// norm, and a bound of each element's yield ratio.
+// norm, a bound of each element's yield ratio, and the forces K u that the stress exerts.
 #pragma once
 
 #include <memory>
@@ -27,6 +27,8 @@ class StressKernel {
   /// fem::stress, one value per listed element in that order; empty `stress`: not stored. Returns
   /// the largest norm of the tensor over live elements; not finite when one of them is not.
   double run(std::span<const double> u, std::span<Voigt> stress);
+  /// The largest norm alone.
+  [[nodiscard]] double largest(std::span<const double> u);
 
   /// Worst ratios of the stress that the last run() stored.
   [[nodiscard]] StressSummary summarize(std::span<const std::uint8_t> excluded,
@@ -36,16 +38,22 @@ class StressKernel {
   [[nodiscard]] Index place(Index element) const { return place_[element]; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] int threads() const { return workers_->count(); }
+  /// Forces K u on all nodes (3 * nodes), of the displacement that the last run() got.
+  void nodal_forces(std::span<double> forces);
+
   /// Makes run() keep what summarize() reads.
   void keep_bounds();
+  /// Makes run() keep what nodal_forces() sums up; for a kernel over all elements.
+  void keep_forces();
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   struct alignas(64) Block {
     double gradient[9][kLanes];  // of corners 1..3: 3 * (corner - 1) + axis
     double mu[kLanes], lambda[kLanes];
-    double scale[kLanes];     // a_e
-    double live[kLanes];      // 1, or 0: does not count
+    double scale[kLanes];  // a_e
+    double live[kLanes];   // 1, or 0: does not count
+    double volume[kLanes];
     double strength[kLanes];  // 1 / yield^2 of live breakable elements, else 0
     Index corner[4][kLanes];  // 3 * node
     Index element[kLanes];    // kNone: filler
@@ -53,8 +61,15 @@ class StressKernel {
   struct Partial {
     double largest = 0, check = 0;
   };
-  static void run_blocks(const Block* blocks, std::size_t count, const double* u, Voigt* stress,
-                         double* bounds, Partial& partial);
+  /// What run_blocks() stores; null: not stored.
+  struct Stores {
+    Voigt* stress = nullptr;
+    double* bounds = nullptr;
+    double* forces = nullptr;
+  };
+  static void run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
+                         Partial& partial);
+  [[nodiscard]] double run_storing(std::span<const double> u, Stores to);
   [[nodiscard]] Worst worst(std::span<const std::uint8_t> excluded,
                             std::span<const Voigt> stress) const;
 
@@ -63,6 +78,11 @@ class StressKernel {
   std::vector<Block> blocks_;
   std::vector<Index> place_;    // of each element, kNone: not in here
   std::vector<double> bounds_;  // J_2 / yield^2 per place
+  // Forces on the corners of a block's elements: axis, corner, lane; of each node, where in there
+  // its elements' forces on axis x begin.
+  std::vector<double> forces_;
+  std::vector<std::size_t> node_begin_;
+  std::vector<Index> at_node_;
   std::vector<Partial> partials_;
   std::unique_ptr<Workers> workers_;
 };

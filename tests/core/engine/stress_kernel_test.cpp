@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "fem/assembly.hpp"
 #include "fem/element.hpp"
 #include "support/accuracy.hpp"
 #include "support/table1_board.hpp"
@@ -76,6 +77,33 @@ TEST(StressKernel, FindsTheWorstRatiosThatALoopFinds) {
     ASSERT_EQ(found.candidate.element, expected.candidate.element);
     EXPECT_EQ(found.candidate.ratio, expected.candidate.ratio);
     excluded[found.candidate.element] = 1;
+  }
+}
+
+TEST(StressKernel, SumsUpTheForcesOfTheStressTheSameForAnyNumberOfThreads) {
+  const Field field;
+  std::vector<double> scale;
+  for (std::uint8_t live : field.live) {
+    scale.push_back(live ? 1.0 : field.problem->scene().fracture.alpha);
+  }
+  std::vector<double> expected(field.u.size()), first;
+  fem::apply_stiffness(*field.problem, scale, field.u, expected);
+  double largest = 0;
+  for (double f : expected) largest = std::max(largest, std::abs(f));
+  for (int threads : {1, 2, 4, 7}) {
+    StressKernel kernel(field.problem, {}, threads);
+    kernel.keep_forces();
+    kernel.destroy(field.destroyed);
+    kernel.run(field.u, {});
+    const double norm = kernel.largest(std::vector<double>(field.u.size(), 0.0));
+    EXPECT_EQ(norm, 0);
+    std::vector<double> forces(field.u.size());
+    kernel.nodal_forces(forces);
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      ASSERT_NEAR(forces[i], expected[i], 1e-13 * largest) << "dof " << i;
+    }
+    if (first.empty()) first = forces;
+    EXPECT_EQ(forces, first) << threads << " threads";
   }
 }
 
