@@ -4,11 +4,16 @@
 // CHOLMOD's refactored solution.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <numeric>
+#include <string_view>
+#include <thread>
 
 #include "cholmod_peer.hpp"
 #include "cpu_reference/cpu_reference.hpp"
@@ -19,7 +24,11 @@
 #include "engine/stress_kernel.hpp"
 #include "run_rows.hpp"
 
-extern "C" void openblas_set_num_threads(int);
+extern "C" {
+void openblas_set_num_threads(int);
+void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+}
 
 namespace sunder::bench {
 namespace {
@@ -72,11 +81,12 @@ void measure(benchmark::State& state, const std::string& name, Index cells, std:
   best_times()[name] = seconds.front();
   state.counters["min_ms"] = 1e3 * seconds.front();
   state.counters["median_ms"] = 1e3 * seconds[seconds.size() / 2];
-  for (const char* peer : {"updown", "updown_solve", "refactor"}) {
-    const auto it = best_times().find(row((std::string("cholmod_") + peer).c_str(), cells, k));
-    if (it != best_times().end()) {
-      state.counters[std::string("over_") + peer] = seconds.front() / it->second;
-    }
+  for (const std::string peer :
+       {"cholmod_updown", "cholmod_updown_solve", "cholmod_refactor", "openblas_inverse"}) {
+    const auto it = best_times().find(row(peer.c_str(), cells, k));
+    if (it == best_times().end()) continue;
+    const bool cholmod = peer.starts_with("cholmod_");
+    state.counters["over_" + (cholmod ? peer.substr(8) : peer)] = seconds.front() / it->second;
   }
 }
 
@@ -133,6 +143,54 @@ double median_of(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
+/// What a user without an update does with a dense inverse: all of it anew, and its loaded columns.
+void openblas_row(benchmark::State& state, const char* name, Index cells, std::size_t k) {
+  const TearingBoard& board = board_of(cells);
+  std::vector<double> scale(board.problem->mesh().tets.size(), 1.0);
+  for (Index e : board.connected(k)) scale[e] = board.problem->scene().fracture.alpha;
+  const Eigen::MatrixXd stiffness(fem::assemble_lower(*board.problem, scale));
+  Eigen::MatrixXd a;
+  Eigen::VectorXd u;
+  measure(
+      state, row(name, cells, k), cells, k, [&] { a = stiffness; },
+      [&] {
+        const int n = static_cast<int>(a.rows());
+        int info = 0;
+        dpotrf_("L", &n, a.data(), &n, &info);
+        if (info == 0) dpotri_("L", &n, a.data(), &n, &info);
+        if (info != 0) state.SkipWithError("not definite");
+        u.setZero(n);
+        for (std::size_t i = 0; i < board.load_dofs.size(); ++i) {
+          const Index d = board.load_dofs[i];  // the lower triangle is the inverse's
+          u.head(d) += board.load_values[i] * a.row(d).head(d).transpose();
+          u.tail(n - d) += board.load_values[i] * a.col(d).tail(n - d);
+        }
+        benchmark::DoNotOptimize(u.data());
+      });
+}
+
+/// A thread's own processor time: what a frame costs when others share the machine. Work of other
+/// threads and waiting for them are not in it.
+double thread_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+void report_frames(benchmark::State& state, const std::string& unit, std::vector<double> ms) {
+  const std::size_t tail = std::min<std::size_t>(100, ms.size() / 2);
+  state.counters["first_" + unit] = median_of({ms.begin(), ms.begin() + 5});
+  state.counters["last_" + unit] =
+      median_of({ms.end() - static_cast<std::ptrdiff_t>(tail), ms.end()});
+  std::sort(ms.begin(), ms.end());
+  const double median = ms[ms.size() / 2], p99 = ms[ms.size() * 99 / 100];
+  state.counters["min_" + unit] = ms.front();
+  state.counters["median_" + unit] = median;
+  state.counters["p99_" + unit] = p99;
+  state.counters["worst_" + unit] = ms.back();
+  state.counters["p99_over_median_" + unit] = p99 / median;
+}
+
 /// A cascade: fractures one by one, each with its frame (update, solution with its check, stress
 /// with its summary), as the backend does them.
 void cascade(benchmark::State& state, Index cells, std::size_t fractures, Route route) {
@@ -148,26 +206,73 @@ void cascade(benchmark::State& state, Index cells, std::size_t fractures, Route 
     backend->set_load(load);
     backend->solve();
     backend->stress();
-    std::vector<double> ms;
+    std::vector<double> ms, cpu;
+    double waited = 0;
     for (const Index& e : board.connected(fractures)) {
       const auto start = Clock::now();
+      const double cpu_start = thread_ms();
+      backend->destroy({&e, 1});
+      backend->set_load(load);
+      waited += backend->solve().waited_ms;
+      backend->stress();
+      cpu.push_back(thread_ms() - cpu_start);
+      ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    }
+    state.SetIterationTime(1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0));
+    report_frames(state, "ms", std::move(ms));
+    report_frames(state, "cpu_ms", std::move(cpu));
+    state.counters["waited_ms"] = waited;
+  }
+}
+
+/// The haptic thread's questions (1 kHz and faster) while frames tear a gripped board.
+void instrument_row(benchmark::State& state, Index cells) {
+  Scene scene = board_of(cells).problem->scene();
+  Instrument forceps;
+  forceps.action = Grip{Box{Vec3(49.99, -1, -1), Vec3(51, 0.01, 4)}, Vec3(0, -1, 0), Axes{7}};
+  scene.instruments.push_back(forceps);
+  const auto problem = std::make_shared<Problem>(std::move(scene));
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  const std::size_t grips = problem->gripped_dofs().size();
+  Load load;
+  for (std::size_t i = 0; i < grips; ++i) load.displacements.push_back(i % 3 == 1 ? -1.0 : 0.0);
+  for (auto _ : state) {
+    const auto backend = cpu_reference::create(problem, needs);
+    const auto instruments = backend->instrument_forces();
+    backend->set_load(load);
+    backend->solve();
+    std::vector<double> us, cpu;
+    us.reserve(1 << 20);
+    cpu.reserve(1 << 20);
+    std::atomic<bool> done{false};
+    std::size_t failed = 0;
+    std::thread haptics([&] {
+      std::vector<double> forces(grips);
+      while (!done.load()) {
+        const auto start = Clock::now();
+        const double cpu_start = thread_ms();
+        if (!instruments->forces(load.displacements, forces)) ++failed;
+        cpu.push_back(1e3 * (thread_ms() - cpu_start));
+        us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
+        for (double f : forces) failed += !std::isfinite(f);
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
+      }
+    });
+    for (const Index& e : board_of(cells).connected(640)) {
       backend->destroy({&e, 1});
       backend->set_load(load);
       backend->solve();
       backend->stress();
-      ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     }
-    state.SetIterationTime(1e-3 * std::accumulate(ms.begin(), ms.end(), 0.0));
-    const std::size_t tail = std::min<std::size_t>(100, ms.size() / 2);
-    state.counters["first_ms"] = median_of({ms.begin(), ms.begin() + 5});
-    state.counters["last_ms"] = median_of({ms.end() - static_cast<std::ptrdiff_t>(tail), ms.end()});
-    std::sort(ms.begin(), ms.end());
-    const double median = ms[ms.size() / 2], p99 = ms[ms.size() * 99 / 100];
-    state.counters["median_ms"] = median;
-    state.counters["p99_ms"] = p99;
-    state.counters["worst_ms"] = ms.back();
-    state.counters["p99_over_median"] = p99 / median;
-    state.counters["min_ms"] = ms.front();
+    done = true;
+    haptics.join();
+    state.SetIterationTime(1e-6 * std::accumulate(us.begin(), us.end(), 0.0));
+    if (failed > 0) state.SkipWithError("an answer was missing or not finite");
+    state.counters["answers"] = static_cast<double>(us.size());
+    state.counters["grips"] = static_cast<double>(grips);
+    report_frames(state, "us", std::move(us));
+    report_frames(state, "cpu_us", std::move(cpu));
   }
 }
 
@@ -201,8 +306,20 @@ void add(const std::string& name, double seconds,
       ->Unit(benchmark::kMillisecond);
 }
 
-void register_rows() {
+void add_once(const std::string& name, const std::function<void(benchmark::State&)>& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)
+      ->UseManualTime()
+      ->Iterations(1)
+      ->Unit(benchmark::kMillisecond);
+}
+
+/// `full`: cascades of 120,000 elements as well, some minutes.
+void register_rows(bool full) {
   for (Index cells : {18, 36, 71, 141}) {
+    if (cells == 18) {
+      add(row("openblas_inverse", cells, 1), 0.5,
+          [=](auto& s) { openblas_row(s, "openblas_inverse", cells, 1); });
+    }
     for (std::size_t k : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) {
       const auto peer = [=](const char* name, void (Cholmod::*run)()) {
         add(row(name, cells, k), 0.1, [=](auto& s) { cholmod_row(s, name, cells, k, run); });
@@ -223,18 +340,15 @@ void register_rows() {
     }
     add(row("sunder_factor_anew", cells, 1), 0.1, [=](auto& s) { own_refactor(s, cells); });
   }
-  for (Index cells : {18, 36, 71}) {
+  for (Index cells : {18, 36, 71, 141}) {
+    if (cells == 141 && !full) continue;
     for (std::size_t fractures : {std::size_t{200}, std::size_t{640}}) {
       for (Route route : {Route::inverse, Route::factor}) {
         if (route == Route::inverse && cells > 36) continue;
         const std::string name =
             std::string("cascade_") + (route == Route::inverse ? "inverse" : "factor") + "/" +
             std::to_string(6 * cells * cells) + "/" + std::to_string(fractures);
-        benchmark::RegisterBenchmark(name.c_str(),
-                                     [=](auto& s) { cascade(s, cells, fractures, route); })
-            ->UseManualTime()
-            ->Iterations(1)
-            ->Unit(benchmark::kMillisecond);
+        add_once(name, [=](auto& s) { cascade(s, cells, fractures, route); });
       }
     }
     for (int threads : {0, 1, 2}) {
@@ -243,6 +357,7 @@ void register_rows() {
           [=](auto& s) { stress_row(s, cells, threads); });
     }
   }
+  add_once("instrument_forces/1944", [](auto& s) { instrument_row(s, 18); });
 }
 
 }  // namespace
@@ -250,6 +365,9 @@ void register_rows() {
 
 int main(int argc, char** argv) {
   openblas_set_num_threads(1);
-  sunder::bench::register_rows();
+  const auto end = std::remove(argv, argv + argc, std::string_view("--full"));
+  const bool full = end != argv + argc;
+  argc = static_cast<int>(end - argv);
+  sunder::bench::register_rows(full);
   return sunder::bench::run_rows(argc, argv);
 }

@@ -2,6 +2,7 @@
 #include "cpu_reference/background_rebase.hpp"
 
 #include <exception>
+#include <numeric>
 
 #include "engine/factor_base.hpp"
 #include "fem/assembly.hpp"
@@ -16,8 +17,8 @@ Based based_on(const Problem& problem, std::span<const double> scale) {
   return based;
 }
 
-BackgroundRebase::BackgroundRebase(const Problem& problem, std::vector<double> scale)
-    : problem_(problem), scale_(std::move(scale)), thread_([this] { run(); }) {}
+BackgroundRebase::BackgroundRebase(const DamagedBody& body, const Load& load)
+    : body_(body), load_(load), thread_([this] { run(); }) {}
 
 BackgroundRebase::~BackgroundRebase() {
   if (thread_.joinable()) static_cast<void>(take());
@@ -56,9 +57,28 @@ bool BackgroundRebase::next(std::vector<Index>& elements) {
   return true;
 }
 
+/// A full check of the base (frame_check.hpp). The solution comes last: the frame that takes the
+/// base finds its load known, and all memory touched.
+void BackgroundRebase::check(Based& based) const {
+  engine::Deferred& deferred = *based.deferred;
+  const engine::Forces forces{load_.force_dofs, load_.forces};
+  Eigen::VectorXd u, du, r;
+  deferred.solve(forces, load_.displacements, u);
+  body_.apply(u, r);
+  r = -r;
+  for (std::size_t i = 0; i < load_.forces.size(); ++i) r[load_.force_dofs[i]] += load_.forces[i];
+  for (Index d : body_.problem().gripped_dofs()) r[d] = 0;
+  std::vector<Index> all(static_cast<std::size_t>(r.size()));
+  std::iota(all.begin(), all.end(), 0);
+  deferred.correct({all, {r.data(), all.size()}}, du);
+  based.check = {load_, body_.largest_stress(du) / r.norm()};
+  deferred.solve(forces, load_.displacements, u);
+}
+
 void BackgroundRebase::run() {
   try {
-    Based based = based_on(problem_, scale_);
+    Based based = based_on(body_.problem(), body_.scale());
+    check(based);
     std::vector<Index> elements;
     while (next(elements)) {
       if (!based.deferred->destroy(elements)) return;

@@ -10,21 +10,21 @@
 #include <thread>
 #include <vector>
 
-#include "engine/deferred.hpp"
-#include "fem/factor.hpp"
+#include "cpu_reference/routes.hpp"
 
 namespace sunder::cpu_reference {
 
 /// A base with the damage laid over it.
 struct Based {
+  BaseCheck check;
   std::unique_ptr<fem::Factor> factor;  // what the base reads; empty: it is the intact one
   std::unique_ptr<engine::Deferred> deferred;
 };
 
 class BackgroundRebase {
  public:
-  /// Starts. `scale`: a_e of the body now.
-  BackgroundRebase(const Problem& problem, std::vector<double> scale);
+  /// Starts. `body` as it is now; `load`: likely that of the frame that takes the base.
+  BackgroundRebase(const DamagedBody& body, const Load& load);
   ~BackgroundRebase();
   BackgroundRebase(const BackgroundRebase&) = delete;
   BackgroundRebase& operator=(const BackgroundRebase&) = delete;
@@ -38,10 +38,11 @@ class BackgroundRebase {
 
  private:
   void run();
+  void check(Based& based) const;
   [[nodiscard]] bool next(std::vector<Index>& elements);
 
-  const Problem& problem_;
-  std::vector<double> scale_;
+  DamagedBody body_;
+  Load load_;
   Based result_;
   int followed_ = 0;
   std::mutex mutex_;

@@ -240,6 +240,7 @@ class CpuBackend final : public Backend {
     fresh_ = false;
     if (condensed_) return solve_condensed();
     SolveReport report;
+    if (check_) check_->follow(*route_);
     const auto scale = check_ ? check_->scale_of(load_, *route_) : std::nullopt;
     route_->set_enough(scale ? check_->enough(*scale) : 0);
     solve_by(*route_, report);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <thread>
 
 #include "cpu_reference/background_rebase.hpp"
 #include "cpu_reference/routes.hpp"
@@ -36,6 +37,7 @@ class DeferredRoute final : public InverseRoute {
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
+    load_ = load;
     based_.deferred->solve({load.force_dofs, load.forces}, load.displacements, u, enough_);
     return {};
   }
@@ -54,15 +56,14 @@ class DeferredRoute final : public InverseRoute {
       coming_->follow(elements);
       if (coming_->followed() == kRebaseEvents) take_rebase();
     } else if (static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
-      const auto scale = body_.scale();
-      coming_ = std::make_unique<BackgroundRebase>(body_.problem(),
-                                                   std::vector<double>(scale.begin(), scale.end()));
+      coming_ = std::make_unique<BackgroundRebase>(body_, load_);
     }
   }
 
   bool rebase() override {
     coming_.reset();
     saved_ms_ = saved_ms();
+    reaper_ = {};
     based_ = {};  // frees the old base first
     based_ = based_on(body_.problem(), body_.scale());
     rebased();
@@ -77,6 +78,7 @@ class DeferredRoute final : public InverseRoute {
   const engine::Deferred* deferred() const override { return based_.deferred.get(); }
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return bases_; }
+  const BaseCheck& base_check() const override { return based_.check; }
   double waited_ms() const override { return waited_ms_; }
 
   std::vector<BufferPlan> buffers() const override {
@@ -96,8 +98,10 @@ class DeferredRoute final : public InverseRoute {
     coming_.reset();
     if (!next.deferred) return;  // what there is still holds; the next event tries again
     saved_ms_ = saved_ms();
-    based_ = {std::move(next.factor), std::move(next.deferred)};
+    std::swap(based_, next);
     rebased();
+    // Giving some megabytes back takes as long as a frame.
+    reaper_ = std::jthread([old = std::move(next)]() mutable { old = {}; });
   }
 
   void rebased() {
@@ -116,7 +120,9 @@ class DeferredRoute final : public InverseRoute {
   const DamagedBody& body_;
   bool dense_;              // the first base is an inverse
   std::vector<Index> all_;  // every unknown: the loads of a residual
+  Load load_;               // of the last solution
   Based based_;
+  std::jthread reaper_;  // frees the base before this one
   std::unique_ptr<BackgroundRebase> coming_;
   std::size_t threshold_ = 0;
   int bases_ = 1;

@@ -38,6 +38,23 @@ bool proportional(std::span<const double> a, std::span<const double> b, double s
   });
 }
 
+/// a = s b, s > 0; nothing: another direction.
+std::optional<double> multiple(const Load& a, const Load& b) {
+  if (a.force_dofs != b.force_dofs) return std::nullopt;
+  const auto ratio = [](std::span<const double> x, std::span<const double> y) {
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      if (y[i] != 0) return x[i] / y[i];
+    }
+    return 0.0;
+  };
+  const double s = std::max(ratio(a.forces, b.forces), ratio(a.displacements, b.displacements));
+  if (!(s > 0) || !proportional(a.forces, b.forces, s) ||
+      !proportional(a.displacements, b.displacements, s)) {
+    return std::nullopt;
+  }
+  return s;
+}
+
 }  // namespace
 
 FrameCheck::FrameCheck(const Problem& problem)
@@ -51,21 +68,19 @@ void FrameCheck::checked(const Load& load, const Solution& solution, double stre
   bases_ = bases;
 }
 
-std::optional<double> FrameCheck::scale_of(const Load& load, const InverseRoute& route) const {
-  if (route.bases() != bases_ || load.force_dofs != load_.force_dofs) return std::nullopt;
-  const auto ratio = [](std::span<const double> a, std::span<const double> b) {
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      if (b[i] != 0) return a[i] / b[i];
-    }
-    return 0.0;
-  };
-  const double s =
-      std::max(ratio(load.forces, load_.forces), ratio(load.displacements, load_.displacements));
-  if (!(s > 0) || !proportional(load.forces, load_.forces, s) ||
-      !proportional(load.displacements, load_.displacements, s)) {
-    return std::nullopt;
+void FrameCheck::follow(const InverseRoute& route) {
+  const BaseCheck& check = route.base_check();
+  if (bases_ == 0 || route.bases() == bases_ || !(check.stress_of_residual > 0) ||
+      !multiple(check.load, load_)) {
+    return;
   }
-  return s;
+  stress_of_residual_ = check.stress_of_residual;
+  bases_ = route.bases();
+}
+
+std::optional<double> FrameCheck::scale_of(const Load& load, const InverseRoute& route) const {
+  if (route.bases() != bases_) return std::nullopt;
+  return multiple(load, load_);
 }
 
 double FrameCheck::enough(double scale) const {

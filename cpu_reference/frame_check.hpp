@@ -25,7 +25,10 @@ class FrameCheck {
   /// Takes what a full check said of a solution before refining it: `stress` [MPa] is the largest
   /// of A^-1 (f - K u) over live elements.
   void checked(const Load& load, const Solution& solution, double stress, int bases);
-  /// The load as a multiple of that of the last full check; nothing: another direction or base.
+  /// Takes what is known of a base that is new since the last full check.
+  void follow(const InverseRoute& route);
+  /// The load as a multiple of that of the last full check; nothing: another direction, or a base
+  /// that nothing is known of.
   [[nodiscard]] std::optional<double> scale_of(const Load& load, const InverseRoute& route) const;
 
   /// Energy [N mm] of a defect of the deferred update that needs no refinement.

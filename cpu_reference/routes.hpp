@@ -64,6 +64,13 @@ struct Applied {
   bool converged = true;
 };
 
+/// What a full check of a base has found (frame_check.hpp): for which load, and how much stress
+/// [MPa] a residual of 1 N is worth; 0: there was none.
+struct BaseCheck {
+  Load load;
+  double stress_of_residual = 0;
+};
+
 /// One way to apply the inverse of the damaged stiffness, grips held at zero.
 class InverseRoute {
  public:
@@ -91,6 +98,11 @@ class InverseRoute {
   virtual void set_enough(double) {}
   /// Bases there have been so far: another one needs a full check.
   [[nodiscard]] virtual int bases() const { return 1; }
+  /// Of the newest base, if whoever made it has checked it.
+  [[nodiscard]] virtual const BaseCheck& base_check() const {
+    static const BaseCheck none;
+    return none;
+  }
   /// Milliseconds that frames have waited for a rebase so far.
   [[nodiscard]] virtual double waited_ms() const { return 0; }
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;

@@ -37,9 +37,10 @@ class Base {
   virtual void push(std::span<const Difference> vectors, fem::RowMajor& gram) = 0;
   /// Takes the last push away.
   virtual void pop() = 0;
-  /// Takes a load and returns B^T X f. The same load as last time costs nothing.
+  /// Takes a load and returns B^T X f, in as many leading entries as B has columns. The same load
+  /// as last time costs nothing.
   virtual const Eigen::VectorXd& load(const Forces& forces) = 0;
-  /// u = X (f + B c) with the f of the last load().
+  /// u = X (f + B c) with the f of the last load(); c is as long as B has columns, or longer.
   virtual void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) = 0;
   /// Computes what push() will need of these vectors, in place of others that were prepared before.
   /// push() gives the same bits with it and without.

@@ -23,10 +23,10 @@ void make_room(fem::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
   a.setZero(std::max(rows, a.rows()), std::max(columns, a.cols()));
 }
 
-/// y = S x for the leading n rows and columns of a symmetric S.
+/// y = S x for the leading n rows and columns of a symmetric S, n entries of x and y.
 void multiply(const fem::RowMajor& s, Eigen::Index n, const Eigen::VectorXd& x,
               Eigen::VectorXd& y) {
-  y.setZero(n);
+  y.head(n).setZero();
   add_product(s.data(), s.outerStride(), n, x.data(), n, y.data());
 }
 
@@ -80,6 +80,7 @@ void Deferred::reserve(Index columns) {
   compliance_.conservativeResize(size, padded(size));
   m_.conservativeResize(size, padded(size));
   d_.conservativeResize(size, padded(size));
+  for (Eigen::VectorXd* v : {&v_, &x_, &lack_, &gx_, &mgx_}) v->resize(size);
 }
 
 bool Deferred::factor_grips() {
@@ -317,7 +318,7 @@ void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacem
   multiply(m_, count(), p, x_);
   if (grips_ == 0) return;
   forces_ = -p.head(grips_);
-  forces_.noalias() -= compliance_.topLeftCorner(grips_, count()) * x_;
+  forces_.noalias() -= compliance_.topLeftCorner(grips_, count()) * x_.head(count());
   add_grips(displacement);
 }
 
@@ -325,17 +326,17 @@ void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacem
 double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displacement) {
   const Eigen::Index n = count();
   multiply(compliance_, n, x_, v_);
-  v_ += p;                     // B^T u
+  v_.head(n) += p.head(n);     // B^T u
   multiply(d_, n, v_, lack_);  // D B^T u - x
-  lack_.tail(n - grips_) -= x_.tail(n - grips_);
+  lack_.segment(grips_, n - grips_) -= x_.segment(grips_, n - grips_);
   multiply(compliance_, n, lack_, gx_);
   multiply(m_, n, gx_, mgx_);
-  const double energy = lack_.dot(gx_) + gx_.dot(mgx_);
-  x_ += lack_;
-  x_ += mgx_;
+  const double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n));
+  x_.head(n) += lack_.head(n);
+  x_.head(n) += mgx_.head(n);
   if (grips_ == 0) return energy;
   forces_ = -v_.head(grips_) - gx_.head(grips_);
-  forces_.noalias() -= compliance_.topLeftCorner(grips_, n) * mgx_;
+  forces_.noalias() -= compliance_.topLeftCorner(grips_, n) * mgx_.head(n);
   add_grips(displacement);
   return energy;
 }
@@ -347,9 +348,9 @@ void Deferred::add_grips(std::span<const double> displacement) {
     forces_[i] += displacement[static_cast<std::size_t>(i)];
   }
   grip_block_.solveInPlace(forces_);
-  gx_.noalias() = compliance_.topLeftCorner(n, g) * forces_;
+  gx_.head(n).noalias() = compliance_.topLeftCorner(n, g) * forces_;
   multiply(m_, n, gx_, mgx_);
-  x_ += mgx_;
+  x_.head(n) += mgx_.head(n);
   x_.head(g) += forces_;
 }
 

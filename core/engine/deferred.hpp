@@ -105,7 +105,7 @@ class Deferred {
   Eigen::Index rank_ = 0;
   fem::RowMajor u_, columns_, xu_, z_, zt_, product_, gram_, at_grips_;
   Eigen::MatrixXd c_;
-  // A solution: (X f) and u in B, the forces x on B, what they lack, and its products.
+  // A solution: u in B, the forces x on B, what they lack, and its products; count() entries each.
   Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_;
   double defect_energy_ = 0;
   bool converged_ = true;

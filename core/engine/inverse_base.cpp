@@ -23,9 +23,9 @@ InverseBase::InverseBase(const fem::Factor& factor) : factor_(factor) {
   pushes_.reserve(1024);
 }
 
-// Two solves read the factor twice, value and index; a column of X costs n.
+// Two solves read the factor twice; a column of X costs n.
 bool InverseBase::too_many(std::size_t columns) const {
-  return columns * static_cast<std::size_t>(size()) > 4 * factor_.entries();
+  return columns * static_cast<std::size_t>(size()) > 2 * factor_.entries();
 }
 
 void InverseBase::push(std::span<const Difference> vectors, fem::RowMajor& gram) {
@@ -77,7 +77,8 @@ void InverseBase::apply(std::span<const Index> dofs, std::span<const double> val
 }
 
 void InverseBase::project(const Eigen::VectorXd& u, Eigen::VectorXd& projected) const {
-  projected.resize(static_cast<Index>(vectors_.size()));
+  const auto count = static_cast<Eigen::Index>(vectors_.size());
+  if (projected.size() < count) projected.resize(2 * count + 256);
   for (std::size_t i = 0; i < vectors_.size(); ++i) {
     const auto [dof, other] = vectors_[i];
     projected[static_cast<Eigen::Index>(i)] = other == kNone ? u[dof] : u[dof] - u[other];

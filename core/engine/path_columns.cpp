@@ -110,7 +110,8 @@ void PathColumns::multiply(std::span<const Index> path, const fem::RowMajor& row
 }
 
 void PathColumns::project(const Eigen::VectorXd& y, Eigen::VectorXd& p) {
-  p.setZero(columns_);
+  if (p.size() < columns_) p.resize(2 * columns_ + 256);
+  p.head(columns_).setZero();
   for (Index s : reached_) {
     const Block& b = blocks_[s];
     const Index width = nodes_.width(s);

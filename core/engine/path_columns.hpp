@@ -27,7 +27,7 @@ class PathColumns {
   /// `rows` and `gram` are used, a multiple of 8.
   void multiply(std::span<const Index> path, const fem::RowMajor& rows, Index width,
                 Eigen::Ref<fem::RowMajor> gram);
-  /// p <- V^T y.
+  /// The leading size() entries of p <- V^T y.
   void project(const Eigen::VectorXd& y, Eigen::VectorXd& p);
   /// y += V c.
   void add(const Eigen::VectorXd& c, Eigen::VectorXd& y);
