@@ -127,6 +127,11 @@ double Correction::energy(const Eigen::VectorXd& projection) const {
   return projection.dot(m_ * projection);
 }
 
+double Correction::base_energy(const Eigen::VectorXd& values) const {
+  if (count() == 0) return 0;
+  return values.dot(x_ * values);
+}
+
 Eigen::VectorXd Correction::coefficients(const Eigen::VectorXd& projection,
                                          std::span<const double> displacement) const {
   if (count() == 0) return {};

@@ -16,6 +16,10 @@
 
 namespace sunder::gpu {
 
+/// A load on up to so many dofs is multiplied by exact columns: fp32 columns alone would cost 1e-4
+/// of the board's largest stress, in its stiff frame.
+inline constexpr std::size_t kExactLoads = 64;
+
 /// An event's update vectors with at most as many columns as dofs: W W^T is unchanged.
 [[nodiscard]] Eigen::MatrixXd compressed(const Eigen::MatrixXd& w);
 
@@ -41,11 +45,16 @@ class Correction {
   /// X_E, shape (n x at least count()).
   [[nodiscard]] const Eigen::MatrixXd& columns() const { return columns_; }
   [[nodiscard]] Index count() const { return static_cast<Index>(dofs_.size()); }
+  [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
 
   /// Moves what a load carries on dofs of E to coefficients of the exact columns.
   [[nodiscard]] Eigen::VectorXd take_exact(Loaded& load) const;
   /// X_E^T f.
   [[nodiscard]] Eigen::VectorXd project(const Loaded& load) const;
+  /// X_E^T r, r over all unknowns.
+  [[nodiscard]] Eigen::VectorXd project(const Eigen::VectorXd& r) const {
+    return columns_.leftCols(count()).transpose() * r;
+  }
   /// c for the force f given as X_E^T f, with the gripped dofs at `displacement` (empty: 0). Throws
   /// NumericalError when the grips' compliance is singular.
   [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& projection,
@@ -53,6 +62,8 @@ class Correction {
 
   /// What the damage adds to r^T X r, for X_E^T r: r^T A^-1 r = r^T X r + energy.
   [[nodiscard]] double energy(const Eigen::VectorXd& projection) const;
+  /// r_E^T X_EE r_E of a residual's values on E.
+  [[nodiscard]] double base_energy(const Eigen::VectorXd& values) const;
 
   [[nodiscard]] std::size_t bytes() const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/host_inverse.hpp"
 
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -28,6 +29,18 @@ Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
   std::vector<Index> list(static_cast<std::size_t>(count));
   std::iota(list.begin(), list.end(), first);
   return factor_.inverse_columns(list);
+}
+
+std::vector<double> upload_inverse(const HostInverse& host, DenseInverse& device, Index n) {
+  std::vector<double> roots(static_cast<std::size_t>(n));
+  device.upload([&](Index first, Index count) {
+    Eigen::MatrixXd columns = host.range(first, count);
+    for (Index c = 0; c < count; ++c) {
+      roots[static_cast<std::size_t>(first + c)] = std::sqrt(columns(first + c, c));
+    }
+    return columns;
+  });
+  return roots;
 }
 
 std::size_t HostInverse::bytes() const {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "fem/factor.hpp"
+#include "gpu/passes/dense_inverse.hpp"
 
 namespace sunder::gpu {
 
@@ -22,5 +23,10 @@ class HostInverse {
   fem::Factor factor_;
   Eigen::MatrixXd dense_;  // empty: too large
 };
+
+/// Fills `device` with it, in storage precision; returns the roots of its diagonal in fp64, for `n`
+/// unknowns.
+[[nodiscard]] std::vector<double> upload_inverse(const HostInverse& host, DenseInverse& device,
+                                                 Index n);
 
 }  // namespace sunder::gpu

@@ -15,9 +15,6 @@ namespace {
 // A pivot of C below this means that the event isolates something: fp32 has no digits left there
 // (method.md "Stability"), so the eager inverse must not take it in.
 constexpr double kLeastPivot32 = 1e-3;
-// A load on up to so many dofs is multiplied by exact columns: fp32 columns alone would cost 1e-4
-// of the board's largest stress, in its stiff frame.
-constexpr std::size_t kExactLoads = 64;
 
 }  // namespace
 
@@ -70,21 +67,15 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem,
 
 /// X of the body with the elements `destroyed`, and the roots of its diagonal.
 void InverseRoute::make_base(std::span<const Index> destroyed) {
-  std::vector<double> roots(fields_.rows(), 0.0);
+  ++bases_;
+  std::vector<double> roots;
   if (options_.on_device) {
     invert_on_device(kernels_, fem::assemble_lower(problem_, scale_of(destroyed)), fields_.rows(),
                      options_.panel_bytes, base_);
-    const std::vector<double> diagonal = base_.diagonal();
-    std::transform(diagonal.begin(), diagonal.end(), roots.begin(),
-                   [](double x) { return std::sqrt(x); });
+    roots = base_.diagonal();
+    for (double& x : roots) x = std::sqrt(x);
   } else {
-    base_.upload([&](Index first, Index count) {
-      Eigen::MatrixXd columns = host_->range(first, count);
-      for (Index c = 0; c < count; ++c) {
-        roots[static_cast<std::size_t>(first + c)] = std::sqrt(columns(first + c, c));
-      }
-      return columns;
-    });
+    roots = upload_inverse(*host_, base_, problem_.dof_count());
   }
   fields_.set_roots(roots);
 }
@@ -107,7 +98,7 @@ void InverseRoute::bind() {
 }
 
 void InverseRoute::extend_exact() {
-  const bool moved = exact_.extend(correction_->columns(), correction_->count());
+  const bool moved = exact_.extend(correction_->columns(), correction_->dofs());
   if (moved || !sum_displacement_) bind();
 }
 
@@ -135,12 +126,14 @@ int InverseRoute::solve(const Load& load, bool balance) {
   return 0;
 }
 
-std::optional<double> InverseRoute::energy_bound() const {
+std::optional<EnergyBound> InverseRoute::energy_bound() const {
   if (eager_) return std::nullopt;
   // A^-1 = X + X_E M X_E^T, and r^T X r <= (sum of |r_j| sqrt(X_jj))^2 in the norm of X.
   const double of_base = fields_.state().energy_root;
   const double of_damage = correction_->energy(exact_.projection());
-  return std::sqrt(of_base * of_base + of_damage);
+  const double of_touched = correction_->base_energy(exact_.values());
+  return EnergyBound{std::sqrt(of_base * of_base + of_damage), of_base,
+                     std::sqrt(of_touched) + std::sqrt(of_damage)};
 }
 
 void InverseRoute::solve_deferred(const Load& load, bool balance) {

@@ -32,7 +32,8 @@ class InverseRoute final : public DeviceRoute {
                                                  const InverseOptions& options);
 
   int solve(const Load& load, bool balance) override;
-  std::optional<double> energy_bound() const override;
+  std::optional<EnergyBound> energy_bound() const override;
+  int bases() const override { return bases_; }
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
@@ -67,6 +68,7 @@ class InverseRoute final : public DeviceRoute {
   std::shared_ptr<const HostInverse> host_;  // of the base
   InverseOptions options_;
   bool eager_, rebased_ = false;
+  int bases_ = 0;
   DenseInverse base_;
   ExactColumns exact_;
   std::unique_ptr<Correction> correction_;

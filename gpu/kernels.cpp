@@ -10,9 +10,10 @@
 namespace sunder::gpu {
 namespace {
 
-vulkan::Access access(Reads reads, Variant variant, bool fp64) {
+vulkan::Access access(Reads reads, Variant variant, bool fp64, bool single) {
   if (variant == Variant::gpu || reads == Reads::plain) return vulkan::Access::storage;
-  if (reads == Reads::reals && !fp64) return vulkan::Access::texel_float4;
+  if ((reads == Reads::reals && !fp64) || (reads == Reads::doubles && single))
+    return vulkan::Access::texel_float4;
   return vulkan::Access::texel_uint4;
 }
 
@@ -20,18 +21,20 @@ vulkan::Access access(Reads reads, Variant variant, bool fp64) {
 
 std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool fp64,
                                                     std::initializer_list<Reads> bindings,
-                                                    std::size_t push_bytes,
-                                                    std::uint32_t group) const {
-  const std::string full =
-      std::string(name) + (variant_ == Variant::gpu ? "_gpu_" : "_lvp_") + (fp64 ? "fp64" : "fp32");
+                                                    std::size_t push_bytes, std::uint32_t group,
+                                                    std::uint32_t choice) const {
+  const std::string full = std::string(name) + (variant_ == Variant::gpu ? "_gpu_" : "_lvp_") +
+                           (single() ? "single"
+                            : fp64   ? "fp64"
+                                     : "fp32");
   vulkan::KernelCode code;
   code.spirv = shaders::find(full);
   if (code.spirv.empty()) throw DeviceError("this build lacks the kernel " + full);
   std::vector<vulkan::Access> accesses;
-  for (Reads r : bindings) accesses.push_back(access(r, variant_, fp64));
+  for (Reads r : bindings) accesses.push_back(access(r, variant_, fp64, single()));
   code.bindings = accesses;
   code.push_bytes = static_cast<std::uint32_t>(push_bytes);
-  const std::uint32_t constants[] = {group, device_.physical().subgroup};
+  const std::uint32_t constants[] = {group, device_.physical().subgroup, choice};
   code.constants = constants;
   return std::make_unique<vulkan::Kernel>(device_, code);
 }

@@ -32,24 +32,27 @@ class KernelFactory {
   KernelFactory(vulkan::Device& device, Variant variant, bool fp64)
       : device_(device), variant_(variant), fp64_(fp64) {}
 
-  /// A kernel in storage precision.
+  /// A kernel in storage precision; `choice`: its third specialization constant, where it has one.
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name,
                                                      std::initializer_list<Reads> bindings,
                                                      std::size_t push_bytes,
-                                                     std::uint32_t group = shaders::kGroup) const {
-    return make(name, fp64_, bindings, push_bytes, group);
+                                                     std::uint32_t group = shaders::kGroup,
+                                                     std::uint32_t choice = 0) const {
+    return make(name, fp64_, bindings, push_bytes, group, choice);
   }
-  /// A kernel that computes in fp64 always.
+  /// A kernel that computes in fp64 always (in two floats where the device has none).
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make_fp64(std::string_view name,
                                                           std::initializer_list<Reads> bindings,
                                                           std::size_t push_bytes) const {
-    return make(name, true, bindings, push_bytes, shaders::kGroup);
+    return make(name, true, bindings, push_bytes, shaders::kGroup, 0);
   }
 
   /// The same kernels with fp64 as storage precision.
   [[nodiscard]] KernelFactory in_fp64() const { return {device_, variant_, true}; }
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
+  /// The device has no fp64 at all: what would be fp64 is two floats, or the host's.
+  [[nodiscard]] bool single() const { return !device_.physical().float64; }
   [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }
   /// Partial results that a workgroup leaves behind (shaders/reduce.glsl).
   [[nodiscard]] std::uint32_t parts() const;
@@ -61,8 +64,8 @@ class KernelFactory {
  private:
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name, bool fp64,
                                                      std::initializer_list<Reads> bindings,
-                                                     std::size_t push_bytes,
-                                                     std::uint32_t group) const;
+                                                     std::size_t push_bytes, std::uint32_t group,
+                                                     std::uint32_t choice) const;
 
   vulkan::Device& device_;
   Variant variant_;

@@ -47,6 +47,27 @@ void choose_route(const Problem& problem, const vulkan::PhysicalDevice& device, 
 
 }  // namespace
 
+namespace {
+
+/// What a device without shaderFloat64 cannot do.
+void require_double(const Plan& plan, const SolverOptions& solver,
+                    const vulkan::PhysicalDevice& device) {
+  const auto refuse = [&](const std::string& what) {
+    throw DeviceError(what + ", but the device \"" + device.name +
+                      "\" lacks shaderFloat64; use route inverse with update deferred and a "
+                      "tolerance of 1e-4 or more, another device or backend cpu");
+  };
+  if (plan.fp64) {
+    refuse(solver.precision == Precision::fp64
+               ? "precision fp64 was asked for"
+               : "tolerance " + number(solver.tolerance) + " needs fp64");
+  }
+  if (plan.cg) refuse("route cg sums in fp64");
+  if (plan.eager) refuse("the eager update watches its residual in fp64");
+}
+
+}  // namespace
+
 Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::PhysicalDevice& device) {
   const SolverOptions& solver = problem.scene().solver;
   if (solver.route == Route::condensed || solver.route == Route::factor) {
@@ -68,7 +89,12 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
     throw DeviceError("route cg has no inverse to update; use update auto with it");
   }
   plan.eager = solver.update == Update::eager;
-  plan.invert_on_device = !plan.cg && !device.is_cpu() && problem.dof_count() >= kInvertOnDevice;
+  if (!device.float64) {
+    require_double(plan, solver, device);
+    plan.why += "; the device lacks shaderFloat64, so the host corrects for the damage";
+  }
+  plan.invert_on_device =
+      device.float64 && !plan.cg && !device.is_cpu() && problem.dof_count() >= kInvertOnDevice;
   if (plan.invert_on_device) plan.why += "; the device computes it";
   if (needs.damage && !plan.cg) {
     plan.why += plan.eager ? "; the eager update was asked for"

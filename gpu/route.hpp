@@ -13,6 +13,13 @@
 
 namespace sunder::gpu {
 
+/// Energy norms sqrt(r^T A^-1 r) of a solution's residual r, from above.
+struct EnergyBound {
+  double whole = 0;
+  double base = 0;     ///< the share that the base's inverse has in it
+  double touched = 0;  ///< the share of the exact columns' unknowns and of the damage
+};
+
 class DeviceRoute {
  public:
   virtual ~DeviceRoute() = default;
@@ -23,9 +30,10 @@ class DeviceRoute {
   /// Displacement under a load, and Fields' state of it, with f - K u if `balance`. Returns
   /// iterations.
   virtual int solve(const Load& load, bool balance) = 0;
-  /// Bound on the energy norm sqrt(r^T A^-1 r) of the last solve's residual, where the route has
-  /// one for less than correct() costs.
-  [[nodiscard]] virtual std::optional<double> energy_bound() const { return std::nullopt; }
+  /// Of the last solve, where the route has it for less than correct() costs.
+  [[nodiscard]] virtual std::optional<EnergyBound> energy_bound() const { return std::nullopt; }
+  /// How many bases there have been.
+  [[nodiscard]] virtual int bases() const { return 1; }
   /// Correction = A^-1 r with grips at 0, and Fields' summary of it. Returns iterations.
   virtual int correct() = 0;
   /// Displacement += correction, and Fields' state anew.

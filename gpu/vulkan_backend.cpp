@@ -7,6 +7,8 @@
 
 #include "gpu/cg_route.hpp"
 #include "gpu/choose_device.hpp"
+#include "gpu/frame_check.hpp"
+#include "gpu/host_corrected_route.hpp"
 #include "gpu/inverse_route.hpp"
 #include "gpu/plan.hpp"
 #include "sunder/error.hpp"
@@ -14,20 +16,16 @@
 namespace sunder::gpu {
 namespace {
 
-// Refined silently down to this stress error: fp64 promises 1e-8 along a crack; fp32 storage
-// promises the scene's tolerance, half of which leaves room for the estimate's own error.
-constexpr double kFp64Error = 1e-9;
-constexpr double kFp32Error = 5e-4;  // however large the tolerance
 constexpr int kRefinements = 6;
-constexpr double kUnchecked = -1;
-constexpr double kSameLoad = 1e-14;  // relative: rounding of a ramp's factor
 // Read back node by node up to here, gathered on the device beyond.
 constexpr std::size_t kFewNodes = 64;
 
 std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int asked) {
   if (options.lent) return vulkan::borrow_device(*options.lent, options.probe);
   const auto instance = std::make_shared<vulkan::Instance>(options.instance);
-  return vulkan::create_device(instance, choose_device(*instance, asked), options.probe);
+  vulkan::PhysicalDevice physical = choose_device(*instance, asked);
+  physical.float64 = physical.float64 && !options.probe.no_float64;
+  return vulkan::create_device(instance, physical, options.probe);
 }
 
 class VulkanBackend final : public Backend {
@@ -40,7 +38,8 @@ class VulkanBackend final : public Backend {
                  plan_.fp64),
         inverse_{plan_.eager, problem->scene().solver.tolerance, options.panel_bytes,
                  options.invert_on_device.value_or(plan_.invert_on_device)},
-        fields_(kernels_, *problem, this->needs(), route_needs(*problem)) {
+        fields_(kernels_, *problem, this->needs(), route_needs(*problem)),
+        check_(*problem, plan_.fp64) {
     if (!plan_.cg || this->needs().pristine) {
       intact_ = std::make_shared<HostInverse>(fem::assemble_lower(*problem, {}),
                                               !plan_.cg && !inverse_.on_device);
@@ -50,7 +49,6 @@ class VulkanBackend final : public Backend {
           *problem, [host = intact_](std::span<const Index> dofs) { return host->columns(dofs); });
     }
     force_.assign(fields_.rows(), 0.0);
-    stress_of_energy_ = stress_of_energy(*problem);
     device_->set_timing(false);
     if (options.lent) {
       display_ = std::make_unique<Display>(kernels_, *problem, fields_, this->needs().stress,
@@ -58,6 +56,11 @@ class VulkanBackend final : public Backend {
     }
     if (plan_.cg) {
       route_ = std::make_unique<CgRoute>(kernels_, fields_);
+      return;
+    }
+    if (kernels_.single()) {
+      route_ = std::make_unique<HostCorrectedRoute>(kernels_, *problem, fields_, intact_,
+                                                    inverse_.panel_bytes);
       return;
     }
     route_ = std::make_unique<InverseRoute>(kernels_, *problem, fields_, intact_, inverse_);
@@ -107,6 +110,9 @@ class VulkanBackend final : public Backend {
 
   [[nodiscard]] Fields::RouteNeeds route_needs(const Problem& problem) const {
     if (plan_.cg) return {CgRoute::planned_bytes(problem), true};
+    if (kernels_.single()) {
+      return {HostCorrectedRoute::planned_bytes(kernels_, problem, inverse_.panel_bytes), false};
+    }
     return {InverseRoute::planned_bytes(kernels_, problem, inverse_), false};
   }
 
@@ -124,11 +130,11 @@ class VulkanBackend final : public Backend {
 
   SolveReport do_solve() override {
     finish_display();
-    if (!is_multiple_of_checked()) fields_.keep_next();
+    if (!check_.known(load_)) fields_.keep_next();
     try {
       return solve_within_tolerance();
     } catch (const NumericalError&) {
-      checked_error_ = kUnchecked;
+      check_.event();
       fields_.restore();  // results so far stay readable
       throw;
     }
@@ -152,16 +158,24 @@ class VulkanBackend final : public Backend {
   /// One solve, refined while that helps and is needed.
   SolveReport attempt() {
     SolveReport report;
-    const double target = std::min(plan_.fp64 ? kFp64Error : kFp32Error, tolerance() / 2);
-    if (is_multiple_of_checked()) {
+    const double target = check_.target();
+    if (const auto known = check_.known(load_)) {
+      report = *known;
       report.iterations = route_->solve(load_, !problem().gripped_dofs().empty());
-      report.error = checked_error_;
-      report.residual = checked_residual_;
       if (std::isfinite(fields_.state().stress_squared)) return report;
     }
-    checked_error_ = kUnchecked;
+    check_.event();
     report.iterations += route_->solve(load_, true);
-    if (within_bound(target, report)) return report;
+    const auto energy = route_->energy_bound();
+    const double stress = std::sqrt(fields_.state().stress_squared);
+    if (energy) {
+      if (const auto error = check_.bounded(load_, *energy, stress, route_->bases())) {
+        report.error = *error;
+        report.residual = residual();
+        check_.checked(load_, report);
+        return report;
+      }
+    }
     for (int refinement = 0;; ++refinement) {
       report.iterations += route_->correct();
       const double error = estimate();
@@ -173,68 +187,13 @@ class VulkanBackend final : public Backend {
       // A correction that no longer shrinks is rounding: stop there if the promise holds.
       const bool stalled = refinement > 0 && !(error < report.error / 2);
       report.error = error;
-      if (refinement == 0 && error <= target) remember(report);
+      if (refinement == 0 && energy) {
+        check_.estimated(load_, error, *energy, stress, route_->bases());
+      }
+      if (refinement == 0 && error <= target) check_.checked(load_, report);
       if (error <= target || refinement == kRefinements || stalled) return report;
       route_->add_correction();
     }
-  }
-
-  /// Whether a bound on the error, which costs less than the estimate, is good enough already.
-  bool within_bound(double target, SolveReport& report) {
-    const auto energy = route_->energy_bound();
-    if (!energy) return false;
-    const double bound =
-        *energy == 0 ? 0.0
-                     : stress_of_energy_ * *energy / std::sqrt(fields_.state().stress_squared);
-    if (!(bound <= target)) return false;
-    report.error = bound;
-    report.residual = residual();
-    remember(report);
-    return true;
-  }
-
-  void remember(const SolveReport& report) {
-    checked_ = load_;
-    checked_error_ = report.error;
-    checked_residual_ = report.residual;
-  }
-
-  /// Largest |stress| of an element, Frobenius, for a strain energy norm sqrt(u^T K u) of 1:
-  /// |s|^2 <= (3 lambda + 2 mu) s:e, and V s:e is the element's share of u^T K u.
-  static double stress_of_energy(const Problem& problem) {
-    double largest = 0;
-    for (Index e = 0; e < problem.tet_count(); ++e) {
-      const Material& m = problem.material(e);
-      const double bulk = m.young / (1 - 2 * m.poisson);  // 3 lambda + 2 mu
-      const double stiffest = std::max(bulk, m.young / (1 + m.poisson));
-      largest = std::max(largest, stiffest / problem.shape(e).volume);
-    }
-    return std::sqrt(largest);
-  }
-
-  /// Whether the load is a multiple of one whose solution needed no refinement, on the same damage:
-  /// the solution is linear in the load, and so its relative error is the same.
-  bool is_multiple_of_checked() const {
-    if (checked_error_ == kUnchecked || load_.force_dofs != checked_.force_dofs) return false;
-    double squared = 0, product = 0;
-    const auto each = [&](auto&& visit) {
-      for (std::size_t i = 0; i < load_.forces.size(); ++i) {
-        visit(load_.forces[i], checked_.forces[i]);
-      }
-      for (std::size_t i = 0; i < load_.displacements.size(); ++i) {
-        visit(load_.displacements[i], checked_.displacements[i]);
-      }
-    };
-    each([&](double now, double then) {
-      squared += then * then;
-      product += now * then;
-    });
-    const double factor = squared > 0 ? product / squared : 0.0;
-    bool same = factor != 0;
-    each([&](double now, double then) {
-      same = same && std::abs(now - factor * then) <= kSameLoad * std::abs(now);
-    });
-    return same;
   }
 
   double estimate() const {
@@ -265,7 +224,7 @@ class VulkanBackend final : public Backend {
 
   void do_destroy(std::span<const Index> elements) override {
     finish_display();
-    checked_error_ = kUnchecked;
+    check_.event();
     destroyed_list_.insert(destroyed_list_.end(), elements.begin(), elements.end());
     fields_.destroy(elements);
     route_->destroy(elements, destroyed_list_);
@@ -317,6 +276,7 @@ class VulkanBackend final : public Backend {
   KernelFactory kernels_;
   InverseOptions inverse_;  // of route inverse
   Fields fields_;
+  FrameCheck check_;
   std::shared_ptr<const HostInverse> intact_;
   std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
   std::unique_ptr<Display> display_;
@@ -325,9 +285,6 @@ class VulkanBackend final : public Backend {
   std::vector<double> force_;  // over the padded unknowns
   double force_squared_ = 0;
   std::vector<Index> destroyed_list_;
-  Load checked_;  // the last load whose error was estimated and needed no refinement
-  double checked_error_ = kUnchecked, checked_residual_ = 0;
-  double stress_of_energy_ = 0;
 };
 
 }  // namespace
@@ -336,6 +293,8 @@ VulkanOptions options_from_environment() {
   VulkanOptions options;
   const char* validation = std::getenv("SUNDER_VULKAN_VALIDATION");
   options.instance.validation = validation && std::strcmp(validation, "1") == 0;
+  const char* no_float64 = std::getenv("SUNDER_VULKAN_NO_FLOAT64");
+  options.probe.no_float64 = no_float64 && std::strcmp(no_float64, "1") == 0;
   return options;
 }
 

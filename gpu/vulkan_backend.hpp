@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The backend on Vulkan compute shaders: any Vulkan 1.2 device with shaderFloat64.
+// The backend on Vulkan compute shaders: any Vulkan 1.2 device; without shaderFloat64 route inverse
+// in fp32 alone.
 #pragma once
 
 #include <memory>
@@ -26,7 +27,7 @@ struct VulkanOptions {
 };
 
 /// Options from the environment: SUNDER_VULKAN_VALIDATION=1 turns the validation layers on and
-/// their messages into errors.
+/// their messages into errors; SUNDER_VULKAN_NO_FLOAT64=1 (for tests) takes shaderFloat64 away.
 [[nodiscard]] VulkanOptions options_from_environment();
 
 /// All Vulkan devices of the machine; empty without loader or driver. The one that `auto` would

@@ -3,6 +3,20 @@
 // reads texel buffers, which lavapipe turns into vector gathers where it would run a storage read
 // as a loop over lanes (measured on Mesa 22.3.6: 2.8 to 5.5 times faster).
 #extension GL_EXT_control_flow_attributes : require
+
+// What sums, ratios and displacements are kept in. SUNDER_SINGLE: a device without shaderFloat64, where
+// displacements are two floats each (two_float.glsl) and the host does what needs more.
+#ifdef SUNDER_SINGLE
+#define WIDE float
+#define WIDE4 vec4
+#define NODAL vec2
+#define IN_WIDE4 IN_VEC4
+#else
+#define WIDE double
+#define WIDE4 dvec4
+#define NODAL double
+#define IN_WIDE4 IN_DVEC4
+#endif
 #include "layout.h"
 
 #ifdef SUNDER_LVP

@@ -6,11 +6,11 @@
 #include "common.glsl"
 
 IN_WORDS(0, Held, held)  // positions among the nodes' values
-layout(std430, set = 0, binding = 1) readonly buffer Prescribed { double data[]; } prescribed;
-INOUT(2, Nodal, double, u)
+layout(std430, set = 0, binding = 1) readonly buffer Prescribed { NODAL data[]; } prescribed;
+INOUT(2, Nodal, NODAL, u)
 layout(push_constant) uniform Push { HoldPush p; };
 
 void main() {
   const uint g = gl_GlobalInvocationID.x;
-  if (g < p.count) u.data[held.data[g]] = p.to_zero != 0u ? 0.0LF : prescribed.data[g];
+  if (g < p.count) u.data[held.data[g]] = p.to_zero != 0u ? NODAL(0) : prescribed.data[g];
 }

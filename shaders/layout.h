@@ -68,9 +68,9 @@ struct GatherPush {
 };
 
 struct ElementPush {
-  double alpha;
-  uint keep;    // kKeepStress, kListOver
-  uint tresca;  // 1: measure s1 - s3 instead of half of it
+  float alpha, alpha_low;  // its sum has 48 bits
+  uint keep;               // kKeepStress, kListOver
+  uint tresca;             // 1: measure s1 - s3 instead of half of it
 };
 
 struct DisplayPush {
@@ -80,6 +80,7 @@ struct DisplayPush {
 
 struct ProjectPush {
   uint packs;
+  uint capacity;  // of columns
 };
 
 struct SummaryPush {
@@ -139,34 +140,47 @@ struct CgState {
   uint unused;
 };
 
+// WIDE: fp64, or fp32 on a device that has no more.
+#ifdef __cplusplus
+#define SUNDER_WIDE_STRUCT(name) \
+  template <class WIDE>          \
+  struct name##Of
+#else
+#define SUNDER_WIDE_STRUCT(name) struct name
+#endif
+
 // Worst yield ratio and largest stress of the elements of one workgroup.
-struct StressPartial {
-  double any_ratio, candidate_ratio;
-  double stress_squared;  // largest Frobenius norm of a live element, squared
+SUNDER_WIDE_STRUCT(StressPartial) {
+  WIDE any_ratio, candidate_ratio;
+  WIDE stress_squared;  // largest Frobenius norm of a live element, squared
   uint any_element, candidate_element;
 };
 
 // Sums over the nodes of one workgroup.
-struct NodePartial {
-  double residual_squared;  // over dofs that no grip holds
-  double reaction_squared;  // over those that one holds
-  double energy_root;       // sum of |r_j| sqrt(X_jj): bounds sqrt(r^T X r) from above
-  double unused;
+SUNDER_WIDE_STRUCT(NodePartial) {
+  WIDE residual_squared;  // over dofs that no grip holds
+  WIDE reaction_squared;  // over those that one holds
+  WIDE energy_root;       // sum of |r_j| sqrt(X_jj): bounds sqrt(r^T X r) from above
+  WIDE unused;
 };
 
 // All that a frame sends back by itself: 64 bytes.
-struct Summary {
-  double any_ratio, candidate_ratio;
-  double stress_squared;    // infinite when a stress is no number
-  double residual_squared;  // of the nodes' partial sums
-  double reaction_squared;
-  double energy_root;
+SUNDER_WIDE_STRUCT(Summary) {
+  WIDE any_ratio, candidate_ratio;
+  WIDE stress_squared;    // infinite when a stress is no number
+  WIDE residual_squared;  // of the nodes' partial sums
+  WIDE reaction_squared;
+  WIDE energy_root;
   uint any_element, candidate_element;
   uint over;  // live breakable elements at or over yield
   uint unused;
 };
 
 #ifdef __cplusplus
+using StressPartial = StressPartialOf<double>;
+using NodePartial = NodePartialOf<double>;
+using Summary = SummaryOf<double>;
+static_assert(sizeof(SummaryOf<float>) == 40);
 static_assert(sizeof(Entry) == 16);
 static_assert(sizeof(ElementPush) == 16);
 static_assert(sizeof(StressPartial) == 32);
@@ -177,6 +191,7 @@ static_assert(sizeof(CgPush) == 16);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 40);
 #undef SUNDER_CONST
+#undef SUNDER_WIDE_STRUCT
 }  // namespace sunder::shaders
 #endif
 #endif

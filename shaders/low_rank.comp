@@ -1,10 +1,13 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // X += Z Z^T (or -=), rank 6 k, in one pass over X: a workgroup holds eight columns of 256 rows while it
-// walks through the rank. Memory traffic: X read and written once, Z from the cache.
+// walks through the rank. Memory traffic: X read and written once, Z from the cache. Rank 6, one
+// element's event, is a kernel of its own: straight on from Z's rows, no sum to keep.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_gpu_shader_int64 : enable
 #include "common.glsl"
+
+layout(constant_id = 2) const uint kOneBlock = 0u;  // 1: the rank is 6
 
 // lavapipe stores lane by lane: eight floats at once as four 64-bit words, and a select that is always
 // true keeps the arithmetic out of that loop (Mesa 22.3.6: 8 against 84 GFLOP/s).
@@ -34,9 +37,41 @@ u64vec4 stored(vec4 a, vec4 b) {
 }
 #endif
 
-void main() {
-  const uint first = gl_GlobalInvocationID.x * PACKS;
-  const uint column = gl_WorkGroupID.y * kUpdateColumns;
+// Columns of X from `column` on, rows from pack `first` on, plus what the update adds there.
+void leave(uint column, uint first, uint c, REAL4 sum[PACKS]) {
+  const uint at = (column + c) * p.packs + first;
+#if PACKS == 2
+  updated.data[at / 2u] =
+      stored(LOAD_REAL4(matrix, at) + sum[0], LOAD_REAL4(matrix, at + 1u) + sum[1]);
+#else
+  const REAL4 value = LOAD_REAL4(matrix, at) + sum[0];
+  updated.data[at] = p.packs != 0u ? value : REAL4(0);
+#endif
+}
+
+void update_by_one_block(uint column, uint first) {
+  const uint at_columns = (p.first_column + column) / 4u;
+  REAL4 row[PACKS * kRankBlock], low[kRankBlock], high[kRankBlock];
+  [[unroll]] for (uint k = 0u; k < kRankBlock; ++k) {
+    low[k] = REAL(p.sign) * LOAD_REAL4(z, at_columns + k * p.packs);
+    high[k] = REAL(p.sign) * LOAD_REAL4(z, at_columns + k * p.packs + 1u);
+    [[unroll]] for (uint q = 0u; q < PACKS; ++q) {
+      row[PACKS * k + q] = LOAD_REAL4(z, k * p.packs + first + q);
+    }
+  }
+  [[unroll]] for (uint c = 0u; c < kUpdateColumns; ++c) {
+    REAL4 sum[PACKS];
+    [[unroll]] for (uint q = 0u; q < PACKS; ++q) {
+      sum[q] = REAL4(0);
+      [[unroll]] for (uint k = 0u; k < kRankBlock; ++k) {
+        sum[q] += row[PACKS * k + q] * (c < 4u ? low[k][c % 4u] : high[k][c % 4u]);
+      }
+    }
+    leave(column, first, c, sum);
+  }
+}
+
+void update_by_blocks(uint column, uint first) {
   const uint lane = gl_LocalInvocationID.x;
   REAL4 sum[PACKS * kUpdateColumns];
   [[unroll]] for (uint c = 0u; c < PACKS * kUpdateColumns; ++c) sum[c] = REAL4(0);
@@ -68,13 +103,18 @@ void main() {
     }
   }
   [[unroll]] for (uint c = 0u; c < kUpdateColumns; ++c) {
-    const uint at = (column + c) * p.packs + first;
-#if PACKS == 2
-    updated.data[at / 2u] = stored(LOAD_REAL4(matrix, at) + sum[2u * c],
-                                   LOAD_REAL4(matrix, at + 1u) + sum[2u * c + 1u]);
-#else
-    const REAL4 value = LOAD_REAL4(matrix, at) + sum[c];
-    updated.data[at] = p.packs != 0u ? value : REAL4(0);
-#endif
+    REAL4 of_column[PACKS];
+    [[unroll]] for (uint q = 0u; q < PACKS; ++q) of_column[q] = sum[PACKS * c + q];
+    leave(column, first, c, of_column);
+  }
+}
+
+void main() {
+  const uint first = gl_GlobalInvocationID.x * PACKS;
+  const uint column = gl_WorkGroupID.y * kUpdateColumns;
+  if (kOneBlock != 0u) {
+    update_by_one_block(column, first);
+  } else {
+    update_by_blocks(column, first);
   }
 }

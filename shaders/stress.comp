@@ -7,10 +7,11 @@
 #extension GL_ARB_gpu_shader_int64 : enable
 #include "common.glsl"
 #include "reduce.glsl"
+#include "two_float.glsl"
 
-IN_DVEC4(0, Nodal, u)
+IN_WIDE4(0, Nodal, u)
 IN_UVEC4(1, Nodes, nodes)
-IN_DVEC4(2, Shape, shape)  // three an element: (grad N_1, lambda), (grad N_2, mu), (grad N_3, V)
+IN_WIDE4(2, Shape, shape)  // three an element: (grad N_1, lambda), (grad N_2, mu), (grad N_3, V)
 IN_UVEC4(3, Facts, facts)
 #if defined(SUNDER_LVP) && !defined(SUNDER_FP64)
 OUT(4, Stress, u64vec4, stress)  // eight floats at once: lavapipe stores lane by lane
@@ -105,23 +106,51 @@ void leave(Worst any, Worst candidate, REAL norm) {
   }
 #endif
   if (leads_part()) {
-    const double norm_ = double(norm);
-    partials.data[part()] = StressPartial(double(any.ratio), double(candidate.ratio), norm_ * norm_,
+    const WIDE norm_ = WIDE(norm);
+    partials.data[part()] = StressPartial(WIDE(any.ratio), WIDE(candidate.ratio), norm_ * norm_,
                                           any.element, candidate.element);
   }
 }
 
-void main() {
-  const uint e = gl_GlobalInvocationID.x;
-  const uvec4 n = UVEC4(nodes, e);
+// Displacement gradient: derivatives along x, y, z; and the Lame constants.
+struct Gradient {
+  REAL3 x, y, z;
+  REAL lambda, mu;
+};
+
+#ifdef SUNDER_SINGLE
+#define LOAD_TWO3(name, i) two3(VEC4(name, 2u * (i)), VEC4(name, 2u * (i) + 1u))
+vec3 derivative(Two3 d1, vec2 s1, Two3 d2, vec2 s2, Two3 d3, vec2 s3) {
+  const Two3 sum = plus(plus(times(d1, s1), times(d2, s2)), times(d3, s3));
+  return sum.high + sum.low;
+}
+Gradient gradient(uint e, uvec4 n) {
+  const Two3 u0 = LOAD_TWO3(u, n.x);
+  const Two3 d1 = minus(LOAD_TWO3(u, n.y), u0), d2 = minus(LOAD_TWO3(u, n.z), u0),
+             d3 = minus(LOAD_TWO3(u, n.w), u0);
+  const vec4 a1 = VEC4(shape, 6u * e), b1 = VEC4(shape, 6u * e + 1u),
+             a2 = VEC4(shape, 6u * e + 2u), b2 = VEC4(shape, 6u * e + 3u),
+             a3 = VEC4(shape, 6u * e + 4u), b3 = VEC4(shape, 6u * e + 5u);
+  return Gradient(derivative(d1, a1.xy, d2, a2.xy, d3, a3.xy),
+                  derivative(d1, a1.zw, d2, a2.zw, d3, a3.zw),
+                  derivative(d1, b1.xy, d2, b2.xy, d3, b3.xy), b1.z, b2.z);
+}
+#else
+Gradient gradient(uint e, uvec4 n) {
   const dvec4 s1 = DVEC4(shape, 3u * e), s2 = DVEC4(shape, 3u * e + 1u),
               s3 = DVEC4(shape, 3u * e + 2u);
   const dvec3 u0 = DVEC4(u, n.x).xyz;
   const dvec3 d1 = DVEC4(u, n.y).xyz - u0, d2 = DVEC4(u, n.z).xyz - u0, d3 = DVEC4(u, n.w).xyz - u0;
-  const REAL3 hx = REAL3(d1 * s1.x + d2 * s2.x + d3 * s3.x);  // derivatives along x
-  const REAL3 hy = REAL3(d1 * s1.y + d2 * s2.y + d3 * s3.y);
-  const REAL3 hz = REAL3(d1 * s1.z + d2 * s2.z + d3 * s3.z);
-  const REAL mu = REAL(s2.w), pressure = REAL(s1.w) * (hx.x + hy.y + hz.z);
+  return Gradient(REAL3(d1 * s1.x + d2 * s2.x + d3 * s3.x), REAL3(d1 * s1.y + d2 * s2.y + d3 * s3.y),
+                  REAL3(d1 * s1.z + d2 * s2.z + d3 * s3.z), REAL(s1.w), REAL(s2.w));
+}
+#endif
+
+void main() {
+  const uint e = gl_GlobalInvocationID.x;
+  const Gradient g = gradient(e, UVEC4(nodes, e));
+  const REAL3 hx = g.x, hy = g.y, hz = g.z;
+  const REAL mu = g.mu, pressure = g.lambda * (hx.x + hy.y + hz.z);
   const REAL3 strain = REAL3(hx.x, hy.y, hz.z);
   const REAL3 normal = pressure + REAL(2) * mu * strain;
   const REAL3 twice_shear = REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x);
@@ -133,9 +162,14 @@ void main() {
   const REAL range = REAL(2) * mu * principal_range(strain, twice_shear / REAL(2));
   const REAL measure = p.tresca != 0u ? range : range / REAL(2);
   const bool counts = live && (bits & kBreakable) != 0u;
-  const REAL ratio = counts ? measure / REAL(packDouble2x32(fact.zw)) : REAL(0);
+#ifdef SUNDER_SINGLE
+  const float yield_ = uintBitsToFloat(fact.z);
+#else
+  const REAL yield_ = REAL(packDouble2x32(fact.zw));
+#endif
+  const REAL ratio = counts ? measure / yield_ : REAL(0);
   if ((p.keep & kKeepStress) != 0u) {
-    const REAL scale = (bits & kDestroyed) != 0u ? REAL(p.alpha) : REAL(1);
+    const REAL scale = (bits & kDestroyed) != 0u ? REAL(p.alpha) + REAL(p.alpha_low) : REAL(1);
     store(e, scale * REAL4(normal, shear.x),
           REAL4(scale * shear.yz, scale * measure, ratio));
   }

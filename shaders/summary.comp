@@ -16,8 +16,8 @@ layout(push_constant) uniform Push { SummaryPush p; };
 
 struct Found {
   Worst any, candidate;
-  double stress_squared;
-  dvec3 sums;
+  REAL stress_squared;
+  REAL3 sums;
 };
 shared Found found[kGroup];
 
@@ -30,20 +30,20 @@ void join(inout Found a, Found b) {
 
 void main() {
   const uint lane = gl_LocalInvocationID.x;
-  Found mine = Found(Worst(0.0LF, kHeld), Worst(0.0LF, kHeld), 0.0LF, dvec3(0));
+  Found mine = Found(Worst(REAL(0), kHeld), Worst(REAL(0), kHeld), REAL(0), REAL3(0));
   for (uint g = lane; g < p.element_parts; g += kGroup) {
     const StressPartial b = partials.data[g];
     join(mine, Found(Worst(b.any_ratio, b.any_element), Worst(b.candidate_ratio, b.candidate_element),
-                     b.stress_squared, dvec3(0)));
+                     b.stress_squared, REAL3(0)));
   }
   for (uint g = lane; g < p.node_parts; g += kGroup) {
     const NodePartial b = node_partials.data[g];
-    mine.sums += dvec3(b.residual_squared, b.reaction_squared, b.energy_root);
+    mine.sums += REAL3(b.residual_squared, b.reaction_squared, b.energy_root);
   }
   mine.any = subgroup_worst(mine.any);
   mine.candidate = subgroup_worst(mine.candidate);
   mine.stress_squared = subgroupMax(mine.stress_squared);
-  mine.sums = dvec3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupAdd(mine.sums.z));
+  mine.sums = REAL3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupAdd(mine.sums.z));
   if (subgroupElect()) found[gl_SubgroupID] = mine;
   barrier();
   if (lane == 0u) {

@@ -24,6 +24,9 @@ std::unique_ptr<Binding> bind_buffers(const KernelFactory& kernels, const vulkan
 
 constexpr std::size_t kFirstEntries = 64;
 
+/// The dense product's vector comes in fp64 and is read in fp32.
+bool narrows(const KernelFactory& kernels) { return !kernels.fp64() && !kernels.single(); }
+
 /// Columns of the largest panel that a device takes. Throws DeviceError when it takes none.
 std::uint32_t panel_columns(const KernelFactory& kernels, std::uint32_t rows,
                             std::size_t panel_bytes) {
@@ -75,8 +78,9 @@ DenseInverse::DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t 
   create_panels(panel_bytes);
   apply_ = kernels_.make("apply", {Reads::reals, Reads::words, Reads::plain},
                          sizeof(shaders::ApplyPush));
-  dense_ = kernels_.make("dense", {Reads::reals, Reads::doubles, Reads::plain},
-                         sizeof(shaders::ApplyPush));
+  if (narrows(kernels)) {
+    vector_ = Buffer(kernels_.device(), rows_ * sizeof(float), Placement::device);
+  }
   entries_ = Buffer(kernels_.device(), kFirstEntries * sizeof(shaders::Entry), Placement::host);
 }
 
@@ -85,7 +89,8 @@ DenseInverse::Planned DenseInverse::planned(const KernelFactory& kernels, Index 
   const std::uint32_t columns = round_up(u32(n), shaders::kColumnPad);
   const std::uint32_t most = panel_columns(kernels, rows, panel_bytes);
   return {std::size_t{columns} * rows * kernels.real_bytes() +
-              Buffer::padded(kFirstEntries * sizeof(shaders::Entry)),
+              Buffer::padded(kFirstEntries * sizeof(shaders::Entry)) +
+              (narrows(kernels) ? rows * sizeof(float) : 0),
           (columns - 1) / most + 1, columns / shaders::kChunk};
 }
 
@@ -125,10 +130,26 @@ void DenseInverse::upload(const Columns& columns) {
 
 void DenseInverse::bind(const PartialSums& partials, const Buffer& vector) {
   partials_ = &partials;
-  for (Panel& panel : panels_) {
-    panel.dense = bind_buffers(kernels_, *dense_, {&panel.matrix, &vector, &partials.buffer()});
-  }
+  dense_vector_ = &vector;
+  for (Panel& panel : panels_) panel.dense.reset();
   bind_loaded();
+}
+
+/// Most scenes never need it: an energy bound keeps the promise.
+void DenseInverse::create_dense() {
+  const bool narrow = narrows(kernels_);
+  if (!dense_) {
+    dense_ = kernels_.make("dense", {Reads::reals, Reads::reals, Reads::plain},
+                           sizeof(shaders::ApplyPush));
+    if (narrow) {
+      narrow_ = kernels_.make_fp64("narrow", {Reads::doubles, Reads::plain}, 0);
+    }
+  }
+  if (narrow) narrowing_ = bind_buffers(kernels_, *narrow_, {dense_vector_, &vector_});
+  const Buffer* read = narrow ? &vector_ : dense_vector_;
+  for (Panel& panel : panels_) {
+    panel.dense = bind_buffers(kernels_, *dense_, {&panel.matrix, read, &partials_->buffer()});
+  }
 }
 
 void DenseInverse::bind_loaded() {
@@ -142,6 +163,16 @@ std::uint32_t DenseInverse::loaded_chunks(const Loaded& load) const {
   return u32(load.dofs.size() / shaders::kChunk + panels_.size());
 }
 
+shaders::Entry DenseInverse::entry_of(std::uint32_t column, double value) const {
+  if (kernels_.single()) {  // two floats (shaders/apply.comp)
+    const auto high = static_cast<float>(value);
+    const auto low = static_cast<float>(value - static_cast<double>(high));
+    return {column, 0, std::bit_cast<std::uint32_t>(high), std::bit_cast<std::uint32_t>(low)};
+  }
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  return {column, 0, static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+}
+
 void DenseInverse::set_loaded(const Loaded& load) {
   if (load.dofs.size() * sizeof(shaders::Entry) > entries_.bytes()) {
     entries_ =
@@ -153,9 +184,7 @@ void DenseInverse::set_loaded(const Loaded& load) {
   for (Panel& panel : panels_) {
     panel.first_entry = next;
     while (next < load.dofs.size() && u32(load.dofs[next]) < panel.first + panel.columns) {
-      const auto bits = std::bit_cast<std::uint64_t>(load.values[next]);
-      entry[next] = {u32(load.dofs[next]) - panel.first, 0, static_cast<std::uint32_t>(bits),
-                     static_cast<std::uint32_t>(bits >> 32)};
+      entry[next] = entry_of(u32(load.dofs[next]) - panel.first, load.values[next]);
       ++next;
     }
     panel.last_entry = next;
@@ -177,8 +206,12 @@ std::uint32_t DenseInverse::record_loaded(vulkan::Commands& commands,
   return chunk - first_chunk;
 }
 
-std::uint32_t DenseInverse::record_dense(vulkan::Commands& commands,
-                                         std::uint32_t first_chunk) const {
+std::uint32_t DenseInverse::record_dense(vulkan::Commands& commands, std::uint32_t first_chunk) {
+  if (!panels_.front().dense) create_dense();
+  if (narrowing_) {
+    commands.dispatch(*narrowing_, rows_ / shaders::kRowPad);
+    commands.barrier();
+  }
   for (const Panel& panel : panels_) {
     commands.dispatch(*panel.dense,
                       shaders::ApplyPush{rows_ / 4, 0, panel.columns, panel.first / 4,
@@ -235,12 +268,10 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
   const std::size_t factor_bytes = dofs * blocks * 8 * sizeof(double);
   const std::size_t z_bytes =
       std::size_t{blocks} * shaders::kRankBlock * rows_ * kernels_.real_bytes();
-  if (!low_rank_) {
+  if (!vectors_) {
     vectors_ =
         kernels_.make("update_vectors", {Reads::reals, Reads::plain, Reads::doubles, Reads::plain},
                       sizeof(shaders::VectorsPush));
-    low_rank_ = kernels_.make("low_rank", {Reads::reals, Reads::reals, Reads::plain},
-                              sizeof(shaders::LowRankPush), kernels_.low_rank_group());
   } else if (dofs * 4 <= update_dofs_.bytes() && factor_bytes <= factors_.bytes() &&
              z_bytes <= z_.bytes()) {
     return;
@@ -248,6 +279,7 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
   for (Panel& panel : panels_) {
     panel.vectors.reset();
     panel.low_rank.reset();
+    panel.rank_6.reset();
   }
   update_dofs_ = Buffer(kernels_.device(), dofs * 4, Placement::host);
   factors_ = Buffer(kernels_.device(), factor_bytes, Placement::device);
@@ -255,7 +287,19 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
   for (Panel& panel : panels_) {
     panel.vectors =
         bind_buffers(kernels_, *vectors_, {&panel.matrix, &update_dofs_, &factors_, &z_});
-    panel.low_rank = bind_buffers(kernels_, *low_rank_, {&panel.matrix, &z_, &panel.matrix});
+  }
+}
+
+void DenseInverse::bind_update(std::uint32_t blocks) {
+  auto& kernel = blocks == 1 ? rank_6_ : low_rank_;
+  if (!kernel) {
+    kernel =
+        kernels_.make("low_rank", {Reads::reals, Reads::reals, Reads::plain},
+                      sizeof(shaders::LowRankPush), kernels_.low_rank_group(), blocks == 1 ? 1 : 0);
+  }
+  for (Panel& panel : panels_) {
+    auto& binding = blocks == 1 ? panel.rank_6 : panel.low_rank;
+    if (!binding) binding = bind_buffers(kernels_, *kernel, {&panel.matrix, &z_, &panel.matrix});
   }
 }
 
@@ -291,6 +335,7 @@ void DenseInverse::record_vectors(vulkan::Commands& commands, std::span<const In
 void DenseInverse::update(std::span<const Index> dofs, const Eigen::MatrixXd& v, float sign) {
   const std::uint32_t blocks = round_up(u32(v.cols()), shaders::kRankBlock) / shaders::kRankBlock;
   reserve_update(dofs.size(), blocks);
+  bind_update(blocks);
   std::copy(dofs.begin(), dofs.end(), update_dofs_.mapped<Index>());
   write_factors(v, blocks);
   vulkan::Commands commands(kernels_.device());
@@ -298,7 +343,8 @@ void DenseInverse::update(std::span<const Index> dofs, const Eigen::MatrixXd& v,
   commands.pass("update");
   record_vectors(commands, dofs, blocks);
   for (const Panel& panel : panels_) {
-    commands.dispatch(*panel.low_rank, shaders::LowRankPush{rows_ / 4, blocks, panel.first, sign},
+    commands.dispatch(blocks == 1 ? *panel.rank_6 : *panel.low_rank,
+                      shaders::LowRankPush{rows_ / 4, blocks, panel.first, sign},
                       rows_ / shaders::kRowPad, panel.columns / shaders::kUpdateColumns);
   }
   commands.end();

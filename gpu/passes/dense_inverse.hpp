@@ -75,7 +75,7 @@ class DenseInverse {
   /// partials from `first_chunk` on = X f of that load; returns how many.
   std::uint32_t record_loaded(vulkan::Commands& commands, std::uint32_t first_chunk) const;
   /// partials from `first_chunk` on = X times the bound vector; returns how many.
-  std::uint32_t record_dense(vulkan::Commands& commands, std::uint32_t first_chunk) const;
+  std::uint32_t record_dense(vulkan::Commands& commands, std::uint32_t first_chunk);
 
   /// X(rows, columns) as it stands on the device.
   [[nodiscard]] Eigen::MatrixXd pick(std::span<const Index> rows, std::span<const Index> columns);
@@ -93,13 +93,16 @@ class DenseInverse {
   struct Panel {
     std::uint32_t first = 0, columns = 0;
     vulkan::Buffer matrix;
-    std::unique_ptr<vulkan::Binding> loaded, dense, pick, vectors, low_rank;
+    std::unique_ptr<vulkan::Binding> loaded, dense, pick, vectors, low_rank, rank_6;
     std::uint32_t first_entry = 0, last_entry = 0;
   };
 
   void create_panels(std::size_t panel_bytes);
   void bind_loaded();
+  [[nodiscard]] shaders::Entry entry_of(std::uint32_t column, double value) const;
   void reserve_pick(std::size_t dofs, std::size_t values);
+  void create_dense();
+  void bind_update(std::uint32_t blocks);
   void reserve_update(std::size_t dofs, std::uint32_t blocks);
   void write_factors(const Eigen::MatrixXd& v, std::uint32_t blocks);
   void record_vectors(vulkan::Commands& commands, std::span<const Index> dofs,
@@ -110,8 +113,10 @@ class DenseInverse {
   std::uint32_t rows_, columns_;
   std::vector<Panel> panels_;
   const PartialSums* partials_ = nullptr;
-  std::unique_ptr<vulkan::Kernel> apply_, dense_, pick_, vectors_, low_rank_;
-  vulkan::Buffer entries_, pick_dofs_, picked_, update_dofs_, factors_, z_;
+  const vulkan::Buffer* dense_vector_ = nullptr;
+  std::unique_ptr<vulkan::Kernel> apply_, narrow_, dense_, pick_, vectors_, low_rank_, rank_6_;
+  std::unique_ptr<vulkan::Binding> narrowing_;  // empty: the vector has storage precision
+  vulkan::Buffer vector_, entries_, pick_dofs_, picked_, update_dofs_, factors_, z_;
 };
 
 }  // namespace sunder::gpu

@@ -15,8 +15,9 @@ ExactColumns::ExactColumns(const KernelFactory& kernels, std::uint32_t rows)
       rows_(rows),
       dense_(kernels.make_fp64("dense", {Reads::doubles, Reads::doubles, Reads::plain},
                                sizeof(shaders::ApplyPush))),
-      project_(kernels.make_fp64("project", {Reads::doubles, Reads::doubles, Reads::plain},
-                                 sizeof(shaders::ProjectPush))),
+      project_(kernels.make_fp64(
+          "project", {Reads::doubles, Reads::doubles, Reads::plain, Reads::plain, Reads::plain},
+          sizeof(shaders::ProjectPush))),
       solve_(kernels.make_fp64("solve",
                                {Reads::doubles, Reads::doubles, Reads::words, Reads::plain},
                                sizeof(shaders::SolvePush))) {}
@@ -59,7 +60,8 @@ std::uint32_t ExactColumns::planned_capacity(const vulkan::PhysicalDevice& devic
 
 std::size_t ExactColumns::planned_bytes(std::uint32_t rows, std::uint32_t capacity) {
   const std::size_t vector = capacity * sizeof(double);
-  return vector * rows + 2 * Buffer::padded(vector);
+  return vector * rows + 3 * Buffer::padded(vector) +
+         Buffer::padded(capacity * sizeof(std::uint32_t));
 }
 
 std::uint32_t ExactColumns::chunks() const {
@@ -76,7 +78,9 @@ void ExactColumns::allocate(std::uint32_t capacity) {
   columns_.fill_zero();
   coefficients_ = Buffer(kernels_.device(), capacity_ * sizeof(double), Placement::host);
   coefficients_.fill_zero();
-  projection_ = Buffer(kernels_.device(), capacity_ * sizeof(double), Placement::host);
+  dofs_ = Buffer(kernels_.device(), capacity_ * sizeof(std::uint32_t), Placement::host);
+  dofs_.fill_zero();
+  projection_ = Buffer(kernels_.device(), 2 * capacity_ * sizeof(double), Placement::host);
   count_ = 0;
 }
 
@@ -85,13 +89,16 @@ void ExactColumns::reserve() {
   if (room > capacity_) allocate(room);
 }
 
-bool ExactColumns::extend(const Eigen::MatrixXd& all, Index count) {
+bool ExactColumns::extend(const Eigen::MatrixXd& all, std::span<const Index> dofs) {
+  const auto count = static_cast<Index>(dofs.size());
   bool moved = false;
   if (static_cast<std::uint32_t>(count) > capacity_) {
     allocate(
         grown(capacity_, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(most())));
     moved = true;
   }
+  if (count == 0) return moved;
+  std::copy(dofs.begin(), dofs.end(), dofs_.mapped<Index>());
   if (kernels_.device().physical().unified()) {
     // Rows beyond the unknowns stay the zeros that allocate() wrote.
     for (; count_ < count; ++count_) {
@@ -112,7 +119,7 @@ bool ExactColumns::extend(const Eigen::MatrixXd& all, Index count) {
 void ExactColumns::bind(const PartialSums& partials, const Buffer& vector) {
   if (capacity_ == 0) return;
   const Buffer* apply[] = {&columns_, &coefficients_, &partials.buffer()};
-  const Buffer* project[] = {&columns_, &vector, &projection_};
+  const Buffer* project[] = {&columns_, &vector, &projection_, &dofs_, &vector};
   apply_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *dense_, apply);
   project_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *project_, project);
 }
@@ -152,13 +159,18 @@ std::uint32_t ExactColumns::record_apply(vulkan::Commands& commands,
 void ExactColumns::record_project(vulkan::Commands& commands) const {
   if (count_ == 0) return;
   const std::uint32_t parts = kernels_.parts();
-  commands.dispatch(*project_binding_, shaders::ProjectPush{rows_ / 4},
+  commands.dispatch(*project_binding_, shaders::ProjectPush{rows_ / 4, capacity_},
                     round_up(static_cast<std::uint32_t>(count_), parts) / parts);
 }
 
 Eigen::VectorXd ExactColumns::projection() const {
   if (count_ == 0) return {};
   return Eigen::Map<const Eigen::VectorXd>(projection_.mapped<double>(), count_);
+}
+
+Eigen::VectorXd ExactColumns::values() const {
+  if (count_ == 0) return {};
+  return Eigen::Map<const Eigen::VectorXd>(projection_.mapped<double>() + capacity_, count_);
 }
 
 }  // namespace sunder::gpu

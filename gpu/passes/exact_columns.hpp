@@ -19,9 +19,9 @@ class ExactColumns {
 
   /// Columns beyond this do not fit the device's buffers.
   [[nodiscard]] Index most() const;
-  /// Takes over the first `count` columns of `all`; those held before are the same and are not
-  /// sent again. Returns true when buffers moved: bind() anew.
-  bool extend(const Eigen::MatrixXd& all, Index count);
+  /// Takes over the first columns of `all`, those of `dofs`; those held before are the same and are
+  /// not sent again. Returns true when buffers moved: bind() anew.
+  bool extend(const Eigen::MatrixXd& all, std::span<const Index> dofs);
   void clear() { count_ = 0; }
   /// Room for the damage to come, so that a frame need not allocate.
   void reserve();
@@ -45,9 +45,10 @@ class ExactColumns {
   [[nodiscard]] bool whole_in_one() const;
   /// nodal = columns times coefficients, without partial sums.
   void record_solve(vulkan::Commands& commands) const;
-  /// projection() = columns^T times the bound vector.
+  /// projection() = columns^T times the bound vector, values() = the vector at the columns' dofs.
   void record_project(vulkan::Commands& commands) const;
   [[nodiscard]] Eigen::VectorXd projection() const;
+  [[nodiscard]] Eigen::VectorXd values() const;
 
   [[nodiscard]] std::size_t bytes() const { return columns_.bytes(); }
 
@@ -58,7 +59,7 @@ class ExactColumns {
   void allocate(std::uint32_t capacity);
 
   std::unique_ptr<vulkan::Kernel> dense_, project_, solve_;
-  vulkan::Buffer columns_, coefficients_, projection_;
+  vulkan::Buffer columns_, coefficients_, dofs_, projection_;  // projection_: values() behind it
   std::unique_ptr<vulkan::Binding> apply_binding_, project_binding_, solve_binding_;
 };
 

@@ -20,6 +20,18 @@ Lame lame(const Material& m) {
           m.young / (2 * (1 + m.poisson))};
 }
 
+/// An fp64 number as two floats, interleaved (shaders/two_float.glsl).
+std::vector<float> two_floats(std::span<const double> values) {
+  std::vector<float> pairs;
+  pairs.reserve(2 * values.size());
+  for (double v : values) {
+    const auto high = static_cast<float>(v);
+    pairs.push_back(high);
+    pairs.push_back(static_cast<float>(v - static_cast<double>(high)));
+  }
+  return pairs;
+}
+
 }  // namespace
 
 Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs& needs,
@@ -36,7 +48,11 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       matrix_(problem) {
   vulkan::Device& device = kernels.device();
   device.require_memory(planned_bytes(route.preconditioner) + route.bytes, "this scene");
-  matrix_.upload(kernels, route.preconditioner);
+  if (kernels.single()) {
+    host_balance_ = std::make_unique<HostBalance>(problem);
+  } else {
+    matrix_.upload(kernels, route.preconditioner);
+  }
   const auto make = [&](std::size_t bytes, Placement placement = Placement::device) {
     Buffer buffer(device, bytes, placement);
     buffer.fill_zero();
@@ -65,7 +81,7 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
   const std::size_t nodal = std::size_t{4} * nodes_ * sizeof(double);
   const std::size_t unknowns = rows_ * sizeof(double);
   const std::size_t elements = elements_, grips = problem_.gripped_dofs().size();
-  std::size_t sum = matrix_.planned_bytes(preconditioner);
+  std::size_t sum = kernels_.single() ? 0 : matrix_.planned_bytes(preconditioner);
   for (const std::size_t bytes :
        {3 * (nodal + unknowns),  // displacement, kept, correction
         3 * nodal + unknowns,    // load, roots, balance; residual
@@ -93,8 +109,10 @@ void Fields::upload_mesh() {
       nodes_of[4 * static_cast<std::size_t>(e) + a] =
           static_cast<std::uint32_t>(problem_.mesh().tets[e][a]);
     }
-    const auto yield =
-        std::bit_cast<std::uint64_t>(problem_.breakable(e) ? problem_.yield(e) : 1.0);
+    const double of_element = problem_.breakable(e) ? problem_.yield(e) : 1.0;
+    const auto yield = kernels_.single()
+                           ? std::bit_cast<std::uint32_t>(static_cast<float>(of_element))
+                           : std::bit_cast<std::uint64_t>(of_element);
     facts_host_[static_cast<std::size_t>(e)] = {problem_.breakable(e) ? shaders::kBreakable : 0, 0,
                                                 static_cast<std::uint32_t>(yield),
                                                 static_cast<std::uint32_t>(yield >> 32)};
@@ -141,7 +159,7 @@ void Fields::upload_shapes() {
     }
   }
   shape_ = Buffer(kernels_.device(), shape.size() * sizeof(double), Placement::device);
-  shape_.write(std::span<const double>(shape));
+  write_wide(shape_, shape);
 }
 
 void Fields::create_kernels() {
@@ -157,33 +175,106 @@ void Fields::create_kernels() {
                                                      &stress_, &stress_partials_, &over_});
   correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &facts_,
                                                    &stress_, &stress_partials_, &over_});
-  residual_pass_.kernel = kernels_.make_fp64(
-      "residual", {doubles, doubles, plain, plain, words, doubles, doubles, plain, plain, plain},
-      0);
-  residual_pass_.binding =
-      bind(*residual_pass_.kernel,
-           {&displacement_, &matrix_.blocks(), &matrix_.columns(), &matrix_.slices(), &dofs_,
-            &load_, &roots_, &balance_, &residual_, &node_partials_});
+  if (!host_balance_) create_residual_pass();
   summary_pass_.kernel =
       kernels_.make_fp64("summary", {plain, plain, plain, plain}, sizeof(shaders::SummaryPush));
   summary_pass_.binding =
       bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_, &over_});
   displacement_gather_ = std::make_unique<Gather>(kernels_, displacement_);
+}
+
+void Fields::create_residual_pass() {
+  using enum Reads;
+  residual_pass_.kernel = kernels_.make_fp64(
+      "residual", {doubles, doubles, plain, plain, words, doubles, doubles, plain, plain, plain},
+      0);
+  const Buffer* buffers[] = {
+      &displacement_, &matrix_.blocks(), &matrix_.columns(), &matrix_.slices(), &dofs_,
+      &load_,         &roots_,           &balance_,          &residual_,        &node_partials_};
+  residual_pass_.binding =
+      std::make_unique<vulkan::Binding>(kernels_.device(), *residual_pass_.kernel, buffers);
   balance_gather_ = std::make_unique<Gather>(kernels_, balance_);
 }
 
 shaders::ElementPush Fields::element_push(std::uint32_t keep) const {
   const FractureOptions& fracture = problem_.scene().fracture;
-  return {fracture.alpha, keep, fracture.yield_measure == YieldMeasure::tresca ? 1u : 0u};
+  const auto alpha = static_cast<float>(fracture.alpha);
+  return {alpha, static_cast<float>(fracture.alpha - static_cast<double>(alpha)), keep,
+          fracture.yield_measure == YieldMeasure::tresca ? 1u : 0u};
 }
 
 void Fields::set_load(std::span<const double> force, std::span<const double> displacements) {
-  auto* load = load_.mapped<double>();
-  for (Index d = 0; d < problem_.dof_count(); ++d) load[place_[d]] = force[d];
-  if (!displacements.empty()) prescribed_.write(displacements);
+  if (host_balance_) {
+    host_balance_->set_load(force);
+  } else {
+    auto* load = load_.mapped<double>();
+    for (Index d = 0; d < problem_.dof_count(); ++d) load[place_[d]] = force[d];
+  }
+  if (!displacements.empty()) write_wide(prescribed_, displacements);
+}
+
+void Fields::write_wide(Buffer& buffer, std::span<const double> values) const {
+  if (kernels_.single()) {
+    buffer.write(std::span<const float>(two_floats(values)));
+  } else {
+    buffer.write(values);
+  }
+}
+
+void Fields::read_wide(const Buffer& buffer, std::span<double> values, std::size_t first) const {
+  buffer.read(values, first);
+  if (kernels_.single()) join_two_floats(values);
+}
+
+void Fields::balance_on_host() {
+  std::vector<double> nodal(3 * problem_.mesh().nodes.size());
+  read_displacement(nodal);
+  host_balance_->compute(nodal);
+}
+
+shaders::Summary Fields::summary(std::size_t slot) const {
+  if (!kernels_.single()) return summaries_.mapped<shaders::Summary>()[slot];
+  const auto s = summaries_.mapped<shaders::SummaryOf<float>>()[slot];
+  shaders::Summary wide{};
+  wide.any_ratio = static_cast<double>(s.any_ratio);
+  wide.candidate_ratio = static_cast<double>(s.candidate_ratio);
+  wide.stress_squared = static_cast<double>(s.stress_squared);
+  wide.any_element = s.any_element;
+  wide.candidate_element = s.candidate_element;
+  wide.over = s.over;
+  return wide;
+}
+
+shaders::Summary Fields::state() const {
+  shaders::Summary s = summary(0);
+  if (host_balance_) {
+    s.residual_squared = host_balance_->residual_squared();
+    s.reaction_squared = host_balance_->reaction_squared();
+    s.energy_root = host_balance_->energy_root();
+  }
+  return s;
+}
+
+void Fields::write_residual(std::span<const double> residual) {
+  if (kernels_.single()) {
+    const std::vector<float> rounded(residual.begin(), residual.end());
+    residual_.write(std::span<const float>(rounded));
+  } else {
+    residual_.write(residual);
+  }
+}
+
+void Fields::write_unknowns(Field field, const Eigen::VectorXd& values) {
+  std::vector<double> padded(4 * problem_.mesh().nodes.size(), 0.0);
+  for (Index d = 0; d < problem_.dof_count(); ++d) padded[place_[d]] = values[d];
+  write_wide(nodal(field), padded);
 }
 
 void Fields::set_roots(std::span<const double> roots) {
+  if (host_balance_) {
+    host_balance_->set_roots(roots);
+    return;
+  }
   std::vector<double> nodal(std::size_t{4} * nodes_, 0.0);
   for (Index d = 0; d < problem_.dof_count(); ++d) nodal[place_[d]] = roots[d];
   roots_.write(std::span<const double>(nodal));
@@ -231,6 +322,7 @@ void Fields::restore() {
   record_state(commands);
   commands.end();
   commands.submit();
+  if (host_balance_) balance_on_host();
 }
 
 void Fields::record_hold(vulkan::Commands& commands, Field field) const {
@@ -252,7 +344,11 @@ void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits)
 }
 
 void Fields::destroy(std::span<const Index> elements) {
-  matrix_.destroy(elements);
+  if (host_balance_) {
+    host_balance_->destroy(elements);
+  } else {
+    matrix_.destroy(elements);
+  }
   set_state_bits(elements, shaders::kDestroyed);
 }
 
@@ -261,6 +357,7 @@ void Fields::exclude(std::span<const Index> elements) {
 }
 
 void Fields::record_state(vulkan::Commands& commands, bool balance) const {
+  balance = balance && !host_balance_;
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
   const std::uint32_t node_groups = nodes_ / shaders::kGroup;
   commands.pass("stress");
@@ -291,12 +388,12 @@ void Fields::write_displacement(std::span<const double> nodal) {
   for (std::size_t n = 0; n < problem_.mesh().nodes.size(); ++n) {
     std::copy_n(&nodal[3 * n], 3, &padded[4 * n]);
   }
-  displacement_.write(std::span<const double>(padded));
+  write_wide(displacement_, padded);
 }
 
 void Fields::read_displacement(std::span<double> nodal) const {
   std::vector<double> padded(4 * problem_.mesh().nodes.size());
-  displacement_.read(std::span<double>(padded));
+  read_wide(displacement_, padded);
   for (std::size_t n = 0; n < problem_.mesh().nodes.size(); ++n) {
     std::copy_n(&padded[4 * n], 3, &nodal[3 * n]);
   }
@@ -304,7 +401,7 @@ void Fields::read_displacement(std::span<double> nodal) const {
 
 Eigen::VectorXd Fields::read_unknowns(Field field, std::span<const Index> dofs) const {
   std::vector<double> padded(4 * problem_.mesh().nodes.size());
-  nodal(field).read(std::span<double>(padded));
+  read_wide(nodal(field), padded);
   Eigen::VectorXd values(static_cast<Index>(dofs.size()));
   for (std::size_t i = 0; i < dofs.size(); ++i) {
     values[static_cast<Index>(i)] = padded[place_[dofs[i]]];
@@ -314,7 +411,7 @@ Eigen::VectorXd Fields::read_unknowns(Field field, std::span<const Index> dofs) 
 
 Vec3 Fields::read_displacement(Index node) const {
   std::array<double, 4> value{};
-  displacement_.read(std::span<double>(value), 4 * static_cast<std::size_t>(node));
+  read_wide(displacement_, value, 4 * static_cast<std::size_t>(node));
   return {value[0], value[1], value[2]};
 }
 
@@ -369,6 +466,12 @@ Voigt Fields::read_stress(Index element) const {
 
 void Fields::read_reactions(std::span<const Index> dofs, std::span<double> reactions) const {
   if (dofs.empty()) return;
+  if (host_balance_) {
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      reactions[i] = -host_balance_->balance()[dofs[i]];
+    }
+    return;
+  }
   std::vector<std::uint32_t> places;
   for (Index d : dofs) places.push_back(place_[d]);
   balance_gather_->read(places, reactions);

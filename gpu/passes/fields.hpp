@@ -11,6 +11,7 @@
 #include "gpu/kernels.hpp"
 #include "gpu/passes/block_matrix.hpp"
 #include "gpu/passes/gather.hpp"
+#include "gpu/passes/host_balance.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "shaders/layout.h"
 #include "sunder/backend.hpp"
@@ -61,13 +62,15 @@ class Fields {
   /// Largest stress of the correction.
   void record_correction(vulkan::Commands& commands) const;
 
+  /// f - K u, which record_state() leaves to the host where the device has no fp64.
+  void balance_on_host();
+  [[nodiscard]] const HostBalance& host_balance() const { return *host_balance_; }
+
   /// After record_state() and record_correction() ran.
-  [[nodiscard]] shaders::Summary state() const { return summaries_.mapped<shaders::Summary>()[0]; }
+  [[nodiscard]] shaders::Summary state() const;
   /// Live breakable elements at or over yield, ascending.
   [[nodiscard]] std::vector<Index> over_yield() const;
-  [[nodiscard]] shaders::Summary correction() const {
-    return summaries_.mapped<shaders::Summary>()[1];
-  }
+  [[nodiscard]] shaders::Summary correction() const { return summary(1); }
 
   [[nodiscard]] const vulkan::Buffer& nodal(Field field) const {
     return field == Field::displacement ? displacement_ : correction_;
@@ -87,7 +90,9 @@ class Fields {
 
   /// For tests of single kernels: inputs as given, shapes (3 * nodes) and (rows()).
   void write_displacement(std::span<const double> nodal);
-  void write_residual(std::span<const double> residual) { residual_.write(residual); }
+  void write_residual(std::span<const double> residual);
+  /// A field at all unknowns; supports stay at 0.
+  void write_unknowns(Field field, const Eigen::VectorXd& values);
 
   void read_displacement(std::span<double> nodal) const;
   [[nodiscard]] Vec3 read_displacement(Index node) const;
@@ -107,8 +112,13 @@ class Fields {
   void upload_shapes();
   void set_state_bits(std::span<const Index> elements, std::uint32_t bits);
   void create_kernels();
+  void create_residual_pass();
   void create_hold();
   [[nodiscard]] shaders::ElementPush element_push(std::uint32_t keep) const;
+  [[nodiscard]] shaders::Summary summary(std::size_t slot) const;
+  void write_wide(vulkan::Buffer& buffer, std::span<const double> values) const;
+  void read_wide(const vulkan::Buffer& buffer, std::span<double> values,
+                 std::size_t first = 0) const;
 
   const KernelFactory& kernels_;
   const Problem& problem_;
@@ -121,6 +131,7 @@ class Fields {
   vulkan::Buffer nodes_of_, shape_, facts_;
   vulkan::Buffer dofs_, positions_, roots_;
   BlockMatrix matrix_;
+  std::unique_ptr<HostBalance> host_balance_;  // empty: the device does it
   bool keep_ = false;
   vulkan::Buffer displacement_, kept_, correction_, load_, residual_, balance_;
   vulkan::Buffer stress_, stress_partials_, node_partials_, summaries_, over_;

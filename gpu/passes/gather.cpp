@@ -2,6 +2,8 @@
 #include "gpu/passes/gather.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 
 #include "gpu/passes/fields.hpp"
 
@@ -10,8 +12,16 @@ namespace sunder::gpu {
 using vulkan::Buffer;
 using vulkan::Placement;
 
+void join_two_floats(std::span<double> values) {
+  for (double& v : values) {
+    const auto parts = std::bit_cast<std::array<float, 2>>(v);
+    v = static_cast<double>(parts[0]) + static_cast<double>(parts[1]);
+  }
+}
+
 Gather::Gather(const KernelFactory& kernels, const Buffer& values)
     : device_(kernels.device()),
+      single_(kernels.single()),
       values_(values),
       kernel_(kernels.make_fp64("gather", {Reads::plain, Reads::plain, Reads::plain},
                                 sizeof(shaders::GatherPush))),
@@ -39,6 +49,7 @@ void Gather::read(std::span<const std::uint32_t> places, std::span<double> picke
   commands_.end();
   commands_.submit();
   picked_.read(picked.first(places.size()));
+  if (single_) join_two_floats(picked.first(places.size()));
 }
 
 }  // namespace sunder::gpu

@@ -12,9 +12,13 @@
 
 namespace sunder::gpu {
 
+/// Numbers of two floats each (shaders/two_float.glsl), read as if they were fp64, to fp64.
+void join_two_floats(std::span<double> values);
+
 class Gather {
  public:
-  /// `values`: fp64; it must outlive this and stay where it is.
+  /// `values`: fp64, or two floats each where the device has no fp64; it must outlive this and stay
+  /// where it is.
   Gather(const KernelFactory& kernels, const vulkan::Buffer& values);
 
   /// picked[i] = values[places[i]], in one submit.
@@ -24,6 +28,7 @@ class Gather {
   void make_room(std::uint32_t count);
 
   vulkan::Device& device_;
+  bool single_;
   const vulkan::Buffer& values_;
   std::unique_ptr<vulkan::Kernel> kernel_;
   std::uint32_t room_ = 0;

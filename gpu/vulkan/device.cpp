@@ -27,7 +27,7 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
   VkPhysicalDeviceFeatures features{};
-  features.shaderFloat64 = VK_TRUE;
+  features.shaderFloat64 = physical.float64 ? VK_TRUE : VK_FALSE;
   features.shaderInt64 = physical.int64 ? VK_TRUE : VK_FALSE;
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;

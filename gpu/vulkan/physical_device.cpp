@@ -76,7 +76,6 @@ std::string PhysicalDevice::shortcoming() const {
   }
   if (compute_family < 0) return "it has no compute queue";
   if (!subgroup_arithmetic) return "its subgroups offer no arithmetic in compute kernels";
-  if (!float64) return "it lacks shaderFloat64, which the fp64 sums of every route need";
   return {};
 }
 

@@ -37,6 +37,7 @@ struct Way {
   double tolerance = 1e-4;
   std::size_t panel_bytes = 0;
   Route route = Route::inverse;
+  bool float64 = true;  ///< false: the device has no shaderFloat64
 };
 
 inline std::vector<Way> all_ways() {
@@ -49,6 +50,7 @@ inline std::vector<Way> all_ways() {
         ways.push_back({variant, precision, update, rough ? 1e-2 : 1e-4});
       }
     }
+    ways.push_back({.variant = variant, .precision = Precision::fp32, .float64 = false});
   }
   return ways;
 }
@@ -59,7 +61,7 @@ inline std::string name_of(const Way& s) {
                     : s.update == Update::deferred ? "_deferred"
                                                    : "";
   return std::string(s.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
-         (s.precision == Precision::fp64 ? "_fp64" : "_fp32") + how;
+         (s.precision == Precision::fp64 ? "_fp64" : "_fp32") + how + (s.float64 ? "" : "_single");
 }
 
 inline std::shared_ptr<const Problem> vulkan_problem(Scene scene, const Way& way) {
@@ -81,6 +83,7 @@ class WatchedBackend {
     options.probe.guard_bytes = 256;
     options.variant = way.variant;
     options.panel_bytes = way.panel_bytes;
+    options.probe.no_float64 = !way.float64;
   }
   /// Every backend must be gone by then.
   ~WatchedBackend() {

@@ -27,11 +27,12 @@ TEST_P(Kernels, PickAndLowRankUpdateInOneAndSeveralPanels) {
       std::iota(all.begin(), all.end(), 0);
       ASSERT_EQ(inverse.pick(all, all), x);  // storage keeps rounded entries exactly
 
-      // Rank 12 on every fifth dof, entries of X up to 1: sums of `touched` and of 12 products.
+      // Rank 12 (and 6, a kernel of its own) on every fifth dof, entries of X up to 1: sums of
+      // `touched` and of 12 products.
       std::vector<Index> touched;
       for (Index i = 0; i < n; i += 5) touched.push_back(i);
       const auto t = static_cast<Index>(touched.size());
-      Eigen::MatrixXd v(t, std::min<Index>(12, 2 * t));
+      Eigen::MatrixXd v(t, std::min<Index>(panel_bytes > 0 ? 6 : 12, 2 * t));
       for (double& entry : v.reshaped()) entry = random();
       inverse.update(touched, v);
       const Eigen::MatrixXd z = x(Eigen::all, touched) * v;
@@ -64,7 +65,9 @@ TEST_P(Kernels, DenseAndFewColumnProducts) {
   gpu::ExactColumns exact(*factory_, fields.rows());
   Eigen::MatrixXd columns(n, 70);
   for (double& entry : columns.reshaped()) entry = uniform_(generator_);
-  ASSERT_TRUE(exact.extend(columns, 70));
+  std::vector<Index> of_columns(70);
+  for (Index t = 0; t < 70; ++t) of_columns[static_cast<std::size_t>(t)] = (31 * t) % n;
+  ASSERT_TRUE(exact.extend(columns, of_columns));
   gpu::PartialSums partials(*factory_, fields.rows(), inverse.chunks() + exact.chunks() + 1);
   inverse.bind(partials, fields.residual());
   exact.bind(partials, fields.residual());
@@ -116,6 +119,7 @@ TEST_P(Kernels, DenseAndFewColumnProducts) {
   commands.end();
   commands.submit();
   EXPECT_LE((exact.projection() - columns.transpose() * rhs).cwiseAbs().maxCoeff(), allowed);
+  EXPECT_EQ(exact.values(), Eigen::VectorXd(rhs(of_columns)));
 }
 
 /// Random boards, rigid motions far larger than the strain, up to nu 0.499.

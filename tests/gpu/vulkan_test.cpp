@@ -129,9 +129,26 @@ TEST_F(VulkanDevices, AShortcomingIsNamed) {
   device.api_version = VK_API_VERSION_1_2;
   EXPECT_EQ(device.shortcoming(), "it has no compute queue");
   device.compute_family = 0;
-  EXPECT_NE(device.shortcoming().find("shaderFloat64"), std::string::npos);
-  device.float64 = true;
-  EXPECT_EQ(device.shortcoming(), "");
+  EXPECT_EQ(device.shortcoming(), "");  // without shaderFloat64 too
+}
+
+TEST_F(VulkanDevices, WithoutFloat64OnlyFp32ByTheMixedRecipeIsOffered) {
+  for (const auto& [change, reason] :
+       {std::pair{+[](SolverOptions& s) { s.precision = Precision::fp64; }, "precision fp64"},
+        std::pair{+[](SolverOptions& s) { s.tolerance = 1e-6; }, "tolerance 1e-06 needs fp64"},
+        std::pair{+[](SolverOptions& s) { s.route = Route::cg; }, "route cg"},
+        std::pair{+[](SolverOptions& s) { s.update = Update::eager; }, "eager"}}) {
+    Scene scene = small_scene();
+    scene.solver.backend = "vulkan";
+    change(scene.solver);
+    const auto problem = std::make_shared<const Problem>(scene);
+    gpu::VulkanOptions options;
+    options.probe.no_float64 = true;
+    const std::string message =
+        message_of([&] { static_cast<void>(gpu::create(problem, all_needs(), options)); });
+    EXPECT_NE(message.find(reason), std::string::npos) << message;
+    EXPECT_NE(message.find("lacks shaderFloat64; use"), std::string::npos) << message;
+  }
 }
 
 TEST_F(VulkanDevices, PrecisionFollowsTheToleranceAndIsSaid) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/passes/host_balance.hpp"
+
+#include "fem/assembly.hpp"
+
+namespace sunder::gpu {
+
+HostBalance::HostBalance(const Problem& problem)
+    : problem_(problem),
+      scale_(problem.mesh().tets.size(), 1.0),
+      k_u_(3 * problem.mesh().nodes.size()),
+      load_(Eigen::VectorXd::Zero(problem.dof_count())),
+      roots_(load_),
+      balance_(load_),
+      residual_(load_) {}
+
+void HostBalance::set_load(std::span<const double> force) {
+  load_ = Eigen::Map<const Eigen::VectorXd>(force.data(), problem_.dof_count());
+}
+
+void HostBalance::set_roots(std::span<const double> roots) {
+  roots_ = Eigen::Map<const Eigen::VectorXd>(roots.data(), problem_.dof_count());
+}
+
+void HostBalance::destroy(std::span<const Index> elements) {
+  for (Index e : elements) scale_[e] = problem_.scene().fracture.alpha;
+}
+
+void HostBalance::compute(std::span<const double> displacement) {
+  fem::apply_stiffness(problem_, scale_, displacement, k_u_);
+  for (Index n = 0; n < problem_.node_count(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index dof = problem_.dof(n, axis);
+      if (dof != kNone) balance_[dof] = load_[dof] - k_u_[3 * static_cast<std::size_t>(n) + axis];
+    }
+  }
+  residual_ = balance_;
+  for (Index g : problem_.gripped_dofs()) residual_[g] = 0;
+}
+
+}  // namespace sunder::gpu

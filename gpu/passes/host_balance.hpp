@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// f - K u on the host in fp64, for devices without shaderFloat64: what the residual pass does on
+// others.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "sunder/problem.hpp"
+
+namespace sunder::gpu {
+
+class HostBalance {
+ public:
+  explicit HostBalance(const Problem& problem);
+
+  /// Over the unknowns.
+  void set_load(std::span<const double> force);
+  void set_roots(std::span<const double> roots);
+  void destroy(std::span<const Index> elements);
+
+  /// `displacement`: shape (3 * nodes).
+  void compute(std::span<const double> displacement);
+
+  /// f - K u over the unknowns; r is the same but 0 at gripped ones.
+  [[nodiscard]] const Eigen::VectorXd& balance() const { return balance_; }
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
+  // Sums as in shaders::NodePartial.
+  [[nodiscard]] double residual_squared() const { return residual_.squaredNorm(); }
+  [[nodiscard]] double reaction_squared() const { return (balance_ - residual_).squaredNorm(); }
+  [[nodiscard]] double energy_root() const { return residual_.cwiseAbs().dot(roots_); }
+
+ private:
+  const Problem& problem_;
+  std::vector<double> scale_, k_u_;  // a_e; K u at all nodes
+  Eigen::VectorXd load_, roots_, balance_, residual_;
+};
+
+}  // namespace sunder::gpu
