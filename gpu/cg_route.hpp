@@ -5,13 +5,14 @@
 
 #include "gpu/passes/add.hpp"
 #include "gpu/passes/block_matrix.hpp"
+#include "gpu/passes/rigid_space.hpp"
 #include "gpu/route.hpp"
 
 namespace sunder::gpu {
 
 class CgRoute final : public DeviceRoute {
  public:
-  CgRoute(const KernelFactory& kernels, Fields& fields);
+  CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields);
 
   /// Device bytes of the route, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
@@ -19,8 +20,9 @@ class CgRoute final : public DeviceRoute {
   int solve(const Load& load, bool balance) override;
   int correct() override;
   void add_correction() override;
-  void destroy(std::span<const Index>, std::span<const Index>) override {
-  }  // Fields' matrix follows
+  void destroy(std::span<const Index> elements, std::span<const Index>) override {
+    rigid_.destroy(elements);  // Fields' matrix follows by itself
+  }
   bool leaves_at(double, std::span<const Index>) override { return false; }
   bool restart(std::span<const Index>) override { return false; }
 
@@ -33,6 +35,7 @@ class CgRoute final : public DeviceRoute {
   void create_kernels(const Fields& fields);
   /// correction = K^-1 r, to a share of the first r^T M r. Returns iterations.
   int run(double reduction);
+  [[nodiscard]] shaders::CgPush push(std::uint32_t parity, double reduction = 0) const;
   void record_start(double reduction);
   void record_iterations();
   void refresh_state(bool add);
@@ -40,6 +43,7 @@ class CgRoute final : public DeviceRoute {
   const KernelFactory& kernels_;
   Fields& fields_;
   const BlockMatrix& matrix_;
+  RigidSpace rigid_;
   AddCorrection add_;
   vulkan::Buffer r_, p_, q_, z_, pq_, rz_, state_, arguments_;
   struct Pass {

@@ -55,7 +55,7 @@ class VulkanBackend final : public Backend {
                                            options.display, options.lent->timeline_semaphore);
     }
     if (plan_.cg) {
-      route_ = std::make_unique<CgRoute>(kernels_, fields_);
+      route_ = std::make_unique<CgRoute>(kernels_, *problem, fields_);
       return;
     }
     if (kernels_.single()) {

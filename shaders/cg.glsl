@@ -9,6 +9,8 @@ dvec4 free_part(dvec3 v, uvec4 dofs) {
                dofs.z == kHeld || (dofs.w & 4u) != 0u ? 0.0LF : v.z, 0.0LF);
 }
 
+const uint kRigidTerms = 6u * kRigidGroups;  // where terms of y^T w begin, behind w
+
 shared double group_sums[kGroup];
 
 // Sum over the workgroup in a fixed order; every invocation gets it.

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// x = 0, r = f - K u, z = M r, p = z; partial sums of r^T z.
+// x = 0, r = f - K u, z = D^-1 r; partial sums of r^T z.
 #extension GL_GOOGLE_include_directive : require
 #include "cg.glsl"
 
@@ -9,7 +9,7 @@ IN_UVEC4(1, Dofs, dofs)
 IN_DVEC4(2, Preconditioner, m)  // three rows a node
 OUT(3, X, dvec4, x)
 OUT(4, R, dvec4, r)
-OUT(5, P, dvec4, direction)
+OUT(5, Z, dvec4, z_)
 OUT(6, Partial, double, partial)
 
 void main() {
@@ -24,7 +24,7 @@ void main() {
                         dot(DVEC4(m, 3u * n + 2u).xyz, rn.xyz));
   x.data[n] = dvec4(0);
   r.data[n] = rn;
-  direction.data[n] = dvec4(z, 0);
+  z_.data[n] = dvec4(z, 0);
   const double sum = group_sum(dot(rn.xyz, z));
   if (gl_LocalInvocationID.x == 0u) partial.data[gl_WorkGroupID.x] = sum;
 }

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// x += a p, r -= a q with a = r^T z / p^T q; z = M r; partial sums of r^T z. Every workgroup sums
+// x += a p, r -= a q with a = r^T M r / p^T q; z = D^-1 r; partial sums of r^T z. Every workgroup sums
 // p^T q by itself, in the same order: cheaper than a dispatch of its own.
 #extension GL_GOOGLE_include_directive : require
 #include "cg.glsl"

@@ -19,6 +19,8 @@ SUNDER_CONST kColumnPad = 64u;     // columns of a matrix
 SUNDER_CONST kChunk = 64u;         // columns that one workgroup sums
 SUNDER_CONST kRankBlock = 6u;      // update vectors of one element
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one workgroup updates
+SUNDER_CONST kRigidGroups = 64u;   // groups of nodes in the second level of CG, at most
+SUNDER_CONST kFirst = 2u;          // in place of an iteration's parity
 SUNDER_CONST kHeld = 0xffffffffu;  // dof of an axis that a support holds
 
 // State of an element, bit by bit.
@@ -125,9 +127,10 @@ struct ComplementPush {
 };
 
 struct CgPush {
-  uint groups;       // workgroups of 64 nodes
-  uint parity;       // of the iteration
-  double reduction;  // stop at this share of the first r^T M r
+  uint groups;                      // workgroups of 64 nodes
+  uint parity;                      // of the iteration; kFirst: the first direction
+  double reduction;                 // stop at this share of the first r^T M r
+  uint rigid_groups, solve_groups;  // of the second level: groups of nodes, workgroups
 };
 
 // State of conjugate gradients, on the device from the first iteration to the last.
@@ -187,7 +190,7 @@ static_assert(sizeof(StressPartial) == 32);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 64);
-static_assert(sizeof(CgPush) == 16);
+static_assert(sizeof(CgPush) == 24);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 40);
 #undef SUNDER_CONST

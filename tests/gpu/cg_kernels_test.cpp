@@ -38,7 +38,7 @@ class Multiply {
   Result operator()(std::span<const double> p) {
     p_.write(p);
     commands_.begin();
-    commands_.dispatch(*binding_, shaders::CgPush{groups_, 0, 0}, groups_);
+    commands_.dispatch(*binding_, shaders::CgPush{groups_, 0, 0, 0, 0}, groups_);
     commands_.end();
     commands_.submit();
     Result result{std::vector<double>(p.size()), 0};

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Second level of the preconditioner of conjugate gradients: M^-1 = D^-1 + Z (Z^T K Z)^-1 Z^T with
+// the rigid motions Z of groups of nodes (additive two-level method; e.g. Tang, Nabben, Vuik,
+// Erlangga, J. Sci. Comput. 39, 2009). Blocks D alone pass a motion on by one element an iteration,
+// and what a cut sets free is held by destroyed elements only: its rigid motions are modes of their
+// own, which cost thousands of iterations.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/kernels.hpp"
+#include "gpu/vulkan/commands.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::gpu {
+
+class RigidSpace {
+ public:
+  RigidSpace(const KernelFactory& kernels, const Problem& problem);
+
+  /// Device bytes, before they exist.
+  [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
+
+  /// Follows an event.
+  void destroy(std::span<const Index> elements);
+  /// Brings the device up to date with the damage; before what is recorded next.
+  void update();
+  /// Groups of nodes, at least one (an empty one where there is no body).
+  [[nodiscard]] std::uint32_t groups() const {
+    return std::max(1u, static_cast<std::uint32_t>(groups_.size()));
+  }
+  /// Workgroups of the small matrix's product.
+  [[nodiscard]] std::uint32_t solve_groups() const {
+    return round_up(6 * groups(), shaders::kGroup) / shaders::kGroup;
+  }
+
+  void bind(const vulkan::Buffer& r);
+  /// w = (Z^T K Z)^-1 Z^T r of the bound vector, and the terms of (Z^T r)^T w behind it.
+  void record(vulkan::Commands& commands, const shaders::CgPush& push) const;
+  /// The same, sizes of the dispatches from the second and third three words of `arguments`.
+  void record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
+                       const vulkan::Buffer& arguments) const;
+
+  // What a kernel needs for z + Z w.
+  [[nodiscard]] const vulkan::Buffer& modes() const { return modes_; }
+  [[nodiscard]] const vulkan::Buffer& w() const { return w_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  [[nodiscard]] std::vector<std::vector<Index>> grouped();
+  void split(std::span<Index> nodes, Index count, std::vector<std::vector<Index>>& groups) const;
+  void place_modes();
+  void add_element(Index element, double scale);
+  void invert();
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> motion(Index node) const;
+
+  const KernelFactory& kernels_;
+  const Problem& problem_;
+  std::vector<std::uint8_t> destroyed_;
+  bool changed_ = true;
+  std::vector<std::vector<Index>> groups_;  // nodes of each, ascending
+  std::vector<Index> group_of_;             // of every node, kNone: none
+  std::vector<Vec3> place_;                 // of every node from its group's centre, by its size
+  std::vector<std::uint8_t> held_;          // axes of every node that nothing moves, as bits
+  Eigen::MatrixXd coarse_;                  // Z^T K Z
+  vulkan::Buffer modes_, lists_, inverse_, y_, w_;
+  std::unique_ptr<vulkan::Kernel> restrict_, solve_;
+  std::unique_ptr<vulkan::Binding> restrict_binding_, solve_binding_;
+};
+
+}  // namespace sunder::gpu
