@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The board of Table 1 as a user meets it: a quiet frame, a frame with one fracture, the start.
+#include <algorithm>
 #include <chrono>
-
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -88,6 +88,82 @@ void board_frame(benchmark::State& state, const Rows& rows, const std::string& n
   rows.table.measure(state, name, work);
 }
 
+/// A cascade of scattered fractures, one a frame, from the intact board on. Frames that take a base
+/// which a thread has computed meanwhile stand out in the worst one.
+class Cascade {
+ public:
+  explicit Cascade(std::shared_ptr<const Problem> problem)
+      : problem_(std::move(problem)), sequence_(test::scattered_sequence(*problem_, 640)) {}
+  void run() {
+    const auto backend = create(problem_);
+    backend->set_load(test::corner_pull(*problem_, Vec3(0, -60, 0)));
+    backend->solve();
+    frames_.clear();
+    for (const Index element : sequence_) {
+      const auto start = std::chrono::steady_clock::now();
+      backend->destroy({&element, 1});
+      backend->solve();
+      benchmark::DoNotOptimize(backend->stress());
+      const std::chrono::duration<double, std::milli> time =
+          std::chrono::steady_clock::now() - start;
+      frames_.push_back(time.count());
+    }
+  }
+  [[nodiscard]] double first() const { return median({frames_.begin(), frames_.begin() + 20}); }
+  [[nodiscard]] double last() const { return median({frames_.end() - 20, frames_.end()}); }
+  [[nodiscard]] double worst() const { return *std::max_element(frames_.begin(), frames_.end()); }
+
+ private:
+  static double median(std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+  }
+  std::shared_ptr<const Problem> problem_;
+  std::vector<Index> sequence_;
+  std::vector<double> frames_;  // [ms]
+};
+
+/// Milliseconds are those of all frames; the counters tell first, last and worst ones.
+void board_cascade(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64) {
+  Cascade vulkan(board("vulkan", fp64, rows.device)), cpu(board("cpu", true, kNone));
+  Work work;
+  work.run = [&] { vulkan.run(); };
+  work.reference = [&] { cpu.run(); };
+  rows.table.measure(state, name, work);
+  state.counters["first_ms"] = vulkan.first();
+  state.counters["last_ms"] = vulkan.last();
+  state.counters["worst_ms"] = vulkan.worst();
+  state.counters["cpu_first_ms"] = cpu.first();
+  state.counters["cpu_last_ms"] = cpu.last();
+}
+
+/// A cut through the board on route cg: the lower half is held by destroyed elements only.
+void board_cut_by_cg(benchmark::State& state, const Rows& rows, const std::string& name) {
+  const auto cut_board = [&](const std::string& backend) {
+    Scene scene = board(backend, true, rows.device)->scene();
+    scene.solver.route = Route::cg;
+    return std::make_shared<const Problem>(std::move(scene));
+  };
+  const auto on_vulkan = cut_board("vulkan"), on_cpu = cut_board("cpu");
+  const auto cut = test::elements_across(on_cpu->mesh(), 26.5);
+  const auto prepared = [&](const std::shared_ptr<const Problem>& problem) {
+    auto backend = create(problem);
+    backend->set_load(test::corner_pull(*problem, Vec3(0, -60, 0)));
+    backend->solve();
+    backend->destroy(cut);
+    return backend;
+  };
+  std::unique_ptr<Backend> vulkan, cpu;
+  int iterations = 0;
+  Work work;
+  work.prepare = [&] { vulkan = prepared(on_vulkan); };
+  work.run = [&] { iterations = vulkan->solve().iterations; };
+  work.prepare_reference = [&] { cpu = prepared(on_cpu); };
+  work.reference = [&] { cpu->solve(); };
+  rows.table.measure(state, name, work);
+  state.counters["iterations"] = iterations;
+}
+
 /// Runs this program again as a process that only starts up, with a shader cache of its own.
 double start_up_of_child(bool fp64, int device, const std::filesystem::path& cache) {
   const std::string command = "MESA_SHADER_CACHE_DIR='" + cache.string() + "' '" +
@@ -130,6 +206,8 @@ double start_up_ms(bool fp64, int device) {
 }
 
 void register_frame_rows(const Rows& rows) {
+  const std::string cut = "board_cut_by_cg/fp64";
+  add_row(cut, [=, &rows](auto& s) { board_cut_by_cg(s, rows, cut); });
   for (const bool fp64 : {false, true}) {
     const std::string precision = fp64 ? "/fp64" : "/fp32";
     for (const bool fracture : {false, true}) {
@@ -137,6 +215,8 @@ void register_frame_rows(const Rows& rows) {
           (fracture ? "board_fracture_frame" : "board_quiet_frame") + precision;
       add_row(name, [=, &rows](auto& s) { board_frame(s, rows, name, fp64, fracture); });
     }
+    const std::string cascade = "board_cascade_640" + precision;
+    add_row(cascade, [=, &rows](auto& s) { board_cascade(s, rows, cascade, fp64); });
     for (const bool cold : {true, false}) {
       const std::string name = (cold ? "start_up_cold" : "start_up_warm") + precision;
       add_row(

@@ -43,6 +43,11 @@ std::vector<double> upload_inverse(const HostInverse& host, DenseInverse& device
   return roots;
 }
 
+std::vector<double> HostInverse::roots() const {
+  const Eigen::VectorXd roots = dense_.diagonal().cwiseSqrt();
+  return {roots.begin(), roots.end()};
+}
+
 std::size_t HostInverse::bytes() const {
   return factor_.bytes() + static_cast<std::size_t>(dense_.size()) * sizeof(double);
 }

@@ -16,6 +16,9 @@ class HostInverse {
   HostInverse(const fem::SparseMatrix& lower, bool keep_dense);
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
   [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
+  /// Of the diagonal; a dense inverse only.
+  [[nodiscard]] std::vector<double> roots() const;
+  [[nodiscard]] bool is_dense() const { return dense_.size() > 0; }
   [[nodiscard]] const fem::Factor& factor() const { return factor_; }
   [[nodiscard]] std::size_t bytes() const;
 

@@ -15,6 +15,10 @@ namespace {
 // A pivot of C below this means that the event isolates something: fp32 has no digits left there
 // (method.md "Stability"), so the eager inverse must not take it in.
 constexpr double kLeastPivot32 = 1e-3;
+// So many exact columns begin a new base, which replaces the old one so many events later: a frame
+// reads all exact columns, and the inverse of the board takes a thread some 50 frames.
+constexpr Index kColumnsPerBase = 256;
+constexpr int kEventsUntilNext = 24;
 
 }  // namespace
 
@@ -56,6 +60,7 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem,
       commands_(kernels.device()),
       quiet_(kernels.device()),
       checked_(kernels.device()) {
+  next_possible_ = host_->is_dense();
   make_base({});
   if (eager_) {
     bind();
@@ -68,6 +73,8 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem,
 /// X of the body with the elements `destroyed`, and the roots of its diagonal.
 void InverseRoute::make_base(std::span<const Index> destroyed) {
   ++bases_;
+  base_destroyed_.assign(destroyed.begin(), destroyed.end());
+  base_stale_ = false;
   std::vector<double> roots;
   if (options_.on_device) {
     invert_on_device(kernels_, fem::assemble_lower(problem_, scale_of(destroyed)), fields_.rows(),
@@ -78,6 +85,13 @@ void InverseRoute::make_base(std::span<const Index> destroyed) {
     roots = upload_inverse(*host_, base_, problem_.dof_count());
   }
   fields_.set_roots(roots);
+}
+
+/// The base on the device, which a new one leaves behind until something needs it.
+void InverseRoute::ensure_base() {
+  if (!base_stale_) return;
+  static_cast<void>(upload_inverse(*host_, base_, problem_.dof_count()));
+  base_stale_ = false;
 }
 
 std::vector<double> InverseRoute::scale_of(std::span<const Index> destroyed) const {
@@ -151,6 +165,7 @@ void InverseRoute::solve_deferred(const Load& load, bool balance) {
     solve_on_exact(balance);
     return;
   }
+  if (!loaded.dofs.empty()) ensure_base();
   base_.set_loaded(loaded);
   commands_.begin();
   fields_.record_keep(commands_);
@@ -213,6 +228,13 @@ void InverseRoute::solve_eager(const Load& load, bool balance) {
 }
 
 int InverseRoute::correct() {
+  // Where a processor emulates the device its host applies the factor for a twentieth of what the
+  // dense product takes.
+  if (!eager_ && kernels_.emulated()) {
+    correct_on_host();
+    return 0;
+  }
+  ensure_base();
   if (!eager_) {
     exact_.set_coefficients(correction_->coefficients(exact_.projection(), {}));
   }
@@ -237,6 +259,24 @@ int InverseRoute::correct() {
   commands_.end();
   commands_.submit();
   return 0;
+}
+
+void InverseRoute::correct_on_host() {
+  std::vector<double> r(static_cast<std::size_t>(problem_.dof_count()));
+  fields_.residual().read(std::span<double>(r));
+  const Eigen::Map<const Eigen::VectorXd> residual(r.data(), problem_.dof_count());
+  Eigen::VectorXd du = host_->factor().solve(residual);
+  if (const Index count = correction_->count(); count > 0) {
+    du +=
+        correction_->columns().leftCols(count) * correction_->coefficients(exact_.projection(), {});
+  }
+  fields_.write_unknowns(Field::correction, du);
+  commands_.begin();
+  commands_.pass("estimate");
+  fields_.record_hold(commands_, Field::correction);
+  fields_.record_correction(commands_);
+  commands_.end();
+  commands_.submit();
 }
 
 void InverseRoute::add_correction() {
@@ -278,12 +318,49 @@ void InverseRoute::destroy(std::span<const Index> elements, std::span<const Inde
     factor_grips();
     return;
   }
+  rebased_ = false;
+  if (next_.valid() && --events_until_next_ == 0 && take_next_base(destroyed)) return;
   if (correction_->count() + correction_->new_dofs_of(elements) > exact_.most() ||
       !correction_->destroy(elements)) {
     rebase(destroyed);
     return;
   }
   extend_exact();
+  const auto grips = static_cast<Index>(problem_.gripped_dofs().size());
+  if (!next_.valid() && next_possible_ && correction_->count() > grips + kColumnsPerBase) {
+    start_next_base(destroyed);
+  }
+}
+
+void InverseRoute::start_next_base(std::span<const Index> destroyed) {
+  next_destroyed_.assign(destroyed.begin(), destroyed.end());
+  events_until_next_ = kEventsUntilNext;
+  next_ = std::async(std::launch::async, [&problem = problem_, scale = scale_of(destroyed)] {
+    return std::make_shared<const HostInverse>(fem::assemble_lower(problem, scale), true);
+  });
+}
+
+/// The base to come with what was destroyed since it was begun. False: it is none in double
+/// precision, and nothing has changed.
+bool InverseRoute::take_next_base(std::span<const Index> destroyed) {
+  std::shared_ptr<const HostInverse> host;
+  try {
+    host = next_.get();
+  } catch (const NumericalError&) {
+    next_possible_ = false;
+    return false;
+  }
+  auto correction = std::make_unique<Correction>(
+      problem_, [host](std::span<const Index> dofs) { return host->columns(dofs); });
+  if (!correction->destroy(destroyed.subspan(next_destroyed_.size()))) return false;
+  host_ = std::move(host);
+  correction_ = std::move(correction);
+  base_destroyed_ = next_destroyed_;
+  base_stale_ = true;
+  ++bases_;
+  fields_.set_roots(host_->roots());
+  make_exact();
+  return true;
 }
 
 /// X += Z Z^T with Z = X W L^-T, L L^T = I - W^T X W, all as it stands on the device. False: the
@@ -338,6 +415,7 @@ void InverseRoute::make_exact() {
 
 /// A new base: the inverse of the body as damaged now, from a factor of its own.
 void InverseRoute::rebase(std::span<const Index> destroyed) {
+  next_ = {};
   host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale_of(destroyed)),
                                         !options_.on_device);
   make_base(destroyed);

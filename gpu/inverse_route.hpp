@@ -3,6 +3,7 @@
 // (deferred) or worked into it (eager).
 #pragma once
 
+#include <future>
 #include <memory>
 
 #include "gpu/correction.hpp"
@@ -61,6 +62,10 @@ class InverseRoute final : public DeviceRoute {
   [[nodiscard]] Loaded grip_forces(Field field, std::span<const double> displacement) const;
   void defer(std::span<const Index> destroyed);
   void rebase(std::span<const Index> destroyed);
+  void start_next_base(std::span<const Index> destroyed);
+  bool take_next_base(std::span<const Index> destroyed);
+  void correct_on_host();
+  void ensure_base();
 
   const KernelFactory& kernels_;
   const Problem& problem_;
@@ -69,7 +74,16 @@ class InverseRoute final : public DeviceRoute {
   InverseOptions options_;
   bool eager_, rebased_ = false;
   int bases_ = 0;
+  std::vector<Index> base_destroyed_;  // elements that the base lacks
+  bool base_stale_ = false;            // base_ is that of an earlier one
   DenseInverse base_;
+  // A base to come, computed on a thread of its own while frames go on: started where the exact
+  // columns pass a threshold and taken a fixed number of events later, so that results depend on
+  // the events alone.
+  std::future<std::shared_ptr<const HostInverse>> next_;
+  std::vector<Index> next_destroyed_;
+  int events_until_next_ = 0;
+  bool next_possible_ = true;  // the host holds dense inverses, and they were positive definite
   ExactColumns exact_;
   std::unique_ptr<Correction> correction_;
   PartialSums partials_;

@@ -51,6 +51,8 @@ class KernelFactory {
   [[nodiscard]] KernelFactory in_fp64() const { return {device_, variant_, true}; }
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
+  /// Kernels for a processor that emulates a device.
+  [[nodiscard]] bool emulated() const { return variant_ == Variant::lvp; }
   /// The device has no fp64 at all: what would be fp64 is two floats, or the host's.
   [[nodiscard]] bool single() const { return !device_.physical().float64; }
   [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }

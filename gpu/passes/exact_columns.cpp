@@ -75,7 +75,7 @@ void ExactColumns::allocate(std::uint32_t capacity) {
   solve_binding_.reset();
   columns_ =
       Buffer(kernels_.device(), std::size_t{capacity_} * rows_ * sizeof(double), Placement::device);
-  columns_.fill_zero();
+  zeroed_ = 0;
   coefficients_ = Buffer(kernels_.device(), capacity_ * sizeof(double), Placement::host);
   coefficients_.fill_zero();
   dofs_ = Buffer(kernels_.device(), capacity_ * sizeof(std::uint32_t), Placement::host);
@@ -99,8 +99,9 @@ bool ExactColumns::extend(const Eigen::MatrixXd& all, std::span<const Index> dof
   }
   if (count == 0) return moved;
   std::copy(dofs.begin(), dofs.end(), dofs_.mapped<Index>());
+  zero_to(round_up(static_cast<std::uint32_t>(count), shaders::kChunk));
   if (kernels_.device().physical().unified()) {
-    // Rows beyond the unknowns stay the zeros that allocate() wrote.
+    // Rows beyond the unknowns stay zero.
     for (; count_ < count; ++count_) {
       columns_.write(
           std::span<const double>(all.col(count_).data(), static_cast<std::size_t>(all.rows())),
@@ -114,6 +115,15 @@ bool ExactColumns::extend(const Eigen::MatrixXd& all, std::span<const Index> dof
     count_ = count;
   }
   return moved;
+}
+
+/// Columns up to `end` are zero where nothing was written. No more of them: on a processor that
+/// emulates a GPU every page first touched costs.
+void ExactColumns::zero_to(std::uint32_t end) {
+  if (end <= zeroed_) return;
+  const std::size_t column_bytes = rows_ * sizeof(double);
+  columns_.fill_zero(zeroed_ * column_bytes, (end - zeroed_) * column_bytes);
+  zeroed_ = end;
 }
 
 void ExactColumns::bind(const PartialSums& partials, const Buffer& vector) {

@@ -54,9 +54,10 @@ class ExactColumns {
 
  private:
   const KernelFactory& kernels_;
-  std::uint32_t rows_, capacity_ = 0;
+  std::uint32_t rows_, capacity_ = 0, zeroed_ = 0;  // columns
   Index count_ = 0;
   void allocate(std::uint32_t capacity);
+  void zero_to(std::uint32_t end);
 
   std::unique_ptr<vulkan::Kernel> dense_, project_, solve_;
   vulkan::Buffer columns_, coefficients_, dofs_, projection_;  // projection_: values() behind it

@@ -150,14 +150,15 @@ void Buffer::read(std::size_t offset, std::span<std::byte> data) const {
   }
 }
 
-void Buffer::fill_zero() {
+void Buffer::fill_zero(std::size_t offset, std::size_t bytes) {
+  if (bytes == 0) return;
   if (mapped_) {
-    std::memset(begin(), 0, bytes_);
+    std::memset(begin() + offset, 0, bytes);
     return;
   }
   Commands commands(*device_);
   commands.begin();
-  commands.fill_zero(*this);
+  commands.fill_zero(*this, offset, bytes);
   commands.end();
   commands.submit();
 }

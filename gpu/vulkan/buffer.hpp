@@ -40,7 +40,9 @@ class Buffer {
 
   void write(std::size_t offset, std::span<const std::byte> data);
   void read(std::size_t offset, std::span<std::byte> data) const;
-  void fill_zero();
+  void fill_zero() { fill_zero(0, bytes_); }
+  /// Offset and bytes: multiples of 4.
+  void fill_zero(std::size_t offset, std::size_t bytes);
 
   template <class T>
   void write(std::span<const T> values, std::size_t first = 0) {

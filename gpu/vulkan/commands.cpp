@@ -111,8 +111,8 @@ void Commands::copy(VkBuffer from, std::size_t from_offset, VkBuffer to, std::si
   device_.vk().CmdCopyBuffer(handle_, from, to, 1, &region);
 }
 
-void Commands::fill_zero(const Buffer& buffer) {
-  device_.vk().CmdFillBuffer(handle_, buffer.handle(), buffer.offset(), buffer.bytes(), 0);
+void Commands::fill_zero(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
+  device_.vk().CmdFillBuffer(handle_, buffer.handle(), buffer.offset() + offset, bytes, 0);
 }
 
 std::vector<PassTime> Commands::pass_times() const {

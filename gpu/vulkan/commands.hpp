@@ -44,7 +44,7 @@ class Commands {
   void barrier();
   void copy(VkBuffer from, std::size_t from_offset, VkBuffer to, std::size_t to_offset,
             std::size_t bytes);
-  void fill_zero(const Buffer& buffer);
+  void fill_zero(const Buffer& buffer, std::size_t offset, std::size_t bytes);
 
   /// Of the last submit; passes of one name are added up. Empty where the queue has no clock.
   [[nodiscard]] std::vector<PassTime> pass_times() const;
