@@ -75,7 +75,9 @@ TEST_P(Agreement, AlongACrack) {
 TEST_P(Agreement, Scattered) {
   Pair pair(held_board(), GetParam());
   pair.load(corner_pull(pair.problem()));
-  follow(pair, scattered_sequence(pair.problem(), 200), 200, kIntactTolerance, true);
+  // 200 eager updates in the variant that is slow on lavapipe: along a crack alone.
+  const std::size_t last = eager() && GetParam().variant == gpu::Variant::gpu ? 50 : 200;
+  follow(pair, scattered_sequence(pair.problem(), last), last, kIntactTolerance, true);
 }
 
 TEST_P(Agreement, AfterACutInOneEvent) {

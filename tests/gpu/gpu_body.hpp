@@ -29,6 +29,9 @@ class WithVulkan : public Base {
   }
 };
 
+/// Everywhere but under a sanitizer.
+inline bool validated() { return std::getenv("SUNDER_WITHOUT_VALIDATION") == nullptr; }
+
 /// One way to run a scene on Vulkan.
 struct Way {
   gpu::Variant variant = gpu::Variant::lvp;
@@ -78,7 +81,7 @@ inline std::shared_ptr<const Problem> vulkan_problem(Scene scene, const Way& way
 class WatchedBackend {
  public:
   WatchedBackend(Scene scene, const Way& way) : problem(vulkan_problem(std::move(scene), way)) {
-    options.instance.validation = true;
+    options.instance.validation = validated();
     options.instance.messages = messages_;
     options.probe.guard_bytes = 256;
     options.variant = way.variant;

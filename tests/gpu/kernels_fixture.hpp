@@ -28,7 +28,7 @@ class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
     WithVulkan<testing::TestWithParam<Numbers>>::SetUp();
     if (IsSkipped()) return;
     vulkan::InstanceOptions options;
-    options.validation = true;
+    options.validation = validated();
     options.messages = messages_;
     const auto instance = std::make_shared<vulkan::Instance>(options);
     device_ = vulkan::create_device(instance, vulkan::list_devices(*instance).front(), {-1, 256});
