@@ -5,11 +5,9 @@
 
 #include <cholmod.h>
 
-#include <algorithm>
 #include <stdexcept>
-#include <vector>
 
-#include "fem/event_factor.hpp"
+#include "cholmod_data.hpp"
 #include "tearing_board.hpp"
 
 namespace sunder::bench {
@@ -83,43 +81,10 @@ class Cholmod {
   }
 
   cholmod_sparse* matrix(std::span<const Index> destroyed) {
-    std::vector<double> scale(board_.problem->mesh().tets.size(), 1.0);
-    for (Index e : destroyed) scale[e] = board_.problem->scene().fracture.alpha;
-    const fem::SparseMatrix k = fem::assemble_lower(*board_.problem, scale);
-    cholmod_sparse* s =
-        cholmod_allocate_sparse(k.rows(), k.cols(), k.nonZeros(), 1, 1, -1, CHOLMOD_REAL, &common_);
-    std::copy_n(k.outerIndexPtr(), k.cols() + 1, static_cast<int*>(s->p));
-    std::copy_n(k.innerIndexPtr(), k.nonZeros(), static_cast<int*>(s->i));
-    std::copy_n(k.valuePtr(), k.nonZeros(), static_cast<double*>(s->x));
-    return s;
+    return to_cholmod(damaged_stiffness(*board_.problem, destroyed), -1, common_);
   }
-
   cholmod_sparse* vectors(std::span<const Index> elements) {
-    const auto n = static_cast<std::size_t>(pristine_->n);
-    std::vector<Index> place(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      place[static_cast<std::size_t>(static_cast<int*>(pristine_->Perm)[i])] =
-          static_cast<Index>(i);
-    }
-    std::vector<Eigen::Triplet<double, Index>> entries;
-    Index column = 0;
-    for (Index e : elements) {
-      const fem::EventFactor one = fem::event_factor(*board_.problem, {&e, 1});
-      for (Eigen::Index j = 0; j < 6; ++j, ++column) {
-        for (std::size_t i = 0; i < one.dofs.size(); ++i) {
-          const double value = one.w(static_cast<Eigen::Index>(i), j);
-          if (value != 0) entries.emplace_back(place[one.dofs[i]], column, value);
-        }
-      }
-    }
-    fem::SparseMatrix w(static_cast<Index>(n), column);
-    w.setFromTriplets(entries.begin(), entries.end());
-    cholmod_sparse* s =
-        cholmod_allocate_sparse(n, w.cols(), w.nonZeros(), 1, 1, 0, CHOLMOD_REAL, &common_);
-    std::copy_n(w.outerIndexPtr(), w.cols() + 1, static_cast<int*>(s->p));
-    std::copy_n(w.innerIndexPtr(), w.nonZeros(), static_cast<int*>(s->i));
-    std::copy_n(w.valuePtr(), w.nonZeros(), static_cast<double*>(s->x));
-    return s;
+    return to_cholmod(update_columns(*board_.problem, elements, *pristine_), 0, common_);
   }
 
   const TearingBoard& board_;

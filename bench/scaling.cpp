@@ -82,7 +82,7 @@ void size_row(benchmark::State& state, const Method& method, Index cells) {
     state.counters["floor_ms"] = bytes / copy_rate();
     state.counters["unknowns"] = static_cast<double>(problem->dof_count());
   } catch (const Error& error) {
-    state.SkipWithError(error.what());
+    state.SkipWithError((std::string("refused: ") + error.what()).c_str());
   }
 }
 

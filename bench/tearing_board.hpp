@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The board of the engine's benchmarks: 50 x 50 x 2.5 mm, one layer of cells of six tetrahedra,
-// held at the top, pulled at the lower right corner, torn from the middle of its right edge.
+// held at the top, pulled at the lower right corner, torn from the middle of its right edge. A
+// block is the same with another depth.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +17,14 @@ namespace sunder::bench {
 
 class TearingBoard {
  public:
-  explicit TearingBoard(Index cells) : problem(std::make_shared<Problem>(scene(cells))) {
+  explicit TearingBoard(Index cells) : TearingBoard({cells, cells, 1, 50, 50, 2.5}) {}
+  explicit TearingBoard(const test::BoardShape& shape)
+      : problem(std::make_shared<Problem>(scene(shape))) {
     for (Index n = 0; n < problem->node_count(); ++n) {
       const Vec3& x = problem->mesh().nodes[n];
       if (x.x() > 49.99 && x.y() < 0.01) load_dofs.push_back(problem->dof(n, 1));
     }
-    load_values.assign(load_dofs.size(), -30.0);
+    load_values.assign(load_dofs.size(), -60.0 / static_cast<double>(load_dofs.size()));
     find_order();
   }
 
@@ -35,16 +38,16 @@ class TearingBoard {
   std::vector<double> load_values;
 
  private:
-  static Scene scene(Index cells) {
+  static Scene scene(const test::BoardShape& shape) {
     Scene scene;
-    scene.mesh = test::structured_board({cells, cells, 1, 50, 50, 2.5}, [](const Vec3& x) {
+    scene.mesh = test::structured_board(shape, [](const Vec3& x) {
       return x.y() > 45 ? "top-frame" : x.y() < 5 ? "bottom-frame" : x.y() > 25 ? "upper" : "lower";
     });
     scene.materials = {{"upper", {5, 0.4, 2.0}},
                        {"lower", {8, 0.4, 4.0}},
                        {"top-frame", {500, 0.4, std::nullopt}},
                        {"bottom-frame", {500, 0.4, std::nullopt}}};
-    scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
+    scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 51)}, Axes{7}});
     return scene;
   }
 

@@ -5,35 +5,12 @@
 #include "app/output/run_record.hpp"
 #include "app/output/text.hpp"
 #include "app/reproduce/chapters.hpp"
+#include "app/reproduce/paper_times.hpp"
 
 namespace sunder::app::reproduce {
 namespace {
 
-/// Of one run [ms]; none: it did not happen.
-struct Times {
-  std::string column;
-  double prepare = 0;
-  std::optional<double> solve, stress, decide, update;
-};
-
-/// Median over the steps in which something broke: one frame's stages, one event's update.
-Times times_of(const std::string& column, const RunResult& run) {
-  Times times{column, run.prepare_ms, {}, {}, {}, {}};
-  const auto median = [&](double StageTimes::*stage, bool per_event) -> std::optional<double> {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < run.steps.size(); ++i) {
-      const int count = per_event ? run.steps[i].events : run.frames[i];
-      if (run.steps[i].events > 0 && count > 0) values.push_back(run.steps[i].times.*stage / count);
-    }
-    if (values.empty()) return std::nullopt;
-    return statistics(values).median;
-  };
-  times.solve = median(&StageTimes::solve, false);
-  times.stress = median(&StageTimes::stress, false);
-  times.decide = median(&StageTimes::decide, false);
-  times.update = median(&StageTimes::update, true);
-  return times;
-}
+using Times = PaperTimes;
 
 std::string shown(const std::optional<double>& ms) { return ms ? rounded(*ms, 3) : "-"; }
 
@@ -76,6 +53,33 @@ DataTable table_3(const std::vector<Times>& t) {
 
 }  // namespace
 
+std::vector<PaperColumn> paper_columns() {
+  return {
+      {"A", {"board-pull-a", {}, nullptr, 1, {}}},
+      {"B, expansion", {"notch-b", {both_k()[0].override}, nullptr, 1, {}}},
+      {"B, expansion + pressure", {"pressure-balanced", {both_k()[0].override}, nullptr, 1, {}}},
+      {"B, field", {"notch-b", {both_k()[1].override}, nullptr, 1, {}}}};
+}
+
+PaperTimes measure_paper_times(const Laboratory& lab, const RunPlan& plan) {
+  const RunResult run = lab.run(plan);
+  PaperTimes times{run.prepare_ms, {}, {}, {}, {}};
+  const auto median = [&](double StageTimes::*stage, bool per_event) -> std::optional<double> {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < run.steps.size(); ++i) {
+      const int count = per_event ? run.steps[i].events : run.frames[i];
+      if (run.steps[i].events > 0 && count > 0) values.push_back(run.steps[i].times.*stage / count);
+    }
+    if (values.empty()) return std::nullopt;
+    return statistics(values).median;
+  };
+  times.solve = median(&StageTimes::solve, false);
+  times.stress = median(&StageTimes::stress, false);
+  times.decide = median(&StageTimes::decide, false);
+  times.update = median(&StageTimes::update, true);
+  return times;
+}
+
 Chapter paper_times(const Laboratory& lab) {
   lab.tell("experiment 5: times");
   Chapter chapter{
@@ -90,12 +94,10 @@ Chapter paper_times(const Laboratory& lab) {
       {},
       {},
       {}};
-  const std::vector<Times> times = {
-      times_of("A", lab.run({"board-pull-a", {}, nullptr, 1, {}})),
-      times_of("B, expansion", lab.run({"notch-b", {both_k()[0].override}, nullptr, 1, {}})),
-      times_of("B, expansion + pressure",
-               lab.run({"pressure-balanced", {both_k()[0].override}, nullptr, 1, {}})),
-      times_of("B, field", lab.run({"notch-b", {both_k()[1].override}, nullptr, 1, {}}))};
+  std::vector<Times> times;
+  for (const PaperColumn& column : paper_columns()) {
+    times.push_back(measure_paper_times(lab, column.plan));
+  }
   if (std::any_of(times.begin(), times.end(), [](const Times& t) { return !t.stress; })) {
     chapter.findings.push_back("A run broke nothing: there is no time of a fracture.");
     return chapter;

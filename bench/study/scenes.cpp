@@ -3,13 +3,16 @@
 // end; one CSV row each. Errors are those of the last frame against a run by the factor in fp64
 // (itself within 1e-8 of a fresh factorisation, tests/cpu_reference) whose solution is refined to
 // 1e-10.
-//   bench_scenes FILE [SCENE...]        all scenes by default
+//   bench_scenes FILE [--seconds=S] [--tolerances=T,...] [SCENE...]        all scenes by default
+// A run that takes more than S seconds (20) ends there and is reported as "over budget"; the
+// method's further tolerances are then left out for this scene.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "app/input/scene_toml.hpp"
 #include "bench/study/method.hpp"
@@ -28,14 +31,22 @@ struct Run {
   std::vector<Index> fractures;  ///< in order
   double frame_ms = 0;           ///< median over steps of time per frame
   int polished = 0;              ///< steps
+  bool over_budget = false;      ///< ended before the scene did
 };
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values.empty() ? 0 : values[values.size() / 2];
 }
 
-Run run_scene(const Problem& stated, const SolverOptions& options) {
+Run run_scene(const Problem& stated, const SolverOptions& options, double budget) {
+  const auto start = Clock::now();
   Scene scene = stated.scene();
   scene.solver = options;
   const auto problem = std::make_shared<Problem>(std::move(scene));
@@ -43,13 +54,16 @@ Run run_scene(const Problem& stated, const SolverOptions& options) {
   needs.stress = true;  // it is what errors are measured in
   Simulation simulation(problem, create_backend(problem, needs).backend);
   Run run;
+  const auto in_time = [&] { return seconds_since(start) < budget; };
+  simulation.observe_events([&](std::span<const DestroyedElement>) { return in_time(); });
   std::vector<double> ms;
-  while (!simulation.done()) {
+  while (!simulation.done() && in_time()) {
     const StepReport step = simulation.step();
     ms.push_back(step.times.total / (step.events + 1));
     run.polished += step.polished;
   }
   run.frame_ms = median(ms);
+  run.over_budget = !simulation.done() || simulation.interrupted();
   for (const Vec3& u : simulation.displacement()) run.u.insert(run.u.end(), {u.x(), u.y(), u.z()});
   run.stress = simulation.stress();
   const auto destroyed = simulation.backend().destroyed();
@@ -58,51 +72,89 @@ Run run_scene(const Problem& stated, const SolverOptions& options) {
   return run;
 }
 
-constexpr double kLongRun = 30;  // s; a method that takes longer runs a scene once
+void write_numbers(std::ostream& out, const Problem& problem, const Run& run,
+                   const Run& reference) {
+  out << run.frame_ms << ',';
+  if (run.over_budget) {
+    out << ",," << run.fractures.size() << ",over budget,\n";
+    return;
+  }
+  const bool same = run.fractures == reference.fractures;
+  out << test::displacement_error(problem.mesh(), reference.destroyed, run.u, reference.u) << ','
+      << test::stress_error(reference.destroyed, run.stress, reference.stress) << ','
+      << run.fractures.size() << ','
+      << (!same          ? "other fractures"
+          : run.polished ? "polished"
+                         : "ok")
+      << ",\n";
+}
 
-/// Verdict "other fractures": the list differs, so that errors compare nothing. Returns seconds.
-double row(std::ostream& out, const std::string& scene, const Method& method, double tolerance,
-           const Problem& problem, const Run& reference) {
-  SolverOptions options = method.options;
-  options.tolerance = tolerance;
-  out << scene << ',' << method.name << ',' << tolerance << ',';
-  const auto start = std::chrono::steady_clock::now();
+/// Verdict "other fractures": the list differs, so that errors compare nothing. Returns whether the
+/// run came to its end.
+bool row(std::ostream& out, const std::string& scene, const Method& method, double budget,
+         const Problem& problem, const Run& reference) {
+  out << scene << ',' << method.name << ',' << method.options.tolerance << ',';
+  bool ended = true;
   try {
-    const Run run = run_scene(problem, options);
-    const bool same = run.fractures == reference.fractures;
-    out << run.frame_ms << ','
-        << test::displacement_error(problem.mesh(), reference.destroyed, run.u, reference.u) << ','
-        << test::stress_error(reference.destroyed, run.stress, reference.stress) << ','
-        << run.fractures.size() << ','
-        << (!same          ? "other fractures"
-            : run.polished ? "polished"
-                           : "ok")
-        << ",\n";
+    const Run run = run_scene(problem, method.options, budget);
+    ended = !run.over_budget;
+    write_numbers(out, problem, run, reference);
   } catch (const Error& error) {
     std::string reason = error.what();
     std::replace(reason.begin(), reason.end(), '"', '\'');
     out << ",,,,refused,\"" << reason << "\"\n";
   }
   out.flush();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return ended;
 }
 
-void study(std::ostream& out, const std::filesystem::path& file) {
+struct Options {
+  double seconds = 20;
+  std::vector<double> tolerances{1e-4, 1e-2, 1e-8};
+  std::vector<std::filesystem::path> files;
+};
+
+void study(std::ostream& out, const std::filesystem::path& file, const Options& options) {
   const auto problem = app::read_problem(file);
   SolverOptions exact;
   exact.backend = "cpu";
   exact.route = Route::factor;
   exact.tolerance = 1e-10;
-  const Run reference = run_scene(*problem, exact);
+  const Run reference = run_scene(*problem, exact, 1e9);
   bool vulkan = false;
   for (const DeviceInfo& device : devices()) vulkan |= device.backend == "vulkan";
   for (const Method& method : methods(vulkan)) {
-    for (double tolerance : {1e-4, 1e-2, 1e-8}) {
+    Method at = method;
+    for (double tolerance : options.tolerances) {
       std::fprintf(stderr, "\r%s: %s, %g        ", file.stem().c_str(), method.name.c_str(),
                    tolerance);
-      if (row(out, file.stem().string(), method, tolerance, *problem, reference) > kLongRun) break;
+      at.options.tolerance = tolerance;
+      if (!row(out, file.stem().string(), at, options.seconds, *problem, reference)) break;
     }
   }
+}
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.starts_with("--seconds=")) {
+      options.seconds = std::stod(word.substr(10));
+    } else if (word.starts_with("--tolerances=")) {
+      options.tolerances.clear();
+      std::istringstream list(word.substr(13));
+      for (std::string one; std::getline(list, one, ',');)
+        options.tolerances.push_back(std::stod(one));
+    } else {
+      options.files.emplace_back(word);
+    }
+  }
+  if (!options.files.empty()) return options;
+  for (const auto& entry : std::filesystem::directory_iterator(SUNDER_SCENES)) {
+    if (entry.path().extension() == ".toml") options.files.push_back(entry.path());
+  }
+  std::sort(options.files.begin(), options.files.end());
+  return options;
 }
 
 }  // namespace
@@ -110,23 +162,20 @@ void study(std::ostream& out, const std::filesystem::path& file) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: bench_scenes FILE [SCENE...]\n";
+    std::cerr << "usage: bench_scenes FILE [--seconds=S] [--tolerances=T,...] [SCENE...]\n";
     return 2;
-  }
-  std::vector<std::filesystem::path> files(argv + 2, argv + argc);
-  if (files.empty()) {
-    for (const auto& entry : std::filesystem::directory_iterator(SUNDER_SCENES)) {
-      if (entry.path().extension() == ".toml") files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
   }
   std::ofstream out(argv[1]);
   out << "scene,method,tolerance,frame_ms,u_error,stress_error,fractures,verdict,reason\n";
   try {
-    for (const auto& file : files) sunder::bench::study(out, file);
+    const auto options = sunder::bench::read_options(argc, argv);
+    for (const auto& file : options.files) sunder::bench::study(out, file, options);
   } catch (const sunder::Error& error) {
     std::cerr << error.what() << '\n';
     return 3;
+  } catch (const std::invalid_argument&) {
+    std::cerr << "bench_scenes: --seconds and --tolerances take numbers\n";
+    return 2;
   }
   out.close();
   std::fputc('\n', stderr);

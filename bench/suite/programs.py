@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The benchmark programs and what the quick mode runs of each; a further one is one line."""
+"""The benchmark programs and what each mode runs of them; a further one is one entry."""
 import dataclasses
 import json
 import os
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -11,85 +12,170 @@ import time
 
 from . import results
 
+MODES = ("ci", "quick", "full")
+
+
+@dataclasses.dataclass
+class Share:
+    """What a mode runs of a program."""
+    seconds: float        # on two idle cores: for the time left, and ten times it is the limit
+    rows: str = "."       # filter of rows (regular expression)
+    repetitions: int = 5
+    words: tuple = ()     # arguments of a study
+
 
 @dataclasses.dataclass
 class Program:
     name: str
-    quick: str       # filter of rows (regular expression), "-" in front: all but these
-    seconds: tuple   # rough duration quick, full: for the time left
     about: str
+    ci: Share
+    quick: Share
+    full: Share
+    file: str = ""        # a study writes this CSV; without it the program is a Google Benchmark
 
+
+SCENES = tuple(str(pathlib.Path(__file__).resolve().parents[2] / "scenes" / f"{name}.toml")
+               for name in ("notch-b", "scripted-cut", "stiff-contrast"))
 
 PROGRAMS = [
-    Program("bench_program", ".", (25, 60), "start of the program to its files"),
-    Program("bench_field_sif", ".", (10, 60), "time to decide the rupture element"),
-    Program("bench_engine", "/1944/k|/7776/k1/", (60, 900), "inverse reconstruction against CHOLMOD"),
-    Program("bench_inversion", "/(486|1944)/", (10, 60), "the intact inverse against OpenBLAS, Eigen"),
-    Program("bench_scaling", "/(486|1944)/", (30, 900), "sizes against frames and memory"),
-    Program("bench_vulkan", "board", (40, 300), "kernels and frames on the Vulkan device"),
-    Program("bench_c_abi", ".", (10, 60), "a step through the C interface"),
+    Program("bench_paper", "the paper's Tables 2 and 3",
+            Share(2, repetitions=1), Share(5), Share(5)),
+    Program("bench_program", "start of the program to its files",
+            Share(3, repetitions=1), Share(12), Share(12)),
+    Program("bench_field_sif", "time to decide the rupture element",
+            Share(8, "decide|whole", 1), Share(15, repetitions=3), Share(40)),
+    Program("bench_c_abi", "a step through the C interface",
+            Share(4, "/4/", 1), Share(6, repetitions=1), Share(20, repetitions=3)),
+    Program("bench_engine", "the engine against CHOLMOD, event by event",
+            Share(8, "/1944/k(1|10)/", 1), Share(25, "/1944/k", 3), Share(400, repetitions=3)),
+    Program("bench_inversion", "the intact inverse against OpenBLAS and Eigen",
+            Share(3, "/486/", 1), Share(8, "/486/|openblas.*/1944/|sunder/1944/", 3),
+            Share(300, repetitions=3)),
+    Program("bench_reconstruction", "inverse reconstruction by everyone",
+            Share(8, "board 486/k10/", 1),
+            Share(70, "board (486|1944)/k[0-9]+/(openblas|eigen S|Jacobi|chol|stale|cpu|vulkan i)"
+                  "|board 486/k10/|7776/k10/(cpu factor|cpu inverse def|chol|stale)"
+                  "|1944/to640/(chol.*up|cpu.*def)", 3),
+            Share(900, repetitions=3)),
+    Program("bench_scaling", "sizes against frames and memory",
+            Share(4, "cpu.*/486/|vulkan inverse def.*/486/", 1), Share(20, "/(486|1944)/", 1),
+            Share(300, "/(486|1944|7776|30246|119286)/", 3)),
+    Program("bench_vulkan", "kernels and frames on the Vulkan device",
+            Share(8, "board.*quiet", 1), Share(20, "board", 1), Share(120, repetitions=1)),
+    Program("bench_stability", "stability of every method", Share(25, words=("ci",)),
+            Share(45, words=("quick",)), Share(220, words=("full",)), file="stability.csv"),
+    Program("bench_scenes", "error against run time on scenes",
+            Share(12, words=("--seconds=1", "--tolerances=1e-4", SCENES[0])),
+            Share(30, words=("--seconds=2", *SCENES)), Share(1200, words=("--seconds=5",)),
+            file="scenes.csv"),
+    Program("bench_convergence", "mesh size against error and time", Share(1, words=("3000",)),
+            Share(4, words=("30000",)), Share(60), file="convergence.csv"),
 ]
-STABILITY_SECONDS = (60, 1200)
-SCENES_SECONDS = 3600
+# Bodies of a million elements take minutes each: once is enough.
+LARGEST = Program("bench_scaling", "bodies of half a million and a million tetrahedra",
+                  Share(0), Share(0), Share(400, "/(501126|1003686)/", 1))
 
 
-def present(build):
-    found = [p for p in PROGRAMS if (pathlib.Path(build) / "bench" / p.name).is_file()]
-    return found, [p for p in PROGRAMS if p not in found]
+def planned(mode):
+    """The programs of a mode, with their shares."""
+    programs = PROGRAMS + ([LARGEST] if mode == "full" else [])
+    return [(p, getattr(p, mode)) for p in programs]
+
+
+def split_present(build, mode):
+    """What is built here, and the names of what is not."""
+    there = [(p, s) for p, s in planned(mode) if (pathlib.Path(build) / "bench" / p.name).is_file()]
+    names = [p.name for p, _ in there]
+    return there, sorted({p.name for p, _ in planned(mode)} - set(names))
 
 
 class Progress:
-    """One line: what runs, how much is done, time left."""
+    """A line per program: what runs, how much is done, time left."""
 
-    def __init__(self, total):
-        self.total, self.done, self.start = total, 0.0, time.monotonic()
+    def __init__(self, total, out=sys.stderr):
+        self.total, self.done, self.out, self.start = total, 0.0, out, time.monotonic()
 
     def begin(self, name):
         spent = time.monotonic() - self.start
         pace = spent / self.done if self.done > 0 else 1.0
         left = pace * (self.total - self.done)
         print(f"[{100 * self.done / self.total:3.0f} %] {name}, about {left:.0f} s left",
-              file=sys.stderr, flush=True)
+              file=self.out, flush=True)
 
-    def end(self, planned):
-        self.done += planned
+    def end(self, seconds):
+        self.done += seconds
 
 
-def run_program(build, program, quick, repetitions):
-    """Rows of one program. Raises results.BadResults when it fails."""
-    pattern = program.quick if quick else "."
-    with tempfile.TemporaryDirectory() as folder:
-        out = pathlib.Path(folder) / "out.json"
-        command = [str(pathlib.Path(build) / "bench" / program.name),
-                   f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
-                   "--benchmark_out_format=json", f"--benchmark_out={out}"]
-        environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")
-        done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              env=environment)
-        if done.returncode != 0:
-            raise results.BadResults(f"{program.name} ended with {done.returncode}: "
-                                     f"{done.stderr.strip()[-400:]}")
+def _cpu_seconds():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def _run(command, limit, allowed=(0,)):
+    """Runs to the end or the limit. Raises results.BadResults."""
+    name = pathlib.Path(command[0]).name
+    environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              env=environment, timeout=limit)
+    except subprocess.TimeoutExpired:
+        raise results.BadResults(f"{name} was ended after {limit:.0f} s") from None
+    if done.returncode not in allowed:
+        raise results.BadResults(f"{name} ended with {done.returncode}: "
+                                 f"{done.stderr.strip()[-400:]}")
+    return done.stdout
+
+
+def run_program(build, program, share, folder, repetitions=None):
+    """Its rows, or the text of its CSV file. Raises results.BadResults when it fails."""
+    path = str(pathlib.Path(build) / "bench" / program.name)
+    limit = max(120.0, 10 * share.seconds)
+    if program.file:
+        file = pathlib.Path(folder) / program.file
+        # Exit code 1 of the stability study: a cell is WRONG, which the page shows.
+        _run([path, str(file), *share.words], limit, (0, 1))
+        return file.read_text()
+    with tempfile.TemporaryDirectory() as temporary:
+        out = pathlib.Path(temporary) / "out.json"
+        count = share.repetitions if repetitions is None else repetitions
+        _run([path, f"--benchmark_filter={share.rows}", f"--benchmark_repetitions={count}",
+              "--benchmark_out_format=json", f"--benchmark_out={out}"], limit)
         try:
             return results.rows_of(program.name, json.loads(out.read_text()))
         except (OSError, ValueError) as error:
             raise results.BadResults(f"{program.name} left no readable output: {error}") from None
 
 
-def run_stability(build, quick, folder):
-    """Cells of the study; exit code 1 means that one is WRONG, which the page shows."""
-    file = pathlib.Path(folder) / "stability.csv"
-    program = pathlib.Path(build) / "bench" / "bench_stability"
-    done = subprocess.run([str(program), str(file), "quick" if quick else "full"])
-    if done.returncode not in (0, 1):
-        raise results.BadResults(f"bench_stability ended with {done.returncode}")
-    return results.cells_of(file.read_text())
+def run_all(build, mode, folder, repetitions=None):
+    """Everything of a mode: {"rows", "cells", "points", "meshes", "programs", "failures"}."""
+    there, missing = split_present(build, mode)
+    progress = Progress(sum(share.seconds for _, share in there))
+    outcome = {"rows": [], "cells": [], "points": [], "meshes": [], "programs": [],
+               "failures": [f"{name} is not built" for name in missing]}
+    readers = {"stability.csv": ("cells", results.cells_of),
+               "scenes.csv": ("points", results.points_of),
+               "convergence.csv": ("meshes", results.meshes_of)}
+    for program, share in there:
+        progress.begin(f"{program.name}: {program.about}")
+        start, cpu = time.monotonic(), _cpu_seconds()
+        try:
+            made = run_program(build, program, share, folder, repetitions)
+            part, read = readers.get(program.file, ("rows", lambda rows: rows))
+            outcome[part] += read(made)
+        except results.BadResults as error:
+            outcome["failures"].append(str(error))
+            print(f"failed: {error}", file=sys.stderr)
+        outcome["programs"].append({"name": program.name, "about": program.about,
+                                    "seconds": round(time.monotonic() - start, 1),
+                                    "cpu_seconds": round(_cpu_seconds() - cpu, 1)})
+        progress.end(share.seconds)
+    return outcome
 
 
-def run_scenes(build, folder):
-    """Points of error against run time, all scenes."""
-    file = pathlib.Path(folder) / "scenes.csv"
-    program = pathlib.Path(build) / "bench" / "bench_scenes"
-    done = subprocess.run([str(program), str(file)])
-    if done.returncode != 0:
-        raise results.BadResults(f"bench_scenes ended with {done.returncode}")
-    return results.points_of(file.read_text())
+def peer_settings(build):
+    """What `bench_reconstruction --peers` says of each peer."""
+    path = pathlib.Path(build) / "bench" / "bench_reconstruction"
+    if not path.is_file():
+        return {}
+    lines = _run([str(path), "--peers"], 60).splitlines()
+    return dict(line.split("\t", 1) for line in lines)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The results folder: rows of Google Benchmark programs and cells of the stability study.
 
-results.json  {"machine": {...}, "rows": [row], "cells": [cell], "points": [point]}
+results.json  {"machine": {...}, "rows": [row], "cells": [cell], "points": [point], "meshes": [mesh],
+               "peers": {name: settings}, "programs": [...], "failures": [sentence]}
 results.csv   one line per row: program, name, minimum, median, CPU time [ms], samples, counters
-stability.csv as bench_stability writes it, scenes.csv as bench_scenes does
+stability.csv, scenes.csv, convergence.csv   as the programs write them
 """
 import csv
 import io
@@ -11,6 +12,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import statistics
 
 UNITS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
@@ -29,7 +31,7 @@ def rows_of(program, output):
     for run in output.get("benchmarks", []):
         if run.get("run_type", "iteration") != "iteration":
             continue
-        name = run["run_name"]
+        name = name_of(run)
         row = rows.setdefault(name, {"program": program, "name": name, "samples_ms": [],
                                      "cpu_samples_ms": [], "counters": {}})
         if run.get("error_occurred"):
@@ -40,8 +42,25 @@ def rows_of(program, output):
         row["cpu_samples_ms"].append(run["cpu_time"] * unit)
         for key, value in run.items():
             if key not in _KNOWN and isinstance(value, (int, float)):
-                row["counters"][key] = value
+                row["counters"][key] = _merged(key, row["counters"].get(key), value)
     return list(rows.values())
+
+
+def _merged(key, before, now):
+    """Of repetitions: the least time, the largest error, the last of the rest."""
+    if before is None:
+        return now
+    if key.endswith("_ms"):
+        return min(before, now)
+    if "error" in key:
+        return before if math.isnan(before) or before > now else now
+    return now
+
+
+def name_of(run):
+    """A row's name without what Google Benchmark adds about how it was measured."""
+    return re.sub(r"/(iterations:\d+|manual_time|real_time|repeats:\d+|min_time:[\d.]+)", "",
+                  run["run_name"])
 
 
 def minimum(row):
@@ -69,6 +88,15 @@ def points_of(text):
         for key in ("tolerance", "frame_ms", "u_error", "stress_error", "fractures"):
             point[key] = float(point[key]) if point[key] else None
     return points
+
+
+def meshes_of(text):
+    """Meshes of the convergence study."""
+    meshes = list(csv.DictReader(io.StringIO(text)))
+    for mesh in meshes:
+        for key in ("tets", "value", "error", "ms"):
+            mesh[key] = float(mesh[key])
+    return meshes
 
 
 def write_text(path, text):
@@ -103,7 +131,7 @@ def read(folder):
         raise BadResults(f"{path} cannot be read: {error}") from None
     if not isinstance(results, dict) or not {"machine", "rows", "cells"} <= results.keys():
         raise BadResults(f"{path} is not a results file of bench/run")
-    return results
+    return {"points": [], "meshes": [], "programs": [], "failures": [], "peers": {}, **results}
 
 
 def write(folder, results):

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The figures that the README quotes: what, figure, command; computed from a results folder."""
+from . import plots, results
+from .tables import PAPER_2, PAPER_3, number, paper_rows
+
+BEGIN, END = "<!-- figures of ", "<!-- end of figures -->"
+
+
+def _least(rows, name):
+    """Least time of a row [ms], or None."""
+    for row in rows:
+        if row["name"] == name and row["samples_ms"]:
+            return results.minimum(row)
+    return None
+
+
+def _all(values, shown):
+    return None if any(v is None for v in values) else " / ".join(shown(v) for v in values)
+
+
+def _program(rows):
+    times = [_least(rows, f"whole_run/board_pull_{m}") for m in "ab"]
+    return ("board-pull-a / -b, start of the program to all files",
+            _all(times, lambda v: f"{v / 1e3:.2f} s"), "bench_program")
+
+
+def _decide(rows):
+    times = [_least(rows, f"decide/{k}") for k in ("formula", "field")]
+    return (f"decide which element ruptures, formula / field K (the paper: {PAPER_3['total'][1]} s)",
+            _all(times, lambda v: f"{number(1e3 * v)} us"), "bench_field_sif")
+
+
+def _reconstruction_of_the_paper(rows):
+    ran = paper_rows(rows).get("B, expansion")
+    what = (f"one reconstruction, model B (the paper: {PAPER_2['total'][1]} s): update and "
+            "displacement / everything anew")
+    if not ran:
+        return what, None, "bench_paper"
+    c = ran["counters"]
+    anew = sum(v for k, v in c.items() if k.startswith("anew_"))
+    return what, f"{number(c['update_ms'] + c['solve_ms'])} / {number(anew)} ms", "bench_paper"
+
+
+def _c_interface(rows):
+    shares = [next((r["counters"].get("share") for r in rows if r["name"] == f"frame/{n}"), None)
+              for n in (4, 18)]
+    return ("a frame through the C interface against C++, 96 / 1944 tetrahedra",
+            _all(shares, lambda v: f"{100 * v:+.1f} %"), "bench_c_abi")
+
+
+def _against_updown(rows, body):
+    at = {(e, m): r for b, e, m, r in plots.reconstruction_rows(rows)
+          if b == body and r["samples_ms"]}
+    methods = [m for m in dict.fromkeys(m for _, m in at) if m.startswith("cpu")]
+    shares = []
+    for event in ("k1", "k10", "k100"):
+        peer = at.get((event, "cholmod updown_solve"))
+        own = [results.minimum(at[event, m]) for m in methods if (event, m) in at]
+        shares.append(min(own) / results.minimum(peer) if peer and own else None)
+    return (f"frame after 1 / 10 / 100 connected elements break, {body} tetrahedra, best route on "
+            "one thread, as a share of CHOLMOD updown_solve", _all(shares, lambda v: number(v, 2)),
+            f"bench_reconstruction --benchmark_filter='{body}/k'")
+
+
+def _accumulated(rows):
+    shares = []
+    for method in ("cpu inverse deferred fp64", "cpu factor deferred fp64"):
+        row = next((r for b, e, m, r in plots.reconstruction_rows(rows) if r["samples_ms"]
+                    and (b, e, m) == ("board 1944", "to640", method)), None)
+        shares.append(row and row["counters"]["last_ms"] / row["counters"]["first_ms"])
+    return ("640 fractures one by one, 1944 tetrahedra: last frames over first, inverse / factor",
+            _all(shares, lambda v: number(v, 2)),
+            "bench_reconstruction --benchmark_filter=1944/to640")
+
+
+def _largest(rows):
+    sizes = [(r["counters"]["unknowns"], r) for r in rows if r["samples_ms"]
+             and r["name"].startswith("scaling/cpu factor")]
+    if not sizes:
+        return "the largest board, factor route", None, "bench_scaling"
+    row = max(sizes, key=lambda s: s[0])[1]
+    c = row["counters"]
+    tets = int(row["name"].split("/")[-1])
+    return (f"a board of {tets:,} tetrahedra, factor route: set-up / quiet frame / frame with a "
+            "fracture / memory".replace(",", " ", 1),
+            f"{number(c['setup_ms'] / 1e3)} s / {number(c['quiet_ms'])} ms / "
+            f"{number(results.minimum(row))} ms / {number(c['MiB'])} MiB",
+            f"bench_scaling --benchmark_filter='factor.*/{tets}'")
+
+
+def _stability(cells):
+    if not cells:
+        return "stability", None, "bench_stability"
+    count = {w: sum(c["verdict"] == w for c in cells)
+             for w in ("ok", "polished", "rounded", "refused", "WRONG")}
+    good = count["ok"] + count["polished"] + count["rounded"]
+    return ("cells of the stability study: right / refused with a reason / wrong",
+            f"{good} / {count['refused']} / {count['WRONG']}", "bench_stability FILE full")
+
+
+def figures(outcome):
+    """[(what, figure, command)] of what this run has measured."""
+    rows = outcome["rows"]
+    found = [_program(rows), _reconstruction_of_the_paper(rows), _decide(rows), _c_interface(rows),
+             *(_against_updown(rows, b) for b in ("board 1944", "board 7776", "board 30246",
+                                                  "board 119286", "block 7986")),
+             _accumulated(rows), _largest(rows), _stability(outcome["cells"])]
+    return [f for f in found if f[1] is not None]
+
+
+def markdown(outcome, folder):
+    """The README's section between its marks."""
+    about = outcome["machine"]
+    device = next((d.strip() for d in about["devices"] if "vulkan" in d), "no Vulkan device")
+    lines = [f"{BEGIN}{folder} -->", "",
+             f"{about['cpu']}, {about['cores']} cores, {about['date']}, commit {about['commit']}, "
+             f"load {about['load_before']} before the run; {device.split('  ')[0]}. All of it: "
+             f"`{folder}/index.html`.", "",
+             "| what | figure | command in `build/bench/` |", "|---|---|---|"]
+    lines += [f"| {what} | {figure} | `{command}` |" for what, figure, command in figures(outcome)]
+    return "\n".join([*lines, "", END])

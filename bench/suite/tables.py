@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of the page: lines of words, made of rows, cells and meshes."""
+import collections
+
+from . import plots, results, style
+
+
+def number(value, digits=3):
+    """Three significant digits, without a power of ten where that reads better."""
+    if value is None or value != value:
+        return ""
+    if value == 0 or 1e-3 <= abs(value) < 1e5:
+        return f"{float(f'{value:.{digits}g}'):,g}".replace(",", " ")
+    return f"{value:.{digits - 1}e}"
+
+
+def _frame(row):
+    return results.minimum(row) if row["samples_ms"] else None
+
+
+def best_peers(rows):
+    """{(body, event): (method, ms)} of bench_reconstruction."""
+    best = {}
+    for body, event, method, row in plots.reconstruction_rows(rows):
+        if style.is_peer(method) and row["samples_ms"]:
+            key, own = (body, event), (method, results.minimum(row))
+            best[key] = min(best.get(key, own), own, key=lambda pair: pair[1])
+    return best
+
+
+def reconstruction(rows):
+    """[(title, head, lines)]: a table per body and event."""
+    best = best_peers(rows)
+    groups = collections.defaultdict(list)
+    for body, event, method, row in plots.reconstruction_rows(rows):
+        groups[body, event].append((method, row))
+    columns = ("setup_ms", "update_ms", "solve_ms", "stress_ms")
+    many = ("first_ms", "last_ms", "worst_ms")
+    tables = []
+    for (body, event), methods in groups.items():
+        own = many if event == "to640" else columns
+        head = ["", *(c.replace("_ms", " [ms]").replace("setup", "set-up") for c in own),
+                "median frame [ms]" if event == "to640" else "frame [ms]", "MiB", "error of u",
+                "error of stress", "/ best peer"]
+        lines = []
+        for method, row in methods:
+            if row.get("failure"):
+                lines.append([method, row["failure"]])
+                continue
+            c, frame = row["counters"], _frame(row)
+            peer = best.get((body, event))
+            lines.append([method, *(number(c.get(k)) for k in own), number(frame),
+                          number(c.get("MiB")), number(c.get("error_u"), 2),
+                          number(c.get("error_stress"), 2),
+                          number(frame / peer[1]) if peer else ""])
+        name = "640 elements, one by one" if event == "to640" else \
+            f"{event[1:]} connected element{'s' if event != 'k1' else ''}"
+        tables.append((f"{body} tetrahedra, {name}", head, lines))
+    return tables
+
+
+# Tables 2 and 3 of the paper [s], 3.2 GHz Xeon: columns A; B expansion; B expansion and pressure.
+PAPER_2 = {"stiffness matrix": (1.43, 1.40, 1.41),
+           "stress-displacement matrix": (9.37, 9.33, 9.70),
+           "inverse matrix": (55.2, 54.8, 56.7), "element update": (3.44, 3.48, 3.62),
+           "total": (69.4, 69.0, 71.5)}
+PAPER_3 = {"stress distribution": (None, .03), "stress intensity": (None, 2.81),
+           "comparison": (None, .01), "update": (None, .01), "total": (.03, 2.86)}
+PAPER_COLUMNS = ("A", "B, expansion", "B, expansion + pressure")
+
+
+def paper_rows(rows):
+    return {r["name"].split("/", 1)[1]: r for r in rows
+            if r["name"].startswith("paper/") and r["samples_ms"]}
+
+
+def paper_2(rows):
+    """Head and lines of Table 2, or None: paper [s], our way, the paper's way by us [ms]."""
+    ran = paper_rows(rows)
+    if not all(c in ran for c in PAPER_COLUMNS):
+        return None
+    counters = [ran[c]["counters"] for c in PAPER_COLUMNS]
+    anew = {"stiffness matrix": ["anew_stiffness_ms"],
+            "stress-displacement matrix": ["anew_stress_displacement_ms"],
+            "inverse matrix": ["anew_inverse_ms"], "element update": ["anew_displacement_ms"]}
+    anew["total"] = [k for keys in anew.values() for k in keys]
+    ours = {"stiffness matrix": [], "stress-displacement matrix": [],
+            "inverse matrix": ["update_ms"], "element update": ["solve_ms"],
+            "total": ["update_ms", "solve_ms"]}
+    head = ["", *(f"paper, {c} [s]" for c in PAPER_COLUMNS),
+            *(f"all anew, {c} [ms]" for c in PAPER_COLUMNS),
+            *(f"Sunder, {c} [ms]" for c in PAPER_COLUMNS)]
+    lines = [[name, *(number(v) for v in PAPER_2[name]),
+              *(number(sum(c[k] for k in anew[name])) for c in counters),
+              *(number(sum(c[k] for k in ours[name])) if ours[name] else "not done again"
+                for c in counters)] for name in PAPER_2]
+    lines.append(["once, before the first frame", "", "", "", "", "", "",
+                  *(number(c["prepare_ms"]) for c in counters)])
+    return head, lines
+
+
+def paper_3(rows):
+    """Head and lines of Table 3, or None."""
+    ran = paper_rows(rows)
+    columns = [c for c in (*PAPER_COLUMNS, "B, field") if c in ran]
+    if len(columns) < 4:
+        return None
+    counters = [ran[c]["counters"] for c in columns]
+    ours = {"stress distribution": ["stress_ms"],
+            "stress intensity": ["decide_ms"], "comparison": None, "update": None,
+            "total": ["stress_ms", "decide_ms"]}
+    head = ["", "paper, A [s]", "paper, B [s]", *(f"Sunder, {c} [ms]" for c in columns)]
+    lines = [[name, *(number(v) for v in PAPER_3[name]),
+              *("in the line above" if keys is None else number(sum(c[k] for k in keys))
+                for c in counters)] for name, keys in ours.items()]
+    return head, lines
+
+
+def verdicts(cells):
+    """Head and lines: how often each verdict, by method."""
+    counts = collections.Counter((c["method"], c["verdict"]) for c in cells)
+    words = ["ok", "polished", "rounded", "refused", "WRONG"]
+    lines = [[m, *(counts[m, w] for w in words),
+              number(max((c["stress_error"] for c in cells
+                          if c["method"] == m and c["verdict"] != "refused"), default=None), 2)]
+             for m in dict.fromkeys(c["method"] for c in cells)]
+    return ["method", *words, "largest stress error"], lines
+
+
+def scene_verdicts(points):
+    """Head and lines: what became of the runs of each method over all scenes and tolerances."""
+    words = ["ok", "polished", "other fractures", "over budget", "refused"]
+    counts = collections.Counter((p["method"], p["verdict"]) for p in points)
+    return (["method", *words],
+            [[m, *(counts[m, w] for w in words)] for m in dict.fromkeys(p["method"]
+                                                                        for p in points)])
+
+
+def every_row(rows):
+    """[(program, head, lines)]."""
+    tables = []
+    for program in dict.fromkeys(r["program"] for r in rows):
+        own = [r for r in rows if r["program"] == program]
+        counters = sorted({c for r in own for c in r["counters"]})
+        lines = [[r["name"], number(_frame(r), 4),
+                  number(results.median(r), 4) if r["samples_ms"] else r.get("failure", ""),
+                  number(min(r["cpu_samples_ms"], default=None), 4), len(r["samples_ms"]),
+                  *(number(r["counters"].get(c), 4) for c in counters)] for r in own]
+        tables.append((program, ["row", "min ms", "median ms", "CPU ms", "samples", *counters],
+                       lines))
+    return tables
