@@ -35,13 +35,14 @@ inline fem::SparseMatrix damaged_stiffness(const Problem& problem,
   return fem::assemble_lower(problem, scale);
 }
 
-/// W with K - W W^T the stiffness after the elements are destroyed, six columns each, rows in the
-/// order of the factor.
+/// W with K - W W^T the stiffness after the elements are destroyed, six columns each. `order`: the
+/// unknown that comes at each row (a factor's Perm); empty: the unknowns' own order.
 inline fem::SparseMatrix update_columns(const Problem& problem, std::span<const Index> elements,
-                                        const cholmod_factor& factor) {
-  std::vector<Index> place(factor.n);
-  for (std::size_t i = 0; i < factor.n; ++i) {
-    place[static_cast<std::size_t>(static_cast<int*>(factor.Perm)[i])] = static_cast<Index>(i);
+                                        std::span<const int> order) {
+  const auto n = static_cast<std::size_t>(problem.dof_count());
+  std::vector<Index> place(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    place[order.empty() ? i : static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
   }
   std::vector<Eigen::Triplet<double, Index>> entries;
   Index column = 0;
@@ -56,9 +57,13 @@ inline fem::SparseMatrix update_columns(const Problem& problem, std::span<const 
       }
     }
   }
-  fem::SparseMatrix w(static_cast<Index>(factor.n), column);
+  fem::SparseMatrix w(problem.dof_count(), column);
   w.setFromTriplets(entries.begin(), entries.end());
   return w;
+}
+
+inline std::span<const int> order_of(const cholmod_factor& factor) {
+  return {static_cast<const int*>(factor.Perm), factor.n};
 }
 
 }  // namespace sunder::bench

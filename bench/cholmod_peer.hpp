@@ -84,7 +84,7 @@ class Cholmod {
     return to_cholmod(damaged_stiffness(*board_.problem, destroyed), -1, common_);
   }
   cholmod_sparse* vectors(std::span<const Index> elements) {
-    return to_cholmod(update_columns(*board_.problem, elements, *pristine_), 0, common_);
+    return to_cholmod(update_columns(*board_.problem, elements, order_of(*pristine_)), 0, common_);
   }
 
   const TearingBoard& board_;

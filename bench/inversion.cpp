@@ -3,24 +3,19 @@
 // would take instead, one thread. `error` is the largest entry of A X - I over sampled columns.
 #include <benchmark/benchmark.h>
 
-#include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <map>
+#include <vector>
 
+#include "bench/peers/matrix_peer.hpp"
 #include "fem/factor.hpp"
 #include "run_rows.hpp"
 #include "tearing_board.hpp"
 
-extern "C" {
-void openblas_set_num_threads(int);
-void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
-void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
-}
+extern "C" void openblas_set_num_threads(int);
 
 namespace sunder::bench {
 namespace {
-
-using Dense = Eigen::MatrixXd;
 
 const fem::SparseMatrix& stiffness(Index cells) {
   static std::map<Index, fem::SparseMatrix> all;
@@ -29,68 +24,66 @@ const fem::SparseMatrix& stiffness(Index cells) {
   return k;
 }
 
-Dense by_sunder(const fem::SparseMatrix& lower) { return fem::Factor(lower).inverse(); }
+class Sunder : public MatrixPeer {
+ public:
+  void set_matrix(const LowerTriangle& m) override {
+    k_ = Eigen::Map<const fem::SparseMatrix>(m.n, m.n, static_cast<Index>(m.values.size()),
+                                             m.outer.data(), m.inner.data(), m.values.data());
+  }
+  void update() override { inverse_ = fem::Factor(k_).inverse(); }
+  void solve(std::span<const double> f, std::span<double> u) override {
+    Eigen::Map<Eigen::VectorXd>(u.data(), inverse_.rows()) =
+        inverse_ * Eigen::Map<const Eigen::VectorXd>(f.data(), inverse_.rows());
+  }
+  std::size_t bytes() const override {
+    return sizeof(double) * static_cast<std::size_t>(inverse_.size());
+  }
 
-Dense by_openblas(const fem::SparseMatrix& lower) {
-  Dense a(lower);
-  const int n = static_cast<int>(a.rows());
-  int info = 0;
-  dpotrf_("L", &n, a.data(), &n, &info);
-  if (info == 0) dpotri_("L", &n, a.data(), &n, &info);
-  if (info != 0) return {};
-  a.triangularView<Eigen::StrictlyUpper>() = a.transpose();
-  return a;
-}
+ private:
+  fem::SparseMatrix k_;
+  Eigen::MatrixXd inverse_;
+};
 
-Dense by_eigen_llt(const fem::SparseMatrix& lower) {
-  const Dense a(lower);
-  return Eigen::LLT<Dense>(a).solve(Dense::Identity(a.rows(), a.rows()));
-}
-
-Dense by_eigen_lu(const fem::SparseMatrix& lower) {
-  const Dense a = Dense(lower).selfadjointView<Eigen::Lower>();
-  return Eigen::PartialPivLU<Dense>(a).inverse();
-}
-
-Dense by_eigen_sparse(const fem::SparseMatrix& lower) {
-  const Eigen::SimplicialLDLT<fem::SparseMatrix> factor(lower);
-  return factor.solve(Dense::Identity(lower.rows(), lower.rows()));
-}
-
-double error_of(const fem::SparseMatrix& lower, const Dense& inverse) {
+double error_of(const fem::SparseMatrix& lower, MatrixPeer& inverse) {
+  const auto n = static_cast<std::size_t>(lower.rows());
   double worst = 0;
-  for (Eigen::Index j = 0; j < lower.rows(); j += std::max<Eigen::Index>(1, lower.rows() / 20)) {
-    Eigen::VectorXd r = lower.selfadjointView<Eigen::Lower>() * inverse.col(j);
-    r[j] -= 1;
+  for (std::size_t j = 0; j < n; j += std::max<std::size_t>(1, n / 20)) {
+    std::vector<double> unit(n, 0.0), column(n);
+    unit[j] = 1;
+    inverse.solve(unit, column);
+    Eigen::VectorXd r = lower.selfadjointView<Eigen::Lower>() *
+                        Eigen::Map<const Eigen::VectorXd>(column.data(), lower.rows());
+    r[static_cast<Eigen::Index>(j)] -= 1;
     worst = std::max(worst, r.lpNorm<Eigen::Infinity>());
   }
   return worst;
 }
 
-void invert(benchmark::State& state, Index cells, Dense (*run)(const fem::SparseMatrix&)) {
+void invert(benchmark::State& state, Index cells, const MatrixPeerKind& kind) {
   const fem::SparseMatrix& k = stiffness(cells);
-  Dense inverse;
+  const auto entries = static_cast<std::size_t>(k.nonZeros());
+  const auto peer = kind.create();
   for (auto _ : state) {
-    inverse = run(k);
-    benchmark::DoNotOptimize(inverse.data());
+    state.PauseTiming();
+    peer->set_matrix({static_cast<int>(k.rows()),
+                      {k.outerIndexPtr(), static_cast<std::size_t>(k.cols()) + 1},
+                      {k.innerIndexPtr(), entries},
+                      {k.valuePtr(), entries}});
+    state.ResumeTiming();
+    peer->update();
   }
-  if (inverse.rows() != k.rows()) return state.SkipWithError("not definite");
-  state.counters["error"] = error_of(k, inverse);
+  state.counters["error"] = error_of(k, *peer);
   state.counters["unknowns"] = static_cast<double>(k.rows());
 }
 
 void register_rows() {
-  const std::pair<const char*, Dense (*)(const fem::SparseMatrix&)> methods[] = {
-      {"sunder", by_sunder},
-      {"openblas_potrf_potri", by_openblas},
-      {"eigen_llt", by_eigen_llt},
-      {"eigen_partial_piv_lu", by_eigen_lu},
-      {"eigen_simplicial_ldlt", by_eigen_sparse}};
+  std::vector<MatrixPeerKind> kinds = dense_peers();
+  kinds.insert(kinds.begin(), {"sunder", "", 8000, [] { return std::make_unique<Sunder>(); }});
   for (Index cells : {9, 18, 36}) {
-    for (const auto& [name, run] : methods) {
-      const std::string row =
-          std::string("inversion/") + name + "/" + std::to_string(6 * cells * cells);
-      benchmark::RegisterBenchmark(row.c_str(), [=, f = run](auto& s) { invert(s, cells, f); })
+    for (const MatrixPeerKind& kind : kinds) {
+      const Index tets = 6 * cells * cells;
+      benchmark::RegisterBenchmark(("inversion/" + kind.name + "/" + std::to_string(tets)).c_str(),
+                                   [=](auto& s) { invert(s, cells, kind); })
           ->MinTime(0.1)
           ->Unit(benchmark::kMillisecond);
     }

@@ -4,13 +4,18 @@
 // for a software Vulkan device. A row is one event of k connected elements with the frame after it;
 // rows "to640" tear 640 elements one by one. Errors are those against a CHOLMOD factor of the
 // damaged stiffness with one refinement.
+//   bench_reconstruction [Google Benchmark's options]
+//   bench_reconstruction --peers               the peers with their settings
+//   bench_reconstruction --write FOLDER BODY K the matrices of an event, for bench_peers_alone
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <cstdio>
 #include <iostream>
 #include <map>
-#include <optional>
+#include <stdexcept>
 
+#include "bench/cholmod_data.hpp"
 #include "bench/peers/peer.hpp"
 #include "bench/peers/reference.hpp"
 #include "bench/study/method.hpp"
@@ -118,7 +123,10 @@ class BackendFollower : public Follower {
 class PeerFollower : public Follower {
  public:
   PeerFollower(const TearingBoard& board, const PeerKind& kind)
-      : board_(board), peer_(kind.create(board)), scale_(board.problem->mesh().tets.size(), 1.0) {
+      : board_(board),
+        peer_(kind.create(board)),
+        scale_(board.problem->mesh().tets.size(), 1.0),
+        unknowns_(board.problem->dof_count()) {
     tear({});
   }
   FrameTimes tear(std::span<const Index> elements) override {
@@ -131,7 +139,7 @@ class PeerFollower : public Follower {
     if (!elements.empty()) peer_->update();
     times.update = milliseconds_since(start);
     start = Clock::now();
-    peer_->solve(unknowns_);
+    peer_->solve({unknowns_.data(), static_cast<std::size_t>(unknowns_.size())});
     times.solve = milliseconds_since(start);
     start = Clock::now();
     u_ = to_nodes(*board_.problem, unknowns_);
@@ -240,9 +248,8 @@ Index most_tets(const SolverOptions& options) {
 }
 
 std::vector<PeerKind> all_peers() {
-  std::vector<PeerKind> all = dense_peers();
-  for (auto&& more : {eigen_peers(), cholmod_peers()})
-    all.insert(all.end(), more.begin(), more.end());
+  std::vector<PeerKind> all = eigen_peers();
+  for (const PeerKind& kind : cholmod_peers()) all.push_back(kind);
   return all;
 }
 
@@ -281,15 +288,48 @@ void list_peers() {
   for (const PeerKind& kind : all_peers()) std::cout << kind.name << '\t' << kind.settings << '\n';
 }
 
+void write_matrix(const std::string& path, const fem::SparseMatrix& matrix, int stype) {
+  cholmod_common common;
+  cholmod_start(&common);
+  cholmod_sparse* sparse = to_cholmod(matrix, stype, common);
+  FILE* file = std::fopen(path.c_str(), "w");
+  const bool written = file && cholmod_write_sparse(file, sparse, nullptr, nullptr, &common) >= 0;
+  const bool closed = file && std::fclose(file) == 0;
+  cholmod_free_sparse(&sparse, &common);
+  cholmod_finish(&common);
+  if (!written || !closed) throw std::runtime_error("cannot write " + path);
+}
+
+/// Matrices of one event for bench_peers_alone: intact, damaged, update columns.
+void write_event(const std::string& folder, const std::string& name, std::size_t k) {
+  for (const BodyShape& body : bodies()) {
+    if (body.name != name) continue;
+    const TearingBoard& board = board_of(body);
+    const auto elements = board.connected(k);
+    write_matrix(folder + "/intact.mtx", damaged_stiffness(*board.problem, {}), -1);
+    write_matrix(folder + "/damaged.mtx", damaged_stiffness(*board.problem, elements), -1);
+    write_matrix(folder + "/columns.mtx", update_columns(*board.problem, elements, {}), 0);
+    return;
+  }
+  throw std::runtime_error("no body is called " + name);
+}
+
 }  // namespace
 }  // namespace sunder::bench
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   openblas_set_num_threads(1);
+  if (argc == 5 && std::string(argv[1]) == "--write") {
+    sunder::bench::write_event(argv[2], argv[3], std::stoul(argv[4]));
+    return 0;
+  }
   if (argc == 2 && std::string(argv[1]) == "--peers") {
     sunder::bench::list_peers();
     return 0;
   }
   sunder::bench::register_rows();
   return sunder::bench::run_rows(argc, argv);
+} catch (const std::exception& error) {
+  std::cerr << "bench_reconstruction: " << error.what() << '\n';
+  return 1;
 }

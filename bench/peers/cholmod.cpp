@@ -75,9 +75,9 @@ class Refactor : public CholmodPeer {
     cholmod_factorize(a_, l_, &common_);
     require();
   }
-  void solve(Eigen::VectorXd& u) override {
+  void solve(std::span<double> u) override {
     back_substitute(CHOLMOD_A, b_);
-    u = vector(u_);
+    copy(vector(u_), u);
   }
 };
 
@@ -100,7 +100,7 @@ class Updown : public CholmodPeer {
   }
   void prepare(std::span<const Index> elements) override {
     cholmod_free_sparse(&c_, &common_);
-    c_ = to_cholmod(update_columns(*board_.problem, elements, *l_), 0, common_);
+    c_ = to_cholmod(update_columns(*board_.problem, elements, order_of(*l_)), 0, common_);
   }
   void update() override {
     if (with_solve_) {
@@ -110,16 +110,16 @@ class Updown : public CholmodPeer {
     }
     require();
   }
-  void solve(Eigen::VectorXd& u) override {
+  void solve(std::span<double> u) override {
     if (!with_solve_) {
       back_substitute(CHOLMOD_A, b_);
-      u = vector(u_);
+      copy(vector(u_), u);
       return;
     }
     back_substitute(CHOLMOD_DLt, forward_);
     cholmod_free_dense(&permuted_, &common_);
     permuted_ = cholmod_solve(CHOLMOD_Pt, l_, u_, &common_);
-    u = vector(permuted_);
+    copy(vector(permuted_), u);
   }
 
  private:
@@ -144,7 +144,7 @@ class StaleFactor : public CholmodPeer {
     k_ = damaged_stiffness(*board_.problem, destroyed_).selfadjointView<Eigen::Lower>();
   }
   void update() override {}
-  void solve(Eigen::VectorXd& u) override {
+  void solve(std::span<double> u) override {
     Eigen::VectorXd r = f_ - k_ * x_, z = precondition(r), p = z;
     double rz = r.dot(z);
     for (int i = 0; !(r.norm() <= 1e-6 * f_.norm()); ++i) {
@@ -158,7 +158,7 @@ class StaleFactor : public CholmodPeer {
       p = z + next / rz * p;
       rz = next;
     }
-    u = x_;
+    copy(x_, u);
   }
 
  private:

@@ -2,10 +2,10 @@
 // The inverse anew after every event, dense, as the paper does it.
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/SparseCholesky>
 #include <stdexcept>
 
-#include "bench/cholmod_data.hpp"
-#include "bench/peers/peer.hpp"
+#include "bench/peers/eigen_types.hpp"
 
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
@@ -38,45 +38,59 @@ Dense by_lu(Dense a) {
   return Eigen::PartialPivLU<Dense>(std::move(a)).inverse();
 }
 
-class DensePeer : public Peer {
+class DensePeer : public MatrixPeer {
  public:
-  DensePeer(const TearingBoard& board, Dense (*invert)(Dense))
-      : board_(board), invert_(invert), f_(load_vector(board)) {
-    prepare({});
-    update();
-  }
-  void prepare(std::span<const Index> elements) override {
-    destroyed_.insert(destroyed_.end(), elements.begin(), elements.end());
-    k_ = Dense(damaged_stiffness(*board_.problem, destroyed_));
-  }
+  explicit DensePeer(Dense (*invert)(Dense)) : invert_(invert) {}
+  void set_matrix(const LowerTriangle& lower) override { k_ = Dense(copy_of(lower)); }
   void update() override { inverse_ = invert_(std::move(k_)); }
-  void solve(Eigen::VectorXd& u) override { u = inverse_.selfadjointView<Eigen::Lower>() * f_; }
+  void solve(std::span<const double> f, std::span<double> u) override {
+    vector_of(u) = inverse_.selfadjointView<Eigen::Lower>() * vector_of(f);
+  }
   std::size_t bytes() const override {
     return sizeof(double) * static_cast<std::size_t>(inverse_.size());
   }
 
  private:
-  const TearingBoard& board_;
   Dense (*invert_)(Dense);
-  Eigen::VectorXd f_;
-  std::vector<Index> destroyed_;
   Dense k_, inverse_;
 };
 
-PeerKind kind(const char* name, const char* settings, Index most_tets, Dense (*invert)(Dense)) {
-  return {name, settings, most_tets,
-          [=](const TearingBoard& board) { return std::make_unique<DensePeer>(board, invert); }};
+/// The same from a sparse factor: a solution for every column.
+class SparseInverse : public MatrixPeer {
+ public:
+  void set_matrix(const LowerTriangle& lower) override { k_ = copy_of(lower); }
+  void update() override {
+    const Eigen::SimplicialLDLT<Lower> factor(k_);
+    if (factor.info() != Eigen::Success) throw std::runtime_error("SimplicialLDLT failed");
+    inverse_ = factor.solve(Dense::Identity(k_.rows(), k_.rows()));
+  }
+  void solve(std::span<const double> f, std::span<double> u) override {
+    vector_of(u) = inverse_ * vector_of(f);
+  }
+  std::size_t bytes() const override {
+    return sizeof(double) * static_cast<std::size_t>(inverse_.size());
+  }
+
+ private:
+  Lower k_;
+  Dense inverse_;
+};
+
+MatrixPeerKind kind(const char* name, const char* settings, int most_tets, Dense (*invert)(Dense)) {
+  return {name, settings, most_tets, [=] { return std::make_unique<DensePeer>(invert); }};
 }
 
 }  // namespace
 
-std::vector<PeerKind> dense_peers() {
+std::vector<MatrixPeerKind> dense_peers() {
   return {kind("openblas potrf potri",
                "dpotrf and dpotri on the lower triangle, one thread, in place", 8000, by_openblas),
-          kind("eigen LLT inverse", "Eigen::LLT in place, solve(Identity), -march as the library",
-               2000, by_llt),
-          kind("eigen PartialPivLU inverse", "Eigen::PartialPivLU::inverse, -march as the library",
-               2000, by_lu)};
+          kind("eigen LLT inverse", "Eigen::LLT in place, solve(Identity); -march=native", 2000,
+               by_llt),
+          kind("eigen PartialPivLU inverse", "Eigen::PartialPivLU::inverse; -march=native", 2000,
+               by_lu),
+          {"eigen SimplicialLDLT inverse", "AMD ordering, solve(Identity); -march=native", 2000,
+           [] { return std::make_unique<SparseInverse>(); }}};
 }
 
 }  // namespace sunder::bench

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
@@ -22,7 +23,7 @@ class Peer {
   virtual void prepare(std::span<const Index> elements) = 0;
   virtual void update() = 0;
   /// Displacement over the unknowns under the board's load.
-  virtual void solve(Eigen::VectorXd& u) = 0;
+  virtual void solve(std::span<double> u) = 0;
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
@@ -33,9 +34,13 @@ struct PeerKind {
   std::function<std::unique_ptr<Peer>(const TearingBoard&)> create;
 };
 
-[[nodiscard]] std::vector<PeerKind> dense_peers();    ///< OpenBLAS, Eigen
-[[nodiscard]] std::vector<PeerKind> eigen_peers();    ///< Eigen's sparse solvers
-[[nodiscard]] std::vector<PeerKind> cholmod_peers();  ///< SuiteSparse
+/// OpenBLAS and Eigen; SuiteSparse.
+[[nodiscard]] std::vector<PeerKind> eigen_peers();
+[[nodiscard]] std::vector<PeerKind> cholmod_peers();
+
+inline void copy(const Eigen::VectorXd& from, std::span<double> to) {
+  std::copy_n(from.data(), to.size(), to.data());
+}
 
 /// The board's load over all unknowns.
 [[nodiscard]] inline Eigen::VectorXd load_vector(const TearingBoard& board) {

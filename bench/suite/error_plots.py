@@ -4,7 +4,7 @@ import math
 
 from . import style
 
-FLOOR = 1e-17  # errors of zero on a logarithmic axis
+FLOOR = 1e-15  # smaller errors, zero included, are drawn here
 _PATTERNS = ("crack", "scattered", "cut", "bridge", "island")
 
 

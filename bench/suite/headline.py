@@ -81,8 +81,8 @@ def _largest(rows):
     row = max(sizes, key=lambda s: s[0])[1]
     c = row["counters"]
     tets = int(row["name"].split("/")[-1])
-    return (f"a board of {tets:,} tetrahedra, factor route: set-up / quiet frame / frame with a "
-            "fracture / memory".replace(",", " ", 1),
+    return (f"a board of {number(tets, 7)} tetrahedra, factor route: set-up / quiet frame / frame "
+            "with a fracture / memory",
             f"{number(c['setup_ms'] / 1e3)} s / {number(c['quiet_ms'])} ms / "
             f"{number(results.minimum(row))} ms / {number(c['MiB'])} MiB",
             f"bench_scaling --benchmark_filter='factor.*/{tets}'")
@@ -111,11 +111,9 @@ def figures(outcome):
 def markdown(outcome, folder):
     """The README's section between its marks."""
     about = outcome["machine"]
-    device = next((d.strip() for d in about["devices"] if "vulkan" in d), "no Vulkan device")
     lines = [f"{BEGIN}{folder} -->", "",
              f"{about['cpu']}, {about['cores']} cores, {about['date']}, commit {about['commit']}, "
-             f"load {about['load_before']} before the run; {device.split('  ')[0]}. All of it: "
-             f"`{folder}/index.html`.", "",
+             f"load {about['load_before']} before the run. All of it: `{folder}/index.html`.", "",
              "| what | figure | command in `build/bench/` |", "|---|---|---|"]
     lines += [f"| {what} | {figure} | `{command}` |" for what, figure, command in figures(outcome)]
     return "\n".join([*lines, "", END])

@@ -11,7 +11,7 @@ body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:76em;padding:0
 h2{margin-top:2em;border-bottom:2px solid #eee}nav a{margin-right:1em}
 table{border-collapse:collapse;font-size:13px;margin:.5em 0 1em}
 td,th{padding:.15em .7em;text-align:right;border-bottom:1px solid #e4e4e4;vertical-align:bottom}
-td:first-child,th:first-child{text-align:left;white-space:nowrap}.words td{text-align:left}
+td:first-child,th:first-child{text-align:left;white-space:nowrap}.words td,.words th{text-align:left}
 .wide{overflow-x:auto}svg{max-width:100%;height:auto;display:block}
 .bad{color:#b00;font-weight:600}details{margin:.4em 0}summary{cursor:pointer}
 dt{font-weight:600}dd{margin:0 0 .2em 1.5em;white-space:pre-wrap}
@@ -113,7 +113,8 @@ def _errors(page, outcome):
     page.figure("error-board", error_plots.error_against_time(outcome["cells"]))
     page.add("<h3>Scenes</h3>")
     page.text("Every method at tolerances 1e-2, 1e-4 and 1e-8, each scene to its end; error of the "
-              "last frame against the factor route in fp64 at tolerance 1e-10. A run over its "
+              "last frame against the factor route in fp64 at tolerance 1e-10 (so that this route is "
+              "its own yardstick here; errors under 1e-15 are drawn there). A run over its "
               "time, or one that breaks other elements, is counted below and not drawn.")
     page.figure("error-scenes", error_plots.scenes(outcome["points"]))
     if outcome["points"]:

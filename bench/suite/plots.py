@@ -36,6 +36,7 @@ def reconstruction(rows):
                 axis.plot(*zip(*points), **style.look(method))
         elements = "1 element breaks" if event == "k1" else f"{event[1:]} connected elements break"
         style.logarithmic(axis, elements, "tetrahedra")
+        style.sizes_as_ticks(axis, sorted({tets_of(b) for b, _, _, _ in ran}))
     axes[0].set_ylabel("update, solution, stress [ms]")
     style.shared_legend(figure, 4)
     return style.svg(figure)
@@ -81,6 +82,7 @@ def scaling(rows):
         if key.endswith("quiet_ms") or key == "fracture_ms":
             _floor(axis, parsed)
         style.logarithmic(axis, title, "tetrahedra", unit)
+        style.sizes_as_ticks(axis, sorted({n for _, n, _ in parsed}))
     style.shared_legend(figure, 3)
     return style.svg(figure)
 
@@ -98,12 +100,9 @@ def _floor(axis, parsed):
 
 def inversion(rows):
     """The intact inverse by each method, per number of unknowns."""
-    names = {"sunder": "cpu inverse deferred fp64", "openblas_potrf_potri": "openblas potrf potri",
-             "eigen_llt": "eigen LLT inverse", "eigen_partial_piv_lu": "eigen PartialPivLU inverse",
-             "eigen_simplicial_ldlt": "eigen SimplicialLDLT refactor"}
     parsed = []
     for row in rows:
-        found = re.match(r"inversion/(\w+)/\d+", row["name"])
+        found = re.match(r"inversion/([^/]+)/\d+", row["name"])
         if found and row["samples_ms"]:
             parsed.append((found[1], row["counters"]["unknowns"], minimum(row)))
     if not parsed:
@@ -111,8 +110,8 @@ def inversion(rows):
     figure, (axis,) = style.panels(1, 1, 6.4, 3.6)
     for method in dict.fromkeys(p[0] for p in parsed):
         points = sorted(p[1:] for p in parsed if p[0] == method)
-        axis.plot(*zip(*points), **dict(style.look(names.get(method, method)),
-                                        label=method.replace("_", " ")))
+        look = style.look("cpu inverse deferred fp64" if method == "sunder" else method)
+        axis.plot(*zip(*points), **dict(look, label=method))
     style.logarithmic(axis, "", "unknowns", "inverse [ms]")
     style.shared_legend(figure, 3)
     return style.svg(figure)

@@ -26,6 +26,7 @@ _PEERS = {"cholmod updown_solve": ("v", "#222222"), "cholmod updown": ("^", "#55
           "cholmod supernodal refactor": ("s", "#555555"),
           "cholmod simplicial refactor": ("D", "#888888"),
           "eigen SimplicialLDLT refactor": ("p", "#888888"),
+          "eigen SimplicialLDLT inverse": ("h", "#aaaaaa"),
           "openblas potrf potri": ("X", "#222222"), "eigen LLT inverse": ("P", "#888888"),
           "eigen PartialPivLU inverse": ("*", "#aaaaaa"), "stale-factor PCG": (">", "#666666"),
           "Jacobi PCG": ("<", "#aaaaaa")}
@@ -67,10 +68,20 @@ def logarithmic(axis, title="", xlabel="", ylabel=""):
     axis.set_axisbelow(True)
 
 
+def sizes_as_ticks(axis, sizes):
+    """The sizes that were measured, instead of powers of ten."""
+    def text(size):
+        return f"{size / 1e6:.3g}M" if size >= 1e6 else f"{size / 1e3:.2g}k" \
+            if size < 1e5 else f"{size / 1e3:.0f}k"
+    axis.set_xticks(sizes, [text(s) for s in sizes])
+    axis.set_xticks([], minor=True)
+
+
 def shared_legend(figure, columns=4):
     """One legend below all axes, each label once."""
     handles = {h.get_label(): h for axis in figure.axes for h in axis.get_lines()
                if not h.get_label().startswith("_")}
+    handles = dict(sorted(handles.items(), key=lambda item: (is_peer(item[0]), item[0])))
     figure.legend(handles.values(), handles.keys(), loc="upper center", ncols=columns,
                   bbox_to_anchor=(0.5, 0.0))
 

@@ -11,7 +11,8 @@ import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
-from suite import compare, page, plots, results  # noqa: E402
+from suite import (checks, compare, error_plots, headline, heat_map, page, plots,  # noqa: E402
+                   programs, results, tables)
 
 
 def row(name, scale=1.0, seed=1, error=1e-12, count=9):
@@ -30,8 +31,36 @@ def cell(method="cpu factor deferred fp64", verdict="ok", stress_error=1e-11):
             "fp32_rounding": 1e-4, "reason": ""}
 
 
-def outcome(rows, cells=()):
-    return {"machine": {"cpu": "<test>"}, "rows": rows, "cells": list(cells)}
+def outcome(rows, cells=(), points=(), meshes=()):
+    return {"machine": {"cpu": "<test>", "cores": 2, "date": "today", "commit": "0", "devices": [],
+                        "load_before": 0.1}, "rows": rows, "cells": list(cells),
+            "points": list(points), "meshes": list(meshes), "programs": [], "failures": [],
+            "peers": {"cholmod updown_solve": "its settings"}}
+
+
+def torn(method, event="k1", scale=1.0, body="board 1944"):
+    made = row(f"reconstruction/{body}/{event}/{method}", scale)
+    made["counters"] = {"setup_ms": 3.0, "update_ms": 0.5, "solve_ms": 0.4, "stress_ms": 0.1,
+                        "MiB": 2.0, "error_u": 1e-12, "error_stress": 1e-11, "first_ms": 1.0,
+                        "last_ms": 2.0, "worst_ms": 3.0}
+    return made
+
+
+def every_part():
+    """One row, cell or point for every figure of the page."""
+    study = dict(cell(), study="contrast x nu")
+    size = dict(row("scaling/cpu factor deferred fp64/1944"),
+                counters={"setup_ms": 9.0, "quiet_ms": 0.1, "floor_ms": 0.01, "MiB": 3.0,
+                          "unknowns": 2166.0})
+    inverse = dict(row("inversion/sunder/486"), counters={"unknowns": 600.0, "error": 1e-12})
+    rows = [torn("cholmod updown_solve", scale=4.0), torn("cpu factor deferred fp64"),
+            torn("cpu factor deferred fp64", "to640"), size, inverse]
+    points = [{"scene": "notch-b", "method": "cpu cg fp64", "tolerance": 1e-4, "frame_ms": 2.5,
+               "u_error": 1e-9, "stress_error": 1e-8, "fractures": 51.0, "verdict": "ok",
+               "reason": ""}]
+    meshes = [{"case": "cantilever", "tets": n, "value": 0.7, "error": 1 / n, "ms": n / 100}
+              for n in (480.0, 3840.0)]
+    return outcome(rows, [cell(), study], points, meshes)
 
 
 def kinds(old, new):
@@ -93,31 +122,116 @@ class Rows(unittest.TestCase):
         self.assertEqual(rows[0]["samples_ms"], [0.002, 0.004])
         self.assertEqual(rows[0]["counters"], {"error": 3e-9})
 
+    def test_of_repetitions_the_least_time_and_the_largest_error_count(self):
+        run = {"name": "a", "run_name": "a/iterations:1/manual_time", "run_type": "iteration",
+               "real_time": 2.0, "cpu_time": 1.0, "time_unit": "ms", "iterations": 1,
+               "solve_ms": 3.0, "error_u": 1e-9, "rank": 6.0}
+        again = dict(run, solve_ms=2.0, error_u=1e-10, rank=12.0)
+        (made,) = results.rows_of("p", {"benchmarks": [run, again]})
+        self.assertEqual(made["name"], "a")
+        self.assertEqual(made["counters"], {"solve_ms": 2.0, "error_u": 1e-9, "rank": 12.0})
+        bad = results.rows_of("p", {"benchmarks": [dict(run, error_u=float("nan")), again]})
+        self.assertNotEqual(bad[0]["counters"]["error_u"], bad[0]["counters"]["error_u"])
+
     def test_the_front_holds_what_nothing_beats(self):
-        self.assertEqual(plots.pareto([(3, 1), (1, 5), (2, 6), (4, 2)]), [(1, 5), (3, 1)])
+        self.assertEqual(error_plots.pareto([(3, 1), (1, 5), (2, 6), (4, 2)]), [(1, 5), (3, 1)])
+
+    def test_the_best_peer_is_what_ratios_refer_to(self):
+        rows = [torn("cholmod updown", scale=8.0), torn("cholmod updown_solve", scale=4.0),
+                torn("cpu factor deferred fp64")]
+        ((title, head, lines),) = tables.reconstruction(rows)
+        self.assertEqual(title, "board 1944 tetrahedra, 1 connected element")
+        self.assertEqual(head[-1], "/ best peer")
+        self.assertEqual([round(float(line[-1]), 1) for line in lines], [2.0, 1.0, 0.2])
+
+
+class Checks(unittest.TestCase):
+    def bad(self, **parts):
+        return checks.problems(dict(every_part(), **parts))
+
+    def test_a_good_run_has_no_problem(self):
+        self.assertEqual(self.bad(), [])
+
+    def test_wrong_cells_failures_and_numbers_that_are_none_are_problems(self):
+        nan = float("nan")
+        peer = torn("cholmod updown_solve")
+        lost = dict(torn("cpu cg fp64"), samples_ms=[], failure="not definite")
+        told = dict(lost, failure="refused: backend cpu offers no such route")
+        no_number = torn("cpu cg fp64")
+        no_number["counters"]["error_u"] = nan
+        for text, parts in (("WRONG", {"cells": [cell(verdict="WRONG", stress_error=0.3)]}),
+                            ("is nan", {"cells": [cell(stress_error=nan)]}),
+                            ("not definite", {"rows": [peer, lost]}),
+                            ("error_u is nan", {"rows": [peer, no_number]}),
+                            ("no row of this run", {"rows": [torn("cpu cg fp64")]}),
+                            ("no peers", {"peers": {}}),
+                            ("not built", {"failures": ["bench_engine is not built"]})):
+            (found,) = self.bad(**parts)
+            self.assertIn(text, found)
+        self.assertEqual(self.bad(rows=[peer, told]), [])
+
+
+class Modes(unittest.TestCase):
+    def test_every_mode_runs_every_program(self):
+        self.assertEqual({p.name for p, _ in programs.planned("ci")},
+                         {p.name for p, _ in programs.planned("full")})
+
+    def test_quick_is_planned_under_five_minutes_and_ci_under_three(self):
+        for mode, most in (("quick", 300), ("ci", 180)):
+            self.assertLess(sum(s.seconds for _, s in programs.planned(mode)), most)
+
+    def test_a_program_that_is_not_built_is_a_failure(self):
+        with tempfile.TemporaryDirectory() as folder:
+            made = programs.run_all(folder, "ci", folder)
+        self.assertIn("bench_engine is not built", made["failures"])
 
 
 class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.text, cls.figures = page.page(every_part())
+
     def test_shows_every_figure_and_needs_no_network(self):
-        made = outcome([row(n) for n in NAMES], [cell(), cell("cpu cg fp64", "refused")])
-        text = page.page(made)
-        self.assertEqual(text.count("<svg"), 3)
+        text, figures = self.text, self.figures
+        self.assertEqual(set(figures), {"reconstruction", "accumulated", "inversion", "error-board",
+                                        "error-scenes", "mesh-size", "stability",
+                                        "stability-pairs", "scaling"})
+        self.assertEqual(text.count("<svg"), len(figures))
         self.assertIn("&lt;test&gt;", text)
         for tag in ("<script src", "<link", "<img src=\"http"):
             self.assertNotIn(tag, text)
 
+    def test_says_what_is_not_good(self):
+        made = dict(every_part(), cells=[cell(verdict="WRONG", stress_error=0.3)])
+        self.assertIn("Not good in this run", page.page(made)[0])
+        self.assertNotIn("Not good in this run", self.text)
+
     def test_draws_the_scenes_that_ran(self):
         text = ("scene,method,tolerance,frame_ms,u_error,stress_error,fractures,verdict,reason\n"
                 "notch-b,cpu cg fp64,1e-4,2.5,1e-9,1e-8,51,ok,\n"
+                "notch-b,vulkan cg fp64,1e-4,900,,,3,over budget,\n"
                 'notch-b,cpu condensed deferred fp64,1e-4,,,,,refused,"not offered, choose"\n')
         points = results.points_of(text)
-        self.assertIsNone(points[1]["frame_ms"])
-        self.assertIn("notch-b", plots.scenes(points))
-        self.assertIsNone(plots.scenes(points[1:]))
+        self.assertIsNone(points[2]["frame_ms"])
+        self.assertIn("notch-b", error_plots.scenes(points))
+        self.assertIsNone(error_plots.scenes(points[1:]))
+        self.assertEqual(tables.scene_verdicts(points)[1][1], ["vulkan cg fp64", 0, 0, 0, 1, 0])
+
+    def test_marks_verdicts_in_the_heat_map(self):
+        self.assertIn("WRONG", heat_map.singles([cell()]))
+        self.assertIsNone(heat_map.pairs([cell()]))
+        self.assertEqual([heat_map.text_of(v) for v in (1e6, 0.49999, 10)],
+                         ["$10^{6}$", "0.49999", "10"])
 
     def test_is_the_same_twice(self):
-        made = outcome([row(n) for n in NAMES], [cell()])
-        self.assertEqual(page.page(made), page.page(made))
+        self.assertEqual(page.page(every_part())[0], self.text)
+
+    def test_every_figure_of_the_readme_is_on_the_page(self):
+        made = every_part()
+        self.assertGreater(len(headline.figures(made)), 1)
+        for _, figure, _ in headline.figures(made):
+            self.assertIn(figure, self.text)
+            self.assertIn(figure, headline.markdown(made, "folder"))
 
 
 class Program(unittest.TestCase):
