@@ -229,22 +229,34 @@ void add(const std::string& name, const Run& run) {
       ->Unit(benchmark::kMillisecond);
 }
 
-void add_rows(const BodyShape& body, const std::string& method, const Create& create,
-              Index most_accumulated) {
+void add_rows(const BodyShape& body, const std::string& method, const Create& create, Index most) {
   const std::string start = "reconstruction/" + body.name + "/";
   for (std::size_t k : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) {
     add(start + "k" + std::to_string(k) + "/" + method,
         [=](auto& state) { one_event(state, body, k, create); });
   }
-  if (body.tets() < 1000 || body.tets() > most_accumulated) return;
+  if (body.tets() < 1000 || body.tets() > most) return;
   add(start + "to640/" + method, [=](auto& state) { accumulated(state, body, 640, create); });
 }
 
-/// Bodies up to which a method is worth its rows: memory n^2, or minutes.
+/// Bodies up to which a method is worth its rows: memory n^2, or minutes on a software renderer.
 Index most_tets(const SolverOptions& options) {
-  if (options.route == Route::inverse) return options.update == Update::eager ? 2000 : 8000;
-  if (options.backend == "vulkan") return 8000;
-  return 130000;
+  const bool vulkan = options.backend == "vulkan";
+  if (options.route != Route::inverse) return vulkan ? 2000 : 130000;
+  if (options.update == Update::eager) return 2000;
+  return vulkan && options.precision == Precision::fp64 ? 2000 : 8000;
+}
+
+/// Bodies that are torn 640 times: conjugate gradients and dense inverses cost the same every time.
+Index most_accumulated(const SolverOptions& options) {
+  if (options.route == Route::cg) return 0;
+  return options.backend == "vulkan" ? 2000 : 8000;
+}
+Index most_accumulated(const PeerKind& kind) {
+  if (kind.name.find("updown") != std::string::npos) return 8000;
+  const bool sparse = kind.name.find("stale") != std::string::npos ||
+                      kind.name.find("supernodal") != std::string::npos;
+  return sparse ? 2000 : 0;
 }
 
 std::vector<PeerKind> all_peers() {
@@ -259,26 +271,19 @@ void register_rows() {
   for (const BodyShape& body : bodies()) {
     for (const PeerKind& kind : all_peers()) {
       if (body.tets() > kind.most_tets) continue;
-      // A dense inverse anew costs the same every time: 640 of them would tell nothing more.
-      const bool quick = kind.name.find("updown") != std::string::npos ||
-                         kind.name.find("stale") != std::string::npos ||
-                         kind.name.find("supernodal") != std::string::npos;
       add_rows(
           body, kind.name,
           [=](const TearingBoard& b) { return std::make_unique<PeerFollower>(b, kind); },
-          quick ? 8000 : 0);
+          most_accumulated(kind));
     }
     for (const Method& method : methods(vulkan)) {
       if (body.tets() > most_tets(method.options)) continue;
-      const bool cg = method.options.route == Route::cg;
       add_rows(
           body, method.name,
           [=](const TearingBoard& b) {
             return std::make_unique<BackendFollower>(b, method.options);
           },
-          cg                                   ? 0
-          : method.options.backend == "vulkan" ? 2000
-                                               : 8000);
+          most_accumulated(method.options));
     }
   }
 }

@@ -86,21 +86,26 @@ void size_row(benchmark::State& state, const Method& method, Index cells) {
   }
 }
 
-/// Unknowns up to which a route is worth its rows: memory n^2, or iterations on one core.
-Index most_cells(const Method& method) {
-  if (method.options.route == Route::inverse)
-    return method.options.update == Update::eager ? 18 : 36;
-  if (method.options.backend == "vulkan") return 71;
-  return 409;
+/// Cells along an edge up to which a route is worth its rows: memory n^2, or minutes a frame where
+/// the Vulkan device is a software renderer.
+Index most_cells(const Method& method, bool software) {
+  const bool slow = software && method.options.backend == "vulkan";
+  if (method.options.route != Route::inverse) return slow ? 18 : 409;
+  if (method.options.update == Update::eager) return 18;
+  return slow && method.options.precision == Precision::fp64 ? 18 : 36;
 }
 
 void register_rows() {
-  bool vulkan = false;
-  for (const DeviceInfo& device : devices()) vulkan |= device.backend == "vulkan";
+  bool vulkan = false, software = true;
+  for (const DeviceInfo& device : devices()) {
+    if (device.backend != "vulkan") continue;
+    vulkan = true;
+    software = software && device.name.find("llvmpipe") != std::string::npos;
+  }
   for (const Method& method : methods(vulkan)) {
     if (method.options.route == Route::condensed) continue;  // a matter of the scene, not of size
     for (Index cells : {9, 18, 36, 71, 141, 289, 409}) {
-      if (cells > most_cells(method)) break;
+      if (cells > most_cells(method, software)) break;
       const std::string name = "scaling/" + method.name + "/" + std::to_string(6 * cells * cells);
       benchmark::RegisterBenchmark(name.c_str(),
                                    [=](auto& state) { size_row(state, method, cells); })

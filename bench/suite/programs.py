@@ -56,7 +56,7 @@ PROGRAMS = [
             Share(50, "board (486|1944)/k[0-9]+/(openblas|eigen SimplicialLDLT r|Jacobi|chol|stale|cpu|vulkan i)"
                   "|board 486/k10/|7776/k10/(cpu factor|cpu inverse def|chol|stale)"
                   "|1944/to640/(chol.*up|cpu.*def)", 3),
-            Share(900, repetitions=3)),
+            Share(600, "board (486|1944|7776)/|block", 3)),
     Program("bench_scaling", "sizes against frames and memory",
             Share(1, "cpu.*/486/|vulkan inverse def.*/486/", 1), Share(24, "/(486|1944)/", 1),
             Share(300, "/(486|1944|7776|30246|119286)/", 3)),
@@ -71,15 +71,18 @@ PROGRAMS = [
     Program("bench_convergence", "mesh size against error and time", Share(1, words=("3000",)),
             Share(1, words=("30000",)), Share(60), file="convergence.csv"),
 ]
-# Bodies of a million elements take minutes each: once is enough.
-LARGEST = Program("bench_scaling", "bodies of half a million and a million tetrahedra",
-                  Share(0), Share(0), Share(400, "/(501126|1003686)/", 1))
+# Large bodies take seconds to minutes each: once is enough.
+LARGE = [
+    Program("bench_reconstruction", "inverse reconstruction on large boards",
+            Share(0), Share(0), Share(200, "board (30246|119286)/", 1)),
+    Program("bench_scaling", "boards of half a million and a million tetrahedra",
+            Share(0), Share(0), Share(400, "/(501126|1003686)/", 1)),
+]
 
 
 def planned(mode):
     """The programs of a mode, with their shares."""
-    programs = PROGRAMS + ([LARGEST] if mode == "full" else [])
-    return [(p, getattr(p, mode)) for p in programs]
+    return [(p, getattr(p, mode)) for p in PROGRAMS + (LARGE if mode == "full" else [])]
 
 
 def split_present(build, mode):
@@ -152,9 +155,7 @@ def run_all(build, mode, folder, repetitions=None):
     progress = Progress(sum(share.seconds for _, share in there))
     outcome = {"rows": [], "cells": [], "points": [], "meshes": [], "programs": [],
                "failures": [f"{name} is not built" for name in missing]}
-    readers = {"stability.csv": ("cells", results.cells_of),
-               "scenes.csv": ("points", results.points_of),
-               "convergence.csv": ("meshes", results.meshes_of)}
+    readers = {file: (part, read) for part, (file, read) in results.PARTS.items()}
     for program, share in there:
         progress.begin(f"{program.name}: {program.about}")
         start, cpu = time.monotonic(), _cpu_seconds()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The results folder: rows of Google Benchmark programs and cells of the stability study.
 
-results.json  {"machine": {...}, "rows": [row], "cells": [cell], "points": [point], "meshes": [mesh],
-               "peers": {name: settings}, "programs": [...], "failures": [sentence]}
+results.json  {"machine": {...}, "rows": [row], "peers": {name: settings}, "programs": [...],
+               "failures": [sentence]}
 results.csv   one line per row: program, name, minimum, median, CPU time [ms], samples, counters
-stability.csv, scenes.csv, convergence.csv   as the programs write them
+stability.csv, scenes.csv, convergence.csv   as the programs write them: cells, points, meshes
 """
 import csv
 import io
@@ -120,22 +120,56 @@ def rows_csv(rows):
     return out.getvalue()
 
 
+# Parts of the results that lie beside results.json: file and reader.
+PARTS = {"cells": ("stability.csv", cells_of), "points": ("scenes.csv", points_of),
+         "meshes": ("convergence.csv", meshes_of)}
+
+
+def _text(path):
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise BadResults(f"{path} is missing; name a folder that bench/run has written") from None
+    except OSError as error:
+        raise BadResults(f"{path} cannot be read: {error}") from None
+
+
 def read(folder):
     """The results of a folder. Raises BadResults."""
     path = pathlib.Path(folder) / "results.json"
     try:
-        results = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise BadResults(f"{path} is missing; name a folder that bench/run has written") from None
-    except (OSError, ValueError) as error:
+        results = json.loads(_text(path))
+    except ValueError as error:
         raise BadResults(f"{path} cannot be read: {error}") from None
-    if not isinstance(results, dict) or not {"machine", "rows", "cells"} <= results.keys():
+    if not isinstance(results, dict) or not {"machine", "rows"} <= results.keys():
         raise BadResults(f"{path} is not a results file of bench/run")
-    return {"points": [], "meshes": [], "programs": [], "failures": [], "peers": {}, **results}
+    results = {"programs": [], "failures": [], "peers": {}, **results}
+    for part, (name, reader) in PARTS.items():
+        file = path.with_name(name)
+        try:
+            results[part] = reader(_text(file)) if file.is_file() else []
+        except (ValueError, KeyError, TypeError) as error:
+            raise BadResults(f"{file} cannot be read: {error}") from None
+    return results
+
+
+def table_csv(entries):
+    """Dictionaries with the same keys as CSV; none as nothing."""
+    out = io.StringIO()
+    writer = csv.DictWriter(out, entries[0].keys(), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(entries)
+    return out.getvalue()
 
 
 def write(folder, results):
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
+    for part, (name, _) in PARTS.items():
+        if results[part]:
+            write_text(folder / name, table_csv(results[part]))
+        else:  # of an earlier run
+            (folder / name).unlink(missing_ok=True)
     write_text(folder / "results.csv", rows_csv(results["rows"]))
-    write_text(folder / "results.json", json.dumps(results, indent=1, allow_nan=True) + "\n")
+    own = {key: value for key, value in results.items() if key not in PARTS}
+    write_text(folder / "results.json", json.dumps(own, indent=0, allow_nan=True) + "\n")

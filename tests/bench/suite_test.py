@@ -202,7 +202,7 @@ class Page(unittest.TestCase):
             self.assertNotIn(tag, text)
 
     def test_says_what_is_not_good(self):
-        made = dict(every_part(), cells=[cell(verdict="WRONG", stress_error=0.3)])
+        made = outcome([torn("cholmod updown_solve")], [cell(verdict="WRONG", stress_error=0.3)])
         self.assertIn("Not good in this run", page.page(made)[0])
         self.assertNotIn("Not good in this run", self.text)
 
