@@ -242,7 +242,8 @@ void add_rows(const BodyShape& body, const std::string& method, const Create& cr
 /// Bodies up to which a method is worth its rows: memory n^2, or minutes on a software renderer.
 Index most_tets(const SolverOptions& options) {
   const bool vulkan = options.backend == "vulkan";
-  if (options.route != Route::inverse) return vulkan ? 2000 : 130000;
+  const bool dense = options.route == Route::inverse || options.route == Route::condensed;
+  if (!dense) return vulkan ? 2000 : 130000;
   if (options.update == Update::eager) return 2000;
   return vulkan && options.precision == Precision::fp64 ? 2000 : 8000;
 }

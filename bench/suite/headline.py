@@ -73,6 +73,20 @@ def _accumulated(rows):
             "bench_reconstruction --benchmark_filter=1944/to640")
 
 
+def _patch(rows, tets):
+    at = {route: next((r["counters"] for r in rows if r["samples_ms"]
+                       and r["name"] == f"needs/patch_tears_{route}/{tets}"), None)
+          for route in ("factor", "condensed")}
+    what = (f"frame with a fracture in a patch of about 1,000 unknowns, {tets} tetrahedra, factor / "
+            "condensed")
+    command = f"bench_needs --benchmark_filter='patch_tears.*/{tets}/'"
+    if not all(at.values()):
+        return what, None, command
+    times = " / ".join(number(at[r]["min_ms"]) for r in at)
+    return (what, f"{times} ms; the condensed inverse holds "
+            f"{number(at['condensed']['inverse_MiB'], 2)} MiB", command)
+
+
 def _largest(rows):
     sizes = [(r["counters"]["unknowns"], r) for r in rows if r["samples_ms"]
              and r["name"].startswith("scaling/cpu factor")]
@@ -104,7 +118,8 @@ def figures(outcome):
     found = [_program(rows), _reconstruction_of_the_paper(rows), _decide(rows), _c_interface(rows),
              *(_against_updown(rows, b) for b in ("board 1944", "board 7776", "board 30246",
                                                   "board 119286", "block 7986")),
-             _accumulated(rows), _largest(rows), _stability(outcome["cells"])]
+             _accumulated(rows), *(_patch(rows, n) for n in (1944, 30246, 119286)),
+             _largest(rows), _stability(outcome["cells"])]
     return [f for f in found if f[1] is not None]
 
 

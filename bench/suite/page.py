@@ -11,7 +11,8 @@ body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:76em;padding:0
 h2{margin-top:2em;border-bottom:2px solid #eee}nav a{margin-right:1em}
 table{border-collapse:collapse;font-size:13px;margin:.5em 0 1em}
 td,th{padding:.15em .7em;text-align:right;border-bottom:1px solid #e4e4e4;vertical-align:bottom}
-td:first-child,th:first-child{text-align:left;white-space:nowrap}.words td,.words th{text-align:left}
+td:first-child,th:first-child,td[colspan]{text-align:left}.wide td{white-space:nowrap}
+.words td,.words th{text-align:left}.words td:nth-child(2){min-width:14em}
 .wide{overflow-x:auto}svg{max-width:100%;height:auto;display:block}
 .bad{color:#b00;font-weight:600}details{margin:.4em 0}summary{cursor:pointer}
 dt{font-weight:600}dd{margin:0 0 .2em 1.5em;white-space:pre-wrap}
@@ -19,8 +20,14 @@ dt{font-weight:600}dd{margin:0 0 .2em 1.5em;white-space:pre-wrap}
 
 
 def _table(head, lines, kind="wide"):
+    head = list(head)
     def row(values, tag):
-        return "<tr>" + "".join(f"<{tag}>{html.escape(str(v))}</{tag}>" for v in values) + "</tr>"
+        # A line that ends early ends in words: they take the rest of it.
+        rest = len(head) - len(values) + 1
+        cells = [f"<{tag}>{html.escape(str(v))}</{tag}>" for v in values]
+        if rest > 1:
+            cells[-1] = cells[-1].replace("<td", f'<td colspan="{rest}"', 1)
+        return "<tr>" + "".join(cells) + "</tr>"
     body = "".join(row(line, "td") for line in lines)
     return f'<div class="{kind}"><table>{row(head, "th")}{body}</table></div>'
 

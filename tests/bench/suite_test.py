@@ -157,11 +157,14 @@ class Checks(unittest.TestCase):
         peer = torn("cholmod updown_solve")
         lost = dict(torn("cpu cg fp64"), samples_ms=[], failure="not definite")
         told = dict(lost, failure="refused: backend cpu offers no such route")
+        off = dict(torn("cpu cg fp64"), program="bench_reconstruction")
+        off["counters"]["error_stress"] = 1e-3
         no_number = torn("cpu cg fp64")
         no_number["counters"]["error_u"] = nan
         for text, parts in (("WRONG", {"cells": [cell(verdict="WRONG", stress_error=0.3)]}),
                             ("is nan", {"cells": [cell(stress_error=nan)]}),
                             ("not definite", {"rows": [peer, lost]}),
+                            ("promised 0.0001", {"rows": [peer, off]}),
                             ("error_u is nan", {"rows": [peer, no_number]}),
                             ("no row of this run", {"rows": [torn("cpu cg fp64")]}),
                             ("no peers", {"peers": {}}),
