@@ -102,14 +102,14 @@ def _largest(rows):
             f"bench_scaling --benchmark_filter='factor.*/{tets}'")
 
 
-def _stability(cells):
+def _stability(cells, mode):
     if not cells:
-        return "stability", None, "bench_stability"
+        return "stability", None, ""
     count = {w: sum(c["verdict"] == w for c in cells)
              for w in ("ok", "polished", "rounded", "refused", "WRONG")}
     good = count["ok"] + count["polished"] + count["rounded"]
     return ("cells of the stability study: right / refused with a reason / wrong",
-            f"{good} / {count['refused']} / {count['WRONG']}", "bench_stability FILE full")
+            f"{good} / {count['refused']} / {count['WRONG']}", f"bench_stability FILE {mode}")
 
 
 def figures(outcome):
@@ -119,7 +119,7 @@ def figures(outcome):
              *(_against_updown(rows, b) for b in ("board 1944", "board 7776", "board 30246",
                                                   "board 119286", "block 7986")),
              _accumulated(rows), *(_patch(rows, n) for n in (1944, 30246, 119286)),
-             _largest(rows), _stability(outcome["cells"])]
+             _largest(rows), _stability(outcome["cells"], outcome["machine"].get("mode", "full"))]
     return [f for f in found if f[1] is not None]
 
 

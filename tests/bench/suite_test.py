@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmark suite's own rules: noise, planted slow-downs, planted wrong answers, bad folders."""
 import copy
+import html
 import json
 import pathlib
 import random
@@ -235,6 +236,18 @@ class Page(unittest.TestCase):
         for _, figure, _ in headline.figures(made):
             self.assertIn(figure, self.text)
             self.assertIn(figure, headline.markdown(made, "folder"))
+
+
+class Readme(unittest.TestCase):
+    def test_its_figures_are_those_of_the_folder_it_names_and_stand_on_its_page(self):
+        root = BENCH.parent
+        text = (root / "README.md").read_text(encoding="utf-8")
+        folder = text.split(headline.BEGIN)[1].split(" -->")[0]
+        made = results.read(root / folder)
+        self.assertIn(headline.markdown(made, folder), text)
+        shown = (root / folder / "index.html").read_text(encoding="utf-8")
+        for _, figure, _ in headline.figures(made):
+            self.assertIn(html.escape(figure), shown)
 
 
 class Program(unittest.TestCase):
