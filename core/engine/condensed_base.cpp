@@ -108,7 +108,8 @@ const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
       }
     }
   }
-  projected_.resize(static_cast<Eigen::Index>(vectors_.size()));
+  const auto count = static_cast<Eigen::Index>(vectors_.size());
+  if (projected_.size() < count) projected_.resize(2 * count + 256);
   for (std::size_t i = 0; i < vectors_.size(); ++i) {
     const auto [dof, other] = vectors_[i];
     const double u = of_load_[place_[dof]];
