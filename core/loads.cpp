@@ -8,23 +8,6 @@
 namespace sunder {
 namespace {
 
-using Entries = std::vector<std::pair<Index, double>>;
-
-void fill(Load& load, Entries& entries) {
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  load.force_dofs.clear();
-  load.forces.clear();
-  for (const auto& [dof, force] : entries) {
-    if (!load.force_dofs.empty() && load.force_dofs.back() == dof) {
-      load.forces.back() += force;
-    } else {
-      load.force_dofs.push_back(dof);
-      load.forces.push_back(force);
-    }
-  }
-}
-
 bool is_press(const Instrument& instrument) {
   return std::holds_alternative<Press>(instrument.action);
 }
@@ -87,13 +70,31 @@ Vec3 Loads::value(std::size_t instrument, double time) const {
   return factor * std::get<Press>(tool.action).force;
 }
 
-void Loads::add(std::size_t instrument, Entries& entries) const {
+void Loads::add(std::size_t instrument) {
   const auto on = nodes(instrument);
   for (Index n : on) {
     for (int axis = 0; axis < 3; ++axis) {
       const Index d = problem_.dof(n, axis);
       const double share = forces_[instrument][axis] / static_cast<double>(on.size());
-      if (d != kNone && share != 0) entries.emplace_back(d, share);
+      if (d == kNone || share == 0) continue;
+      shares_.push_back({d, static_cast<int>(shares_.size()), share});
+    }
+  }
+}
+
+void Loads::sum_into(Load& load) {
+  sorted_ = shares_;
+  std::sort(sorted_.begin(), sorted_.end(), [](const Share& a, const Share& b) {
+    return a.dof != b.dof ? a.dof < b.dof : a.order < b.order;
+  });
+  load.force_dofs.clear();
+  load.forces.clear();
+  for (const Share& s : sorted_) {
+    if (!load.force_dofs.empty() && load.force_dofs.back() == s.dof) {
+      load.forces.back() += s.force;
+    } else {
+      load.force_dofs.push_back(s.dof);
+      load.forces.push_back(s.force);
     }
   }
 }
@@ -102,14 +103,14 @@ std::vector<std::string> Loads::update(double time, const FractureCriterion& cri
                                        std::span<const std::uint8_t> destroyed) {
   std::vector<std::string> findings;
   const auto& instruments = problem_.scene().instruments;
-  Entries entries;
+  shares_.clear();
   acting_.clear();
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     if (!std::holds_alternative<Pull>(instruments[i].action)) continue;
     forces_[i] = value(i, time);
-    add(i, entries);
+    add(i);
   }
-  fill(expansion_, entries);
+  sum_into(expansion_);
   for (std::size_t g = 0; g < gripped_.size(); ++g) {
     expansion_.displacements[g] = value(gripped_[g].instrument, time)[gripped_[g].axis];
   }
@@ -122,10 +123,10 @@ std::vector<std::string> Loads::update(double time, const FractureCriterion& cri
     choose_pressed_nodes(i, criterion, destroyed, findings);
     if (pressed_[i].empty()) continue;
     forces_[i] = value(i, time);
-    add(i, entries);
+    add(i);
     acting_.push_back({i, press, forces_[i], pressed_[i]});
   }
-  fill(all_, entries);
+  sum_into(all_);
   all_.displacements = expansion_.displacements;
   return findings;
 }

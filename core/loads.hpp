@@ -47,7 +47,15 @@ class Loads {
   void choose_pressed_nodes(std::size_t instrument, const FractureCriterion& criterion,
                             std::span<const std::uint8_t> destroyed,
                             std::vector<std::string>& findings);
-  void add(std::size_t instrument, std::vector<std::pair<Index, double>>& entries) const;
+  void add(std::size_t instrument);
+  void sum_into(Load& load);
+
+  /// A share of an instrument's force; those of a dof are summed in the order they came in.
+  struct Share {
+    Index dof;
+    int order;
+    double force;
+  };
 
   const Problem& problem_;
   std::optional<NodeElements> elements_of_node_;  // only where something presses
@@ -57,6 +65,7 @@ class Loads {
   std::vector<Vec3> forces_;
   std::vector<ActingPress> acting_;
   Load all_, expansion_;
+  std::vector<Share> shares_, sorted_;  // of the update in work
 };
 
 }  // namespace sunder

@@ -159,7 +159,8 @@ void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
 }
 
 FractureState Simulation::fracture_state(const StressSummary& summary) {
-  const auto forces = reactions();
+  read(reactions_);
+  const std::vector<Vec3>& forces = reactions_.forces;
   Vec3 resultant = Vec3::Zero();
   const auto& instruments = problem_->scene().instruments;
   for (std::size_t i = 0; i < forces.size(); ++i) {
@@ -290,9 +291,11 @@ void Simulation::apply_presets() {
 }
 
 void Simulation::apply_removals() {
+  const auto& removals = problem_->scene().removals;
+  const auto now = [this](const auto& removal) { return removal.step == next_step_; };
+  if (std::none_of(removals.begin(), removals.end(), now)) return;
   Decision event;
   std::vector<std::uint8_t> taken(backend_->destroyed().begin(), backend_->destroyed().end());
-  const auto& removals = problem_->scene().removals;
   for (std::size_t r = 0; r < removals.size(); ++r) {
     if (removals[r].step != next_step_) continue;
     Index already = 0;
@@ -370,18 +373,23 @@ std::vector<std::string> Simulation::warnings() const {
 const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
 
 std::vector<Vec3> Simulation::reactions() const {
-  std::vector<Vec3> forces;
+  Reactions r;
+  read(r);
+  return r.forces;
+}
+
+void Simulation::read(Reactions& r) const {
+  r.forces.clear();
   for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
-    forces.push_back(loads_->force(i));
+    r.forces.push_back(loads_->force(i));
   }
-  std::vector<double> grips(problem_->gripped_dofs().size());
-  if (grips.empty()) return forces;
-  backend_->read_reactions(grips);
-  for (std::size_t g = 0; g < grips.size(); ++g) {
+  r.grips.resize(problem_->gripped_dofs().size());
+  if (r.grips.empty()) return;
+  backend_->read_reactions(r.grips);
+  for (std::size_t g = 0; g < r.grips.size(); ++g) {
     const auto [instrument, axis] = loads_->gripped()[g];
-    forces[instrument][axis] += grips[g];
+    r.forces[instrument][axis] += r.grips[g];
   }
-  return forces;
 }
 
 Vec3 Simulation::support_reaction() const {
@@ -410,10 +418,11 @@ std::vector<Index> Simulation::acting_nodes(std::size_t instrument) const {
   return {nodes.begin(), nodes.end()};
 }
 
-double Simulation::compliance() const {
-  const auto forces = reactions();
+double Simulation::compliance() {
+  read(reactions_);
+  const std::vector<Vec3>& forces = reactions_.forces;
+  std::vector<Vec3>& u = reactions_.displacement;
   double work = 0;
-  std::vector<Vec3> u;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (problem_->scene().instruments.empty()) break;
     const auto* grip = std::get_if<Grip>(&problem_->scene().instruments[i].action);

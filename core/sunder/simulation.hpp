@@ -93,7 +93,15 @@ class Simulation {
   [[nodiscard]] std::span<const double> pristine_displacement();
   [[nodiscard]] std::vector<NodalForce> instrument_forces() const;
   void add_grip_forces(std::vector<NodalForce>& forces) const;
-  [[nodiscard]] double compliance() const;
+  [[nodiscard]] double compliance();
+
+  /// What the instruments exert, with room that frames share.
+  struct Reactions {
+    std::vector<Vec3> forces;        // per instrument
+    std::vector<double> grips;       // per gripped dof
+    std::vector<Vec3> displacement;  // of an instrument's nodes
+  };
+  void read(Reactions& r) const;
 
   /// Steps to which the same thing happened: one warning for all of them.
   struct Steps {
@@ -110,6 +118,7 @@ class Simulation {
   FrameObserver frame_observer_;
   std::vector<DestroyedElement> destroyed_;
   std::vector<std::string> warnings_;
+  Reactions reactions_;
   std::vector<double> pristine_;  // of this step's expansion load; empty: not computed yet
   int next_step_ = 0;
   int next_event_ = 0;

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdlib>
 
+#include "sunder/simulation.hpp"
 #include "support/body.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"
@@ -123,6 +124,28 @@ TEST_P(Allocations, AreNoneInAWarmFrame) {
     body.backend->solve();
     body.backend->stress();
     EXPECT_EQ(counted.sum(), 0) << "quiet frame " << quiet;
+  }
+}
+
+// All of a step: instruments, frame, decision, report. Nothing breaks.
+TEST_P(Allocations, AreNoneInAWarmQuietStep) {
+  Scene scene = pulled_board(Vec3(0, -0.01, 0));
+  Instrument grip;
+  grip.name = "grip";
+  grip.action =
+      Grip{{Vec3(-0.001, -0.001, -1), Vec3(0.001, 0.001, 3)}, Vec3::Constant(1e-4), Axes{7}};
+  scene.instruments.push_back(grip);
+  scene.fracture.model = FractureModel::b;
+  scene.solver.route = GetParam();
+  scene.steps = 20;
+  const auto problem = std::make_shared<const Problem>(std::move(scene));
+  Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
+  while (!simulation.done()) {
+    const Count counted;
+    const StepReport report = simulation.step();
+    const long sum = counted.sum();
+    ASSERT_EQ(report.destroyed, 0);
+    EXPECT_EQ(report.step < 5 ? 0 : sum, 0) << "step " << report.step;
   }
 }
 
