@@ -26,10 +26,7 @@ void main() {
 #endif
   REAL4 sum = REAL4(0);
   uint at = first * p.packs + pack;
-  // In part only: a straight line of 64 columns takes lavapipe 0.3 s to compile in fp64.
-  [[dont_unroll]] for (uint q = 0u; q < kChunk / 16u; ++q) {
-  [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-    const uint j = 4u * q + i;
+  [[unroll]] for (uint j = 0u; j < kChunk / 4u; ++j) {
 #ifdef SUNDER_LVP
     const REAL4 c = LOAD_REAL4(vector, p.vector_first + first / 4u + j);
 #else
@@ -40,7 +37,6 @@ void main() {
     sum += LOAD_REAL4(matrix, at + 2u * p.packs) * c.z;
     sum += LOAD_REAL4(matrix, at + 3u * p.packs) * c.w;
     at += 4u * p.packs;
-  }
   }
   const uint to = (p.partial + gl_WorkGroupID.y) * p.packs + pack;
   // Keeps the arithmetic out of lavapipe's store loop (low_rank.comp).
