@@ -13,6 +13,7 @@
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/energy_check.hpp"
 #include "cpu_reference/frame_check.hpp"
+#include "cpu_reference/recent_checks.hpp"
 #include "cpu_reference/routes.hpp"
 #include "engine/stress_kernel.hpp"
 #include "sunder/error.hpp"
@@ -51,9 +52,9 @@ class CpuBackend final : public Backend {
     }
     route_ = make_route();
     if (condensed_) {
-      energy_check_.emplace(*problem);
+      energy_checks_.emplace(*problem);
     } else if (route_->deferred()) {
-      check_.emplace(*problem);
+      checks_.emplace(*problem);
     }
     force_.setZero(n);
     u_.setZero(n);
@@ -71,7 +72,7 @@ class CpuBackend final : public Backend {
     nodal_.assign(problem->dofs().size(), 0.0);
     next_nodal_ = nodal_;
     make_stress();
-    if (check_ && kernel_) {
+    if (checks_ && kernel_) {
       kernel_->keep_forces();
       nodal_forces_ = nodal_;
     }
@@ -240,7 +241,7 @@ class CpuBackend final : public Backend {
     fresh_ = false;
     if (condensed_) return solve_condensed();
     SolveReport report;
-    if (check_) check_->follow(*route_);
+    check_ = check_of_load();
     const auto scale = check_ ? check_->scale_of(load_, *route_) : std::nullopt;
     route_->set_enough(scale ? check_->enough(*scale) : 0);
     solve_by(*route_, report);
@@ -256,10 +257,18 @@ class CpuBackend final : public Backend {
     return report;
   }
 
+  /// Nothing: the route is checked fully in any case.
+  FrameCheck* check_of_load() {
+    if (!checks_) return nullptr;
+    for (FrameCheck& check : checks_->all()) check.follow(*route_);
+    return &checks_->of(load_, *route_);
+  }
+
   /// A condensed frame has no residual outside its region: the energy of what damage lacks bounds
   /// its error.
   SolveReport solve_condensed() {
-    if (const auto known = solve_on_region()) {
+    EnergyCheck& check = energy_checks_->of(load_, *route_);
+    if (const auto known = solve_on_region(check)) {
       nodal_.swap(next_nodal_);
       condensed_->take(*route_);
       return *known;
@@ -271,16 +280,15 @@ class CpuBackend final : public Backend {
     hand_out();
     nodal_.swap(next_nodal_);
     take_everywhere();
-    energy_check_->checked(load_, report, unrefined_, route_->bases(), largest_in_region(nodal_),
-                           largest_);
+    check.checked(load_, report, unrefined_, route_->bases(), largest_in_region(nodal_), largest_);
     return report;
   }
 
   /// The solution without a full check, where one like it has had its check.
-  std::optional<SolveReport> solve_on_region() {
-    const auto scale = energy_check_->scale_of(load_, *route_);
+  std::optional<SolveReport> solve_on_region(EnergyCheck& check) {
+    const auto scale = check.scale_of(load_, *route_);
     if (!scale) return std::nullopt;
-    route_->set_enough(energy_check_->enough(*scale));
+    route_->set_enough(check.enough(*scale));
     route_->solve(load_, force_, u_);
     hand_out();
     const auto gripped = problem().gripped_dofs();
@@ -288,11 +296,11 @@ class CpuBackend final : public Backend {
       reactions_[g] = route_->deferred()->grip_forces()[static_cast<Eigen::Index>(g)] -
                       anchors_[g] * u_[gripped[g]];  // the anchor's share
     }
-    return energy_check_->known(*scale, *route_, largest_in_region(next_nodal_), largest_);
+    return check.known(*scale, *route_, largest_in_region(next_nodal_), largest_);
   }
 
   /// Whether residual and stress come from the kernel; the yardstick has loops of its own.
-  bool fast() const { return check_ && kernel_; }
+  bool fast() const { return checks_ && kernel_; }
 
   FrameCheck::Solution solution() const { return {free_residual_, largest_u(), largest_}; }
 
@@ -343,7 +351,7 @@ class CpuBackend final : public Backend {
 
   /// Corrects the solution by a route until the estimate is rounding's.
   void refine(InverseRoute& route, SolveReport& report) {
-    const double enough = check_ ? kDeferredError : kReferenceError;
+    const double enough = checks_ ? kDeferredError : kReferenceError;
     report.error = std::numeric_limits<double>::infinity();
     for (int attempt = 0;; ++attempt) {
       const double stress = correction(route, report);
@@ -448,7 +456,9 @@ class CpuBackend final : public Backend {
     }
     body_.destroy(elements);
     if (kernel_) kernel_->destroy(elements);
-    if (energy_check_) energy_check_->event();
+    if (energy_checks_) {
+      for (EnergyCheck& check : energy_checks_->all()) check.event();
+    }
     route_->destroy(elements);
   }
 
@@ -519,11 +529,12 @@ class CpuBackend final : public Backend {
   mutable std::optional<CondensedFields> condensed_;  // computes what is read
   bool stressed_ = false;
   std::optional<engine::StressKernel> kernel_;
-  std::optional<FrameCheck> check_;          // of a deferred update that knows u everywhere
-  std::optional<EnergyCheck> energy_check_;  // of a condensed one
-  std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
-  bool fresh_ = false;                       // next_stress_ is to be published
-  double largest_ = 0;                       // stress of the last solution
+  std::optional<RecentChecks<FrameCheck>> checks_;  // of a deferred update that knows u everywhere
+  std::optional<RecentChecks<EnergyCheck>> energy_checks_;  // of a condensed one
+  FrameCheck* check_ = nullptr;                             // of the load in work, of checks_
+  std::vector<Voigt> stress_, next_stress_;                 // published; of the last solution
+  bool fresh_ = false;                                      // next_stress_ is to be published
+  double largest_ = 0;                                      // stress of the last solution
   std::vector<std::uint8_t> excluded_;
   PreparationReport preparation_;
   std::vector<std::uint8_t> is_prepared_;  // per element; empty: nothing ever was

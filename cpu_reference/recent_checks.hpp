@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The checks of the last two directions of the load. A question on the side (which instrument broke
+// an element: attribution.hpp) has a load of its own; what is known of the frames' load must not
+// depend on whether somebody asked.
+#pragma once
+
+#include <array>
+
+#include "cpu_reference/routes.hpp"
+
+namespace sunder::cpu_reference {
+
+/// Check: FrameCheck or EnergyCheck.
+template <class Check>
+class RecentChecks {
+ public:
+  explicit RecentChecks(const Problem& problem) : checks_{Check(problem), Check(problem)} {}
+
+  /// The check that knows the load's direction; else the one used longest ago.
+  [[nodiscard]] Check& of(const Load& load, const InverseRoute& route) {
+    if (checks_[last_].scale_of(load, route)) return checks_[last_];
+    last_ = 1 - last_;
+    return checks_[last_];
+  }
+  [[nodiscard]] std::array<Check, 2>& all() { return checks_; }
+
+ private:
+  std::array<Check, 2> checks_;
+  std::size_t last_ = 0;
+};
+
+}  // namespace sunder::cpu_reference
