@@ -18,8 +18,10 @@ namespace {
 // 30 to 60 frames, whatever the size.
 constexpr int kRebaseEvents = 64;
 
-// An event that touches more new unknowns than this costs more than a new factor.
-constexpr std::size_t kLargestEvent = 600;
+// An event that touches more new unknowns than this costs more than a new factor: a share of all
+// within limits. Boards of 486 to 30,246 elements (bench_reconstruction, bench_engine).
+constexpr double kLargestShare = 0.125, kSmallBody = 64;
+constexpr double kLargestEvent = 600;
 
 class DeferredRoute final : public InverseRoute {
  public:
@@ -48,7 +50,8 @@ class DeferredRoute final : public InverseRoute {
   }
 
   void destroy(std::span<const Index> elements) override {
-    if (4 * elements.size() > kLargestEvent || !based_.deferred->destroy(elements)) {
+    if (4 * static_cast<double>(elements.size()) > largest_event() ||
+        !based_.deferred->destroy(elements)) {
       rebase();
       return;
     }
@@ -90,6 +93,10 @@ class DeferredRoute final : public InverseRoute {
   }
 
  private:
+  double largest_event() const {
+    return std::clamp(kLargestShare * body_.problem().dof_count(), kSmallBody, kLargestEvent);
+  }
+
   void take_rebase() {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
