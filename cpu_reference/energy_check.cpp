@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu_reference/check_terms.hpp"
+
 namespace sunder::cpu_reference {
 namespace {
 
@@ -18,28 +20,10 @@ constexpr double kRefined = 1e-10;
 // A displacement so many times that of the last full check (a piece has come loose) needs another.
 constexpr double kGrowth = 10;
 
-/// |sigma|^2 <= c (sigma : eps) with c the largest eigenvalue of the elasticity of tensors, and
-/// V (sigma : eps) is at most the energy u^T K u of the whole body.
-double largest_stress_per_energy(const Problem& problem) {
-  double largest = 0;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    const Material& m = problem.material(e);
-    const double c = std::max(m.young / (1 - 2 * m.poisson), m.young / (1 + m.poisson));
-    largest = std::max(largest, c / problem.shape(e).volume);
-  }
-  return std::sqrt(largest);
-}
-
-bool proportional(std::span<const double> a, std::span<const double> b, double s) {
-  return std::ranges::equal(a, b, [s](double x, double y) {
-    return std::abs(x - s * y) <= 1e-15 * std::abs(x);  // a ramp's rounding
-  });
-}
-
 }  // namespace
 
 EnergyCheck::EnergyCheck(const Problem& problem)
-    : problem_(problem), stress_of_energy_(largest_stress_per_energy(problem)) {}
+    : problem_(problem), stress_of_energy_(largest_stress_of_energy(problem)) {}
 
 void EnergyCheck::checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                           double largest_u, double largest) {
@@ -53,20 +37,8 @@ void EnergyCheck::checked(const Load& load, const SolveReport& report, double un
 }
 
 std::optional<double> EnergyCheck::scale_of(const Load& load, const InverseRoute& route) const {
-  if (route.bases() != bases_ || load.force_dofs != load_.force_dofs) return std::nullopt;
-  const auto ratio = [](std::span<const double> a, std::span<const double> b) {
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      if (b[i] != 0) return a[i] / b[i];
-    }
-    return 0.0;
-  };
-  const double s =
-      std::max(ratio(load.forces, load_.forces), ratio(load.displacements, load_.displacements));
-  if (!(s > 0) || !proportional(load.forces, load_.forces, s) ||
-      !proportional(load.displacements, load_.displacements, s)) {
-    return std::nullopt;
-  }
-  return s;
+  if (route.bases() != bases_) return std::nullopt;
+  return multiple(load, load_);
 }
 
 double EnergyCheck::enough(double scale) const {

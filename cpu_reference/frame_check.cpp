@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu_reference/check_terms.hpp"
+
 namespace sunder::cpu_reference {
 namespace {
 
@@ -20,45 +22,10 @@ constexpr double kUnrefined = 1e-5;
 // softer, or a piece has come loose.
 constexpr double kGrowth = 10;
 
-/// |sigma|^2 <= c (sigma : eps) with c the largest eigenvalue of the elasticity of tensors, and
-/// V (sigma : eps) is at most the energy u^T K u of the whole body.
-double largest_stress_per_energy(const Problem& problem) {
-  double largest = 0;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    const Material& m = problem.material(e);
-    const double c = std::max(m.young / (1 - 2 * m.poisson), m.young / (1 + m.poisson));
-    largest = std::max(largest, c / problem.shape(e).volume);
-  }
-  return std::sqrt(largest);
-}
-
-bool proportional(std::span<const double> a, std::span<const double> b, double s) {
-  return std::ranges::equal(a, b, [s](double x, double y) {
-    return std::abs(x - s * y) <= 1e-15 * std::abs(x);  // a ramp's rounding
-  });
-}
-
-/// a = s b, s > 0; nothing: another direction.
-std::optional<double> multiple(const Load& a, const Load& b) {
-  if (a.force_dofs != b.force_dofs) return std::nullopt;
-  const auto ratio = [](std::span<const double> x, std::span<const double> y) {
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      if (y[i] != 0) return x[i] / y[i];
-    }
-    return 0.0;
-  };
-  const double s = std::max(ratio(a.forces, b.forces), ratio(a.displacements, b.displacements));
-  if (!(s > 0) || !proportional(a.forces, b.forces, s) ||
-      !proportional(a.displacements, b.displacements, s)) {
-    return std::nullopt;
-  }
-  return s;
-}
-
 }  // namespace
 
 FrameCheck::FrameCheck(const Problem& problem)
-    : problem_(problem), stress_of_energy_(largest_stress_per_energy(problem)) {}
+    : problem_(problem), stress_of_energy_(largest_stress_of_energy(problem)) {}
 
 void FrameCheck::checked(const Load& load, const Solution& solution, double stress, int bases) {
   load_ = load;
