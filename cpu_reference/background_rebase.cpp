@@ -11,7 +11,7 @@ namespace sunder::cpu_reference {
 
 Based based_on(const Problem& problem, std::span<const double> scale) {
   Based based;
-  based.factor = std::make_unique<fem::Factor>(fem::assemble_lower(problem, scale));
+  based.factor = std::make_unique<fem::Factor>(problem, scale);
   based.deferred = std::make_unique<engine::Deferred>(
       problem, std::make_unique<engine::FactorBase>(*based.factor));
   return based;

@@ -47,7 +47,7 @@ class CondensedRoute final : public InverseRoute {
   }
 
   bool rebase() override {
-    lay_over(std::make_shared<fem::Factor>(fem::assemble_lower(body_.problem(), body_.scale())));
+    lay_over(std::make_shared<fem::Factor>(body_.problem(), body_.scale()));
     rebased_ = true;
     ++bases_;
     return true;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cpu_reference/routes.hpp"
 
+#include <algorithm>
 #include <numeric>
+#include <thread>
 
 #include "cpu_reference/conjugate_gradient.hpp"
 #include "cpu_reference/low_rank.hpp"
@@ -16,6 +18,10 @@ namespace {
 constexpr double kCgTolerance = 1e-12;
 // For an error estimate two digits of the correction are enough (squared: an energy).
 constexpr double kCorrection = 1e-4;
+
+int machine_threads() {
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
 
 class DenseInverseRoute final : public InverseRoute {
  public:
@@ -48,7 +54,7 @@ class DenseInverseRoute final : public InverseRoute {
   }
 
   bool rebase() override {
-    x_ = fem::Factor(fem::assemble_lower(body_.problem(), body_.scale())).inverse();
+    x_ = fem::Factor(body_.problem(), body_.scale()).inverse();
     read_grips();
     return true;
   }
@@ -167,7 +173,7 @@ double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
 }
 
 IntactBody::IntactBody(const Problem& problem)
-    : factor(fem::assemble_lower(problem, {})), grips(problem.gripped_dofs()) {
+    : factor(problem, {}, {.threads = machine_threads()}), grips(problem.gripped_dofs()) {
   if (!grips.none()) grips.set_columns(factor.inverse_columns(grips.dofs()));
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/commands/commands.hpp"
+#include "app/commands/waiting.hpp"
 #include "app/output/run_record.hpp"
 #include "app/output/text.hpp"
 #include "sunder/backends.hpp"
@@ -101,12 +102,17 @@ void measure_steps(const OpenedScene& scene, std::unique_ptr<Backend> backend) {
   }
 }
 
+CreatedBackend prepared_backend(const OpenedScene& scene) {
+  const Waiting waiting("preparing " + grouped(scene.problem->dof_count()) + " unknowns", true);
+  return create_backend(scene.problem, needs_of(*scene.problem));
+}
+
 }  // namespace
 
 int plan(const SceneArguments& arguments, bool measure) {
   const OpenedScene scene = open_scene(arguments);
   const Problem& problem = *scene.problem;
-  CreatedBackend created = create_backend(scene.problem, needs_of(problem));
+  CreatedBackend created = prepared_backend(scene);
   const Backend& backend = *created.backend;
   std::cout << problem.scene().title << "\n\n";
   print_sizes(problem);

@@ -9,6 +9,7 @@
 #include "app/commands/interrupt.hpp"
 #include "app/commands/progress.hpp"
 #include "app/commands/results.hpp"
+#include "app/commands/waiting.hpp"
 #include "app/output/text.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/simulation.hpp"
@@ -43,7 +44,7 @@ class Run {
   Run(const RunArguments& arguments, const OpenedScene& scene, std::filesystem::path folder)
       : problem_(*scene.problem),
         record_(problem_),
-        simulation_(make_simulation(scene)),
+        simulation_(make_simulation(scene, !arguments.quiet)),
         writer_(std::move(folder), problem_, arguments.series),
         progress_(problem_.scene().steps, !arguments.quiet),
         wanted_(arguments.snapshots) {
@@ -57,7 +58,7 @@ class Run {
   [[nodiscard]] const ResultWriter& writer() const { return writer_; }
 
  private:
-  std::unique_ptr<Simulation> make_simulation(const OpenedScene& scene);
+  std::unique_ptr<Simulation> make_simulation(const OpenedScene& scene, bool shown);
   void step();
   void take_snapshots();
   void write_snapshots();
@@ -73,8 +74,9 @@ class Run {
   std::vector<Snapshot> taken_;  ///< in this step
 };
 
-std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene) {
+std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene, bool shown) {
   record_.warnings = scene.warnings;
+  const Waiting waiting("preparing " + grouped(problem_.dof_count()) + " unknowns", shown);
   CreatedBackend created = create_backend(scene.problem, needs_of(problem_));
   record_.left_out = created.backend->needs().left_out;
   add_new(record_.warnings, created.warnings);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fem/nested_dissection.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::fem {
@@ -14,7 +15,15 @@ constexpr std::size_t kBlock = 64;
 
 }  // namespace
 
-Factor::Factor(const SparseMatrix& lower) : cholesky_(lower) {
+Factor::Factor(const SparseMatrix& lower) : cholesky_(lower) { check(); }
+
+Factor::Factor(const Problem& problem, std::span<const double> scale, const FactorWork& work)
+    : cholesky_(assemble_lower(problem, scale), nested_dissection(problem), work) {
+  if (work.stop && work.stop->load()) throw Stopped();
+  check();
+}
+
+void Factor::check() const {
   if (!cholesky_.succeeded()) {
     throw NumericalError(
         "the stiffness matrix is not positive definite in double precision: a part of the body "

@@ -5,17 +5,28 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <stdexcept>
 
 #include "fem/assembly.hpp"
 #include "fem/supernodal_cholesky.hpp"
 
 namespace sunder::fem {
 
+/// A factor was given up because FactorWork::stop asked for it.
+class Stopped : public std::runtime_error {
+ public:
+  Stopped() : std::runtime_error("the factor was given up") {}
+};
+
 /// Sparse Cholesky factor of a symmetric positive definite matrix given by its lower triangle.
 class Factor {
  public:
   /// Throws NumericalError when the matrix is not positive definite in double precision.
   explicit Factor(const SparseMatrix& lower);
+  /// Of a body's stiffness, elements scaled as in assemble_lower; in an order that its geometry
+  /// gives. Throws Stopped when the work was given up.
+  explicit Factor(const Problem& problem, std::span<const double> scale = {},
+                  const FactorWork& work = {});
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
   /// The same into x, which is another vector than rhs; allocates only until `work` has grown.
@@ -35,6 +46,8 @@ class Factor {
   [[nodiscard]] const SupernodalCholesky& cholesky() const { return cholesky_; }
 
  private:
+  void check() const;
+
   SupernodalCholesky cholesky_;
 };
 

@@ -94,6 +94,41 @@ void row_product_add(const LeftFactor& a, const double* b, Index b_stride, Index
   product<true>(a, b, b_stride, width, c, c_stride);
 }
 
+SUNDER_VECTORISED
+void packed_product(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
+                    Index c_stride, std::vector<double>& room) {
+  constexpr Index kTile = 4, kStrip = 2 * kLanes;
+  const Index tiles = a.rows / kTile, strips = width / kStrip;
+  if (tiles < 2 || strips < 2) {
+    product<false>(a, b, b_stride, width, c, c_stride);
+    return;
+  }
+  const Index packed = kTile * a.columns, left = tiles * packed;
+  room.resize(std::max(room.size(), static_cast<std::size_t>(left + kStrip * a.columns)));
+  for (Index t = 0; t < tiles; ++t) {
+    for (Index k = 0; k < a.columns; ++k) {
+      const double* from = a.data + kTile * t * a.row_stride + k * a.column_stride;
+      double* to = room.data() + t * packed + kTile * k;
+      for (Index r = 0; r < kTile; ++r) to[r] = from[r * a.row_stride];
+    }
+  }
+  double* strip_room = room.data() + left;
+  for (Index j = 0; j < strips * kStrip; j += kStrip) {
+    for (Index k = 0; k < a.columns; ++k) {
+      std::memcpy(strip_room + k * kStrip, b + k * b_stride + j, kStrip * sizeof(double));
+    }
+    for (Index t = 0; t < tiles; ++t) {
+      tile<false, kTile, 2>({room.data() + t * packed, kTile, a.columns, 1, kTile}, 0, strip_room,
+                            kStrip, c + kTile * t * c_stride + j, c_stride);
+    }
+    for (Index i = kTile * tiles; i < a.rows; ++i) {
+      tile<false, 1, 2>(a, i, strip_room, kStrip, c + i * c_stride + j, c_stride);
+    }
+  }
+  const Index done = strips * kStrip;
+  if (done < width) product<false>(a, b + done, b_stride, width - done, c + done, c_stride);
+}
+
 // Blocks of columns: their own triangle row by row, the rest by a product.
 SUNDER_VECTORISED
 void lower_solve(const double* l, Index l_stride, Index n, double* x, Index x_stride, Index width,

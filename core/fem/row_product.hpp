@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace sunder::fem {
 
@@ -32,6 +33,11 @@ void row_product(const LeftFactor& a, const double* b, Eigen::Index b_stride, Ei
 /// c += A b, each entry summed in the order of A's columns, beginning with c.
 void row_product_add(const LeftFactor& a, const double* b, Eigen::Index b_stride,
                      Eigen::Index width, double* c, Eigen::Index c_stride);
+
+/// row_product for large factors of long columns, in the same order: they are copied to where they
+/// lie together. `room` is grown as needed.
+void packed_product(const LeftFactor& a, const double* b, Eigen::Index b_stride, Eigen::Index width,
+                    double* c, Eigen::Index c_stride, std::vector<double>& room);
 
 /// x <- L^-1 x for a lower triangle L by columns, n x n at stride l_stride; x row by row, n x
 /// width. `product` is room for n * width values.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fem/supernodal_cholesky.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <numeric>
 
@@ -9,70 +8,17 @@
 
 namespace sunder::fem {
 
-SupernodalCholesky::SupernodalCholesky(const SparseMatrix& lower) {
+SupernodalCholesky::SupernodalCholesky(const SparseMatrix& lower, std::vector<Index> place,
+                                       const FactorWork& work) {
   SparseMatrix permuted;
-  nodes_ = find_supernodes(lower, permuted);
+  nodes_ = find_supernodes(lower, std::move(place), permuted);
   for (Index s = 0; s < nodes_.count(); ++s) tallest_ = std::max(tallest_, nodes_.height(s));
   values_.assign(nodes_.value_begin.back(), 0.0);
-  succeeded_ = factorise(permuted);
+  succeeded_ = factorise(nodes_, permuted, work, values_);
 }
 
 SupernodalCholesky::ConstPanel SupernodalCholesky::panel(Index s) const {
   return {values_.data() + nodes_.value_begin[s], nodes_.height(s), nodes_.width(s)};
-}
-
-// Left-looking (Ng and Peyton 1993): a panel collects A's columns, subtracts what each descendant
-// panel that reaches into it contributes, and is factored as a dense block. A descendant waits in
-// the list of the next panel that its rows reach.
-bool SupernodalCholesky::factorise(const SparseMatrix& a) {
-  const Index count = nodes_.count();
-  std::vector<Index> head(static_cast<std::size_t>(count), kNone), next(head), done(head);
-  std::vector<Index> at(static_cast<std::size_t>(size()));  // row -> row of the current panel
-  RowMajor product;
-  for (Index s = 0; s < count; ++s) {
-    const Index begin = nodes_.first[s], width = nodes_.width(s), end = begin + width;
-    const auto below = nodes_.below(s);
-    Panel p(values_.data() + nodes_.value_begin[s], nodes_.height(s), width);
-    std::iota(at.begin() + begin, at.begin() + end, 0);
-    for (std::size_t i = 0; i < below.size(); ++i) at[below[i]] = width + static_cast<Index>(i);
-    for (Index j = begin; j < end; ++j) {
-      for (SparseMatrix::InnerIterator it(a, j); it; ++it) p(at[it.row()], j - begin) = it.value();
-    }
-    for (Index d = head[s]; d != kNone;) {
-      const Index following = next[d];
-      const auto rows = nodes_.below(d).subspan(static_cast<std::size_t>(done[d]));
-      const auto reached = std::lower_bound(rows.begin(), rows.end(), end) - rows.begin();
-      const Index height = nodes_.height(d), left = static_cast<Index>(rows.size());
-      const double* tail = values_.data() + nodes_.value_begin[d] + height - left;
-      product.resize(left, reached);
-      row_product({tail, left, nodes_.width(d), 1, height}, tail, height, reached, product.data(),
-                  reached);
-      for (Index j = 0; j < reached; ++j) {
-        double* column = p.col(at[rows[static_cast<std::size_t>(j)]]).data();
-        for (Index i = j; i < product.rows(); ++i) {
-          column[at[rows[static_cast<std::size_t>(i)]]] -= product(i, j);
-        }
-      }
-      done[d] += static_cast<Index>(reached);
-      if (reached < static_cast<std::ptrdiff_t>(rows.size())) {
-        const Index target = nodes_.of[rows[static_cast<std::size_t>(reached)]];
-        next[d] = head[target];
-        head[target] = d;
-      }
-      d = following;
-    }
-    auto triangle = p.topRows(width);
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(triangle);
-    if (llt.info() != Eigen::Success || !triangle.diagonal().allFinite()) return false;
-    if (below.empty()) continue;
-    auto lower = p.bottomRows(static_cast<Index>(below.size()));
-    triangle.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(lower);
-    done[s] = 0;
-    const Index target = nodes_.of[below.front()];
-    next[s] = head[target];
-    head[target] = s;
-  }
-  return true;
 }
 
 void SupernodalCholesky::reach(std::span<const Index> rows, std::vector<Index>& path,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "fem/factorise.hpp"
 #include "fem/row_product.hpp"
 #include "fem/supernodes.hpp"
 
@@ -22,7 +23,9 @@ struct SolveWork {
 class SupernodalCholesky {
  public:
   /// From the lower triangle; succeeded() tells whether A is positive definite in double precision.
-  explicit SupernodalCholesky(const SparseMatrix& lower);
+  /// place[i] is a row of L for unknown i, to be refined; empty: by minimum degree.
+  explicit SupernodalCholesky(const SparseMatrix& lower, std::vector<Index> place = {},
+                              const FactorWork& work = {});
   [[nodiscard]] bool succeeded() const { return succeeded_; }
 
   [[nodiscard]] Index size() const { return static_cast<Index>(nodes_.place.size()); }
@@ -47,11 +50,9 @@ class SupernodalCholesky {
   void backward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y, SolveWork& work) const;
 
  private:
-  using Panel = Eigen::Map<Eigen::MatrixXd>;
   using ConstPanel = Eigen::Map<const Eigen::MatrixXd>;
   using ConstRows = Eigen::Map<const RowMajor>;
   [[nodiscard]] ConstPanel panel(Index s) const;
-  [[nodiscard]] bool factorise(const SparseMatrix& permuted);
   void forward_panel(Index s, Eigen::VectorXd& y, SolveWork& work) const;
 
   Supernodes nodes_;

@@ -7,6 +7,10 @@
 namespace sunder::fem {
 namespace {
 
+// Wider panels are split: their own triangle, half of it zeros, and what only one thread can do
+// with it, grow with the square.
+constexpr Index kWidest = 256;
+
 using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index>;
 
 SparseMatrix permute_lower(const SparseMatrix& lower, const std::vector<Index>& place) {
@@ -182,9 +186,10 @@ void find_rows(const SparseMatrix& lower, const std::vector<Index>& column_paren
 
 }  // namespace
 
-Supernodes find_supernodes(const SparseMatrix& lower, SparseMatrix& permuted) {
+Supernodes find_supernodes(const SparseMatrix& lower, std::vector<Index> place,
+                           SparseMatrix& permuted) {
   Supernodes s;
-  s.place = minimum_degree(lower);
+  s.place = place.empty() ? minimum_degree(lower) : std::move(place);
   permuted = permute_lower(lower, s.place);
   const std::vector<Index> post = postorder(elimination_tree(upper_pattern(permuted)));
   for (Index& p : s.place) p = post[p];
@@ -193,11 +198,15 @@ Supernodes find_supernodes(const SparseMatrix& lower, SparseMatrix& permuted) {
   const std::vector<Index> parent = elimination_tree(upper);
   const std::vector<Panel> panels = find_panels(parent, column_counts(upper, parent));
   s.of.resize(s.place.size());
-  s.parent.assign(panels.size(), kNone);
   for (const Panel& panel : panels) {
-    std::fill_n(s.of.begin() + panel.first, panel.width, static_cast<Index>(s.first.size()));
-    s.first.push_back(panel.first);
+    const Index end = panel.first + panel.width;
+    for (Index first = panel.first; first < end; first += kWidest) {
+      const Index width = std::min(kWidest, end - first);
+      std::fill_n(s.of.begin() + first, width, static_cast<Index>(s.first.size()));
+      s.first.push_back(first);
+    }
   }
+  s.parent.assign(s.first.size(), kNone);
   s.first.push_back(static_cast<Index>(s.place.size()));
   find_rows(permuted, parent, s);
   return s;

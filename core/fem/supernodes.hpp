@@ -32,7 +32,9 @@ struct Supernodes {
   }
 };
 
-/// `permuted` receives the matrix in the factor's order, lower triangle.
-[[nodiscard]] Supernodes find_supernodes(const SparseMatrix& lower, SparseMatrix& permuted);
+/// The unknowns in the order `place` (empty: by minimum degree) but for a postorder of the
+/// elimination tree. `permuted` receives the matrix in the factor's order, lower triangle.
+[[nodiscard]] Supernodes find_supernodes(const SparseMatrix& lower, std::vector<Index> place,
+                                         SparseMatrix& permuted);
 
 }  // namespace sunder::fem
