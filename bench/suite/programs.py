@@ -151,26 +151,43 @@ def run_program(build, program, share, folder, repetitions=None):
             raise results.BadResults(f"{program.name} left no readable output: {error}") from None
 
 
-def run_all(build, mode, folder, repetitions=None):
-    """Everything of a mode: {"rows", "cells", "points", "meshes", "programs", "failures"}."""
+def nothing_yet():
+    return {"rows": [], "cells": [], "points": [], "meshes": [], "programs": [], "failures": []}
+
+
+def split_done(there, outcome):
+    """What is still to run after an earlier run that was ended; its failures are tried again."""
+    done = {p["about"] for p in outcome["programs"] if not p.get("failed")}
+    outcome["programs"] = [p for p in outcome["programs"] if not p.get("failed")]
+    outcome["failures"] = []
+    return [(p, s) for p, s in there if p.about not in done]
+
+
+def run_all(build, mode, folder, repetitions=None, outcome=None, save=lambda outcome: None):
+    """Adds to the outcome what of a mode it lacks, program by program, and saves it after each:
+    {"rows", "cells", "points", "meshes", "programs", "failures"}."""
+    outcome = outcome or nothing_yet()
     there, missing = split_present(build, mode)
+    there = split_done(there, outcome)
+    outcome["failures"] = [f"{name} is not built" for name in missing]
     progress = Progress(sum(share.seconds for _, share in there))
-    outcome = {"rows": [], "cells": [], "points": [], "meshes": [], "programs": [],
-               "failures": [f"{name} is not built" for name in missing]}
     readers = {file: (part, read) for part, (file, read) in results.PARTS.items()}
     for program, share in there:
         progress.begin(f"{program.name}: {program.about}")
         start, cpu = time.monotonic(), _cpu_seconds()
+        entry = {"name": program.name, "about": program.about}
         try:
             made = run_program(build, program, share, folder, repetitions)
             part, read = readers.get(program.file, ("rows", lambda rows: rows))
             outcome[part] += read(made)
         except results.BadResults as error:
+            entry["failed"] = True
             outcome["failures"].append(str(error))
             print(f"failed: {error}", file=sys.stderr)
-        outcome["programs"].append({"name": program.name, "about": program.about,
-                                    "seconds": round(time.monotonic() - start, 1),
-                                    "cpu_seconds": round(_cpu_seconds() - cpu, 1)})
+        entry["seconds"] = round(time.monotonic() - start, 1)
+        entry["cpu_seconds"] = round(_cpu_seconds() - cpu, 1)
+        outcome["programs"].append(entry)
+        save(outcome)
         progress.end(share.seconds)
     return outcome
 

@@ -190,6 +190,30 @@ class Modes(unittest.TestCase):
         self.assertIn("bench_engine is not built", made["failures"])
 
 
+    def test_a_run_that_was_ended_goes_on_where_it_was(self):
+        saved = []
+        with tempfile.TemporaryDirectory() as folder:
+            bench = pathlib.Path(folder) / "bench"
+            bench.mkdir()
+            study, broken = bench / "bench_convergence", bench / "bench_stability"
+            study.write_text("#!/bin/sh\necho case,method,tets,value,error,ms > $1\n"
+                             "echo Cook,cpu,500,23,0.01,7 >> $1\n")
+            broken.write_text("#!/bin/sh\nexit 3\n")
+            for program in (study, broken):
+                program.chmod(0o755)
+            first = programs.run_all(folder, "ci", folder,
+                                     save=lambda done: saved.append(len(done["programs"])))
+            self.assertEqual([(p["name"], p.get("failed", False)) for p in first["programs"]],
+                             [("bench_stability", True), ("bench_convergence", False)])
+            study.write_text("#!/bin/sh\nexit 4\n")  # not run again
+            broken.write_text("#!/bin/sh\necho study,verdict,nu > $1\necho one,ok,0.3 >> $1\n")
+            again = programs.run_all(folder, "ci", folder, outcome=first)
+        self.assertEqual(saved, [1, 2])
+        self.assertEqual(len(again["meshes"]), 1)
+        self.assertEqual([c["verdict"] for c in again["cells"]], ["ok"])
+        self.assertFalse(any("bench_stability ended" in f for f in again["failures"]))
+
+
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
