@@ -11,14 +11,34 @@ namespace sunder::cpu_reference {
 
 Based based_on(const Problem& problem, std::span<const double> scale) {
   Based based;
-  based.factor = std::make_unique<fem::Factor>(problem, scale);
+  based.factor = std::make_shared<const fem::Factor>(problem, scale);
   based.deferred = std::make_unique<engine::Deferred>(
       problem, std::make_unique<engine::FactorBase>(*based.factor));
   return based;
 }
 
-BackgroundRebase::BackgroundRebase(const DamagedBody& body, const Load& load)
-    : body_(body), load_(load), thread_([this] { run(); }) {}
+void check_base(Based& based, const DamagedBody& body, const Load& load,
+                const std::function<void(Eigen::VectorXd&)>& complete) {
+  engine::Deferred& deferred = *based.deferred;
+  const engine::Forces forces{load.force_dofs, load.forces};
+  Eigen::VectorXd u, du, r;
+  deferred.solve(forces, load.displacements, u);
+  complete(u);
+  body.apply(u, r);
+  r = -r;
+  for (std::size_t i = 0; i < load.forces.size(); ++i) r[load.force_dofs[i]] += load.forces[i];
+  for (Index d : body.problem().gripped_dofs()) r[d] = 0;
+  std::vector<Index> all(static_cast<std::size_t>(r.size()));
+  std::iota(all.begin(), all.end(), 0);
+  deferred.correct({all, {r.data(), all.size()}}, du);
+  complete(du);
+  const double stress = body.largest_stress(du), largest = body.largest_stress(u);
+  based.check = {load, stress / r.norm(), stress == 0 ? 0.0 : stress / largest};
+  deferred.solve(forces, load.displacements, u);
+}
+
+BackgroundRebase::BackgroundRebase(const DamagedBody& body, const Load& load, MakeBase make)
+    : body_(body), load_(load), make_(std::move(make)), thread_([this] { run(); }) {}
 
 BackgroundRebase::~BackgroundRebase() {
   if (thread_.joinable()) static_cast<void>(take());
@@ -57,28 +77,9 @@ bool BackgroundRebase::next(std::vector<Index>& elements) {
   return true;
 }
 
-/// A full check of the base (frame_check.hpp). The solution comes last: the frame that takes the
-/// base finds its load known, and all memory touched.
-void BackgroundRebase::check(Based& based) const {
-  engine::Deferred& deferred = *based.deferred;
-  const engine::Forces forces{load_.force_dofs, load_.forces};
-  Eigen::VectorXd u, du, r;
-  deferred.solve(forces, load_.displacements, u);
-  body_.apply(u, r);
-  r = -r;
-  for (std::size_t i = 0; i < load_.forces.size(); ++i) r[load_.force_dofs[i]] += load_.forces[i];
-  for (Index d : body_.problem().gripped_dofs()) r[d] = 0;
-  std::vector<Index> all(static_cast<std::size_t>(r.size()));
-  std::iota(all.begin(), all.end(), 0);
-  deferred.correct({all, {r.data(), all.size()}}, du);
-  based.check = {load_, body_.largest_stress(du) / r.norm()};
-  deferred.solve(forces, load_.displacements, u);
-}
-
 void BackgroundRebase::run() {
   try {
-    Based based = based_on(body_.problem(), body_.scale());
-    check(based);
+    Based based = make_(body_, load_);
     std::vector<Index> elements;
     while (next(elements)) {
       if (!based.deferred->destroy(elements)) return;

@@ -11,6 +11,7 @@ CondensedFields::CondensedFields(const Problem& problem, engine::Region region)
   for (Solution* s : {&displacement_, &of_stress_}) {  // loads and damage, so that frames allocate
     s->of.dofs.reserve(2 * region_.dofs.size());       // nothing
     s->of.forces.reserve(2 * region_.dofs.size());
+    s->of.lost_u.reserve(region_.dofs.size());
   }
 }
 

@@ -1,14 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
 #include <numeric>
+#include <thread>
 
+#include "cpu_reference/background_rebase.hpp"
 #include "cpu_reference/routes.hpp"
+#include "engine/condensed_update.hpp"
 #include "fem/assembly.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
 
-/// Deferred update over X_SS. The number of unknowns it can touch is bounded by S, so that no
-/// growing damage asks for a new base; only rounding can.
+// Events between the start of a new base and the frame that takes it. For 1,000 unknowns it takes
+// .1 to .3 s, mostly its check over the whole body.
+constexpr int kRebaseEvents = 64;
+
+// A new base begins when the damage has so many columns: the small matrices then cost a frame about
+// as much as the columns of X_SS.
+constexpr std::size_t kFewestColumns = 64, kMostColumns = 256;
+
+// An updated X_SS whose check finds more is computed anew from a factor of the damaged body.
+// energy_check.cpp allows for a growth of 100 up to 1e-8.
+constexpr double kDrift = 1e-11;
+
+void complete_by(const engine::CondensedBase& base, engine::Equilibrium& whole,
+                 Eigen::VectorXd& right_side, Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
+  base.equilibrium(whole);
+  solve_whole(whole, right_side, everywhere);
+  for (Index d : base.dofs()) everywhere[d] = u[d];
+  u.swap(everywhere);
+}
+
+Based lay_over(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
+               std::unique_ptr<engine::CondensedBase> base, bool damage) {
+  Based based;
+  based.factor = std::move(factor);
+  based.condensed = base.get();
+  based.deferred = std::make_unique<engine::Deferred>(problem, std::move(base), damage);
+  return based;
+}
+
+/// X_SS by a factor.
+Based condensed_by(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
+                   std::span<const Index> dofs, bool damage) {
+  auto base = std::make_unique<engine::CondensedBase>(factor, dofs);
+  return lay_over(problem, std::move(factor), std::move(base), damage);
+}
+
+void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
+  engine::Equilibrium whole;
+  Eigen::VectorXd right_side, everywhere;
+  check_base(based, body, load, [&](Eigen::VectorXd& u) {
+    complete_by(*based.condensed, whole, right_side, everywhere, u);
+  });
+}
+
+/// The base that comes next: the last one updated, or a new factor where that has drifted.
+struct NextBase {
+  engine::CondensedState state;
+  engine::Damage damage;
+  std::vector<Index> lost;  // elements destroyed since the factor
+
+  Based operator()(const DamagedBody& body, const Load& load) const {
+    const Problem& problem = body.problem();
+    Based based = lay_over(problem, state.factor,
+                           std::make_unique<engine::CondensedBase>(
+                               state.factor, state.dofs, engine::updated_inverse(state, damage),
+                               std::make_shared<const engine::LostStiffness>(problem, lost)),
+                           true);
+    check_condensed(based, body, load);
+    if (based.check.error <= kDrift) return based;
+    based = condensed_by(problem,
+                         std::make_shared<fem::Factor>(fem::assemble_lower(problem, body.scale())),
+                         state.dofs, true);
+    check_condensed(based, body, load);
+    return based;
+  }
+};
+
+/// Deferred update over X_SS.
 class CondensedRoute final : public InverseRoute {
  public:
   CondensedRoute(const DamagedBody& body, const IntactBody& intact, std::span<const Index> dofs,
@@ -16,50 +87,71 @@ class CondensedRoute final : public InverseRoute {
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()), damage_(damage) {
     std::iota(all_.begin(), all_.end(), 0);
     // Without an owner: the intact body outlives the route.
-    lay_over({std::shared_ptr<void>(), &intact.factor});
+    based_ = condensed_by(body.problem(), {std::shared_ptr<void>(), &intact.factor}, dofs_, damage);
+    intact_ = based_.factor.get();
+    lost_.reserve(body.scale().size());
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
-    deferred_->solve({load.force_dofs, load.forces}, load.displacements, u, enough_);
+    load_ = load;
+    based_.deferred->solve({load.force_dofs, load.forces}, load.displacements, u, enough_);
     return {};
   }
 
   Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& u) override {
-    deferred_->solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
+    based_.deferred->solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
     complete(u);
     return {};
   }
 
   void complete(Eigen::VectorXd& u) override {
-    base_->equilibrium(whole_);
-    solve_whole(whole_, right_side_, everywhere_);
-    for (Index d : base_->dofs()) everywhere_[d] = u[d];
-    u.swap(everywhere_);
+    complete_by(*based_.condensed, whole_, right_side_, everywhere_, u);
   }
 
   bool equilibrium(engine::Equilibrium& of) const override {
-    base_->equilibrium(of);
+    based_.condensed->equilibrium(of);
     return true;
   }
 
   void destroy(std::span<const Index> elements) override {
-    if (!deferred_->destroy(elements)) rebase();
+    lost_.insert(lost_.end(), elements.begin(), elements.end());
+    if (!based_.deferred->destroy(elements)) {
+      rebase();
+      return;
+    }
+    if (coming_) {
+      coming_->follow(elements);
+      if (coming_->followed() == kRebaseEvents) take_rebase();
+    } else if (static_cast<std::size_t>(based_.deferred->rank()) > threshold()) {
+      lost_at_start_ = lost_.size();
+      coming_ = std::make_unique<BackgroundRebase>(
+          body_, load_, NextBase{based_.condensed->state(), based_.deferred->damage(), lost_});
+    }
   }
 
   bool rebase() override {
-    lay_over(std::make_shared<fem::Factor>(body_.problem(), body_.scale()));
-    rebased_ = true;
+    coming_.reset();
+    reaper_ = {};
+    based_ = {};  // frees the old base first
+    based_ =
+        condensed_by(body_.problem(), std::make_shared<fem::Factor>(body_.problem(), body_.scale()),
+                     dofs_, damage_);
+    lost_.clear();
     ++bases_;
     return true;
   }
 
-  const engine::Deferred* deferred() const override { return deferred_.get(); }
+  const engine::Deferred* deferred() const override { return based_.deferred.get(); }
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return bases_; }
+  const BaseCheck& base_check() const override { return based_.check; }
+  double waited_ms() const override { return waited_ms_; }
 
   std::vector<BufferPlan> buffers() const override {
-    std::vector<BufferPlan> plan = deferred_->buffers();
-    if (rebased_) plan.push_back({"damaged factor (sparse Cholesky)", factor_->bytes()});
+    std::vector<BufferPlan> plan = based_.deferred->buffers();
+    if (based_.factor.get() != intact_) {
+      plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
+    }
     return plan;
   }
 
@@ -68,23 +160,42 @@ class CondensedRoute final : public InverseRoute {
     return static_cast<std::size_t>(body_.problem().dof_count());
   }
 
-  void lay_over(std::shared_ptr<const fem::Factor> factor) {
-    auto base = std::make_unique<engine::CondensedBase>(factor, dofs_);
-    base_ = base.get();
-    factor_ = std::move(factor);
-    deferred_ = std::make_unique<engine::Deferred>(body_.problem(), std::move(base), damage_);
+  std::size_t threshold() const {
+    return body_.problem().gripped_dofs().size() +
+           std::clamp(dofs_.size() / 8, kFewestColumns, kMostColumns);
+  }
+
+  void take_rebase() {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    Based next = coming_->take();
+    waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    coming_.reset();
+    if (!next.deferred) return;          // what there is still holds; the next event tries again
+    if (next.factor != based_.factor) {  // what was destroyed before it is in it
+      lost_.erase(lost_.begin(), lost_.begin() + static_cast<std::ptrdiff_t>(lost_at_start_));
+    }
+    std::swap(based_, next);
+    ++bases_;
+    // Giving some megabytes back takes as long as a frame.
+    reaper_ = std::jthread([old = std::move(next)]() mutable { old = {}; });
   }
 
   const DamagedBody& body_;
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
-  std::shared_ptr<const fem::Factor> factor_;
-  std::unique_ptr<engine::Deferred> deferred_;
-  engine::CondensedBase* base_ = nullptr;  // what deferred_ holds
+  const fem::Factor* intact_ = nullptr;
+  Load load_;  // of the last solution
+  Based based_;
+  std::vector<Index> lost_;        // elements destroyed since based_.factor
+  std::size_t lost_at_start_ = 0;  // of them, when coming_ started
+  std::jthread reaper_;            // frees the base before this one
+  std::unique_ptr<BackgroundRebase> coming_;
   engine::Equilibrium whole_;
   Eigen::VectorXd right_side_, everywhere_;
   double enough_ = 0;
+  double waited_ms_ = 0;
   int bases_ = 1;
-  bool rebased_ = false, damage_;
+  bool damage_;
 };
 
 }  // namespace
@@ -92,6 +203,12 @@ class CondensedRoute final : public InverseRoute {
 void solve_whole(const engine::Equilibrium& of, Eigen::VectorXd& right_side, Eigen::VectorXd& u) {
   right_side.setZero(of.factor->cholesky().size());
   for (std::size_t i = 0; i < of.dofs.size(); ++i) right_side[of.dofs[i]] += of.forces[i];
+  if (of.lost) {
+    std::vector<double> forces(of.lost_u.size());
+    of.lost->multiply(of.lost_u, forces);
+    const auto dofs = of.lost->dofs();
+    for (std::size_t i = 0; i < dofs.size(); ++i) right_side[dofs[i]] += forces[i];
+  }
   fem::SolveWork work;
   of.factor->solve(right_side, u, work);
 }

@@ -267,6 +267,7 @@ class CpuBackend final : public Backend {
   /// A condensed frame has no residual outside its region: the energy of what damage lacks bounds
   /// its error.
   SolveReport solve_condensed() {
+    for (EnergyCheck& each : energy_checks_->all()) each.follow(*route_);
     EnergyCheck& check = energy_checks_->of(load_, *route_);
     if (const auto known = solve_on_region(check)) {
       nodal_.swap(next_nodal_);
@@ -286,9 +287,9 @@ class CpuBackend final : public Backend {
 
   /// The solution without a full check, where one like it has had its check.
   std::optional<SolveReport> solve_on_region(EnergyCheck& check) {
-    const auto scale = check.scale_of(load_, *route_);
-    if (!scale) return std::nullopt;
-    route_->set_enough(check.enough(*scale));
+    const auto expected = check.expected(load_, *route_);
+    if (!expected) return std::nullopt;
+    route_->set_enough(check.enough(*expected));
     route_->solve(load_, force_, u_);
     hand_out();
     const auto gripped = problem().gripped_dofs();
@@ -296,7 +297,7 @@ class CpuBackend final : public Backend {
       reactions_[g] = route_->deferred()->grip_forces()[static_cast<Eigen::Index>(g)] -
                       anchors_[g] * u_[gripped[g]];  // the anchor's share
     }
-    return check.known(*scale, *route_, largest_in_region(next_nodal_), largest_);
+    return check.known(*expected, *route_, largest_in_region(next_nodal_), largest_);
   }
 
   /// Whether residual and stress come from the kernel; the yardstick has loops of its own.

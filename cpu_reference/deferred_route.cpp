@@ -23,6 +23,12 @@ constexpr int kRebaseEvents = 64;
 constexpr double kLargestShare = 0.125, kSmallBody = 64;
 constexpr double kLargestEvent = 600;
 
+Based checked_factor(const DamagedBody& body, const Load& load) {
+  Based based = based_on(body.problem(), body.scale());
+  check_base(based, body, load, [](Eigen::VectorXd&) {});
+  return based;
+}
+
 class DeferredRoute final : public InverseRoute {
  public:
   DeferredRoute(const DamagedBody& body, const IntactBody& intact, bool dense, bool damage)
@@ -59,7 +65,7 @@ class DeferredRoute final : public InverseRoute {
       coming_->follow(elements);
       if (coming_->followed() == kRebaseEvents) take_rebase();
     } else if (static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
-      coming_ = std::make_unique<BackgroundRebase>(body_, load_);
+      coming_ = std::make_unique<BackgroundRebase>(body_, load_, checked_factor);
     }
   }
 

@@ -9,9 +9,9 @@
 namespace sunder::cpu_reference {
 namespace {
 
-// A bound on the stress error that needs no closer look: what double precision promises for an
-// intact body, or a tenth of the scene's tolerance.
-constexpr double kEnough = 1e-9;
+// A bound on the stress error that needs no closer look: what double precision promises along a
+// crack, or a tenth of the scene's tolerance.
+constexpr double kEnough = 1e-8;
 // What a base gives wrong grows with the forces of the damage: they reach 30 times the load as a
 // board opens.
 constexpr double kAmplified = 100;
@@ -20,6 +20,18 @@ constexpr double kRefined = 1e-10;
 // A displacement so many times that of the last full check (a piece has come loose) needs another.
 constexpr double kGrowth = 10;
 
+// Directions kept, and how far one has to be from the others, or shares grow beyond use.
+constexpr std::size_t kDirections = 6;
+constexpr double kApart = 1e-3;
+// A load this near to the span of those is in it.
+constexpr double kInSpan = 1e-12;
+
+double largest_of(std::span<const double> v) {
+  double largest = 0;
+  for (double x : v) largest = std::max(largest, std::abs(x));
+  return largest;
+}
+
 }  // namespace
 
 EnergyCheck::EnergyCheck(const Problem& problem)
@@ -27,40 +39,146 @@ EnergyCheck::EnergyCheck(const Problem& problem)
 
 void EnergyCheck::checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                           double largest_u, double largest) {
-  unrefined_ = unrefined;
-  load_ = load;
-  report_ = last_ = report;
+  if (bases != bases_ || !on_same_unknowns(load)) checks_.clear();
+  report_ = report;
   bases_ = bases;
-  largest_u_ = largest_u;
-  largest_ = largest;
   changed_ = false;
+  add_direction({load, unrefined, largest_u, largest});
 }
 
-std::optional<double> EnergyCheck::scale_of(const Load& load, const InverseRoute& route) const {
-  if (route.bases() != bases_) return std::nullopt;
-  return multiple(load, load_);
+void EnergyCheck::follow(const InverseRoute& route) {
+  if (bases_ == 0 || route.bases() == bases_) return;
+  const BaseCheck& check = route.base_check();
+  if (!(check.stress_of_residual > 0) || !on_same_unknowns(check.load) || !shares_of(check.load)) {
+    return;
+  }
+  Checked next{check.load, check.error, 0, 0};
+  for (std::size_t i = 0; i < checks_.size(); ++i) {
+    const double share = std::abs(shares_[static_cast<Eigen::Index>(i)]);
+    next.largest_u += share * checks_[i].largest_u;
+    next.largest += share * checks_[i].largest;
+  }
+  checks_.clear();
+  bases_ = route.bases();
+  changed_ = true;
+  add_direction(next);
 }
 
-double EnergyCheck::enough(double scale) const {
-  const double e = kRefined * scale * largest_ / stress_of_energy_;
+bool EnergyCheck::on_same_unknowns(const Load& load) const {
+  return !checks_.empty() && load.force_dofs == checks_.front().load.force_dofs &&
+         load.displacements.size() == checks_.front().load.displacements.size();
+}
+
+/// The load's entries as shares of the last full check's largest force and displacement.
+void EnergyCheck::write(const Load& load) {
+  const auto forces = static_cast<Eigen::Index>(load.forces.size()),
+             grips = static_cast<Eigen::Index>(load.displacements.size());
+  v_.resize(forces + grips);
+  v_.head(forces) = Eigen::Map<const Eigen::VectorXd>(load.forces.data(), forces) / force_unit_;
+  v_.tail(grips) =
+      Eigen::Map<const Eigen::VectorXd>(load.displacements.data(), grips) / displacement_unit_;
+}
+
+/// Takes the first directions out of v_, which go to shares_ (of Q); returns what is left of it.
+double EnergyCheck::beyond_span(std::size_t directions) {
+  const auto k = static_cast<Eigen::Index>(directions);
+  shares_.setZero(k);
+  const double largest = v_.size() > 0 ? v_.cwiseAbs().maxCoeff() : 0.0;
+  if (!(largest > 0)) return 0;
+  for (Eigen::Index i = 0; i < k; ++i) {
+    shares_[i] = q_.col(i).dot(v_);
+    v_ -= shares_[i] * q_.col(i);
+  }
+  return v_.cwiseAbs().maxCoeff() / largest;
+}
+
+/// Takes what is left of v_ for the next direction.
+void EnergyCheck::take_direction(Checked checked) {
+  const auto k = static_cast<Eigen::Index>(checks_.size());
+  r_.col(k).head(k) = shares_;
+  r_(k, k) = v_.norm();
+  q_.col(k) = v_ / r_(k, k);
+  checks_.push_back(std::move(checked));
+}
+
+/// Puts a load before the others, of which it keeps those that add most to the span.
+void EnergyCheck::add_direction(const Checked& checked) {
+  std::vector<Checked> others = std::move(checks_);
+  checks_.clear();
+  const double force = largest_of(checked.load.forces),
+               displacement = largest_of(checked.load.displacements);
+  force_unit_ = force > 0 ? force : 1;
+  displacement_unit_ = displacement > 0 ? displacement : 1;
+  write(checked.load);
+  if (!(beyond_span(0) > 0)) return;  // no load, no direction
+  q_.resize(v_.size(), kDirections);
+  r_.setZero(kDirections, kDirections);
+  take_direction(checked);
+  while (checks_.size() < kDirections) {
+    double most = 0;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      write(others[i].load);
+      const double beyond = beyond_span(checks_.size());
+      if (beyond > most) next = i;
+      most = std::max(most, beyond);
+    }
+    if (!(most >= kApart)) return;
+    write(others[next].load);
+    static_cast<void>(beyond_span(checks_.size()));
+    take_direction(others[next]);
+  }
+}
+
+/// The load as a sum of the directions known; false: it is none.
+bool EnergyCheck::shares_of(const Load& load) {
+  write(load);
+  if (!(beyond_span(checks_.size()) <= kInSpan)) return false;
+  const auto k = static_cast<Eigen::Index>(checks_.size());
+  r_.topLeftCorner(k, k).triangularView<Eigen::Upper>().solveInPlace(shares_);
+  return true;
+}
+
+std::optional<EnergyCheck::Expected> EnergyCheck::expected(const Load& load,
+                                                           const InverseRoute& route) {
+  if (route.bases() != bases_ || !on_same_unknowns(load) || !shares_of(load)) return std::nullopt;
+  Expected expected;
+  expected.alone = true;
+  const double all = shares_.cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < checks_.size(); ++i) {
+    const double share = std::abs(shares_[static_cast<Eigen::Index>(i)]);
+    if (share <= kInSpan * all) continue;
+    expected.alone = expected.alone && i == 0;
+    expected.largest_u += share * checks_[i].largest_u;
+    expected.largest += share * checks_[i].largest;
+    expected.base_error += share * checks_[i].largest * checks_[i].unrefined;
+    expected.worst = std::max(expected.worst, checks_[i].unrefined);
+  }
+  return expected;
+}
+
+double EnergyCheck::enough(const Expected& expected) const {
+  const double e = kRefined * expected.largest / stress_of_energy_;
   return e * e;
 }
 
-std::optional<SolveReport> EnergyCheck::known(double scale, const InverseRoute& route,
-                                              double largest_u, double largest) {
+std::optional<SolveReport> EnergyCheck::known(const Expected& expected, const InverseRoute& route,
+                                              double largest_u, double largest) const {
   if (!std::isfinite(largest)) return std::nullopt;  // the load is so large that stress overflows
-  if (!changed_) return last_;
-  if (!(largest_u <= kGrowth * scale * largest_u_)) return std::nullopt;
   SolveReport report = report_;
   report.polished = false;
   report.iterations = 0;
-  const double energy = std::max(0.0, route.deferred()->defect_energy());
-  report.error = kAmplified * unrefined_ + stress_of_energy_ * std::sqrt(energy) / largest;
-  if (!(report.error <= std::min(kEnough, problem_.scene().solver.tolerance / 10))) {
-    return std::nullopt;
+  const double tolerance = problem_.scene().solver.tolerance;
+  if (!changed_ && expected.alone) {  // the solution of that check, before it was refined
+    report.error = std::max(report.error, expected.worst);
+    if (report.error <= tolerance) return report;
   }
-  changed_ = false;
-  last_ = report;
+  if (!(largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
+  if (!(expected.largest <= kGrowth * largest)) return std::nullopt;  // shares that cancel
+  const double energy = std::max(0.0, route.deferred()->defect_energy());
+  report.error = kAmplified * std::max(expected.worst, expected.base_error / largest) +
+                 stress_of_energy_ * std::sqrt(energy) / largest;
+  if (!(report.error <= std::min(kEnough, tolerance / 10))) return std::nullopt;
   return report;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The promise of a condensed frame at the price of what the frame changed. A full check applies the
-// inverse to the whole residual. While the base and the direction of the load stay, damage can only
-// spoil the solution where it acts, and the energy of what the deferred update lacks there bounds
-// the stress that it misses.
+// inverse to the whole residual. What the base gives wrong is linear in the load: once the loads of
+// full checks span a load's direction, their errors bound that of the base. Damage can only spoil
+// the solution where it acts, and the energy of what the deferred update lacks there bounds the
+// stress that it misses.
 #pragma once
 
 #include <optional>
@@ -16,31 +17,59 @@ class EnergyCheck {
  public:
   explicit EnergyCheck(const Problem& problem);
 
+  /// What the loads of full checks let expect of another one: bounds, each a sum over their shares.
+  struct Expected {
+    double largest_u = 0;   // [mm]
+    double largest = 0;     // stress over live elements [MPa]
+    double base_error = 0;  // [MPa] by the base itself
+    double worst = 0;       // of the relative errors of their bases
+    bool alone = false;     // the load is a multiple of the last full check's
+  };
+
   /// Takes what a full check said of a load, and the error before it refined the solution: that is
   /// what the base gives by itself. `largest`: the largest stress over live elements.
   void checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                double largest_u, double largest);
-  /// The load in the direction of the last full check, as a multiple of it.
-  [[nodiscard]] std::optional<double> scale_of(const Load& load, const InverseRoute& route) const;
+  /// Takes what is known of a base that is new since the last full check.
+  void follow(const InverseRoute& route);
+  /// Whether what this knows is of loads on the same unknowns.
+  [[nodiscard]] bool takes(const Load& load, const InverseRoute&) const {
+    return on_same_unknowns(load);
+  }
+  /// Nothing: the load needs a full check.
+  [[nodiscard]] std::optional<Expected> expected(const Load& load, const InverseRoute& route);
   /// An event has changed the body.
   void event() { changed_ = true; }
 
   /// Energy [N mm] of a defect that needs no refinement.
-  [[nodiscard]] double enough(double scale) const;
+  [[nodiscard]] double enough(const Expected& expected) const;
   /// What is known of a solution without a full check; nothing when that is needed.
-  [[nodiscard]] std::optional<SolveReport> known(double scale, const InverseRoute& route,
-                                                 double largest_u, double largest);
+  [[nodiscard]] std::optional<SolveReport> known(const Expected& expected,
+                                                 const InverseRoute& route, double largest_u,
+                                                 double largest) const;
 
  private:
+  struct Checked {
+    Load load;
+    double unrefined = 0;  // error of the base by itself
+    double largest_u = 0, largest = 0;
+  };
+  void add_direction(const Checked& checked);
+  void take_direction(Checked checked);
+  void write(const Load& load);
+  [[nodiscard]] double beyond_span(std::size_t directions);
+  [[nodiscard]] bool shares_of(const Load& load);
+  [[nodiscard]] bool on_same_unknowns(const Load& load) const;
+
   const Problem& problem_;
-  double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
-  Load load_;                // of the last full check
-  SolveReport report_;       // of it
-  double unrefined_ = 0;     // error of the base by itself
-  double largest_u_ = 0, largest_ = 0;
-  int bases_ = 0;        // of the last full check; 0: there was none
-  bool changed_ = true;  // since last_
-  SolveReport last_;     // of the last frame
+  double stress_of_energy_;      // sqrt of the largest stress^2 per energy over all elements
+  SolveReport report_;           // of the last full check
+  std::vector<Checked> checks_;  // the last one first, none in the span of those before it
+  Eigen::MatrixXd q_, r_;        // their loads as columns, each entry by its unit: Q R
+  double force_unit_ = 1, displacement_unit_ = 1;
+  Eigen::VectorXd v_, shares_;  // a load; its shares of checks_
+  int bases_ = 0;               // of the last full check; 0: there was none
+  bool changed_ = true;         // since the last full check
 };
 
 }  // namespace sunder::cpu_reference

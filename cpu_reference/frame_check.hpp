@@ -30,6 +30,9 @@ class FrameCheck {
   /// The load as a multiple of that of the last full check; nothing: another direction, or a base
   /// that nothing is known of.
   [[nodiscard]] std::optional<double> scale_of(const Load& load, const InverseRoute& route) const;
+  [[nodiscard]] bool takes(const Load& load, const InverseRoute& route) const {
+    return scale_of(load, route).has_value();
+  }
 
   /// Energy [N mm] of a defect of the deferred update that needs no refinement.
   [[nodiscard]] double enough(double scale) const;

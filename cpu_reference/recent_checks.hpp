@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks of the last two directions of the load. A question on the side (which instrument broke
-// an element: attribution.hpp) has a load of its own; what is known of the frames' load must not
-// depend on whether somebody asked.
+// Two checks, each of loads of one kind: one direction, or some unknowns. A question on the side
+// (which instrument broke an element: attribution.hpp) has a load of its own; what is known of the
+// frames' load must not depend on whether somebody asked.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ class RecentChecks {
  public:
   explicit RecentChecks(const Problem& problem) : checks_{Check(problem), Check(problem)} {}
 
-  /// The check that knows the load's direction; else the one used longest ago.
+  /// The check that takes the load's kind; else the one used longest ago.
   [[nodiscard]] Check& of(const Load& load, const InverseRoute& route) {
-    if (checks_[last_].scale_of(load, route)) return checks_[last_];
+    if (checks_[last_].takes(load, route)) return checks_[last_];
     last_ = 1 - last_;
     return checks_[last_];
   }

@@ -64,11 +64,11 @@ struct Applied {
   bool converged = true;
 };
 
-/// What a full check of a base has found (frame_check.hpp): for which load, and how much stress
-/// [MPa] a residual of 1 N is worth; 0: there was none.
+/// What a full check of a base has found (frame_check.hpp): for which load, how much stress [MPa] a
+/// residual of 1 N is worth (0: there was no check), and the error of the stress as it came.
 struct BaseCheck {
   Load load;
-  double stress_of_residual = 0;
+  double stress_of_residual = 0, error = 0;
 };
 
 /// One way to apply the inverse of the damaged stiffness, grips held at zero.

@@ -8,14 +8,19 @@
 namespace sunder::engine {
 
 CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs)
+    : CondensedBase(factor, dofs, factor->inverse_block(dofs, dofs), nullptr) {}
+
+CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs,
+                             Eigen::MatrixXd x, std::shared_ptr<const LostStiffness> lost)
     : factor_(std::move(factor)),
       dofs_(dofs.begin(), dofs.end()),
-      place_(static_cast<std::size_t>(factor_->cholesky().size()), kNone) {
+      place_(static_cast<std::size_t>(factor_->cholesky().size()), kNone),
+      x_(std::make_shared<const Eigen::MatrixXd>(std::move(x))),
+      lost_(std::move(lost)) {
   for (std::size_t i = 0; i < dofs_.size(); ++i) place_[dofs_[i]] = static_cast<Index>(i);
-  x_ = factor_->inverse_block(dofs_, dofs_);
   is_touched_.assign(dofs_.size(), kNone);
-  of_load_.setZero(x_.rows());
-  u_.setZero(x_.rows());
+  of_load_.setZero(x_->rows());
+  u_.setZero(x_->rows());
   touched_.reserve(dofs_.size());
   loaded_.reserve(dofs_.size());
   forces_.reserve(dofs_.size());
@@ -36,10 +41,17 @@ void CondensedBase::grow(std::span<const Difference> vectors) {
   const auto added = std::span(dofs_).subspan(before);
   const auto old = static_cast<Eigen::Index>(before),
              size = static_cast<Eigen::Index>(dofs_.size());
-  const Eigen::MatrixXd columns = factor_->inverse_block(dofs_, added);
-  x_.conservativeResize(size, size);
-  x_.rightCols(size - old) = columns;
-  x_.bottomLeftCorner(size - old, old) = columns.topRows(old).transpose();
+  Eigen::MatrixXd columns = factor_->inverse_block(dofs_, added);
+  if (lost_) {  // X = X0 + X0 D X0 + X0 D X D X0, and X D X0 of it on the old unknowns
+    const Eigen::MatrixXd forces = forces_lost(columns.topRows(old));
+    columns.topRows(old) += *x_ * forces;
+    columns.bottomRows(size - old) += forces.transpose() * columns.topRows(old);
+  }
+  auto x = std::make_shared<Eigen::MatrixXd>(size, size);
+  x->topLeftCorner(old, old) = *x_;
+  x->rightCols(size - old) = columns;
+  x->bottomLeftCorner(size - old, old) = columns.topRows(old).transpose();
+  x_ = std::move(x);
   is_touched_.resize(dofs_.size(), kNone);
   load_ = {};
   u_.setZero(size);
@@ -57,8 +69,9 @@ void CondensedBase::push(std::span<const Difference> vectors, fem::RowMajor& gra
     }
   }
   for (std::size_t j = 0; j < vectors.size(); ++j) {
-    const double* a = x_.col(place_[vectors[j].dof]).data();
-    const double* b = vectors[j].other == kNone ? nullptr : x_.col(place_[vectors[j].other]).data();
+    const double* a = x_->col(place_[vectors[j].dof]).data();
+    const double* b =
+        vectors[j].other == kNone ? nullptr : x_->col(place_[vectors[j].other]).data();
     for (std::size_t i = 0; i < vectors_.size(); ++i) {
       const Index dof = place_[vectors_[i].dof];
       double value = b ? a[dof] - b[dof] : a[dof];
@@ -88,8 +101,33 @@ void CondensedBase::pop() {
 void CondensedBase::apply_inside(std::span<const Index> dofs, std::span<const double> values) {
   loaded_.clear();
   for (Index d : dofs) loaded_.push_back(place_[d]);
-  of_load_.setZero(x_.rows());
-  add_columns(x_, loaded_, values, of_load_);
+  of_load_.setZero(x_->rows());
+  add_columns(*x_, loaded_, values, of_load_);
+}
+
+/// D u for columns u on S, as forces on S.
+Eigen::MatrixXd CondensedBase::forces_lost(const Eigen::MatrixXd& u) const {
+  const auto dofs = lost_->dofs();
+  std::vector<double> moved(dofs.size()), forces(dofs.size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(u.rows(), u.cols());
+  for (Eigen::Index j = 0; j < u.cols(); ++j) {
+    for (std::size_t i = 0; i < dofs.size(); ++i) moved[i] = u(place_[dofs[i]], j);
+    lost_->multiply(moved, forces);
+    for (std::size_t i = 0; i < dofs.size(); ++i) result(place_[dofs[i]], j) = forces[i];
+  }
+  return result;
+}
+
+/// With g = X0 f, X f = g + X D g.
+void CondensedBase::apply_everywhere(std::span<const Index> dofs, std::span<const double> values) {
+  right_side_.setZero(size());
+  for (std::size_t i = 0; i < dofs.size(); ++i) right_side_[dofs[i]] += values[i];
+  factor_->solve(right_side_, solution_, work_);
+  of_load_.resize(x_->rows());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
+  }
+  if (lost_) of_load_ += *x_ * forces_lost(of_load_);
 }
 
 const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
@@ -97,15 +135,7 @@ const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
     if (std::ranges::all_of(forces.dofs, [&](Index d) { return place_[d] != kNone; })) {
       apply_inside(forces.dofs, forces.values);
     } else {
-      right_side_.setZero(size());
-      for (std::size_t i = 0; i < forces.dofs.size(); ++i) {
-        right_side_[forces.dofs[i]] += forces.values[i];
-      }
-      factor_->solve(right_side_, solution_, work_);
-      of_load_.resize(x_.rows());
-      for (std::size_t i = 0; i < dofs_.size(); ++i) {
-        of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
-      }
+      apply_everywhere(forces.dofs, forces.values);
     }
   }
   const auto count = static_cast<Eigen::Index>(vectors_.size());
@@ -126,7 +156,7 @@ void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
     if (vectors_[i].other != kNone) forces_[is_touched_[place_[vectors_[i].other]]] -= force;
   }
   u_.setZero();
-  add_columns(x_, touched_, forces_, u_);
+  add_columns(*x_, touched_, forces_, u_);
   u_ += of_load_;
   if (u.size() != size()) u.setZero(size());
   for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = u_[static_cast<Eigen::Index>(i)];
@@ -140,11 +170,17 @@ void CondensedBase::equilibrium(Equilibrium& of) const {
     of.dofs.push_back(dofs_[touched_[i]]);
     of.forces.push_back(forces_[i]);
   }
+  of.lost = lost_;
+  of.lost_u.clear();
+  if (!lost_) return;
+  for (Index d : lost_->dofs()) of.lost_u.push_back(u_[place_[d]]);
 }
 
 std::vector<BufferPlan> CondensedBase::buffers() const {
-  return {{"condensed inverse (dense, |S| x |S|)",
-           static_cast<std::size_t>(x_.size()) * sizeof(double)}};
+  std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)",
+                                static_cast<std::size_t>(x_->size()) * sizeof(double)}};
+  if (lost_) plan.push_back({"stiffness lost between factor and inverse", lost_->bytes()});
+  return plan;
 }
 
 }  // namespace sunder::engine

@@ -8,22 +8,36 @@
 #include <memory>
 
 #include "engine/last_load.hpp"
+#include "engine/lost_stiffness.hpp"
 #include "fem/factor.hpp"
 
 namespace sunder::engine {
 
-/// Forces [N] on the pristine body whose solution is that of the damaged one: f + B c. An unknown
-/// may come twice.
+/// Forces [N] on the body of `factor` whose solution is that of the damaged one: f + B c, and D u
+/// of what was lost between factor and base. An unknown may come twice.
 struct Equilibrium {
   std::shared_ptr<const fem::Factor> factor;
   std::vector<Index> dofs;
   std::vector<double> forces;
+  std::shared_ptr<const LostStiffness> lost;  // empty: nothing
+  std::vector<double> lost_u;                 // u on its unknowns [mm]
+};
+
+/// A base as it is at a moment; the inverse is shared, and nobody writes it.
+struct CondensedState {
+  std::shared_ptr<const fem::Factor> factor;
+  std::vector<Index> dofs;                   // S
+  std::shared_ptr<const Eigen::MatrixXd> x;  // X_SS
+  std::vector<Difference> vectors;           // B
 };
 
 class CondensedBase final : public Base {
  public:
   /// Over the unknowns `dofs`, ascending.
   CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs);
+  /// X_SS of a body that has lost stiffness, all of it within S, since it was factored.
+  CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs,
+                Eigen::MatrixXd x, std::shared_ptr<const LostStiffness> lost);
 
   [[nodiscard]] Index size() const override { return factor_->cholesky().size(); }
   /// Vectors that leave S make S grow: one solve per unknown.
@@ -37,15 +51,19 @@ class CondensedBase final : public Base {
   void equilibrium(Equilibrium& of) const;
   /// S; at first the unknowns given.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
+  [[nodiscard]] CondensedState state() const { return {factor_, dofs_, x_, vectors_}; }
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
  private:
   void grow(std::span<const Difference> vectors);
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
+  void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
+  [[nodiscard]] Eigen::MatrixXd forces_lost(const Eigen::MatrixXd& u) const;
 
   std::shared_ptr<const fem::Factor> factor_;
-  std::vector<Index> dofs_, place_;  // S, and where in it each unknown is
-  Eigen::MatrixXd x_;                // X_SS
+  std::vector<Index> dofs_, place_;            // S, and where in it each unknown is
+  std::shared_ptr<const Eigen::MatrixXd> x_;   // X_SS
+  std::shared_ptr<const LostStiffness> lost_;  // between factor_ and x_; empty: nothing
   std::vector<Difference> vectors_;
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
   std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_

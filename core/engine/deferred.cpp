@@ -363,6 +363,11 @@ void Deferred::free_grips(const Eigen::VectorXd& forces, std::span<const double>
   }
 }
 
+Damage Deferred::damage() const {
+  const Eigen::Index n = count();
+  return {compliance_.topLeftCorner(n, n), m_.topLeftCorner(n, n), d_.topLeftCorner(n, n)};
+}
+
 std::vector<BufferPlan> Deferred::buffers() const {
   std::vector<BufferPlan> plan = base_->buffers();
   const auto n = static_cast<std::size_t>(count());

@@ -20,6 +20,11 @@
 
 namespace sunder::engine {
 
+/// What the damage is in the coordinates of B, n x n each: G = B^T X B, M and D.
+struct Damage {
+  fem::RowMajor compliance, m, d;
+};
+
 class Deferred {
  public:
   /// The problem must outlive it. Without `damage` nothing will be destroyed, and there is no room
@@ -62,6 +67,7 @@ class Deferred {
   [[nodiscard]] std::span<const Index> touched() const { return touched_; }
   /// Columns of B: what a frame pays for the damage.
   [[nodiscard]] Index rank() const { return count_; }
+  [[nodiscard]] Damage damage() const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 
  private:

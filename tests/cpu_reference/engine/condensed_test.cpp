@@ -3,7 +3,10 @@
 // that can be read is compared with a direct solution of the whole body.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cmath>
 #include <string>
+#include <thread>
 
 #include "pieces.hpp"
 #include "support/accuracy.hpp"
@@ -165,6 +168,84 @@ TEST(CondensedRoute, FollowsAnElementThatNobodyExpectedToBreak) {
   body.backend->destroy(std::span(sequence).subspan(6));
   body.backend->solve();
   expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
+}
+
+bool on_an_updated_inverse(const Body& body) {
+  return std::ranges::any_of(body.backend->buffers(), [](const BufferPlan& b) {
+    return b.name == "stiffness lost between factor and inverse";
+  });
+}
+
+/// Pulls the corner in some direction.
+std::vector<double> pull(const Mesh& mesh, const Vec3& force) {
+  std::vector<double> nodal(3 * mesh.nodes.size(), 0.0);
+  for (Index n : nodes_in(mesh, lower_right_corner())) {
+    for (int axis = 0; axis < 3; ++axis)
+      nodal[3 * static_cast<std::size_t>(n) + axis] = force[axis];
+  }
+  return nodal;
+}
+
+/// Displacements along a tear of 180 elements; `wait`: for every frame's base to be ready.
+std::vector<std::vector<double>> torn(bool wait) {
+  const Body body(organ({"", true, 1}));
+  body.load(corner_force(body.problem->mesh()));
+  std::vector<std::vector<double>> all;
+  bool updated = false;
+  for (const Index& e : crack_sequence(*body.problem, 180, 12)) {
+    body.backend->destroy({&e, 1});
+    updated = updated || on_an_updated_inverse(body);
+    EXPECT_LE(body.backend->solve().error, kCrackTolerance);
+    if (wait) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    all.push_back(body.displacement());
+  }
+  EXPECT_TRUE(updated) << "the tear is long enough for a new base";
+  return all;
+}
+
+TEST(CondensedRoute, TakesNewBasesAtTheSameEventWhateverTheyTake) {
+  EXPECT_EQ(torn(false), torn(true));
+}
+
+// After a new base X_SS is no longer the factor's: what leaves S has to make up for that.
+TEST(CondensedRoute, GrowsAndIsLoadedOutsideItsRegionOnANewBase) {
+  const Body body(organ({"", true, 1}));
+  std::vector<double> force = corner_force(body.problem->mesh());
+  const auto far = nodes_in(body.problem->mesh(), {Vec3(-0.1, 9.9, -1), Vec3(0.1, 10.1, 3)});
+  ASSERT_FALSE(far.empty());
+  for (Index n : far) force[3 * static_cast<std::size_t>(n)] = -4;
+  body.load(force);
+  for (const Index& e : crack_sequence(*body.problem, 150, 12)) body.backend->destroy({&e, 1});
+  ASSERT_TRUE(on_an_updated_inverse(body));
+  const auto outside = elements_across(body.problem->mesh(), 10.1);
+  body.backend->destroy(std::span(outside).first(5));
+  EXPECT_LE(body.backend->solve().error, kCrackTolerance);
+  expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
+}
+
+// A frame that repeats the residual of the one before has had no check over the whole body.
+TEST(CondensedRoute, SeldomChecksTheWholeBodyWhileTheLoadTurns) {
+  const Body body(organ({"", true, 1}));
+  const auto sequence = crack_sequence(*body.problem, 24, 12);
+  int full = 0;
+  double last = -1;
+  for (int i = 0; i < 24; ++i) {
+    const double angle = 0.2 * i;
+    const auto force = pull(body.problem->mesh(),
+                            Vec3(std::sin(angle), -std::cos(angle), 0.05 * std::sin(2.3 * angle)));
+    body.load(force);
+    const std::size_t event = static_cast<std::size_t>(i);
+    body.backend->destroy(std::span(sequence).subspan(event, 1));
+    const SolveReport report = body.backend->solve();
+    EXPECT_LE(report.error, kCrackTolerance);
+    full += report.residual != last;
+    last = report.residual;
+    if (i % 6 == 5) {
+      expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
+    }
+  }
+  EXPECT_GE(full, 3) << "one for each axis";
+  EXPECT_LE(full, 8);
 }
 
 // Fields outside the region are solved for late; they must be those of the solve they belong to.
