@@ -2,40 +2,27 @@
 // Predicted fractures, prepared in quiet frames: they are met, and no bit depends on them.
 #include <gtest/gtest.h>
 
-#include "cpu_reference/cpu_reference.hpp"
 #include "engine/deferred.hpp"
 #include "engine/factor_base.hpp"
 #include "fem/assembly.hpp"
-#include "sunder/simulation.hpp"
-#include "support/notch_board.hpp"
 #include "support/sequences.hpp"
+#include "support/torn_board.hpp"
 
 namespace sunder::test {
 namespace {
 
-struct Torn {
-  std::vector<DestroyedElement> elements;
-  std::vector<Voigt> stress;
-  std::vector<Vec3> displacement;
-  PreparationReport preparation;
-};
-
-Torn tear(FractureModel model, Route route, bool prepare) {
-  Scene scene = notch_board(model);
-  scene.solver.route = route;
-  scene.solver.prepare = prepare;
-  const auto problem = std::make_shared<const Problem>(std::move(scene));
-  Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
-  while (!simulation.done() && simulation.destroyed().size() < 60) simulation.step();
-  return {simulation.destroyed(), simulation.stress(), simulation.displacement(),
-          simulation.backend().preparation()};
+TornBoard tear(FractureModel model, Route route, bool prepare) {
+  SolverOptions solver;
+  solver.route = route;
+  solver.prepare = prepare;
+  return torn_board(model, solver, 60);
 }
 
 class Preparation : public ::testing::TestWithParam<FractureModel> {};
 
 TEST_P(Preparation, ChangesNoBit) {
-  const Torn with = tear(GetParam(), Route::factor, true);
-  const Torn without = tear(GetParam(), Route::factor, false);
+  const TornBoard with = tear(GetParam(), Route::factor, true);
+  const TornBoard without = tear(GetParam(), Route::factor, false);
   ASSERT_EQ(with.elements.size(), without.elements.size());
   for (std::size_t i = 0; i < with.elements.size(); ++i) {
     ASSERT_EQ(with.elements[i].element, without.elements[i].element) << "fracture " << i;
@@ -53,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Models, Preparation, ::testing::Values(FractureModel::a
                          [](const auto& p) { return p.param == FractureModel::a ? "A" : "B"; });
 
 TEST(PreparationOfADenseInverse, IsNotOffered) {
-  const Torn torn = tear(FractureModel::b, Route::inverse, true);
+  const TornBoard torn = tear(FractureModel::b, Route::inverse, true);
   EXPECT_EQ(torn.preparation.destroyed, 0) << "its columns are at hand anyway";
 }
 
