@@ -49,6 +49,7 @@ sunder::SolverOptions to_solver(const sunder_solver_options& given) {
   s.update = choice<sunder::Update>(given.update, 3, "update");
   s.precision = choice<sunder::Precision>(given.precision, 3, "precision");
   s.tolerance = given.tolerance;
+  s.prepare = given.no_preparation == 0;
   return s;
 }
 

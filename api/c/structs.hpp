@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 #include "c/failure.hpp"
@@ -13,6 +14,9 @@ namespace sunder::c {
 /// Size of a struct in the first version that had it. To be specialised when a member is appended.
 template <class T>
 inline constexpr std::size_t kFirstSize = sizeof(T);
+template <>
+inline constexpr std::size_t kFirstSize<sunder_solver_options> = offsetof(sunder_solver_options,
+                                                                          no_preparation);
 
 /// No version of any struct comes near this; protects from reading far beyond a struct whose size
 /// was never set.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Versions of structs, texts and error texts.
+#include <cstddef>
 #include <cstring>
 #include <string>
 
@@ -21,6 +22,37 @@ TEST_F(CStructs, TakeOptionsOfANewerCallerThatSetsNothingNew) {
   } newer{on(SUNDER_BACKEND_CPU), 0.0};
   newer.known.struct_size = sizeof newer;
   EXPECT_OK(sunder_scene_set_solver(scene, &newer.known));
+}
+
+TEST_F(CStructs, TakeOptionsOfACallerFromBeforePreparation) {
+  sunder_solver_options older = on(SUNDER_BACKEND_CPU);
+  older.struct_size = offsetof(sunder_solver_options, no_preparation);
+  older.no_preparation = -1;  // not the caller's memory any more
+  EXPECT_OK(sunder_scene_set_solver(scene, &older));
+  older.struct_size -= 8;
+  EXPECT_EQ(sunder_scene_set_solver(scene, &older), SUNDER_ERROR_STRUCT_SIZE);
+}
+
+/// Memory of a pulled board's solver, with the columns of predicted fractures if it prepared any.
+std::uint64_t memory_after_a_step(std::int32_t no_preparation) {
+  const sunder_scene scene = board_scene(SUNDER_BACKEND_CPU, 4, -0.5);
+  sunder_solver_options options = on(SUNDER_BACKEND_CPU);
+  options.route = SUNDER_ROUTE_FACTOR;
+  options.no_preparation = no_preparation;
+  EXPECT_OK(sunder_scene_set_solver(scene, &options));
+  sunder_simulation simulation = nullptr;
+  EXPECT_OK(sunder_simulation_create(scene, nullptr, &simulation));
+  EXPECT_OK(sunder_simulation_step(simulation, nullptr));
+  sunder_engine engine{};
+  engine.struct_size = sizeof engine;
+  EXPECT_OK(sunder_simulation_engine(simulation, &engine));
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+  EXPECT_OK(sunder_scene_destroy(scene));
+  return engine.memory_bytes;
+}
+
+TEST_F(CStructs, LeaveThePreparationOutWhenAsked) {
+  EXPECT_GT(memory_after_a_step(0), memory_after_a_step(1));
 }
 
 TEST_F(CStructs, FillResultsOfANewerCallerAndZeroTheRest) {
