@@ -80,6 +80,53 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
   }
 }
 
+namespace {
+
+/// The scene of a part. Its ground is a copy of its first node, which nothing is ever computed of.
+Scene scene_of_part(const Scene& whole, const PartOfBody& part) {
+  Scene scene = whole;
+  Mesh mesh;
+  mesh.volumes = whole.mesh.volumes;
+  std::vector<Index> place(whole.mesh.nodes.size(), kNone);
+  for (Index n : part.nodes) {
+    place[n] = mesh.node_count();
+    mesh.nodes.push_back(whole.mesh.nodes[n]);
+  }
+  mesh.nodes.push_back(mesh.nodes.front());
+  for (Index e : part.elements) {
+    auto tet = whole.mesh.tets[e];
+    for (Index& n : tet) n = place[n];
+    mesh.tets.push_back(tet);
+    mesh.volume_of.push_back(whole.mesh.volume_of[e]);
+  }
+  scene.mesh = std::move(mesh);
+  return scene;
+}
+
+}  // namespace
+
+Problem::Problem(const Problem& whole, const PartOfBody& part, Surroundings around)
+    : scene_(scene_of_part(whole.scene_, part)), around_(std::move(around)) {
+  resolve_materials();
+  for (Index e : part.elements) shapes_.push_back(whole.shapes_[e]);
+  dof_.assign(3 * mesh().nodes.size(), kNone);
+  std::vector<Index> place(static_cast<std::size_t>(whole.dof_count_), kNone);
+  for (std::size_t n = 0; n < part.nodes.size(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = whole.dof(part.nodes[n], axis);
+      if (d != kNone) dof_[3 * n + axis] = place[d] = dof_count_++;
+    }
+  }
+  const auto take = [&](const std::vector<Index>& from, std::vector<Index>& to) {
+    for (Index d : from) {
+      if (place[d] != kNone) to.push_back(place[d]);
+    }
+  };
+  take(whole.gripped_dofs_, gripped_dofs_);
+  take(whole.anchored_dofs_, anchored_dofs_);
+  anchor_stiffness_ = whole.anchor_stiffness_;
+}
+
 void Problem::check_options() const {
   const FractureOptions& f = scene_.fracture;
   if (!(f.alpha > 0 && f.alpha < 1)) {

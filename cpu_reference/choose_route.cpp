@@ -13,11 +13,6 @@ namespace {
 // seconds to prepare, while the factor's frame is still within a millisecond of it.
 constexpr Index kDenseLimit = 6000;
 
-// A region is condensed by itself up to this share of all unknowns: a frame then reads a quarter of
-// what it would read of the dense inverse, and a few per cent of a large factor. Beyond, a picture,
-// which needs one solve with the factor, eats up the gain.
-constexpr std::size_t kRegionShare = 4;
-
 void check_options(const SolverOptions& solver) {
   if (solver.precision == Precision::fp32) {
     throw DeviceError("backend cpu computes in fp64 only; use precision fp64 or auto");
@@ -87,7 +82,7 @@ ChosenRoute choose_route(const Problem& problem, const Needs& needs) {
   }
   const engine::Region region = engine::region_of(problem, needs);
   const std::size_t inside = region.dofs.size();
-  if (region.tears && kRegionShare * inside <= all &&
+  if (region.tears && engine::kRegionShare * inside <= all &&
       inside <= static_cast<std::size_t>(kDenseLimit) &&
       2 * dense_bytes(inside) <= available_memory()) {
     return {Route::condensed, Update::deferred,

@@ -76,7 +76,10 @@ class CpuBackend final : public Backend {
       kernel_->keep_forces();
       nodal_forces_ = nodal_;
     }
-    if (condensed_) leave_out_the_rest();
+    if (!condensed_) return;
+    for (std::string& what : engine::left_out_of(*problem, condensed_->region())) {
+      leave_out(std::move(what));
+    }
   }
 
   BackendInfo info() const override {
@@ -147,17 +150,6 @@ class CpuBackend final : public Backend {
       }
     }
     return dofs;
-  }
-
-  void leave_out_the_rest() {
-    const engine::Region& region = condensed_->region();
-    leave_out("inverse of the other " +
-              std::to_string(static_cast<std::size_t>(problem().dof_count()) - region.dofs.size()) +
-              " unknowns: they cannot break and no instrument holds them");
-    leave_out("stress of the other " +
-              std::to_string(problem().mesh().tets.size() - region.elements.size()) +
-              " elements and displacement of the other nodes in a frame: solved for when a file or "
-              "a picture asks");
   }
 
   void make_stress() {

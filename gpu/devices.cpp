@@ -31,10 +31,10 @@ DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen)
   info.driver = device.driver;
   const std::string shortcoming = device.shortcoming();
   info.precisions = !shortcoming.empty() ? "none" : device.float64 ? "fp32 fp64" : "fp32";
-  info.limits = megabytes(device.memory) + " memory, buffers up to " +
-                megabytes(device.largest_buffer) + ", subgroups of " +
-                std::to_string(device.subgroup) +
-                (device.float64 ? ", routes inverse, cg" : ", route inverse");
+  info.limits =
+      megabytes(device.memory) + " memory, buffers up to " + megabytes(device.largest_buffer) +
+      ", subgroups of " + std::to_string(device.subgroup) +
+      (device.float64 ? ", routes inverse, condensed, cg" : ", routes inverse, condensed");
   info.chosen = index == chosen;
   if (!shortcoming.empty()) {
     info.why = "cannot be used: " + shortcoming;

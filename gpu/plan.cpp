@@ -16,6 +16,11 @@ constexpr Index kDenseLimit = 6000;
 // than a second. Never on a processor that emulates a GPU, where the host is quicker at every size.
 constexpr Index kInvertOnDevice = 3000;
 
+std::string megabytes(std::size_t bytes) {
+  if (bytes < 10000000) return std::to_string(bytes / 1000) + " kB";
+  return std::to_string(bytes / 1000000) + " MB";
+}
+
 std::string number(double value) {
   std::ostringstream out;
   out << value;
@@ -26,22 +31,58 @@ std::string number(double value) {
 
 namespace {
 
-void choose_route(const Problem& problem, const vulkan::PhysicalDevice& device, Plan& plan) {
+/// The region of route condensed, where that was asked for or pays by itself.
+std::optional<engine::Region> choose_region(const Problem& problem, const Needs& needs,
+                                            bool displayed) {
+  const SolverOptions& solver = problem.scene().solver;
+  const bool asked = solver.route == Route::condensed;
+  if (asked && displayed) {
+    throw DeviceError(
+        "route condensed keeps a region's fields alone on the device, but the host draws those of "
+        "the whole body; use route inverse or cg");
+  }
+  const bool possible =
+      solver.route == Route::automatic && solver.update != Update::eager && !displayed;
+  if (!asked && !(possible && needs.damage)) return std::nullopt;
+  engine::Region region = engine::region_of(problem, needs);
+  if (asked) {
+    if (!region.elements.empty()) return region;
+    throw DeviceError(
+        "route condensed needs elements that can break or be destroyed, of which this scene has "
+        "none; use route inverse or cg");
+  }
+  const bool pays = region.tears && engine::kRegionShare * region.dofs.size() <=
+                                        static_cast<std::size_t>(problem.dof_count());
+  if (!pays || region.dofs.size() > static_cast<std::size_t>(kDenseLimit)) return std::nullopt;
+  return region;
+}
+
+void choose_route(const Problem& problem, const Needs& needs, const vulkan::PhysicalDevice& device,
+                  bool displayed, Plan& plan) {
   const Route asked = problem.scene().solver.route;
-  const auto n = static_cast<std::size_t>(problem.dof_count());
+  plan.region = choose_region(problem, needs, displayed);
+  const auto all = static_cast<std::size_t>(problem.dof_count());
+  const std::size_t n = plan.region ? plan.region->dofs.size() : all;
   const std::size_t bytes = n * n * (plan.fp64 ? 8 : 4);
-  plan.cg = asked == Route::cg || (asked == Route::automatic && problem.dof_count() > kDenseLimit);
-  plan.why = std::to_string(n) + " unknowns: ";
+  plan.cg = asked == Route::cg ||
+            (asked == Route::automatic && !plan.region && problem.dof_count() > kDenseLimit);
+  plan.why = std::to_string(all) + " unknowns";
+  if (plan.region) {
+    plan.why += ", of which " + std::to_string(n) + " can break, are loaded or held by instruments";
+  }
+  plan.why += ": ";
   if (asked == Route::cg) {
     plan.why += "route cg was asked for";
   } else if (plan.cg) {
     plan.why += "a dense inverse would take " + std::to_string(bytes / 1000000) + " MB";
   } else if (bytes > device.memory) {
-    throw DeviceError("route inverse needs " + std::to_string(bytes) + " bytes for " +
-                      std::to_string(n) + " unknowns, but the device \"" + device.name + "\" has " +
+    throw DeviceError("route " + std::string(plan.region ? "condensed" : "inverse") + " needs " +
+                      std::to_string(bytes) + " bytes for " + std::to_string(n) +
+                      " unknowns, but the device \"" + device.name + "\" has " +
                       std::to_string(device.memory) + "; use route cg");
   } else {
-    plan.why += "the dense inverse takes " + std::to_string(bytes / 1000000) + " MB";
+    plan.why +=
+        std::string(plan.region ? "their" : "the") + " dense inverse takes " + megabytes(bytes);
   }
 }
 
@@ -53,9 +94,10 @@ namespace {
 void require_double(const Plan& plan, const SolverOptions& solver,
                     const vulkan::PhysicalDevice& device) {
   const auto refuse = [&](const std::string& what) {
-    throw DeviceError(what + ", but the device \"" + device.name +
-                      "\" lacks shaderFloat64; use route inverse with update deferred and a "
-                      "tolerance of 1e-4 or more, another device or backend cpu");
+    throw DeviceError(
+        what + ", but the device \"" + device.name +
+        "\" lacks shaderFloat64; use route inverse or condensed with update deferred and a "
+        "tolerance of 1e-4 or more, another device or backend cpu");
   };
   if (plan.fp64) {
     refuse(solver.precision == Precision::fp64
@@ -68,17 +110,18 @@ void require_double(const Plan& plan, const SolverOptions& solver,
 
 }  // namespace
 
-Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::PhysicalDevice& device) {
+Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::PhysicalDevice& device,
+               bool displayed) {
   const SolverOptions& solver = problem.scene().solver;
-  if (solver.route == Route::condensed || solver.route == Route::factor) {
+  if (solver.route == Route::factor) {
     throw DeviceError(
-        "backend vulkan offers the routes inverse and cg; choose one, auto or "
+        "backend vulkan offers the routes inverse, condensed and cg; choose one, auto or "
         "backend cpu");
   }
   Plan plan;
   plan.fp64 = solver.precision == Precision::fp64 ||
               (solver.precision == Precision::automatic && !(solver.tolerance >= kFp32Tolerance));
-  choose_route(problem, device, plan);
+  choose_route(problem, needs, device, displayed, plan);
   if (solver.precision != Precision::automatic) {
     plan.why += plan.fp64 ? "; fp64 was asked for" : "; fp32 storage was asked for";
   } else {
@@ -93,8 +136,9 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
     require_double(plan, solver, device);
     plan.why += "; the device lacks shaderFloat64, so the host corrects for the damage";
   }
-  plan.invert_on_device =
-      device.float64 && !plan.cg && !device.is_cpu() && problem.dof_count() >= kInvertOnDevice;
+  const auto kept =
+      plan.region ? static_cast<Index>(plan.region->dofs.size()) : problem.dof_count();
+  plan.invert_on_device = device.float64 && !plan.cg && !device.is_cpu() && kept >= kInvertOnDevice;
   if (plan.invert_on_device) plan.why += "; the device computes it";
   if (needs.damage && !plan.cg) {
     plan.why += plan.eager ? "; the eager update was asked for"

@@ -2,23 +2,27 @@
 // Route, update and precision of a scene on a device, with the reason.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "engine/region.hpp"
 #include "gpu/vulkan/physical_device.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::gpu {
 
 struct Plan {
-  bool fp64 = false;              ///< storage of the inverse and of element stress
-  bool eager = false;             ///< the update
-  bool cg = false;                ///< the route: conjugate gradients instead of the inverse
-  bool invert_on_device = false;  ///< the inverse is computed there
+  bool fp64 = false;                     ///< storage of the inverse and of element stress
+  bool eager = false;                    ///< the update
+  bool cg = false;                       ///< the route: conjugate gradients instead of the inverse
+  std::optional<engine::Region> region;  ///< route condensed: what alone is on the device
+  bool invert_on_device = false;         ///< the inverse is computed there
   std::string why;
 };
 
 /// Throws DeviceError for a route that the backend does not offer, or that does not fit the device.
+/// `displayed`: a host draws the whole body's fields, which must be on the device then.
 [[nodiscard]] Plan make_plan(const Problem& problem, const Needs& needs,
-                             const vulkan::PhysicalDevice& device);
+                             const vulkan::PhysicalDevice& device, bool displayed);
 
 }  // namespace sunder::gpu

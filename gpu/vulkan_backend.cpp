@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/vulkan_backend.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 
+#include "engine/substructure.hpp"
+#include "fem/element.hpp"
 #include "gpu/cg_route.hpp"
 #include "gpu/choose_device.hpp"
 #include "gpu/frame_check.hpp"
@@ -33,37 +36,41 @@ class VulkanBackend final : public Backend {
   VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
       : Backend(problem, std::move(needs)),
         device_(open_device(options, problem->scene().solver.device)),
-        plan_(make_plan(*problem, this->needs(), device_->physical())),
+        plan_(make_plan(*problem, this->needs(), device_->physical(), options.lent.has_value())),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
         inverse_{plan_.eager, problem->scene().solver.tolerance, options.panel_bytes,
                  options.invert_on_device.value_or(plan_.invert_on_device)},
-        fields_(kernels_, *problem, this->needs(), route_needs(*problem)),
+        region_(plan_.region ? std::make_unique<engine::Substructure>(*problem, *plan_.region)
+                             : nullptr),
+        body_(region_ ? region_->part() : problem),
+        fields_(kernels_, *body_, this->needs(), route_needs()),
         check_(*problem, plan_.fp64) {
     if (!plan_.cg || this->needs().pristine) {
-      intact_ = std::make_shared<HostInverse>(fem::assemble_lower(*problem, {}),
+      intact_ = std::make_shared<HostInverse>(fem::assemble_lower(*body_, {}),
                                               !plan_.cg && !inverse_.on_device);
     }
     if (this->needs().pristine) {
       pristine_ = std::make_unique<Correction>(
-          *problem, [host = intact_](std::span<const Index> dofs) { return host->columns(dofs); });
+          *body_, [host = intact_](std::span<const Index> dofs) { return host->columns(dofs); });
     }
     force_.assign(fields_.rows(), 0.0);
+    if (region_) leave_out_the_rest();
     device_->set_timing(false);
     if (options.lent) {
       display_ = std::make_unique<Display>(kernels_, *problem, fields_, this->needs().stress,
                                            options.display, options.lent->timeline_semaphore);
     }
     if (plan_.cg) {
-      route_ = std::make_unique<CgRoute>(kernels_, *problem, fields_);
+      route_ = std::make_unique<CgRoute>(kernels_, *body_, fields_);
       return;
     }
     if (kernels_.single()) {
-      route_ = std::make_unique<HostCorrectedRoute>(kernels_, *problem, fields_, intact_,
+      route_ = std::make_unique<HostCorrectedRoute>(kernels_, *body_, fields_, intact_,
                                                     inverse_.panel_bytes);
       return;
     }
-    route_ = std::make_unique<InverseRoute>(kernels_, *problem, fields_, intact_, inverse_);
+    route_ = std::make_unique<InverseRoute>(kernels_, *body_, fields_, intact_, inverse_);
   }
 
   BackendInfo info() const override {
@@ -72,7 +79,7 @@ class VulkanBackend final : public Backend {
     info.device = device_->physical().name;
     info.driver = device_->physical().driver;
     info.precision = plan_.fp64 ? "fp64" : "fp32";
-    info.route = route_->name();
+    info.route = region_ ? "condensed" : route_->name();
     info.update = needs().damage ? route_->update() : "none";
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
@@ -81,6 +88,11 @@ class VulkanBackend final : public Backend {
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan = route_->buffers();
+    if (region_) {
+      plan.front().name = "condensed " + plan.front().name;
+      plan.push_back({"factor of the rest and its stiffness on the region (host)",
+                      region_->bytes() + whole_u_.size() * sizeof(double)});
+    }
     for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
     return plan;
   }
@@ -98,7 +110,11 @@ class VulkanBackend final : public Backend {
     return {device_->held_bytes(), device_->most_bytes(), device_->queue().submits(),
             device_->pipelines()};
   }
-  std::vector<Index> over_yield() const { return fields_.over_yield(); }
+  std::vector<Index> over_yield() const {
+    std::vector<Index> list = fields_.over_yield();
+    for (Index& e : list) e = of_body(static_cast<std::uint32_t>(e));
+    return list;
+  }
   std::size_t bytes_read() const { return device_->bytes_read(); }
   Display* display() { return display_.get(); }
 
@@ -108,31 +124,55 @@ class VulkanBackend final : public Backend {
     if (display_) display_->finish();
   }
 
-  [[nodiscard]] Fields::RouteNeeds route_needs(const Problem& problem) const {
-    if (plan_.cg) return {CgRoute::planned_bytes(problem), true};
+  [[nodiscard]] Fields::RouteNeeds route_needs() const {
+    if (plan_.cg) return {CgRoute::planned_bytes(*body_), true};
     if (kernels_.single()) {
-      return {HostCorrectedRoute::planned_bytes(kernels_, problem, inverse_.panel_bytes), false};
+      return {HostCorrectedRoute::planned_bytes(kernels_, *body_, inverse_.panel_bytes), false};
     }
-    return {InverseRoute::planned_bytes(kernels_, problem, inverse_), false};
+    return {InverseRoute::planned_bytes(kernels_, *body_, inverse_), false};
+  }
+
+  void leave_out_the_rest() {
+    for (std::string& what : engine::left_out_of(problem(), region_->region())) {
+      leave_out(std::move(what));
+    }
   }
 
   void do_set_load(const Load& load) override {
     finish_display();
     for (Index d : load_.force_dofs) force_[d] = 0;
-    load_ = load;
+    if (region_) whole_load_ = load;
+    load_ = region_ ? region_->load(load) : load;
     force_squared_ = 0;
-    for (std::size_t i = 0; i < load.forces.size(); ++i) {
-      force_[load.force_dofs[i]] = load.forces[i];
-      force_squared_ += load.forces[i] * load.forces[i];
+    for (double f : load.forces) force_squared_ += f * f;
+    for (std::size_t i = 0; i < load_.forces.size(); ++i) {
+      force_[load_.force_dofs[i]] = load_.forces[i];
     }
-    fields_.set_load(force_, load.displacements);
+    fields_.set_load(force_, load_.displacements);
+  }
+
+  /// Elements as the device numbers them.
+  std::span<const Index> on_device(std::span<const Index> elements) {
+    if (!region_) return elements;
+    in_part_.clear();
+    for (Index e : elements) {
+      if (region_->element(e) != kNone) in_part_.push_back(region_->element(e));
+    }
+    return in_part_;
+  }
+  [[nodiscard]] Index of_body(std::uint32_t on_device) const {
+    const auto e = static_cast<Index>(on_device);
+    return region_ ? region_->region().elements[e] : e;
   }
 
   SolveReport do_solve() override {
     finish_display();
     if (!check_.known(load_)) fields_.keep_next();
     try {
-      return solve_within_tolerance();
+      const SolveReport report = solve_within_tolerance();
+      solved_load_ = whole_load_;
+      whole_u_known_ = false;
+      return report;
     } catch (const NumericalError&) {
       check_.event();
       fields_.restore();  // results so far stay readable
@@ -161,7 +201,7 @@ class VulkanBackend final : public Backend {
     const double target = check_.target();
     if (const auto known = check_.known(load_)) {
       report = *known;
-      report.iterations = route_->solve(load_, !problem().gripped_dofs().empty());
+      report.iterations = route_->solve(load_, !body_->gripped_dofs().empty());
       if (std::isfinite(fields_.state().stress_squared)) return report;
     }
     check_.event();
@@ -197,11 +237,24 @@ class VulkanBackend final : public Backend {
   }
 
   double estimate() const {
-    const double of_u = std::sqrt(fields_.state().stress_squared);
-    const double of_du = std::sqrt(fields_.correction().stress_squared);
+    double of_u = std::sqrt(fields_.state().stress_squared);
+    double of_du = std::sqrt(fields_.correction().stress_squared);
     if (!std::isfinite(residual())) return residual();
     if (!std::isfinite(of_u)) return of_u;
+    if (region_) {
+      of_u = std::max(of_u, largest_outside(Field::displacement, whole_load_));
+      of_du = std::max(of_du, largest_outside(Field::correction, {}));
+    }
     return of_du == 0 ? 0.0 : of_du / of_u;
+  }
+
+  /// Stress of a field outside the region: the rest may be stiffer and feel what the region does
+  /// not.
+  double largest_outside(Field field, const Load& load) const {
+    std::vector<double> of_part(body_->dofs().size()), whole(problem().dofs().size());
+    fields_.read(field, of_part);
+    region_->expand(load, of_part, whole);
+    return region_->largest_outside(whole);
   }
 
   double residual() const {
@@ -215,29 +268,44 @@ class VulkanBackend final : public Backend {
   StressSummary do_stress() override {
     if (!needs().yield) return {};
     const shaders::Summary s = fields_.state();
-    const auto worst = [](double ratio, std::uint32_t element) {
-      return ratio > 0 ? Worst{static_cast<Index>(element), ratio} : Worst{};
+    const auto worst = [this](double ratio, std::uint32_t element) {
+      return ratio > 0 ? Worst{of_body(element), ratio} : Worst{};
     };
     return {worst(s.any_ratio, s.any_element), worst(s.candidate_ratio, s.candidate_element),
             static_cast<Index>(s.over)};
   }
 
   void do_destroy(std::span<const Index> elements) override {
+    require_in_region(elements);
     finish_display();
     check_.event();
-    destroyed_list_.insert(destroyed_list_.end(), elements.begin(), elements.end());
-    fields_.destroy(elements);
-    route_->destroy(elements, destroyed_list_);
+    const auto list = on_device(elements);
+    destroyed_list_.insert(destroyed_list_.end(), list.begin(), list.end());
+    fields_.destroy(list);
+    route_->destroy(list, destroyed_list_);
+  }
+
+  /// What the scene says can be destroyed is in the region.
+  void require_in_region(std::span<const Index> elements) const {
+    if (!region_) return;
+    for (Index e : elements) {
+      if (region_->element(e) != kNone) continue;
+      throw UsageError(
+          "element " + std::to_string(e) +
+          " cannot be destroyed by route condensed on vulkan: it lies outside what the "
+          "scene lets break, tears or scripts; use route inverse or cg");
+    }
   }
 
   void do_exclude_candidates(std::span<const Index> elements) override {
     finish_display();
-    fields_.exclude(elements);
+    fields_.exclude(on_device(elements));  // outside the region nothing is a candidate
   }
 
-  void do_solve_pristine(const Load& load, std::span<double> displacement) override {
+  void do_solve_pristine(const Load& of_problem, std::span<double> displacement) override {
+    const Load load = region_ ? region_->load(of_problem) : of_problem;
     const Loaded loaded{load.force_dofs, load.forces};
-    Eigen::VectorXd u = Eigen::VectorXd::Zero(problem().dof_count());
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(body_->dof_count());
     const Eigen::MatrixXd columns = intact_->columns(load.force_dofs);
     for (std::size_t i = 0; i < load.forces.size(); ++i) {
       u += load.forces[i] * columns.col(static_cast<Index>(i));
@@ -246,42 +314,110 @@ class VulkanBackend final : public Backend {
       u += pristine_->columns() *
            pristine_->coefficients(pristine_->project(loaded), load.displacements);
     }
-    fem::scatter(problem(), {u.data(), static_cast<std::size_t>(u.size())}, displacement);
+    const std::span<const double> unknowns(u.data(), static_cast<std::size_t>(u.size()));
+    if (!region_) {
+      fem::scatter(problem(), unknowns, displacement);
+      return;
+    }
+    std::vector<double> of_part(body_->dofs().size());
+    fem::scatter(*body_, unknowns, of_part);
+    region_->expand(of_problem, of_part, displacement);
+  }
+
+  /// Displacement of the last solution at all nodes of the problem: outside a region it is solved
+  /// for, once a solution.
+  std::span<const double> whole_displacement() const {
+    if (whole_u_known_) return whole_u_;
+    std::vector<double> of_part(body_->dofs().size());
+    fields_.read_displacement(of_part);
+    whole_u_.resize(problem().dofs().size());
+    region_->expand(solved_load_, of_part, whole_u_);
+    whole_u_known_ = true;
+    return whole_u_;
   }
 
   void do_read_displacement(std::span<double> displacement) const override {
-    fields_.read_displacement(displacement);
+    if (!region_) {
+      fields_.read_displacement(displacement);
+      return;
+    }
+    const auto whole = whole_displacement();
+    std::copy(whole.begin(), whole.end(), displacement.begin());
   }
 
   void do_read_displacement(std::span<const Index> nodes,
                             std::span<Vec3> displacement) const override {
-    if (nodes.size() <= kFewNodes) {
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        displacement[i] = fields_.read_displacement(nodes[i]);
-      }
+    if (!region_) {
+      read_nodes(nodes, displacement);
       return;
     }
-    fields_.read_displacement(nodes, displacement);
+    std::vector<Index> of_part;
+    for (Index n : nodes) {
+      if (region_->node(n) != kNone) of_part.push_back(region_->node(n));
+    }
+    if (of_part.size() == nodes.size()) {
+      read_nodes(of_part, displacement);
+      return;
+    }
+    const auto whole = whole_displacement();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      displacement[i] = Vec3(&whole[3 * static_cast<std::size_t>(nodes[i])]);
+    }
   }
 
-  void do_read_stress(std::span<Voigt> stress) const override { fields_.read_stress(stress); }
-  Voigt do_read_stress(Index element) const override { return fields_.read_stress(element); }
+  void read_nodes(std::span<const Index> nodes, std::span<Vec3> displacement) const {
+    if (nodes.size() > kFewNodes) {
+      fields_.read_displacement(nodes, displacement);
+      return;
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      displacement[i] = fields_.read_displacement(nodes[i]);
+    }
+  }
+
+  void do_read_stress(std::span<Voigt> stress) const override {
+    if (!region_) {
+      fields_.read_stress(stress);
+      return;
+    }
+    std::vector<Voigt> of_part(body_->mesh().tets.size());
+    fields_.read_stress(of_part);
+    for (std::size_t e = 0; e < of_part.size(); ++e) {
+      stress[region_->region().elements[e]] = of_part[e];
+    }
+    region_->stress_outside(whole_displacement(), stress);
+  }
+
+  Voigt do_read_stress(Index element) const override {
+    const Index e = region_ ? region_->element(element) : element;
+    if (e != kNone) return fields_.read_stress(e);
+    return fem::stress(problem().shape(element), problem().material(element),
+                       fem::corner_displacement(problem().mesh(), element, whole_displacement()));
+  }
 
   void do_read_reactions(std::span<double> reactions) const override {
-    fields_.read_reactions(problem().gripped_dofs(), reactions);
+    fields_.read_reactions(body_->gripped_dofs(), reactions);
   }
 
   std::unique_ptr<vulkan::Device> device_;
   Plan plan_;
   KernelFactory kernels_;
-  InverseOptions inverse_;  // of route inverse
+  InverseOptions inverse_;  // of routes inverse and condensed
+  std::unique_ptr<engine::Substructure>
+      region_;                           // route condensed; null: the whole is on the device
+  std::shared_ptr<const Problem> body_;  // what the device has
   Fields fields_;
   FrameCheck check_;
   std::shared_ptr<const HostInverse> intact_;
   std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
   std::unique_ptr<Display> display_;
   std::unique_ptr<DeviceRoute> route_;
-  Load load_;
+  Load load_;  // of body_
+  // Of a region's problem: the load set, that of the last solution, and its displacement once read.
+  Load whole_load_, solved_load_;
+  mutable std::vector<double> whole_u_;
+  mutable bool whole_u_known_ = false;
+  std::vector<Index> in_part_;
   std::vector<double> force_;  // over the padded unknowns
   double force_squared_ = 0;
   std::vector<Index> destroyed_list_;

@@ -56,4 +56,14 @@ Region region_of(const Problem& problem, const Needs& needs) {
   return region;
 }
 
+std::vector<std::string> left_out_of(const Problem& problem, const Region& region) {
+  const auto all = static_cast<std::size_t>(problem.dof_count());
+  return {"inverse of the other " + std::to_string(all - region.dofs.size()) +
+              " unknowns: they cannot break and no instrument holds them",
+          "stress of the other " +
+              std::to_string(problem.mesh().tets.size() - region.elements.size()) +
+              " elements and displacement of the other nodes in a frame: solved for when a file or "
+              "a picture asks"};
+}
+
 }  // namespace sunder::engine

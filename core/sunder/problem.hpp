@@ -24,10 +24,25 @@ struct InstrumentNodes {
   std::vector<Index> nodes;  ///< ascending
 };
 
+/// What the rest of a body adds to the stiffness of a part: K_BB - K_BR K_RR^-1 K_RB of what lies
+/// outside, over the part's unknowns B that it touches (static condensation).
+struct Surroundings {
+  std::vector<Index> dofs;    ///< B, ascending unknowns of the part
+  Eigen::MatrixXd stiffness;  ///< [N/mm], symmetric
+};
+
+/// Nodes and elements of a body, ascending. Elements have their corners among the nodes.
+struct PartOfBody {
+  std::vector<Index> nodes, elements;
+};
+
 class Problem {
  public:
   /// Checks the scene strictly and resolves all names and selections. Throws InputError.
   explicit Problem(Scene scene);
+  /// A part of a body, with unknowns, grips and anchors of its own numbering; `around` in that too.
+  /// Its last node belongs to no element and is held: the ground that the surroundings stand on.
+  Problem(const Problem& whole, const PartOfBody& part, Surroundings around);
   Problem(const Problem&) = delete;  // holds pointers into its own scene
   Problem& operator=(const Problem&) = delete;
 
@@ -60,6 +75,9 @@ class Problem {
   [[nodiscard]] double anchor_stiffness() const { return anchor_stiffness_; }
   [[nodiscard]] std::span<const Index> anchored_dofs() const { return anchored_dofs_; }
 
+  /// Of a part of a body; empty for a whole one.
+  [[nodiscard]] const Surroundings& surroundings() const { return around_; }
+
   [[nodiscard]] const std::vector<InstrumentNodes>& instrument_nodes() const {
     return instrument_nodes_;
   }
@@ -90,6 +108,7 @@ class Problem {
   Index dof_count_ = 0;
   std::vector<Index> gripped_dofs_, anchored_dofs_;
   double anchor_stiffness_ = 0;
+  Surroundings around_;
   std::vector<InstrumentNodes> instrument_nodes_;
   std::vector<std::vector<Index>> crack_elements_, removal_elements_;
   std::vector<std::string> warnings_;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The damaged stiffness as 3 x 3 blocks between nodes in slices of 64 rows (SELL-64), with its
 // block-Jacobi preconditioner. A destroyed element's 16 blocks are summed anew, element by element:
-// no cancellation between its remaining stiffness and what was taken out.
+// no cancellation between its remaining stiffness and what was taken out. The rest of a body round
+// a part of it (Surroundings) adds blocks between all nodes that it touches, and blocks to the
+// part's held node: rows sum to zero as they do for elements.
 #pragma once
 
+#include <array>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -37,6 +41,8 @@ class BlockMatrix {
 
  private:
   void build_pattern();
+  void add_surroundings(std::vector<std::set<Index>>& all);
+  [[nodiscard]] Mat3 of_surroundings(Index row, Index column) const;
   [[nodiscard]] Mat3 block(Index row, Index column) const;
   void pack(const Mat3& block, double* to) const;
   [[nodiscard]] Mat3 inverse_of_free(Index node, const Mat3& diagonal) const;
@@ -46,6 +52,7 @@ class BlockMatrix {
   std::vector<double> scale_;                    // a_e
   std::vector<std::vector<Index>> elements_of_;  // per node, ascending
   std::vector<std::vector<Index>> neighbours_;   // per node, ascending, itself included
+  std::vector<std::array<Index, 3>> around_;     // per node: rows of Surroundings, empty: none
   std::vector<std::uint32_t> first_;             // of each slice, in rows of 64 blocks
   std::vector<std::uint32_t> columns_of_;        // of every block; empty once uploaded
   vulkan::Buffer blocks_, columns_, slices_, preconditioner_;

@@ -391,9 +391,9 @@ void Fields::write_displacement(std::span<const double> nodal) {
   write_wide(displacement_, padded);
 }
 
-void Fields::read_displacement(std::span<double> nodal) const {
+void Fields::read(Field field, std::span<double> nodal) const {
   std::vector<double> padded(4 * problem_.mesh().nodes.size());
-  read_wide(displacement_, padded);
+  read_wide(this->nodal(field), padded);
   for (std::size_t n = 0; n < problem_.mesh().nodes.size(); ++n) {
     std::copy_n(&padded[4 * n], 3, &nodal[3 * n]);
   }

@@ -94,7 +94,9 @@ class Fields {
   /// A field at all unknowns; supports stay at 0.
   void write_unknowns(Field field, const Eigen::VectorXd& values);
 
-  void read_displacement(std::span<double> nodal) const;
+  /// A field at all nodes, shape (3 * nodes).
+  void read(Field field, std::span<double> nodal) const;
+  void read_displacement(std::span<double> nodal) const { read(Field::displacement, nodal); }
   [[nodiscard]] Vec3 read_displacement(Index node) const;
   /// At some nodes; only they cross to the host.
   void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;

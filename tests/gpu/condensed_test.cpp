@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+// Route condensed on Vulkan against the CPU reference, which computes the whole body: a strip of a
+// larger board can tear, and the device has the strip alone.
+#include <algorithm>
+
+#include "gpu_body.hpp"
+#include "pieces.hpp"
+#include "sunder/error.hpp"
+#include "support/direct_solution.hpp"
+
+namespace sunder::test {
+namespace {
+
+constexpr double kFp32Tolerance = 1e-4;
+constexpr double kEagerFp32Tolerance = 1e-3;  // up to ten fractures
+
+/// 50 x 50 x 2.5 mm, 1680 elements; three rows of cells around y = 26 can tear, 360 of 1800
+/// unknowns.
+Scene organ(double contrast = 1, double poisson = 0.4) {
+  Scene scene;
+  scene.mesh = structured_board({14, 20, 1, 50, 50, 2.5}, [](const Vec3& x) {
+    return x.y() > 22.5 && x.y() < 30 ? "tissue" : "organ";
+  });
+  scene.materials = {{"tissue", {5, poisson, 2.0}},
+                     {"organ", {5 * contrast, poisson, std::nullopt}}};
+  scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
+  return scene;
+}
+
+void add_pull(Scene& scene) {
+  Instrument forceps;
+  forceps.name = "forceps";
+  forceps.action = Pull{lower_right_corner(), Vec3(0, -60, 0)};
+  scene.instruments.push_back(forceps);
+}
+
+/// What is destroyed or has come loose.
+std::vector<std::uint8_t> ignore_loose(const Backend& backend) {
+  std::vector<std::uint8_t> ignored(backend.destroyed().begin(), backend.destroyed().end());
+  for (const auto& piece : find_loose_parts(backend.problem(), backend.destroyed()).pieces) {
+    for (Index e : piece) ignored[static_cast<std::size_t>(e)] = 1;
+  }
+  return ignored;
+}
+
+std::vector<Way> condensed_ways() {
+  std::vector<Way> ways = all_ways();
+  for (Way& way : ways) way.route = Route::condensed;
+  return ways;
+}
+
+class CondensedOnVulkan : public WithVulkan<testing::TestWithParam<Way>> {
+ protected:
+  [[nodiscard]] double allowed(double of_fp64, bool short_scene = false) const {
+    if (GetParam().precision == Precision::fp64) return of_fp64;
+    if (GetParam().update != Update::eager) return kFp32Tolerance;
+    return short_scene ? kEagerFp32Tolerance : GetParam().tolerance;
+  }
+  static void expect(const Pair::Errors& e, double allowed, const std::string& where) {
+    EXPECT_TRUE(e.u <= allowed) << where << ": displacement error " << e.u;
+    EXPECT_TRUE(e.stress <= allowed) << where << ": stress error " << e.stress;
+    EXPECT_EQ(e.summary.any.element, e.reference_summary.any.element) << where;
+    EXPECT_NEAR(e.summary.any.ratio, e.reference_summary.any.ratio,
+                10 * allowed * e.reference_summary.any.ratio)
+        << where;
+  }
+  void follow(Pair& pair, const std::vector<Index>& sequence, double tolerance) {
+    std::size_t done = 0;
+    for (std::size_t count : {1, 10, 50, 100, 180}) {
+      ASSERT_LE(count, sequence.size());
+      for (; done < count; ++done) pair.destroy({&sequence[done], 1});
+      expect(pair.solve(), allowed(tolerance, count <= 10), std::to_string(count) + " fractures");
+    }
+  }
+};
+
+TEST_P(CondensedOnVulkan, AlongACrack) {
+  Scene scene = organ();
+  add_pull(scene);
+  Pair pair(std::move(scene), GetParam());
+  EXPECT_EQ(pair.vulkan->info().route, "condensed");
+  pair.load(corner_pull(pair.problem()));
+  expect(pair.solve(), allowed(kIntactTolerance, true), "intact");
+  follow(pair, crack_sequence(pair.problem(), 180, 12), kCrackTolerance);
+}
+
+TEST_P(CondensedOnVulkan, AgreesWithADirectSolution) {
+  Scene scene = organ();
+  add_pull(scene);
+  Pair pair(std::move(scene), GetParam());
+  pair.load(corner_pull(pair.problem()));
+  pair.destroy(crack_sequence(pair.problem(), 50, 12));
+  pair.solve();
+  const auto ignored = pair.vulkan->destroyed();
+  std::vector<double> scale;
+  for (auto d : ignored) scale.push_back(d ? pair.problem().scene().fracture.alpha : 1.0);
+  const DirectSolution direct(pair.problem(), scale);
+  const auto u = direct.solve(corner_force(pair.problem().mesh()));
+  EXPECT_LE(displacement_error(pair.problem().mesh(), ignored, Pair::displacement(*pair.vulkan), u),
+            allowed(kCrackTolerance));
+  EXPECT_LE(stress_error(ignored, Pair::stress(*pair.vulkan), direct.stress(u)),
+            allowed(kCrackTolerance));
+}
+
+TEST_P(CondensedOnVulkan, StiffAndNearlyIncompressible) {
+  for (const auto& [contrast, poisson] : {std::pair{1e4, 0.4}, std::pair{1.0, 0.499}}) {
+    Scene scene = organ(contrast, poisson);
+    add_pull(scene);
+    Pair pair(std::move(scene), GetParam());
+    pair.load(corner_pull(pair.problem()));
+    const auto sequence = crack_sequence(pair.problem(), 50, 12);
+    for (std::size_t done = 0; done < 50; done += 10) {
+      pair.destroy(std::span(sequence).subspan(done, 10));
+    }
+    expect(pair.solve(), allowed(kCrackTolerance), "contrast " + std::to_string(contrast));
+  }
+}
+
+// Nothing keeps the loaded corner in the region: its forces reach it through the rest.
+TEST_P(CondensedOnVulkan, LoadedOutsideTheRegion) {
+  Pair pair(organ(), GetParam());
+  pair.load(corner_pull(pair.problem()));
+  expect(pair.solve(), allowed(kIntactTolerance, true), "intact");
+  pair.destroy(crack_sequence(pair.problem(), 10, 12));
+  expect(pair.solve(), allowed(kCrackTolerance, true), "10 fractures");
+}
+
+TEST_P(CondensedOnVulkan, Grips) {
+  for (const bool supported : {true, false}) {
+    Scene scene = organ();
+    add_pull(scene);
+    Instrument low, high;
+    low.name = "low";
+    low.action = Grip{Box{Vec3(-0.1, -0.1, -1), Vec3(0.1, 10.1, 4)}, Vec3(-0.5, 0.25, 0), Axes{7}};
+    scene.instruments.push_back(low);
+    if (!supported) {  // the grips alone hold the body
+      scene.supports.clear();
+      high.name = "high";
+      high.action = Grip{Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Vec3(0, 0, 0), Axes{7}};
+      scene.instruments.push_back(high);
+    }
+    Pair pair(std::move(scene), GetParam());
+    Load load = corner_pull(pair.problem());
+    for (std::size_t i = 0; i < load.displacements.size(); ++i) {
+      load.displacements[i] = 0.1 * static_cast<double>(i % 7) - 0.2;
+    }
+    pair.load(load);
+    expect(pair.solve(), allowed(kIntactTolerance, true), "intact");
+    pair.destroy(crack_sequence(pair.problem(), 20, 12));
+    expect(pair.solve(), allowed(kCrackTolerance), "20 fractures");
+    std::vector<double> r(load.displacements.size()), reference(r.size());
+    pair.vulkan->read_reactions(r);
+    pair.reference->read_reactions(reference);
+    double largest = 0;
+    for (double v : reference) largest = std::max(largest, std::abs(v));
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      EXPECT_NEAR(r[i], reference[i], allowed(kCrackTolerance) * largest) << "grip " << i;
+    }
+  }
+}
+
+TEST_P(CondensedOnVulkan, AfterACut) {
+  Pair pair(organ(), GetParam());
+  const Mesh& mesh = pair.problem().mesh();
+  auto force =
+      shared_force(mesh, nodes_in(mesh, {Vec3(49.9, 39, -1), Vec3(51, 41, 3)}), Vec3(6, 0, 0));
+  const auto below = corner_force(mesh, Vec3(0, -6e-3, 0));
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += below[i];
+  pair.load(load_of(pair.problem(), force, {}));
+  for (Index e : elements_across(mesh, 26.5)) pair.destroy({&e, 1});
+  const auto ignored = ignore_loose(*pair.vulkan);
+  const auto errors = pair.solve(ignored);
+  EXPECT_LE(errors.u, allowed(kCutTolerance));
+  EXPECT_LE(errors.stress, allowed(kCutTolerance));
+  for (double u : Pair::displacement(*pair.vulkan)) ASSERT_TRUE(std::isfinite(u));
+}
+
+TEST_P(CondensedOnVulkan, IntactBodyAndSingleReads) {
+  Scene scene = organ();
+  add_pull(scene);
+  Pair pair(std::move(scene), GetParam());
+  const Load load = corner_pull(pair.problem());
+  pair.load(load);
+  pair.destroy(crack_sequence(pair.problem(), 5, 12));
+  pair.solve();
+  const auto u = Pair::displacement(*pair.vulkan);
+  std::vector<Index> nodes;
+  for (Index n = 0; n < pair.problem().node_count(); n += 3) nodes.push_back(n);
+  std::vector<Vec3> some(nodes.size());
+  pair.vulkan->read_displacement(nodes, some);
+  for (std::size_t i = 0; i < nodes.size(); ++i) EXPECT_EQ(some[i], Vec3(&u[3 * nodes[i]]));
+  const auto stress = Pair::stress(*pair.vulkan);
+  for (Index e = 0; e < pair.problem().tet_count(); e += 7) {
+    EXPECT_EQ(pair.vulkan->read_stress(e), stress[static_cast<std::size_t>(e)]);
+  }
+  std::vector<double> intact(u.size()), reference(u.size());
+  pair.vulkan->solve_pristine(load, intact);
+  pair.reference->solve_pristine(load, reference);
+  const std::vector<std::uint8_t> none(pair.problem().mesh().tets.size(), 0);
+  EXPECT_LE(displacement_error(pair.problem().mesh(), none, intact, reference), kIntactTolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CondensedOnVulkan, testing::ValuesIn(condensed_ways()),
+                         [](const auto& tested) { return name_of(tested.param); });
+
+class CondensedChoice : public WithVulkan<> {};
+
+// 366 of 1800 unknowns: the strip and the pulled corner; 252 of 1680 elements.
+TEST_F(CondensedChoice, HoldsTheRegionAlone) {
+  Scene scene = organ();
+  add_pull(scene);
+  scene.fracture.model = FractureModel::a;
+  Way way{.precision = Precision::fp32, .update = Update::automatic, .route = Route::automatic};
+  const auto bytes = [](const Backend& backend) {
+    std::size_t inverse = 0, stress = 0;
+    for (const BufferPlan& b : backend.buffers()) {
+      if (b.name == "condensed inverse (device, fp32)") inverse = b.bytes;
+      if (b.name == "element stress (device)") stress = b.bytes;
+    }
+    return std::pair(inverse, stress);
+  };
+  const WatchedBackend watched(std::move(scene), way);
+  const auto backend = watched.create();
+  EXPECT_EQ(backend->info().route, "condensed");
+  EXPECT_EQ(backend->info().update, "deferred");
+  EXPECT_NE(backend->info().why.find("366 can break"), std::string::npos) << backend->info().why;
+  const auto [inverse, stress] = bytes(*backend);
+  EXPECT_GE(inverse, 366u * 366u * 4u);
+  EXPECT_LE(inverse, 2 * 512u * 512u * 4u);
+  EXPECT_EQ(stress, 256u * 8u * 4u);
+  std::string left_out;
+  for (const std::string& what : backend->needs().left_out) left_out += what + "\n";
+  EXPECT_NE(left_out.find("inverse of the other 1434 unknowns"), std::string::npos) << left_out;
+  EXPECT_NE(left_out.find("stress of the other 1428 elements"), std::string::npos) << left_out;
+}
+
+TEST_F(CondensedChoice, RefusesWhatItCannotFollow) {
+  Scene scene = organ();
+  add_pull(scene);
+  Way way{.update = Update::automatic, .route = Route::condensed};
+  const WatchedBackend watched(scene, way);
+  const auto backend = watched.create(all_needs());
+  backend->set_load(corner_pull(*watched.problem));
+  backend->solve();
+  const Index outside = elements_across(watched.problem->mesh(), 10.1).front();
+  ASSERT_FALSE(watched.problem->breakable(outside));
+  try {
+    backend->destroy({&outside, 1});
+    FAIL() << "an element outside the region";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("element " + std::to_string(outside)),
+              std::string::npos);
+  }
+  EXPECT_FALSE(backend->destroyed()[static_cast<std::size_t>(outside)]);
+  backend->solve();
+
+  for (auto& [name, material] : scene.materials) material.yield.reset();
+  scene.instruments.clear();
+  const WatchedBackend unbreakable(scene, way);
+  EXPECT_THROW(static_cast<void>(unbreakable.create()), DeviceError);
+}
+
+}  // namespace
+}  // namespace sunder::test
