@@ -29,7 +29,7 @@ class FailoverBackend final : public Backend {
   void time_passes(bool on) override { current_->time_passes(on); }
   std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
   std::shared_ptr<InstrumentForces> instrument_forces() override {
-    return current_->instrument_forces();
+    return instruments_ = current_->instrument_forces();
   }
 
  private:
@@ -98,6 +98,7 @@ class FailoverBackend final : public Backend {
   /// Brings the replacement to the state before the operation that failed.
   void take_over() const {
     current_ = replacement_();
+    if (instruments_) current_->take_over_instrument_forces(instruments_);
     if (!events_.empty()) current_->destroy(events_);
     if (needs().yield) current_->exclude_candidates(excluded_);
     if (load_) current_->set_load(*load_);
@@ -107,7 +108,8 @@ class FailoverBackend final : public Backend {
 
   mutable std::unique_ptr<Backend> current_;
   std::function<std::unique_ptr<Backend>()> replacement_;
-  mutable std::string lost_;  // why the primary is gone; empty: it is not
+  mutable std::string lost_;                       // why the primary is gone; empty: it is not
+  std::shared_ptr<InstrumentForces> instruments_;  // as handed out
   std::vector<Index> events_, excluded_;
   std::optional<Load> load_;
   bool solved_ = false, stressed_ = false;

@@ -15,6 +15,7 @@
 #include "cpu_reference/frame_check.hpp"
 #include "cpu_reference/recent_checks.hpp"
 #include "cpu_reference/routes.hpp"
+#include "engine/instrument_block.hpp"
 #include "engine/stress_kernel.hpp"
 #include "sunder/error.hpp"
 
@@ -59,16 +60,8 @@ class CpuBackend final : public Backend {
     force_.setZero(n);
     u_.setZero(n);
     reactions_.assign(problem->gripped_dofs().size(), 0.0);
-    anchors_.assign(reactions_.size(), 0.0);
-    for (Index d : problem->anchored_dofs()) {
-      const auto gripped = problem->gripped_dofs();
-      const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
-      anchors_[static_cast<std::size_t>(g)] = problem->anchor_stiffness();
-    }
-    if (route_->deferred() && !anchors_.empty()) {
-      instruments_ = std::make_shared<InstrumentForces>(anchors_);
-      grip_forces_.setZero(static_cast<Eigen::Index>(anchors_.size()));
-    }
+    anchors_ = engine::anchors_of(*problem);
+    if (route_->deferred() && !anchors_.empty()) instruments_.emplace(*problem);
     nodal_.assign(problem->dofs().size(), 0.0);
     next_nodal_ = nodal_;
     make_stress();
@@ -184,7 +177,12 @@ class CpuBackend final : public Backend {
       force_[load.force_dofs[i]] = load.forces[i];
   }
 
-  std::shared_ptr<InstrumentForces> instrument_forces() override { return instruments_; }
+  std::shared_ptr<InstrumentForces> instrument_forces() override {
+    return instruments_ ? instruments_->forces() : nullptr;
+  }
+  void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override {
+    if (instruments_) instruments_->take_over(std::move(forces));
+  }
 
   bool prepares() const override { return needs().damage && route_->prepares(); }
 
@@ -214,19 +212,10 @@ class CpuBackend final : public Backend {
     SolveReport report = solve_and_check();
     report.waited_ms = route_->waited_ms() - waited_ms_;
     waited_ms_ = route_->waited_ms();
-    if (instruments_) publish_instruments();
-    return report;
-  }
-
-  void publish_instruments() {
-    const auto gripped = problem().gripped_dofs();
-    for (std::size_t g = 0; g < gripped.size(); ++g) {  // anchors pull as well
-      grip_forces_[static_cast<Eigen::Index>(g)] =
-          reactions_[g] + anchors_[g] * load_.displacements[g];
+    if (instruments_) {
+      instruments_->publish(route_->deferred()->grip_factor(), reactions_, load_.displacements);
     }
-    const engine::Deferred& deferred = *route_->deferred();
-    deferred.free_grips(grip_forces_, load_.displacements, free_grips_);
-    instruments_->publish(deferred.grip_factor(), free_grips_);
+    return report;
   }
 
   SolveReport solve_and_check() {
@@ -511,8 +500,7 @@ class CpuBackend final : public Backend {
   Eigen::VectorXd force_, u_, du_, product_, r_;
   double free_residual_ = 0;  // |r_|
   double unrefined_ = 0;      // error of the last full check's solution before it was refined
-  std::shared_ptr<InstrumentForces> instruments_;
-  Eigen::VectorXd grip_forces_, free_grips_;
+  std::optional<engine::InstrumentBlock> instruments_;
   double waited_ms_ = 0;         // for rebases, as reported so far
   std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
   std::vector<double> reactions_;

@@ -60,6 +60,9 @@ class Correction {
   [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& projection,
                                              std::span<const double> displacement) const;
 
+  /// L with L L^T = (X')_GG of the gripped dofs, a lower triangle.
+  [[nodiscard]] const Eigen::MatrixXd& grip_factor() const { return grips_.matrixLLT(); }
+
   /// What the damage adds to r^T X r, for X_E^T r: r^T A^-1 r = r^T X r + energy.
   [[nodiscard]] double energy(const Eigen::VectorXd& projection) const;
   /// r_E^T X_EE r_E of a residual's values on E.

@@ -31,6 +31,7 @@ class HostCorrectedRoute final : public DeviceRoute {
   bool leaves_at(double, std::span<const Index>) override { return false; }
   bool restart(std::span<const Index> destroyed) override;
 
+  const Eigen::MatrixXd* grip_factor() const override { return &correction_->grip_factor(); }
   std::string name() const override { return "inverse"; }
   std::string update() const override { return "deferred"; }
   std::vector<BufferPlan> buffers() const override;

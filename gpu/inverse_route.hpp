@@ -41,6 +41,9 @@ class InverseRoute final : public DeviceRoute {
   bool leaves_at(double error, std::span<const Index> destroyed) override;
   bool restart(std::span<const Index> destroyed) override;
 
+  const Eigen::MatrixXd* grip_factor() const override {
+    return eager_ ? &grips_.matrixLLT() : &correction_->grip_factor();
+  }
   std::string name() const override { return "inverse"; }
   std::string update() const override { return eager_ ? "eager" : "deferred"; }
   std::vector<BufferPlan> buffers() const override;

@@ -2,6 +2,7 @@
 // One way to apply the inverse of the damaged stiffness on the device.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,6 +46,9 @@ class DeviceRoute {
   [[nodiscard]] virtual bool leaves_at(double error, std::span<const Index> destroyed) = 0;
   /// Called when refinement failed. True: the route started afresh, solve anew.
   [[nodiscard]] virtual bool restart(std::span<const Index> destroyed) = 0;
+
+  /// L with L L^T = (A^-1)_GG of the gripped unknowns, a lower triangle; null: the route has none.
+  [[nodiscard]] virtual const Eigen::MatrixXd* grip_factor() const { return nullptr; }
 
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string update() const = 0;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "engine/instrument_block.hpp"
 #include "engine/substructure.hpp"
 #include "fem/element.hpp"
 #include "gpu/cg_route.hpp"
@@ -97,6 +98,17 @@ class VulkanBackend final : public Backend {
     return plan;
   }
 
+  std::shared_ptr<InstrumentForces> instrument_forces() override {
+    if (!instruments_ && !body_->gripped_dofs().empty() && route_->grip_factor()) {
+      instruments_.emplace(*body_);
+      if (solved_) publish_instruments();
+    }
+    return instruments_ ? instruments_->forces() : nullptr;
+  }
+  void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override {
+    if (instrument_forces()) instruments_->take_over(std::move(forces));
+  }
+
   void time_passes(bool on) override { device_->set_timing(on); }
   std::vector<PassTime> take_pass_times() override {
     std::vector<PassTime> times;
@@ -143,6 +155,7 @@ class VulkanBackend final : public Backend {
     for (Index d : load_.force_dofs) force_[d] = 0;
     if (region_) whole_load_ = load;
     load_ = region_ ? region_->load(load) : load;
+    solved_ = false;
     force_squared_ = 0;
     for (double f : load.forces) force_squared_ += f * f;
     for (std::size_t i = 0; i < load_.forces.size(); ++i) {
@@ -172,12 +185,21 @@ class VulkanBackend final : public Backend {
       const SolveReport report = solve_within_tolerance();
       solved_load_ = whole_load_;
       whole_u_known_ = false;
+      solved_ = true;
+      if (instruments_) publish_instruments();
       return report;
     } catch (const NumericalError&) {
       check_.event();
       fields_.restore();  // results so far stay readable
       throw;
     }
+  }
+
+  /// Only once somebody has asked for them: the reactions are read back from the device.
+  void publish_instruments() {
+    reactions_.resize(body_->gripped_dofs().size());
+    fields_.read_reactions(body_->gripped_dofs(), reactions_);
+    instruments_->publish(*route_->grip_factor(), reactions_, load_.displacements);
   }
 
   SolveReport solve_within_tolerance() {
@@ -279,6 +301,7 @@ class VulkanBackend final : public Backend {
     require_in_region(elements);
     finish_display();
     check_.event();
+    solved_ = false;
     const auto list = on_device(elements);
     destroyed_list_.insert(destroyed_list_.end(), list.begin(), list.end());
     fields_.destroy(list);
@@ -418,6 +441,9 @@ class VulkanBackend final : public Backend {
   mutable std::vector<double> whole_u_;
   mutable bool whole_u_known_ = false;
   std::vector<Index> in_part_;
+  std::optional<engine::InstrumentBlock> instruments_;  // once asked for
+  std::vector<double> reactions_;
+  bool solved_ = false;        // the load and the damage as they are
   std::vector<double> force_;  // over the padded unknowns
   double force_squared_ = 0;
   std::vector<Index> destroyed_list_;

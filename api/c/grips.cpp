@@ -69,8 +69,8 @@ sunder_status sunder_grips_create(sunder_simulation simulation, sunder_grips* gr
       const auto info = object.simulation().backend().info();
       throw Failure(SUNDER_ERROR_DEVICE,
                     "backend " + info.backend + ", route " + info.route + ", update " +
-                        info.update + " gives no forces between frames; choose backend cpu, " +
-                        "route inverse or factor");
+                        info.update + " gives no forces between frames; choose route inverse or " +
+                        "condensed, update deferred");
     }
     if (!object.grips.expired()) {
       throw Failure(SUNDER_ERROR_ORDER, "the simulation's grips have a handle already");

@@ -354,15 +354,6 @@ void Deferred::add_grips(std::span<const double> displacement) {
   x_.head(g) += forces_;
 }
 
-void Deferred::free_grips(const Eigen::VectorXd& forces, std::span<const double> displacement,
-                          Eigen::VectorXd& u_0) const {
-  u_0.setZero(grips_);
-  u_0.noalias() -= grip_compliance_.leftCols(grips_) * forces;  // a minus in front: a temporary
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    u_0[static_cast<Eigen::Index>(i)] += displacement[i];
-  }
-}
-
 Damage Deferred::damage() const {
   const Eigen::Index n = count();
   return {compliance_.topLeftCorner(n, n), m_.topLeftCorner(n, n), d_.topLeftCorner(n, n)};

@@ -58,9 +58,6 @@ class Deferred {
 
   /// L with L L^T = (A^-1)_GG.
   [[nodiscard]] const Eigen::MatrixXd& grip_factor() const { return grip_block_.matrixLLT(); }
-  /// u_G without the grips that pull it to `displacement` with `forces`.
-  void free_grips(const Eigen::VectorXd& forces, std::span<const double> displacement,
-                  Eigen::VectorXd& u_0) const;
 
   [[nodiscard]] Index events() const { return static_cast<Index>(events_.size()); }
   /// Unknowns of destroyed elements, gripped ones first.

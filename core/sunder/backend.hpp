@@ -120,6 +120,9 @@ class Backend {
   /// Reaction forces of the grips between frames, for another thread; after each solve() they
   /// belong to its solution. Null: there are no grips, or the backend has nothing of the kind.
   [[nodiscard]] virtual std::shared_ptr<InstrumentForces> instrument_forces() { return nullptr; }
+  /// Publishes to these from the next solve() on: another backend of the same problem, now gone,
+  /// did so before.
+  virtual void take_over_instrument_forces(std::shared_ptr<InstrumentForces>) {}
 
   /// Whether preparing fractures saves this backend anything.
   [[nodiscard]] virtual bool prepares() const { return false; }
