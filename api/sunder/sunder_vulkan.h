@@ -23,7 +23,7 @@ extern "C" {
 
 /// Features of VkPhysicalDeviceFeatures and VkPhysicalDeviceVulkan12Features that the host enabled.
 enum {
-  SUNDER_VULKAN_SHADER_FLOAT64 = 1,     ///< needed
+  SUNDER_VULKAN_SHADER_FLOAT64 = 1,     ///< without it: fp32, route inverse, deferred
   SUNDER_VULKAN_SHADER_INT64 = 2,       ///< used on lavapipe when it is there
   SUNDER_VULKAN_TIMELINE_SEMAPHORE = 4  ///< needed by sunder_vulkan_submit with a semaphore
 };

@@ -85,10 +85,11 @@ void Device::choose_physical() {
 void Device::create_device() {
   VkPhysicalDeviceFeatures offered{};
   vkGetPhysicalDeviceFeatures(physical, &offered);
+  float64 = offered.shaderFloat64;
   int64 = offered.shaderInt64;
   VkPhysicalDeviceFeatures features{};
-  features.shaderFloat64 = VK_TRUE;  // Sunder needs it
-  features.shaderInt64 = int64;      // Sunder uses it where it is there
+  features.shaderFloat64 = float64;  // Sunder uses both where they are there
+  features.shaderInt64 = int64;
   const float priority = 1;
   VkDeviceQueueCreateInfo queues{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
   queues.queueFamilyIndex = family;

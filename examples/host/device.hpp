@@ -33,6 +33,7 @@ class Device {
   VkDevice handle = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t family = 0;
+  VkBool32 float64 = VK_FALSE;        ///< shaderFloat64 was enabled
   VkBool32 int64 = VK_FALSE;          ///< shaderInt64 was enabled
   std::vector<std::string> messages;  ///< of the validation layers
 

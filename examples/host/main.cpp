@@ -24,7 +24,8 @@ sunder_simulation lend(const Device& device, sunder_scene scene) {
   host.device = device.handle;
   host.queue = device.queue;
   host.queue_family = device.family;
-  host.features = SUNDER_VULKAN_SHADER_FLOAT64 | (device.int64 ? SUNDER_VULKAN_SHADER_INT64 : 0);
+  host.features = (device.float64 ? SUNDER_VULKAN_SHADER_FLOAT64 : 0) |
+                  (device.int64 ? SUNDER_VULKAN_SHADER_INT64 : 0);
   sunder_simulation simulation = nullptr;
   check(sunder_vulkan_create(scene, &host, nullptr, &simulation));
   return simulation;

@@ -35,7 +35,6 @@ void check_features(const LentDevice& lent, const PhysicalDevice& physical) {
           "its instance was created for Vulkan " +
               std::to_string(VK_API_VERSION_MAJOR(lent.api_version)) + "." +
               std::to_string(VK_API_VERSION_MINOR(lent.api_version)) + "; 1.2 is needed");
-  require(lent.float64, "the host did not enable the feature shaderFloat64");
   const std::string shortcoming = physical.shortcoming();
   require(shortcoming.empty(), shortcoming);
 }
@@ -55,6 +54,7 @@ std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe)
   handles.lock = lent.lock;
   handles.int64 = lent.int64;
   physical.int64 = lent.int64;
+  physical.float64 = lent.float64 && !probe.no_float64;
   handles.vk = load_functions(vk.GetDeviceProcAddr, lent.device);
   vk.GetPhysicalDeviceMemoryProperties(lent.physical, &handles.memory);
   // Validation is the host's; its messages go to the host.

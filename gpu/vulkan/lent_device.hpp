@@ -20,8 +20,8 @@ struct LentDevice {
   QueueLock lock;
 };
 
-/// Throws DeviceError naming what is missing: a handle, Vulkan 1.2, a feature, compute on the
-/// queue.
+/// Throws DeviceError naming what is missing: a handle, Vulkan 1.2, compute on the queue. What the
+/// host did not enable the device counts as lacking.
 [[nodiscard]] std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe = {});
 
 }  // namespace sunder::vulkan
