@@ -11,6 +11,7 @@
 #include "fem/element.hpp"
 #include "gpu/cg_route.hpp"
 #include "gpu/choose_device.hpp"
+#include "gpu/cost_model.hpp"
 #include "gpu/frame_check.hpp"
 #include "gpu/host_corrected_route.hpp"
 #include "gpu/inverse_route.hpp"
@@ -84,6 +85,9 @@ class VulkanBackend final : public Backend {
     info.update = needs().damage ? route_->update() : "none";
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
+    const FrameCost cost = frame_cost(shape(), device_->physical());
+    info.quiet_ms = cost.quiet_ms;
+    info.fracture_ms = cost.fracture_ms;
     return info;
   }
 
@@ -131,6 +135,25 @@ class VulkanBackend final : public Backend {
   Display* display() { return display_.get(); }
 
  private:
+  [[nodiscard]] FrameShape shape() const {
+    FrameShape shape;
+    shape.cg = plan_.cg;
+    shape.eager = plan_.eager;
+    shape.host_corrects = kernels_.single();
+    shape.damage = needs().damage;
+    shape.real_bytes = kernels_.real_bytes();
+    shape.rows = fields_.rows();
+    shape.grips = body_->gripped_dofs().size();
+    for (const InstrumentNodes& i : problem().instrument_nodes()) {
+      shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
+    }
+    shape.loaded -= std::min(shape.loaded, shape.grips);
+    shape.elements = body_->mesh().tets.size();
+    shape.stiffness_bytes = fields_.matrix().bytes();
+    shape.stress = needs().stress;
+    return shape;
+  }
+
   /// What a host's submit still reads must not be written.
   void finish_display() {
     if (display_) display_->finish();

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device's cost model orders frames as they are, and its terms are those of the passes.
+#include "gpu/cost_model.hpp"
+
+#include <gtest/gtest.h>
+
+namespace sunder::test {
+namespace {
+
+using gpu::FrameCost;
+using gpu::FrameShape;
+
+vulkan::PhysicalDevice device(VkPhysicalDeviceType type) {
+  vulkan::PhysicalDevice device;
+  device.type = type;
+  return device;
+}
+
+/// A board of `n` unknowns.
+FrameShape board(std::size_t n) {
+  FrameShape shape;
+  shape.damage = shape.stress = true;
+  shape.rows = n;
+  shape.loaded = 6;
+  shape.elements = n;
+  shape.stiffness_bytes = 500 * n;
+  return shape;
+}
+
+constexpr VkPhysicalDeviceType kKinds[] = {VK_PHYSICAL_DEVICE_TYPE_CPU,
+                                           VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,
+                                           VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU};
+
+TEST(DeviceCostModel, OrdersFrames) {
+  for (const VkPhysicalDeviceType kind : kKinds) {
+    FrameShape eager = board(6000), cg = board(6000), organ = board(1000);
+    eager.eager = true;
+    cg.cg = true;
+    const FrameCost deferred = frame_cost(board(6000), device(kind));
+    EXPECT_GT(deferred.quiet_ms, 0);
+    EXPECT_GT(deferred.fracture_ms, deferred.quiet_ms);
+    EXPECT_GT(frame_cost(eager, device(kind)).fracture_ms, deferred.fracture_ms);
+    EXPECT_GT(frame_cost(cg, device(kind)).fracture_ms, deferred.fracture_ms);
+    EXPECT_LT(frame_cost(organ, device(kind)).fracture_ms, deferred.fracture_ms);
+  }
+}
+
+TEST(DeviceCostModel, CountsWhatASceneNeeds) {
+  FrameShape quiet = board(3000), gripped = board(3000), loaded = board(3000);
+  quiet.damage = false;
+  gripped.grips = 60;
+  loaded.loaded = 3000;
+  const auto lavapipe = device(VK_PHYSICAL_DEVICE_TYPE_CPU);
+  const double least = frame_cost(quiet, lavapipe).quiet_ms;
+  EXPECT_EQ(frame_cost(quiet, lavapipe).fracture_ms, 0);
+  EXPECT_GT(frame_cost(gripped, lavapipe).quiet_ms, least) << "reactions are f - K u";
+  EXPECT_GT(frame_cost(loaded, lavapipe).quiet_ms, least);
+}
+
+// The inverse is read and written once: 8 n^2 bytes in fp32.
+TEST(DeviceCostModel, AnEagerUpdateIsBoundByTheInverse) {
+  FrameShape small = board(6000), large = board(24000);
+  small.eager = large.eager = true;
+  const auto gpu = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
+  const double ratio = frame_cost(large, gpu).fracture_ms / frame_cost(small, gpu).fracture_ms;
+  EXPECT_GT(ratio, 8);
+  EXPECT_LT(ratio, 16);
+}
+
+TEST(DeviceCostModel, AGpuIsQuickerOnLargeBodies) {
+  const FrameCost lavapipe = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_CPU));
+  const FrameCost gpu = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU));
+  EXPECT_GT(lavapipe.quiet_ms, 5 * gpu.quiet_ms);
+}
+
+}  // namespace
+}  // namespace sunder::test
