@@ -9,9 +9,9 @@
 
 namespace sunder::cpu_reference {
 
-Based based_on(const Problem& problem, std::span<const double> scale) {
+Based based_on(const Problem& problem, std::span<const double> scale, const fem::FactorWork& work) {
   Based based;
-  based.factor = std::make_shared<const fem::Factor>(problem, scale);
+  based.factor = std::make_shared<const fem::Factor>(problem, scale, work);
   based.deferred = std::make_unique<engine::Deferred>(
       problem, std::make_unique<engine::FactorBase>(*based.factor));
   return based;
@@ -41,6 +41,7 @@ BackgroundRebase::BackgroundRebase(const DamagedBody& body, const Load& load, Ma
     : body_(body), load_(load), make_(std::move(make)), thread_([this] { run(); }) {}
 
 BackgroundRebase::~BackgroundRebase() {
+  unwanted_ = true;
   if (thread_.joinable()) static_cast<void>(take());
 }
 
@@ -79,14 +80,15 @@ bool BackgroundRebase::next(std::vector<Index>& elements) {
 
 void BackgroundRebase::run() {
   try {
-    Based based = make_(body_, load_);
+    Based based = make_(body_, load_, {.stop = &unwanted_});
     std::vector<Index> elements;
     while (next(elements)) {
       if (!based.deferred->destroy(elements)) return;
     }
     result_ = std::move(based);
   } catch (const std::exception&) {
-    // Out of memory or not definite: result_ stays empty, and the frame that takes it decides.
+    // Out of memory, not definite or unwanted: result_ stays empty, and the frame that takes it
+    // decides.
   }
 }
 

@@ -4,6 +4,7 @@
 // alone, never on how long anything took.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -23,13 +24,15 @@ struct Based {
   engine::CondensedBase* condensed = nullptr;  // what `deferred` holds, where it is one
 };
 
-/// Makes a base of a body with no damage over it yet, and checks it by a load.
-using MakeBase = std::function<Based(const DamagedBody&, const Load&)>;
+/// Makes a base of a body with no damage over it yet, and checks it by a load; `work` is for a
+/// factor on the way.
+using MakeBase = std::function<Based(const DamagedBody&, const Load&, const fem::FactorWork&)>;
 
 class BackgroundRebase {
  public:
   /// Starts. `body` as it is now; `load`: likely that of the frame that takes the base.
   BackgroundRebase(const DamagedBody& body, const Load& load, MakeBase make);
+  /// Gives up a factor that is being made.
   ~BackgroundRebase();
   BackgroundRebase(const BackgroundRebase&) = delete;
   BackgroundRebase& operator=(const BackgroundRebase&) = delete;
@@ -55,11 +58,13 @@ class BackgroundRebase {
   std::vector<Index> elements_;    // of events not yet followed, guarded by mutex_
   std::vector<std::size_t> ends_;  // of each of them
   bool closed_ = false;            // no event will come
-  std::thread thread_;             // last: it uses all above
+  std::atomic<bool> unwanted_{false};
+  std::thread thread_;  // last: it uses all above
 };
 
 /// The factor of a body and an empty damage over it.
-[[nodiscard]] Based based_on(const Problem& problem, std::span<const double> scale);
+[[nodiscard]] Based based_on(const Problem& problem, std::span<const double> scale,
+                             const fem::FactorWork& work = {});
 
 /// A full check of a new base (frame_check.hpp). It solves for the load once more at the end: the
 /// frame that takes the base finds its load known, and all memory touched. `complete` fills what a

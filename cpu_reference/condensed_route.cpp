@@ -62,7 +62,7 @@ struct NextBase {
   engine::Damage damage;
   std::vector<Index> lost;  // elements destroyed since the factor
 
-  Based operator()(const DamagedBody& body, const Load& load) const {
+  Based operator()(const DamagedBody& body, const Load& load, const fem::FactorWork& work) const {
     const Problem& problem = body.problem();
     Based based = lay_over(problem, state.factor,
                            std::make_unique<engine::CondensedBase>(
@@ -71,8 +71,7 @@ struct NextBase {
                            true);
     check_condensed(based, body, load);
     if (based.check.error <= kDrift) return based;
-    based = condensed_by(problem,
-                         std::make_shared<fem::Factor>(fem::assemble_lower(problem, body.scale())),
+    based = condensed_by(problem, std::make_shared<fem::Factor>(problem, body.scale(), work),
                          state.dofs, true);
     check_condensed(based, body, load);
     return based;

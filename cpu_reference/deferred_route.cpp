@@ -23,8 +23,8 @@ constexpr int kRebaseEvents = 64;
 constexpr double kLargestShare = 0.125, kSmallBody = 64;
 constexpr double kLargestEvent = 600;
 
-Based checked_factor(const DamagedBody& body, const Load& load) {
-  Based based = based_on(body.problem(), body.scale());
+Based checked_factor(const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
+  Based based = based_on(body.problem(), body.scale(), work);
   check_base(based, body, load, [](Eigen::VectorXd&) {});
   return based;
 }
