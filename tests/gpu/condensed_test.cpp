@@ -27,10 +27,10 @@ Scene organ(double contrast = 1, double poisson = 0.4) {
   return scene;
 }
 
-void add_pull(Scene& scene) {
+void add_pull(Scene& scene, double force = -60) {
   Instrument forceps;
   forceps.name = "forceps";
-  forceps.action = Pull{lower_right_corner(), Vec3(0, -60, 0)};
+  forceps.action = Pull{lower_right_corner(), Vec3(0, force, 0)};
   scene.instruments.push_back(forceps);
 }
 
@@ -232,6 +232,39 @@ TEST_F(CondensedChoice, HoldsTheRegionAlone) {
   for (const std::string& what : backend->needs().left_out) left_out += what + "\n";
   EXPECT_NE(left_out.find("inverse of the other 1434 unknowns"), std::string::npos) << left_out;
   EXPECT_NE(left_out.find("stress of the other 1428 elements"), std::string::npos) << left_out;
+}
+
+std::vector<Index> torn_by(const std::shared_ptr<const Problem>& problem,
+                           std::unique_ptr<Backend> backend) {
+  Simulation simulation(problem, std::move(backend));
+  while (!simulation.done()) simulation.step();
+  std::vector<Index> list;
+  for (const DestroyedElement& d : simulation.destroyed()) list.push_back(d.element);
+  return list;
+}
+
+// Method B reads the intact body's field and the nodes round its cracks as well.
+TEST_F(CondensedChoice, TearsAsTheCpuDoes) {
+  for (const FractureModel model : {FractureModel::a, FractureModel::b}) {
+    Scene scene = organ();
+    add_pull(scene, -300);
+    scene.instruments.front().ramp = Ramp{0, 1};
+    scene.fracture.model = model;
+    scene.fracture.max_events = 12;
+    scene.steps = 6;
+    Scene whole = scene;
+    whole.solver.route = Route::inverse;
+    const auto on_cpu = std::make_shared<const Problem>(std::move(whole));
+    const auto reference = torn_by(on_cpu, cpu_reference::create(on_cpu, needs_of(*on_cpu)));
+    EXPECT_GE(reference.size(), 10u);
+    for (const Precision precision : {Precision::fp32, Precision::fp64}) {
+      const WatchedBackend watched(
+          scene, {.precision = precision, .update = Update::automatic, .route = Route::automatic});
+      auto backend = watched.create();
+      EXPECT_EQ(backend->info().route, "condensed");
+      EXPECT_EQ(torn_by(watched.problem, std::move(backend)), reference);
+    }
+  }
 }
 
 TEST_F(CondensedChoice, RefusesWhatItCannotFollow) {

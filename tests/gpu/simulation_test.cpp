@@ -55,7 +55,7 @@ TEST_F(Runs, VulkanByNameGoesThroughTheListOfBackends) {
 }
 
 TEST_F(Runs, ASolveThatCannotKeepItsPromiseLeavesTheLastOneReadable) {
-  for (const Route route : {Route::inverse, Route::cg}) {
+  for (const Route route : {Route::inverse, Route::condensed, Route::cg}) {
     Way way{.update = Update::automatic, .tolerance = 1e-18, .route = route};
     const WatchedBackend watched(held_board(), way);
     const auto backend = watched.create(all_needs());
