@@ -11,9 +11,8 @@ namespace sunder::engine {
 Substructure::Substructure(const Problem& whole, Region region)
     : whole_(whole), region_(std::move(region)) {
   number();
-  Surroundings around;
-  split_stiffness(around.stiffness);
-  around.dofs = touched_;
+  find_touched();
+  Surroundings around{touched_, condense()};
   part_ = std::make_shared<Problem>(whole, nodes_and_elements_, std::move(around));
 }
 
@@ -45,16 +44,11 @@ void Substructure::number() {
   nodes_and_elements_.elements = region_.elements;
 }
 
-/// K_RR and K_RS of the rest, and what of it is left on the unknowns B that it touches:
-/// K_BB - K_BR K_RR^-1 K_RB, for which the inverse of K_RR is needed next to B alone.
-void Substructure::split_stiffness(Eigen::MatrixXd& of_touched) {
-  std::vector<double> outside(whole_.mesh().tets.size(), 1.0);
+/// Unknowns B of the part that elements outside touch.
+void Substructure::find_touched() {
   std::vector<std::uint8_t> is_touched(region_.dofs.size(), 0);
-  for (std::size_t e = 0; e < outside.size(); ++e) {
-    if (element_[e] != kNone) {
-      outside[e] = 0;
-      continue;
-    }
+  for (Index e = 0; e < whole_.tet_count(); ++e) {
+    if (element_[e] != kNone) continue;
     for (Index n : whole_.mesh().tets[e]) {
       for (int axis = 0; axis < 3; ++axis) {
         const Index d = whole_.dof(n, axis);
@@ -62,60 +56,70 @@ void Substructure::split_stiffness(Eigen::MatrixXd& of_touched) {
       }
     }
   }
-  std::vector<Index> place(is_touched.size(), kNone);
   for (std::size_t i = 0; i < is_touched.size(); ++i) {
-    if (!is_touched[i]) continue;
-    place[i] = static_cast<Index>(touched_.size());
-    touched_.push_back(static_cast<Index>(i));
+    if (is_touched[i]) touched_.push_back(static_cast<Index>(i));
   }
-  const auto b = static_cast<Index>(touched_.size()), r = static_cast<Index>(rest_.size());
-  of_touched.setZero(b, b);
-  coupling_.resize(r, static_cast<Index>(region_.dofs.size()));
-  if (r == 0) return;
+}
 
+/// Of the elements outside: K_RR, factored, K_RS, and K_BB, which is returned.
+Eigen::MatrixXd Substructure::split_stiffness() {
+  const auto b = static_cast<Index>(touched_.size()), r = static_cast<Index>(rest_.size());
+  std::vector<Index> place(region_.dofs.size(), kNone);
+  for (Index i = 0; i < b; ++i) place[touched_[i]] = i;
+  std::vector<double> outside(whole_.mesh().tets.size());
+  for (std::size_t e = 0; e < outside.size(); ++e) outside[e] = element_[e] == kNone ? 1 : 0;
   const fem::SparseMatrix lower = fem::assemble_lower(whole_, outside);
+  Eigen::MatrixXd of_touched = Eigen::MatrixXd::Zero(b, b);
   std::vector<Eigen::Triplet<double, Index>> among_rest, between;
   for (Index j = 0; j < lower.outerSize(); ++j) {
     for (fem::SparseMatrix::InnerIterator it(lower, j); it; ++it) {
-      const Index i = it.row();
-      if (inner_[i] == kNone && inner_[j] == kNone) {
+      const Index i = it.row(), inner_i = inner_[i], inner_j = inner_[j];
+      if (inner_i == kNone && inner_j == kNone) {
         among_rest.emplace_back(outer_[i], outer_[j], it.value());
-      } else if (inner_[i] == kNone) {
-        between.emplace_back(outer_[i], inner_[j], it.value());
-      } else if (inner_[j] == kNone) {
-        between.emplace_back(outer_[j], inner_[i], it.value());
-      } else if (place[inner_[i]] != kNone && place[inner_[j]] != kNone) {
-        of_touched(place[inner_[i]], place[inner_[j]]) = it.value();
-        of_touched(place[inner_[j]], place[inner_[i]]) = it.value();
+      } else if (inner_i == kNone) {
+        between.emplace_back(outer_[i], inner_j, it.value());
+      } else if (inner_j == kNone) {
+        between.emplace_back(outer_[j], inner_i, it.value());
+      } else if (place[inner_i] != kNone && place[inner_j] != kNone) {
+        of_touched(place[inner_i], place[inner_j]) = it.value();
+        of_touched(place[inner_j], place[inner_i]) = it.value();
       }
     }
   }
   for (Index d : whole_.anchored_dofs()) {  // the part has them
-    if (place[inner_[d]] != kNone) {
-      of_touched(place[inner_[d]], place[inner_[d]]) -= whole_.anchor_stiffness();
-    }
+    const Index at = place[inner_[d]];
+    if (at != kNone) of_touched(at, at) -= whole_.anchor_stiffness();
   }
   fem::SparseMatrix rest(r, r);
   rest.setFromTriplets(among_rest.begin(), among_rest.end());
   factor_.emplace(rest);
   coupling_.setFromTriplets(between.begin(), between.end());
+  return of_touched;
+}
 
+/// K_BB - K_BR K_RR^-1 K_RB, for which the inverse of K_RR is needed next to B alone.
+Eigen::MatrixXd Substructure::condense() {
+  coupling_.resize(static_cast<Index>(rest_.size()), static_cast<Index>(region_.dofs.size()));
+  if (rest_.empty()) return {};
+  Eigen::MatrixXd of_touched = split_stiffness();
   std::vector<Index> next, at(rest_.size(), kNone);
-  for (const auto& entry : between) at[entry.row()] = 0;
-  for (Index i = 0; i < r; ++i) {
-    if (at[i] == kNone) continue;
-    at[i] = static_cast<Index>(next.size());
-    next.push_back(i);
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  for (std::size_t j = 0; j < touched_.size(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(coupling_, touched_[j]); it; ++it) {
+      Index& row = at[it.row()];
+      if (row == kNone) {
+        row = static_cast<Index>(next.size());
+        next.push_back(static_cast<Index>(it.row()));
+      }
+      entries.emplace_back(row, static_cast<Index>(j), it.value());
+    }
   }
-  Eigen::SparseMatrix<double> near(static_cast<Index>(next.size()), b);  // K_RB next to B
-  std::vector<Eigen::Triplet<double, Index>> of_near;
-  for (const auto& entry : between) {
-    of_near.emplace_back(at[entry.row()], place[entry.col()], entry.value());
-  }
-  near.setFromTriplets(of_near.begin(), of_near.end());
+  Eigen::SparseMatrix<double> near(static_cast<Index>(next.size()), of_touched.cols());
+  near.setFromTriplets(entries.begin(), entries.end());
   const Eigen::MatrixXd x = factor_->inverse_block(next, next);
   const Eigen::MatrixXd product = near.transpose() * (x * near);
   of_touched -= (product + product.transpose()) / 2;
+  return of_touched;
 }
 
 Eigen::VectorXd Substructure::rest_of(const Load& of_body) const {

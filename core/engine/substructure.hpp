@@ -45,7 +45,9 @@ class Substructure {
  private:
   void number();
   [[nodiscard]] Voigt stress_of(Index element, std::span<const double> displacement) const;
-  void split_stiffness(Eigen::MatrixXd& of_touched);
+  void find_touched();
+  [[nodiscard]] Eigen::MatrixXd split_stiffness();
+  [[nodiscard]] Eigen::MatrixXd condense();
   [[nodiscard]] Eigen::VectorXd rest_of(const Load& of_body) const;
 
   const Problem& whole_;
