@@ -59,7 +59,9 @@ std::vector<std::vector<double>> tear(Route route, int& bases, bool grips, bool 
     EXPECT_LE(stress_error(body.backend->destroyed(), body.stress(), direct.stress(reference)),
               kCrackTolerance);
   }
-  for (const BufferPlan& b : body.backend->buffers()) bases += b.name.starts_with("damaged factor");
+  for (const BufferPlan& b : body.backend->buffers()) {
+    bases += b.name.starts_with("damaged factor") || b.name.starts_with("stiffness lost");
+  }
   return all;
 }
 
@@ -81,6 +83,8 @@ TEST_P(Cascade, StaysRightThroughRebasesAndRepeatsBitByBit) {
 INSTANTIATE_TEST_SUITE_P(Tears, Cascade,
                          ::testing::Values(Case{"Inverse", Route::inverse, false},
                                            Case{"InverseGrips", Route::inverse, true},
+                                           Case{"Condensed", Route::condensed, false},
+                                           Case{"CondensedGrips", Route::condensed, true},
                                            Case{"Factor", Route::factor, false},
                                            Case{"FactorGrips", Route::factor, true}),
                          [](const auto& p) { return p.param.name; });
