@@ -198,7 +198,8 @@ void Simulation::prepare_next(const StressSummary& summary) {
   const Scene& scene = problem_->scene();
   if (!scene.solver.prepare || !backend_->prepares() || interrupted_ || done()) return;
   if (scene.fracture.model == FractureModel::none) return;
-  backend_->prepare(criterion_->next_in_line(fracture_state(summary)));
+  criterion_->next_in_line(fracture_state(summary), next_in_line_);
+  backend_->prepare(next_in_line_);
 }
 
 std::vector<NodalForce> Simulation::instrument_forces() const {

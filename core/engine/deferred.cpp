@@ -136,14 +136,14 @@ void Deferred::push(std::span<const Index> elements) {
 
 void Deferred::prepare(std::span<const Index> elements) {
   const std::size_t before = basis_.differences().size();
-  std::vector<Difference> wanted;
+  wanted_.clear();
   for (Index e : elements) {
     basis_.add(e);
     const auto added = basis_.differences().subspan(before);
-    wanted.insert(wanted.end(), added.begin(), added.end());
+    wanted_.insert(wanted_.end(), added.begin(), added.end());
     basis_.shrink(before);
   }
-  base_->prepare(wanted);
+  base_->prepare(wanted_);
 }
 
 void Deferred::pop() {

@@ -100,6 +100,7 @@ class Deferred {
   std::vector<std::uint8_t> is_touched_;  // per unknown
   std::vector<Event> events_;
   std::vector<Index> elements_;       // of all events, one after the other
+  std::vector<Difference> wanted_;    // by what is to be prepared
   fem::RowMajor compliance_, m_, d_;  // G = B^T X B, M and the stiffness D that is gone, in B
   fem::RowMajor grip_compliance_;     // (A^-1)_GG
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};

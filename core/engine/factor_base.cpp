@@ -2,6 +2,7 @@
 #include "engine/factor_base.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <numeric>
 
@@ -116,21 +117,20 @@ void FactorBase::prepare(std::span<const Difference> vectors) {
   using Clock = std::chrono::steady_clock;
   make_room();
   prepared_.retain(vectors);
-  std::vector<Difference> once;
+  wanted_.clear();
   for (const Difference& v : vectors) {
     const bool known = std::ranges::any_of(
-        once, [&](const Difference& o) { return o.dof == v.dof && o.other == v.other; });
-    if (!known && !prepared_.holds(v)) once.push_back(v);
+        wanted_, [&](const Difference& o) { return o.dof == v.dof && o.other == v.other; });
+    if (!known && !prepared_.holds(v)) wanted_.push_back(v);
   }
-  std::vector<Index> all;
-  for (std::size_t begin = 0; begin < once.size(); begin += kGroup) {
+  std::array<Index, kGroup> all{};
+  std::iota(all.begin(), all.end(), 0);
+  for (std::size_t begin = 0; begin < wanted_.size(); begin += kGroup) {
     const auto group =
-        std::span(once).subspan(begin, std::min<std::size_t>(kGroup, once.size() - begin));
-    all.resize(group.size());
-    std::iota(all.begin(), all.end(), 0);
+        std::span(wanted_).subspan(begin, std::min<std::size_t>(kGroup, wanted_.size() - begin));
     const auto start = Clock::now();
     find_path(group);
-    forward_group(group, all);
+    forward_group(group, std::span(all).first(group.size()));
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count() /
                       static_cast<double>(group.size());
     for (std::size_t i = 0; i < group.size(); ++i) {

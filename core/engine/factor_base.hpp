@@ -38,6 +38,7 @@ class FactorBase final : public Base {
   PathColumns columns_;
   PreparedColumns prepared_;
   std::vector<Index> missing_;        // of the group: not prepared
+  std::vector<Difference> wanted_;    // to be prepared, each once
   std::vector<Index> groups_;         // of each push
   std::vector<Index> places_, path_;  // of the group in L
   fem::RowMajor rows_, block_;        // rows of L, all zero between calls; part of the compliance

@@ -99,9 +99,12 @@ Vec2 Combined::heading(const Crack& crack, std::size_t tip) const {
 
 /// The band ahead of each tip, in the direction in which it wants to grow, and the element that
 /// would start a new crack.
-std::vector<Index> Combined::next_in_line(const FractureState& state) const {
+void Combined::next_in_line(const FractureState& state, std::vector<Index>& next) const {
   constexpr std::size_t kAhead = 16;  // of a tip: what an event takes of a thin board
-  std::vector<Index> next;
+  next.clear();
+  const auto add = [&next](Index e) {  // two tips may face the same element
+    if (std::find(next.begin(), next.end(), e) == next.end()) next.push_back(e);
+  };
   const ElementView view{
       [&](Index e) { return !state.destroyed[e]; },
       [&](Index e) { return problem_.yield(e); },
@@ -113,16 +116,11 @@ std::vector<Index> Combined::next_in_line(const FractureState& state) const {
       std::size_t taken = 0;
       for (const BandElement& e : find_band(board_, ray, view).elements) {
         if (!problem_.breakable(e.element) || taken++ == kAhead) break;
-        next.push_back(e.element);
+        add(e.element);
       }
     }
   }
-  if (state.summary.candidate.element != kNone) next.push_back(state.summary.candidate.element);
-  std::vector<Index> once;  // two tips may face the same element
-  for (Index e : next) {
-    if (std::find(once.begin(), once.end(), e) == once.end()) once.push_back(e);
-  }
-  return once;
+  if (state.summary.candidate.element != kNone) add(state.summary.candidate.element);
 }
 
 std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& state,

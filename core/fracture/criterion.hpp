@@ -64,7 +64,7 @@ class FractureCriterion {
   [[nodiscard]] virtual Decision decide(const FractureState& state) = 0;
   /// Elements that will break next if anything does, as far as can be told from a state in which
   /// nothing breaks; the likeliest of each crack tip first.
-  [[nodiscard]] virtual std::vector<Index> next_in_line(const FractureState&) const { return {}; }
+  virtual void next_in_line(const FractureState&, std::vector<Index>& next) const { next.clear(); }
   /// Preset cracks; called once, before anything else, when the problem has any. Elements come in
   /// crack order; returns what must be excluded as candidates.
   [[nodiscard]] virtual Decision preset() = 0;

@@ -20,9 +20,9 @@ Decision MaxShear::decide(const FractureState& state) {
   return decision;
 }
 
-std::vector<Index> MaxShear::next_in_line(const FractureState& state) const {
-  if (state.summary.any.element == kNone) return {};
-  return {state.summary.any.element};
+void MaxShear::next_in_line(const FractureState& state, std::vector<Index>& next) const {
+  next.clear();
+  if (state.summary.any.element != kNone) next.push_back(state.summary.any.element);
 }
 
 Decision MaxShear::preset() {

@@ -13,7 +13,7 @@ class MaxShear final : public FractureCriterion {
   explicit MaxShear(const Problem& problem) : problem_(problem) {}
 
   [[nodiscard]] Decision decide(const FractureState& state) override;
-  [[nodiscard]] std::vector<Index> next_in_line(const FractureState& state) const override;
+  void next_in_line(const FractureState& state, std::vector<Index>& next) const override;
   [[nodiscard]] Decision preset() override;
   [[nodiscard]] std::vector<Index> pressed_nodes(
       const Press& press, std::span<const std::uint8_t> destroyed) const override;

@@ -112,6 +112,7 @@ class Simulation {
 
   std::shared_ptr<const Problem> problem_;
   std::unique_ptr<Backend> backend_;
+  std::vector<Index> next_in_line_;  // elements to prepare
   std::unique_ptr<Loads> loads_;
   std::unique_ptr<FractureCriterion> criterion_;
   EventObserver observer_;

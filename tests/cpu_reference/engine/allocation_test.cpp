@@ -127,8 +127,7 @@ TEST_P(Allocations, AreNoneInAWarmFrame) {
   }
 }
 
-// All of a step: instruments, frame, decision, report. Nothing breaks. Without the preparation of
-// fractures, which follows the step and lists the elements ahead of each tip anew.
+// All of a step: instruments, frame, decision, report, preparation. Nothing breaks.
 TEST_P(Allocations, AreNoneInAWarmQuietStep) {
   Scene scene = pulled_board(Vec3(0, -0.01, 0));
   Instrument grip;
@@ -138,7 +137,6 @@ TEST_P(Allocations, AreNoneInAWarmQuietStep) {
   scene.instruments.push_back(grip);
   scene.fracture.model = FractureModel::b;
   scene.solver.route = GetParam();
-  scene.solver.prepare = false;
   scene.steps = 20;
   const auto problem = std::make_shared<const Problem>(std::move(scene));
   Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
