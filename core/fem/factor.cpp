@@ -13,6 +13,28 @@ namespace {
 // Right-hand sides that go through the factor together: wide enough for the panels' products.
 constexpr std::size_t kBlock = 64;
 
+/// The part of a block of columns from `start` on that is in the lower triangle, and its mirror
+/// image. A square at a time: both its rows and its columns stay in the cache.
+void leave_triangle(const RowMajor& block, Index start, std::span<const Index> unknown,
+                    Eigen::MatrixXd& result) {
+  const auto n = static_cast<Index>(block.rows()), width = static_cast<Index>(block.cols());
+  for (Index first = start; first < n; first += width) {
+    const Index end = std::min(n, first + width);
+    for (Index c = 0; c < width; ++c) {
+      double* column = result.col(unknown[start + c]).data();
+      for (Index row = std::max(first, start + c); row < end; ++row) {
+        column[unknown[row]] = block(row, c);
+      }
+    }
+    for (Index row = first; row < end; ++row) {
+      double* column = result.col(unknown[row]).data();
+      for (Index c = 0; c < std::min(width, row - start); ++c) {
+        column[unknown[start + c]] = block(row, c);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Factor::Factor(const SparseMatrix& lower) : cholesky_(lower) { check(); }
@@ -101,15 +123,29 @@ Eigen::MatrixXd Factor::inverse_columns(std::span<const Index> columns) const {
   return inverse_block(rows, columns);
 }
 
+// In the factor's order the rows of a block of columns from its first one on are the lower
+// triangle: the way back up stops there, which halves it, and the rest is its mirror image, to the
+// last bit.
 Eigen::MatrixXd Factor::inverse() const {
-  std::vector<Index> all(static_cast<std::size_t>(cholesky_.size()));
-  std::iota(all.begin(), all.end(), 0);
-  Eigen::MatrixXd result = inverse_block(all, all);
-  // Rounding leaves the two triangles apart in the last digits; the updates expect symmetry.
-  for (Eigen::Index j = 0; j < result.cols(); ++j) {
-    for (Eigen::Index i = 0; i < j; ++i) {
-      result(i, j) = result(j, i) = (result(i, j) + result(j, i)) / 2;
-    }
+  const Supernodes& nodes = cholesky_.supernodes();
+  const auto n = static_cast<Index>(cholesky_.size());
+  std::vector<Index> unknown(static_cast<std::size_t>(n)), seeds, path, tail;
+  for (Index i = 0; i < n; ++i) unknown[nodes.place[i]] = i;
+  Eigen::MatrixXd result(n, n);
+  RowMajor block;
+  SolveWork work;
+  for (Index start = 0; start < n; start += static_cast<Index>(kBlock)) {
+    const Index width = std::min(static_cast<Index>(kBlock), n - start);
+    block.setZero(n, width);
+    for (Index c = 0; c < width; ++c) block(start + c, c) = 1;
+    seeds.resize(static_cast<std::size_t>(width));
+    std::iota(seeds.begin(), seeds.end(), start);
+    tail.resize(static_cast<std::size_t>(nodes.count() - nodes.of[start]));
+    std::iota(tail.begin(), tail.end(), nodes.of[start]);
+    cholesky_.reach(seeds, path, work);
+    cholesky_.forward(path, block, work);
+    cholesky_.backward(tail, block, work);
+    leave_triangle(block, start, unknown, result);
   }
   return result;
 }

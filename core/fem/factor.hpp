@@ -31,7 +31,7 @@ class Factor {
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
   /// The same into x, which is another vector than rhs; allocates only until `work` has grown.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& work) const;
-  /// Inverse as a dense matrix, shape (n x n). Cost 2 n nnz(L) multiply-adds.
+  /// Inverse as a dense matrix, shape (n x n). Cost at most 2 n nnz(L) multiply-adds.
   [[nodiscard]] Eigen::MatrixXd inverse() const;
   /// Some columns of the inverse, shape (n x columns).
   [[nodiscard]] Eigen::MatrixXd inverse_columns(std::span<const Index> columns) const;
