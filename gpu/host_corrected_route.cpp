@@ -126,7 +126,7 @@ bool HostCorrectedRoute::restart(std::span<const Index> destroyed) {
   if (bases_ > 1 || destroyed.empty()) return false;
   std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
   for (Index e : destroyed) scale[e] = problem_.scene().fracture.alpha;
-  host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale), true);
+  host_ = std::make_shared<HostInverse>(problem_, scale, true);
   make_base();
   return true;
 }

@@ -14,8 +14,9 @@ constexpr Index kHostDense = 6000;
 
 }  // namespace
 
-HostInverse::HostInverse(const fem::SparseMatrix& lower, bool keep_dense) : factor_(lower) {
-  if (keep_dense && lower.rows() <= kHostDense) dense_ = factor_.inverse();
+HostInverse::HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense)
+    : factor_(problem, scale) {
+  if (keep_dense && problem.dof_count() <= kHostDense) dense_ = factor_.inverse();
 }
 
 Eigen::MatrixXd HostInverse::columns(std::span<const Index> dofs) const {

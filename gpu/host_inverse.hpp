@@ -13,7 +13,8 @@ namespace sunder::gpu {
 
 class HostInverse {
  public:
-  HostInverse(const fem::SparseMatrix& lower, bool keep_dense);
+  /// Of a body's stiffness, elements scaled as in assemble_lower.
+  HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense);
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
   [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
   /// Of the diagonal; a dense inverse only.

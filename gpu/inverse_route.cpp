@@ -336,7 +336,7 @@ void InverseRoute::start_next_base(std::span<const Index> destroyed) {
   next_destroyed_.assign(destroyed.begin(), destroyed.end());
   events_until_next_ = kEventsUntilNext;
   next_ = std::async(std::launch::async, [&problem = problem_, scale = scale_of(destroyed)] {
-    return std::make_shared<const HostInverse>(fem::assemble_lower(problem, scale), true);
+    return std::make_shared<const HostInverse>(problem, scale, true);
   });
 }
 
@@ -416,8 +416,7 @@ void InverseRoute::make_exact() {
 /// A new base: the inverse of the body as damaged now, from a factor of its own.
 void InverseRoute::rebase(std::span<const Index> destroyed) {
   next_ = {};
-  host_ = std::make_shared<HostInverse>(fem::assemble_lower(problem_, scale_of(destroyed)),
-                                        !options_.on_device);
+  host_ = std::make_shared<HostInverse>(problem_, scale_of(destroyed), !options_.on_device);
   make_base(destroyed);
   correction_ = std::make_unique<Correction>(
       problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });

@@ -147,4 +147,10 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
   return plan;
 }
 
+bool host_inverts_anyway(const Problem& problem) {
+  const Route asked = problem.scene().solver.route;
+  return (asked == Route::automatic || asked == Route::inverse) &&
+         problem.dof_count() < kInvertOnDevice;
+}
+
 }  // namespace sunder::gpu

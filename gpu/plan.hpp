@@ -25,4 +25,7 @@ struct Plan {
 [[nodiscard]] Plan make_plan(const Problem& problem, const Needs& needs,
                              const vulkan::PhysicalDevice& device, bool displayed);
 
+/// Whatever the device, the host computes this problem's inverse: it may begin before there is one.
+[[nodiscard]] bool host_inverts_anyway(const Problem& problem);
+
 }  // namespace sunder::gpu

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <future>
 
 #include "engine/instrument_block.hpp"
 #include "engine/substructure.hpp"
@@ -33,10 +34,23 @@ std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int as
   return vulkan::create_device(instance, physical, options.probe);
 }
 
+using IntactInverse = std::shared_ptr<const HostInverse>;
+
+IntactInverse invert(const Problem& problem, bool keep_dense) {
+  return std::make_shared<const HostInverse>(problem, std::span<const double>{}, keep_dense);
+}
+
+/// On a thread of its own, while loader, device and pipelines are made ready.
+std::future<IntactInverse> start_inverse(const Problem& problem, const VulkanOptions& options) {
+  if (options.invert_on_device.value_or(false) || !host_inverts_anyway(problem)) return {};
+  return std::async(std::launch::async, [&problem] { return invert(problem, true); });
+}
+
 class VulkanBackend final : public Backend {
  public:
   VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
       : Backend(problem, std::move(needs)),
+        started_(start_inverse(*problem, options)),
         device_(open_device(options, problem->scene().solver.device)),
         plan_(make_plan(*problem, this->needs(), device_->physical(), options.lent.has_value())),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
@@ -49,8 +63,8 @@ class VulkanBackend final : public Backend {
         fields_(kernels_, *body_, this->needs(), route_needs()),
         check_(*problem, plan_.fp64) {
     if (!plan_.cg || this->needs().pristine) {
-      intact_ = std::make_shared<HostInverse>(fem::assemble_lower(*body_, {}),
-                                              !plan_.cg && !inverse_.on_device);
+      intact_ = started_.valid() && !region_ ? started_.get()
+                                             : invert(*body_, !plan_.cg && !inverse_.on_device);
     }
     if (this->needs().pristine) {
       pristine_ = std::make_unique<Correction>(
@@ -445,6 +459,7 @@ class VulkanBackend final : public Backend {
     fields_.read_reactions(body_->gripped_dofs(), reactions);
   }
 
+  std::future<IntactInverse> started_;
   std::unique_ptr<vulkan::Device> device_;
   Plan plan_;
   KernelFactory kernels_;
@@ -454,7 +469,7 @@ class VulkanBackend final : public Backend {
   std::shared_ptr<const Problem> body_;  // what the device has
   Fields fields_;
   FrameCheck check_;
-  std::shared_ptr<const HostInverse> intact_;
+  IntactInverse intact_;
   std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
   std::unique_ptr<Display> display_;
   std::unique_ptr<DeviceRoute> route_;
