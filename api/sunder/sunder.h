@@ -240,7 +240,7 @@ typedef struct sunder_solver_options {
   int32_t route;
   int32_t update;
   int32_t precision;
-  double tolerance;  ///< promised relative stress error of every frame, 1e-4
+  double tolerance;        ///< promised relative stress error of every frame, 1e-4
   int32_t no_preparation;  ///< 1: prepare no fracture after a quiet step; no result depends on it
   int32_t reserved;
 } sunder_solver_options;
