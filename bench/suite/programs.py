@@ -131,16 +131,16 @@ def _run(command, limit, allowed=(0,)):
     return done.stdout
 
 
-def run_program(build, program, share, folder, repetitions=None):
+def run_program(build, program, share, repetitions=None):
     """Its rows, or the text of its CSV file. Raises results.BadResults when it fails."""
     path = str(pathlib.Path(build) / "bench" / program.name)
     limit = max(120.0, 10 * share.seconds)
-    if program.file:
-        file = pathlib.Path(folder) / program.file
-        # Exit code 1 of the stability study: a cell is WRONG, which the page shows.
-        _run([path, str(file), *share.words], limit, (0, 1))
-        return file.read_text()
     with tempfile.TemporaryDirectory() as temporary:
+        if program.file:
+            file = pathlib.Path(temporary) / program.file
+            # Exit code 1 of the stability study: a cell is WRONG, which the page shows.
+            _run([path, str(file), *share.words], limit, (0, 1))
+            return file.read_text()
         out = pathlib.Path(temporary) / "out.json"
         count = share.repetitions if repetitions is None else repetitions
         _run([path, f"--benchmark_filter={share.rows}", f"--benchmark_repetitions={count}",
@@ -163,7 +163,7 @@ def split_done(there, outcome):
     return [(p, s) for p, s in there if p.about not in done]
 
 
-def run_all(build, mode, folder, repetitions=None, outcome=None, save=lambda outcome: None):
+def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None):
     """Adds to the outcome what of a mode it lacks, program by program, and saves it after each:
     {"rows", "cells", "points", "meshes", "programs", "failures"}."""
     outcome = outcome or nothing_yet()
@@ -177,7 +177,7 @@ def run_all(build, mode, folder, repetitions=None, outcome=None, save=lambda out
         start, cpu = time.monotonic(), _cpu_seconds()
         entry = {"name": program.name, "about": program.about}
         try:
-            made = run_program(build, program, share, folder, repetitions)
+            made = run_program(build, program, share, repetitions)
             part, read = readers.get(program.file, ("rows", lambda rows: rows))
             outcome[part] += read(made)
         except results.BadResults as error:

@@ -186,7 +186,7 @@ class Modes(unittest.TestCase):
 
     def test_a_program_that_is_not_built_is_a_failure(self):
         with tempfile.TemporaryDirectory() as folder:
-            made = programs.run_all(folder, "ci", folder)
+            made = programs.run_all(folder, "ci")
         self.assertIn("bench_engine is not built", made["failures"])
 
 
@@ -201,13 +201,13 @@ class Modes(unittest.TestCase):
             broken.write_text("#!/bin/sh\nexit 3\n")
             for program in (study, broken):
                 program.chmod(0o755)
-            first = programs.run_all(folder, "ci", folder,
+            first = programs.run_all(folder, "ci",
                                      save=lambda done: saved.append(len(done["programs"])))
             self.assertEqual([(p["name"], p.get("failed", False)) for p in first["programs"]],
                              [("bench_stability", True), ("bench_convergence", False)])
             study.write_text("#!/bin/sh\nexit 4\n")  # not run again
             broken.write_text("#!/bin/sh\necho study,verdict,nu > $1\necho one,ok,0.3 >> $1\n")
-            again = programs.run_all(folder, "ci", folder, outcome=first)
+            again = programs.run_all(folder, "ci", outcome=first)
         self.assertEqual(saved, [1, 2])
         self.assertEqual(len(again["meshes"]), 1)
         self.assertEqual([c["verdict"] for c in again["cells"]], ["ok"])
