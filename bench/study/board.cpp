@@ -55,9 +55,13 @@ void make_sliver(Mesh& mesh, double quality) {
 Scene scene_of(const Difficulty& difficulty) {
   Scene scene;
   scene.title = "board of the stability study";
-  scene.mesh = test::structured_board({10, 10, 1, kSide, kSide, 5}, [](const Vec3& x) {
-    return x.y() > 45 ? "top-frame" : x.y() < 5 ? "bottom-frame" : x.y() > 25 ? "upper" : "lower";
-  });
+  scene.mesh =
+      test::structured_board({10, 10, difficulty.layers, kSide, kSide, 5}, [](const Vec3& x) {
+        return x.y() > 45   ? "top-frame"
+               : x.y() < 5  ? "bottom-frame"
+               : x.y() > 25 ? "upper"
+                            : "lower";
+      });
   if (difficulty.sliver < 1) make_sliver(scene.mesh, difficulty.sliver);
   const double frame = 5 * difficulty.contrast, nu = difficulty.poisson;
   scene.materials = {{"upper", {5, nu, 2.0}},

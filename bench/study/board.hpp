@@ -19,6 +19,7 @@ struct Difficulty {
   double unit = 1;        ///< lengths in units of this many mm; forces follow so that strain stays
   std::string pattern = "crack";  ///< scattered, crack, cut, island, bridge
   int fractures = 10;             ///< scattered, crack; the others have their own number
+  int layers = 1;                 ///< of cells through the thickness
 };
 
 struct DifficultBoard {
@@ -27,9 +28,9 @@ struct DifficultBoard {
   std::vector<Index> removed;              ///< elements in the order of their fracture
 };
 
-/// 10 x 10 x 1 cells of six tetrahedra, 50 x 50 x 5 mm, held at the top, pulled at the lower right;
-/// for patterns that cut, a second pull acts on what stays attached. Throws std::invalid_argument
-/// for an unknown pattern or a sliver that no vertex can give.
+/// 10 x 10 cells a layer, of six tetrahedra each, 50 x 50 x 5 mm, held at the top, pulled at the
+/// lower right; for patterns that cut, a second pull acts on what stays attached. Throws
+/// std::invalid_argument for an unknown pattern or a sliver that no vertex can give.
 [[nodiscard]] DifficultBoard difficult_board(const Difficulty& difficulty);
 
 }  // namespace sunder::bench

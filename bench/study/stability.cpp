@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stability study: one difficulty at a time, then pairs, every method; one CSV row per cell.
-//   bench_stability FILE [ci|quick|full]      ci: the ends of every knob, few fractures; quick: one
-//                                             difficulty at a time; full: the pairs as well
+//   bench_stability FILE [ci|quick|full|many]
+// ci: the ends of every knob, few fractures; quick: one difficulty at a time; many: 640 fractures;
+// full: both and the pairs.
 // Exit code 1 when a cell is WRONG: a number that is off, or no number, and nothing said.
 #include <cstdio>
 #include <fstream>
@@ -66,6 +67,17 @@ void one_at_a_time(std::vector<Cell>& cells) {
   for (const char* pattern : {"cut", "island", "bridge"}) {
     Cell cell{pattern, {}};
     cell.difficulty.pattern = pattern;
+    cells.push_back(cell);
+  }
+}
+
+/// Accumulated fractures past what one layer of cells can lose.
+void many_fractures(std::vector<Cell>& cells) {
+  for (const char* pattern : {"crack", "scattered"}) {
+    Cell cell{pattern, {}};
+    cell.difficulty.pattern = pattern;
+    cell.difficulty.fractures = 640;
+    cell.difficulty.layers = 4;
     cells.push_back(cell);
   }
 }
@@ -147,12 +159,14 @@ int run(std::ostream& out, const std::vector<Cell>& cells) {
 int main(int argc, char** argv) {
   using namespace sunder::bench;
   const std::string mode = argc > 2 ? argv[2] : "full";
-  if (argc < 2 || argc > 3 || (mode != "ci" && mode != "quick" && mode != "full")) {
-    std::cerr << "usage: bench_stability FILE [ci|quick|full]\n";
+  if (argc < 2 || argc > 3 ||
+      (mode != "ci" && mode != "quick" && mode != "full" && mode != "many")) {
+    std::cerr << "usage: bench_stability FILE [ci|quick|full|many]\n";
     return 2;
   }
   std::vector<Cell> cells;
-  one_at_a_time(cells);
+  if (mode != "many") one_at_a_time(cells);
+  if (mode == "full" || mode == "many") many_fractures(cells);
   if (mode == "full") pairs(cells);
   if (mode == "ci") keep_ends(cells);
   std::ofstream out(argv[1]);
