@@ -171,8 +171,9 @@ def page(outcome):
         made.add(_details(f"{program}: {len(lines)} rows", _table(head, lines)))
     made.section("Machine")
     made.add(_machine(outcome["machine"]))
-    made.add(_table(["program", "what", "s", "CPU s"],
-                    [[p["name"], p["about"], p["seconds"], p["cpu_seconds"]]
+    made.add(_table(["program", "what", "s", "CPU s", "commit"],
+                    [[p["name"], p["about"], p["seconds"], p["cpu_seconds"],
+                      p.get("commit") or outcome["machine"].get("commit", "")]
                      for p in outcome["programs"]], "words"))
     text = "".join(['<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Sunder: error '
                     f"against run time</title><style>{STYLE}</style><h1>Error against run time"

@@ -163,7 +163,7 @@ def split_done(there, outcome):
     return [(p, s) for p, s in there if p.about not in done]
 
 
-def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None):
+def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None, commit=""):
     """Adds to the outcome what of a mode it lacks, program by program, and saves it after each:
     {"rows", "cells", "points", "meshes", "programs", "failures"}."""
     outcome = outcome or nothing_yet()
@@ -175,7 +175,7 @@ def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: No
     for program, share in there:
         progress.begin(f"{program.name}: {program.about}")
         start, cpu = time.monotonic(), _cpu_seconds()
-        entry = {"name": program.name, "about": program.about}
+        entry = {"name": program.name, "about": program.about, "commit": commit}
         try:
             made = run_program(build, program, share, repetitions)
             part, read = readers.get(program.file, ("rows", lambda rows: rows))
