@@ -56,6 +56,9 @@ def problems(outcome, every_peer=True):
         error = point["stress_error"]
         if error is not None and not math.isfinite(error):
             found.append(f"scene {point['scene']}, {point['method']}: stress error is {error}")
+        if point["verdict"] == "WRONG":
+            found.append(f"scene {point['scene']}, {point['method']}, tolerance "
+                         f"{point['tolerance']:g}: WRONG, stress error {error:.3g}")
     found += [f"{m['case']}, {m['tets']:g} tetrahedra: error is {m['error']}"
               for m in outcome["meshes"] if not math.isfinite(m["error"])]
     if not outcome["peers"]:

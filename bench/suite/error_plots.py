@@ -56,7 +56,7 @@ def error_against_time(cells):
 
 def scenes(points):
     """A panel for each scene: stress error of its last frame."""
-    good = [p for p in points if p["verdict"] in ("ok", "polished")]
+    good = [p for p in points if p["verdict"] in ("ok", "polished", "rounded", "WRONG")]
     groups = {name: [(p["method"], p["frame_ms"], max(p["stress_error"], FLOOR)) for p in good
                      if p["scene"] == name] for name in sorted({p["scene"] for p in good})}
     if not groups:

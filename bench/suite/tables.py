@@ -129,7 +129,7 @@ def verdicts(cells):
 
 def scene_verdicts(points):
     """Head and lines: what became of the runs of each method over all scenes and tolerances."""
-    words = ["ok", "polished", "other fractures", "over budget", "refused"]
+    words = ["ok", "polished", "rounded", "other fractures", "over budget", "refused", "WRONG"]
     counts = collections.Counter((p["method"], p["verdict"]) for p in points)
     return (["method", *words],
             [[m, *(counts[m, w] for w in words)] for m in dict.fromkeys(p["method"]

@@ -243,7 +243,7 @@ class Page(unittest.TestCase):
         self.assertIsNone(points[2]["frame_ms"])
         self.assertIn("notch-b", error_plots.scenes(points))
         self.assertIsNone(error_plots.scenes(points[1:]))
-        self.assertEqual(tables.scene_verdicts(points)[1][1], ["vulkan cg fp64", 0, 0, 0, 1, 0])
+        self.assertEqual(tables.scene_verdicts(points)[1][1], ["vulkan cg fp64", 0, 0, 0, 0, 1, 0, 0])
 
     def test_marks_verdicts_in_the_heat_map(self):
         self.assertIn("WRONG", heat_map.singles([cell()]))
