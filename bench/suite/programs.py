@@ -75,6 +75,8 @@ PROGRAMS = [
 ]
 # Large bodies take seconds to minutes each: once is enough.
 LARGE = [
+    Program("bench_stability", "stability after 640 fractures",
+            Share(0), Share(0), Share(140, words=("many",)), file="stability.csv"),
     Program("bench_reconstruction", "inverse reconstruction on large boards",
             Share(0), Share(0), Share(200, "board (30246|119286)/", 1)),
     Program("bench_scaling", "boards of half a million and a million tetrahedra",
