@@ -95,7 +95,7 @@ def _largest(rows):
     row = max(sizes, key=lambda s: s[0])[1]
     c = row["counters"]
     tets = int(row["name"].split("/")[-1])
-    return (f"a board of {number(tets, 7)} tetrahedra, factor route: set-up / quiet frame / frame "
+    return (f"a board of {tets:,} tetrahedra, factor route: set-up / quiet frame / frame "
             "with a fracture / memory",
             f"{number(c['setup_ms'] / 1e3)} s / {number(c['quiet_ms'])} ms / "
             f"{number(results.minimum(row))} ms / {number(c['MiB'])} MiB",
