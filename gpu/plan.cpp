@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/plan.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "sunder/error.hpp"
@@ -10,6 +11,9 @@ namespace {
 
 // What the mixed recipe holds with fp32 storage (docs/method.md "Stability"); below it only fp64.
 constexpr double kFp32Tolerance = 1e-4;
+// Past these the displacement handed out in fp32 alone costs a stiff element more than that
+// (bench_stability, verdict "rounded").
+constexpr double kFp32Contrast = 1e3, kFp32Poisson = 0.4999;
 // Above this many unknowns an inverse is not computed unless asked for: the host takes n^2 nnz(L).
 constexpr Index kDenseLimit = 6000;
 // From so many unknowns on a GPU computes the inverse itself: the host's n^2 nnz(L) then takes more
@@ -108,6 +112,16 @@ void require_double(const Plan& plan, const SolverOptions& solver,
   if (plan.eager) refuse("the eager update watches its residual in fp64");
 }
 
+bool too_stiff_for_fp32(const Problem& problem) {
+  double softest = problem.material(0).young, stiffest = softest, poisson = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    softest = std::min(softest, problem.material(e).young);
+    stiffest = std::max(stiffest, problem.material(e).young);
+    poisson = std::max(poisson, problem.material(e).poisson);
+  }
+  return stiffest > kFp32Contrast * softest || poisson > kFp32Poisson;
+}
+
 }  // namespace
 
 Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::PhysicalDevice& device,
@@ -121,9 +135,14 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
   Plan plan;
   plan.fp64 = solver.precision == Precision::fp64 ||
               (solver.precision == Precision::automatic && !(solver.tolerance >= kFp32Tolerance));
+  const bool stiff = solver.precision == Precision::automatic && !plan.fp64 && device.float64 &&
+                     too_stiff_for_fp32(problem);
+  plan.fp64 = plan.fp64 || stiff;
   choose_route(problem, needs, device, displayed, plan);
   if (solver.precision != Precision::automatic) {
     plan.why += plan.fp64 ? "; fp64 was asked for" : "; fp32 storage was asked for";
+  } else if (stiff) {
+    plan.why += "; these materials need fp64: contrast over 1000 or Poisson's ratio over 0.4999";
   } else {
     plan.why += "; tolerance " + number(solver.tolerance) +
                 (plan.fp64 ? " needs fp64" : " is kept by fp32 storage with fp64 sums");

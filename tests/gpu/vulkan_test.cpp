@@ -163,6 +163,25 @@ TEST_F(VulkanDevices, PrecisionFollowsTheToleranceAndIsSaid) {
   }
 }
 
+TEST_F(VulkanDevices, PrecisionFollowsTheMaterialsAndIsSaid) {
+  for (const auto& [young, poisson, precision] :
+       {std::tuple{5e3, 0.4, "fp32"}, std::tuple{5e4, 0.4, "fp64"}, std::tuple{5.0, 0.4999, "fp32"},
+        std::tuple{5.0, 0.49999, "fp64"}}) {
+    Scene scene = small_scene();
+    scene.mesh = structured_board(
+        {2, 2, 1}, [](const Vec3& x) { return std::string(x.y() > 5 ? "frame" : "board"); });
+    scene.materials["frame"] = {young, poisson, std::nullopt};
+    const auto backend = gpu::create(std::make_shared<const Problem>(scene), all_needs(), {});
+    EXPECT_EQ(backend->info().precision, precision) << young << ", " << poisson;
+    const bool said = backend->info().why.find("these materials need fp64") != std::string::npos;
+    EXPECT_EQ(said, backend->info().precision == "fp64") << backend->info().why;
+    scene.solver.precision = Precision::fp32;  // asked for: what it costs is the caller's choice
+    EXPECT_EQ(
+        gpu::create(std::make_shared<const Problem>(scene), all_needs(), {})->info().precision,
+        "fp32");
+  }
+}
+
 // Run by the test below.
 TEST(VulkanVariant, DISABLED_FromTheEnvironment) {
   Scene scene = small_scene();
