@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <vector>
@@ -107,6 +109,16 @@ class WatchedBackend {
   std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();
 };
 
+/// The elements that a scene run to its end destroys, in order.
+inline std::vector<Index> destroyed_by(const std::shared_ptr<const Problem>& problem,
+                                       std::unique_ptr<Backend> backend) {
+  Simulation simulation(problem, std::move(backend));
+  while (!simulation.done()) simulation.step();
+  std::vector<Index> list;
+  for (const DestroyedElement& d : simulation.destroyed()) list.push_back(d.element);
+  return list;
+}
+
 class Pair {
  public:
   Pair(Scene scene, const Way& way, const Needs& needs = all_needs())
@@ -146,6 +158,19 @@ class Pair {
         displacement_error(problem().mesh(), out, displacement(*vulkan), displacement(*reference));
     errors.stress = stress_error(out, stress(*vulkan), stress(*reference));
     return errors;
+  }
+
+  /// Forces of the grips, against the reference's largest.
+  void expect_reactions(double tolerance) {
+    std::vector<double> r(problem().gripped_dofs().size()), expected(r.size());
+    ASSERT_FALSE(r.empty());
+    vulkan->read_reactions(r);
+    reference->read_reactions(expected);
+    double largest = 0;
+    for (double v : expected) largest = std::max(largest, std::abs(v));
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      EXPECT_NEAR(r[i], expected[i], tolerance * largest) << "grip " << i;
+    }
   }
 
   [[nodiscard]] static std::vector<double> displacement(const Backend& backend) {

@@ -19,15 +19,6 @@ Scene torn_board(FractureModel model) {
   return scene;
 }
 
-std::vector<Index> destroyed_by(const std::shared_ptr<const Problem>& problem,
-                                std::unique_ptr<Backend> backend) {
-  Simulation simulation(problem, std::move(backend));
-  while (!simulation.done()) simulation.step();
-  std::vector<Index> list;
-  for (const DestroyedElement& d : simulation.destroyed()) list.push_back(d.element);
-  return list;
-}
-
 // The scenes' tests do so by the deferred update.
 TEST_F(Runs, SameFractureListsAsTheReferenceByEagerUpdates) {
   for (const FractureModel model : {FractureModel::a, FractureModel::b}) {
