@@ -91,6 +91,14 @@ def _paper(page, rows):
         page.add(f"<h3>{title}</h3>" + (_table(*made) if made else "<p>Not measured.</p>"))
 
 
+def _peers_alone(entries):
+    outside = sum(e["within"] != "yes" for e in entries)
+    return ("<h3>Peers alone</h3><p>Each peer's event beside the others, as above, and alone, in "
+            f"turns: {len(entries) - outside} of {len(entries)} agree within 25 %"
+            + (f", {outside} do not" if outside else "") + ".</p>"
+            + _details("Each of them", _table(*tables.peers_alone(entries))))
+
+
 def _reconstruction(page, outcome):
     rows = outcome["rows"]
     page.section("Inverse reconstruction")
@@ -107,6 +115,8 @@ def _reconstruction(page, outcome):
     page.figure("accumulated", plots.accumulated(rows))
     page.add("<h3>Settings of the peers</h3>"
              + _table(["peer", "settings"], outcome["peers"].items(), "words"))
+    if outcome["alone"]:
+        page.add(_peers_alone(outcome["alone"]))
     page.add("<h3>The intact inverse</h3>")
     page.text("All columns of the inverse, fp64, one thread.")
     page.figure("inversion", plots.inversion(rows))
@@ -120,8 +130,8 @@ def _errors(page, outcome):
     page.figure("error-board", error_plots.error_against_time(outcome["cells"]))
     page.add("<h3>Scenes</h3>")
     page.text("Every method at tolerances 1e-2, 1e-4 and 1e-8, each scene to its end; error of the "
-              "last frame against the factor route in fp64 at tolerance 1e-10 (so that this route is "
-              "its own yardstick here; errors under 1e-15 are drawn there). A run over its "
+              "last frame against conjugate gradients in fp64, refined to 1e-10 (errors under 1e-15 "
+              "are drawn there). A run over its "
               "time, or one that breaks other elements, is counted below and not drawn.")
     page.figure("error-scenes", error_plots.scenes(outcome["points"]))
     if outcome["points"]:

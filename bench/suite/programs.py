@@ -154,7 +154,8 @@ def run_program(build, program, share, repetitions=None):
 
 
 def nothing_yet():
-    return {"rows": [], "cells": [], "points": [], "meshes": [], "programs": [], "failures": []}
+    return {"rows": [], "cells": [], "points": [], "meshes": [], "alone": [], "programs": [],
+            "failures": []}
 
 
 def split_done(there, outcome):

@@ -5,6 +5,7 @@ results.json  {"machine": {...}, "rows": [row], "peers": {name: settings}, "prog
                "failures": [sentence]}
 results.csv   one line per row: program, name, minimum, median, CPU time [ms], samples, counters
 stability.csv, scenes.csv, convergence.csv   as the programs write them: cells, points, meshes
+peers-alone.csv   of bench/peers-alone: each peer beside the others and alone
 """
 import csv
 import io
@@ -99,6 +100,15 @@ def meshes_of(text):
     return meshes
 
 
+def alone_of(text):
+    """Peers beside the others and alone, as suite/alone.py judges them."""
+    entries = list(csv.DictReader(io.StringIO(text)))
+    if entries and not {"body", "event", "method", "how", "together_ms", "alone_ms", "ratio",
+                        "within"} <= entries[0].keys():
+        raise ValueError("columns are missing")
+    return entries
+
+
 def write_text(path, text):
     """Writes to a temporary name and renames: a file appears complete or not at all."""
     temporary = path.with_name(path.name + ".partial")
@@ -122,7 +132,7 @@ def rows_csv(rows):
 
 # Parts of the results that lie beside results.json: file and reader.
 PARTS = {"cells": ("stability.csv", cells_of), "points": ("scenes.csv", points_of),
-         "meshes": ("convergence.csv", meshes_of)}
+         "meshes": ("convergence.csv", meshes_of), "alone": ("peers-alone.csv", alone_of)}
 
 
 def _text(path):

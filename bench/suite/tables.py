@@ -149,3 +149,11 @@ def every_row(rows):
         tables.append((program, ["row", "min ms", "median ms", "CPU ms", "samples", *counters],
                        lines))
     return tables
+
+
+def peers_alone(entries):
+    """(head, lines): each peer beside the others and alone."""
+    lines = [[f"{e['body']}, {e['event']}, {e['method']}", e["how"],
+              *(number(float(e[k])) for k in ("together_ms", "alone_ms", "ratio")), e["within"]]
+             for e in entries]
+    return ["", "alone is", "beside others [ms]", "alone [ms]", "ratio", "within noise"], lines

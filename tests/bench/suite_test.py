@@ -12,7 +12,7 @@ import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
-from suite import (checks, compare, error_plots, headline, heat_map, page, plots,  # noqa: E402
+from suite import (alone, checks, compare, error_plots, headline, heat_map, page, plots,  # noqa: E402
                    programs, results, tables)
 
 
@@ -32,10 +32,10 @@ def cell(method="cpu factor deferred fp64", verdict="ok", stress_error=1e-11):
             "fp32_rounding": 1e-4, "reason": ""}
 
 
-def outcome(rows, cells=(), points=(), meshes=()):
+def outcome(rows, cells=(), points=(), meshes=(), alone=()):
     return {"machine": {"cpu": "<test>", "cores": 2, "date": "today", "commit": "0", "devices": [],
                         "load_before": 0.1}, "rows": rows, "cells": list(cells),
-            "points": list(points), "meshes": list(meshes), "programs": [], "failures": [],
+            "points": list(points), "meshes": list(meshes), "alone": list(alone), "programs": [], "failures": [],
             "peers": {"cholmod updown_solve": "its settings"}}
 
 
@@ -61,7 +61,10 @@ def every_part():
                "reason": ""}]
     meshes = [{"case": "cantilever", "tets": n, "value": 0.7, "error": 1 / n, "ms": n / 100}
               for n in (480.0, 3840.0)]
-    return outcome(rows, [cell(), study], points, meshes)
+    peers = [{"body": "board 1944", "event": "k1", "method": "cholmod updown_solve",
+              "how": "a process of its own", "together_ms": "4", "alone_ms": "4.1",
+              "ratio": "1.025", "within": "yes"}]
+    return outcome(rows, [cell(), study], points, meshes, peers)
 
 
 def kinds(old, new):
@@ -212,6 +215,50 @@ class Modes(unittest.TestCase):
         self.assertEqual(len(again["meshes"]), 1)
         self.assertEqual([c["verdict"] for c in again["cells"]], ["ok"])
         self.assertFalse(any("bench_stability ended" in f for f in again["failures"]))
+
+
+# Stands in for bench_reconstruction: 10 ms together, alone 11, but 20 for the peer called "slow".
+FAKE_SUITE = """#!/usr/bin/python3
+import json, pathlib, re, sys
+words = dict(w.split("=", 1) for w in sys.argv if "=" in w)
+if words:
+    body, event, names = re.fullmatch(r"(.*)/(k\\d+)/(.*)/", words["--benchmark_filter"]).groups()
+    def ms(name):
+        return 10 if names.startswith("(") else 20 if name == "slow" else 11
+    runs = [{"run_name": f"reconstruction/{body}/{event}/{name}/iterations:1", "time_unit": "ms",
+             "real_time": ms(name), "cpu_time": 1, "update_ms": 6, "solve_ms": 2}
+            for name in names.strip("()").split("|")]
+    pathlib.Path(words["--benchmark_out"]).write_text(json.dumps({"benchmarks": runs}))
+"""
+
+
+class PeersAlone(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.build = pathlib.Path(self.folder.name)
+        (self.build / "bench").mkdir()
+        for name, text in (("bench_reconstruction", FAKE_SUITE),
+                           ("bench_peers_alone", "#!/bin/sh\nprintf 'fine\\t8.5\\t9\\n'\n")):
+            program = self.build / "bench" / name
+            program.write_text(text)
+            program.chmod(0o755)
+
+    def test_one_that_is_slower_alone_is_found(self):
+        made = alone.measure(self.build, "board 486", "k1", ["fine", "slow"], 3)
+        self.assertEqual([(e["method"], e["how"][:7], e["ratio"], e["within"]) for e in made],
+                         [("fine", "a proce", "1.1", "yes"), ("fine", "without", "1.062", "yes"),
+                          ("slow", "a proce", "2", "no")])
+
+    def test_the_command_keeps_and_shows_them(self):
+        made = outcome([torn("fine", body="board 486"), torn("slow", body="board 486")])
+        results.write(self.build / "results", made)
+        done = subprocess.run([BENCH / "peers-alone", self.build / "results", "--build", self.build,
+                               "--turns", "3"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (1, ""))
+        self.assertEqual(len(results.read(self.build / "results")["alone"]), 3)
+        shown = (self.build / "results" / "index.html").read_text(encoding="utf-8")
+        self.assertIn("2 of 3 agree within 25 %, 1 do not", shown)
 
 
 class Page(unittest.TestCase):
