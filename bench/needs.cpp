@@ -9,8 +9,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "cpu_reference/cpu_reference.hpp"
+#include "has_vulkan.hpp"
 #include "run_rows.hpp"
+#include "sunder/backends.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder::bench {
@@ -30,6 +31,7 @@ struct Variant {
   bool all_breakable;
   bool stress, damage;
   bool prepare = false;  ///< each fracture, before its frame
+  const char* backend = "cpu";
 };
 
 /// 50 x 50 x 2.5 mm, one layer of cells; the patch lies at the middle of the right edge.
@@ -46,7 +48,7 @@ Scene scene_of(const Variant& variant, Index cells) {
   forceps.name = "forceps";
   forceps.action = Pull{Box{Vec3(49.999, -0.001, -1), Vec3(50.001, 0.001, 4)}, Vec3(0, -60, 0)};
   scene.instruments.push_back(forceps);
-  scene.solver.backend = "cpu";
+  scene.solver.backend = variant.backend;
   scene.solver.route = variant.route;
   return scene;
 }
@@ -82,7 +84,7 @@ void row(benchmark::State& state, const Variant& variant, Index cells) {
   needs.stress = needs.yield = variant.stress;
   needs.damage = variant.damage;
   const auto start = Clock::now();
-  const auto backend = cpu_reference::create(problem, needs);
+  const auto backend = create_backend(problem, needs).backend;
   state.counters["setup_ms"] = milliseconds_since(start);
   Load load;
   for (Index n : problem->instrument_nodes()[0].nodes) {
@@ -140,7 +142,7 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
     load.forces.push_back(-30);
   }
   for (auto _ : state) {
-    const auto backend = cpu_reference::create(problem, needs);
+    const auto backend = create_backend(problem, needs).backend;
     frame(*backend, load, {});
     std::vector<double> ms;
     for (std::size_t i = 0; i < count; ++i) ms.push_back(frame(*backend, load, {&order[i], 1}));
@@ -159,14 +161,19 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
 }
 
 void register_rows() {
+  std::vector<Variant> variants{
+      {"all_tears_factor", Route::factor, true, true, true},
+      {"all_tears_factor_prepared", Route::factor, true, true, true, true},
+      {"patch_tears_factor", Route::factor, false, true, true},
+      {"patch_tears_condensed", Route::condensed, false, true, true},
+      {"nothing_tears", Route::automatic, true, true, false},
+      {"displacement_only", Route::automatic, true, false, false}};
+  if (has_vulkan()) {
+    variants.push_back(
+        {"patch_tears_condensed_vulkan", Route::condensed, false, true, true, false, "vulkan"});
+  }
   for (Index cells : {18, 71, 141}) {
-    for (const Variant& v :
-         {Variant{"all_tears_factor", Route::factor, true, true, true},
-          Variant{"all_tears_factor_prepared", Route::factor, true, true, true, true},
-          Variant{"patch_tears_factor", Route::factor, false, true, true},
-          Variant{"patch_tears_condensed", Route::condensed, false, true, true},
-          Variant{"nothing_tears", Route::automatic, true, true, false},
-          Variant{"displacement_only", Route::automatic, true, false, false}}) {
+    for (const Variant& v : variants) {
       benchmark::RegisterBenchmark(
           ("needs/" + std::string(v.name) + "/" + std::to_string(6 * cells * cells)).c_str(),
           [=](auto& state) { row(state, v, cells); })

@@ -267,8 +267,6 @@ std::vector<PeerKind> all_peers() {
 }
 
 void register_rows() {
-  bool vulkan = false;
-  for (const DeviceInfo& device : devices()) vulkan |= device.backend == "vulkan";
   for (const BodyShape& body : bodies()) {
     for (const PeerKind& kind : all_peers()) {
       if (body.tets() > kind.most_tets) continue;
@@ -277,7 +275,7 @@ void register_rows() {
           [=](const TearingBoard& b) { return std::make_unique<PeerFollower>(b, kind); },
           most_accumulated(kind));
     }
-    for (const Method& method : methods(vulkan)) {
+    for (const Method& method : methods()) {
       if (body.tets() > most_tets(method.options)) continue;
       add_rows(
           body, method.name,

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "bench/has_vulkan.hpp"
 #include "pieces.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
@@ -79,7 +80,7 @@ void compare(const Backend& backend, const Problem& problem, const Reference& re
 
 }  // namespace
 
-std::vector<Method> methods(bool vulkan) {
+std::vector<Method> methods() {
   constexpr auto inverse = Route::inverse, condensed = Route::condensed, factor = Route::factor,
                  cg = Route::cg;
   constexpr auto eager = Update::eager, deferred = Update::deferred;
@@ -89,13 +90,18 @@ std::vector<Method> methods(bool vulkan) {
                            method("cpu condensed deferred fp64", "cpu", condensed, deferred, fp64),
                            method("cpu factor deferred fp64", "cpu", factor, deferred, fp64),
                            method("cpu cg fp64", "cpu", cg, Update::automatic, fp64)};
-  if (vulkan) {
-    for (const auto& m : {method("vulkan inverse eager fp32", "vulkan", inverse, eager, fp32),
-                          method("vulkan inverse eager fp64", "vulkan", inverse, eager, fp64),
-                          method("vulkan inverse deferred fp32", "vulkan", inverse, deferred, fp32),
-                          method("vulkan inverse deferred fp64", "vulkan", inverse, deferred, fp64),
-                          method("vulkan cg fp32", "vulkan", cg, Update::automatic, fp32),
-                          method("vulkan cg fp64", "vulkan", cg, Update::automatic, fp64)}) {
+  if (has_vulkan()) {
+    for (const auto& m :
+         {method("vulkan inverse eager fp32", "vulkan", inverse, eager, fp32),
+          method("vulkan inverse eager fp64", "vulkan", inverse, eager, fp64),
+          method("vulkan inverse deferred fp32", "vulkan", inverse, deferred, fp32),
+          method("vulkan inverse deferred fp64", "vulkan", inverse, deferred, fp64),
+          method("vulkan condensed eager fp32", "vulkan", condensed, eager, fp32),
+          method("vulkan condensed eager fp64", "vulkan", condensed, eager, fp64),
+          method("vulkan condensed deferred fp32", "vulkan", condensed, deferred, fp32),
+          method("vulkan condensed deferred fp64", "vulkan", condensed, deferred, fp64),
+          method("vulkan cg fp32", "vulkan", cg, Update::automatic, fp32),
+          method("vulkan cg fp64", "vulkan", cg, Update::automatic, fp64)}) {
       list.push_back(m);
     }
   }

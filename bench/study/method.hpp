@@ -18,9 +18,8 @@ struct Method {
   SolverOptions options;
 };
 
-/// Of the CPU, and of the Vulkan device when there is one. `vulkan` asks for a device of its own:
-/// a CPU-type device counts.
-[[nodiscard]] std::vector<Method> methods(bool vulkan);
+/// Of the CPU, and of the Vulkan device when there is one.
+[[nodiscard]] std::vector<Method> methods();
 
 struct Outcome {
   double u_error = 0, stress_error = 0;  ///< against the direct solution (support/accuracy.hpp)

@@ -141,9 +141,7 @@ void study(std::ostream& out, const std::filesystem::path& file, const Options& 
   exact.tolerance = 1e-10;
   Run reference = run_scene(*problem, exact, 1e9);
   reference.rounding = rounding_of(*problem, reference);
-  bool vulkan = false;
-  for (const DeviceInfo& device : devices()) vulkan |= device.backend == "vulkan";
-  for (const Method& method : methods(vulkan)) {
+  for (const Method& method : methods()) {
     Method at = method;
     for (double tolerance : options.tolerances) {
       std::fprintf(stderr, "\r%s: %s, %g        ", file.stem().c_str(), method.name.c_str(),

@@ -124,16 +124,9 @@ void write_row(std::ostream& out, const Cell& cell, const Method& method, std::s
       << reference.rounding << ',' << quoted(o.reason) << '\n';
 }
 
-bool has_vulkan() {
-  for (const DeviceInfo& device : devices()) {
-    if (device.backend == "vulkan") return true;
-  }
-  return false;
-}
-
 /// Returns the number of cells that are WRONG.
 int run(std::ostream& out, const std::vector<Cell>& cells) {
-  const auto all = methods(has_vulkan());
+  const auto all = methods();
   out << "study,contrast,nu,sliver,alpha,unit,pattern,fractures,method,verdict,u_error,stress_"
          "error,"
          "residual,estimate,iterations,first_ms,median_ms,fp32_rounding,reason\n";

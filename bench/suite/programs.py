@@ -61,7 +61,7 @@ PROGRAMS = [
             Share(4, "/1944/", 1), Share(8, "/1944/", 1), Share(120, repetitions=3)),
     Program("bench_scaling", "sizes against frames and memory",
             Share(1, "cpu.*/486/|vulkan inverse def.*/486/", 1), Share(24, "/(486|1944)/", 1),
-            Share(120, "/(486|1944|7776|30246|119286)/", 3)),
+            Share(120, "/(486|1944|7776)/|cpu.*/(30246|119286)/", 3)),
     Program("bench_vulkan", "kernels and frames on the Vulkan device",
             Share(4, "board.*quiet", 1), Share(7, "board", 1), Share(120, repetitions=1)),
     Program("bench_stability", "stability of every method", Share(30, words=("ci",)),
@@ -79,6 +79,8 @@ LARGE = [
             Share(0), Share(0), Share(140, words=("many",)), file="stability.csv"),
     Program("bench_reconstruction", "inverse reconstruction on large boards",
             Share(0), Share(0), Share(200, "board (30246|119286)/", 1)),
+    Program("bench_scaling", "conjugate gradients on the Vulkan device, large boards",
+            Share(0), Share(0), Share(150, "vulkan.*/(30246|119286)/", 1)),
     Program("bench_scaling", "boards of half a million and a million tetrahedra",
             Share(0), Share(0), Share(600, "/(501126|1003686)/", 1)),
 ]

@@ -20,7 +20,8 @@ from matplotlib import pyplot  # noqa: E402
 
 # Colour-blind safe (Okabe and Ito): one colour per base and update, on every device.
 _BASES = {"inverse eager": "#D55E00", "inverse deferred": "#0072B2",
-          "condensed deferred": "#CC79A7", "factor deferred": "#009E73", "cg": "#E69F00"}
+          "condensed eager": "#56B4E9", "condensed deferred": "#CC79A7",
+          "factor deferred": "#009E73", "cg": "#E69F00"}
 _DEVICES = {"cpu fp64": ("o", "-"), "vulkan fp64": ("s", "--"), "vulkan fp32": ("^", ":")}
 _PEERS = {"cholmod updown_solve": ("v", "#222222"), "cholmod updown": ("^", "#555555"),
           "cholmod supernodal refactor": ("s", "#555555"),
@@ -44,7 +45,7 @@ def look(method):
                 "markersize": 4.5, "label": method}
     device, *base, precision = method.split()
     marker, line = _DEVICES.get(f"{device} {precision}", ("d", "-."))
-    return {"color": _BASES.get(" ".join(base), "#56B4E9"), "marker": marker, "linestyle": line,
+    return {"color": _BASES.get(" ".join(base), "#000000"), "marker": marker, "linestyle": line,
             "linewidth": 1.5, "markersize": 4.5, "label": method,
             "markerfacecolor": "white" if device == "vulkan" else _BASES.get(" ".join(base))}
 
