@@ -11,6 +11,7 @@ import tempfile
 from . import compare, plots, programs, results, style
 
 BAND = 1.25
+WIDEST = 2.0  # high over low of an interval that still tells something
 REPETITIONS = 3  # within a process; a turn's sample is the least of them
 
 
@@ -52,15 +53,23 @@ def _turn(build, body, event, names, folder, samples):
                 (_update_and_solution(method, row), files[method]))
 
 
+def _verdict(ratio, low, high):
+    """yes; no: the whole interval lies outside; too noisy: it is too wide to tell."""
+    if 1 / BAND <= ratio <= BAND:
+        return "yes"
+    if low > BAND or high < 1 / BAND:
+        return "no"
+    return "too noisy" if high > WIDEST * low else "yes"
+
+
 def _judged(body, event, method, how, pairs):
     together, alone = zip(*pairs)
     _, low, high = compare.ratio_interval(together, alone)
     ratio = min(alone) / min(together)
-    within = 1 / BAND <= ratio <= BAND or (low <= BAND and high >= 1 / BAND)
     return {"body": body, "event": event, "method": method, "how": how,
             "together_ms": f"{min(together):.6g}", "alone_ms": f"{min(alone):.6g}",
             "ratio": f"{ratio:.4g}", "median_ratio": f"{statistics.median(b / a for a, b in pairs):.4g}",
-            "low": f"{low:.4g}", "high": f"{high:.4g}", "within": "yes" if within else "no"}
+            "low": f"{low:.4g}", "high": f"{high:.4g}", "within": _verdict(ratio, low, high)}
 
 
 def measure(build, body, event, names, turns):

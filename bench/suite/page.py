@@ -92,10 +92,12 @@ def _paper(page, rows):
 
 
 def _peers_alone(entries):
-    outside = sum(e["within"] != "yes" for e in entries)
+    outside = sum(e["within"] == "no" for e in entries)
+    noisy = sum(e["within"] == "too noisy" for e in entries)
     return ("<h3>Peers alone</h3><p>Each peer's event beside the others, as above, and alone, in "
-            f"turns: {len(entries) - outside} of {len(entries)} agree within 25 %"
-            + (f", {outside} do not" if outside else "") + ".</p>"
+            f"turns: {len(entries) - outside - noisy} of {len(entries)} agree within 25 % or their "
+            "own noise" + (f", {outside} do not" if outside else "")
+            + (f", {noisy} were too noisy to tell" if noisy else "") + ".</p>"
             + _details("Each of them", _table(*tables.peers_alone(entries))))
 
 

@@ -250,6 +250,11 @@ class PeersAlone(unittest.TestCase):
                          [("fine", "a proce", "1.1", "yes"), ("fine", "without", "1.062", "yes"),
                           ("slow", "a proce", "2", "no")])
 
+    def test_a_wide_interval_tells_nothing(self):
+        verdicts = [alone._verdict(*r) for r in ((1.2, 0.5, 9), (1.6, 1.3, 1.9), (1.4, 1.2, 1.8),
+                                                 (1.4, 0.8, 2.5), (0.5, 0.4, 0.7))]
+        self.assertEqual(verdicts, ["yes", "no", "yes", "too noisy", "no"])
+
     def test_the_command_keeps_and_shows_them(self):
         made = outcome([torn("fine", body="board 486"), torn("slow", body="board 486")])
         results.write(self.build / "results", made)
@@ -258,7 +263,7 @@ class PeersAlone(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (1, ""))
         self.assertEqual(len(results.read(self.build / "results")["alone"]), 3)
         shown = (self.build / "results" / "index.html").read_text(encoding="utf-8")
-        self.assertIn("2 of 3 agree within 25 %, 1 do not", shown)
+        self.assertIn("2 of 3 agree within 25 % or their own noise, 1 do not", shown)
 
 
 class Page(unittest.TestCase):
