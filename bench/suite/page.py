@@ -176,7 +176,10 @@ def page(outcome):
     _stability(made, outcome["cells"])
     made.section("Size")
     made.text("Board of one layer of cells. Grey: times that no route can reach which reads all "
-              "it holds, by the machine's measured copy rate.")
+              "it holds, by the machine's measured copy rate. Dense inverses end where n squared "
+              "numbers take gigabytes or, eager, each fracture rewrites them; conjugate gradients "
+              "on a software renderer end at 120k tetrahedra, where a frame takes half a minute. "
+              "What a torn patch costs in a body of any size is under bench_needs.")
     made.figure("scaling", plots.scaling(rows))
     made.section("All rows")
     for program, head, lines in tables.every_row(rows):
