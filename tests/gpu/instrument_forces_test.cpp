@@ -3,14 +3,12 @@
 // table, and answers for another thread while frames tear the body.
 #include "sunder/instrument_forces.hpp"
 
-#include <atomic>
 #include <cmath>
-#include <functional>
-#include <thread>
 
 #include "engine/instrument_block.hpp"
 #include "failover_backend.hpp"
 #include "gpu_body.hpp"
+#include "support/haptic_reader.hpp"
 
 namespace sunder::test {
 namespace {
@@ -108,44 +106,21 @@ TEST_F(InstrumentBlock, AnswersAnotherThreadWhileFramesTear) {
   const auto block = pair.vulkan->instrument_forces();
   const std::size_t grips = pair.problem().gripped_dofs().size();
   const std::vector<double> held(grips, 0.25);
-  std::atomic<bool> done{false};
-  std::atomic<long> answered{0};
-  long bad = 0;
-  double least = 0, most = 0;
-  std::thread haptics([&] {
-    std::vector<double> forces(grips);
-    while (!done.load()) {
-      if (!block->forces(held, forces)) continue;
-      double pull = 0;
-      for (double f : forces) {
-        if (!std::isfinite(f)) ++bad;
-        pull += std::abs(f);
-      }
-      least = answered.load() == 0 ? pull : std::min(least, pull);
-      most = std::max(most, pull);
-      ++answered;
-      std::this_thread::yield();
-    }
-  });
-  double least_frame = 0, most_frame = 0;
+  HapticReader reader(*block, held);
+  Pulls frames;
+  std::vector<double> reactions(grips);
   pair.vulkan->set_load({{}, {}, held});
   for (Index e : crack_sequence(pair.problem(), 40, 8)) {
     pair.vulkan->destroy({&e, 1});
     pair.vulkan->solve();
-    std::vector<double> reactions(grips);
     pair.vulkan->read_reactions(reactions);
-    double pull = 0;
-    for (double f : reactions) pull += std::abs(f);
-    least_frame = most_frame == 0 ? pull : std::min(least_frame, pull);
-    most_frame = std::max(most_frame, pull);
+    frames.add(reactions);
   }
-  while (answered.load() == 0) std::this_thread::yield();
-  done = true;
-  haptics.join();
-  EXPECT_EQ(bad, 0);
+  const Pulls answers = reader.end();
+  EXPECT_EQ(answers.bad, 0);
   EXPECT_EQ(block->frames(), 40u);
-  EXPECT_GE(least, least_frame * (1 - 1e-9));
-  EXPECT_LE(most, most_frame * (1 + 1e-9));
+  EXPECT_GE(answers.least, frames.least * (1 - 1e-9));
+  EXPECT_LE(answers.most, frames.most * (1 + 1e-9));
 }
 
 TEST_F(InstrumentBlock, IsThereAtOnceAfterASolve) {

@@ -5,13 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 #include "sunder/error.hpp"
 #include "support/body.hpp"
+#include "support/haptic_reader.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"
 
@@ -80,43 +78,20 @@ TEST(InstrumentForces, RefuseWhatIsNotFinite) {
 TEST(InstrumentForces, AnswerAnotherThreadWhileFramesTear) {
   const Body body(gripped_board(Route::inverse));
   const auto instruments = body.backend->instrument_forces();
-  const std::size_t grips = body.problem->gripped_dofs().size();
-  const std::vector<double> none(body.problem->dofs().size(), 0.0), held(grips, 0.25);
-  std::atomic<bool> done{false};
-  std::atomic<long> answered{0};
-  long answers = 0, bad = 0;
-  double loosest = 0, stiffest = 0;
-  std::thread reader([&] {
-    std::vector<double> forces(grips);
-    while (!done.load()) {
-      if (!instruments->forces(held, forces)) continue;
-      double pull = 0;
-      for (double f : forces) {
-        if (!std::isfinite(f)) ++bad;
-        pull += std::abs(f);
-      }
-      loosest = answers == 0 ? pull : std::min(loosest, pull);
-      stiffest = std::max(stiffest, pull);
-      answered = ++answers;
-      std::this_thread::yield();
-    }
-  });
-  double least = 0, most = 0;  // of the frames
+  const std::vector<double> none(body.problem->dofs().size(), 0.0),
+      held(body.problem->gripped_dofs().size(), 0.25);
+  HapticReader reader(*instruments, held);
+  Pulls frames;
   for (Index e : crack_sequence(*body.problem, 60, 8)) {
     body.backend->destroy({&e, 1});
     body.load(none, held);
     body.backend->solve();
-    double pull = 0;
-    for (double f : body.reactions()) pull += std::abs(f);
-    least = most == 0 ? pull : std::min(least, pull);
-    most = std::max(most, pull);
+    frames.add(body.reactions());
   }
-  while (answered.load() == 0) std::this_thread::yield();
-  done = true;
-  reader.join();
-  EXPECT_EQ(bad, 0);
-  EXPECT_GE(loosest, least * (1 - 1e-7));
-  EXPECT_LE(stiffest, most * (1 + 1e-7));
+  const Pulls answers = reader.end();
+  EXPECT_EQ(answers.bad, 0);
+  EXPECT_GE(answers.least, frames.least * (1 - 1e-7));
+  EXPECT_LE(answers.most, frames.most * (1 + 1e-7));
 }
 
 }  // namespace
