@@ -143,6 +143,7 @@ void FactorBase::prepare(std::span<const Difference> vectors) {
 void FactorBase::pop() {
   for (Index g = 0; g < groups_.back(); ++g) columns_.pop();
   groups_.pop_back();
+  known_ = std::min(known_, columns_.size());
 }
 
 /// y = L^-1 P f; path_ is where it is not zero.
@@ -158,8 +159,12 @@ void FactorBase::forward(const Forces& forces, Eigen::VectorXd& y) {
 }
 
 const Eigen::VectorXd& FactorBase::load(const Forces& forces) {
-  if (load_.take(forces)) forward(forces, of_load_);
-  columns_.project(of_load_, projected_);
+  if (load_.take(forces)) {
+    forward(forces, of_load_);
+    known_ = 0;
+  }
+  columns_.project(of_load_, known_, projected_);
+  known_ = columns_.size();
   return projected_;
 }
 

@@ -44,7 +44,8 @@ class FactorBase final : public Base {
   fem::RowMajor rows_, block_;        // rows of L, all zero between calls; part of the compliance
   LastLoad load_;
   Eigen::VectorXd of_load_, y_;  // L^-1 P f; the sum to solve back
-  Eigen::VectorXd projected_;
+  Eigen::VectorXd projected_;    // B^T X f
+  Index known_ = 0;              // its entries that hold for the load
   fem::SolveWork work_;
 };
 

@@ -109,15 +109,15 @@ void PathColumns::multiply(std::span<const Index> path, const fem::RowMajor& row
   }
 }
 
-void PathColumns::project(const Eigen::VectorXd& y, Eigen::VectorXd& p) {
-  if (p.size() < columns_) p.resize(2 * columns_ + 256);
-  p.head(columns_).setZero();
+void PathColumns::project(const Eigen::VectorXd& y, Index first, Eigen::VectorXd& p) {
+  if (p.size() < columns_) p.conservativeResize(2 * columns_ + 256);
+  p.segment(first, columns_ - first).setZero();
   for (Index s : reached_) {
     const Block& b = blocks_[s];
     const Index width = nodes_.width(s);
-    const double* v = b.values;
-    for (Index i = 0; i < b.count; ++i, v += width) {
-      p[b.ids[i]] += dot(v, y.data() + nodes_.first[s], width);
+    for (Index i = b.count - 1; i >= 0 && b.ids[i] >= first; --i) {
+      p[b.ids[i]] += dot(b.values + static_cast<std::size_t>(i) * static_cast<std::size_t>(width),
+                         y.data() + nodes_.first[s], width);
     }
   }
 }

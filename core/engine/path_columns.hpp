@@ -27,8 +27,8 @@ class PathColumns {
   /// `rows` and `gram` are used, a multiple of 8.
   void multiply(std::span<const Index> path, const fem::RowMajor& rows, Index width,
                 Eigen::Ref<fem::RowMajor> gram);
-  /// The leading size() entries of p <- V^T y.
-  void project(const Eigen::VectorXd& y, Eigen::VectorXd& p);
+  /// Entries first ... size() - 1 of p <- V^T y.
+  void project(const Eigen::VectorXd& y, Index first, Eigen::VectorXd& p);
   /// y += V c.
   void add(const Eigen::VectorXd& c, Eigen::VectorXd& y);
 
