@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cpu_reference/background_rebase.hpp"
 
+#include <chrono>
 #include <exception>
 #include <numeric>
 
-#include "engine/factor_base.hpp"
-#include "fem/assembly.hpp"
-
 namespace sunder::cpu_reference {
-
-Based based_on(const Problem& problem, std::span<const double> scale, const fem::FactorWork& work) {
-  Based based;
-  based.factor = std::make_shared<const fem::Factor>(problem, scale, work);
-  based.deferred = std::make_unique<engine::Deferred>(
-      problem, std::make_unique<engine::FactorBase>(*based.factor));
-  return based;
-}
 
 void check_base(Based& based, const DamagedBody& body, const Load& load,
                 const std::function<void(Eigen::VectorXd&)>& complete) {
@@ -37,59 +27,140 @@ void check_base(Based& based, const DamagedBody& body, const Load& load,
   deferred.solve(forces, load.displacements, u);
 }
 
-BackgroundRebase::BackgroundRebase(const DamagedBody& body, const Load& load, MakeBase make)
-    : body_(body), load_(load), make_(std::move(make)), thread_([this] { run(); }) {}
+BackgroundRebase::BackgroundRebase(const DamagedBody& body, int events)
+    : events_(events), body_(body) {
+  const auto unknowns = static_cast<std::size_t>(body.problem().dof_count());
+  load_.force_dofs.reserve(unknowns);
+  load_.forces.reserve(unknowns);
+  load_.displacements.reserve(body.problem().gripped_dofs().size());
+  elements_.reserve(body.scale().size());  // each is destroyed once
+  ends_.reserve(body.scale().size());
+  thread_ = std::thread([this] { run(); });
+}
 
 BackgroundRebase::~BackgroundRebase() {
   unwanted_ = true;
-  if (thread_.joinable()) static_cast<void>(take());
+  {
+    const std::lock_guard lock(mutex_);
+    quit_ = true;
+  }
+  asked_.notify_one();
+  thread_.join();
 }
 
 void BackgroundRebase::follow(std::span<const Index> elements) {
-  ++followed_;
   {
     const std::lock_guard lock(mutex_);
     elements_.insert(elements_.end(), elements.begin(), elements.end());
     ends_.push_back(elements_.size());
   }
-  changed_.notify_one();
+  if (!making_) return;
+  ++followed_;
+  asked_.notify_one();
 }
 
-Based BackgroundRebase::take() {
+void BackgroundRebase::start(const Load& load, MakeBase make) {
+  making_ = true;
+  followed_ = 0;
   {
     const std::lock_guard lock(mutex_);
-    closed_ = true;
+    load_ = load;
+    make_ = std::move(make);
+    phase_ = Phase::asked;
+    start_ = ends_.size();
   }
-  changed_.notify_one();
-  thread_.join();
-  return std::move(result_);
+  asked_.notify_one();
 }
 
-/// Waits for an event; false: there is none left and none will come.
-bool BackgroundRebase::next(std::vector<Index>& elements) {
+bool BackgroundRebase::take(Based& based) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  making_ = false;
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return closed_ || !ends_.empty(); });
-  if (ends_.empty()) return false;
-  const auto end = static_cast<std::ptrdiff_t>(ends_.front());
-  elements.assign(elements_.begin(), elements_.begin() + end);
-  elements_.erase(elements_.begin(), elements_.begin() + end);
-  ends_.erase(ends_.begin());
-  for (std::size_t& e : ends_) e -= static_cast<std::size_t>(end);
+  done_.wait(lock, [this] { return phase_ == Phase::following && at_ == ends_.size(); });
+  waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  phase_ = Phase::idle;
+  if (!result_.deferred) return false;
+  old_ = std::move(based);
+  based = std::move(result_);
+  result_ = {};
+  lock.unlock();
+  asked_.notify_one();
   return true;
 }
 
+void BackgroundRebase::give_up() {
+  making_ = false;
+  unwanted_ = true;
+  std::unique_lock lock(mutex_);
+  phase_ = Phase::idle;
+  done_.wait(lock, [this] { return !busy_; });
+  phase_ = Phase::idle;
+  result_ = {};
+  unwanted_ = false;
+}
+
+bool BackgroundRebase::work_waits() const {
+  return quit_ || old_.deferred || phase_ == Phase::asked ||
+         (phase_ == Phase::following && at_ < ends_.size());
+}
+
 void BackgroundRebase::run() {
-  try {
-    Based based = make_(body_, load_, {.stop = &unwanted_});
-    std::vector<Index> elements;
-    while (next(elements)) {
-      if (!based.deferred->destroy(elements)) return;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    asked_.wait(lock, [this] { return work_waits(); });
+    if (quit_) return;
+    busy_ = true;
+    if (old_.deferred) {
+      const Based old = std::move(old_);
+      old_ = {};
+      lock.unlock();
+    } else if (phase_ == Phase::asked) {
+      make(lock);
+    } else {
+      follow_next(lock);
     }
-    result_ = std::move(based);
-  } catch (const std::exception&) {
-    // Out of memory, not definite or unwanted: result_ stays empty, and the frame that takes it
-    // decides.
+    if (!lock.owns_lock()) lock.lock();
+    busy_ = false;
+    done_.notify_one();
   }
+}
+
+/// Events from at_ to `end`, so that the lists may grow meanwhile.
+void BackgroundRebase::copy_events(std::size_t end) {
+  const auto begin = elements_.begin();
+  const auto at = [&](std::size_t event) {
+    return begin + static_cast<std::ptrdiff_t>(event == 0 ? 0 : ends_[event - 1]);
+  };
+  event_.assign(at(at_), at(end));
+  at_ = end;
+}
+
+void BackgroundRebase::make(std::unique_lock<std::mutex>& lock) {
+  copy_events(start_);
+  const MakeBase make = std::move(make_);
+  lock.unlock();
+  body_.destroy(event_);
+  Based based;
+  try {
+    based = make(body_, load_, {.stop = &unwanted_});
+  } catch (const std::exception&) {
+    // Out of memory, not definite or unwanted: it stays empty, and the frame that takes it decides.
+  }
+  lock.lock();
+  result_ = std::move(based);
+  if (phase_ == Phase::asked) phase_ = Phase::following;
+}
+
+void BackgroundRebase::follow_next(std::unique_lock<std::mutex>& lock) {
+  const std::size_t next = at_ + 1;
+  copy_events(next);
+  at_ = next - 1;  // not yet followed
+  lock.unlock();
+  body_.destroy(event_);
+  if (result_.deferred && !result_.deferred->destroy(event_)) result_ = {};
+  lock.lock();
+  at_ = next;
 }
 
 }  // namespace sunder::cpu_reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A new base computed while frames go on: a thread makes it of the body as it was when it started
+// New bases computed while frames go on: a thread makes one of the body as it was when it was asked
 // and follows every event since. Taken at a fixed event, so what it returns depends on the events
 // alone, never on how long anything took.
 #pragma once
@@ -28,43 +28,62 @@ struct Based {
 /// factor on the way.
 using MakeBase = std::function<Based(const DamagedBody&, const Load&, const fem::FactorWork&)>;
 
+/// Starting, following and taking a base allocate nothing on the frame's thread.
 class BackgroundRebase {
  public:
-  /// Starts. `body` as it is now; `load`: likely that of the frame that takes the base.
-  BackgroundRebase(const DamagedBody& body, const Load& load, MakeBase make);
-  /// Gives up a factor that is being made.
+  /// `body` as it is now; a base is taken so many events after its start.
+  BackgroundRebase(const DamagedBody& body, int events);
+  /// Gives up what is being made.
   ~BackgroundRebase();
   BackgroundRebase(const BackgroundRebase&) = delete;
   BackgroundRebase& operator=(const BackgroundRebase&) = delete;
 
-  /// Tells it of an event.
+  /// Tells it of an event, whether a base is being made or not.
   void follow(std::span<const Index> elements);
-  [[nodiscard]] int followed() const { return followed_; }
-  /// Waits until every event is followed. Without `deferred`: not positive definite in double
-  /// precision.
-  [[nodiscard]] Based take();
+  /// Starts a base of the body after all events so far. `load`: likely that of the frame that
+  /// takes it.
+  void start(const Load& load, MakeBase make);
+  [[nodiscard]] bool making() const { return making_; }
+  /// Whether the next event is to find the base that is being made in place.
+  [[nodiscard]] bool due() const { return making_ && followed_ >= events_; }
+  /// Waits until every event is followed; `based` goes to the thread to be freed, which takes as
+  /// long as a frame. False, and nothing changes: not positive definite in double precision.
+  [[nodiscard]] bool take(Based& based);
+  /// Gives up the base that is being made.
+  void give_up();
+  /// Milliseconds that take() has waited so far.
+  [[nodiscard]] double waited_ms() const { return waited_ms_; }
 
  private:
+  enum class Phase { idle, asked, following };
   void run();
-  [[nodiscard]] bool next(std::vector<Index>& elements);
+  void make(std::unique_lock<std::mutex>& lock);
+  void follow_next(std::unique_lock<std::mutex>& lock);
+  void copy_events(std::size_t end);
+  [[nodiscard]] bool work_waits() const;
 
-  DamagedBody body_;
+  // The frame's.
+  int events_, followed_ = 0;
+  bool making_ = false;
+  double waited_ms_ = 0;
+  // The thread's.
+  DamagedBody body_;  // after the events up to at_
+  std::vector<Index> event_;
+  // Guarded by mutex_.
+  std::mutex mutex_;
+  std::condition_variable asked_, done_;
+  Phase phase_ = Phase::idle;
+  bool busy_ = false, quit_ = false;
   Load load_;
   MakeBase make_;
-  Based result_;
-  int followed_ = 0;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<Index> elements_;    // of events not yet followed, guarded by mutex_
+  Based result_, old_;
+  std::vector<Index> elements_;    // of all events
   std::vector<std::size_t> ends_;  // of each of them
-  bool closed_ = false;            // no event will come
+  std::size_t at_ = 0;             // events that the thread has followed
+  std::size_t start_ = 0;          // events before the base that is being made
   std::atomic<bool> unwanted_{false};
   std::thread thread_;  // last: it uses all above
 };
-
-/// The factor of a body and an empty damage over it.
-[[nodiscard]] Based based_on(const Problem& problem, std::span<const double> scale,
-                             const fem::FactorWork& work = {});
 
 /// A full check of a new base (frame_check.hpp). It solves for the load once more at the end: the
 /// frame that takes the base finds its load known, and all memory touched. `complete` fills what a

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
 #include <numeric>
-#include <thread>
+#include <optional>
 
 #include "cpu_reference/background_rebase.hpp"
 #include "cpu_reference/routes.hpp"
@@ -83,12 +82,13 @@ class CondensedRoute final : public InverseRoute {
  public:
   CondensedRoute(const DamagedBody& body, const IntactBody& intact, std::span<const Index> dofs,
                  bool damage)
-      : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()), damage_(damage) {
+      : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()) {
     std::iota(all_.begin(), all_.end(), 0);
     // Without an owner: the intact body outlives the route.
     based_ = condensed_by(body.problem(), {std::shared_ptr<void>(), &intact.factor}, dofs_, damage);
     intact_ = based_.factor.get();
     lost_.reserve(body.scale().size());
+    if (damage) coming_.emplace(body, kRebaseEvents);
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
@@ -113,28 +113,25 @@ class CondensedRoute final : public InverseRoute {
   }
 
   void destroy(std::span<const Index> elements) override {
+    if (coming_->due()) take_base();
+    coming_->follow(elements);
     lost_.insert(lost_.end(), elements.begin(), elements.end());
     if (!based_.deferred->destroy(elements)) {
       rebase();
-      return;
-    }
-    if (coming_) {
-      coming_->follow(elements);
-      if (coming_->followed() == kRebaseEvents) take_rebase();
-    } else if (static_cast<std::size_t>(based_.deferred->rank()) > threshold()) {
+    } else if (!coming_->making() &&
+               static_cast<std::size_t>(based_.deferred->rank()) > threshold()) {
       lost_at_start_ = lost_.size();
-      coming_ = std::make_unique<BackgroundRebase>(
-          body_, load_, NextBase{based_.condensed->state(), based_.deferred->damage(), lost_});
+      coming_->start(load_, NextBase{based_.condensed->state(), based_.deferred->damage(), lost_});
     }
   }
 
   bool rebase() override {
-    coming_.reset();
-    reaper_ = {};
+    if (!coming_) return false;
+    coming_->give_up();
     based_ = {};  // frees the old base first
     based_ =
         condensed_by(body_.problem(), std::make_shared<fem::Factor>(body_.problem(), body_.scale()),
-                     dofs_, damage_);
+                     dofs_, true);
     lost_.clear();
     ++bases_;
     return true;
@@ -144,7 +141,7 @@ class CondensedRoute final : public InverseRoute {
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return bases_; }
   const BaseCheck& base_check() const override { return based_.check; }
-  double waited_ms() const override { return waited_ms_; }
+  double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan = based_.deferred->buffers();
@@ -164,20 +161,13 @@ class CondensedRoute final : public InverseRoute {
            std::clamp(dofs_.size() / 8, kFewestColumns, kMostColumns);
   }
 
-  void take_rebase() {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    Based next = coming_->take();
-    waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    coming_.reset();
-    if (!next.deferred) return;          // what there is still holds; the next event tries again
-    if (next.factor != based_.factor) {  // what was destroyed before it is in it
+  void take_base() {
+    const auto factor = based_.factor;
+    if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
+    if (based_.factor != factor) {       // what was destroyed before it is in it
       lost_.erase(lost_.begin(), lost_.begin() + static_cast<std::ptrdiff_t>(lost_at_start_));
     }
-    std::swap(based_, next);
     ++bases_;
-    // Giving some megabytes back takes as long as a frame.
-    reaper_ = std::jthread([old = std::move(next)]() mutable { old = {}; });
   }
 
   const DamagedBody& body_;
@@ -187,14 +177,11 @@ class CondensedRoute final : public InverseRoute {
   Based based_;
   std::vector<Index> lost_;        // elements destroyed since based_.factor
   std::size_t lost_at_start_ = 0;  // of them, when coming_ started
-  std::jthread reaper_;            // frees the base before this one
-  std::unique_ptr<BackgroundRebase> coming_;
   engine::Equilibrium whole_;
   Eigen::VectorXd right_side_, everywhere_;
   double enough_ = 0;
-  double waited_ms_ = 0;
   int bases_ = 1;
-  bool damage_;
+  std::optional<BackgroundRebase> coming_;  // where something can be destroyed
 };
 
 }  // namespace

@@ -14,6 +14,8 @@ constexpr double kFlops = 10e9;             // of panels with a dozen columns
 constexpr double kStressSeconds = 15e-9;    // per element, kernel of core/engine/stress_kernel.hpp
 constexpr double kProductSeconds = 120e-9;  // per element of a product K u
 constexpr double kCall = 5e-6;              // of a frame's small change
+constexpr double kFactorFlops = 26e9;       // of a factor's dense products
+constexpr double kCheckSeconds = 200e-9;    // per element of a full check by plain loops
 
 constexpr double kValue = sizeof(double);
 constexpr double kTouched = 12;  // differences of a first fracture, each between two unknowns
@@ -50,7 +52,29 @@ double update(const FrameShape& s) {
   return seconds(2 * kTouched * kTouched);
 }
 
+/// Multiply-adds of a factor: each column of a panel with those after it.
+double multiply_adds(const fem::Supernodes& nodes) {
+  double sum = 0;
+  for (Index s = 0; s < nodes.count(); ++s) {
+    const double width = nodes.width(s), below = nodes.height(s) - width;
+    sum += width * (below * below / 2 + width * below / 2 + width * width / 6);
+  }
+  return sum;
+}
+
 }  // namespace
+
+int frames_of_a_factor(const fem::SupernodalCholesky& factor, std::size_t elements) {
+  constexpr double kSolutions = 4;    // of the check, each forward and backward
+  constexpr double kUpdate = 3e-5;    // seconds of a frame with a fracture, whatever the size
+  constexpr double kAllowance = 1.5;  // the thread follows meanwhile
+  const double solve = seconds(static_cast<double>(factor.entries()));
+  const double count = static_cast<double>(elements);
+  const double making = 2 * multiply_adds(factor.supernodes()) / kFactorFlops +
+                        kCheckSeconds * count + 2 * kSolutions * solve;
+  const double frame = 1.5 * solve + kStressSeconds * count + kUpdate;
+  return std::clamp(static_cast<int>(kAllowance * making / frame), 16, 256);
+}
 
 FrameCost frame_cost(const FrameShape& s) {
   const bool region = s.route == Route::condensed;

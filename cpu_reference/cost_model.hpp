@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "fem/supernodal_cholesky.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::cpu_reference {
@@ -29,5 +30,10 @@ struct FrameCost {
 };
 
 [[nodiscard]] FrameCost frame_cost(const FrameShape& shape);
+
+/// Frames that follow one another without a pause while another thread makes a factor of the
+/// damaged body, checks it and follows them. From sizes alone: what is taken after so many frames
+/// must not depend on how long anything took.
+[[nodiscard]] int frames_of_a_factor(const fem::SupernodalCholesky& factor, std::size_t elements);
 
 }  // namespace sunder::cpu_reference

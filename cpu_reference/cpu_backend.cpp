@@ -46,7 +46,8 @@ class CpuBackend final : public Backend {
       : Backend(problem, std::move(needs)),
         chosen_(std::move(chosen)),
         body_(problem),
-        intact_(*problem) {
+        intact_(*problem, this->needs().damage && chosen_.update == Update::deferred &&
+                              chosen_.route != Route::condensed && chosen_.route != Route::cg) {
     const auto n = problem->dof_count();
     if (chosen_.route == Route::condensed) {
       condensed_.emplace(*problem, engine::region_of(*problem, this->needs()));
@@ -162,12 +163,12 @@ class CpuBackend final : public Backend {
     }
   }
 
-  std::unique_ptr<InverseRoute> make_route() const {
+  std::unique_ptr<InverseRoute> make_route() {
     if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, intact_);
     if (condensed_)
       return condensed_route(body_, intact_, condensed_->region().dofs, needs().damage);
     if (chosen_.update == Update::eager) return dense_inverse_route(body_, intact_);
-    return deferred_route(body_, intact_, chosen_.route == Route::inverse, needs().damage);
+    return deferred_route(body_, intact_, chosen_.route == Route::inverse);
   }
 
   void do_set_load(const Load& load) override {

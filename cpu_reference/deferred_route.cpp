@@ -1,38 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <numeric>
-#include <thread>
+#include <optional>
 
 #include "cpu_reference/background_rebase.hpp"
+#include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/routes.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
-#include "fem/assembly.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
 
-// Events between the start of a rebase and the frame that takes it: a factor takes as long as some
-// 30 to 60 frames, whatever the size.
-constexpr int kRebaseEvents = 64;
+// Columns that a fracture of one element adds to the damage, along a tear.
+constexpr double kColumns = 1.75;
+constexpr double kFewestColumns = 64;
 
 // An event that touches more new unknowns than this costs more than a new factor: a share of all
 // within limits. Boards of 486 to 30,246 elements (bench_reconstruction, bench_engine).
 constexpr double kLargestShare = 0.125, kSmallBody = 64;
 constexpr double kLargestEvent = 600;
 
-Based checked_factor(const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
-  Based based = based_on(body.problem(), body.scale(), work);
-  check_base(based, body, load, [](Eigen::VectorXd&) {});
-  return based;
-}
-
 class DeferredRoute final : public InverseRoute {
  public:
-  DeferredRoute(const DamagedBody& body, const IntactBody& intact, bool dense, bool damage)
-      : body_(body), dense_(dense), all_(static_cast<std::size_t>(body.problem().dof_count())) {
+  DeferredRoute(const DamagedBody& body, IntactBody& intact, bool dense)
+      : body_(body),
+        dense_(dense),
+        all_(static_cast<std::size_t>(body.problem().dof_count())),
+        stiffness_(std::move(intact.stiffness)) {
     std::iota(all_.begin(), all_.end(), 0);
     std::unique_ptr<engine::Base> base;
     if (dense) {
@@ -40,8 +35,14 @@ class DeferredRoute final : public InverseRoute {
     } else {
       base = std::make_unique<engine::FactorBase>(intact.factor);
     }
+    const bool damage = stiffness_ != nullptr;
     based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), damage);
-    set_threshold(intact.factor);
+    if (!damage) return;
+    const int frames = frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
+    // The thread is to be busy for two frames of three at most, where they tear without a pause.
+    threshold_ = body.problem().gripped_dofs().size() +
+                 static_cast<std::size_t>(std::max(1.5 * kColumns * frames, kFewestColumns));
+    coming_.emplace(body, frames);
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
@@ -56,26 +57,29 @@ class DeferredRoute final : public InverseRoute {
   }
 
   void destroy(std::span<const Index> elements) override {
+    if (coming_->due()) take_base();
+    coming_->follow(elements);
     if (4 * static_cast<double>(elements.size()) > largest_event() ||
         !based_.deferred->destroy(elements)) {
       rebase();
-      return;
-    }
-    if (coming_) {
-      coming_->follow(elements);
-      if (coming_->followed() == kRebaseEvents) take_rebase();
-    } else if (static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
-      coming_ = std::make_unique<BackgroundRebase>(body_, load_, checked_factor);
+    } else if (!coming_->making() &&
+               static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
+      coming_->start(
+          load_, [this](const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
+            Based based = based_on(body, work);
+            check_base(based, body, load, [](Eigen::VectorXd&) {});
+            return based;
+          });
     }
   }
 
   bool rebase() override {
-    coming_.reset();
+    if (!coming_) return false;
+    coming_->give_up();
     saved_ms_ = saved_ms();
-    reaper_ = {};
     based_ = {};  // frees the old base first
-    based_ = based_on(body_.problem(), body_.scale());
-    rebased();
+    based_ = based_on(body_, {});
+    ++bases_;
     return true;
   }
 
@@ -88,13 +92,14 @@ class DeferredRoute final : public InverseRoute {
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return bases_; }
   const BaseCheck& base_check() const override { return based_.check; }
-  double waited_ms() const override { return waited_ms_; }
+  double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan = based_.deferred->buffers();
     if (based_.factor) {
       plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
     }
+    if (stiffness_) plan.push_back({"stiffness in the factor's order", stiffness_->bytes()});
     return plan;
   }
 
@@ -103,31 +108,21 @@ class DeferredRoute final : public InverseRoute {
     return std::clamp(kLargestShare * body_.problem().dof_count(), kSmallBody, kLargestEvent);
   }
 
-  void take_rebase() {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    Based next = coming_->take();
-    waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    coming_.reset();
-    if (!next.deferred) return;  // what there is still holds; the next event tries again
-    saved_ms_ = saved_ms();
-    std::swap(based_, next);
-    rebased();
-    // Giving some megabytes back takes as long as a frame.
-    reaper_ = std::jthread([old = std::move(next)]() mutable { old = {}; });
-  }
-
-  void rebased() {
+  void take_base() {
+    const double saved = saved_ms();
+    if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
+    saved_ms_ = saved;
     ++bases_;
-    set_threshold(*based_.factor);
   }
 
-  /// The small matrices cost a frame some 4 T^2 values, a factor's solution its entries: past a
-  /// third of them a new base is worth it.
-  void set_threshold(const fem::Factor& factor) {
-    const double share = 0.3 * std::sqrt(static_cast<double>(factor.entries()));
-    threshold_ = body_.problem().gripped_dofs().size() +
-                 static_cast<std::size_t>(std::clamp(share, 128.0, 512.0));
+  /// A factor of the body and an empty damage over it.
+  Based based_on(const DamagedBody& body, const fem::FactorWork& work) {
+    stiffness_->follow(body.scale());
+    Based based;
+    based.factor = std::make_shared<const fem::Factor>(stiffness_->factor(work));
+    based.deferred = std::make_unique<engine::Deferred>(
+        body.problem(), std::make_unique<engine::FactorBase>(*based.factor));
+    return based;
   }
 
   const DamagedBody& body_;
@@ -135,20 +130,19 @@ class DeferredRoute final : public InverseRoute {
   std::vector<Index> all_;  // every unknown: the loads of a residual
   Load load_;               // of the last solution
   Based based_;
-  std::jthread reaper_;  // frees the base before this one
-  std::unique_ptr<BackgroundRebase> coming_;
-  std::size_t threshold_ = 0;
+  std::size_t threshold_ = 0;  // columns of the damage at which a new base begins
   int bases_ = 1;
-  double waited_ms_ = 0;
   double saved_ms_ = 0;  // by the bases before this one
   double enough_ = 0;
+  std::unique_ptr<fem::OrderedStiffness> stiffness_;  // of whoever makes a base
+  std::optional<BackgroundRebase> coming_;            // last: its thread uses what is above
 };
 
 }  // namespace
 
-std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body, const IntactBody& intact,
-                                             bool dense, bool damage) {
-  return std::make_unique<DeferredRoute>(body, intact, dense, damage);
+std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body, IntactBody& intact,
+                                             bool dense) {
+  return std::make_unique<DeferredRoute>(body, intact, dense);
 }
 
 }  // namespace sunder::cpu_reference

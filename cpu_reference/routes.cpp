@@ -172,8 +172,16 @@ double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
   return cpu_reference::largest_stress(*problem_, destroyed_, nodal_in_);
 }
 
-IntactBody::IntactBody(const Problem& problem)
-    : factor(problem, {}, {.threads = machine_threads()}), grips(problem.gripped_dofs()) {
+IntactBody::IntactBody(const Problem& problem, bool rebases)
+    : IntactBody(problem, rebases, fem::SparseMatrix()) {}
+
+IntactBody::IntactBody(const Problem& problem, bool rebases, fem::SparseMatrix ordered)
+    : factor(problem, {}, {.threads = machine_threads(), .ordered = rebases ? &ordered : nullptr}),
+      grips(problem.gripped_dofs()) {
+  if (rebases) {
+    stiffness = std::make_unique<fem::OrderedStiffness>(
+        problem, factor.cholesky().shared_supernodes(), ordered);
+  }
   if (!grips.none()) grips.set_columns(factor.inverse_columns(grips.dofs()));
 }
 

@@ -12,6 +12,7 @@
 #include "engine/condensed_base.hpp"
 #include "engine/deferred.hpp"
 #include "fem/factor.hpp"
+#include "fem/ordered_stiffness.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::cpu_reference {
@@ -110,20 +111,25 @@ class InverseRoute {
 
 /// The intact body's factor with its grips; the preconditioner of the CG route.
 struct IntactBody {
-  IntactBody(const Problem& problem);
+  /// `rebases`: factors of the damaged body are to follow.
+  IntactBody(const Problem& problem, bool rebases);
   /// x = K0^-1 f with x_G = displacement (empty: 0).
   void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
              Eigen::VectorXd& x) const;
   fem::Factor factor;
   Grips grips;
+  std::unique_ptr<fem::OrderedStiffness> stiffness;  // empty without `rebases`, or handed on
+
+ private:
+  IntactBody(const Problem& problem, bool rebases, fem::SparseMatrix ordered);
 };
 
 [[nodiscard]] std::unique_ptr<InverseRoute> dense_inverse_route(const DamagedBody& body,
                                                                 const IntactBody& intact);
-/// Deferred update over a dense inverse (`dense`) or over the factor itself.
+/// Deferred update over a dense inverse (`dense`) or over the factor itself. Takes the intact
+/// body's stiffness; without one nothing will be destroyed.
 [[nodiscard]] std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body,
-                                                           const IntactBody& intact, bool dense,
-                                                           bool damage);
+                                                           IntactBody& intact, bool dense);
 /// Deferred update over the inverse restricted to some unknowns (ascending).
 [[nodiscard]] std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body,
                                                             const IntactBody& intact,

@@ -45,6 +45,13 @@ Factor::Factor(const Problem& problem, std::span<const double> scale, const Fact
   check();
 }
 
+Factor::Factor(std::shared_ptr<const Supernodes> nodes, const SparseMatrix& ordered,
+               const FactorWork& work)
+    : cholesky_(std::move(nodes), ordered, work) {
+  if (work.stop && work.stop->load()) throw Stopped();
+  check();
+}
+
 void Factor::check() const {
   if (!cholesky_.succeeded()) {
     throw NumericalError(

@@ -28,6 +28,10 @@ class Factor {
   explicit Factor(const Problem& problem, std::span<const double> scale = {},
                   const FactorWork& work = {});
 
+  /// Of a stiffness given in the order of `nodes` (ordered_stiffness.hpp).
+  Factor(std::shared_ptr<const Supernodes> nodes, const SparseMatrix& ordered,
+         const FactorWork& work = {});
+
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
   /// The same into x, which is another vector than rhs; allocates only until `work` has grown.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& work) const;

@@ -14,6 +14,7 @@ namespace sunder::fem {
 struct FactorWork {
   int threads = 1;                          ///< share the rows of large panels
   const std::atomic<bool>* stop = nullptr;  ///< once true, the work is given up
+  SparseMatrix* ordered = nullptr;          ///< receives the matrix in the factor's order
 };
 
 /// Writes the panels of L of a matrix given in the factor's order by its lower triangle.

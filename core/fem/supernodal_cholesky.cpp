@@ -11,22 +11,33 @@ namespace sunder::fem {
 SupernodalCholesky::SupernodalCholesky(const SparseMatrix& lower, std::vector<Index> place,
                                        const FactorWork& work) {
   SparseMatrix permuted;
-  nodes_ = find_supernodes(lower, std::move(place), permuted);
-  for (Index s = 0; s < nodes_.count(); ++s) tallest_ = std::max(tallest_, nodes_.height(s));
-  values_.assign(nodes_.value_begin.back(), 0.0);
-  succeeded_ = factorise(nodes_, permuted, work, values_);
+  nodes_ = std::make_shared<const Supernodes>(find_supernodes(lower, std::move(place), permuted));
+  compute(permuted, work);
+  if (work.ordered) *work.ordered = std::move(permuted);
+}
+
+SupernodalCholesky::SupernodalCholesky(std::shared_ptr<const Supernodes> nodes,
+                                       const SparseMatrix& ordered, const FactorWork& work)
+    : nodes_(std::move(nodes)) {
+  compute(ordered, work);
+}
+
+void SupernodalCholesky::compute(const SparseMatrix& ordered, const FactorWork& work) {
+  for (Index s = 0; s < nodes_->count(); ++s) tallest_ = std::max(tallest_, nodes_->height(s));
+  values_.assign(nodes_->value_begin.back(), 0.0);
+  succeeded_ = factorise(*nodes_, ordered, work, values_);
 }
 
 SupernodalCholesky::ConstPanel SupernodalCholesky::panel(Index s) const {
-  return {values_.data() + nodes_.value_begin[s], nodes_.height(s), nodes_.width(s)};
+  return {values_.data() + nodes_->value_begin[s], nodes_->height(s), nodes_->width(s)};
 }
 
 void SupernodalCholesky::reach(std::span<const Index> rows, std::vector<Index>& path,
                                SolveWork& work) const {
   path.clear();
-  work.seen.resize(static_cast<std::size_t>(nodes_.count()), 0);
+  work.seen.resize(static_cast<std::size_t>(nodes_->count()), 0);
   for (Index row : rows) {
-    for (Index s = nodes_.of[row]; s != kNone && !work.seen[s]; s = nodes_.parent[s]) {
+    for (Index s = nodes_->of[row]; s != kNone && !work.seen[s]; s = nodes_->parent[s]) {
       work.seen[s] = 1;
       path.push_back(s);
     }
@@ -36,10 +47,10 @@ void SupernodalCholesky::reach(std::span<const Index> rows, std::vector<Index>& 
 }
 
 void SupernodalCholesky::forward_panel(Index s, Eigen::VectorXd& y, SolveWork& work) const {
-  const auto below = nodes_.below(s);
+  const auto below = nodes_->below(s);
   std::fill_n(work.below.begin(), below.size(), 0.0);
-  panel_forward(values_.data() + nodes_.value_begin[s], nodes_.width(s), nodes_.height(s),
-                y.data() + nodes_.first[s], work.below.data());
+  panel_forward(values_.data() + nodes_->value_begin[s], nodes_->width(s), nodes_->height(s),
+                y.data() + nodes_->first[s], work.below.data());
   for (std::size_t i = 0; i < below.size(); ++i) y[below[i]] -= work.below[i];
 }
 
@@ -51,16 +62,16 @@ void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Vecto
 
 void SupernodalCholesky::forward(Eigen::VectorXd& y, SolveWork& work) const {
   work.below.resize(static_cast<std::size_t>(tallest_));
-  for (Index s = 0; s < nodes_.count(); ++s) forward_panel(s, y, work);
+  for (Index s = 0; s < nodes_->count(); ++s) forward_panel(s, y, work);
 }
 
 void SupernodalCholesky::backward(Eigen::VectorXd& y, SolveWork& work) const {
   work.below.resize(static_cast<std::size_t>(tallest_));
-  for (Index s = nodes_.count() - 1; s >= 0; --s) {
-    const auto below = nodes_.below(s);
+  for (Index s = nodes_->count() - 1; s >= 0; --s) {
+    const auto below = nodes_->below(s);
     for (std::size_t i = 0; i < below.size(); ++i) work.below[i] = y[below[i]];
-    panel_backward(values_.data() + nodes_.value_begin[s], nodes_.width(s), nodes_.height(s),
-                   y.data() + nodes_.first[s], work.below.data());
+    panel_backward(values_.data() + nodes_->value_begin[s], nodes_->width(s), nodes_->height(s),
+                   y.data() + nodes_->first[s], work.below.data());
   }
 }
 
@@ -69,11 +80,11 @@ void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<R
   work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * y.cols())));
   for (Index s : supernodes) {
     const ConstPanel p = panel(s);
-    const Index width = nodes_.width(s);
-    auto x = y.middleRows(nodes_.first[s], width);
+    const Index width = nodes_->width(s);
+    auto x = y.middleRows(nodes_->first[s], width);
     lower_solve(p.data(), p.outerStride(), width, x.data(), y.outerStride(), y.cols(),
                 work.product.data());
-    const auto below = nodes_.below(s);
+    const auto below = nodes_->below(s);
     if (below.empty()) continue;
     const auto under = static_cast<Eigen::Index>(below.size());
     row_product({p.data() + width, under, width, 1, p.outerStride()}, x.data(), x.outerStride(),
@@ -86,7 +97,7 @@ void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<R
 }
 
 void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y, SolveWork& work) const {
-  std::vector<Index> all(static_cast<std::size_t>(nodes_.count()));
+  std::vector<Index> all(static_cast<std::size_t>(nodes_->count()));
   std::iota(all.begin(), all.end(), 0);
   backward(all, y, work);
 }
@@ -98,9 +109,9 @@ void SupernodalCholesky::backward(std::span<const Index> supernodes, Eigen::Ref<
   for (std::size_t at = supernodes.size(); at-- > 0;) {
     const Index s = supernodes[at];
     const ConstPanel p = panel(s);
-    const Index width = nodes_.width(s);
-    const auto below = nodes_.below(s);
-    auto x = y.middleRows(nodes_.first[s], width);
+    const Index width = nodes_->width(s);
+    const auto below = nodes_->below(s);
+    auto x = y.middleRows(nodes_->first[s], width);
     if (!below.empty()) {
       gathered.resize(static_cast<Index>(below.size()), y.cols());
       for (std::size_t i = 0; i < below.size(); ++i) {
@@ -116,7 +127,7 @@ void SupernodalCholesky::backward(std::span<const Index> supernodes, Eigen::Ref<
 
 std::size_t SupernodalCholesky::bytes() const {
   return values_.size() * sizeof(double) +
-         (nodes_.rows.size() + 2 * nodes_.place.size()) * sizeof(Index);
+         (nodes_->rows.size() + 2 * nodes_->place.size()) * sizeof(Index);
 }
 
 }  // namespace sunder::fem

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,10 +27,16 @@ class SupernodalCholesky {
   /// place[i] is a row of L for unknown i, to be refined; empty: by minimum degree.
   explicit SupernodalCholesky(const SparseMatrix& lower, std::vector<Index> place = {},
                               const FactorWork& work = {});
+  /// From a lower triangle in the order of `nodes`.
+  SupernodalCholesky(std::shared_ptr<const Supernodes> nodes, const SparseMatrix& ordered,
+                     const FactorWork& work = {});
   [[nodiscard]] bool succeeded() const { return succeeded_; }
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(nodes_.place.size()); }
-  [[nodiscard]] const Supernodes& supernodes() const { return nodes_; }
+  [[nodiscard]] Index size() const { return static_cast<Index>(nodes_->place.size()); }
+  [[nodiscard]] const Supernodes& supernodes() const { return *nodes_; }
+  [[nodiscard]] const std::shared_ptr<const Supernodes>& shared_supernodes() const {
+    return nodes_;
+  }
   /// Entries of the panels: a triangular solve reads each once.
   [[nodiscard]] std::size_t entries() const { return values_.size(); }
   [[nodiscard]] std::size_t bytes() const;
@@ -55,7 +62,9 @@ class SupernodalCholesky {
   [[nodiscard]] ConstPanel panel(Index s) const;
   void forward_panel(Index s, Eigen::VectorXd& y, SolveWork& work) const;
 
-  Supernodes nodes_;
+  void compute(const SparseMatrix& ordered, const FactorWork& work);
+
+  std::shared_ptr<const Supernodes> nodes_;
   std::vector<double> values_;
   Index tallest_ = 0;
   bool succeeded_ = false;
