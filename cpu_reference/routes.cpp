@@ -172,6 +172,12 @@ double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
   return cpu_reference::largest_stress(*problem_, destroyed_, nodal_in_);
 }
 
+double DamagedBody::largest_stress(const Eigen::VectorXd& x,
+                                   std::span<const Index> elements) const {
+  fem::scatter(*problem_, {x.data(), static_cast<std::size_t>(x.size())}, nodal_in_);
+  return cpu_reference::largest_stress(*problem_, destroyed_, nodal_in_, elements);
+}
+
 IntactBody::IntactBody(const Problem& problem, bool rebases)
     : IntactBody(problem, rebases, fem::SparseMatrix()) {}
 

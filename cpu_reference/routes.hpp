@@ -47,6 +47,9 @@ class DamagedBody {
   void apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
   /// Largest stress norm over live elements of the displacement x.
   [[nodiscard]] double largest_stress(const Eigen::VectorXd& x) const;
+  /// Over live ones of some elements.
+  [[nodiscard]] double largest_stress(const Eigen::VectorXd& x,
+                                      std::span<const Index> elements) const;
   [[nodiscard]] const Problem& problem() const { return *problem_; }
   [[nodiscard]] const std::shared_ptr<const Problem>& shared_problem() const { return problem_; }
   /// a_e per element: 1 or alpha.

@@ -7,16 +7,40 @@
 
 namespace sunder::engine {
 
+namespace {
+
+/// X with further columns and, by symmetry, rows.
+std::shared_ptr<const Eigen::MatrixXd> extended(const Eigen::MatrixXd& x,
+                                                const Eigen::MatrixXd& columns) {
+  const Eigen::Index old = x.rows(), size = columns.rows();
+  auto result = std::make_shared<Eigen::MatrixXd>(size, size);
+  result->topLeftCorner(old, old) = x;
+  result->rightCols(size - old) = columns;
+  result->bottomLeftCorner(size - old, old) = columns.topRows(old).transpose();
+  return result;
+}
+
+}  // namespace
+
 CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs)
-    : CondensedBase(factor, dofs, factor->inverse_block(dofs, dofs), nullptr) {}
+    : CondensedBase(factor, dofs,
+                    std::make_shared<const Eigen::MatrixXd>(factor->inverse_block(dofs, dofs))) {}
+
+CondensedBase::CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
+                             std::shared_ptr<const LostStiffness> lost)
+    : CondensedBase(before.factor, before.dofs,
+                    std::make_shared<const Eigen::MatrixXd>(std::move(x))) {
+  x_of_factor_ = before.x_of_factor;
+  lost_ = std::move(lost);
+}
 
 CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs,
-                             Eigen::MatrixXd x, std::shared_ptr<const LostStiffness> lost)
+                             std::shared_ptr<const Eigen::MatrixXd> x)
     : factor_(std::move(factor)),
       dofs_(dofs.begin(), dofs.end()),
       place_(static_cast<std::size_t>(factor_->cholesky().size()), kNone),
-      x_(std::make_shared<const Eigen::MatrixXd>(std::move(x))),
-      lost_(std::move(lost)) {
+      x_(std::move(x)),
+      x_of_factor_(x_) {
   for (std::size_t i = 0; i < dofs_.size(); ++i) place_[dofs_[i]] = static_cast<Index>(i);
   is_touched_.assign(dofs_.size(), kNone);
   of_load_.setZero(x_->rows());
@@ -42,16 +66,15 @@ void CondensedBase::grow(std::span<const Difference> vectors) {
   const auto old = static_cast<Eigen::Index>(before),
              size = static_cast<Eigen::Index>(dofs_.size());
   Eigen::MatrixXd columns = factor_->inverse_block(dofs_, added);
+  x_of_factor_ = extended(*x_of_factor_, columns);
   if (lost_) {  // X = X0 + X0 D X0 + X0 D X D X0, and X D X0 of it on the old unknowns
     const Eigen::MatrixXd forces = forces_lost(columns.topRows(old));
     columns.topRows(old) += *x_ * forces;
     columns.bottomRows(size - old) += forces.transpose() * columns.topRows(old);
+    x_ = extended(*x_, columns);
+  } else {
+    x_ = x_of_factor_;
   }
-  auto x = std::make_shared<Eigen::MatrixXd>(size, size);
-  x->topLeftCorner(old, old) = *x_;
-  x->rightCols(size - old) = columns;
-  x->bottomLeftCorner(size - old, old) = columns.topRows(old).transpose();
-  x_ = std::move(x);
   is_touched_.resize(dofs_.size(), kNone);
   load_ = {};
   u_.setZero(size);
@@ -132,7 +155,7 @@ void CondensedBase::apply_everywhere(std::span<const Index> dofs, std::span<cons
 
 const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
   if (load_.take(forces)) {
-    if (std::ranges::all_of(forces.dofs, [&](Index d) { return place_[d] != kNone; })) {
+    if (inside(forces.dofs)) {
       apply_inside(forces.dofs, forces.values);
     } else {
       apply_everywhere(forces.dofs, forces.values);
@@ -162,6 +185,22 @@ void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
   for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = u_[static_cast<Eigen::Index>(i)];
 }
 
+bool CondensedBase::inside(std::span<const Index> dofs) const {
+  return std::ranges::all_of(dofs, [&](Index d) { return place_[d] != kNone; });
+}
+
+Eigen::VectorXd CondensedBase::drift() const {
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(u_.size());
+  if (lost_) forces = forces_lost(u_);
+  for (std::size_t i = 0; i < load_.dofs().size(); ++i) {
+    forces[place_[load_.dofs()[i]]] += load_.values()[i];
+  }
+  for (std::size_t i = 0; i < touched_.size(); ++i) forces[touched_[i]] += forces_[i];
+  Eigen::VectorXd lacks = *x_of_factor_ * forces - u_;
+  if (lost_) lacks += *x_ * forces_lost(lacks);
+  return lacks;
+}
+
 void CondensedBase::equilibrium(Equilibrium& of) const {
   of.factor = factor_;
   of.dofs.assign(load_.dofs().begin(), load_.dofs().end());
@@ -177,8 +216,9 @@ void CondensedBase::equilibrium(Equilibrium& of) const {
 }
 
 std::vector<BufferPlan> CondensedBase::buffers() const {
-  std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)",
-                                static_cast<std::size_t>(x_->size()) * sizeof(double)}};
+  const std::size_t bytes = static_cast<std::size_t>(x_->size()) * sizeof(double);
+  std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)", bytes}};
+  if (x_ != x_of_factor_) plan.push_back({"condensed inverse of the factor", bytes});
   if (lost_) plan.push_back({"stiffness lost between factor and inverse", lost_->bytes()});
   return plan;
 }

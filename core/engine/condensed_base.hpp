@@ -26,9 +26,10 @@ struct Equilibrium {
 /// A base as it is at a moment; the inverse is shared, and nobody writes it.
 struct CondensedState {
   std::shared_ptr<const fem::Factor> factor;
-  std::vector<Index> dofs;                   // S
-  std::shared_ptr<const Eigen::MatrixXd> x;  // X_SS
-  std::vector<Difference> vectors;           // B
+  std::vector<Index> dofs;                             // S
+  std::shared_ptr<const Eigen::MatrixXd> x;            // X_SS
+  std::shared_ptr<const Eigen::MatrixXd> x_of_factor;  // X_SS without what was lost since
+  std::vector<Difference> vectors;                     // B
 };
 
 class CondensedBase final : public Base {
@@ -36,8 +37,8 @@ class CondensedBase final : public Base {
   /// Over the unknowns `dofs`, ascending.
   CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs);
   /// X_SS of a body that has lost stiffness, all of it within S, since it was factored.
-  CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs,
-                Eigen::MatrixXd x, std::shared_ptr<const LostStiffness> lost);
+  CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
+                std::shared_ptr<const LostStiffness> lost);
 
   [[nodiscard]] Index size() const override { return factor_->cholesky().size(); }
   /// Vectors that leave S make S grow: one solve per unknown.
@@ -49,21 +50,30 @@ class CondensedBase final : public Base {
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
   /// What stands behind the last expand().
   void equilibrium(Equilibrium& of) const;
+  /// What the last expand() lacks on S by the factor's own inverse, D u as a force: with X0 that
+  /// inverse and g = X0 (f + B c + D u) - u it is g + X D g. All loads inside S.
+  [[nodiscard]] Eigen::VectorXd drift() const;
+  [[nodiscard]] bool inside(std::span<const Index> dofs) const;
   /// S; at first the unknowns given.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
-  [[nodiscard]] CondensedState state() const { return {factor_, dofs_, x_, vectors_}; }
+  [[nodiscard]] CondensedState state() const {
+    return {factor_, dofs_, x_, x_of_factor_, vectors_};
+  }
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
  private:
+  CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs,
+                std::shared_ptr<const Eigen::MatrixXd> x);
   void grow(std::span<const Difference> vectors);
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
   void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
   [[nodiscard]] Eigen::MatrixXd forces_lost(const Eigen::MatrixXd& u) const;
 
   std::shared_ptr<const fem::Factor> factor_;
-  std::vector<Index> dofs_, place_;            // S, and where in it each unknown is
-  std::shared_ptr<const Eigen::MatrixXd> x_;   // X_SS
-  std::shared_ptr<const LostStiffness> lost_;  // between factor_ and x_; empty: nothing
+  std::vector<Index> dofs_, place_;                     // S, and where in it each unknown is
+  std::shared_ptr<const Eigen::MatrixXd> x_;            // X_SS
+  std::shared_ptr<const Eigen::MatrixXd> x_of_factor_;  // the same where nothing was lost
+  std::shared_ptr<const LostStiffness> lost_;           // between factor_ and x_; empty: nothing
   std::vector<Difference> vectors_;
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
   std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_
