@@ -69,7 +69,7 @@ class Frame {
       work_.pass(0);
       work_.submit();
       work_.pass(kTouched * rows * real());
-      work_.pass(2 * rows * rows * real());
+      work_.pass(rows * rows * real());  // half of them, read and written
     } else if (!s_.cg) {
       work_.host(2 * kTouched * rows * sizeof(double));  // new exact columns
     }

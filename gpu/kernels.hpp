@@ -58,9 +58,15 @@ class KernelFactory {
   [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }
   /// Partial results that a workgroup leaves behind (shaders/reduce.glsl).
   [[nodiscard]] std::uint32_t parts() const;
-  /// Invocations that share 256 rows in the low-rank update (shaders/low_rank.comp).
+  /// Invocations of a workgroup of the low-rank update, and the columns that it updates
+  /// (shaders/low_rank.comp).
   [[nodiscard]] std::uint32_t low_rank_group() const {
-    return variant_ == Variant::lvp && !fp64_ ? shaders::kGroup / 2 : shaders::kGroup;
+    if (!emulated()) return shaders::kGroup;
+    return shaders::kTile / (fp64_ ? 4 : 8);  // that have a tile's rows between them
+  }
+  [[nodiscard]] std::uint32_t low_rank_columns(bool one_block) const {
+    if (emulated()) return (one_block ? shaders::kUpdateTurns : 1) * shaders::kUpdateColumns;
+    return shaders::kGroup / (shaders::kTile / 4) * shaders::kUpdateColumns;
   }
 
  private:

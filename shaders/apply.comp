@@ -7,8 +7,9 @@
 
 IN_REAL4(0, Matrix, matrix)
 IN_UVEC4(1, Entries, entries)
-OUT(2, Partial, WIDE4, partial)
+INOUT(2, Partial, WIDE4, partial)
 layout(push_constant) uniform Push { ApplyPush p; };
+#include "lower.glsl"
 
 void main() {
   const uint pack = gl_GlobalInvocationID.x;
@@ -20,7 +21,7 @@ void main() {
   vec4 low = vec4(0);
   for (uint j = first; j < last; ++j) {
     const uvec4 entry = UVEC4(entries, j);
-    const vec4 x = LOAD_REAL4(matrix, entry.x * p.packs + pack);
+    const vec4 x = of_column(entry.x, pack);
     const vec2 c = uintBitsToFloat(entry.zw);  // high, low
     precise const vec4 product = x * c.x;
     precise const vec4 both = sum + product;
@@ -34,8 +35,9 @@ void main() {
 #else
   for (uint j = first; j < last; ++j) {
     const uvec4 entry = UVEC4(entries, j);
-    sum += dvec4(LOAD_REAL4(matrix, entry.x * p.packs + pack)) * packDouble2x32(entry.zw);
+    sum += dvec4(of_column(entry.x, pack)) * packDouble2x32(entry.zw);
   }
+  if (kLower != 0u && p.add != 0u) sum += partial.data[to];
   partial.data[to] = sum;
 #endif
 }

@@ -1,6 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// X = scale (I - B), rounded to storage precision: the last step of the inversion on the device.
+// X = scale (I - B), rounded to storage precision: the last step of the inversion on the device. Of B
+// only the lower tiles count, X is whole; a dispatch fills in what one panel of B has.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 
@@ -9,11 +10,20 @@ OUT(1, Matrix, REAL4, matrix)
 layout(push_constant) uniform Push { ComplementPush p; };
 
 void main() {
-  const uint pack = gl_GlobalInvocationID.x, column = gl_WorkGroupID.y;
-  const uint diagonal = p.first_column + column;
-  dvec4 value = -DVEC4(swept, (p.from + column) * p.packs + pack);
-  [[unroll]] for (uint i = 0u; i < 4u; ++i) value[i] += 4u * pack + i == diagonal ? 1.0LF : 0.0LF;
-  // Columns of padding stay zero.
-  const dvec4 result = diagonal < p.unknowns ? p.scale * value : dvec4(0);
-  matrix.data[(p.to + column) * p.packs + pack] = REAL4(result);
+  const uint pack = gl_GlobalInvocationID.x, column = p.to + gl_WorkGroupID.y;
+  const bool direct = 4u * pack / kTile >= column / kTile;
+  const uint within = (direct ? column : 4u * pack) - p.first_column;
+  if (within < p.columns) {
+    const uint at = within * p.packs + (direct ? pack : column / 4u);
+    const uint step = direct ? 0u : p.packs, q = column % 4u;
+    dvec4 value = -DVEC4(swept, at);
+    if (!direct) {
+      value = -dvec4(DVEC4(swept, at)[q], DVEC4(swept, at + step)[q], DVEC4(swept, at + 2u * step)[q],
+                     DVEC4(swept, at + 3u * step)[q]);
+    }
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) value[i] += 4u * pack + i == column ? 1.0LF : 0.0LF;
+    // Columns of padding stay zero.
+    const dvec4 result = column < p.unknowns ? p.scale * value : dvec4(0);
+    matrix.data[gl_WorkGroupID.y * p.packs + pack] = REAL4(result);
+  }
 }

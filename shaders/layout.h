@@ -18,7 +18,9 @@ SUNDER_CONST kRowPad = 256u;       // rows of a vector: four an invocation
 SUNDER_CONST kColumnPad = 64u;     // columns of a matrix
 SUNDER_CONST kChunk = 64u;         // columns that one workgroup sums
 SUNDER_CONST kRankBlock = 6u;      // update vectors of one element
-SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one workgroup updates
+SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update works on
+SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
+SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
 SUNDER_CONST kRigidGroups = 64u;   // groups of nodes in the second level of CG, at most
 SUNDER_CONST kFirst = 2u;          // in place of an iteration's parity
 SUNDER_CONST kHeld = 0xffffffffu;  // dof of an axis that a support holds
@@ -52,6 +54,9 @@ struct ApplyPush {
   uint first, last;   // entries, or (dense) columns of this matrix
   uint vector_first;  // dense: where the columns' coefficients begin in the vector, / 4
   uint partial;       // first chunk of partial sums
+  uint first_column;  // of this panel
+  uint columns;       // of this panel
+  uint add;           // 1: to the partial sums that are there (kLower alone)
 };
 
 struct SumPush {
@@ -108,6 +113,7 @@ struct VectorsPush {
   uint first, last;   // rows of V
   uint blocks;        // rank / 6
   uint first_column;  // of this panel
+  uint columns;       // of this panel
   uint add;
 };
 
@@ -115,14 +121,16 @@ struct LowRankPush {
   uint packs;
   uint blocks;
   uint first_column;  // of this panel
+  uint tiles;         // rows of tiles from this panel's first on
+  uint first_group;   // of this dispatch
   float sign;         // 1 or -1
 };
 
 struct ComplementPush {
   double scale;
   uint packs, unknowns;
-  uint from, to;      // first column in either panel
-  uint first_column;  // the same in the matrix
+  uint first_column, columns;  // of the panel that is read
+  uint to;                     // first column of the panel that is written
   uint unused;
 };
 

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// block(r, c) = X(row_r, column_c) for the columns that lie in this panel.
+// block(r, c) = X(row_r, column_c), from the lower triangle, as far as this panel has it.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 
@@ -12,9 +12,10 @@ layout(push_constant) uniform Push { PickPush p; };
 void main() {
   const uint r = gl_GlobalInvocationID.x, c = gl_GlobalInvocationID.y;
   if (r < p.rows) {
-    const uint column = dofs.data[p.rows + c] - p.first_column;
+    const uint a = dofs.data[r], b = dofs.data[p.rows + c];
+    const uint column = min(a, b) - p.first_column;
     if (column < p.panel_columns) {
-      block.data[c * p.rows + r] = double(matrix.data[column * p.leading + dofs.data[r]]);
+      block.data[c * p.rows + r] = double(matrix.data[column * p.leading + max(a, b)]);
     }
   }
 }

@@ -9,13 +9,14 @@ IN_WORDS(1, Dofs, dofs)
 IN_DVEC4(2, Factors, v)  // two for each dof and block: six values and two zeros
 INOUT(3, Vectors, REAL4, z)
 layout(push_constant) uniform Push { VectorsPush p; };
+#include "lower.glsl"
 
 void main() {
   const uint pack = gl_GlobalInvocationID.x, block = gl_WorkGroupID.y;
   dvec4 sum[kRankBlock];
   [[unroll]] for (uint k = 0u; k < kRankBlock; ++k) sum[k] = dvec4(0);
   for (uint t = p.first; t < p.last; ++t) {
-    const dvec4 x = dvec4(LOAD_REAL4(matrix, (dofs.data[t] - p.first_column) * p.packs + pack));
+    const dvec4 x = dvec4(of_column(dofs.data[t], pack));
     const dvec4 a = DVEC4(v, 2u * (t * p.blocks + block));
     const dvec4 b = DVEC4(v, 2u * (t * p.blocks + block) + 1u);
     sum[0] += x * a.x;

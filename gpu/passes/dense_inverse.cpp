@@ -23,6 +23,7 @@ std::unique_ptr<Binding> bind_buffers(const KernelFactory& kernels, const vulkan
 }
 
 constexpr std::size_t kFirstEntries = 64;
+constexpr std::uint32_t kMostGroups = 65535;  // of a dispatch, that every device takes
 
 /// The dense product's vector comes in fp64 and is read in fp32.
 bool narrows(const KernelFactory& kernels) { return !kernels.fp64() && !kernels.single(); }
@@ -76,8 +77,7 @@ DenseInverse::DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t 
                            std::size_t panel_bytes)
     : kernels_(kernels), n_(n), rows_(rows), columns_(round_up(u32(n), shaders::kColumnPad)) {
   create_panels(panel_bytes);
-  apply_ = kernels_.make("apply", {Reads::reals, Reads::words, Reads::plain},
-                         sizeof(shaders::ApplyPush));
+  create_apply();
   if (narrows(kernels)) {
     vector_ = Buffer(kernels_.device(), rows_ * sizeof(float), Placement::device);
   }
@@ -107,7 +107,28 @@ void DenseInverse::create_panels(std::size_t panel_bytes) {
   }
 }
 
+void DenseInverse::create_apply() {
+  apply_ = kernels_.make("apply", {Reads::reals, Reads::words, Reads::plain},
+                         sizeof(shaders::ApplyPush), shaders::kGroup, lower_ ? 1 : 0);
+}
+
+/// Whether to read the lower tiles alone: kernels that read them are others.
+void DenseInverse::trust(bool lower_alone) {
+  if (lower_ == lower_alone) return;
+  lower_ = lower_alone;
+  for (Panel& panel : panels_) {
+    panel.loaded.reset();
+    panel.dense.reset();
+    panel.vectors.reset();
+  }
+  dense_.reset();
+  vectors_.reset();
+  create_apply();
+  if (partials_) bind_loaded();
+}
+
 void DenseInverse::upload(const Columns& columns) {
+  trust(false);
   // Columns at a time: through staging memory in large pieces, else as the host's cache holds them.
   const Index most = kernels_.device().physical().unified() ? 32 : 256;
   for (Panel& panel : panels_) {
@@ -143,8 +164,8 @@ void DenseInverse::create_dense() {
   const bool narrow = narrows(kernels_);
   if (!dense_) {
     dense_ = kernels_.make("dense", {Reads::reals, Reads::reals, Reads::plain},
-                           sizeof(shaders::ApplyPush));
-    if (narrow) {
+                           sizeof(shaders::ApplyPush), shaders::kGroup, lower_ ? 1 : 0);
+    if (narrow && !narrow_) {
       narrow_ = kernels_.make_fp64("narrow", {Reads::doubles, Reads::plain}, 0);
     }
   }
@@ -187,7 +208,7 @@ void DenseInverse::set_loaded(const Loaded& load) {
   for (Panel& panel : panels_) {
     panel.first_entry = next;
     while (next < load.dofs.size() && u32(load.dofs[next]) < panel.first + panel.columns) {
-      entry[next] = entry_of(u32(load.dofs[next]) - panel.first, load.values[next]);
+      entry[next] = entry_of(u32(load.dofs[next]), load.values[next]);
       ++next;
     }
     panel.last_entry = next;
@@ -197,14 +218,20 @@ void DenseInverse::set_loaded(const Loaded& load) {
 std::uint32_t DenseInverse::record_loaded(vulkan::Commands& commands,
                                           std::uint32_t first_chunk) const {
   std::uint32_t chunk = first_chunk;
+  const std::uint32_t all = panels_.back().last_entry;
   for (const Panel& panel : panels_) {
-    if (panel.first_entry == panel.last_entry) continue;
-    const std::uint32_t groups =
-        round_up(panel.last_entry - panel.first_entry, shaders::kChunk) / shaders::kChunk;
+    // Of the lower tiles every panel has a share in every column, added to the same sums.
+    const std::uint32_t first = lower_ ? 0 : panel.first_entry;
+    const std::uint32_t last = lower_ ? all : panel.last_entry;
+    if (first == last) continue;
+    const bool add = lower_ && panel.first > 0;
+    if (add) commands.barrier();
+    const std::uint32_t groups = round_up(last - first, shaders::kChunk) / shaders::kChunk;
     commands.dispatch(*panel.loaded,
-                      shaders::ApplyPush{rows_ / 4, panel.first_entry, panel.last_entry, 0, chunk},
+                      shaders::ApplyPush{rows_ / 4, first, last, 0, lower_ ? first_chunk : chunk,
+                                         panel.first, panel.columns, add ? 1u : 0u},
                       rows_ / shaders::kRowPad, groups);
-    chunk += groups;
+    chunk = lower_ ? first_chunk + groups : chunk + groups;
   }
   return chunk - first_chunk;
 }
@@ -216,10 +243,14 @@ std::uint32_t DenseInverse::record_dense(vulkan::Commands& commands, std::uint32
     commands.barrier();
   }
   for (const Panel& panel : panels_) {
-    commands.dispatch(*panel.dense,
-                      shaders::ApplyPush{rows_ / 4, 0, panel.columns, panel.first / 4,
-                                         first_chunk + panel.first / shaders::kChunk},
-                      rows_ / shaders::kRowPad, panel.columns / shaders::kChunk);
+    const std::uint32_t tile = panel.first / shaders::kTile;
+    const bool add = lower_ && panel.first > 0;
+    if (add) commands.barrier();
+    commands.dispatch(
+        *panel.dense,
+        shaders::ApplyPush{rows_ / 4, lower_ ? tile : 0, 0, lower_ ? 0 : panel.first / 4,
+                           first_chunk + tile, panel.first, panel.columns, add ? 1u : 0u},
+        rows_ / shaders::kRowPad, lower_ ? chunks() - tile : panel.columns / shaders::kChunk);
   }
   return chunks();
 }
@@ -274,7 +305,7 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
   if (!vectors_) {
     vectors_ =
         kernels_.make("update_vectors", {Reads::reals, Reads::plain, Reads::doubles, Reads::plain},
-                      sizeof(shaders::VectorsPush));
+                      sizeof(shaders::VectorsPush), shaders::kGroup, lower_ ? 1 : 0);
   } else if (dofs * 4 <= update_dofs_.bytes() && factor_bytes <= factors_.bytes() &&
              z_bytes <= z_.bytes()) {
     return;
@@ -321,15 +352,10 @@ void DenseInverse::record_vectors(vulkan::Commands& commands, std::span<const In
                                   std::uint32_t blocks) const {
   bool add = false;
   for (const Panel& panel : panels_) {
-    const auto begin = std::lower_bound(dofs.begin(), dofs.end(), static_cast<Index>(panel.first));
-    const auto end =
-        std::lower_bound(begin, dofs.end(), static_cast<Index>(panel.first + panel.columns));
-    if (begin == end) continue;
-    commands.dispatch(
-        *panel.vectors,
-        shaders::VectorsPush{rows_ / 4, u32(begin - dofs.begin()), u32(end - dofs.begin()), blocks,
-                             panel.first, add ? 1u : 0u},
-        rows_ / shaders::kRowPad, blocks);
+    commands.dispatch(*panel.vectors,
+                      shaders::VectorsPush{rows_ / 4, 0, u32(dofs.size()), blocks, panel.first,
+                                           panel.columns, add ? 1u : 0u},
+                      rows_ / shaders::kRowPad, blocks);
     commands.barrier();
     add = true;
   }
@@ -337,6 +363,7 @@ void DenseInverse::record_vectors(vulkan::Commands& commands, std::span<const In
 
 void DenseInverse::update(std::span<const Index> dofs, const Eigen::MatrixXd& v, float sign) {
   const std::uint32_t blocks = round_up(u32(v.cols()), shaders::kRankBlock) / shaders::kRankBlock;
+  trust(true);
   reserve_update(dofs.size(), blocks);
   bind_update(blocks);
   std::copy(dofs.begin(), dofs.end(), update_dofs_.mapped<Index>());
@@ -345,30 +372,37 @@ void DenseInverse::update(std::span<const Index> dofs, const Eigen::MatrixXd& v,
   commands.begin();
   commands.pass("update");
   record_vectors(commands, dofs, blocks);
-  for (const Panel& panel : panels_) {
-    commands.dispatch(blocks == 1 ? *panel.rank_6 : *panel.low_rank,
-                      shaders::LowRankPush{rows_ / 4, blocks, panel.first, sign},
-                      rows_ / shaders::kRowPad, panel.columns / shaders::kUpdateColumns);
-  }
+  for (const Panel& panel : panels_) record_low_rank(commands, panel, blocks, sign);
   commands.end();
   commands.submit();
+}
+
+void DenseInverse::record_low_rank(vulkan::Commands& commands, const Panel& panel,
+                                   std::uint32_t blocks, float sign) const {
+  const std::uint32_t rows = (columns_ - panel.first) / shaders::kTile;
+  const std::uint32_t columns = panel.columns / shaders::kTile;
+  const std::uint32_t groups = (columns * rows - columns * (columns - 1) / 2) *
+                               (shaders::kTile / kernels_.low_rank_columns(blocks == 1));
+  for (std::uint32_t first = 0; first < groups; first += kMostGroups) {
+    commands.dispatch(blocks == 1 ? *panel.rank_6 : *panel.low_rank,
+                      shaders::LowRankPush{rows_ / 4, blocks, panel.first, rows, first, sign},
+                      std::min(groups - first, kMostGroups));
+  }
 }
 
 void DenseInverse::take_complement(const DenseInverse& other, double scale) {
   const auto kernel =
       kernels_.make("complement", {Reads::doubles, Reads::plain}, sizeof(shaders::ComplementPush));
+  trust(false);
   for (const Panel& from : other.panels_) {
     for (const Panel& to : panels_) {
-      const std::uint32_t first = std::max(from.first, to.first);
-      const std::uint32_t last = std::min(from.first + from.columns, to.first + to.columns);
-      if (first >= last) continue;
       const auto binding = bind_buffers(kernels_, *kernel, {&from.matrix, &to.matrix});
       vulkan::Commands commands(kernels_.device());
       commands.begin();
-      commands.dispatch(*binding,
-                        shaders::ComplementPush{scale, rows_ / 4, u32(n_), first - from.first,
-                                                first - to.first, first, 0},
-                        rows_ / shaders::kRowPad, last - first);
+      commands.dispatch(
+          *binding,
+          shaders::ComplementPush{scale, rows_ / 4, u32(n_), from.first, from.columns, to.first, 0},
+          rows_ / shaders::kRowPad, to.columns);
       commands.end();
       commands.submit();
     }

@@ -79,7 +79,8 @@ class DenseInverse {
 
   /// X(rows, columns) as it stands on the device.
   [[nodiscard]] Eigen::MatrixXd pick(std::span<const Index> rows, std::span<const Index> columns);
-  /// X += sign Z Z^T with Z = X(:, dofs) V; V: shape (dofs x rank).
+  /// X += sign Z Z^T with Z = X(:, dofs) V; V: shape (dofs x rank). From then on the tiles over the
+  /// diagonal are out of date, and whatever reads X reads the lower ones (shaders/lower.glsl).
   void update(std::span<const Index> dofs, const Eigen::MatrixXd& v, float sign = 1);
   /// X = scale (I - other), of the same size; `other` in fp64.
   void take_complement(const DenseInverse& other, double scale);
@@ -98,6 +99,10 @@ class DenseInverse {
   };
 
   void create_panels(std::size_t panel_bytes);
+  void create_apply();
+  void trust(bool lower_alone);
+  void record_low_rank(vulkan::Commands& commands, const Panel& panel, std::uint32_t blocks,
+                       float sign) const;
   void bind_loaded();
   [[nodiscard]] shaders::Entry entry_of(std::uint32_t column, double value) const;
   void reserve_pick(std::size_t dofs, std::size_t values);
@@ -111,6 +116,7 @@ class DenseInverse {
   const KernelFactory& kernels_;
   Index n_;
   std::uint32_t rows_, columns_;
+  bool lower_ = false;  // tiles over the diagonal are out of date
   std::vector<Panel> panels_;
   const PartialSums* partials_ = nullptr;
   const vulkan::Buffer* dense_vector_ = nullptr;

@@ -160,9 +160,10 @@ void ExactColumns::set_coefficients(const Eigen::VectorXd& coefficients) {
 std::uint32_t ExactColumns::record_apply(vulkan::Commands& commands,
                                          std::uint32_t first_chunk) const {
   if (count_ == 0) return 0;
-  commands.dispatch(*apply_binding_,
-                    shaders::ApplyPush{rows_ / 4, 0, chunks() * shaders::kChunk, 0, first_chunk},
-                    rows_ / shaders::kRowPad, chunks());
+  commands.dispatch(
+      *apply_binding_,
+      shaders::ApplyPush{rows_ / 4, 0, chunks() * shaders::kChunk, 0, first_chunk, 0, capacity_, 0},
+      rows_ / shaders::kRowPad, chunks());
   return chunks();
 }
 

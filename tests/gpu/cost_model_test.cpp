@@ -57,7 +57,7 @@ TEST(DeviceCostModel, CountsWhatASceneNeeds) {
   EXPECT_GT(frame_cost(loaded, lavapipe).quiet_ms, least);
 }
 
-// The inverse is read and written once: 8 n^2 bytes in fp32.
+// Half of the inverse is read and written once: 4 n^2 bytes in fp32.
 TEST(DeviceCostModel, AnEagerUpdateIsBoundByTheInverse) {
   FrameShape small = board(6000), large = board(24000);
   small.eager = large.eager = true;
