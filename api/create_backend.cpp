@@ -31,14 +31,18 @@ std::unique_ptr<Backend> create_replacement(const Problem& problem, const Needs&
 }
 #endif
 
-std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, Needs needs) {
+/// `warnings`: what the scene asked for and will cost more than it seems.
+std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, Needs needs,
+                                       std::vector<std::string>& warnings) {
 #ifdef SUNDER_GPU
   auto primary = gpu::create(problem, needs);
+  warnings = gpu::warnings(*primary);
   return with_failover(problem, std::move(primary),
                        [problem, needs] { return create_replacement(*problem, needs); });
 #else
   static_cast<void>(problem);
   static_cast<void>(needs);
+  static_cast<void>(warnings);
   throw DeviceError("this build leaves out the backend vulkan (SUNDER_GPU=OFF); it has cpu");
 #endif
 }
@@ -53,7 +57,7 @@ CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, c
   CreatedBackend created;
   if (has_gpu()) {
     try {
-      created.backend = create_vulkan(problem, needs);
+      created.backend = create_vulkan(problem, needs, created.warnings);
       return created;
     } catch (const DeviceError& error) {
       created.warnings.push_back(std::string("backend vulkan failed, cpu is used instead: ") +
@@ -90,7 +94,11 @@ CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs need
   if (!problem) throw UsageError("a backend needs a problem");
   const std::string& name = problem->scene().solver.backend;
   if (name == "cpu") return {cpu_reference::create(std::move(problem), std::move(needs)), {}};
-  if (name == "vulkan") return {create_vulkan(std::move(problem), std::move(needs)), {}};
+  if (name == "vulkan") {
+    CreatedBackend created;
+    created.backend = create_vulkan(std::move(problem), std::move(needs), created.warnings);
+    return created;
+  }
   if (name == "auto") return create_automatic(problem, needs);
   std::string names;
   for (const std::string& n : backend_names()) names += (names.empty() ? "" : ", ") + n;

@@ -2,6 +2,7 @@
 #include "gpu/plan.hpp"
 
 #include <algorithm>
+#include <iomanip>
 #include <sstream>
 
 #include "sunder/error.hpp"
@@ -112,14 +113,24 @@ void require_double(const Plan& plan, const SolverOptions& solver,
   if (plan.eager) refuse("the eager update watches its residual in fp64");
 }
 
-bool too_stiff_for_fp32(const Problem& problem) {
+/// What of the materials is past kFp32Contrast and kFp32Poisson; empty: nothing.
+std::string past_fp32(const Problem& problem) {
   double softest = problem.material(0).young, stiffest = softest, poisson = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     softest = std::min(softest, problem.material(e).young);
     stiffest = std::max(stiffest, problem.material(e).young);
     poisson = std::max(poisson, problem.material(e).poisson);
   }
-  return stiffest > kFp32Contrast * softest || poisson > kFp32Poisson;
+  if (stiffest > kFp32Contrast * softest) {
+    return "Young's moduli differ by a factor of " + number(stiffest / softest) + ", more than " +
+           number(kFp32Contrast);
+  }
+  if (poisson > kFp32Poisson) {
+    std::ostringstream out;
+    out << std::setprecision(8) << poisson;
+    return "Poisson's ratio is " + out.str() + ", more than " + number(kFp32Poisson);
+  }
+  return {};
 }
 
 }  // namespace
@@ -135,12 +146,13 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
   Plan plan;
   plan.fp64 = solver.precision == Precision::fp64 ||
               (solver.precision == Precision::automatic && !(solver.tolerance >= kFp32Tolerance));
-  const bool stiff = solver.precision == Precision::automatic && !plan.fp64 && device.float64 &&
-                     too_stiff_for_fp32(problem);
+  const std::string past = plan.fp64 ? "" : past_fp32(problem);
+  const bool stiff = !past.empty() && solver.precision == Precision::automatic && device.float64;
   plan.fp64 = plan.fp64 || stiff;
   choose_route(problem, needs, device, displayed, plan);
   if (solver.precision != Precision::automatic) {
     plan.why += plan.fp64 ? "; fp64 was asked for" : "; fp32 storage was asked for";
+    if (!past.empty()) plan.why += ", though these materials need fp64";
   } else if (stiff) {
     plan.why += "; these materials need fp64: contrast over 1000 or Poisson's ratio over 0.4999";
   } else {
@@ -149,6 +161,12 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
   }
   if (plan.cg && solver.update != Update::automatic) {
     throw DeviceError("route cg has no inverse to update; use update auto with it");
+  }
+  if (!past.empty() && !plan.fp64) {
+    plan.warnings.push_back(
+        past + ": displacement handed out in fp32 alone can cost stress more than " +
+        number(kFp32Tolerance) + " of its largest value; use " +
+        (device.float64 ? "precision fp64 or auto" : "a device with shaderFloat64 or backend cpu"));
   }
   plan.eager = solver.update == Update::eager;
   if (!device.float64) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/region.hpp"
 #include "gpu/vulkan/physical_device.hpp"
@@ -18,6 +19,7 @@ struct Plan {
   std::optional<engine::Region> region;  ///< route condensed: what alone is on the device
   bool invert_on_device = false;         ///< the inverse is computed there
   std::string why;
+  std::vector<std::string> warnings;
 };
 
 /// Throws DeviceError for a route that the backend does not offer, or that does not fit the device.

@@ -146,6 +146,7 @@ class VulkanBackend final : public Backend {
     return list;
   }
   std::size_t bytes_read() const { return device_->bytes_read(); }
+  const std::vector<std::string>& warnings() const { return plan_.warnings; }
   Display* display() { return display_.get(); }
 
  private:
@@ -526,6 +527,11 @@ std::vector<Index> over_yield(const Backend& backend) {
 std::size_t bytes_read(const Backend& backend) {
   const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
   return vulkan_backend ? vulkan_backend->bytes_read() : 0;
+}
+
+std::vector<std::string> warnings(const Backend& backend) {
+  const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
+  return vulkan_backend ? vulkan_backend->warnings() : std::vector<std::string>{};
 }
 
 }  // namespace sunder::gpu

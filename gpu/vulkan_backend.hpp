@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gpu/kernels.hpp"
@@ -60,5 +61,8 @@ struct DeviceUse {
 /// Bytes of fields read back to the host so far, by such a backend; else 0. What a frame returns
 /// by itself (its summary) does not count.
 [[nodiscard]] std::size_t bytes_read(const Backend& backend);
+
+/// What the scene asked for and will cost more than it seems; empty for another backend.
+[[nodiscard]] std::vector<std::string> warnings(const Backend& backend);
 
 }  // namespace sunder::gpu

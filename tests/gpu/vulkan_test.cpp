@@ -175,11 +175,32 @@ TEST_F(VulkanDevices, PrecisionFollowsTheMaterialsAndIsSaid) {
     EXPECT_EQ(backend->info().precision, precision) << young << ", " << poisson;
     const bool said = backend->info().why.find("these materials need fp64") != std::string::npos;
     EXPECT_EQ(said, backend->info().precision == "fp64") << backend->info().why;
+    EXPECT_TRUE(gpu::warnings(*backend).empty());
     scene.solver.precision = Precision::fp32;  // asked for: what it costs is the caller's choice
-    EXPECT_EQ(
-        gpu::create(std::make_shared<const Problem>(scene), all_needs(), {})->info().precision,
-        "fp32");
+    scene.solver.backend = "vulkan";
+    const CreatedBackend asked =
+        create_backend(std::make_shared<const Problem>(scene), all_needs());
+    EXPECT_EQ(asked.backend->info().precision, "fp32");
+    ASSERT_EQ(asked.warnings.size(), said ? 1u : 0u) << young << ", " << poisson;
+    if (!said) continue;
+    const std::string& warning = asked.warnings.front();
+    const char* value = poisson > 0.4 ? "Poisson's ratio is 0.49999" : "factor of 10000";
+    EXPECT_NE(warning.find(value), std::string::npos) << warning;
+    EXPECT_NE(warning.find("use precision fp64 or auto"), std::string::npos) << warning;
   }
+}
+
+// Where the device has no fp64 there is no other choice; it is said all the same.
+TEST_F(VulkanDevices, MaterialsThatNeedMoreThanTheDeviceHasAreSaid) {
+  Scene scene = small_scene();
+  scene.materials.begin()->second.poisson = 0.49995;
+  gpu::VulkanOptions options;
+  options.probe.no_float64 = true;
+  const auto backend = gpu::create(std::make_shared<const Problem>(scene), all_needs(), options);
+  const auto warnings = gpu::warnings(*backend);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings.front().find("0.49995"), std::string::npos) << warnings.front();
+  EXPECT_NE(warnings.front().find("backend cpu"), std::string::npos) << warnings.front();
 }
 
 // Run by the test below.
