@@ -57,36 +57,16 @@ class VulkanBackend final : public Backend {
                  plan_.fp64),
         inverse_{plan_.eager, problem->scene().solver.tolerance, options.panel_bytes,
                  options.invert_on_device.value_or(plan_.invert_on_device)},
-        region_(plan_.region ? std::make_unique<engine::Substructure>(*problem, *plan_.region)
-                             : nullptr),
-        body_(region_ ? region_->part() : problem),
-        fields_(kernels_, *body_, this->needs(), route_needs()),
         check_(*problem, plan_.fp64) {
-    if (!plan_.cg || this->needs().pristine) {
-      intact_ = started_.valid() && !region_ ? started_.get()
-                                             : invert(*body_, !plan_.cg && !inverse_.on_device);
-    }
-    if (this->needs().pristine) {
-      pristine_ = std::make_unique<Correction>(
-          *body_, [host = intact_](std::span<const Index> dofs) { return host->columns(dofs); });
-    }
-    force_.assign(fields_.rows(), 0.0);
-    if (region_) leave_out_the_rest();
     device_->set_timing(false);
+    on_.body = std::move(problem);
+    put_on_device(plan_.region);
+    if (on_.region) leave_out_the_rest();
     if (options.lent) {
-      display_ = std::make_unique<Display>(kernels_, *problem, fields_, this->needs().stress,
-                                           options.display, options.lent->timeline_semaphore);
+      display_ =
+          std::make_unique<Display>(kernels_, this->problem(), *on_.fields, this->needs().stress,
+                                    options.display, options.lent->timeline_semaphore);
     }
-    if (plan_.cg) {
-      route_ = std::make_unique<CgRoute>(kernels_, *body_, fields_);
-      return;
-    }
-    if (kernels_.single()) {
-      route_ = std::make_unique<HostCorrectedRoute>(kernels_, *body_, fields_, intact_,
-                                                    inverse_.panel_bytes);
-      return;
-    }
-    route_ = std::make_unique<InverseRoute>(kernels_, *body_, fields_, intact_, inverse_);
   }
 
   BackendInfo info() const override {
@@ -95,8 +75,8 @@ class VulkanBackend final : public Backend {
     info.device = device_->physical().name;
     info.driver = device_->physical().driver;
     info.precision = plan_.fp64 ? "fp64" : "fp32";
-    info.route = region_ ? "condensed" : route_->name();
-    info.update = needs().damage ? route_->update() : "none";
+    info.route = on_.region ? "condensed" : on_.route->name();
+    info.update = needs().damage ? on_.route->update() : "none";
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
     const FrameCost cost = frame_cost(shape(), device_->physical());
@@ -106,19 +86,19 @@ class VulkanBackend final : public Backend {
   }
 
   std::vector<BufferPlan> buffers() const override {
-    std::vector<BufferPlan> plan = route_->buffers();
-    if (region_) {
+    std::vector<BufferPlan> plan = on_.route->buffers();
+    if (on_.region) {
       plan.front().name = "condensed " + plan.front().name;
       plan.push_back({"factor of the rest and its stiffness on the region (host)",
-                      region_->bytes() + whole_u_.size() * sizeof(double)});
+                      on_.region->bytes() + whole_u_.size() * sizeof(double)});
     }
-    for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
+    for (BufferPlan& b : on_.fields->buffers()) plan.push_back(std::move(b));
     return plan;
   }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override {
-    if (!instruments_ && !body_->gripped_dofs().empty() && route_->grip_factor()) {
-      instruments_.emplace(*body_);
+    if (!instruments_ && !on_.body->gripped_dofs().empty() && on_.route->grip_factor()) {
+      instruments_.emplace(*on_.body);
       if (solved_) publish_instruments();
     }
     return instruments_ ? instruments_->forces() : nullptr;
@@ -141,7 +121,7 @@ class VulkanBackend final : public Backend {
             device_->pipelines()};
   }
   std::vector<Index> over_yield() const {
-    std::vector<Index> list = fields_.over_yield();
+    std::vector<Index> list = on_.fields->over_yield();
     for (Index& e : list) e = of_body(static_cast<std::uint32_t>(e));
     return list;
   }
@@ -157,16 +137,48 @@ class VulkanBackend final : public Backend {
     shape.host_corrects = kernels_.single();
     shape.damage = needs().damage;
     shape.real_bytes = kernels_.real_bytes();
-    shape.rows = fields_.rows();
-    shape.grips = body_->gripped_dofs().size();
+    shape.rows = on_.fields->rows();
+    shape.grips = on_.body->gripped_dofs().size();
     for (const InstrumentNodes& i : problem().instrument_nodes()) {
       shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
     }
     shape.loaded -= std::min(shape.loaded, shape.grips);
-    shape.elements = body_->mesh().tets.size();
-    shape.stiffness_bytes = fields_.matrix().bytes();
+    shape.elements = on_.body->mesh().tets.size();
+    shape.stiffness_bytes = on_.fields->matrix().bytes();
     shape.stress = needs().stress;
     return shape;
+  }
+
+  void put_on_device(std::optional<engine::Region> region) {
+    if (region) {
+      on_.region = std::make_unique<engine::Substructure>(problem(), std::move(*region));
+      on_.body = on_.region->part();
+    }
+    on_.fields = std::make_unique<Fields>(kernels_, *on_.body, needs(), route_needs());
+    prepare_intact();
+    on_.route = make_route();
+  }
+
+  void prepare_intact() {
+    if (!plan_.cg || needs().pristine) {
+      on_.intact = started_.valid() && !on_.region
+                       ? started_.get()
+                       : invert(*on_.body, !plan_.cg && !inverse_.on_device);
+    }
+    if (!needs().pristine) return;
+    on_.pristine = std::make_unique<Correction>(
+        *on_.body,
+        [host = on_.intact](std::span<const Index> dofs) { return host->columns(dofs); });
+  }
+
+  [[nodiscard]] std::unique_ptr<DeviceRoute> make_route() {
+    force_.assign(on_.fields->rows(), 0.0);
+    if (plan_.cg) return std::make_unique<CgRoute>(kernels_, *on_.body, *on_.fields);
+    if (kernels_.single()) {
+      return std::make_unique<HostCorrectedRoute>(kernels_, *on_.body, *on_.fields, on_.intact,
+                                                  inverse_.panel_bytes);
+    }
+    return std::make_unique<InverseRoute>(kernels_, *on_.body, *on_.fields, on_.intact, inverse_);
   }
 
   /// What a host's submit still reads must not be written.
@@ -175,15 +187,15 @@ class VulkanBackend final : public Backend {
   }
 
   [[nodiscard]] Fields::RouteNeeds route_needs() const {
-    if (plan_.cg) return {CgRoute::planned_bytes(*body_), true};
+    if (plan_.cg) return {CgRoute::planned_bytes(*on_.body), true};
     if (kernels_.single()) {
-      return {HostCorrectedRoute::planned_bytes(kernels_, *body_, inverse_.panel_bytes), false};
+      return {HostCorrectedRoute::planned_bytes(kernels_, *on_.body, inverse_.panel_bytes), false};
     }
-    return {InverseRoute::planned_bytes(kernels_, *body_, inverse_), false};
+    return {InverseRoute::planned_bytes(kernels_, *on_.body, inverse_), false};
   }
 
   void leave_out_the_rest() {
-    for (std::string& what : engine::left_out_of(problem(), region_->region())) {
+    for (std::string& what : engine::left_out_of(problem(), on_.region->region())) {
       leave_out(std::move(what));
     }
   }
@@ -191,34 +203,34 @@ class VulkanBackend final : public Backend {
   void do_set_load(const Load& load) override {
     finish_display();
     for (Index d : load_.force_dofs) force_[d] = 0;
-    if (region_) whole_load_ = load;
-    load_ = region_ ? region_->load(load) : load;
+    if (on_.region) whole_load_ = load;
+    load_ = on_.region ? on_.region->load(load) : load;
     solved_ = false;
     force_squared_ = 0;
     for (double f : load.forces) force_squared_ += f * f;
     for (std::size_t i = 0; i < load_.forces.size(); ++i) {
       force_[load_.force_dofs[i]] = load_.forces[i];
     }
-    fields_.set_load(force_, load_.displacements);
+    on_.fields->set_load(force_, load_.displacements);
   }
 
   /// Elements as the device numbers them.
   std::span<const Index> on_device(std::span<const Index> elements) {
-    if (!region_) return elements;
+    if (!on_.region) return elements;
     in_part_.clear();
     for (Index e : elements) {
-      if (region_->element(e) != kNone) in_part_.push_back(region_->element(e));
+      if (on_.region->element(e) != kNone) in_part_.push_back(on_.region->element(e));
     }
     return in_part_;
   }
   [[nodiscard]] Index of_body(std::uint32_t on_device) const {
     const auto e = static_cast<Index>(on_device);
-    return region_ ? region_->region().elements[e] : e;
+    return on_.region ? on_.region->region().elements[e] : e;
   }
 
   SolveReport do_solve() override {
     finish_display();
-    if (!check_.known(load_)) fields_.keep_next();
+    if (!check_.known(load_)) on_.fields->keep_next();
     try {
       const SolveReport report = solve_within_tolerance();
       solved_load_ = whole_load_;
@@ -228,23 +240,23 @@ class VulkanBackend final : public Backend {
       return report;
     } catch (const NumericalError&) {
       check_.event();
-      fields_.restore();  // results so far stay readable
+      on_.fields->restore();  // results so far stay readable
       throw;
     }
   }
 
   /// Only once somebody has asked for them: the reactions are read back from the device.
   void publish_instruments() {
-    reactions_.resize(body_->gripped_dofs().size());
-    fields_.read_reactions(body_->gripped_dofs(), reactions_);
-    instruments_->publish(*route_->grip_factor(), reactions_, load_.displacements);
+    reactions_.resize(on_.body->gripped_dofs().size());
+    on_.fields->read_reactions(on_.body->gripped_dofs(), reactions_);
+    instruments_->publish(*on_.route->grip_factor(), reactions_, load_.displacements);
   }
 
   SolveReport solve_within_tolerance() {
     SolveReport report;
     do {
       report = attempt();
-    } while (!(report.error <= tolerance()) && route_->restart(destroyed_list_));
+    } while (!(report.error <= tolerance()) && on_.route->restart(destroyed_list_));
     if (!(report.error <= tolerance())) {
       throw NumericalError(
           "the solution cannot be brought under the tolerance: estimated stress error " +
@@ -261,15 +273,15 @@ class VulkanBackend final : public Backend {
     const double target = check_.target();
     if (const auto known = check_.known(load_)) {
       report = *known;
-      report.iterations = route_->solve(load_, !body_->gripped_dofs().empty());
-      if (std::isfinite(fields_.state().stress_squared)) return report;
+      report.iterations = on_.route->solve(load_, !on_.body->gripped_dofs().empty());
+      if (std::isfinite(on_.fields->state().stress_squared)) return report;
     }
     check_.event();
-    report.iterations += route_->solve(load_, true);
-    const auto energy = route_->energy_bound();
-    const double stress = std::sqrt(fields_.state().stress_squared);
+    report.iterations += on_.route->solve(load_, true);
+    const auto energy = on_.route->energy_bound();
+    const double stress = std::sqrt(on_.fields->state().stress_squared);
     if (energy) {
-      if (const auto error = check_.bounded(load_, *energy, stress, route_->bases())) {
+      if (const auto error = check_.bounded(load_, *energy, stress, on_.route->bases())) {
         report.error = *error;
         report.residual = residual();
         check_.checked(load_, report);
@@ -277,31 +289,31 @@ class VulkanBackend final : public Backend {
       }
     }
     for (int refinement = 0;; ++refinement) {
-      report.iterations += route_->correct();
+      report.iterations += on_.route->correct();
       const double error = estimate();
       report.residual = residual();
       if (refinement == 0) {
         report.polished = !(error <= tolerance());
-        if (route_->leaves_at(error, destroyed_list_)) return attempt();
+        if (on_.route->leaves_at(error, destroyed_list_)) return attempt();
       }
       // A correction that no longer shrinks is rounding: stop there if the promise holds.
       const bool stalled = refinement > 0 && !(error < report.error / 2);
       report.error = error;
       if (refinement == 0 && energy) {
-        check_.estimated(load_, error, *energy, stress, route_->bases());
+        check_.estimated(load_, error, *energy, stress, on_.route->bases());
       }
       if (refinement == 0 && error <= target) check_.checked(load_, report);
       if (error <= target || refinement == kRefinements || stalled) return report;
-      route_->add_correction();
+      on_.route->add_correction();
     }
   }
 
   double estimate() const {
-    double of_u = std::sqrt(fields_.state().stress_squared);
-    double of_du = std::sqrt(fields_.correction().stress_squared);
+    double of_u = std::sqrt(on_.fields->state().stress_squared);
+    double of_du = std::sqrt(on_.fields->correction().stress_squared);
     if (!std::isfinite(residual())) return residual();
     if (!std::isfinite(of_u)) return of_u;
-    if (region_) {
+    if (on_.region) {
       of_u = std::max(of_u, largest_outside(Field::displacement, whole_load_));
       of_du = std::max(of_du, largest_outside(Field::correction, {}));
     }
@@ -311,14 +323,14 @@ class VulkanBackend final : public Backend {
   /// Stress of a field outside the region: the rest may be stiffer and feel what the region does
   /// not.
   double largest_outside(Field field, const Load& load) const {
-    std::vector<double> of_part(body_->dofs().size()), whole(problem().dofs().size());
-    fields_.read(field, of_part);
-    region_->expand(load, of_part, whole);
-    return region_->largest_outside(whole);
+    std::vector<double> of_part(on_.body->dofs().size()), whole(problem().dofs().size());
+    on_.fields->read(field, of_part);
+    on_.region->expand(load, of_part, whole);
+    return on_.region->largest_outside(whole);
   }
 
   double residual() const {
-    const shaders::Summary s = fields_.state();
+    const shaders::Summary s = on_.fields->state();
     const double load = force_squared_ + s.reaction_squared;
     return load > 0 ? std::sqrt(s.residual_squared / load) : 0.0;
   }
@@ -327,7 +339,7 @@ class VulkanBackend final : public Backend {
 
   StressSummary do_stress() override {
     if (!needs().yield) return {};
-    const shaders::Summary s = fields_.state();
+    const shaders::Summary s = on_.fields->state();
     const auto worst = [this](double ratio, std::uint32_t element) {
       return ratio > 0 ? Worst{of_body(element), ratio} : Worst{};
     };
@@ -336,70 +348,133 @@ class VulkanBackend final : public Backend {
   }
 
   void do_destroy(std::span<const Index> elements) override {
-    require_in_region(elements);
     finish_display();
+    if (on_.region) follow_outside(elements);
     check_.event();
     solved_ = false;
     const auto list = on_device(elements);
     destroyed_list_.insert(destroyed_list_.end(), list.begin(), list.end());
-    fields_.destroy(list);
-    route_->destroy(list, destroyed_list_);
+    on_.fields->destroy(list);
+    on_.route->destroy(list, destroyed_list_);
   }
 
-  /// What the scene says can be destroyed is in the region.
-  void require_in_region(std::span<const Index> elements) const {
-    if (!region_) return;
+  /// What the scene says can be destroyed is in the region; for what else a host destroys it grows.
+  void follow_outside(std::span<const Index> elements) {
+    const std::size_t before = beyond_.size();
     for (Index e : elements) {
-      if (region_->element(e) != kNone) continue;
-      throw UsageError(
-          "element " + std::to_string(e) +
-          " cannot be destroyed by route condensed on vulkan: it lies outside what the "
-          "scene lets break, tears or scripts; use route inverse or cg");
+      if (on_.region->element(e) == kNone) beyond_.push_back(e);
     }
+    if (beyond_.size() == before) return;
+    try {
+      grow();
+    } catch (...) {
+      beyond_.resize(before);
+      throw;
+    }
+  }
+
+  /// The region anew, with the elements `beyond_`. The last solution, damage, load and what is no
+  /// candidate go over to it; nothing changes when it cannot be made.
+  void grow() {
+    static_cast<void>(whole_displacement());
+    std::vector<Index> destroyed;
+    for (Index e : destroyed_list_) destroyed.push_back(of_body(static_cast<std::uint32_t>(e)));
+    OnDevice old = std::exchange(on_, OnDevice{});
+    try {
+      put_on_device(engine::region_of(problem(), needs(), beyond_));
+      take_over_state(destroyed);
+    } catch (...) {
+      on_ = std::move(old);
+      number_anew(destroyed);
+      throw;
+    }
+  }
+
+  /// Load and damage as the region on the device numbers them.
+  void number_anew(std::span<const Index> destroyed) {
+    force_.assign(on_.fields->rows(), 0.0);
+    load_ = {};
+    do_set_load(Load(whole_load_));
+    const auto list = on_device(destroyed);
+    destroyed_list_.assign(list.begin(), list.end());
+  }
+
+  void take_over_state(std::span<const Index> destroyed) {
+    check_ = FrameCheck(problem(), plan_.fp64);
+    number_anew(destroyed);
+    show(whole_u_);
+    on_.fields->exclude(on_device(excluded_));
+    if (!destroyed_list_.empty()) {
+      on_.fields->destroy(destroyed_list_);
+      on_.route->destroy(destroyed_list_, destroyed_list_);
+    }
+    if (!instruments_) return;
+    std::shared_ptr<InstrumentForces> forces = instruments_->forces();
+    instruments_.emplace(*on_.body);
+    instruments_->take_over(std::move(forces));
+  }
+
+  /// A displacement of all nodes of the problem, and the stress that goes with it.
+  void show(std::span<const double> displacement) {
+    std::vector<double> of_part(on_.body->dofs().size());
+    for (Index n = 0; n < problem().node_count(); ++n) {
+      if (on_.region->node(n) == kNone) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        of_part[3 * static_cast<std::size_t>(on_.region->node(n)) + axis] =
+            displacement[3 * static_cast<std::size_t>(n) + axis];
+      }
+    }
+    on_.fields->write_displacement(of_part);
+    vulkan::Commands commands(*device_);
+    commands.begin();
+    on_.fields->record_state(commands, false);
+    commands.end();
+    commands.submit();
   }
 
   void do_exclude_candidates(std::span<const Index> elements) override {
     finish_display();
-    fields_.exclude(on_device(elements));  // outside the region nothing is a candidate
+    if (on_.region) excluded_.insert(excluded_.end(), elements.begin(), elements.end());
+    on_.fields->exclude(on_device(elements));  // outside the region nothing is a candidate
   }
 
   void do_solve_pristine(const Load& of_problem, std::span<double> displacement) override {
-    const Load load = region_ ? region_->load(of_problem) : of_problem;
+    const Load load = on_.region ? on_.region->load(of_problem) : of_problem;
     const Loaded loaded{load.force_dofs, load.forces};
-    Eigen::VectorXd u = Eigen::VectorXd::Zero(body_->dof_count());
-    const Eigen::MatrixXd columns = intact_->columns(load.force_dofs);
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(on_.body->dof_count());
+    const Eigen::MatrixXd columns = on_.intact->columns(load.force_dofs);
     for (std::size_t i = 0; i < load.forces.size(); ++i) {
       u += load.forces[i] * columns.col(static_cast<Index>(i));
     }
-    if (pristine_->count() > 0) {
-      u += pristine_->columns() *
-           pristine_->coefficients(pristine_->project(loaded), load.displacements);
+    if (on_.pristine->count() > 0) {
+      u += on_.pristine->columns() *
+           on_.pristine->coefficients(on_.pristine->project(loaded), load.displacements);
     }
     const std::span<const double> unknowns(u.data(), static_cast<std::size_t>(u.size()));
-    if (!region_) {
+    if (!on_.region) {
       fem::scatter(problem(), unknowns, displacement);
       return;
     }
-    std::vector<double> of_part(body_->dofs().size());
-    fem::scatter(*body_, unknowns, of_part);
-    region_->expand(of_problem, of_part, displacement);
+    std::vector<double> of_part(on_.body->dofs().size());
+    fem::scatter(*on_.body, unknowns, of_part);
+    on_.region->expand(of_problem, of_part, displacement);
   }
 
   /// Displacement of the last solution at all nodes of the problem: outside a region it is solved
   /// for, once a solution.
   std::span<const double> whole_displacement() const {
     if (whole_u_known_) return whole_u_;
-    std::vector<double> of_part(body_->dofs().size());
-    fields_.read_displacement(of_part);
+    std::vector<double> of_part(on_.body->dofs().size());
+    on_.fields->read_displacement(of_part);
     whole_u_.resize(problem().dofs().size());
-    region_->expand(solved_load_, of_part, whole_u_);
+    on_.region->expand(solved_load_, of_part, whole_u_);
     whole_u_known_ = true;
     return whole_u_;
   }
 
   void do_read_displacement(std::span<double> displacement) const override {
-    if (!region_) {
-      fields_.read_displacement(displacement);
+    if (!on_.region) {
+      on_.fields->read_displacement(displacement);
       return;
     }
     const auto whole = whole_displacement();
@@ -408,13 +483,13 @@ class VulkanBackend final : public Backend {
 
   void do_read_displacement(std::span<const Index> nodes,
                             std::span<Vec3> displacement) const override {
-    if (!region_) {
+    if (!on_.region) {
       read_nodes(nodes, displacement);
       return;
     }
     std::vector<Index> of_part;
     for (Index n : nodes) {
-      if (region_->node(n) != kNone) of_part.push_back(region_->node(n));
+      if (on_.region->node(n) != kNone) of_part.push_back(on_.region->node(n));
     }
     if (of_part.size() == nodes.size()) {
       read_nodes(of_part, displacement);
@@ -428,36 +503,36 @@ class VulkanBackend final : public Backend {
 
   void read_nodes(std::span<const Index> nodes, std::span<Vec3> displacement) const {
     if (nodes.size() > kFewNodes) {
-      fields_.read_displacement(nodes, displacement);
+      on_.fields->read_displacement(nodes, displacement);
       return;
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      displacement[i] = fields_.read_displacement(nodes[i]);
+      displacement[i] = on_.fields->read_displacement(nodes[i]);
     }
   }
 
   void do_read_stress(std::span<Voigt> stress) const override {
-    if (!region_) {
-      fields_.read_stress(stress);
+    if (!on_.region) {
+      on_.fields->read_stress(stress);
       return;
     }
-    std::vector<Voigt> of_part(body_->mesh().tets.size());
-    fields_.read_stress(of_part);
+    std::vector<Voigt> of_part(on_.body->mesh().tets.size());
+    on_.fields->read_stress(of_part);
     for (std::size_t e = 0; e < of_part.size(); ++e) {
-      stress[region_->region().elements[e]] = of_part[e];
+      stress[on_.region->region().elements[e]] = of_part[e];
     }
-    region_->stress_outside(whole_displacement(), stress);
+    on_.region->stress_outside(whole_displacement(), stress);
   }
 
   Voigt do_read_stress(Index element) const override {
-    const Index e = region_ ? region_->element(element) : element;
-    if (e != kNone) return fields_.read_stress(e);
+    const Index e = on_.region ? on_.region->element(element) : element;
+    if (e != kNone) return on_.fields->read_stress(e);
     return fem::stress(problem().shape(element), problem().material(element),
                        fem::corner_displacement(problem().mesh(), element, whole_displacement()));
   }
 
   void do_read_reactions(std::span<double> reactions) const override {
-    fields_.read_reactions(body_->gripped_dofs(), reactions);
+    on_.fields->read_reactions(on_.body->gripped_dofs(), reactions);
   }
 
   std::future<IntactInverse> started_;
@@ -465,21 +540,25 @@ class VulkanBackend final : public Backend {
   Plan plan_;
   KernelFactory kernels_;
   InverseOptions inverse_;  // of routes inverse and condensed
-  std::unique_ptr<engine::Substructure>
-      region_;                           // route condensed; null: the whole is on the device
-  std::shared_ptr<const Problem> body_;  // what the device has
-  Fields fields_;
+  struct OnDevice {
+    std::unique_ptr<engine::Substructure> region;  // route condensed; null: the whole is there
+    std::shared_ptr<const Problem> body;           // what the device has
+    std::unique_ptr<Fields> fields;
+    IntactInverse intact;
+    std::unique_ptr<Correction> pristine;  // of the intact body: its grips
+    std::unique_ptr<DeviceRoute> route;
+  };
+  OnDevice on_;
   FrameCheck check_;
-  IntactInverse intact_;
-  std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
   std::unique_ptr<Display> display_;
-  std::unique_ptr<DeviceRoute> route_;
-  Load load_;  // of body_
+  Load load_;  // of on_.body
   // Of a region's problem: the load set, that of the last solution, and its displacement once read.
   Load whole_load_, solved_load_;
   mutable std::vector<double> whole_u_;
   mutable bool whole_u_known_ = false;
   std::vector<Index> in_part_;
+  // Of a region's problem: what has been destroyed outside the region planned, and excluded.
+  std::vector<Index> beyond_, excluded_;
   std::optional<engine::InstrumentBlock> instruments_;  // once asked for
   std::vector<double> reactions_;
   bool solved_ = false;        // the load and the damage as they are

@@ -27,10 +27,11 @@ void mark_elements(const Problem& problem, const Needs& needs, Region& region) {
 
 }  // namespace
 
-Region region_of(const Problem& problem, const Needs& needs) {
+Region region_of(const Problem& problem, const Needs& needs, std::span<const Index> beyond) {
   Region region;
   region.inside.assign(problem.mesh().nodes.size(), 0);
   if (needs.damage || needs.yield) mark_elements(problem, needs, region);
+  for (Index e : beyond) mark(problem, e, region.inside);
   for (const InstrumentNodes& instrument : problem.instrument_nodes()) {
     for (Index n : instrument.nodes) region.inside[n] = 1;
   }

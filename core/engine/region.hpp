@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,9 @@ struct Region {
   bool tears = false;                ///< the scene itself names elements that can be destroyed
 };
 
-[[nodiscard]] Region region_of(const Problem& problem, const Needs& needs);
+/// `beyond`: elements that shall be in it besides.
+[[nodiscard]] Region region_of(const Problem& problem, const Needs& needs,
+                               std::span<const Index> beyond = {});
 
 /// What a frame that computes a region alone leaves out, in words.
 [[nodiscard]] std::vector<std::string> left_out_of(const Problem& problem, const Region& region);

@@ -35,7 +35,7 @@ class Substructure {
   /// load that `of_body` is.
   void expand(const Load& of_body, std::span<const double> of_part,
               std::span<double> displacement) const;
-  /// Stress a_e D B u of the elements outside, which cannot be destroyed; `stress`: of all.
+  /// Stress a_e D B u of the elements outside, none of them destroyed; `stress`: of all.
   void stress_outside(std::span<const double> displacement, std::span<Voigt> stress) const;
   /// The largest norm of such a stress.
   [[nodiscard]] double largest_outside(std::span<const double> displacement) const;

@@ -102,8 +102,15 @@ TEST_P(CondensedOnVulkan, AgreesWithADirectSolution) {
             allowed(kCrackTolerance));
 }
 
+// Over a contrast of 1e4 a frame keeps its promise and no more: the stiffness that the rest lends
+// the region is rounded in fp64, which costs stress 3e-7 at 1e6 and shows in no residual over the
+// region.
 TEST_P(CondensedOnVulkan, StiffAndNearlyIncompressible) {
-  for (const auto& [contrast, poisson] : {std::pair{1e4, 0.4}, std::pair{1.0, 0.499}}) {
+  struct Case {
+    double contrast, poisson;
+  };
+  for (const auto& [contrast, poisson] :
+       {Case{1e4, 0.4}, Case{1, 0.499}, Case{1e6, 0.4}, Case{1, 0.4999}}) {
     Scene scene = organ(contrast, poisson);
     add_pull(scene);
     Pair pair(std::move(scene), GetParam());
@@ -112,7 +119,8 @@ TEST_P(CondensedOnVulkan, StiffAndNearlyIncompressible) {
     for (std::size_t done = 0; done < 50; done += 10) {
       pair.destroy(std::span(sequence).subspan(done, 10));
     }
-    expect(pair.solve(), allowed(kCrackTolerance), "contrast " + std::to_string(contrast));
+    expect(pair.solve(), contrast > 1e4 ? 1e-4 : allowed(kCrackTolerance),
+           "contrast " + std::to_string(contrast) + ", Poisson's ratio " + std::to_string(poisson));
   }
 }
 
@@ -166,6 +174,40 @@ TEST_P(CondensedOnVulkan, AfterACut) {
   EXPECT_LE(errors.u, allowed(kCutTolerance));
   EXPECT_LE(errors.stress, allowed(kCutTolerance));
   for (double u : Pair::displacement(*pair.vulkan)) ASSERT_TRUE(std::isfinite(u));
+}
+
+// The region grows then: what was destroyed, loaded, excluded and solved goes over to the larger
+// one.
+TEST_P(CondensedOnVulkan, DestroysOutsideTheRegion) {
+  Scene scene = organ();
+  add_pull(scene);
+  Instrument grip;
+  grip.name = "grip";
+  grip.action = Grip{Box{Vec3(-0.1, -0.1, -1), Vec3(0.1, 10.1, 4)}, Vec3(-0.5, 0.25, 0), Axes{7}};
+  scene.instruments.push_back(grip);
+  Pair pair(std::move(scene), GetParam());
+  Load load = corner_pull(pair.problem());
+  for (double& d : load.displacements) d = 0.05;
+  pair.load(load);
+  const auto sequence = crack_sequence(pair.problem(), 40, 12);
+  for (std::size_t i = 0; i < 15; ++i) pair.destroy(std::span(sequence).subspan(i, 1));
+  pair.solve();
+  const Index worst = pair.vulkan->stress().candidate.element;
+  for (Backend* b : {pair.reference.get(), pair.vulkan.get()}) b->exclude_candidates({&worst, 1});
+  const auto u = Pair::displacement(*pair.vulkan);
+  const auto outside = elements_across(pair.problem().mesh(), 10.1);
+  ASSERT_FALSE(pair.problem().breakable(outside.front()));
+  pair.destroy(std::span(outside).first(5));
+  const auto kept = Pair::displacement(*pair.vulkan);
+  EXPECT_LE(displacement_error(pair.problem().mesh(), pair.vulkan->destroyed(), kept, u), 1e-12);
+  const auto errors = pair.solve();
+  expect(errors, allowed(kCrackTolerance), "outside");
+  EXPECT_EQ(errors.summary.candidate.element, errors.reference_summary.candidate.element);
+  EXPECT_NE(errors.summary.candidate.element, worst);
+  pair.destroy(std::span(sequence).subspan(15, 25));
+  pair.destroy(std::span(outside).subspan(5, 2));
+  expect(pair.solve(), allowed(kCrackTolerance), "outside and along the crack");
+  pair.expect_reactions(allowed(kCrackTolerance));
 }
 
 TEST_P(CondensedOnVulkan, IntactBodyAndSingleReads) {
@@ -251,28 +293,10 @@ TEST_F(CondensedChoice, TearsAsTheCpuDoes) {
   }
 }
 
-TEST_F(CondensedChoice, RefusesWhatItCannotFollow) {
+TEST_F(CondensedChoice, NeedsSomethingToCondenseTo) {
   Scene scene = organ();
-  add_pull(scene);
   Way way{.update = Update::automatic, .route = Route::condensed};
-  const WatchedBackend watched(scene, way);
-  const auto backend = watched.create(all_needs());
-  backend->set_load(corner_pull(*watched.problem));
-  backend->solve();
-  const Index outside = elements_across(watched.problem->mesh(), 10.1).front();
-  ASSERT_FALSE(watched.problem->breakable(outside));
-  try {
-    backend->destroy({&outside, 1});
-    FAIL() << "an element outside the region";
-  } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("element " + std::to_string(outside)),
-              std::string::npos);
-  }
-  EXPECT_FALSE(backend->destroyed()[static_cast<std::size_t>(outside)]);
-  backend->solve();
-
   for (auto& [name, material] : scene.materials) material.yield.reset();
-  scene.instruments.clear();
   const WatchedBackend unbreakable(scene, way);
   EXPECT_THROW(static_cast<void>(unbreakable.create()), DeviceError);
 }
