@@ -130,6 +130,7 @@ int main(int argc, char** argv) try {
   Table table;
   const Rows rows{gpu, table, options.big, options.device};
   register_kernel_rows(rows);
+  register_system_rows(rows);
   register_frame_rows(rows);
   benchmark::AddCustomContext("device", gpu.machine().device);
   benchmark::AddCustomContext("driver", gpu.machine().driver);

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Single kernels, on a GPU by its own clock: low-rank update, dense and few-column products, stress
-// and residual, conjugate gradients. Traffic is what an ideal cache would leave: every input read
+// and residual. Traffic is what an ideal cache would leave: every input read
 // once, every result written once.
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <numeric>
 
-#include "cpu_reference/conjugate_gradient.hpp"
 #include "cpu_reference/stress.hpp"
 #include "fem/assembly.hpp"
-#include "gpu/cg_route.hpp"
 #include "gpu/passes/dense_inverse.hpp"
+#include "gpu/passes/fields.hpp"
 #include "support/structured_board.hpp"
 #include "vulkan_rows.hpp"
 
@@ -47,16 +45,6 @@ struct Inverse {
   DenseInverse matrix;
 };
 
-/// By the device's clock, without what a submit costs; by the wall where that clock is off.
-std::function<double()> device_clock(vulkan::Device& device, const char* pass) {
-  if (!device.timing()) return {};
-  return [&device, pass] {
-    double ms = 0;
-    for (const vulkan::PassTime& t : device.take_times()) ms += t.is(pass) ? t.milliseconds : 0;
-    return ms;
-  };
-}
-
 std::string precision(bool fp64) { return fp64 ? "fp64" : "fp32"; }
 double real_bytes(bool fp64) { return fp64 ? 8 : 4; }
 
@@ -70,9 +58,10 @@ void low_rank(benchmark::State& state, const Rows& rows, const std::string& name
   }
   const Eigen::MatrixXd v = 1e-3 * values(2 * rank, 0, rank);
   Work work;
+  work.warm_up = true;
   work.run = [&] { inverse.matrix.update(dofs, v); };
   work.milliseconds = device_clock(rows.gpu.device(), "low-rank update");
-  work.bytes = 2 * inverse.entries() * real_bytes(fp64);
+  work.bytes = inverse.entries() * real_bytes(fp64);  // half of them, read and written
   Eigen::MatrixXd x;
   if (n <= kReferenceLimit) {
     x = values(n, 0, n);
@@ -84,14 +73,21 @@ void low_rank(benchmark::State& state, const Rows& rows, const std::string& name
   rows.table.measure(state, name, work);
 }
 
+/// Whether products read an inverse as it was uploaded or as an eager update leaves it.
+enum class Read { whole, lower };
+
+std::string as_read(Read read) { return read == Read::whole ? "" : "_after_update"; }
+
 /// A product's buffers: the inverse, the board's fields that receive it, partial sums.
 struct Product {
-  Product(const Gpu& g, bool fp64, const Problem& problem, const Needs& needs)
-      : fields(g.kernels(fp64), problem, needs),
+  Product(const Gpu& g, bool fp64, const Problem& problem, Read read)
+      : fields(g.kernels(fp64), problem, {}),
         inverse(g, fp64, problem.dof_count()),
         partials(g.kernels(fp64), fields.rows(),
                  inverse.matrix.chunks() + inverse.matrix.loaded_chunks({}) + 1),
         commands(g.device()) {
+    const Index first = 0;
+    if (read == Read::lower) inverse.matrix.update({&first, 1}, Eigen::MatrixXd::Zero(1, 1));
     inverse.matrix.bind(partials, fields.residual());
     sum = partials.bind_sum(fields.positions(), fields.nodal(gpu::Field::displacement));
     std::vector<double> r(fields.rows(), 0.0);
@@ -115,14 +111,15 @@ struct Product {
 };
 
 void dense_product(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
-                   Index cells) {
+                   Index cells, Read read) {
   const auto problem = plain_board(cells);
-  Product product(rows.gpu, fp64, *problem, {});
+  Product product(rows.gpu, fp64, *problem, read);
   product.record([&] { return product.inverse.matrix.record_dense(product.commands, 0); });
   Work work;
+  work.warm_up = true;
   work.run = [&] { product.commands.submit(); };
   work.milliseconds = device_clock(rows.gpu.device(), "product");
-  work.bytes = product.inverse.entries() * real_bytes(fp64);
+  work.bytes = product.inverse.entries() * real_bytes(fp64) / (read == Read::lower ? 2 : 1);
   Eigen::MatrixXd x;
   Eigen::VectorXd r, u;
   const Index n = problem->dof_count();
@@ -135,10 +132,10 @@ void dense_product(benchmark::State& state, const Rows& rows, const std::string&
 }
 
 void few_columns(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
-                 Index cells) {
+                 Index cells, Read read) {
   constexpr Index kColumns = 12;
   const auto problem = plain_board(cells);
-  Product product(rows.gpu, fp64, *problem, {});
+  Product product(rows.gpu, fp64, *problem, read);
   const Index n = problem->dof_count();
   gpu::Loaded load;
   for (Index c = 0; c < kColumns; ++c) {
@@ -148,6 +145,7 @@ void few_columns(benchmark::State& state, const Rows& rows, const std::string& n
   product.inverse.matrix.set_loaded(load);
   product.record([&] { return product.inverse.matrix.record_loaded(product.commands, 0); });
   Work work;
+  work.warm_up = true;
   work.run = [&] { product.commands.submit(); };
   work.milliseconds = device_clock(rows.gpu.device(), "product");
   work.bytes = kColumns * static_cast<double>(n) * real_bytes(fp64);
@@ -161,12 +159,6 @@ void few_columns(benchmark::State& state, const Rows& rows, const std::string& n
     };
   }
   rows.table.measure(state, name, work);
-}
-
-Needs field_needs() {
-  Needs needs;
-  needs.stress = needs.yield = needs.damage = true;
-  return needs;
 }
 
 /// Stress of every element with its ratios and the summary; `balance`: f - K u in fp64 as well.
@@ -205,73 +197,22 @@ void element_fields(benchmark::State& state, const Rows& rows, const std::string
   rows.table.measure(state, name, work);
 }
 
-/// Conjugate gradients on an assembled matrix with one number a diagonal entry (point-Jacobi): the
-/// device's inverts 3 x 3 blocks (block-Jacobi), which costs nine products a node more and takes
-/// fewer iterations. Times are those of one iteration.
-class AssembledCg {
- public:
-  explicit AssembledCg(const Problem& problem) : k_(fem::assemble_lower(problem, {})) {
-    const Eigen::VectorXd d = k_.diagonal();
-    inverse_ = d.cwiseInverse();
-  }
-  int solve(const Eigen::VectorXd& f, double reduction) const {
-    Eigen::VectorXd x;
-    const auto a = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-      out.noalias() = k_.selfadjointView<Eigen::Lower>() * in;
-    };
-    const auto m = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-      out = inverse_.cwiseProduct(in);
-    };
-    return cpu_reference::conjugate_gradient(a, m, f, {.relative = reduction}, x).iterations;
-  }
+}  // namespace
 
- private:
-  fem::SparseMatrix k_;
-  Eigen::VectorXd inverse_;
-};
-
-/// Time per iteration, of a solution to ten digits.
-void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::string& name,
-                         Index cells) {
-  const auto problem = plain_board(cells);
-  Fields fields(rows.gpu.kernels(true), *problem, field_needs(), {0, true});
-  gpu::CgRoute route(rows.gpu.kernels(true), *problem, fields);
-  std::vector<double> force(fields.rows(), 0.0);
-  Load load;
-  for (Index d = 1; d < problem->dof_count(); d += 3) {
-    load.force_dofs.push_back(d);
-    load.forces.push_back(d % 2 == 0 ? 1e-3 : -1e-3);
-    force[static_cast<std::size_t>(d)] = load.forces.back();
-  }
-  fields.set_load(force, {});
-  const std::vector<double> rest(3 * problem->mesh().nodes.size(), 0.0);
-  int iterations = 1;
-  double wall = 0;
-  Work work;
-  work.prepare = [&] { fields.write_displacement(rest); };
-  work.run = [&] {
-    const auto start = std::chrono::steady_clock::now();
-    iterations = std::max(1, route.solve(load, true));
-    wall =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+std::function<double()> device_clock(vulkan::Device& device, const char* pass) {
+  if (!device.timing()) return {};
+  return [&device, pass] {
+    double ms = 0;
+    for (const vulkan::PassTime& t : device.take_times()) ms += t.is(pass) ? t.milliseconds : 0;
+    return ms;
   };
-  work.milliseconds = [&] { return wall / iterations; };
-  // The matrix once, and some twelve passes over vectors of four values a node.
-  work.bytes = static_cast<double>(fields.matrix().bytes()) +
-               12 * 32 * static_cast<double>(problem->node_count());
-  Row& row = rows.table.measure(state, name, work);
-  state.counters["iterations"] = iterations;
-  const AssembledCg reference(*problem);
-  const Eigen::Map<const Eigen::VectorXd> f(force.data(), problem->dof_count());
-  const auto start = std::chrono::steady_clock::now();
-  const int steps = std::max(1, reference.solve(f, 1e-4));
-  row.reference_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() /
-      steps;
-  state.counters["reference_ms"] = row.reference_ms;
 }
 
-}  // namespace
+Needs field_needs() {
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  return needs;
+}
 
 std::shared_ptr<const Problem> plain_board(Index cells) {
   static std::map<Index, std::shared_ptr<const Problem>> boards;
@@ -309,10 +250,12 @@ void register_kernel_rows(const Rows& rows) {
     // 18 cells: 2,052 unknowns; 31: 5,952; 100: 60,600.
     for (const Index cells : rows.big ? std::vector<Index>{18, 31, 57} : std::vector<Index>{18}) {
       const std::string n = "/n" + std::to_string(6 * cells * (cells + 1));
-      const std::string dense = "dense_product/" + precision(fp64) + n;
-      add_row(dense, [=, &rows](auto& s) { dense_product(s, rows, dense, fp64, cells); });
-      const std::string few = "few_columns/" + precision(fp64) + n;
-      add_row(few, [=, &rows](auto& s) { few_columns(s, rows, few, fp64, cells); });
+      for (const Read read : {Read::whole, Read::lower}) {
+        const std::string dense = "dense_product" + as_read(read) + "/" + precision(fp64) + n;
+        add_row(dense, [=, &rows](auto& s) { dense_product(s, rows, dense, fp64, cells, read); });
+        const std::string few = "few_columns" + as_read(read) + "/" + precision(fp64) + n;
+        add_row(few, [=, &rows](auto& s) { few_columns(s, rows, few, fp64, cells, read); });
+      }
     }
   }
   // 18 cells: 1,944 tetrahedra; 129: 99,846; 409: 1,003,686.
@@ -326,13 +269,6 @@ void register_kernel_rows(const Rows& rows) {
         add_row(name, [=, &rows](auto& s) { element_fields(s, rows, name, fp64, cells, balance); });
       }
     }
-  }
-  for (const Index cells :
-       rows.big ? std::vector<Index>{18, 129, 409} : std::vector<Index>{18, 77}) {
-    const std::string name = "cg_iteration/fp64/tets" + std::to_string(6 * cells * cells);
-    // Seconds are those of one iteration of a whole solution each.
-    add_row(
-        name, [=, &rows](auto& s) { conjugate_gradients(s, rows, name, cells); }, 1e-3);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gpu/kernels.hpp"
+#include "sunder/backend.hpp"
 #include "sunder/problem.hpp"
 #include "vulkan_table.hpp"
 
@@ -37,7 +38,14 @@ struct Rows {
 
 /// Registers what to measure with Google Benchmark; `rows` must outlive the run.
 void register_kernel_rows(const Rows& rows);
+void register_system_rows(const Rows& rows);
 void register_frame_rows(const Rows& rows);
+
+/// By the device's clock, without what a submit costs; by the wall where that clock is off.
+[[nodiscard]] std::function<double()> device_clock(vulkan::Device& device, const char* pass);
+
+/// Of a frame with fracture.
+[[nodiscard]] Needs field_needs();
 
 /// The child process of a start-up row: milliseconds from nothing to the board's first stresses.
 double start_up_ms(bool fp64, int device);

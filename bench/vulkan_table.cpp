@@ -119,6 +119,11 @@ Row& Table::measure(benchmark::State& state, const std::string& name, const Work
   row.bytes = work.bytes;
   std::vector<double> ms;
   double cpu = 0;
+  if (work.warm_up) {
+    work.prepare();
+    work.run();
+    if (work.milliseconds) static_cast<void>(work.milliseconds());
+  }
   for (auto _ : state) {
     work.prepare();
     const double cpu_before = process_cpu_ms();

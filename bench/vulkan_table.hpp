@@ -24,6 +24,7 @@ struct Row {
 
 struct Work {
   std::function<void()> prepare = [] {};  ///< untimed
+  bool warm_up = false;                   ///< run once untimed: a device compiles kernels then
   std::function<void()> run;
   /// Own measure of one run [ms] instead of its wall time.
   std::function<double()> milliseconds = {};
