@@ -61,18 +61,20 @@ class Bench {
   }
   void solve_pristine() { backend_->solve_pristine(load_, pristine_); }
   void stress() { summary_ = backend_->stress(); }
-  Decision decide() {
-    return criterion_->decide({*problem_,
-                               backend_->destroyed(),
-                               summary_,
-                               [&](Index e) { return backend_->read_stress(e); },
-                               [&] { return std::span<const double>(pristine_); },
-                               Vec3(0, force_, 0),
-                               {},
-                               [&](std::span<const Index> ids, std::span<Vec3> u) {
-                                 backend_->read_displacement(ids, u);
-                               },
-                               [&] { return forces_; }});
+  const Decision& decide() {
+    criterion_->decide({*problem_,
+                        backend_->destroyed(),
+                        summary_,
+                        [this](Index e) { return backend_->read_stress(e); },
+                        [this] { return std::span<const double>(pristine_); },
+                        Vec3(0, force_, 0),
+                        {},
+                        [this](std::span<const Index> ids, std::span<Vec3> u) {
+                          backend_->read_displacement(ids, u);
+                        },
+                        [this] { return std::span<const NodalForce>(forces_); }},
+                       decision_);
+    return decision_;
   }
 
  private:
@@ -85,6 +87,7 @@ class Bench {
   std::vector<NodalForce> forces_;
   std::vector<double> pristine_;
   StressSummary summary_;
+  Decision decision_;
 };
 
 constexpr double kHolds = -5, kBreaks = -60;  // [N]

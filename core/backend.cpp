@@ -12,6 +12,7 @@ Backend::Backend(std::shared_ptr<const Problem> problem, Needs needs)
     : problem_(std::move(problem)), needs_(std::move(needs)) {
   if (!problem_) throw UsageError("a backend needs a problem");
   destroyed_.assign(static_cast<std::size_t>(problem_->tet_count()), 0);
+  if (needs_.damage) sorted_.reserve(std::min(destroyed_.size(), std::size_t{4096}));
 }
 
 Backend::~Backend() = default;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "sunder/in_quotes.hpp"
-
 namespace sunder {
 namespace {
 
@@ -25,6 +23,7 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   const auto gripped = problem.gripped_dofs();
   gripped_.resize(gripped.size());
   expansion_.displacements.assign(gripped.size(), 0.0);
+  reserve();
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* grip = std::get_if<Grip>(&instruments[i].action);
     if (!grip) continue;
@@ -38,6 +37,23 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   }
 }
 
+/// Whatever acts at a time, a frame allocates nothing.
+void Loads::reserve() {
+  constexpr std::size_t kPressed = std::tuple_size_v<decltype(PressedNodes::nodes)>;
+  std::size_t shares = 0;
+  for (const InstrumentNodes& i : problem_.instrument_nodes())
+    shares += 3 * std::max(i.nodes.size(), kPressed);
+  for (auto& pressed : pressed_) pressed.reserve(kPressed);
+  acting_.reserve(pressed_.size());
+  shares_.reserve(shares);
+  sorted_.reserve(shares);
+  for (Load* load : {&all_, &expansion_}) {
+    load->force_dofs.reserve(shares);
+    load->forces.reserve(shares);
+    load->displacements.reserve(gripped_.size());
+  }
+}
+
 std::span<const Index> Loads::nodes(std::size_t instrument) const {
   return is_press(problem_.scene().instruments[instrument])
              ? pressed_[instrument]
@@ -46,7 +62,7 @@ std::span<const Index> Loads::nodes(std::size_t instrument) const {
 
 void Loads::choose_pressed_nodes(std::size_t instrument, const FractureCriterion& criterion,
                                  std::span<const std::uint8_t> destroyed,
-                                 std::vector<std::string>& findings) {
+                                 std::vector<Finding>& findings) {
   std::vector<Index>& chosen = pressed_[instrument];
   const bool keep = !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](Index n) {
     const auto around = elements_of_node_->of(n);
@@ -54,10 +70,10 @@ void Loads::choose_pressed_nodes(std::size_t instrument, const FractureCriterion
   });
   if (keep) return;
   const Instrument& tool = problem_.scene().instruments[instrument];
-  chosen = criterion.pressed_nodes(std::get<Press>(tool.action), destroyed);
+  const PressedNodes found = criterion.pressed_nodes(std::get<Press>(tool.action), destroyed);
+  chosen.assign(found.list().begin(), found.list().end());
   if (chosen.empty()) {
-    findings.push_back("instrument " + in_quotes(tool.name) +
-                       " finds no node of its crack's face to press on and does not act");
+    findings.push_back({Finding::Kind::nothing_to_press, static_cast<int>(instrument)});
   }
 }
 
@@ -99,9 +115,8 @@ void Loads::sum_into(Load& load) {
   }
 }
 
-std::vector<std::string> Loads::update(double time, const FractureCriterion& criterion,
-                                       std::span<const std::uint8_t> destroyed) {
-  std::vector<std::string> findings;
+void Loads::update(double time, const FractureCriterion& criterion,
+                   std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings) {
   const auto& instruments = problem_.scene().instruments;
   shares_.clear();
   acting_.clear();
@@ -128,7 +143,6 @@ std::vector<std::string> Loads::update(double time, const FractureCriterion& cri
   }
   sum_into(all_);
   all_.displacements = expansion_.displacements;
-  return findings;
 }
 
 }  // namespace sunder

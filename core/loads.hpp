@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "fracture/criterion.hpp"
@@ -18,9 +17,9 @@ class Loads {
   explicit Loads(const Problem& problem);
 
   /// Instruments at scene time t. Pressing instruments choose their nodes when they start to act,
-  /// and again when such a node has lost its last live element (method.md 7). Returns findings.
-  std::vector<std::string> update(double time, const FractureCriterion& criterion,
-                                  std::span<const std::uint8_t> destroyed);
+  /// and again when such a node has lost its last live element (method.md 7). Adds to `findings`.
+  void update(double time, const FractureCriterion& criterion,
+              std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings);
 
   /// Instrument i has this force or displacement from the next update on, whatever the scene says.
   void drive(std::size_t instrument, const Vec3& value) { driven_[instrument] = value; }
@@ -31,7 +30,7 @@ class Loads {
   /// Without the pressing instruments (the pristine field's load).
   [[nodiscard]] const Load& expansion() const { return expansion_; }
   /// Pressing instruments that act now.
-  [[nodiscard]] const std::vector<ActingPress>& presses() const { return acting_; }
+  [[nodiscard]] std::span<const ActingPress> presses() const { return acting_; }
   /// Nodes on which instrument i acts now.
   [[nodiscard]] std::span<const Index> nodes(std::size_t instrument) const;
   /// Total force of instrument i now; zero for grips.
@@ -46,7 +45,8 @@ class Loads {
  private:
   void choose_pressed_nodes(std::size_t instrument, const FractureCriterion& criterion,
                             std::span<const std::uint8_t> destroyed,
-                            std::vector<std::string>& findings);
+                            std::vector<Finding>& findings);
+  void reserve();
   void add(std::size_t instrument);
   void sum_into(Load& load);
 

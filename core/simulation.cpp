@@ -6,6 +6,7 @@
 
 #include "attribution.hpp"
 #include "fem/element.hpp"
+#include "finding.hpp"
 #include "fracture/criterion.hpp"
 #include "loads.hpp"
 #include "pieces.hpp"
@@ -85,7 +86,29 @@ Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<B
   check_needs(needs_of(*problem_), backend_->needs());
   loads_ = std::make_unique<Loads>(*problem_);
   criterion_ = make_criterion(*problem_);
-  warnings_ = problem_->warnings();
+  loose_ = std::make_unique<LooseSearch>(*problem_);
+  decision_ = std::make_unique<Decision>();
+  reserve();
+}
+
+/// Steps append to what is here and allocate nothing, up to so many destroyed elements.
+void Simulation::reserve() {
+  constexpr std::size_t kDestroyed = 1 << 16, kFindings = 256, kInLine = 1024;
+  const std::size_t elements = problem_->mesh().tets.size();
+  if (backend_->needs().damage) destroyed_.reserve(std::min(elements, kDestroyed));
+  if (backend_->needs().damage) event_.reserve(std::min(elements, kDestroyed));
+  if (!problem_->scene().removals.empty()) taken_.reserve(elements);
+  if (backend_->needs().pristine) pristine_.reserve(3 * problem_->mesh().nodes.size());
+  findings_.reserve(kFindings);
+  of_loads_.reserve(kFindings);
+  next_in_line_.reserve(kInLine);
+  std::size_t nodes = 0;
+  for (const InstrumentNodes& i : problem_->instrument_nodes()) {
+    nodes += std::max(i.nodes.size(), std::size_t{2});  // a press has up to two
+    reactions_.displacement.reserve(std::max(i.nodes.size(), std::size_t{2}));
+  }
+  instrument_forces_.reserve(nodes);
+  reactions_.forces.reserve(problem_->scene().instruments.size());
 }
 
 Simulation::~Simulation() = default;
@@ -112,9 +135,9 @@ StepReport Simulation::step() {
     for (bool broke = true; broke;) {
       {
         const Timer timer(times.load);
-        for (auto& w : loads_->update(report.load_factor, *criterion_, backend_->destroyed())) {
-          warn(std::move(w));
-        }
+        of_loads_.clear();
+        loads_->update(report.load_factor, *criterion_, backend_->destroyed(), of_loads_);
+        for (const Finding& found : of_loads_) note(found);
         backend_->set_load(loads_->load());
       }
       {
@@ -127,15 +150,14 @@ StepReport Simulation::step() {
       }
       report.max_yield_ratio = summary.any.ratio;
       if (frame_observer_) frame_observer_();
-      Decision decision;
       {
         const Timer timer(times.decide);
-        decision = decide(summary);
+        decide(summary);
       }
       {
         const Timer timer(times.update);
-        if (attribute_) attribute(decision);
-        broke = apply_event(std::move(decision));
+        if (attribute_) attribute_event();
+        broke = apply_event();
       }
     }
     if (destroyed_.size() != destroyed_before) find_loose();
@@ -181,16 +203,15 @@ FractureState Simulation::fracture_state(const StressSummary& summary) {
   };
 }
 
-Decision Simulation::decide(const StressSummary& summary) {
-  if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return {};
+void Simulation::decide(const StressSummary& summary) {
+  decision_->clear();
+  if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return;
   if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
     capped_.add(next_step_);
-    return {};
+    return;
   }
-  const FractureState state = fracture_state(summary);
-  Decision decision = criterion_->decide(state);
-  if (!decision.elements.empty()) ++decisions_this_step_;
-  return decision;
+  criterion_->decide(fracture_state(summary), *decision_);
+  if (!decision_->elements.empty()) ++decisions_this_step_;
 }
 
 /// In a frame in which nothing breaks: brings to hand what the next fractures will need.
@@ -202,24 +223,23 @@ void Simulation::prepare_next(const StressSummary& summary) {
   backend_->prepare(next_in_line_);
 }
 
-std::vector<NodalForce> Simulation::instrument_forces() const {
-  std::vector<NodalForce> forces;
+/// Of reactions_, which fracture_state() has read.
+std::span<const NodalForce> Simulation::instrument_forces() {
+  instrument_forces_.clear();
   const auto& instruments = problem_->scene().instruments;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     if (std::holds_alternative<Grip>(instruments[i].action)) continue;
     const auto nodes = loads_->nodes(i);
     for (Index n : nodes)
-      forces.push_back({n, loads_->force(i) / static_cast<double>(nodes.size())});
+      instrument_forces_.push_back({n, loads_->force(i) / static_cast<double>(nodes.size())});
   }
-  add_grip_forces(forces);
-  return forces;
+  add_grip_forces();
+  return instrument_forces_;
 }
 
-void Simulation::add_grip_forces(std::vector<NodalForce>& forces) const {
+void Simulation::add_grip_forces() {
   const auto gripped = problem_->gripped_dofs();
   if (gripped.empty()) return;
-  std::vector<double> reactions(gripped.size());
-  backend_->read_reactions(reactions);
   const auto& instruments = problem_->scene().instruments;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* grip = std::get_if<Grip>(&instruments[i].action);
@@ -229,9 +249,9 @@ void Simulation::add_grip_forces(std::vector<NodalForce>& forces) const {
       for (int axis = 0; axis < 3; ++axis) {
         const Index d = problem_->dof(n, axis);
         const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
-        if (grip->axes.has(axis)) at.force[axis] = reactions[static_cast<std::size_t>(g)];
+        if (grip->axes.has(axis)) at.force[axis] = reactions_.grips[static_cast<std::size_t>(g)];
       }
-      forces.push_back(at);
+      instrument_forces_.push_back(at);
     }
   }
 }
@@ -253,80 +273,78 @@ void Simulation::drive(std::size_t instrument, const Vec3& value) {
 }
 
 /// The instrument behind a decision; the backend holds the same solution before and after.
-void Simulation::attribute(Decision& decision) {
-  if (decision.elements.empty()) return;
+void Simulation::attribute_event() {
+  if (decision_->elements.empty()) return;
   const double time = (next_step_ + 1.0) / problem_->scene().steps;
-  const Attribution a = attribution(*backend_, *loads_, time, decision.elements.front().element);
+  const Attribution a = attribution(*backend_, *loads_, time, decision_->elements.front().element);
   backend_->set_load(loads_->load());
   backend_->solve();
   backend_->stress();
-  for (DestroyedElement& d : decision.elements) {
+  for (DestroyedElement& d : decision_->elements) {
     d.instrument = a.instrument;
     d.instrument_share = a.share;
   }
 }
 
-bool Simulation::apply_event(Decision decision) {
-  for (std::string& w : decision.warnings) warn(std::move(w));
-  if (decision.elements.empty()) return false;
-  std::vector<Index> elements;
-  elements.reserve(decision.elements.size());
-  for (DestroyedElement& d : decision.elements) {
+bool Simulation::apply_event() {
+  for (const Finding& found : decision_->findings) note(found);
+  if (decision_->elements.empty()) return false;
+  event_.clear();
+  for (DestroyedElement& d : decision_->elements) {
     d.step = next_step_;
     d.event = next_event_;
     d.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
-    elements.push_back(d.element);
+    event_.push_back(d.element);
   }
-  backend_->destroy(elements);
-  if (backend_->needs().yield) backend_->exclude_candidates(decision.excluded);
+  backend_->destroy(event_);
+  if (backend_->needs().yield) backend_->exclude_candidates(decision_->excluded);
   ++next_event_;
   ++events_this_step_;
-  destroyed_.insert(destroyed_.end(), decision.elements.begin(), decision.elements.end());
-  if (observer_ && !observer_(decision.elements)) interrupted_ = true;
+  destroyed_.insert(destroyed_.end(), decision_->elements.begin(), decision_->elements.end());
+  if (observer_ && !observer_(decision_->elements)) interrupted_ = true;
   return true;
 }
 
 void Simulation::apply_presets() {
   if (problem_->scene().cracks.empty()) return;
-  apply_event(criterion_->preset());
+  *decision_ = criterion_->preset();
+  apply_event();
 }
 
 void Simulation::apply_removals() {
   const auto& removals = problem_->scene().removals;
   const auto now = [this](const auto& removal) { return removal.step == next_step_; };
   if (std::none_of(removals.begin(), removals.end(), now)) return;
-  Decision event;
-  std::vector<std::uint8_t> taken(backend_->destroyed().begin(), backend_->destroyed().end());
+  decision_->clear();
+  taken_.assign(backend_->destroyed().begin(), backend_->destroyed().end());
   for (std::size_t r = 0; r < removals.size(); ++r) {
     if (removals[r].step != next_step_) continue;
-    Index already = 0;
+    int already = 0;
     for (Index e : problem_->removal_elements()[r]) {
-      if (taken[e]) {
+      if (taken_[e]) {
         ++already;
         continue;
       }
-      taken[e] = 1;
+      taken_[e] = 1;
       DestroyedElement d;
       d.element = e;
       d.cause = Cause::script;
-      event.elements.push_back(d);
+      decision_->elements.push_back(d);
     }
     if (already > 0) {
-      warn("destroy " + std::to_string(r) + " in step " + std::to_string(next_step_) + ": " +
-           std::to_string(already) + " of its elements were destroyed already");
+      note({Finding::Kind::removed_before, static_cast<int>(r), next_step_, already});
     }
   }
-  apply_event(std::move(event));
+  apply_event();
 }
 
 void Simulation::find_loose() {
-  const LooseParts parts = find_loose_parts(*problem_, backend_->destroyed());
-  if (!parts.isolated_nodes.empty() && loose_nodes_step_ == kNone) loose_nodes_step_ = next_step_;
-  if (!parts.pieces.empty() && loose_pieces_step_ == kNone) loose_pieces_step_ = next_step_;
-  loose_nodes_ = parts.isolated_nodes.size();
-  loose_pieces_ = parts.pieces.size();
-  loose_elements_ = 0;
-  for (const auto& piece : parts.pieces) loose_elements_ += piece.size();
+  loose_->look(backend_->destroyed());
+  loose_nodes_ = loose_->isolated_nodes();
+  loose_pieces_ = loose_->pieces();
+  loose_elements_ = loose_->elements_cut_off();
+  if (loose_nodes_ > 0 && loose_nodes_step_ == kNone) loose_nodes_step_ = next_step_;
+  if (loose_pieces_ > 0 && loose_pieces_step_ == kNone) loose_pieces_step_ = next_step_;
 }
 
 void Simulation::Steps::add(int step) {
@@ -341,14 +359,16 @@ std::string Simulation::Steps::sentence(const std::string& what) const {
          std::to_string(last) + " " + what;
 }
 
-void Simulation::warn(std::string message) {
-  if (std::find(warnings_.begin(), warnings_.end(), message) == warnings_.end()) {
-    warnings_.push_back(std::move(message));
-  }
+void Simulation::note(const Finding& finding) {
+  if (std::ranges::find(findings_, finding) == findings_.end()) findings_.push_back(finding);
 }
 
 std::vector<std::string> Simulation::warnings() const {
-  std::vector<std::string> all = warnings_;
+  std::vector<std::string> all = problem_->warnings();
+  for (const Finding& found : findings_) {  // instruments may have the same name
+    std::string words = sentence(found, problem_->scene());
+    if (std::ranges::find(all, words) == all.end()) all.push_back(std::move(words));
+  }
   if (capped_.count > 0) {
     all.push_back(capped_.sentence(
         "ended at fracture.max_events = " + std::to_string(problem_->scene().fracture.max_events) +

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "app/output/text.hpp"
 
@@ -18,7 +19,7 @@ Json array(const Vector& v) {
   return out;
 }
 
-Json points(const std::vector<Vec2>& path) {
+Json points(std::span<const Vec2> path) {
   Json out = Json::array();
   for (const Vec2& p : path) out.push_back(array(p));
   return out;

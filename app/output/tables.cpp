@@ -64,7 +64,7 @@ std::string events_row(const DestroyedElement& record) {
               known(k.theta_formula),
               known(k.k_field),
               known(k.theta_field),
-              k.field_note});
+              std::string(k.field_note)});
 }
 
 std::string frames_header() {

@@ -86,6 +86,7 @@ std::string event_table(const RunRecord& run) {
                           std::optional<double> SifTerms::*angle) {
       return field(k).empty() ? std::string() : field(k) + ", " + field(angle);
     };
+    const std::string note(d.sif ? d.sif->field_note : "");
     const bool tipped = d.sif && d.crack != kNone;
     table.row({std::to_string(d.event),
                std::to_string(d.step),
@@ -111,7 +112,7 @@ std::string event_table(const RunRecord& run) {
                field(&SifTerms::k_3),
                pair(&SifTerms::k_formula, &SifTerms::theta_formula),
                pair(&SifTerms::k_field, &SifTerms::theta_field) +
-                   (d.sif && !d.sif->field_note.empty() ? " (" + d.sif->field_note + ")" : "")});
+                   (note.empty() ? "" : " (" + note + ")")});
   }
   std::string out = "<h3>Events</h3>\n" + table.html();
   if (lines.size() > kMostEventRows)

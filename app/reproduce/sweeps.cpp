@@ -224,7 +224,7 @@ Chapter k_along_crack(const Laboratory& lab) {
       table.rows.push_back({k.name, cell(row.sif->a), cell(force), cell(row.sif->k_formula),
                             cell(row.sif->k_field), cell(row.sif->k_1), cell(row.sif->k_2),
                             cell(row.sif->theta_formula), cell(row.sif->theta_field),
-                            row.sif->field_note});
+                            std::string(row.sif->field_note)});
     }
     chapter.drawings.push_back(chart_drawing(
         k.override.ends_with("field") ? "k-along-crack-field" : "k-along-crack-formula",

@@ -41,8 +41,10 @@ int rigid_modes_left(const Mesh& mesh, std::span<const HeldDof> held) {
   return static_cast<int>((values.array() <= kRigidTolerance * values[5]).count());
 }
 
-Bodies find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude) {
-  std::vector<Index> parent(mesh.nodes.size());
+void find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude, Bodies& bodies,
+                 BodyRoom& room) {
+  std::vector<Index>& parent = room.parent;
+  parent.resize(mesh.nodes.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto included = [&](Index e) { return exclude.empty() || !exclude[e]; };
   for (Index e = 0; e < mesh.tet_count(); ++e) {
@@ -50,17 +52,23 @@ Bodies find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude) {
     const Index root = root_of(parent, mesh.tets[e][0]);
     for (int a = 1; a < 4; ++a) parent[root_of(parent, mesh.tets[e][a])] = root;
   }
-  Bodies bodies;
+  bodies.count = 0;
   bodies.body_of_element.assign(mesh.tets.size(), kNone);
   bodies.body_of_node.assign(mesh.nodes.size(), kNone);
-  std::vector<Index> number(mesh.nodes.size(), kNone);
+  room.number.assign(mesh.nodes.size(), kNone);
   for (Index e = 0; e < mesh.tet_count(); ++e) {
     if (!included(e)) continue;
-    Index& body = number[root_of(parent, mesh.tets[e][0])];
+    Index& body = room.number[root_of(parent, mesh.tets[e][0])];
     if (body == kNone) body = bodies.count++;
     bodies.body_of_element[e] = body;
     for (Index n : mesh.tets[e]) bodies.body_of_node[n] = body;
   }
+}
+
+Bodies find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude) {
+  Bodies bodies;
+  BodyRoom room;
+  find_bodies(mesh, exclude, bodies, room);
   return bodies;
 }
 

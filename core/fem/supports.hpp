@@ -26,4 +26,12 @@ struct Bodies {
 };
 [[nodiscard]] Bodies find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude);
 
+/// Lists that a search needs, kept between searches of one mesh.
+struct BodyRoom {
+  std::vector<Index> parent, number;  // per node
+};
+/// The same in place of what `bodies` held; allocates the first time only.
+void find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude, Bodies& bodies,
+                 BodyRoom& room);
+
 }  // namespace sunder::fem

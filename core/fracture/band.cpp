@@ -2,7 +2,6 @@
 #include "fracture/band.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -66,7 +65,7 @@ Strength strength(const std::vector<BandElement>& band, double h, const ElementV
   for (const BandElement& b : band) {
     if (!(b.rho < kLongestStep * h)) continue;
     ++s.count;
-    const double yield = view.yield(b.element);
+    const double yield = view.yield[b.element];
     if (yield > 0) s.least_yield = std::min(s.least_yield, yield);
   }
   return s;
@@ -85,34 +84,44 @@ int node_side(const Board& board, const Ray& ray, int near_side, Index node) {
   return own_side(board, ray, node).value_or(near_side);
 }
 
-Band find_band(const Board& board, const Ray& ray, const ElementView& view) {
-  const double h = board.h();
-  // Centroids lie between -h/2 and 1.5 h along the ray, and across it at most one element's size
-  // from a node that is on the ray's other side or (labelled) within h of it.
+// Centroids lie between -h/2 and 1.5 h along the ray, and across it at most one element's size
+// from a node that is on the ray's other side or (labelled) within h of it.
+BandSearch::BandSearch(const Board& board)
+    : board_(board),
+      reach_(std::hypot((kLongestStep + kBehind) / 2 * board.h(),
+                        board.largest_element() + kLabelKept * board.h())) {
+  const std::size_t most = board.most_within(reach_);
+  near_.reserve(most);
+  for (auto& band : bands_) band.reserve(most);
+  band_.elements.reserve(most);
+}
+
+const Band& BandSearch::find(const Ray& ray, const ElementView& view) {
+  const double h = board_.h();
   const Vec2 middle = ray.origin + (kLongestStep - kBehind) / 2 * h * ray.direction;
-  const double half_length = (kLongestStep + kBehind) / 2 * h;
-  const double half_width = board.largest_element() + kLabelKept * h;
-  TwoBands bands;
-  for (Index e : board.elements_within(middle, std::hypot(half_length, half_width))) {
-    const double rho = (board.centroid(e) - ray.origin).dot(ray.direction);
+  board_.elements_within(middle, reach_, near_);
+  for (auto& band : bands_) band.clear();
+  for (Index e : near_) {
+    const double rho = (board_.centroid(e) - ray.origin).dot(ray.direction);
     if (!(rho > -kBehind * h) || rho > kLongestStep * h || !view.live(e)) continue;
-    sort_into_bands(board, ray, {e, rho}, bands);
+    sort_into_bands(board_, ray, {e, rho}, bands_);
   }
-  Band band;
-  band.near_side = choose_near_side(bands, h, view);
-  band.elements = std::move(bands[band.near_side > 0 ? 1 : 0]);
-  std::sort(band.elements.begin(), band.elements.end(),
+  band_.near_side = choose_near_side(bands_, h, view);
+  std::swap(band_.elements, bands_[band_.near_side > 0 ? 1 : 0]);
+  std::sort(band_.elements.begin(), band_.elements.end(),
             [](const BandElement& a, const BandElement& b) {
               return a.rho != b.rho ? a.rho < b.rho : a.element < b.element;
             });
-  return band;
+  return band_;
 }
 
-Walk walk_band(const Band& band, double h, double k, double theta, const ElementView& view) {
-  Walk walk;
+void walk_band(const Band& band, double h, double k, double theta, const ElementView& view,
+               Walk& walk) {
+  walk.passed.clear();
+  walk.advance = 0;
   double survivor = std::numeric_limits<double>::infinity();  // rho of the first that holds
   for (const BandElement& b : band.elements) {
-    const double yield = view.yield(b.element);
+    const double yield = view.yield[b.element];
     const double distance = std::max(b.rho, kBehind * h);
     const double r = yield > 0 ? reach(k, yield, theta) : 0;
     if (!(r >= distance)) {
@@ -124,7 +133,6 @@ Walk walk_band(const Band& band, double h, double k, double theta, const Element
     walk.advance = std::max(walk.advance, step);
   }
   if (survivor > 0) walk.advance = std::min(walk.advance, survivor);
-  return walk;
 }
 
 }  // namespace sunder::fracture

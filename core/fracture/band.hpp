@@ -3,7 +3,8 @@
 // that the ray ahead of the tip separates, walked in order of distance.
 #pragma once
 
-#include <functional>
+#include <array>
+#include <span>
 #include <vector>
 
 #include "fracture/board.hpp"
@@ -13,8 +14,14 @@ namespace sunder::fracture {
 
 /// What a walk needs to know of elements, so that it depends on neither problem nor backend.
 struct ElementView {
-  std::function<bool(Index)> live;
-  std::function<double(Index)> yield;  ///< [MPa]; 0: unbreakable
+  std::span<const std::uint8_t> destroyed;   ///< per element
+  std::span<const double> yield;             ///< [MPa] per element; 0: unbreakable
+  std::span<const std::uint8_t> taken = {};  ///< by this event already; empty: none
+  bool breakable_only = false;               ///< unbreakable ones count as not there
+
+  [[nodiscard]] bool live(Index e) const {
+    return !destroyed[e] && (taken.empty() || !taken[e]) && (!breakable_only || yield[e] > 0);
+  }
 };
 
 /// The ray ahead of a tip, and the side labels that its crack has given to nodes.
@@ -37,7 +44,22 @@ struct Band {
   int near_side = 1;
 };
 
-[[nodiscard]] Band find_band(const Board& board, const Ray& ray, const ElementView& view);
+/// Searches of one board, with lists that have room for the fullest of its places.
+class BandSearch {
+ public:
+  explicit BandSearch(const Board& board);
+  /// Holds until the next search.
+  [[nodiscard]] const Band& find(const Ray& ray, const ElementView& view);
+  /// No band has more elements.
+  [[nodiscard]] std::size_t most() const { return near_.capacity(); }
+
+ private:
+  const Board& board_;
+  double reach_;  // [mm] from the middle of a band to the farthest centroid
+  std::vector<Index> near_;
+  std::array<std::vector<BandElement>, 2> bands_;  // one for each choice of near_side: -1, +1
+  Band band_;
+};
 
 /// Side of a node as seen by the tip: +1 left of the ray, -1 right of it; 0 for a node behind the
 /// tip on the prolonged ray.
@@ -55,8 +77,8 @@ struct Walk {
   double advance = 0;          ///< of the tip [mm]; 0 when nothing is destroyed
 };
 
-/// Walks the band with stress intensity K and angle theta [rad].
-[[nodiscard]] Walk walk_band(const Band& band, double h, double k, double theta,
-                             const ElementView& view);
+/// Walks the band with stress intensity K and angle theta [rad], in place of what `walk` held.
+void walk_band(const Band& band, double h, double k, double theta, const ElementView& view,
+               Walk& walk);
 
 }  // namespace sunder::fracture

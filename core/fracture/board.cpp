@@ -45,12 +45,13 @@ void Board::sort_free_faces() {
   }
 }
 
-std::vector<Vec2> Board::lateral_faces(Index e) const {
-  std::vector<Vec2> faces;
-  auto it = std::lower_bound(lateral_.begin(), lateral_.end(), e,
-                             [](const LateralFace& face, Index tet) { return face.tet < tet; });
-  for (; it != lateral_.end() && it->tet == e; ++it) faces.push_back(it->centroid);
-  return faces;
+std::span<const Board::LateralFace> Board::lateral_faces(Index e) const {
+  const auto first =
+      std::lower_bound(lateral_.begin(), lateral_.end(), e,
+                       [](const LateralFace& face, Index tet) { return face.tet < tet; });
+  const auto last =
+      std::find_if(first, lateral_.end(), [e](const LateralFace& face) { return face.tet != e; });
+  return {first, last};
 }
 
 }  // namespace sunder::fracture

@@ -29,23 +29,28 @@ class Board {
   [[nodiscard]] Vec2 node(Index n) const { return plane_.project(mesh_.nodes[n]); }
   [[nodiscard]] const Vec2& centroid(Index e) const { return centroids_.points()[e]; }
   [[nodiscard]] std::span<const Index> elements_of(Index n) const { return around_.of(n); }
-  /// Elements whose projected centroid is at most `radius` from p, ascending.
-  [[nodiscard]] std::vector<Index> elements_within(const Vec2& p, double radius) const {
-    return centroids_.within(p, radius);
+  /// Elements whose projected centroid is at most `radius` from p, ascending, in place of what
+  /// `elements` held.
+  void elements_within(const Vec2& p, double radius, std::vector<Index>& elements) const {
+    centroids_.within(p, radius, elements);
+  }
+  /// No neighbourhood of that radius has more elements than this.
+  [[nodiscard]] std::size_t most_within(double radius) const {
+    return centroids_.most_within(radius);
   }
   /// Largest distance between an element's projected centroid and one of its nodes [mm].
   [[nodiscard]] double largest_element() const { return largest_element_; }
-  /// Projected centroids of the lateral free faces of element e.
-  [[nodiscard]] std::vector<Vec2> lateral_faces(Index e) const;
+  struct LateralFace {
+    Index tet;
+    Vec2 centroid;  ///< projected
+  };
+  /// The lateral free faces of element e.
+  [[nodiscard]] std::span<const LateralFace> lateral_faces(Index e) const;
   [[nodiscard]] bool on_bottom(Index n) const { return surface_[n] & kBottom; }
   [[nodiscard]] bool on_top(Index n) const { return surface_[n] & kTop; }
 
  private:
   static constexpr std::uint8_t kBottom = 1, kTop = 2;
-  struct LateralFace {
-    Index tet;
-    Vec2 centroid;
-  };
 
   void sort_free_faces();
 

@@ -2,7 +2,6 @@
 #include "fracture/combined.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "fem/element.hpp"
 #include "fracture/crack_birth.hpp"
@@ -14,9 +13,22 @@
 namespace sunder::fracture {
 namespace {
 
-bool contains(const Decision& decision, Index element) {
-  return std::any_of(decision.elements.begin(), decision.elements.end(),
-                     [&](const DestroyedElement& row) { return row.element == element; });
+// Of lists that cracks share [bytes]: what an element adds at most, as vectors grow by doubling
+// (four labels of 40, a point, its id), up to some 60,000 elements.
+constexpr std::size_t kOfAnElement = 256, kMostOfCracks = std::size_t{1} << 24;
+
+// Tips that move in one event, as room for its rows.
+constexpr std::size_t kTipsAtOnce = 16;
+
+std::vector<double> yields_of(const Problem& problem) {
+  std::vector<double> yields(problem.mesh().tets.size());
+  for (Index e = 0; e < problem.tet_count(); ++e) yields[e] = problem.yield(e);
+  return yields;
+}
+
+std::size_t room_for_cracks(std::span<const double> yields) {
+  const auto breakable = yields.size() - static_cast<std::size_t>(std::ranges::count(yields, 0.0));
+  return std::min(kOfAnElement * (breakable + 1), kMostOfCracks);
 }
 
 DestroyedElement growth_row(const Passed& passed, int crack, SifTerms terms) {
@@ -32,7 +44,7 @@ DestroyedElement growth_row(const Passed& passed, int crack, SifTerms terms) {
 
 FieldView field_view(const FractureState& state) {
   return {state.destroyed, state.displacement,
-          state.forces ? state.forces() : std::vector<NodalForce>{}};
+          state.forces ? state.forces() : std::span<const NodalForce>{}};
 }
 
 /// The terms of the field with those of the formula beside them.
@@ -62,31 +74,49 @@ Combined::Combined(const Problem& problem)
     : problem_(problem),
       board_(problem.mesh(), problem.scene().fracture.plane_normal),
       meter_(problem, board_),
-      excluded_(problem.mesh().tets.size(), 0) {
-  for (Index e = 0; e < problem.tet_count() && !anything_breakable_; ++e)
-    anything_breakable_ = problem.breakable(e);
+      yields_(yields_of(problem)),
+      lists_(room_for_cracks(yields_)),
+      excluded_(problem.mesh().tets.size(), 0),
+      remote_(problem, board_, {}),
+      bands_(board_),
+      taken_(problem.mesh().tets.size(), 0) {
+  anything_breakable_ = std::ranges::any_of(yields_, [](double yield) { return yield > 0; });
+  // Births share no node with one another.
+  cracks_.reserve(problem.scene().cracks.size() + problem.mesh().nodes.size() / 4 + 1);
+  driven_.reserve(2 * std::min(cracks_.capacity(), kTipsAtOnce * kTipsAtOnce));
+  walk_.passed.reserve(bands_.most());
+  labels_.reserve(4 * bands_.most());
+  faces_.pushes.reserve(problem.scene().instruments.size());
+  untold_.reserve(driven_.capacity());
 }
 
 Decision Combined::preset() {
   const auto& presets = problem_.scene().cracks;
   for (std::size_t c = 0; c < presets.size(); ++c)
-    cracks_.push_back(
-        preset_crack(board_, presets[c], static_cast<int>(c), problem_.crack_elements()[c]));
+    cracks_.push_back(preset_crack(board_, presets[c], static_cast<int>(c),
+                                   problem_.crack_elements()[c], &lists_));
   Decision decision;
   decision.elements = preset_elements(problem_);
   exclude_neighbours(decision);
   return decision;
 }
 
-Decision Combined::decide(const FractureState& state) {
-  Decision decision;
-  if (!anything_breakable_) return decision;
-  std::vector<DrivenTip> driven = driven_tips(state, decision.warnings);
-  for (std::size_t i = 0; i < driven.size(); ++i) grow(driven, i, state, decision);
+/// Nothing from the second time on.
+void Combined::reserve(Decision& decision) const {
+  decision.elements.reserve(std::min(kTipsAtOnce * bands_.most(), yields_.size()));
+  decision.excluded.reserve(yields_.size());
+  decision.findings.reserve(driven_.capacity());
+}
+
+void Combined::decide(const FractureState& state, Decision& decision) {
+  decision.clear();
+  reserve(decision);
+  if (!anything_breakable_) return;
+  drive_tips(state, decision.findings);
+  for (const DrivenTip& driven : driven_) grow(driven, state, decision);
   if (decision.elements.empty()) start_crack(state, decision);
+  for (const DestroyedElement& row : decision.elements) taken_[row.element] = 0;
   exclude_neighbours(decision);
-  driven_ = std::move(driven);
-  return decision;
 }
 
 /// Where a tip wanted to grow at the last decision; straight on when nothing drove it then.
@@ -99,22 +129,19 @@ Vec2 Combined::heading(const Crack& crack, std::size_t tip) const {
 
 /// The band ahead of each tip, in the direction in which it wants to grow, and the element that
 /// would start a new crack.
-void Combined::next_in_line(const FractureState& state, std::vector<Index>& next) const {
+void Combined::next_in_line(const FractureState& state, std::vector<Index>& next) {
   constexpr std::size_t kAhead = 16;  // of a tip: what an event takes of a thin board
   next.clear();
   const auto add = [&next](Index e) {  // two tips may face the same element
     if (std::find(next.begin(), next.end(), e) == next.end()) next.push_back(e);
   };
-  const ElementView view{
-      [&](Index e) { return !state.destroyed[e]; },
-      [&](Index e) { return problem_.yield(e); },
-  };
+  const ElementView view{state.destroyed, yields_};
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
       const Ray ray{crack.tips[tip].position, heading(crack, tip), &crack, orientation(crack, tip)};
       std::size_t taken = 0;
-      for (const BandElement& e : find_band(board_, ray, view).elements) {
+      for (const BandElement& e : bands_.find(ray, view).elements) {
         if (!problem_.breakable(e.element) || taken++ == kAhead) break;
         add(e.element);
       }
@@ -123,77 +150,75 @@ void Combined::next_in_line(const FractureState& state, std::vector<Index>& next
   if (state.summary.candidate.element != kNone) add(state.summary.candidate.element);
 }
 
-std::vector<Combined::DrivenTip> Combined::driven_tips(const FractureState& state,
-                                                       std::vector<std::string>& warnings) {
-  std::vector<DrivenTip> driven;
-  if (!any_tip_left(cracks_)) return driven;
+void Combined::drive_tips(const FractureState& state, std::vector<Finding>& findings) {
+  driven_.clear();
+  if (!any_tip_left(cracks_)) return;
   // The remote field of the intact body costs a solve; the field's K does without it.
-  std::optional<PristineField> remote;
-  if (!by_field()) remote.emplace(problem_, board_, state.pristine_displacement());
+  if (!by_field()) remote_.take(state.pristine_displacement());
   const FieldView view = by_field() ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
-    const FacePressure pressure = face_pressure(board_, crack, state, warnings);
+    face_pressure(board_, crack, state, findings, faces_);
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
-      auto growth = by_field() ? field_growth(meter_, crack, tip, view, warnings)
-                               : tip_growth(board_, *remote, crack, tip, pressure, state);
-      if (growth) driven.push_back({crack.id, std::move(*growth)});
+      const auto growth = by_field() ? field_growth(meter_, crack, tip, view, findings)
+                                     : tip_growth(board_, remote_, crack, tip, faces_, state);
+      if (growth) driven_.push_back({crack.id, *growth});
     }
   }
-  return driven;
 }
 
-void Combined::add_other_terms(std::vector<DrivenTip>& driven, const FractureState& state) {
-  std::vector<std::string> untold;  // the notes in the rows say it; nothing rests on these values
+void Combined::add_other_terms(const FractureState& state) {
+  untold_.clear();  // the notes in the rows say it; nothing rests on these values
   if (!by_field()) {
     if (!state.displacement) return;
     const FieldView view = field_view(state);
-    for (auto& [crack, growth] : driven)
+    for (auto& [crack, growth] : driven_)
       add_field_terms(meter_, cracks_[crack], static_cast<std::size_t>(growth.terms.tip), view,
-                      growth.terms, untold);
+                      growth.terms, untold_);
     return;
   }
-  const PristineField remote(problem_, board_, state.pristine_displacement());
-  for (auto& [id, growth] : driven) {
+  remote_.take(state.pristine_displacement());
+  for (auto& [id, growth] : driven_) {
     const Crack& crack = cracks_[id];
     const auto tip = static_cast<std::size_t>(growth.terms.tip);
-    const FacePressure pressure = face_pressure(board_, crack, state, untold);
-    const auto formula = tip_growth(board_, remote, crack, tip, pressure, state);
+    face_pressure(board_, crack, state, untold_, faces_);
+    const auto formula = tip_growth(board_, remote_, crack, tip, faces_, state);
     growth.terms = with_formula(
         growth.terms,
-        formula ? formula->terms : formula_terms(board_, remote, crack, tip, pressure, state));
+        formula ? formula->terms : formula_terms(board_, remote_, crack, tip, faces_, state));
   }
 }
 
-void Combined::grow(std::vector<DrivenTip>& driven, std::size_t which, const FractureState& state,
-                    Decision& decision) {
-  const TipGrowth& growth = driven[which].growth;
-  Crack& crack = cracks_[driven[which].crack];
+void Combined::take(const DestroyedElement& row, Decision& decision) {
+  taken_[row.element] = 1;
+  decision.elements.push_back(row);
+}
+
+void Combined::grow(const DrivenTip& driven, const FractureState& state, Decision& decision) {
+  const TipGrowth& growth = driven.growth;
+  Crack& crack = cracks_[driven.crack];
   CrackTip& tip = crack.tips[growth.terms.tip];
   const int sense = orientation(crack, growth.terms.tip);
   const Ray ray{tip.position, growth.direction, &crack, sense};
-  const ElementView view{
-      [&](Index e) { return !state.destroyed[e] && !contains(decision, e); },
-      [&](Index e) { return problem_.yield(e); },
-  };
-  const Band band = find_band(board_, ray, view);
+  const ElementView view{state.destroyed, yields_, taken_};
+  const Band& band = bands_.find(ray, view);
   if (band.elements.empty()) {
     tip.ended = true;
     return;
   }
-  const Walk walk = walk_band(band, board_.h(), growth.terms.k, growth.theta, view);
-  if (walk.passed.empty()) return;
-  if (decision.elements.empty()) add_other_terms(driven, state);  // no tip has moved yet
-  std::map<Index, std::int8_t> labels;  // all from the sides before this step
-  for (const Passed& passed : walk.passed) {
+  walk_band(band, board_.h(), growth.terms.k, growth.theta, view, walk_);
+  if (walk_.passed.empty()) return;
+  if (decision.elements.empty()) add_other_terms(state);  // no tip has moved yet
+  labels_.clear();                                        // all from the sides before this step
+  for (const Passed& passed : walk_.passed) {
     for (Index n : problem_.mesh().tets[passed.element])
       if (const int side = node_side(board_, ray, band.near_side, n))
-        labels[n] = static_cast<std::int8_t>(side * sense);
+        labels_.emplace_back(n, static_cast<std::int8_t>(side * sense));
     crack.elements.push_back(passed.element);
-    decision.elements.push_back(growth_row(passed, crack.id, growth.terms));
+    take(growth_row(passed, crack.id, growth.terms), decision);
   }
-  for (const auto& [node, side] : labels) crack.side[node] = side;
-  advance_tip(crack, growth.terms.tip, growth.direction, walk.advance);
+  for (const auto& [node, side] : labels_) crack.side[node] = side;
+  advance_tip(crack, growth.terms.tip, growth.direction, walk_.advance);
   tip.ended = at_outline(board_, tip.position);
 }
 
@@ -202,9 +227,9 @@ void Combined::start_crack(const FractureState& state, Decision& decision) {
   if (!row) return;
   const InPlane stress = in_plane(state.current_stress(row->element), board_.plane());
   const int id = static_cast<int>(cracks_.size());
-  cracks_.push_back(born_crack(board_, row->element, stress, id));
+  cracks_.push_back(born_crack(board_, row->element, stress, id, &lists_));
   row->crack = id;
-  decision.elements.push_back(*row);
+  take(*row, decision);
   if (problem_.scene().fracture.birth == CrackBirth::through)
     cut_through(cracks_.back(), state, decision);
 }
@@ -214,27 +239,23 @@ void Combined::start_crack(const FractureState& state, Decision& decision) {
 void Combined::cut_through(Crack& crack, const FractureState& state, Decision& decision) {
   const Vec2 along = crack.path.back() - crack.path.front();
   const Ray ray{crack.path.front(), along.normalized(), &crack, 1};
-  const ElementView view{
-      [&](Index e) { return !state.destroyed[e] && problem_.breakable(e); },
-      [&](Index e) { return problem_.yield(e); },
-  };
-  const Band band = find_band(board_, ray, view);
+  const Band& band = bands_.find(ray, {state.destroyed, yields_, {}, true});
   for (const BandElement& beside : band.elements) {
-    if (beside.rho > along.norm() || contains(decision, beside.element)) continue;
+    if (beside.rho > along.norm() || taken_[beside.element]) continue;
     DestroyedElement row = decision.elements.front();
     row.element = beside.element;
     row.ratio = fem::yield_measure(state.current_stress(beside.element),
                                    problem_.scene().fracture.yield_measure) /
                 problem_.yield(beside.element);
-    decision.elements.push_back(row);
+    take(row, decision);
     crack.elements.push_back(beside.element);
   }
-  std::map<Index, std::int8_t> labels;
+  labels_.clear();
   for (Index e : crack.elements) {
     for (Index n : problem_.mesh().tets[e])
-      labels[n] = static_cast<std::int8_t>(node_side(board_, ray, band.near_side, n));
+      labels_.emplace_back(n, static_cast<std::int8_t>(node_side(board_, ray, band.near_side, n)));
   }
-  crack.side = std::move(labels);
+  for (const auto& [node, side] : labels_) crack.side[node] = side;
 }
 
 void Combined::exclude_neighbours(Decision& decision) {
@@ -251,8 +272,8 @@ void Combined::exclude_neighbours(Decision& decision) {
   std::sort(excluded.begin(), excluded.end());
 }
 
-std::vector<Index> Combined::pressed_nodes(const Press& press,
-                                           std::span<const std::uint8_t> destroyed) const {
+PressedNodes Combined::pressed_nodes(const Press& press,
+                                     std::span<const std::uint8_t> destroyed) const {
   if (press.crack < 0 || static_cast<std::size_t>(press.crack) >= cracks_.size()) return {};
   return fracture::pressed_nodes(board_, cracks_[press.crack], press, destroyed);
 }

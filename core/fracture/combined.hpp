@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
+#include <utility>
 #include <vector>
 
 #include "fracture/band.hpp"
@@ -18,11 +20,11 @@ class Combined final : public FractureCriterion {
  public:
   explicit Combined(const Problem& problem);
 
-  [[nodiscard]] Decision decide(const FractureState& state) override;
-  void next_in_line(const FractureState& state, std::vector<Index>& next) const override;
+  void decide(const FractureState& state, Decision& decision) override;
+  void next_in_line(const FractureState& state, std::vector<Index>& next) override;
   [[nodiscard]] Decision preset() override;
-  [[nodiscard]] std::vector<Index> pressed_nodes(
-      const Press& press, std::span<const std::uint8_t> destroyed) const override;
+  [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
+                                           std::span<const std::uint8_t> destroyed) const override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }
 
  private:
@@ -31,15 +33,15 @@ class Combined final : public FractureCriterion {
     TipGrowth growth;
   };
 
-  /// K and direction of all tips that have not ended, from one state.
-  [[nodiscard]] std::vector<DrivenTip> driven_tips(const FractureState& state,
-                                                   std::vector<std::string>& warnings);
+  void reserve(Decision& decision) const;
+  /// Fills driven_: K and direction of all tips that have not ended, from one state.
+  void drive_tips(const FractureState& state, std::vector<Finding>& findings);
   [[nodiscard]] bool by_field() const { return problem_.scene().fracture.sif == SifSource::field; }
   /// What the other criterion says of the same tips, for the rows that will tell.
-  void add_other_terms(std::vector<DrivenTip>& driven, const FractureState& state);
+  void add_other_terms(const FractureState& state);
   /// Moves one tip as far as it goes; its elements are added to the decision.
-  void grow(std::vector<DrivenTip>& driven, std::size_t which, const FractureState& state,
-            Decision& decision);
+  void grow(const DrivenTip& driven, const FractureState& state, Decision& decision);
+  void take(const DestroyedElement& row, Decision& decision);
   [[nodiscard]] Vec2 heading(const Crack& crack, std::size_t tip) const;
   void cut_through(Crack& crack, const FractureState& state, Decision& decision);
   void start_crack(const FractureState& state, Decision& decision);
@@ -49,10 +51,20 @@ class Combined final : public FractureCriterion {
   const Problem& problem_;
   Board board_;
   FieldIntensityMeter meter_;
+  std::vector<double> yields_;  // per element, 0: unbreakable
   bool anything_breakable_ = false;
+  std::pmr::monotonic_buffer_resource lists_;  // of the cracks
   std::vector<Crack> cracks_;
   std::vector<std::uint8_t> excluded_;  // shape (elements)
   std::vector<DrivenTip> driven_;       // of the last decision
+  // Of the decision in work, with room from the start: a frame allocates nothing.
+  PristineField remote_;
+  BandSearch bands_;
+  Walk walk_;
+  FacePressure faces_;
+  std::vector<std::uint8_t> taken_;  // per element
+  std::vector<std::pair<Index, std::int8_t>> labels_;
+  std::vector<Finding> untold_;
 };
 
 }  // namespace sunder::fracture

@@ -12,26 +12,20 @@
 namespace sunder::fracture {
 namespace {
 
-Crack edge_crack(const Board& board, int id, const Vec2& mouth, const Vec2& tip) {
-  Crack crack;
-  crack.id = id;
+void make_edge(const Board& board, const Vec2& mouth, const Vec2& tip, Crack& crack) {
   crack.kind = CrackKind::edge;
   crack.mouth = mouth;
   crack.path = {mouth, tip};
   crack.length = (tip - mouth).norm();
   crack.tips = {{tip, (tip - mouth).normalized(), at_outline(board, tip)}};
-  return crack;
 }
 
-Crack internal_crack(const Board& board, int id, const Vec2& first, const Vec2& second) {
+void make_internal(const Board& board, const Vec2& first, const Vec2& second, Crack& crack) {
   const Vec2 d = (second - first).normalized();
-  Crack crack;
-  crack.id = id;
   crack.kind = CrackKind::internal;
   crack.path = {first, second};
   crack.length = (second - first).norm();
   crack.tips = {{first, -d, at_outline(board, first)}, {second, d, at_outline(board, second)}};
-  return crack;
 }
 
 /// Across n1, towards larger e1 (upright: e2).
@@ -41,10 +35,10 @@ Vec2 birth_direction(const InPlane& stress) {
   return backwards ? Vec2(-d) : d;
 }
 
-Vec2 mean(const std::vector<Vec2>& points) {
+Vec2 mean_centroid(std::span<const Board::LateralFace> faces) {
   Vec2 sum = Vec2::Zero();
-  for (const Vec2& p : points) sum += p;
-  return sum / static_cast<double>(points.size());
+  for (const auto& face : faces) sum += face.centroid;
+  return sum / static_cast<double>(faces.size());
 }
 
 /// Extreme projections of an element's nodes on the line through `origin` along d.
@@ -71,7 +65,7 @@ bool at_outline(const Board& board, const Vec2& tip) {
 }
 
 Crack preset_crack(const Board& board, const PresetCrack& preset, int id,
-                   const std::vector<Index>& elements) {
+                   const std::vector<Index>& elements, std::pmr::memory_resource* lists) {
   const BoardPlane& plane = board.plane();
   const Vec2 first = plane.project(preset.mouth ? *preset.mouth : preset.tips.front());
   const Vec2 last = plane.project(preset.tips.back());
@@ -79,24 +73,27 @@ Crack preset_crack(const Board& board, const PresetCrack& preset, int id,
     throw InputError(InputFault::out_of_range,
                      "crack " + std::to_string(id) +
                          " has length 0 in the board's plane; its ends must differ there");
-  Crack crack =
-      preset.mouth ? edge_crack(board, id, first, last) : internal_crack(board, id, first, last);
-  crack.elements = elements;
+  Crack crack(lists);
+  crack.id = id;
+  preset.mouth ? make_edge(board, first, last, crack) : make_internal(board, first, last, crack);
+  crack.elements.assign(elements.begin(), elements.end());
   return crack;
 }
 
-Crack born_crack(const Board& board, Index element, const InPlane& stress, int id) {
+Crack born_crack(const Board& board, Index element, const InPlane& stress, int id,
+                 std::pmr::memory_resource* lists) {
   const Vec2& centroid = board.centroid(element);
   Vec2 d = birth_direction(stress);
-  Crack crack;
-  if (const std::vector<Vec2> faces = board.lateral_faces(element); !faces.empty()) {
-    const Vec2 mouth = mean(faces);
+  Crack crack(lists);
+  crack.id = id;
+  if (const auto faces = board.lateral_faces(element); !faces.empty()) {
+    const Vec2 mouth = mean_centroid(faces);
     if ((centroid - mouth).dot(d) < 0) d = -d;
     const double length = extent_along(board, element, mouth, d).largest;
-    crack = edge_crack(board, id, mouth, mouth + length * d);
+    make_edge(board, mouth, mouth + length * d, crack);
   } else {
     const Extent extent = extent_along(board, element, centroid, d);
-    crack = internal_crack(board, id, centroid + extent.least * d, centroid + extent.largest * d);
+    make_internal(board, centroid + extent.least * d, centroid + extent.largest * d, crack);
   }
   crack.elements = {element};
   return crack;

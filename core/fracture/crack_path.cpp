@@ -41,8 +41,7 @@ PathPoint crack_origin(const Crack& crack) {
   return {last + left * d, d};
 }
 
-int path_side(const Crack& crack, const Vec2& p, double tolerance) {
-  const auto& path = crack.path;
+int path_side(std::span<const Vec2> path, const Vec2& p, double tolerance) {
   std::size_t nearest = 0;
   Foot best{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t k = 0; k + 1 < path.size(); ++k) {

@@ -2,6 +2,8 @@
 // Geometry of a crack's path and its two faces (method.md 4, 5, 7).
 #pragma once
 
+#include <span>
+
 #include "sunder/crack.hpp"
 #include "sunder/types.hpp"
 
@@ -18,9 +20,12 @@ struct PathPoint {
 /// Where a crack's normal is taken and its stations begin: the mouth, or the path's middle.
 [[nodiscard]] PathPoint crack_origin(const Crack& crack);
 
-/// +1 when p lies left of the path (seen from mouth or first tip), -1 right of it, 0 on it (within
+/// +1 when p lies left of a path (seen from mouth or first tip), -1 right of it, 0 on it (within
 /// `tolerance`, mm). The end segments are prolonged.
-[[nodiscard]] int path_side(const Crack& crack, const Vec2& p, double tolerance);
+[[nodiscard]] int path_side(std::span<const Vec2> path, const Vec2& p, double tolerance);
+[[nodiscard]] inline int path_side(const Crack& crack, const Vec2& p, double tolerance) {
+  return path_side(std::span<const Vec2>(crack.path), p, tolerance);
+}
 
 /// n_up: unit normal at the crack's origin with n_up . e2 > 0, or n_up . e1 > 0 when the crack
 /// stands upright (|n_up . e2| < 0.1).

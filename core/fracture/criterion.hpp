@@ -3,13 +3,14 @@
 // keeps the cracks. A further model is a further implementation and one line in make_criterion.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "finding.hpp"
 #include "sunder/backend.hpp"
 #include "sunder/crack.hpp"
 #include "sunder/report.hpp"
@@ -20,8 +21,8 @@ namespace sunder {
 struct ActingPress {
   std::size_t instrument = 0;
   const Press* press = nullptr;
-  Vec3 force;                ///< times its ramp factor, N
-  std::vector<Index> nodes;  ///< pressed nodes
+  Vec3 force;                    ///< times its ramp factor, N
+  std::span<const Index> nodes;  ///< pressed nodes
 };
 
 /// A force on a node, N.
@@ -40,11 +41,11 @@ struct FractureState {
   /// (3 * nodes); computed at the first call of a step, cached.
   std::function<std::span<const double>()> pristine_displacement;
   Vec3 expansion_resultant;  ///< forces and grip reactions of all expansion instruments, N
-  std::vector<ActingPress> presses;
+  std::span<const ActingPress> presses;
   /// Current displacement of some nodes [mm].
   std::function<void(std::span<const Index>, std::span<Vec3>)> displacement = {};
   /// What the instruments exert now, grips included.
-  std::function<std::vector<NodalForce>()> forces = {};
+  std::function<std::span<const NodalForce>()> forces = {};
 };
 
 /// One event: the elements that one update destroys. `cause`, `element`, `crack`, `ratio`, `sif`
@@ -53,24 +54,38 @@ struct Decision {
   std::vector<DestroyedElement> elements;
   /// Elements that must not start a crack any more (they share a node with a crack's elements).
   std::vector<Index> excluded;
-  /// Findings to report, e.g. a closing push.
-  std::vector<std::string> warnings;
+  /// To report, e.g. a closing push.
+  std::vector<Finding> findings;
+
+  void clear() {
+    elements.clear();
+    excluded.clear();
+    findings.clear();
+  }
+};
+
+/// At most one node of each surface.
+struct PressedNodes {
+  std::array<Index, 2> nodes{kNone, kNone};
+  std::size_t count = 0;
+  [[nodiscard]] std::span<const Index> list() const { return {nodes.data(), count}; }
 };
 
 class FractureCriterion {
  public:
   virtual ~FractureCriterion() = default;
-  /// Names the next event and records it in the cracks (the caller always carries it out).
-  [[nodiscard]] virtual Decision decide(const FractureState& state) = 0;
+  /// Names the next event, in place of what `decision` held, and records it in the cracks (the
+  /// caller always carries it out).
+  virtual void decide(const FractureState& state, Decision& decision) = 0;
   /// Elements that will break next if anything does, as far as can be told from a state in which
   /// nothing breaks; the likeliest of each crack tip first.
-  virtual void next_in_line(const FractureState&, std::vector<Index>& next) const { next.clear(); }
+  virtual void next_in_line(const FractureState&, std::vector<Index>& next) { next.clear(); }
   /// Preset cracks; called once, before anything else, when the problem has any. Elements come in
   /// crack order; returns what must be excluded as candidates.
   [[nodiscard]] virtual Decision preset() = 0;
   /// Nodes on which `press` acts, given what is destroyed (method.md 7), the lower (bottom
-  /// surface) node first; empty when its crack offers none (yet).
-  [[nodiscard]] virtual std::vector<Index> pressed_nodes(
+  /// surface) node first; none when its crack offers none (yet).
+  [[nodiscard]] virtual PressedNodes pressed_nodes(
       const Press& press, std::span<const std::uint8_t> destroyed) const = 0;
   [[nodiscard]] virtual const std::vector<Crack>& cracks() const = 0;
 };

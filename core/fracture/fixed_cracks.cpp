@@ -18,8 +18,8 @@ Decision FixedCracks::preset() {
   return decision;
 }
 
-std::vector<Index> FixedCracks::pressed_nodes(const Press& press,
-                                              std::span<const std::uint8_t> destroyed) const {
+PressedNodes FixedCracks::pressed_nodes(const Press& press,
+                                        std::span<const std::uint8_t> destroyed) const {
   if (press.crack < 0 || static_cast<std::size_t>(press.crack) >= cracks_.size()) return {};
   return fracture::pressed_nodes(*board_, cracks_[press.crack], press, destroyed);
 }

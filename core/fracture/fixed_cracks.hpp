@@ -13,10 +13,10 @@ class FixedCracks final : public FractureCriterion {
  public:
   explicit FixedCracks(const Problem& problem) : problem_(problem) {}
 
-  [[nodiscard]] Decision decide(const FractureState&) override { return {}; }
+  void decide(const FractureState&, Decision& decision) override { decision.clear(); }
   [[nodiscard]] Decision preset() override;
-  [[nodiscard]] std::vector<Index> pressed_nodes(
-      const Press& press, std::span<const std::uint8_t> destroyed) const override;
+  [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
+                                           std::span<const std::uint8_t> destroyed) const override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }
 
  private:

@@ -14,13 +14,12 @@ std::optional<DestroyedElement> rupture(const Worst& worst) {
   return row;
 }
 
-Decision MaxShear::decide(const FractureState& state) {
-  Decision decision;
+void MaxShear::decide(const FractureState& state, Decision& decision) {
+  decision.clear();
   if (const auto row = rupture(state.summary.any)) decision.elements.push_back(*row);
-  return decision;
 }
 
-void MaxShear::next_in_line(const FractureState& state, std::vector<Index>& next) const {
+void MaxShear::next_in_line(const FractureState& state, std::vector<Index>& next) {
   next.clear();
   if (state.summary.any.element != kNone) next.push_back(state.summary.any.element);
 }
@@ -32,7 +31,7 @@ Decision MaxShear::preset() {
 }
 
 /// Without crack records there is no face to press on.
-std::vector<Index> MaxShear::pressed_nodes(const Press&, std::span<const std::uint8_t>) const {
+PressedNodes MaxShear::pressed_nodes(const Press&, std::span<const std::uint8_t>) const {
   return {};
 }
 

@@ -12,11 +12,11 @@ class MaxShear final : public FractureCriterion {
  public:
   explicit MaxShear(const Problem& problem) : problem_(problem) {}
 
-  [[nodiscard]] Decision decide(const FractureState& state) override;
-  void next_in_line(const FractureState& state, std::vector<Index>& next) const override;
+  void decide(const FractureState& state, Decision& decision) override;
+  void next_in_line(const FractureState& state, std::vector<Index>& next) override;
   [[nodiscard]] Decision preset() override;
-  [[nodiscard]] std::vector<Index> pressed_nodes(
-      const Press& press, std::span<const std::uint8_t> destroyed) const override;
+  [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
+                                           std::span<const std::uint8_t> destroyed) const override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return none_; }
 
  private:

@@ -42,13 +42,23 @@ Index PointGrid::cell_index(double offset, Index count) const {
   return static_cast<Index>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
 }
 
-std::vector<Index> PointGrid::within(const Vec2& p, double radius) const {
+std::size_t PointGrid::most_within(double radius) const {
+  std::size_t fullest = 0;
+  for (std::size_t c = 0; c + 1 < begin_.size(); ++c)
+    fullest = std::max(fullest, begin_[c + 1] - begin_[c]);
+  const auto across = static_cast<std::size_t>(2 * radius / cell_) + 2;
+  const auto cells = std::min(across, static_cast<std::size_t>(columns_)) *
+                     std::min(across, static_cast<std::size_t>(rows_));
+  return std::min(cells * fullest, points_.size());
+}
+
+void PointGrid::within(const Vec2& p, double radius, std::vector<Index>& found) const {
+  found.clear();
   const Vec2 offset = p - origin_;
   const Index first_row = cell_index(offset.y() - radius, rows_);
   const Index last_row = cell_index(offset.y() + radius, rows_);
   const Index first_column = cell_index(offset.x() - radius, columns_);
   const Index last_column = cell_index(offset.x() + radius, columns_);
-  std::vector<Index> found;
   for (Index row = first_row; row <= last_row; ++row) {
     const std::size_t start = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
     const std::size_t begin = begin_[start + static_cast<std::size_t>(first_column)];
@@ -57,7 +67,6 @@ std::vector<Index> PointGrid::within(const Vec2& p, double radius) const {
       if ((points_[ids_[k]] - p).norm() <= radius) found.push_back(ids_[k]);
   }
   std::sort(found.begin(), found.end());
-  return found;
 }
 
 }  // namespace sunder::fracture

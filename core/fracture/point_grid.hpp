@@ -16,8 +16,10 @@ class PointGrid {
   PointGrid(std::vector<Vec2> points, double cell);
 
   [[nodiscard]] const std::vector<Vec2>& points() const { return points_; }
-  /// Ids of the points at most `radius` from p, ascending.
-  [[nodiscard]] std::vector<Index> within(const Vec2& p, double radius) const;
+  /// Ids of the points at most `radius` from p, ascending, in place of what `found` held.
+  void within(const Vec2& p, double radius, std::vector<Index>& found) const;
+  /// No neighbourhood of that radius has more points than this.
+  [[nodiscard]] std::size_t most_within(double radius) const;
 
  private:
   [[nodiscard]] Index cell_index(double offset, Index count) const;

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "fracture/board.hpp"
+#include "fracture/criterion.hpp"
 #include "sunder/crack.hpp"
 #include "sunder/scene.hpp"
 
@@ -15,8 +15,7 @@ namespace sunder::fracture {
 /// The nodes of that face nearest to press.at: one on the board's bottom surface and one on its
 /// top surface; a single one, nearest in space, when a surface offers none; empty when neither a
 /// surface nor the inside does.
-[[nodiscard]] std::vector<Index> pressed_nodes(const Board& board, const Crack& crack,
-                                               const Press& press,
-                                               std::span<const std::uint8_t> destroyed);
+[[nodiscard]] PressedNodes pressed_nodes(const Board& board, const Crack& crack, const Press& press,
+                                         std::span<const std::uint8_t> destroyed);
 
 }  // namespace sunder::fracture

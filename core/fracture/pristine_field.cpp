@@ -8,7 +8,8 @@ namespace sunder::fracture {
 std::optional<InPlane> PristineField::at(const Vec2& p) const {
   Voigt sum = Voigt::Zero();
   double volume = 0;
-  for (Index e : board_.elements_within(p, 1.5 * board_.h())) {
+  board_.elements_within(p, kNeighbourhood * board_.h(), near_);
+  for (Index e : near_) {
     if (!problem_.breakable(e)) continue;
     const TetShape& shape = problem_.shape(e);
     const auto u = fem::corner_displacement(problem_.mesh(), e, displacement_);

@@ -8,25 +8,16 @@
 #include "fracture/crack_path.hpp"
 #include "fracture/geometry_factor.hpp"
 #include "fracture/stress_intensity.hpp"
-#include "sunder/in_quotes.hpp"
 
 namespace sunder::fracture {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-Vec2 mean_position(const Board& board, const std::vector<Index>& nodes) {
+Vec2 mean_position(const Board& board, std::span<const Index> nodes) {
   Vec2 sum = Vec2::Zero();
   for (Index n : nodes) sum += board.node(n);
   return sum / static_cast<double>(nodes.size());
-}
-
-std::string closing_push(const FractureState& state, const ActingPress& acting) {
-  const auto& instrument = state.problem.scene().instruments[acting.instrument];
-  return "instrument " + in_quotes(instrument.name) + " pushes crack " +
-         std::to_string(acting.press->crack) + " shut on its " +
-         (acting.press->side == CrackSide::upper ? "upper" : "lower") +
-         " face and counts as no pressure in its stress intensity";
 }
 
 /// Remote stress of method.md 5; none: no breakable element near any station.
@@ -61,21 +52,23 @@ double geometry_factor(const Crack& crack, double a, double b) {
 
 }  // namespace
 
-FacePressure face_pressure(const Board& board, const Crack& crack, const FractureState& state,
-                           std::vector<std::string>& warnings) {
-  FacePressure faces;
+void face_pressure(const Board& board, const Crack& crack, const FractureState& state,
+                   std::vector<Finding>& findings, FacePressure& faces) {
+  faces.pushes.clear();
+  faces.upper = faces.lower = 0;
   faces.upward = upward_normal(crack);
   for (const ActingPress& acting : state.presses) {
     if (acting.press->crack != crack.id || acting.nodes.empty()) continue;
     const bool upper = acting.press->side == CrackSide::upper;
     const Vec3 opening = board.plane().lift_direction(upper ? faces.upward : Vec2(-faces.upward));
     const double pressure = acting.force.dot(opening) / board.plane().thickness();
-    if (pressure < 0) warnings.push_back(closing_push(state, acting));
+    if (pressure < 0)
+      findings.push_back(
+          {Finding::Kind::closing_push, static_cast<int>(acting.instrument), crack.id});
     if (!(pressure > 0)) continue;
     (upper ? faces.upper : faces.lower) += pressure;
     faces.pushes.push_back({pressure, mean_position(board, acting.nodes)});
   }
-  return faces;
 }
 
 double pressure_distance(const FacePressure& pressure, const Vec2& tip) {

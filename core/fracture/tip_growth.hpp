@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fracture/board.hpp"
@@ -24,11 +23,10 @@ struct FacePressure {
   Vec2 upward = Vec2::UnitY();  ///< n_up
 };
 
-/// Pressure of the instruments that press on `crack`; a push that closes it counts zero and adds a
-/// warning.
-[[nodiscard]] FacePressure face_pressure(const Board& board, const Crack& crack,
-                                         const FractureState& state,
-                                         std::vector<std::string>& warnings);
+/// Pressure of the instruments that press on `crack`, in place of what `faces` held; a push that
+/// closes it counts zero and is a finding.
+void face_pressure(const Board& board, const Crack& crack, const FractureState& state,
+                   std::vector<Finding>& findings, FacePressure& faces);
 
 /// P-weighted mean distance from the tip to the pressed places [mm]; 0 without pressure. Eq. 4
 /// takes at least h/2 of it as b'.

@@ -4,8 +4,9 @@
 #pragma once
 
 #include <map>
+#include <memory_resource>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "sunder/types.hpp"
@@ -20,15 +21,23 @@ struct CrackTip {
   bool ended = false;
 };
 
+/// Its lists come from a memory resource, so that cracks grow in frames without the allocator; a
+/// copy's lists are its own, from the default resource.
 struct Crack {
+  Crack() = default;
+  explicit Crack(std::pmr::memory_resource* lists)
+      : tips(lists), path(lists), elements(lists), side(lists) {}
+
   int id = 0;
   CrackKind kind = CrackKind::edge;
-  std::optional<Vec2> mouth;          ///< edge cracks
-  std::vector<CrackTip> tips;         ///< one (edge) or two (internal)
-  std::vector<Vec2> path;             ///< from mouth (or first tip) to the (second) tip
-  double length = 0;                  ///< of the path
-  std::vector<Index> elements;        ///< destroyed elements that belong to this crack, in order
-  std::map<Index, std::int8_t> side;  ///< node -> +1 left of the path, -1 right (seen along d)
+  std::optional<Vec2> mouth;        ///< edge cracks
+  std::pmr::vector<CrackTip> tips;  ///< one (edge) or two (internal)
+  std::pmr::vector<Vec2> path;      ///< from mouth (or first tip) to the (second) tip
+  double length = 0;                ///< of the path
+  /// Destroyed elements that belong to this crack, in order.
+  std::pmr::vector<Index> elements;
+  /// Node -> +1 left of the path, -1 right (seen along d).
+  std::pmr::map<Index, std::int8_t> side;
 };
 
 /// The terms of the stress intensity factor at one tip (Eq. 1-4), kept with each progression. k and
@@ -48,8 +57,9 @@ struct SifTerms {
   /// none where nothing drives it by that one.
   std::optional<double> k_formula = std::nullopt, theta_formula = std::nullopt;
   std::optional<double> k_field = std::nullopt, theta_field = std::nullopt;
-  /// What disturbs the field's K, words joined by +: "material", "damage", "fixed"; empty: nothing.
-  std::string field_note = {};
+  /// What disturbs the field's K, words joined by +: "fixed", "material", "damage"; empty: nothing.
+  /// The text is static.
+  std::string_view field_note = {};
 };
 
 }  // namespace sunder

@@ -16,7 +16,9 @@ namespace sunder {
 
 class FractureCriterion;
 class Loads;
+class LooseSearch;
 struct Decision;
+struct Finding;
 struct FractureState;
 struct NodalForce;
 
@@ -84,15 +86,16 @@ class Simulation {
   void apply_removals();
   void record_solve(const SolveReport& solve, StepReport& report);
   [[nodiscard]] FractureState fracture_state(const StressSummary& summary);
-  [[nodiscard]] Decision decide(const StressSummary& summary);
+  void reserve();
+  void decide(const StressSummary& summary);  // fills decision_
   void prepare_next(const StressSummary& summary);
-  bool apply_event(Decision decision);  // false: nothing broke
-  void attribute(Decision& decision);
+  bool apply_event();  // of decision_; false: nothing broke
+  void attribute_event();
   void find_loose();
-  void warn(std::string message);
+  void note(const Finding& finding);
   [[nodiscard]] std::span<const double> pristine_displacement();
-  [[nodiscard]] std::vector<NodalForce> instrument_forces() const;
-  void add_grip_forces(std::vector<NodalForce>& forces) const;
+  [[nodiscard]] std::span<const NodalForce> instrument_forces();
+  void add_grip_forces();
   [[nodiscard]] double compliance();
 
   /// What the instruments exert, with room that frames share.
@@ -112,15 +115,21 @@ class Simulation {
 
   std::shared_ptr<const Problem> problem_;
   std::unique_ptr<Backend> backend_;
-  std::vector<Index> next_in_line_;  // elements to prepare
   std::unique_ptr<Loads> loads_;
   std::unique_ptr<FractureCriterion> criterion_;
+  std::unique_ptr<LooseSearch> loose_;
   EventObserver observer_;
   FrameObserver frame_observer_;
   std::vector<DestroyedElement> destroyed_;
-  std::vector<std::string> warnings_;
+  std::vector<Finding> findings_;  // each once
+  std::vector<double> pristine_;   // of this step's expansion load; empty: not computed yet
+  // Of the event or the frame in work; they have room from the start.
+  std::unique_ptr<Decision> decision_;
+  std::vector<Index> event_, next_in_line_;  // elements: to destroy, to prepare
+  std::vector<std::uint8_t> taken_;          // by a scripted removal, per element
+  std::vector<Finding> of_loads_;
+  std::vector<NodalForce> instrument_forces_;
   Reactions reactions_;
-  std::vector<double> pristine_;  // of this step's expansion load; empty: not computed yet
   int next_step_ = 0;
   int next_event_ = 0;
   int events_this_step_ = 0;

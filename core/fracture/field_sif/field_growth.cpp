@@ -8,19 +8,32 @@
 #include "fracture/stress_intensity.hpp"
 
 namespace sunder::fracture {
+namespace {
+
+void add_findings(const Disturbances& disturbed, const Crack& crack, std::size_t tip,
+                  std::vector<Finding>& findings) {
+  const auto add = [&](bool found, Finding::Kind kind) {
+    if (found) findings.push_back({kind, crack.id, static_cast<int>(tip)});
+  };
+  add(disturbed.fixed, Finding::Kind::field_fixed);
+  add(disturbed.material, Finding::Kind::field_material);
+  add(disturbed.damage, Finding::Kind::field_damage);
+}
+
+}  // namespace
 
 std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& crack,
                                       std::size_t tip, const FieldView& view, SifTerms& terms,
-                                      std::vector<std::string>& warnings) {
-  FieldIntensity measured = meter.at(crack, tip, view);
-  for (std::string& w : measured.warnings) warnings.push_back(std::move(w));
+                                      std::vector<Finding>& findings) {
+  const FieldIntensity measured = meter.at(crack, tip, view);
+  add_findings(measured.disturbed, crack, tip, findings);
   const auto [k_1, k_2, k_3] = measured.factors;
   // A piece that only destroyed elements hold may move as far as numbers go.
   if (!std::isfinite(k_1) || !std::isfinite(k_2) || !std::isfinite(k_3)) return std::nullopt;
   terms.k_1 = k_1;
   terms.k_2 = k_2;
   terms.k_3 = k_3;
-  terms.field_note = std::move(measured.note);
+  terms.field_note = measured.note();
   const double from_frame = tangential_angle(k_1, k_2);
   const double k = tangential_intensity(k_1, k_2, from_frame);
   if (!(k > 0)) return std::nullopt;
@@ -33,10 +46,10 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
 
 std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& crack,
                                       std::size_t tip, const FieldView& view,
-                                      std::vector<std::string>& warnings) {
+                                      std::vector<Finding>& findings) {
   TipGrowth growth;
   growth.terms.tip = static_cast<int>(tip);
-  const auto theta = add_field_terms(meter, crack, tip, view, growth.terms, warnings);
+  const auto theta = add_field_terms(meter, crack, tip, view, growth.terms, findings);
   if (!theta) return std::nullopt;
   growth.theta = *theta;
   growth.direction = turned(crack.tips[tip].direction, *theta);

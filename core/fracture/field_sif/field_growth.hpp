@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fracture/field_sif/field_intensity.hpp"
@@ -16,12 +15,12 @@ namespace sunder::fracture {
 /// direction; none when nothing opens the crack.
 std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& crack,
                                       std::size_t tip, const FieldView& view, SifTerms& terms,
-                                      std::vector<std::string>& warnings);
+                                      std::vector<Finding>& findings);
 
 /// K and direction of one tip by the field; none when nothing opens it. The terms of Eq. 2 to 4 are
 /// left at 0.
 [[nodiscard]] std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& crack,
                                                     std::size_t tip, const FieldView& view,
-                                                    std::vector<std::string>& warnings);
+                                                    std::vector<Finding>& findings);
 
 }  // namespace sunder::fracture

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,96 +17,43 @@ namespace {
 // domain that reaches as far as t/2 sees a board in plane stress, a smaller one plane strain.
 constexpr double kThinBoard = 2.0;  // thickness / radius
 
-/// Points of the path from the tip backwards.
-std::vector<Vec2> path_from_tip(const Crack& crack, std::size_t tip) {
-  std::vector<Vec2> points = crack.path;
-  if (orientation(crack, tip) > 0) std::reverse(points.begin(), points.end());
-  return points;
-}
-
-/// The stretch of the path within `length` behind the tip (its length along the path), as a crack
-/// of its own with the same sense.
-Crack path_tail(const Crack& crack, std::size_t tip, double length) {
-  const std::vector<Vec2> points = path_from_tip(crack, tip);
-  Crack tail;
-  double passed = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    tail.path.push_back(points[i]);
-    if (i + 1 == points.size()) break;
-    const Vec2 step = points[i + 1] - points[i];
-    if (passed + step.norm() >= length) {
-      tail.path.push_back(points[i] + step.normalized() * (length - passed));
-      break;
-    }
-    passed += step.norm();
+/// The path's points from the tip backwards.
+class FromTip {
+ public:
+  FromTip(const Crack& crack, std::size_t tip)
+      : path_(crack.path), forward_(orientation(crack, tip) > 0) {}
+  [[nodiscard]] std::size_t size() const { return path_.size(); }
+  [[nodiscard]] const Vec2& operator[](std::size_t i) const {
+    return path_[forward_ ? path_.size() - 1 - i : i];
   }
-  std::reverse(tail.path.begin(), tail.path.end());
-  return tail;
-}
 
-/// Elements make a path of short zigzags; the field a few h away sees its mean direction.
-Vec2 mean_direction(const Crack& crack, std::size_t tip, double length) {
-  const Crack tail = path_tail(crack, tip, length);
-  const Vec2 back =
-      tail.path.empty() ? Vec2(Vec2::Zero()) : Vec2(tail.path.back() - tail.path.front());
-  return back.norm() > 0 ? Vec2(back.normalized()) : crack.tips[tip].direction;
-}
+ private:
+  std::span<const Vec2> path_;
+  bool forward_;
+};
 
-/// Points of the path at equal distances behind the tip, the tip left out; none when the path is
+constexpr int kSamples = 12;
+using Samples = std::array<Vec2, kSamples>;
+
+/// Points of the path at equal distances behind the tip, the tip left out; false when the path is
 /// shorter than `length`.
-std::vector<Vec2> sampled_tail(const Crack& crack, std::size_t tip, double length, int count) {
-  const std::vector<Vec2> points = path_from_tip(crack, tip);
-  std::vector<Vec2> samples;
+bool sample_tail(const FromTip& points, double length, Samples& samples) {
+  int count = 0;
   double passed = 0;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Vec2 step = points[i + 1] - points[i];
     const double size = step.norm();
-    for (double next = length / count * static_cast<double>(samples.size() + 1);
-         next <= passed + size && static_cast<int>(samples.size()) < count;
-         next = length / count * static_cast<double>(samples.size() + 1))
-      samples.push_back(points[i] + step * ((next - passed) / size));
+    for (double next = length / kSamples * (count + 1); next <= passed + size && count < kSamples;
+         next = length / kSamples * (count + 1))
+      samples[static_cast<std::size_t>(count++)] = points[i] + step * ((next - passed) / size);
     passed += size;
   }
-  if (static_cast<int>(samples.size()) < count) samples.clear();
-  return samples;
+  return count == kSamples;
 }
 
-/// Direction at the tip of a path that bends smoothly: tangent of the parabola through the tip that
-/// fits the path's last R best. Its mean direction over R/2 lags behind by a quarter of R, which on
-/// a curved path turns K_I into K_II. None where no parabola fits (a kink, a short path).
-std::optional<Vec2> fitted_direction(const Crack& crack, std::size_t tip, double radius, double h) {
-  constexpr int kSamples = 12;
-  constexpr double kFits = 0.15;  // largest rms distance to the parabola, in h
-  const TipFrame frame{crack.tips[tip].position, mean_direction(crack, tip, radius / 2)};
-  const auto samples = sampled_tail(crack, tip, radius, kSamples);
-  if (samples.empty()) return std::nullopt;
-  Eigen::Matrix<double, kSamples, 2> powers;
-  Eigen::Matrix<double, kSamples, 1> offsets;
-  for (int k = 0; k < kSamples; ++k) {
-    const Vec2 x = frame.local(samples[static_cast<std::size_t>(k)]);
-    powers.row(k) << x.x(), x.x() * x.x();
-    offsets[k] = x.y();
-  }
-  const Eigen::Matrix2d normal = powers.transpose() * powers;
-  if (!(normal.determinant() > 0)) return std::nullopt;
-  const Vec2 fit = normal.inverse() * (powers.transpose() * offsets);
-  const double rms = (powers * fit - offsets).norm() / std::sqrt(double{kSamples});
-  if (!(rms <= kFits * h)) return std::nullopt;
-  return Vec2(frame.direction + fit.x() * left_of(frame.direction)).normalized();
-}
-
-bool straight(const Crack& tail, const TipFrame& frame, double tolerance) {
-  return std::all_of(tail.path.begin(), tail.path.end(),
-                     [&](const Vec2& p) { return std::abs(frame.local(p).y()) <= tolerance; });
-}
-
-std::string tip_name(const Crack& crack, std::size_t tip) {
-  return "the field K of crack " + std::to_string(crack.id) + " at its tip " + std::to_string(tip);
-}
-
-void disturb(FieldIntensity& result, const char* word, std::string warning) {
-  result.note += (result.note.empty() ? "" : "+") + std::string(word);
-  result.warnings.push_back(std::move(warning));
+bool straight(std::span<const Vec2> tail, const TipFrame& frame, double tolerance) {
+  return std::ranges::all_of(
+      tail, [&](const Vec2& p) { return std::abs(frame.local(p).y()) <= tolerance; });
 }
 
 bool same(const Material& a, const Material& b) {
@@ -128,6 +76,71 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
       builder_(board, surface_),
       own_(problem.mesh().tets.size(), 0) {
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
+  if (problem.scene().fracture.model != FractureModel::b) return;
+  const double radius = kDomainRadius * board.h();
+  near_.reserve(board.most_within(radius));
+  builder_.reserve(radius, domain_);
+  displacement_.reserve(domain_.nodes.capacity());
+  // Each of the path's points is there for an element destroyed near it.
+  tail_.reserve(board.most_within(2 * radius + 2 * board.h() + board.largest_element()) + 3);
+}
+
+std::string_view FieldIntensity::note() const {
+  constexpr std::array<std::string_view, 8> kNotes{
+      "",       "fixed",        "material",        "fixed+material",
+      "damage", "fixed+damage", "material+damage", "fixed+material+damage"};
+  return kNotes[(disturbed.fixed ? 1U : 0U) + (disturbed.material ? 2U : 0U) +
+                (disturbed.damage ? 4U : 0U)];
+}
+
+std::span<const Vec2> FieldIntensityMeter::path_tail(const Crack& crack, std::size_t tip,
+                                                     double length) {
+  const FromTip points(crack, tip);
+  tail_.clear();
+  double passed = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    tail_.push_back(points[i]);
+    if (i + 1 == points.size()) break;
+    const Vec2 step = points[i + 1] - points[i];
+    if (passed + step.norm() >= length) {
+      tail_.push_back(points[i] + step.normalized() * (length - passed));
+      break;
+    }
+    passed += step.norm();
+  }
+  std::reverse(tail_.begin(), tail_.end());
+  return tail_;
+}
+
+/// Elements make a path of short zigzags; the field a few h away sees its mean direction.
+Vec2 FieldIntensityMeter::mean_direction(const Crack& crack, std::size_t tip, double length) {
+  const auto tail = path_tail(crack, tip, length);
+  const Vec2 back = tail.empty() ? Vec2(Vec2::Zero()) : Vec2(tail.back() - tail.front());
+  return back.norm() > 0 ? Vec2(back.normalized()) : crack.tips[tip].direction;
+}
+
+/// Direction at the tip of a path that bends smoothly: tangent of the parabola through the tip that
+/// fits the path's last R best. Its mean direction over R/2 lags behind by a quarter of R, which on
+/// a curved path turns K_I into K_II. None where no parabola fits (a kink, a short path).
+std::optional<Vec2> FieldIntensityMeter::fitted_direction(const Crack& crack, std::size_t tip,
+                                                          double radius) {
+  constexpr double kFits = 0.15;  // largest rms distance to the parabola, in h
+  const TipFrame frame{crack.tips[tip].position, mean_direction(crack, tip, radius / 2)};
+  Samples samples;
+  if (!sample_tail(FromTip(crack, tip), radius, samples)) return std::nullopt;
+  Eigen::Matrix<double, kSamples, 2> powers;
+  Eigen::Matrix<double, kSamples, 1> offsets;
+  for (int k = 0; k < kSamples; ++k) {
+    const Vec2 x = frame.local(samples[static_cast<std::size_t>(k)]);
+    powers.row(k) << x.x(), x.x() * x.x();
+    offsets[k] = x.y();
+  }
+  const Eigen::Matrix2d normal = powers.transpose() * powers;
+  if (!(normal.determinant() > 0)) return std::nullopt;
+  const Vec2 fit = normal.inverse() * (powers.transpose() * offsets);
+  const double rms = (powers * fit - offsets).norm() / std::sqrt(double{kSamples});
+  if (!(rms <= kFits * board_.h())) return std::nullopt;
+  return Vec2(frame.direction + fit.x() * left_of(frame.direction)).normalized();
 }
 
 FieldIntensityMeter::Surroundings FieldIntensityMeter::look_around(const Crack& crack,
@@ -135,10 +148,10 @@ FieldIntensityMeter::Surroundings FieldIntensityMeter::look_around(const Crack& 
                                                                    const FieldView& view) {
   for (Index e : crack.elements) own_[e] = 1;
   Surroundings found;
-  const std::vector<Index> near = board_.elements_within(tip, radius);
+  board_.elements_within(tip, radius, near_);
   double nearest = std::numeric_limits<double>::infinity();
   const Material* material = nullptr;  // of the nearest live element
-  for (Index e : near) {
+  for (Index e : near_) {
     const double r = (board_.centroid(e) - tip).norm();
     if (view.destroyed[e]) {
       if (!own_[e]) found.other_damage = std::min(found.other_damage, r);
@@ -147,7 +160,7 @@ FieldIntensityMeter::Surroundings FieldIntensityMeter::look_around(const Crack& 
       material = &problem_.material(e);
     }
   }
-  for (Index e : near)
+  for (Index e : near_)
     if (!view.destroyed[e] && !same(problem_.material(e), *material))  // set: e is live
       found.other_material = std::min(found.other_material, (board_.centroid(e) - tip).norm());
   for (Index e : crack.elements) own_[e] = 0;
@@ -165,16 +178,8 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
   const double free = std::min(around.other_material, around.other_damage);
   const double chosen = std::clamp(free, kSmallestDomainRadius * h, wanted);
   FieldIntensity result = measure(crack, tip, view, chosen, {});
-  if (around.other_material < chosen)
-    disturb(result, "material",
-            tip_name(crack, tip) +
-                " reaches another material: it is that of one body with the mean compliance "
-                "around the tip");
-  if (around.other_damage < chosen)
-    disturb(result, "damage",
-            tip_name(crack, tip) +
-                " reaches elements destroyed by something else: it is not separated from their "
-                "field");
+  result.disturbed.material = around.other_material < chosen;
+  result.disturbed.damage = around.other_damage < chosen;
   return result;
 }
 
@@ -194,28 +199,26 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   const Vec2& position = crack.tips[tip].position;
   FieldIntensity result;
   result.radius = radius;
-  result.frame = {position, fitted_direction(crack, tip, radius, board_.h())
-                                .value_or(mean_direction(crack, tip, radius / 2))};
+  result.frame = {
+      position,
+      fitted_direction(crack, tip, radius).value_or(mean_direction(crack, tip, radius / 2))};
   const auto part = thin(radius) ? FreeSurface::Part::outline : FreeSurface::Part::all;
-  const TipDomain domain = builder_.collect(position, radius, view.destroyed, part, stretch);
+  builder_.collect(position, radius, view.destroyed, part, stretch, domain_);
+  const TipDomain& domain = domain_;
   if (domain.elements.empty()) return result;  // nothing left to carry a field
   result.material = tip_material(domain);
   displacement_.resize(domain.nodes.size());
   view.displacement(domain.nodes, displacement_);
   IntegralInput input{problem_, board_,        surface_,    result.frame,
                       domain,   displacement_, view.forces, {}};
-  const Crack tail = path_tail(crack, tip, 2 * radius);
-  if (!straight(tail, result.frame, 1e-6 * board_.h()))
-    input.side = [&](const Vec2& p) { return path_side(tail, p, 0); };
+  const auto tail = path_tail(crack, tip, 2 * radius);
+  if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;
   result.factors = interaction_integral(input, result.material);
-  const bool held = std::any_of(domain.nodes.begin(), domain.nodes.end(), [&](Index n) {
+  result.disturbed.fixed = std::ranges::any_of(domain.nodes, [&](Index n) {
     for (int axis = 0; axis < 3; ++axis)
       if (axis != normal_axis_ && problem_.dof(n, axis) == kNone) return true;
     return false;
   });
-  if (held)
-    disturb(result, "fixed",
-            tip_name(crack, tip) + " reaches fixed nodes, whose reactions it leaves out");
   return result;
 }
 

@@ -6,7 +6,7 @@
 
 #include <functional>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "fracture/field_sif/interaction_integral.hpp"
@@ -22,7 +22,14 @@ struct FieldView {
   std::span<const std::uint8_t> destroyed;  ///< per element
   /// Displacement of some nodes [mm].
   std::function<void(std::span<const Index>, std::span<Vec3>)> displacement;
-  std::vector<NodalForce> forces;  ///< of pulling and pressing instruments
+  std::span<const NodalForce> forces;  ///< of pulling and pressing instruments
+};
+
+/// What disturbs the field around a tip.
+struct Disturbances {
+  bool fixed = false;     ///< the domain reaches fixed nodes, whose reactions are left out
+  bool material = false;  ///< it reaches another material
+  bool damage = false;    ///< it reaches elements destroyed by something else
 };
 
 struct FieldIntensity {
@@ -30,8 +37,9 @@ struct FieldIntensity {
   TipFrame frame;     ///< in which they are meant
   double radius = 0;  ///< of the domain [mm]
   TipMaterial material;
-  std::string note;  ///< what disturbs them, as SifTerms::field_note
-  std::vector<std::string> warnings;
+  Disturbances disturbed;
+  /// What disturbs them, as SifTerms::field_note.
+  [[nodiscard]] std::string_view note() const;
 };
 
 class FieldIntensityMeter {
@@ -54,6 +62,12 @@ class FieldIntensityMeter {
   /// Whether a domain sees the board in plane stress.
   [[nodiscard]] bool thin(double radius) const;
   [[nodiscard]] TipMaterial tip_material(const TipDomain& domain) const;
+  /// The stretch of the path within `length` behind the tip (its length along the path), the tip
+  /// last. Holds until the next call.
+  [[nodiscard]] std::span<const Vec2> path_tail(const Crack& crack, std::size_t tip, double length);
+  [[nodiscard]] Vec2 mean_direction(const Crack& crack, std::size_t tip, double length);
+  [[nodiscard]] std::optional<Vec2> fitted_direction(const Crack& crack, std::size_t tip,
+                                                     double radius);
   [[nodiscard]] FieldIntensity measure(const Crack& crack, std::size_t tip, const FieldView& view,
                                        double radius, const std::optional<FrontStretch>& stretch);
 
@@ -63,6 +77,10 @@ class FieldIntensityMeter {
   FreeSurface surface_;
   DomainBuilder builder_;
   std::vector<std::uint8_t> own_;  // shape (elements): of the crack being looked at
+  // Of the tip in work, with room from the start: a frame allocates nothing.
+  std::vector<Index> near_;
+  TipDomain domain_;
+  std::vector<Vec2> tail_;
   std::vector<Vec3> displacement_;
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "fracture/crack_path.hpp"
+
 namespace sunder::fracture {
 namespace {
 
@@ -40,7 +42,8 @@ ElementField element_field(const IntegralInput& in, std::size_t i, const Mat3& a
 std::array<AuxiliaryState, kModes> auxiliary_at(const IntegralInput& in, const Vec2& place,
                                                 const TipMaterial& material) {
   const Vec2 x = in.frame.local(place);
-  const int side = in.side && x.x() < 0 ? in.side(place) : 0;
+  const bool bent = !in.bent_path.empty() && x.x() < 0;
+  const int side = bent ? path_side(in.bent_path, place, 0) : 0;
   return auxiliary_states(x, side, material);
 }
 

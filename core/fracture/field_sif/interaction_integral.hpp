@@ -12,7 +12,6 @@
 // of destroyed elements changes is of the order of (width / distance)^2.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,8 +37,8 @@ struct IntegralInput {
   const TipDomain& domain;
   std::span<const Vec3> displacement;  ///< of domain.nodes, mm
   std::span<const NodalForce> forces;  ///< those beyond the domain count nothing
-  /// Of the crack on which a place lies, +1 left, -1 right; unset: as for a straight crack.
-  std::function<int(const Vec2&)> side;
+  /// The crack behind the tip, the tip last; empty: it is straight there.
+  std::span<const Vec2> bent_path;
 };
 
 [[nodiscard]] IntensityFactors interaction_integral(const IntegralInput& input,

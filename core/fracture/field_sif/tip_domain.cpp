@@ -37,16 +37,30 @@ Mat3 TipFrame::axes(const BoardPlane& plane) const {
 
 double domain_weight(double r, double radius) { return std::clamp(2 * (1 - r / radius), 0.0, 1.0); }
 
-TipDomain DomainBuilder::collect(const Vec2& tip, double radius,
-                                 std::span<const std::uint8_t> destroyed, FreeSurface::Part part,
-                                 const std::optional<FrontStretch>& stretch) {
+void DomainBuilder::reserve(double radius, TipDomain& domain) {
+  const std::size_t most = board_.most_within(radius + board_.largest_element());
+  const std::size_t nodes = std::min(4 * most, board_.mesh().nodes.size());
+  near_.reserve(most);
+  domain.elements.reserve(most);
+  domain.corners.reserve(most);
+  domain.nodes.reserve(nodes);
+  domain.weight.reserve(nodes);
+}
+
+void DomainBuilder::collect(const Vec2& tip, double radius, std::span<const std::uint8_t> destroyed,
+                            FreeSurface::Part part, const std::optional<FrontStretch>& stretch,
+                            TipDomain& domain) {
   ++round_;
-  TipDomain domain;
+  domain.elements.clear();
+  domain.corners.clear();
+  domain.nodes.clear();
+  domain.weight.clear();
   domain.radius = radius;
   domain.front_length = front_length(board_.plane(), stretch);
   // Within this distance all corners have q = 1, unless q varies along the front.
   const double full = stretch ? 0 : std::max(radius / 2 - board_.largest_element(), 0.0);
-  for (Index e : board_.elements_within(tip, radius + board_.largest_element())) {
+  board_.elements_within(tip, radius + board_.largest_element(), near_);
+  for (Index e : near_) {
     if (destroyed[e]) continue;
     const bool inside = (board_.centroid(e) - tip).squaredNorm() < full * full;
     if (inside && !surface_.touches(e, part)) continue;
@@ -71,7 +85,6 @@ TipDomain DomainBuilder::collect(const Vec2& tip, double radius,
     domain.elements.push_back(e);
     domain.corners.push_back(corners);
   }
-  return domain;
 }
 
 DomainBuilder::Place& DomainBuilder::place_of(Index node, const Vec2& tip, double radius,

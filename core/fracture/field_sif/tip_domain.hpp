@@ -52,11 +52,13 @@ class DomainBuilder {
   DomainBuilder(const Board& board, const FreeSurface& surface)
       : board_(board), surface_(surface), place_(board.mesh().nodes.size()) {}
 
+  /// Room for the fullest domain of that radius.
+  void reserve(double radius, TipDomain& domain);
   /// Live elements of the ring, by id, and within it those on the named part of the surface; over
-  /// the whole thickness, or around a stretch of the front.
-  [[nodiscard]] TipDomain collect(const Vec2& tip, double radius,
-                                  std::span<const std::uint8_t> destroyed, FreeSurface::Part part,
-                                  const std::optional<FrontStretch>& stretch = {});
+  /// the whole thickness, or around a stretch of the front. In place of what `domain` held.
+  void collect(const Vec2& tip, double radius, std::span<const std::uint8_t> destroyed,
+               FreeSurface::Part part, const std::optional<FrontStretch>& stretch,
+               TipDomain& domain);
 
  private:
   struct Place {
@@ -71,6 +73,7 @@ class DomainBuilder {
   const FreeSurface& surface_;
   std::vector<Place> place_;  // shape (nodes)
   std::uint32_t round_ = 0;
+  std::vector<Index> near_;  // elements around the tip in work
 };
 
 }  // namespace sunder::fracture

@@ -33,7 +33,7 @@ void CrackedBody::set_crack(CrackKind kind, const Vec2& from, const Vec2& to,
   crack_.kind = kind;
   crack_.path = {start, end};
   crack_.length = (end - start).norm();
-  crack_.elements = elements;
+  crack_.elements.assign(elements.begin(), elements.end());
   if (kind == CrackKind::edge) {
     crack_.mouth = start;
     crack_.tips = {{end, d, false}};
@@ -73,19 +73,23 @@ void CrackedBody::grow(std::size_t tip, const Vec2& direction, double length) {
   const Vec2 g = in_plane(direction).normalized();
   find_fine_part();
   const double h = fine_->h();
-  const fracture::ElementView view{[&](Index e) { return !destroyed_[fine_elements_[e]]; },
-                                   [](Index) { return 1.0; }};
+  std::vector<std::uint8_t> fine_destroyed;
+  for (Index e : fine_elements_) fine_destroyed.push_back(destroyed_[e]);
+  const std::vector<double> yields(fine_elements_.size(), 1.0);
+  const fracture::ElementView view{fine_destroyed, yields};
+  fracture::BandSearch bands(*fine_);
+  fracture::Walk walk;
   const int sense = fracture::orientation(crack_, tip);
   for (double left = length; left > h / 2;) {
     const fracture::Ray ray{crack_.tips[tip].position, g, &crack_, sense};
-    const fracture::Band band = fracture::find_band(*fine_, ray, view);
+    const fracture::Band& band = bands.find(ray, view);
     // The K whose reach is what is left (Eq. 1 at theta = 0, yield 1).
     const double k = std::sqrt(2 * std::numbers::pi * left);
-    const fracture::Walk walk = fracture::walk_band(band, h, k, 0, view);
+    fracture::walk_band(band, h, k, 0, view, walk);
     if (!(walk.advance > 0)) throw std::runtime_error("the crack finds nothing ahead of it");
     std::map<Index, std::int8_t> labels;
     for (const fracture::Passed& passed : walk.passed) {
-      destroyed_[fine_elements_[passed.element]] = 1;
+      destroyed_[fine_elements_[passed.element]] = fine_destroyed[passed.element] = 1;
       crack_.elements.push_back(fine_elements_[passed.element]);
       for (Index n : fine_mesh_->tets[passed.element])
         if (const int side = fracture::node_side(*fine_, ray, band.near_side, n))

@@ -17,13 +17,21 @@ const BoardShape kShape{12, 8, 1, 12, 8, 1};
 
 /// Everything lives and yields at 1, unless told otherwise.
 struct Elements {
-  std::set<Index> dead;
-  std::map<Index, double> yields;
-  [[nodiscard]] ElementView view() const {
-    return {[this](Index e) { return !dead.contains(e); },
-            [this](Index e) { return yields.contains(e) ? yields.at(e) : 1.0; }};
-  }
+  explicit Elements(std::size_t count = 12 * 8 * 6) : dead(count, 0), yields(count, 1.0) {}
+  std::vector<std::uint8_t> dead;
+  std::vector<double> yields;
+  [[nodiscard]] ElementView view() const { return {dead, yields}; }
 };
+
+Band find_band(const Board& board, const Ray& ray, const ElementView& view) {
+  return BandSearch(board).find(ray, view);
+}
+
+Walk walk_band(const Band& band, double h, double k, double theta, const ElementView& view) {
+  Walk walk{{{7, 1, 1, 1}}, 9};  // to be replaced
+  fracture::walk_band(band, h, k, theta, view, walk);
+  return walk;
+}
 
 std::vector<Index> ids(const Band& band) {
   std::vector<Index> out;
@@ -84,12 +92,12 @@ std::vector<std::pair<double, Index>> searched_band(const Board& board, const Ra
 }
 
 TEST(Band, MatchesASearchOfAllElements) {
-  const Elements elements;
   const Crack crack;
   // In narrow cells some elements near the tip have no node beyond -h/4.
   for (const BoardShape& shape : {kShape, BoardShape{36, 8, 1, 12, 8, 1}}) {
     const Mesh mesh = structured_board(shape);
     const Board board(mesh, std::nullopt);
+    const Elements elements(mesh.tets.size());
     for (double degrees : {0.0, 25.0, 63.0, 155.0, -100.0}) {
       const double angle = degrees * EIGEN_PI / 180;
       const Ray ray{Vec2(5.3, 3.9), Vec2(std::cos(angle), std::sin(angle)), &crack, 1};
@@ -107,7 +115,7 @@ TEST_F(BandOnABoard, NodesOnTheRayGoWhereTheWeakerElementsAre) {
   // the right, the row above (4).
   const Ray ray{Vec2(5, 4), Vec2(1, 0), &crack, 1};
   for (Index weak_row : {3, 4}) {
-    elements.yields.clear();
+    elements = Elements();
     for (Index e : test::row_elements(kShape, weak_row, 0, 12)) elements.yields[e] = 0.5;
     const Band band = find_band(board, ray, elements.view());
     ASSERT_FALSE(band.elements.empty());
@@ -131,10 +139,10 @@ TEST_F(BandOnABoard, OnTheRayMeansWithinAFifthOfAnEdge) {
 TEST_F(BandOnABoard, EqualYieldsPreferFewerElementsThenTheLeft) {
   const Ray ray{Vec2(5, 4), Vec2(1, 0), &crack, 1};
   EXPECT_EQ(find_band(board, ray, elements.view()).near_side, 1) << "tie";
-  elements.dead.insert(find_band(board, ray, elements.view()).elements.back().element);
+  elements.dead[find_band(board, ray, elements.view()).elements.back().element] = 1;
   EXPECT_EQ(find_band(board, ray, elements.view()).near_side, 1) << "fewer under the ray";
-  elements.dead.clear();
-  for (Index e : test::row_elements(kShape, 4, 5, 6)) elements.dead.insert(e);
+  elements = Elements();
+  for (Index e : test::row_elements(kShape, 4, 5, 6)) elements.dead[e] = 1;
   EXPECT_EQ(find_band(board, ray, elements.view()).near_side, -1) << "fewer above the ray";
 }
 
@@ -171,7 +179,7 @@ TEST_F(BandOnABoard, NodesOnTheProlongedRayHaveNoSide) {
 TEST_F(BandOnABoard, DestroyedElementsAreSkipped) {
   const Ray ray{Vec2(5, 3.5), Vec2(1, 0), &crack, 1};
   const Band whole = find_band(board, ray, elements.view());
-  elements.dead.insert(whole.elements[1].element);
+  elements.dead[whole.elements[1].element] = 1;
   const Band rest = find_band(board, ray, elements.view());
   EXPECT_EQ(rest.elements.size() + 1, whole.elements.size());
 }

@@ -79,7 +79,8 @@ class Driver {
   }
 
   Decision decide() {
-    Decision d = criterion->decide(state());
+    Decision d;
+    criterion->decide(state(), d);
     apply(d);
     return d;
   }

@@ -19,11 +19,14 @@ Press press_at(const Vec3& at, CrackSide side) {
   return press;
 }
 
+std::vector<Index> pressed(const Driver& driver, const Press& press) {
+  const PressedNodes found = driver.criterion->pressed_nodes(press, driver.destroyed);
+  return {found.list().begin(), found.list().end()};
+}
+
 TEST(PressedNodes, OneOnEachSurfaceOfItsFace) {
   Driver driver(test::edge_slit(5));
-  const auto on = [&](Vec3 at, CrackSide side) {
-    return driver.criterion->pressed_nodes(press_at(at, side), driver.destroyed);
-  };
+  const auto on = [&](Vec3 at, CrackSide side) { return pressed(driver, press_at(at, side)); };
   EXPECT_EQ(on(Vec3(2.2, 5.5, 1), CrackSide::upper),
             (std::vector<Index>{grid_node(kSlitShape, 2, 6, 0), grid_node(kSlitShape, 2, 6, 1)}));
   EXPECT_EQ(on(Vec3(2.2, 5.5, 1), CrackSide::lower),
@@ -33,8 +36,7 @@ TEST(PressedNodes, OneOnEachSurfaceOfItsFace) {
 
 TEST(PressedNodes, TiesGoToTheLowestId) {
   Driver driver(test::edge_slit(5));
-  EXPECT_EQ(driver.criterion->pressed_nodes(press_at(Vec3(2.5, 5.5, 1), CrackSide::upper),
-                                            driver.destroyed),
+  EXPECT_EQ(pressed(driver, press_at(Vec3(2.5, 5.5, 1), CrackSide::upper)),
             (std::vector<Index>{grid_node(kSlitShape, 2, 6, 0), grid_node(kSlitShape, 2, 6, 1)}));
 }
 
@@ -42,16 +44,16 @@ TEST(PressedNodes, CrackThatIsNotBornOffersNone) {
   Driver driver(test::edge_slit(5));
   Press press = press_at(Vec3(2, 5.5, 1), CrackSide::upper);
   press.crack = 1;
-  EXPECT_TRUE(driver.criterion->pressed_nodes(press, driver.destroyed).empty());
+  EXPECT_TRUE(pressed(driver, press).empty());
 }
 
 TEST(PressedNodes, NodesWithoutALiveElementAreLeft) {
   Driver driver(test::edge_slit(5));
   const Press press = press_at(Vec3(2.1, 5.5, 1), CrackSide::upper);
-  const Index chosen = driver.criterion->pressed_nodes(press, driver.destroyed)[0];
+  const Index chosen = pressed(driver, press)[0];
   ASSERT_EQ(chosen, grid_node(kSlitShape, 2, 6, 0));
   for (Index e : driver.board.elements_of(chosen)) driver.destroyed[e] = 1;
-  const auto again = driver.criterion->pressed_nodes(press, driver.destroyed);
+  const auto again = pressed(driver, press);
   ASSERT_EQ(again.size(), 2u);
   EXPECT_EQ(again[0], grid_node(kSlitShape, 3, 6, 0)) << "the next nearest on the bottom";
 }
@@ -67,8 +69,7 @@ TEST(PressedNodes, ASurfaceWithoutCandidatesLeavesAllToTheNearestInSpace) {
     scene.cracks.push_back({slit, Vec3(0, 3.5, 1), {Vec3(4, 3.5, 1)}});
     Driver driver(std::move(scene));
     const auto on = [&](double z) {
-      return driver.criterion->pressed_nodes(press_at(Vec3(2, 4, z), CrackSide::upper),
-                                             driver.destroyed);
+      return pressed(driver, press_at(Vec3(2, 4, z), CrackSide::upper));
     };
     const Index outer = 2 * layer;
     EXPECT_EQ(on(layer == 0 ? 1.8 : 0.2), std::vector<Index>{grid_node(shape, 2, 4, 1)});
@@ -81,9 +82,9 @@ TEST(PressedNodes, LabelsDecideBeforeThePath) {
   Crack crack = driver.criterion->cracks()[0];
   const Press press = press_at(Vec3(2, 6, 0), CrackSide::upper);
   const Index node = grid_node(kSlitShape, 2, 6, 0);
-  EXPECT_EQ(pressed_nodes(driver.board, crack, press, driver.destroyed)[0], node);
+  EXPECT_EQ(pressed_nodes(driver.board, crack, press, driver.destroyed).nodes[0], node);
   crack.side[node] = -1;  // right of the path: the lower face
-  EXPECT_NE(pressed_nodes(driver.board, crack, press, driver.destroyed)[0], node);
+  EXPECT_NE(pressed_nodes(driver.board, crack, press, driver.destroyed).nodes[0], node);
 }
 
 }  // namespace

@@ -126,10 +126,11 @@ TEST(WorkedExample, StepByStep) {
   std::vector<std::uint8_t> destroyed(problem->mesh().tets.size(), 0);
   for (Index e : crack.elements) destroyed[e] = 1;
   const FractureState state{*problem, destroyed, {}, {}, {}, Vec3(0, -60 * t, 0), {}};
-  std::vector<std::string> warnings;
+  std::vector<Finding> findings;
+  FacePressure faces;
+  face_pressure(board, crack, state, findings, faces);
   const PristineField field(*problem, board, pristine);
-  const auto growth =
-      tip_growth(board, field, crack, 0, face_pressure(board, crack, state, warnings), state);
+  const auto growth = tip_growth(board, field, crack, 0, faces, state);
   ASSERT_TRUE(growth);
   const SifTerms& k = growth->terms;
   expect_printed(k.a, page.number("a"));
@@ -143,12 +144,15 @@ TEST(WorkedExample, StepByStep) {
   expect_printed(reach(k.k, 2, growth->theta), page.number("r_e at yield 2"));
   expect_printed(reach(k.k, 4, growth->theta), page.number("r_e at yield 4"));
 
-  const ElementView view{[&](Index e) { return !destroyed[e]; },
-                         [&](Index e) { return problem->yield(e); }};
+  std::vector<double> yields;
+  for (Index e = 0; e < problem->tet_count(); ++e) yields.push_back(problem->yield(e));
+  const ElementView view{destroyed, yields};
+  BandSearch bands(board);
   const Vec2 p = crack.tips[0].position;
-  const Band band = find_band(board, {p, growth->direction, &crack, 1}, view);
+  const Band& band = bands.find({p, growth->direction, &crack, 1}, view);
   EXPECT_EQ(band.near_side, page.number("near nodes"));
-  const Walk walk = walk_band(band, board.h(), k.k, growth->theta, view);
+  Walk walk;
+  walk_band(band, board.h(), k.k, growth->theta, view, walk);
   std::vector<Index> passed;
   for (const Passed& e : walk.passed) passed.push_back(e.element);
   EXPECT_EQ(passed, page.elements());

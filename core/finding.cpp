@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "finding.hpp"
+
+#include "sunder/in_quotes.hpp"
+
+namespace sunder {
+namespace {
+
+std::string closing_push(const Instrument& instrument, int crack) {
+  const bool upper = std::get<Press>(instrument.action).side == CrackSide::upper;
+  return "instrument " + in_quotes(instrument.name) + " pushes crack " + std::to_string(crack) +
+         " shut on its " + (upper ? "upper" : "lower") +
+         " face and counts as no pressure in its stress intensity";
+}
+
+std::string removed_before(const Finding& f) {
+  return "destroy " + std::to_string(f.subject) + " in step " + std::to_string(f.detail) + ": " +
+         std::to_string(f.count) + " of its elements were destroyed already";
+}
+
+std::string field_of(const Finding& f) {
+  return "the field K of crack " + std::to_string(f.subject) + " at its tip " +
+         std::to_string(f.detail);
+}
+
+}  // namespace
+
+std::string sentence(const Finding& f, const Scene& scene) {
+  switch (f.kind) {
+    case Finding::Kind::closing_push:
+      return closing_push(scene.instruments[static_cast<std::size_t>(f.subject)], f.detail);
+    case Finding::Kind::nothing_to_press:
+      return "instrument " +
+             in_quotes(scene.instruments[static_cast<std::size_t>(f.subject)].name) +
+             " finds no node of its crack's face to press on and does not act";
+    case Finding::Kind::removed_before:
+      return removed_before(f);
+    case Finding::Kind::field_fixed:
+      return field_of(f) + " reaches fixed nodes, whose reactions it leaves out";
+    case Finding::Kind::field_material:
+      return field_of(f) +
+             " reaches another material: it is that of one body with the mean compliance around "
+             "the tip";
+    case Finding::Kind::field_damage:
+      return field_of(f) +
+             " reaches elements destroyed by something else: it is not separated from their field";
+  }
+  return {};
+}
+
+}  // namespace sunder
