@@ -93,7 +93,7 @@ Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<B
 
 /// Steps append to what is here and allocate nothing, up to so many destroyed elements.
 void Simulation::reserve() {
-  constexpr std::size_t kDestroyed = 1 << 16, kFindings = 256, kInLine = 1024;
+  constexpr std::size_t kDestroyed = 1 << 16, kFindings = 256, kInLine = 1 << 14;
   const std::size_t elements = problem_->mesh().tets.size();
   if (backend_->needs().damage) destroyed_.reserve(std::min(elements, kDestroyed));
   if (backend_->needs().damage) event_.reserve(std::min(elements, kDestroyed));
@@ -101,7 +101,7 @@ void Simulation::reserve() {
   if (backend_->needs().pristine) pristine_.reserve(3 * problem_->mesh().nodes.size());
   findings_.reserve(kFindings);
   of_loads_.reserve(kFindings);
-  next_in_line_.reserve(kInLine);
+  next_in_line_.reserve(std::min(elements, kInLine));
   std::size_t nodes = 0;
   for (const InstrumentNodes& i : problem_->instrument_nodes()) {
     nodes += std::max(i.nodes.size(), std::size_t{2});  // a press has up to two

@@ -20,11 +20,10 @@ void check_options(const SolverOptions& solver) {
   if (solver.device > 0) {
     throw DeviceError("backend cpu has device 0 only, not " + std::to_string(solver.device));
   }
-  if (solver.update == Update::eager &&
-      (solver.route == Route::factor || solver.route == Route::condensed)) {
-    throw DeviceError("route " + name_of(solver.route) +
-                      " has the update deferred only; use update deferred or auto, or route "
-                      "inverse");
+  if (solver.update == Update::eager && solver.route == Route::factor) {
+    throw DeviceError(
+        "route factor has the update deferred only; use update deferred or auto, or route inverse "
+        "or condensed");
   }
   if (solver.update != Update::automatic && solver.route == Route::cg) {
     throw DeviceError("route cg has no update to choose; use update auto, or route inverse");
@@ -51,7 +50,8 @@ std::string megabytes(std::size_t unknowns) {
 }
 
 Update update_of(Route route, Update asked) {
-  return route == Route::inverse && asked == Update::eager ? Update::eager : Update::deferred;
+  const bool offered = route == Route::inverse || route == Route::condensed;
+  return offered && asked == Update::eager ? Update::eager : Update::deferred;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ ChosenRoute choose_route(const Problem& problem, const Needs& needs) {
     if (solver.route == Route::condensed) {
       const engine::Region region = engine::region_of(problem, needs);
       check_memory(Route::condensed, region.dofs.size());
-      return {Route::condensed, Update::deferred,
+      return {Route::condensed, update_of(Route::condensed, solver.update),
               "asked for; " + std::to_string(region.dofs.size()) + " of " + std::to_string(all) +
                   " unknowns can break, are loaded or held by instruments"};
     }
@@ -73,7 +73,8 @@ ChosenRoute choose_route(const Problem& problem, const Needs& needs) {
   }
   if (solver.update == Update::eager) {
     check_memory(Route::inverse, all);
-    return {Route::inverse, Update::eager, "update eager was asked for: only an inverse has it"};
+    return {Route::inverse, Update::eager,
+            "update eager was asked for: an inverse has it (route condensed too, when asked for)"};
   }
   const std::string n = std::to_string(problem.dof_count()) + " unknowns";
   if (!needs.damage) {

@@ -37,7 +37,7 @@ void CondensedFields::publish_stress() {
 
 void CondensedFields::solve(Solution& solution) {
   if (solution.everywhere) return;
-  solve_whole(solution.of, right_side_, u_);
+  solve_whole(solution.of, room_, u_);
   solution.nodal.resize(problem_.dofs().size());
   fem::scatter(problem_, {u_.data(), static_cast<std::size_t>(u_.size())}, solution.nodal);
   solution.everywhere = true;
@@ -62,7 +62,7 @@ std::span<const Voigt> CondensedFields::stress(std::span<const double> scale) {
 
 std::size_t CondensedFields::bytes() const {
   return (displacement_.nodal.capacity() + of_stress_.nodal.capacity()) * sizeof(double) +
-         static_cast<std::size_t>(right_side_.size() + u_.size()) * sizeof(double) +
+         static_cast<std::size_t>(room_.right_side.size() + u_.size()) * sizeof(double) +
          stress_.capacity() * sizeof(Voigt);
 }
 

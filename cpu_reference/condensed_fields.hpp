@@ -43,7 +43,8 @@ class CondensedFields {
   Solution displacement_, of_stress_;
   std::vector<Voigt> stress_;
   bool stress_known_ = false;
-  Eigen::VectorXd right_side_, u_;
+  WholeRoom room_;
+  Eigen::VectorXd u_;
 };
 
 }  // namespace sunder::cpu_reference

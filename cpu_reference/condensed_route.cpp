@@ -23,10 +23,10 @@ constexpr std::size_t kFewestColumns = 64, kMostColumns = 256;
 // energy_check.cpp allows for a growth of 100 up to 1e-8.
 constexpr double kDrift = 2e-11;
 
-void complete_by(const engine::CondensedBase& base, engine::Equilibrium& whole,
-                 Eigen::VectorXd& right_side, Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
+void complete_by(const engine::CondensedBase& base, engine::Equilibrium& whole, WholeRoom& room,
+                 Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
   base.equilibrium(whole);
-  solve_whole(whole, right_side, everywhere);
+  solve_whole(whole, room, everywhere);
   for (Index d : base.dofs()) everywhere[d] = u[d];
   u.swap(everywhere);
 }
@@ -49,9 +49,10 @@ Based condensed_by(const Problem& problem, std::shared_ptr<const fem::Factor> fa
 
 void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
   engine::Equilibrium whole;
-  Eigen::VectorXd right_side, everywhere;
+  WholeRoom room;
+  Eigen::VectorXd everywhere;
   check_base(based, body, load, [&](Eigen::VectorXd& u) {
-    complete_by(*based.condensed, whole, right_side, everywhere, u);
+    complete_by(*based.condensed, whole, room, everywhere, u);
   });
 }
 
@@ -143,7 +144,7 @@ class CondensedRoute final : public InverseRoute {
   }
 
   void complete(Eigen::VectorXd& u) override {
-    complete_by(*based_.condensed, whole_, right_side_, everywhere_, u);
+    complete_by(*based_.condensed, whole_, room_, everywhere_, u);
   }
 
   bool equilibrium(engine::Equilibrium& of) const override {
@@ -219,7 +220,8 @@ class CondensedRoute final : public InverseRoute {
   std::vector<Index> within_;      // elements all of whose unknowns are in S
   std::size_t lost_at_start_ = 0;  // of them, when coming_ started
   engine::Equilibrium whole_;
-  Eigen::VectorXd right_side_, everywhere_;
+  WholeRoom room_;
+  Eigen::VectorXd everywhere_;
   double enough_ = 0;
   int bases_ = 1;
   std::optional<BackgroundRebase> coming_;  // where something can be destroyed
@@ -227,17 +229,17 @@ class CondensedRoute final : public InverseRoute {
 
 }  // namespace
 
-void solve_whole(const engine::Equilibrium& of, Eigen::VectorXd& right_side, Eigen::VectorXd& u) {
+void solve_whole(const engine::Equilibrium& of, WholeRoom& room, Eigen::VectorXd& u) {
+  Eigen::VectorXd& right_side = room.right_side;
   right_side.setZero(of.factor->cholesky().size());
   for (std::size_t i = 0; i < of.dofs.size(); ++i) right_side[of.dofs[i]] += of.forces[i];
   if (of.lost) {
-    std::vector<double> forces(of.lost_u.size());
-    of.lost->multiply(of.lost_u, forces);
+    room.lost.resize(of.lost_u.size());
+    of.lost->multiply(of.lost_u, room.lost);
     const auto dofs = of.lost->dofs();
-    for (std::size_t i = 0; i < dofs.size(); ++i) right_side[dofs[i]] += forces[i];
+    for (std::size_t i = 0; i < dofs.size(); ++i) right_side[dofs[i]] += room.lost[i];
   }
-  fem::SolveWork work;
-  of.factor->solve(right_side, u, work);
+  of.factor->solve(right_side, u, room.work);
 }
 
 std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body, const IntactBody& intact,

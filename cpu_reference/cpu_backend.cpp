@@ -60,6 +60,10 @@ class CpuBackend final : public Backend {
     }
     force_.setZero(n);
     u_.setZero(n);
+    if (this->needs().pristine) {  // so that the first time allocates no more than the next
+      pristine_force_.setZero(n);
+      intact_.solve(pristine_force_, {}, pristine_u_);
+    }
     reactions_.assign(problem->gripped_dofs().size(), 0.0);
     anchors_ = engine::anchors_of(*problem);
     if (route_->deferred() && !anchors_.empty()) instruments_.emplace(*problem);
@@ -116,7 +120,7 @@ class CpuBackend final : public Backend {
   FrameShape shape() const {
     FrameShape shape;
     shape.route = chosen_.route;
-    shape.eager = chosen_.route == Route::inverse && chosen_.update == Update::eager;
+    shape.eager = chosen_.update == Update::eager;
     shape.damage = needs().damage;
     shape.unknowns = static_cast<std::size_t>(problem().dof_count());
     shape.kept = condensed_ ? condensed_->region().dofs.size() : shape.unknowns;
@@ -165,8 +169,12 @@ class CpuBackend final : public Backend {
 
   std::unique_ptr<InverseRoute> make_route() {
     if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, intact_);
-    if (condensed_)
+    if (condensed_ && chosen_.update == Update::eager) {
+      return condensed_eager_route(body_, intact_, condensed_->region().dofs);
+    }
+    if (condensed_) {
       return condensed_route(body_, intact_, condensed_->region().dofs, needs().damage);
+    }
     if (chosen_.update == Update::eager) return dense_inverse_route(body_, intact_);
     return deferred_route(body_, intact_, chosen_.route == Route::inverse);
   }
@@ -199,6 +207,7 @@ class CpuBackend final : public Backend {
     const auto start = Clock::now();
     is_prepared_.assign(problem().mesh().tets.size(), 0);
     prepared_.clear();
+    prepared_.reserve(std::min(is_prepared_.size(), std::size_t{1} << 14));
     for (Index e : elements) {
       if (body_.destroyed()[e] || is_prepared_[e]) continue;
       is_prepared_[e] = 1;
@@ -276,10 +285,14 @@ class CpuBackend final : public Backend {
     hand_out();
     const auto gripped = problem().gripped_dofs();
     for (std::size_t g = 0; g < gripped.size(); ++g) {
-      reactions_[g] = route_->deferred()->grip_forces()[static_cast<Eigen::Index>(g)] -
-                      anchors_[g] * u_[gripped[g]];  // the anchor's share
+      reactions_[g] = grip_force(g) - anchors_[g] * u_[gripped[g]];  // the anchor's share
     }
     return check.known(*expected, *route_, largest_in_region(next_nodal_), largest_);
+  }
+
+  double grip_force(std::size_t g) const {
+    if (!route_->deferred()) return route_->grip_force(g);
+    return route_->deferred()->grip_forces()[static_cast<Eigen::Index>(g)];
   }
 
   /// Whether residual and stress come from the kernel; the yardstick has loops of its own.
@@ -412,7 +425,10 @@ class CpuBackend final : public Backend {
   }
 
   /// The plain routes are what others are measured by: they refine once in any case.
-  bool yardstick() const { return chosen_.route == Route::cg || chosen_.update == Update::eager; }
+  bool yardstick() const {
+    return chosen_.route == Route::cg ||
+           (chosen_.route == Route::inverse && chosen_.update == Update::eager);
+  }
 
   double tolerance() const { return problem().scene().solver.tolerance; }
 
@@ -450,10 +466,13 @@ class CpuBackend final : public Backend {
   }
 
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(problem().dof_count()), u;
-    for (std::size_t i = 0; i < load.forces.size(); ++i) f[load.force_dofs[i]] = load.forces[i];
-    intact_.solve(f, load.displacements, u);
-    fem::scatter(problem(), {u.data(), static_cast<std::size_t>(u.size())}, displacement);
+    pristine_force_.setZero(problem().dof_count());
+    for (std::size_t i = 0; i < load.forces.size(); ++i) {
+      pristine_force_[load.force_dofs[i]] = load.forces[i];
+    }
+    intact_.solve(pristine_force_, load.displacements, pristine_u_);
+    fem::scatter(problem(), {pristine_u_.data(), static_cast<std::size_t>(pristine_u_.size())},
+                 displacement);
   }
 
   void do_read_displacement(std::span<double> displacement) const override {
@@ -499,8 +518,9 @@ class CpuBackend final : public Backend {
   std::unique_ptr<InverseRoute> route_;
   Load load_;
   Eigen::VectorXd force_, u_, du_, product_, r_;
-  double free_residual_ = 0;  // |r_|
-  double unrefined_ = 0;      // error of the last full check's solution before it was refined
+  Eigen::VectorXd pristine_force_, pristine_u_;  // of the intact body
+  double free_residual_ = 0;                     // |r_|
+  double unrefined_ = 0;  // error of the last full check's solution before it was refined
   std::optional<engine::InstrumentBlock> instruments_;
   double waited_ms_ = 0;         // for rebases, as reported so far
   std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor

@@ -6,6 +6,7 @@
 // stress that it misses.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -54,22 +55,44 @@ class EnergyCheck {
     double unrefined = 0;  // error of the base by itself
     double largest_u = 0, largest = 0;
   };
+  /// A few of them; what one held keeps its room for the next.
+  class Directions {
+   public:
+    static constexpr std::size_t kMost = 6;
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] bool empty() const { return size_ == 0; }
+    [[nodiscard]] const Checked& operator[](std::size_t i) const { return slots_[i]; }
+    void clear() { size_ = 0; }
+    void push_back(const Checked& checked) { slots_[size_++] = checked; }
+    void swap(Directions& other) {
+      slots_.swap(other.slots_);
+      std::swap(size_, other.size_);
+    }
+
+   private:
+    std::array<Checked, kMost> slots_;
+    std::size_t size_ = 0;
+  };
   void add_direction(const Checked& checked);
-  void take_direction(Checked checked);
+  void take_direction(const Checked& checked);
   void write(const Load& load);
   [[nodiscard]] double beyond_span(std::size_t directions);
   [[nodiscard]] bool shares_of(const Load& load);
   [[nodiscard]] bool on_same_unknowns(const Load& load) const;
 
   const Problem& problem_;
-  double stress_of_energy_;      // sqrt of the largest stress^2 per energy over all elements
-  SolveReport report_;           // of the last full check
-  std::vector<Checked> checks_;  // the last one first, none in the span of those before it
-  Eigen::MatrixXd q_, r_;        // their loads as columns, each entry by its unit: Q R
+  double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
+  SolveReport report_;       // of the last full check
+  Checked next_;             // the check in work
+  Directions checks_;        // the last one first, none in the span of those before it
+  Directions others_;        // those before it, as they are sorted in
+  Eigen::MatrixXd q_, r_;    // their loads as columns, each entry by its unit: Q R
   double force_unit_ = 1, displacement_unit_ = 1;
-  Eigen::VectorXd v_, shares_;  // a load; its shares of checks_
-  int bases_ = 0;               // of the last full check; 0: there was none
-  bool changed_ = true;         // since the last full check
+  Eigen::VectorXd v_;  // a load
+  /// Its shares of checks_; its room does not follow its size.
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Directions::kMost, 1> shares_;
+  int bases_ = 0;        // of the last full check; 0: there was none
+  bool changed_ = true;  // since the last full check
 };
 
 }  // namespace sunder::cpu_reference

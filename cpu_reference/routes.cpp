@@ -136,11 +136,12 @@ void Grips::set_columns(Eigen::MatrixXd columns) {
 
 void Grips::hold(Eigen::VectorXd& x, std::span<const double> displacement) const {
   if (none()) return;
-  Eigen::VectorXd gap(static_cast<Index>(dofs_.size()));
+  gap_.resize(static_cast<Index>(dofs_.size()));
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    gap[static_cast<Index>(i)] = (displacement.empty() ? 0.0 : displacement[i]) - x[dofs_[i]];
+    gap_[static_cast<Index>(i)] = (displacement.empty() ? 0.0 : displacement[i]) - x[dofs_[i]];
   }
-  x.noalias() += columns_ * block_.solve(gap);
+  block_.solveInPlace(gap_);
+  x.noalias() += columns_ * gap_;
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
     x[dofs_[i]] = displacement.empty() ? 0.0 : displacement[i];  // free of rounding
   }
@@ -193,7 +194,7 @@ IntactBody::IntactBody(const Problem& problem, bool rebases, fem::SparseMatrix o
 
 void IntactBody::solve(const Eigen::VectorXd& f, std::span<const double> displacement,
                        Eigen::VectorXd& x) const {
-  x = factor.solve(f);
+  factor.solve(f, x, work_);
   grips.hold(x, displacement);
 }
 

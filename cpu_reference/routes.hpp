@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ways of the CPU to apply the inverse of the damaged stiffness. Two are the plain yardstick: a
 // dense inverse with eager updates, and conjugate gradients preconditioned by the intact factor.
-// The others hand over to the engine (core/engine): deferred updates over an inverse or a factor.
+// The others take from the engine (core/engine): deferred updates over an inverse or a factor, and
+// either update over the unknowns of a region alone.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -24,7 +25,7 @@ class Grips {
   explicit Grips(std::span<const Index> dofs) : dofs_(dofs) {}
   /// Takes new columns A^-1 E_G, shape (n x dofs). Throws NumericalError when C_G is singular.
   void set_columns(Eigen::MatrixXd columns);
-  /// Moves x so that x_G = displacement (empty: 0).
+  /// Moves x so that x_G = displacement (empty: 0). By one thread at a time.
   void hold(Eigen::VectorXd& x, std::span<const double> displacement) const;
   [[nodiscard]] bool none() const { return dofs_.empty(); }
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
@@ -36,6 +37,7 @@ class Grips {
   std::span<const Index> dofs_;
   Eigen::MatrixXd columns_;
   Eigen::LLT<Eigen::MatrixXd> block_{Eigen::MatrixXd(0, 0)};  // copied before its first use
+  mutable Eigen::VectorXd gap_;                               // room to work in
 };
 
 /// The damaged body: which elements are destroyed, and K u.
@@ -98,6 +100,9 @@ class InverseRoute {
   virtual bool rebase() { return false; }
   /// The deferred update, where there is one: it makes a frame's check cheap.
   [[nodiscard]] virtual const engine::Deferred* deferred() const { return nullptr; }
+  /// Force of a grip on the base in the last solve(), anchors included, where solve() leaves
+  /// something out of x and there is no deferred update.
+  [[nodiscard]] virtual double grip_force(std::size_t) const { return 0; }
   /// A deferred update may stop refining at this energy of the defect [N mm].
   virtual void set_enough(double) {}
   /// Bases there have been so far: another one needs a full check.
@@ -116,7 +121,7 @@ class InverseRoute {
 struct IntactBody {
   /// `rebases`: factors of the damaged body are to follow.
   IntactBody(const Problem& problem, bool rebases);
-  /// x = K0^-1 f with x_G = displacement (empty: 0).
+  /// x = K0^-1 f with x_G = displacement (empty: 0). By one thread at a time.
   void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
              Eigen::VectorXd& x) const;
   fem::Factor factor;
@@ -125,6 +130,7 @@ struct IntactBody {
 
  private:
   IntactBody(const Problem& problem, bool rebases, fem::SparseMatrix ordered);
+  mutable fem::SolveWork work_;
 };
 
 [[nodiscard]] std::unique_ptr<InverseRoute> dense_inverse_route(const DamagedBody& body,
@@ -138,8 +144,18 @@ struct IntactBody {
                                                             const IntactBody& intact,
                                                             std::span<const Index> dofs,
                                                             bool damage);
-/// u at all unknowns; `right_side` is room to work in.
-void solve_whole(const engine::Equilibrium& of, Eigen::VectorXd& right_side, Eigen::VectorXd& u);
+/// The inverse restricted to some unknowns (ascending), written over by every event.
+[[nodiscard]] std::unique_ptr<InverseRoute> condensed_eager_route(const DamagedBody& body,
+                                                                  const IntactBody& intact,
+                                                                  std::span<const Index> dofs);
+/// What solve_whole() works in.
+struct WholeRoom {
+  Eigen::VectorXd right_side;
+  std::vector<double> lost;
+  fem::SolveWork work;
+};
+/// u at all unknowns.
+void solve_whole(const engine::Equilibrium& of, WholeRoom& room, Eigen::VectorXd& u);
 [[nodiscard]] std::unique_ptr<InverseRoute> conjugate_gradient_route(const DamagedBody& body,
                                                                      const IntactBody& intact);
 

@@ -45,6 +45,7 @@ CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::spa
   is_touched_.assign(dofs_.size(), kNone);
   of_load_.setZero(x_->rows());
   u_.setZero(x_->rows());
+  projected_.resize(1024);
   touched_.reserve(dofs_.size());
   loaded_.reserve(dofs_.size());
   forces_.reserve(dofs_.size());

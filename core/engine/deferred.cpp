@@ -13,6 +13,8 @@ namespace {
 
 // Room reserved for touched unknowns: more than a rebase lets gather.
 constexpr Index kReserved = 1024;
+// And for the differences of predicted fractures.
+constexpr std::size_t kPredicted = std::size_t{1} << 14;
 
 /// Rows and columns are processed in full vectors.
 Eigen::Index padded(Eigen::Index n) { return (n + 7) / 8 * 8; }
@@ -58,17 +60,26 @@ Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool dama
   }
 }
 
-/// What single fractures need, so that they allocate nothing.
+/// What events of some sixteen elements need, so that they allocate nothing.
 void Deferred::reserve_for_fractures() {
-  constexpr Eigen::Index kRows = 128;
+  constexpr Eigen::Index kRows = 128, kColumns = 96;
   base_->make_room();
   reserve(std::min(problem_.dof_count(), kReserved) + static_cast<Index>(grips_));
   touched_.reserve(is_touched_.size());
   rows_.reserve(kRows);
-  make_room(u_, kRows, 8);
+  make_room(u_, kRows, kColumns);
   make_room(columns_, kRows, m_.cols());
   make_room(product_, kRows, m_.cols());
-  make_room(gram_, m_.rows(), 16);
+  make_room(gram_, m_.rows(), kColumns);
+  make_room(xu_, m_.rows(), kColumns);
+  make_room(z_, m_.rows(), kColumns);
+  make_room(zt_, kColumns, m_.cols());
+  c_.resize(kColumns, kColumns);
+  event_.rows.reserve(static_cast<std::size_t>(4 * kColumns));
+  event_.values.reserve(static_cast<std::size_t>(24 * kColumns));
+  event_.ends.reserve(static_cast<std::size_t>(kColumns));
+  event_.w.reserve(static_cast<std::size_t>(4 * kRows * kColumns));
+  event_.compress.reserve(static_cast<std::size_t>(kRows));
   events_.reserve(kReserved);
   elements_.reserve(kReserved);
 }
@@ -137,6 +148,7 @@ void Deferred::push(std::span<const Index> elements) {
 void Deferred::prepare(std::span<const Index> elements) {
   const std::size_t before = basis_.differences().size();
   wanted_.clear();
+  wanted_.reserve(kPredicted);
   for (Index e : elements) {
     basis_.add(e);
     const auto added = basis_.differences().subspan(before);
@@ -190,30 +202,37 @@ void Deferred::gather(std::span<const Index> elements) {
 }
 
 void Deferred::gather_event(std::span<const Index> elements) {
-  fem::EventFactor event;
-  std::vector<std::pair<std::vector<Index>, fem::RowMajor>> parts;
+  EventRoom& parts = event_;
+  parts.rows.clear();
+  parts.values.clear();
+  parts.ends.clear();
   for (Index e : elements) {
     basis_.coordinates(e, rows_, u_);
-    const auto rows = static_cast<Eigen::Index>(rows_.size());
-    parts.emplace_back(rows_, u_.topLeftCorner(rows, 6));
-    event.dofs.insert(event.dofs.end(), rows_.begin(), rows_.end());
+    parts.rows.insert(parts.rows.end(), rows_.begin(), rows_.end());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto row = u_.row(static_cast<Eigen::Index>(i));
+      parts.values.insert(parts.values.end(), row.data(), row.data() + 6);
+    }
+    parts.ends.push_back(parts.rows.size());
   }
-  std::sort(event.dofs.begin(), event.dofs.end());
-  event.dofs.erase(std::unique(event.dofs.begin(), event.dofs.end()), event.dofs.end());
-  event.w.setZero(static_cast<Index>(event.dofs.size()), 6 * static_cast<Index>(elements.size()));
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    for (std::size_t i = 0; i < parts[p].first.size(); ++i) {
-      const auto row = std::lower_bound(event.dofs.begin(), event.dofs.end(), parts[p].first[i]);
-      event.w.block<1, 6>(row - event.dofs.begin(), 6 * static_cast<Eigen::Index>(p)) =
-          parts[p].second.row(static_cast<Eigen::Index>(i));
+  rows_ = parts.rows;
+  std::sort(rows_.begin(), rows_.end());
+  rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
+  const auto height = static_cast<Eigen::Index>(rows_.size());
+  rank_ = 6 * static_cast<Eigen::Index>(elements.size());
+  parts.w.assign(static_cast<std::size_t>(height * rank_), 0.0);
+  for (std::size_t p = 0, i = 0; p < parts.ends.size(); ++p) {
+    Eigen::Map<Eigen::MatrixXd> w(parts.w.data(), height, rank_);
+    for (; i < parts.ends[p]; ++i) {
+      const auto row = std::lower_bound(rows_.begin(), rows_.end(), parts.rows[i]);
+      w.block<1, 6>(row - rows_.begin(), 6 * static_cast<Eigen::Index>(p)) =
+          Eigen::Map<const Eigen::Matrix<double, 1, 6>>(&parts.values[6 * i]);
     }
   }
-  if (event.w.cols() > event.w.rows()) event = compressed(std::move(event));
-  rank_ = event.w.cols();
-  make_room(u_, event.w.rows(), padded(rank_));
-  u_.topLeftCorner(event.w.rows(), rank_) = event.w;
-  u_.block(0, rank_, event.w.rows(), padded(rank_) - rank_).setZero();
-  rows_ = event.dofs;
+  if (rank_ > height) rank_ = compress(height, rank_, parts.w, parts.compress);
+  make_room(u_, height, padded(rank_));
+  u_.topLeftCorner(height, rank_) = Eigen::Map<Eigen::MatrixXd>(parts.w.data(), height, rank_);
+  u_.block(0, rank_, height, padded(rank_) - rank_).setZero();
 }
 
 /// M += Z C^-1 Z^T; false, with M as it was, when C is not positive definite.

@@ -17,6 +17,7 @@
 
 #include "engine/base.hpp"
 #include "engine/difference_basis.hpp"
+#include "engine/update_vectors.hpp"
 
 namespace sunder::engine {
 
@@ -107,6 +108,13 @@ class Deferred {
   // The event in work: its update vectors and where they act, and what comes of them.
   std::vector<Index> rows_;
   Eigen::Index rank_ = 0;
+  struct EventRoom {                // of an event with several elements
+    std::vector<Index> rows;        // of its elements, one after the other
+    std::vector<double> values;     // six per row
+    std::vector<std::size_t> ends;  // per element, in rows
+    std::vector<double> w;
+    CompressRoom compress;
+  } event_;
   fem::RowMajor u_, columns_, xu_, z_, zt_, product_, gram_, at_grips_;
   Eigen::MatrixXd c_;
   // A solution: u in B, the forces x on B, what they lack, and its products; count() entries each.

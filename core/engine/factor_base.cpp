@@ -11,6 +11,8 @@ namespace {
 
 // Columns that go through the factor together: wide enough for the panels' products.
 constexpr Index kGroup = 32;
+// Room for the differences of predicted fractures.
+constexpr std::size_t kPredicted = std::size_t{1} << 14;
 
 /// Columns are processed in full vectors.
 Index padded(Index columns) { return (columns + 7) / 8 * 8; }
@@ -118,6 +120,7 @@ void FactorBase::prepare(std::span<const Difference> vectors) {
   make_room();
   prepared_.retain(vectors);
   wanted_.clear();
+  wanted_.reserve(kPredicted);
   for (const Difference& v : vectors) {
     const bool known = std::ranges::any_of(
         wanted_, [&](const Difference& o) { return o.dof == v.dof && o.other == v.other; });

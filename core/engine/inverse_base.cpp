@@ -16,6 +16,7 @@ InverseBase::InverseBase(const fem::Factor& factor) : factor_(factor) {
   x_ = factor.inverse_columns(all);
   of_load_.setZero(x_.rows());
   right_side_.setZero(x_.rows());
+  projected_.resize(1024);
   place_.assign(static_cast<std::size_t>(x_.rows()), kNone);
   touched_.reserve(place_.size());
   forces_.reserve(place_.size());

@@ -6,58 +6,75 @@
 namespace sunder::engine {
 
 const PreparedColumns::Column* PreparedColumns::find(const Difference& vector) const {
-  for (std::size_t i = 0; i < used_; ++i) {
-    const Difference& v = columns_[i].vector;
-    if (v.dof == vector.dof && v.other == vector.other) return &columns_[i];
+  for (const Column& c : columns_) {
+    if (c.vector.dof == vector.dof && c.vector.other == vector.other) return &c;
   }
   return nullptr;
 }
 
+/// Closes the gaps that the dropped columns leave.
 void PreparedColumns::retain(std::span<const Difference> vectors) {
   const auto wanted = [&](const Column& c) {
     return std::ranges::any_of(vectors, [&](const Difference& v) {
       return v.dof == c.vector.dof && v.other == c.vector.other;
     });
   };
-  for (std::size_t i = 0; i < used_;) {
-    if (wanted(columns_[i])) {
-      ++i;
-    } else {
-      std::swap(columns_[i], columns_[--used_]);
+  std::size_t kept = 0;
+  auto path = paths_.begin();
+  auto value = values_.begin();
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const Column c = columns_[i];
+    const bool last = i + 1 == columns_.size();
+    const std::size_t path_end = last ? paths_.size() : columns_[i + 1].path;
+    const std::size_t values_end = last ? values_.size() : columns_[i + 1].values;
+    if (!wanted(c)) continue;
+    columns_[kept++] = {c.vector, static_cast<std::size_t>(path - paths_.begin()),
+                        static_cast<std::size_t>(value - values_.begin()), c.milliseconds};
+    if (kept == i + 1) {  // nothing was dropped before it
+      path = paths_.begin() + static_cast<std::ptrdiff_t>(path_end);
+      value = values_.begin() + static_cast<std::ptrdiff_t>(values_end);
+      continue;
     }
+    path = std::copy(paths_.begin() + static_cast<std::ptrdiff_t>(c.path),
+                     paths_.begin() + static_cast<std::ptrdiff_t>(path_end), path);
+    value = std::copy(values_.begin() + static_cast<std::ptrdiff_t>(c.values),
+                      values_.begin() + static_cast<std::ptrdiff_t>(values_end), value);
   }
+  columns_.resize(kept);
+  paths_.erase(path, paths_.end());
+  values_.erase(value, values_.end());
 }
 
 void PreparedColumns::keep(const Difference& vector, std::span<const Index> path,
                            const fem::RowMajor& rows, Index column, double milliseconds) {
-  if (used_ == columns_.size()) columns_.emplace_back();
-  Column& c = columns_[used_++];
-  c.vector = vector;
-  c.path.assign(path.begin(), path.end());
-  c.values.clear();
+  constexpr std::size_t kColumns = 4096, kPaths = std::size_t{1} << 20,
+                        kValues = std::size_t{1} << 22;
+  columns_.reserve(kColumns);  // all three do nothing from the second time on
+  paths_.reserve(kPaths);
+  values_.reserve(kValues);
+  columns_.push_back({vector, paths_.size(), values_.size(), milliseconds});
+  paths_.insert(paths_.end(), path.begin(), path.end());
   for (Index s : path) {
     for (Index r = nodes_.first[s]; r < nodes_.first[s + 1]; ++r) {
-      c.values.push_back(rows(r, column));
+      values_.push_back(rows(r, column));
     }
   }
-  c.milliseconds = milliseconds;
 }
 
 void PreparedColumns::restore(const Difference& vector, fem::RowMajor& rows, Index column) {
   const Column& c = *find(vector);
-  const double* value = c.values.data();
-  for (Index s : c.path) {
+  const bool last = &c == &columns_.back();
+  const std::size_t path_end = last ? paths_.size() : (&c)[1].path;
+  const double* value = values_.data() + c.values;
+  for (std::size_t p = c.path; p < path_end; ++p) {
+    const Index s = paths_[p];
     for (Index r = nodes_.first[s]; r < nodes_.first[s + 1]; ++r) rows(r, column) = *value++;
   }
   saved_ms_ += c.milliseconds;
 }
 
 std::size_t PreparedColumns::bytes() const {
-  std::size_t sum = 0;
-  for (const Column& c : columns_) {
-    sum += c.values.capacity() * sizeof(double) + c.path.capacity() * sizeof(Index);
-  }
-  return sum;
+  return values_.size() * sizeof(double) + paths_.size() * sizeof(Index);
 }
 
 }  // namespace sunder::engine

@@ -10,6 +10,7 @@
 
 #include "sunder/simulation.hpp"
 #include "support/body.hpp"
+#include "support/notch_board.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"
 
@@ -148,6 +149,77 @@ TEST_P(Allocations, AreNoneInAWarmQuietStep) {
     EXPECT_EQ(report.step < 5 ? 0 : sum, 0) << "step " << report.step;
   }
 }
+
+struct Tear {
+  const char* name;
+  Route route;
+  FractureModel model = FractureModel::b;
+  SifSource sif = SifSource::formula;
+  CrackBirth birth = CrackBirth::element;
+  Update update = Update::deferred;
+};
+
+Scene notch(const Tear& tear) {
+  Scene scene = notch_board(tear.model);
+  scene.solver.route = tear.route;
+  scene.solver.update = tear.update;
+  scene.fracture.sif = tear.sif;
+  scene.fracture.birth = tear.birth;
+  scene.steps = 60;
+  return scene;
+}
+
+class Cascade : public ::testing::TestWithParam<Tear> {};
+
+// All of a step with a crack open, quiet or tearing: the notch grows, new cracks are born beside
+// it, up to 28 of them. The first step takes the notch out and is the warm-up. What is left comes
+// with large steps alone: a new base begins (a thread, and what it works on, once in some hundred
+// fractures), and lists follow events larger than all before, of more than sixteen elements. The
+// first ring around a tip that leaves a condensed region makes room for the fields outside it.
+TEST_P(Cascade, AllocatesNothingOnceItIsWarm) {
+  constexpr int kLarge = 40;  // elements of a step
+  constexpr long kNewBase = 64, kFieldsOutside = 8;
+  constexpr int kMost = 200;  // the next step would tear the board in two
+  const auto problem = std::make_shared<const Problem>(notch(GetParam()));
+  Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
+  bool inside = GetParam().route == Route::condensed;
+  int before = 0, tearing = 0;
+  while (!simulation.done() && before <= kMost) {
+    const Count counted;
+    const StepReport report = simulation.step();
+    const long sum = counted.sum();
+    const int destroyed = report.destroyed - before;
+    before = report.destroyed;
+    if (report.step == 0) continue;
+    tearing += destroyed > 0;
+    if (GetParam().update == Update::eager && destroyed > 0) continue;  // makes its update
+    long allowed = destroyed > kLarge ? kNewBase : 0;
+    if (inside && sum > allowed) {
+      inside = false;
+      allowed = kFieldsOutside;
+    }
+    EXPECT_LE(sum, allowed) << "step " << report.step << ", " << destroyed << " elements";
+  }
+  EXPECT_GT(tearing, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Notch, Cascade,
+    ::testing::Values(Tear{"Inverse", Route::inverse}, Tear{"Condensed", Route::condensed},
+                      Tear{"Factor", Route::factor},
+                      Tear{"InverseByField", Route::inverse, FractureModel::b, SifSource::field},
+                      Tear{"CondensedByField", Route::condensed, FractureModel::b,
+                           SifSource::field},
+                      Tear{"FactorByField", Route::factor, FractureModel::b, SifSource::field},
+                      Tear{"InverseByShear", Route::inverse, FractureModel::a},
+                      Tear{"FactorByShear", Route::factor, FractureModel::a},
+                      Tear{"BirthThrough", Route::inverse, FractureModel::b, SifSource::formula,
+                           CrackBirth::through},
+                      Tear{"InverseEager", Route::inverse, FractureModel::b, SifSource::formula,
+                           CrackBirth::element, Update::eager},
+                      Tear{"CondensedEager", Route::condensed, FractureModel::b, SifSource::formula,
+                           CrackBirth::element, Update::eager}),
+    [](const auto& p) { return p.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(Routes, Allocations,
                          ::testing::Values(Route::inverse, Route::condensed, Route::factor),
