@@ -87,6 +87,7 @@ std::vector<Method> methods() {
   constexpr auto fp32 = Precision::fp32, fp64 = Precision::fp64;
   std::vector<Method> list{method("cpu inverse eager fp64", "cpu", inverse, eager, fp64),
                            method("cpu inverse deferred fp64", "cpu", inverse, deferred, fp64),
+                           method("cpu condensed eager fp64", "cpu", condensed, eager, fp64),
                            method("cpu condensed deferred fp64", "cpu", condensed, deferred, fp64),
                            method("cpu factor deferred fp64", "cpu", factor, deferred, fp64),
                            method("cpu cg fp64", "cpu", cg, Update::automatic, fp64)};
