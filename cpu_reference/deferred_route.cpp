@@ -40,8 +40,11 @@ class DeferredRoute final : public InverseRoute {
     if (!damage) return;
     const int frames = frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
     // The thread is to be busy for two frames of three at most, where they tear without a pause.
-    threshold_ = body.problem().gripped_dofs().size() +
-                 static_cast<std::size_t>(std::max(1.5 * kColumns * frames, kFewestColumns));
+    rebased_at_ = body.problem().gripped_dofs().size() +
+                  static_cast<std::size_t>(std::max(1.5 * kColumns * frames, kFewestColumns));
+    threshold_ = rebased_at_;
+    // The factor that takes the inverse's place solves backward for as much as so many columns.
+    if (dense) threshold_ = std::max(threshold_, intact.factor.entries() / all_.size());
     coming_.emplace(body, frames);
   }
 
@@ -79,7 +82,7 @@ class DeferredRoute final : public InverseRoute {
     saved_ms_ = saved_ms();
     based_ = {};  // frees the old base first
     based_ = based_on(body_, {});
-    ++bases_;
+    rebased();
     return true;
   }
 
@@ -112,6 +115,11 @@ class DeferredRoute final : public InverseRoute {
     const double saved = saved_ms();
     if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
     saved_ms_ = saved;
+    rebased();
+  }
+
+  void rebased() {
+    threshold_ = rebased_at_;
     ++bases_;
   }
 
@@ -130,7 +138,8 @@ class DeferredRoute final : public InverseRoute {
   std::vector<Index> all_;  // every unknown: the loads of a residual
   Load load_;               // of the last solution
   Based based_;
-  std::size_t threshold_ = 0;  // columns of the damage at which a new base begins
+  // Columns of the damage at which a new base begins: now, and over a factor.
+  std::size_t threshold_ = 0, rebased_at_ = 0;
   int bases_ = 1;
   double saved_ms_ = 0;  // by the bases before this one
   double enough_ = 0;
