@@ -130,6 +130,8 @@ class DeferredRoute final : public InverseRoute {
     based.factor = std::make_shared<const fem::Factor>(stiffness_->factor(work));
     based.deferred = std::make_unique<engine::Deferred>(
         body.problem(), std::make_unique<engine::FactorBase>(*based.factor));
+    // Room for predictions too: the frame that takes the base is to allocate nothing.
+    if (body.problem().scene().solver.prepare) based.deferred->prepare({});
     return based;
   }
 

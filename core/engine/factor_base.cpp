@@ -11,6 +11,8 @@ namespace {
 
 // Columns that go through the factor together: wide enough for the panels' products.
 constexpr Index kGroup = 32;
+// Columns that a base begins with room for.
+constexpr Index kColumns = 1024;
 // Room for the differences of predicted fractures.
 constexpr std::size_t kPredicted = std::size_t{1} << 14;
 
@@ -23,8 +25,8 @@ FactorBase::FactorBase(const fem::Factor& factor)
     : l_(factor.cholesky()), columns_(l_.supernodes()), prepared_(l_.supernodes()) {
   of_load_.setZero(l_.size());
   y_.resize(l_.size());
-  groups_.reserve(1024);
-  places_.reserve(1024);
+  groups_.reserve(kColumns);
+  places_.reserve(kColumns);
   missing_.reserve(kGroup);
   path_.reserve(static_cast<std::size_t>(l_.supernodes().count()));
 }
@@ -32,7 +34,9 @@ FactorBase::FactorBase(const fem::Factor& factor)
 void FactorBase::make_room() {
   if (rows_.rows() > 0) return;
   rows_.setZero(l_.size(), kGroup);
-  block_.resize(1024, kGroup);
+  block_.resize(kColumns, kGroup);
+  projected_.resize(kColumns);
+  l_.make_room(kGroup, work_);
   columns_.make_room();
 }
 

@@ -14,6 +14,11 @@ const PreparedColumns::Column* PreparedColumns::find(const Difference& vector) c
 
 /// Closes the gaps that the dropped columns leave.
 void PreparedColumns::retain(std::span<const Difference> vectors) {
+  constexpr std::size_t kColumns = 4096, kPaths = std::size_t{1} << 20,
+                        kValues = std::size_t{1} << 22;
+  columns_.reserve(kColumns);  // all three do nothing from the second time on
+  paths_.reserve(kPaths);
+  values_.reserve(kValues);
   const auto wanted = [&](const Column& c) {
     return std::ranges::any_of(vectors, [&](const Difference& v) {
       return v.dof == c.vector.dof && v.other == c.vector.other;
@@ -47,11 +52,6 @@ void PreparedColumns::retain(std::span<const Difference> vectors) {
 
 void PreparedColumns::keep(const Difference& vector, std::span<const Index> path,
                            const fem::RowMajor& rows, Index column, double milliseconds) {
-  constexpr std::size_t kColumns = 4096, kPaths = std::size_t{1} << 20,
-                        kValues = std::size_t{1} << 22;
-  columns_.reserve(kColumns);  // all three do nothing from the second time on
-  paths_.reserve(kPaths);
-  values_.reserve(kValues);
   columns_.push_back({vector, paths_.size(), values_.size(), milliseconds});
   paths_.insert(paths_.end(), path.begin(), path.end());
   for (Index s : path) {

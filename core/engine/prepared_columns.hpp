@@ -16,7 +16,7 @@ class PreparedColumns {
  public:
   explicit PreparedColumns(const fem::Supernodes& nodes) : nodes_(nodes) {}
 
-  /// Drops all columns but these.
+  /// Drops all columns but these; the first time it makes room for those to come.
   void retain(std::span<const Difference> vectors);
   [[nodiscard]] bool holds(const Difference& vector) const { return find(vector) != nullptr; }
   /// Keeps one column of `rows` on the supernodes of `path`, which took so long to compute.

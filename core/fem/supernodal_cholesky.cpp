@@ -32,6 +32,12 @@ SupernodalCholesky::ConstPanel SupernodalCholesky::panel(Index s) const {
   return {values_.data() + nodes_->value_begin[s], nodes_->height(s), nodes_->width(s)};
 }
 
+void SupernodalCholesky::make_room(Index columns, SolveWork& work) const {
+  work.seen.resize(static_cast<std::size_t>(nodes_->count()), 0);
+  work.below.resize(static_cast<std::size_t>(tallest_));
+  work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * columns)));
+}
+
 void SupernodalCholesky::reach(std::span<const Index> rows, std::vector<Index>& path,
                                SolveWork& work) const {
   path.clear();

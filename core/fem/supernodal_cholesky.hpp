@@ -41,6 +41,8 @@ class SupernodalCholesky {
   [[nodiscard]] std::size_t entries() const { return values_.size(); }
   [[nodiscard]] std::size_t bytes() const;
 
+  /// Room for `columns` right sides, so that what follows allocates nothing.
+  void make_room(Index columns, SolveWork& work) const;
   /// The supernodes that L^-1 b can reach from some rows of L, ascending: their paths to the root.
   void reach(std::span<const Index> rows, std::vector<Index>& path, SolveWork& work) const;
 

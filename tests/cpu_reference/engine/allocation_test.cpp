@@ -172,32 +172,28 @@ Scene notch(const Tear& tear) {
 class Cascade : public ::testing::TestWithParam<Tear> {};
 
 // All of a step with a crack open, quiet or tearing: the notch grows, new cracks are born beside
-// it, up to 28 of them. The first step takes the notch out and is the warm-up. What is left comes
-// with large steps alone: a new base begins (a thread, and what it works on, once in some hundred
-// fractures), and lists follow events larger than all before, of more than sixteen elements. The
-// first ring around a tip that leaves a condensed region makes room for the fields outside it.
+// it, up to 28 of them; new bases are begun and taken. The first step takes the notch out and is
+// the warm-up. What is left comes with large steps alone: a few lists follow an event larger than
+// all before it. Fields outside a condensed region, which the ring around a tip may reach, get
+// their room when they are first asked for: stress in one step, displacement in another.
 TEST_P(Cascade, AllocatesNothingOnceItIsWarm) {
   constexpr int kLarge = 40;  // elements of a step
-  constexpr long kNewBase = 64, kFieldsOutside = 8;
+  constexpr long kLists = 8, kFieldsOutside = 8;
   constexpr int kMost = 200;  // the next step would tear the board in two
   const auto problem = std::make_shared<const Problem>(notch(GetParam()));
   Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
-  bool inside = GetParam().route == Route::condensed;
-  int before = 0, tearing = 0;
+  int readings = GetParam().route == Route::condensed ? 2 : 0;
+  int before = simulation.step().destroyed, tearing = 0;
   while (!simulation.done() && before <= kMost) {
     const Count counted;
     const StepReport report = simulation.step();
     const long sum = counted.sum();
     const int destroyed = report.destroyed - before;
     before = report.destroyed;
-    if (report.step == 0) continue;
     tearing += destroyed > 0;
     if (GetParam().update == Update::eager && destroyed > 0) continue;  // makes its update
-    long allowed = destroyed > kLarge ? kNewBase : 0;
-    if (inside && sum > allowed) {
-      inside = false;
-      allowed = kFieldsOutside;
-    }
+    long allowed = destroyed > kLarge ? kLists : 0;
+    if (sum > allowed && readings-- > 0) allowed += kFieldsOutside;
     EXPECT_LE(sum, allowed) << "step " << report.step << ", " << destroyed << " elements";
   }
   EXPECT_GT(tearing, 0);
