@@ -65,15 +65,16 @@ double multiply_adds(const fem::Supernodes& nodes) {
 }  // namespace
 
 int frames_of_a_factor(const fem::SupernodalCholesky& factor, std::size_t elements) {
-  constexpr double kSolutions = 4;    // of the check, each forward and backward
-  constexpr double kUpdate = 3e-5;    // seconds of a frame with a fracture, whatever the size
-  constexpr double kAllowance = 1.5;  // the thread follows meanwhile
+  constexpr double kSolutions = 4;  // of the check, each forward and backward
+  constexpr double kUpdate = 3e-5;  // seconds of a frame with a fracture, whatever the size
+  // The thread follows meanwhile, and a busy machine takes twice as long: a frame is not to wait.
+  constexpr double kAllowance = 4;
   const double solve = seconds(static_cast<double>(factor.entries()));
   const double count = static_cast<double>(elements);
   const double making = 2 * multiply_adds(factor.supernodes()) / kFactorFlops +
                         kCheckSeconds * count + 2 * kSolutions * solve;
   const double frame = 1.5 * solve + kStressSeconds * count + kUpdate;
-  return std::clamp(static_cast<int>(kAllowance * making / frame), 16, 256);
+  return std::clamp(static_cast<int>(kAllowance * making / frame), 48, 256);
 }
 
 FrameCost frame_cost(const FrameShape& s) {

@@ -39,9 +39,10 @@ class DeferredRoute final : public InverseRoute {
     based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), damage);
     if (!damage) return;
     const int frames = frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
-    // The thread is to be busy for two frames of three at most, where they tear without a pause.
+    // As many as have followed a base when it is taken: where frames tear without a pause, the next
+    // one begins at once.
     rebased_at_ = body.problem().gripped_dofs().size() +
-                  static_cast<std::size_t>(std::max(1.5 * kColumns * frames, kFewestColumns));
+                  static_cast<std::size_t>(std::max(kColumns * frames, kFewestColumns));
     threshold_ = rebased_at_;
     // The factor that takes the inverse's place solves backward for as much as so many columns.
     if (dense) threshold_ = std::max(threshold_, intact.factor.entries() / all_.size());
