@@ -36,6 +36,27 @@ std::string number(double value) {
 
 namespace {
 
+struct Extremes {
+  double contrast, poisson;  ///< largest over least Young's modulus; the largest ratio
+};
+
+Extremes extremes(const Problem& problem) {
+  double softest = problem.material(0).young, stiffest = softest, poisson = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    softest = std::min(softest, problem.material(e).young);
+    stiffest = std::max(stiffest, problem.material(e).young);
+    poisson = std::max(poisson, problem.material(e).poisson);
+  }
+  return {stiffest / softest, poisson};
+}
+
+/// What condensing the rest of the body in fp64 costs of stress, which no residual over the region
+/// shows. Above all that bench_stability measured (contrast x nu, contrast x crack).
+double condensing_error(const Extremes& materials) {
+  const double c = materials.contrast, b = 1 - 2 * materials.poisson;
+  return 4e-19 * c * c + 2e-17 * c / (b * b);
+}
+
 /// The region of route condensed, where that was asked for or pays by itself.
 std::optional<engine::Region> choose_region(const Problem& problem, const Needs& needs,
                                             bool displayed) {
@@ -46,8 +67,20 @@ std::optional<engine::Region> choose_region(const Problem& problem, const Needs&
         "route condensed keeps a region's fields alone on the device, but the host draws those of "
         "the whole body; use route inverse or cg");
   }
+  const Extremes materials = extremes(problem);
+  const double error = condensing_error(materials);
+  const bool holds = error <= solver.tolerance / 4;
+  if (asked && !holds) {
+    std::ostringstream poisson;
+    poisson << std::setprecision(8) << materials.poisson;
+    throw DeviceError("route condensed on Vulkan may lose " + number(error) +
+                      " of stress where Young's moduli differ by a factor of " +
+                      number(materials.contrast) + " and Poisson's ratio is " + poisson.str() +
+                      ", too much for tolerance " + number(solver.tolerance) +
+                      "; use route inverse or backend cpu");
+  }
   const bool possible =
-      solver.route == Route::automatic && solver.update != Update::eager && !displayed;
+      solver.route == Route::automatic && solver.update != Update::eager && !displayed && holds;
   if (!asked && !(possible && needs.damage)) return std::nullopt;
   engine::Region region = engine::region_of(problem, needs);
   if (asked) {
@@ -115,14 +148,9 @@ void require_double(const Plan& plan, const SolverOptions& solver,
 
 /// What of the materials is past kFp32Contrast and kFp32Poisson; empty: nothing.
 std::string past_fp32(const Problem& problem) {
-  double softest = problem.material(0).young, stiffest = softest, poisson = 0;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    softest = std::min(softest, problem.material(e).young);
-    stiffest = std::max(stiffest, problem.material(e).young);
-    poisson = std::max(poisson, problem.material(e).poisson);
-  }
-  if (stiffest > kFp32Contrast * softest) {
-    return "Young's moduli differ by a factor of " + number(stiffest / softest) + ", more than " +
+  const auto [contrast, poisson] = extremes(problem);
+  if (contrast > kFp32Contrast) {
+    return "Young's moduli differ by a factor of " + number(contrast) + ", more than " +
            number(kFp32Contrast);
   }
   if (poisson > kFp32Poisson) {
