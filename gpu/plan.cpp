@@ -69,7 +69,8 @@ std::optional<engine::Region> choose_region(const Problem& problem, const Needs&
   }
   const Extremes materials = extremes(problem);
   const double error = condensing_error(materials);
-  const bool holds = error <= solver.tolerance / 4;
+  constexpr double kRounding = 1e-10;  // what all that is done in fp64 may cost a torn body
+  const bool holds = error <= std::max(solver.tolerance / 4, kRounding);
   if (asked && !holds) {
     std::ostringstream poisson;
     poisson << std::setprecision(8) << materials.poisson;
