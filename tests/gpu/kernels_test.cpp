@@ -243,17 +243,13 @@ TEST_P(Kernels, YieldRatioOfKnownStates) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Kernels,
-                         testing::Values(Numbers{gpu::Variant::gpu, false},
-                                         Numbers{gpu::Variant::gpu, true},
-                                         Numbers{gpu::Variant::lvp, false},
-                                         Numbers{gpu::Variant::lvp, true}),
+const auto kAllNumbers =
+    testing::Values(Numbers{gpu::Variant::gpu, false}, Numbers{gpu::Variant::gpu, true},
+                    Numbers{gpu::Variant::lvp, false}, Numbers{gpu::Variant::lvp, true});
+
+INSTANTIATE_TEST_SUITE_P(All, Kernels, kAllNumbers,
                          [](const auto& tested) { return name_of(tested.param); });
-INSTANTIATE_TEST_SUITE_P(All, Products,
-                         testing::Values(Numbers{gpu::Variant::gpu, false},
-                                         Numbers{gpu::Variant::gpu, true},
-                                         Numbers{gpu::Variant::lvp, false},
-                                         Numbers{gpu::Variant::lvp, true}),
+INSTANTIATE_TEST_SUITE_P(All, Products, kAllNumbers,
                          [](const auto& tested) { return name_of(tested.param); });
 
 }  // namespace
