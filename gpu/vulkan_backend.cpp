@@ -8,23 +8,16 @@
 #include <future>
 
 #include "engine/instrument_block.hpp"
-#include "engine/substructure.hpp"
-#include "fem/element.hpp"
-#include "gpu/cg_route.hpp"
 #include "gpu/choose_device.hpp"
 #include "gpu/cost_model.hpp"
+#include "gpu/device_body.hpp"
 #include "gpu/frame_check.hpp"
-#include "gpu/host_corrected_route.hpp"
-#include "gpu/inverse_route.hpp"
-#include "gpu/plan.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
 namespace {
 
 constexpr int kRefinements = 6;
-// Read back node by node up to here, gathered on the device beyond.
-constexpr std::size_t kFewNodes = 64;
 
 std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int asked) {
   if (options.lent) return vulkan::borrow_device(*options.lent, options.probe);
@@ -34,16 +27,12 @@ std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int as
   return vulkan::create_device(instance, physical, options.probe);
 }
 
-using IntactInverse = std::shared_ptr<const HostInverse>;
-
-IntactInverse invert(const Problem& problem, bool keep_dense) {
-  return std::make_shared<const HostInverse>(problem, std::span<const double>{}, keep_dense);
-}
-
 /// On a thread of its own, while loader, device and pipelines are made ready.
 std::future<IntactInverse> start_inverse(const Problem& problem, const VulkanOptions& options) {
   if (options.invert_on_device.value_or(false) || !host_inverts_anyway(problem)) return {};
-  return std::async(std::launch::async, [&problem] { return invert(problem, true); });
+  return std::async(std::launch::async, [&problem] {
+    return std::make_shared<const HostInverse>(problem, std::span<const double>{}, true);
+  });
 }
 
 class VulkanBackend final : public Backend {
@@ -59,13 +48,13 @@ class VulkanBackend final : public Backend {
                  options.invert_on_device.value_or(plan_.invert_on_device)},
         check_(*problem, plan_.fp64) {
     device_->set_timing(false);
-    on_.body = std::move(problem);
-    put_on_device(plan_.region);
-    if (on_.region) leave_out_the_rest();
+    body_ = plan_.region ? make_body(plan_.region) : make_body({}, std::move(started_));
+    force_.assign(body_->fields().rows(), 0.0);
+    if (body_->region()) leave_out_the_rest();
     if (options.lent) {
-      display_ =
-          std::make_unique<Display>(kernels_, this->problem(), *on_.fields, this->needs().stress,
-                                    options.display, options.lent->timeline_semaphore);
+      display_ = std::make_unique<Display>(kernels_, this->problem(), body_->fields(),
+                                           this->needs().stress, options.display,
+                                           options.lent->timeline_semaphore);
     }
   }
 
@@ -75,8 +64,8 @@ class VulkanBackend final : public Backend {
     info.device = device_->physical().name;
     info.driver = device_->physical().driver;
     info.precision = plan_.fp64 ? "fp64" : "fp32";
-    info.route = on_.region ? "condensed" : on_.route->name();
-    info.update = needs().damage ? on_.route->update() : "none";
+    info.route = body_->region() ? "condensed" : body_->route().name();
+    info.update = needs().damage ? body_->route().update() : "none";
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
     const FrameCost cost = frame_cost(shape(), device_->physical());
@@ -85,20 +74,11 @@ class VulkanBackend final : public Backend {
     return info;
   }
 
-  std::vector<BufferPlan> buffers() const override {
-    std::vector<BufferPlan> plan = on_.route->buffers();
-    if (on_.region) {
-      plan.front().name = "condensed " + plan.front().name;
-      plan.push_back({"factor of the rest and its stiffness on the region (host)",
-                      on_.region->bytes() + whole_u_.size() * sizeof(double)});
-    }
-    for (BufferPlan& b : on_.fields->buffers()) plan.push_back(std::move(b));
-    return plan;
-  }
+  std::vector<BufferPlan> buffers() const override { return body_->buffers(); }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override {
-    if (!instruments_ && !on_.body->gripped_dofs().empty() && on_.route->grip_factor()) {
-      instruments_.emplace(*on_.body);
+    if (!instruments_ && !body_->part().gripped_dofs().empty() && body_->route().grip_factor()) {
+      instruments_.emplace(body_->part());
       if (solved_) publish_instruments();
     }
     return instruments_ ? instruments_->forces() : nullptr;
@@ -121,8 +101,8 @@ class VulkanBackend final : public Backend {
             device_->pipelines()};
   }
   std::vector<Index> over_yield() const {
-    std::vector<Index> list = on_.fields->over_yield();
-    for (Index& e : list) e = of_body(static_cast<std::uint32_t>(e));
+    std::vector<Index> list = body_->fields().over_yield();
+    for (Index& e : list) e = body_->of_whole(static_cast<std::uint32_t>(e));
     return list;
   }
   std::size_t bytes_read() const { return device_->bytes_read(); }
@@ -137,48 +117,22 @@ class VulkanBackend final : public Backend {
     shape.host_corrects = kernels_.single();
     shape.damage = needs().damage;
     shape.real_bytes = kernels_.real_bytes();
-    shape.rows = on_.fields->rows();
-    shape.grips = on_.body->gripped_dofs().size();
+    shape.rows = body_->fields().rows();
+    shape.grips = body_->part().gripped_dofs().size();
     for (const InstrumentNodes& i : problem().instrument_nodes()) {
       shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
     }
     shape.loaded -= std::min(shape.loaded, shape.grips);
-    shape.elements = on_.body->mesh().tets.size();
-    shape.stiffness_bytes = on_.fields->matrix().bytes();
+    shape.elements = body_->part().mesh().tets.size();
+    shape.stiffness_bytes = body_->fields().matrix().bytes();
     shape.stress = needs().stress;
     return shape;
   }
 
-  void put_on_device(std::optional<engine::Region> region) {
-    if (region) {
-      on_.region = std::make_unique<engine::Substructure>(problem(), std::move(*region));
-      on_.body = on_.region->part();
-    }
-    on_.fields = std::make_unique<Fields>(kernels_, *on_.body, needs(), route_needs());
-    prepare_intact();
-    on_.route = make_route();
-  }
-
-  void prepare_intact() {
-    if (!plan_.cg || needs().pristine) {
-      on_.intact = started_.valid() && !on_.region
-                       ? started_.get()
-                       : invert(*on_.body, !plan_.cg && !inverse_.on_device);
-    }
-    if (!needs().pristine) return;
-    on_.pristine = std::make_unique<Correction>(
-        *on_.body,
-        [host = on_.intact](std::span<const Index> dofs) { return host->columns(dofs); });
-  }
-
-  [[nodiscard]] std::unique_ptr<DeviceRoute> make_route() {
-    force_.assign(on_.fields->rows(), 0.0);
-    if (plan_.cg) return std::make_unique<CgRoute>(kernels_, *on_.body, *on_.fields);
-    if (kernels_.single()) {
-      return std::make_unique<HostCorrectedRoute>(kernels_, *on_.body, *on_.fields, on_.intact,
-                                                  inverse_.panel_bytes);
-    }
-    return std::make_unique<InverseRoute>(kernels_, *on_.body, *on_.fields, on_.intact, inverse_);
+  [[nodiscard]] std::unique_ptr<DeviceBody> make_body(std::optional<engine::Region> region,
+                                                      std::future<IntactInverse> started = {}) {
+    return std::make_unique<DeviceBody>(DeviceSetup{kernels_, plan_, inverse_, needs()}, problem(),
+                                        std::move(region), std::move(started));
   }
 
   /// What a host's submit still reads must not be written.
@@ -186,16 +140,8 @@ class VulkanBackend final : public Backend {
     if (display_) display_->finish();
   }
 
-  [[nodiscard]] Fields::RouteNeeds route_needs() const {
-    if (plan_.cg) return {CgRoute::planned_bytes(*on_.body), true};
-    if (kernels_.single()) {
-      return {HostCorrectedRoute::planned_bytes(kernels_, *on_.body, inverse_.panel_bytes), false};
-    }
-    return {InverseRoute::planned_bytes(kernels_, *on_.body, inverse_), false};
-  }
-
   void leave_out_the_rest() {
-    for (std::string& what : engine::left_out_of(problem(), on_.region->region())) {
+    for (std::string& what : engine::left_out_of(problem(), body_->region()->region())) {
       leave_out(std::move(what));
     }
   }
@@ -203,60 +149,45 @@ class VulkanBackend final : public Backend {
   void do_set_load(const Load& load) override {
     finish_display();
     for (Index d : load_.force_dofs) force_[d] = 0;
-    if (on_.region) whole_load_ = load;
-    load_ = on_.region ? on_.region->load(load) : load;
+    if (body_->region()) whole_load_ = load;
+    load_ = body_->load(load);
     solved_ = false;
     force_squared_ = 0;
     for (double f : load.forces) force_squared_ += f * f;
     for (std::size_t i = 0; i < load_.forces.size(); ++i) {
       force_[load_.force_dofs[i]] = load_.forces[i];
     }
-    on_.fields->set_load(force_, load_.displacements);
-  }
-
-  /// Elements as the device numbers them.
-  std::span<const Index> on_device(std::span<const Index> elements) {
-    if (!on_.region) return elements;
-    in_part_.clear();
-    for (Index e : elements) {
-      if (on_.region->element(e) != kNone) in_part_.push_back(on_.region->element(e));
-    }
-    return in_part_;
-  }
-  [[nodiscard]] Index of_body(std::uint32_t on_device) const {
-    const auto e = static_cast<Index>(on_device);
-    return on_.region ? on_.region->region().elements[e] : e;
+    body_->fields().set_load(force_, load_.displacements);
   }
 
   SolveReport do_solve() override {
     finish_display();
-    if (!check_.known(load_)) on_.fields->keep_next();
+    if (!check_.known(load_)) body_->fields().keep_next();
     try {
       const SolveReport report = solve_within_tolerance();
-      solved_load_ = whole_load_;
-      whole_u_known_ = false;
+      body_->solved(whole_load_);
       solved_ = true;
       if (instruments_) publish_instruments();
       return report;
     } catch (const NumericalError&) {
       check_.event();
-      on_.fields->restore();  // results so far stay readable
+      body_->fields().restore();  // results so far stay readable
       throw;
     }
   }
 
   /// Only once somebody has asked for them: the reactions are read back from the device.
   void publish_instruments() {
-    reactions_.resize(on_.body->gripped_dofs().size());
-    on_.fields->read_reactions(on_.body->gripped_dofs(), reactions_);
-    instruments_->publish(*on_.route->grip_factor(), reactions_, load_.displacements);
+    reactions_.resize(body_->part().gripped_dofs().size());
+    body_->fields().read_reactions(body_->part().gripped_dofs(), reactions_);
+    instruments_->publish(*body_->route().grip_factor(), reactions_, load_.displacements);
   }
 
   SolveReport solve_within_tolerance() {
     SolveReport report;
     do {
       report = attempt();
-    } while (!(report.error <= tolerance()) && on_.route->restart(destroyed_list_));
+    } while (!(report.error <= tolerance()) && body_->route().restart(destroyed_list_));
     if (!(report.error <= tolerance())) {
       throw NumericalError(
           "the solution cannot be brought under the tolerance: estimated stress error " +
@@ -273,15 +204,15 @@ class VulkanBackend final : public Backend {
     const double target = check_.target();
     if (const auto known = check_.known(load_)) {
       report = *known;
-      report.iterations = on_.route->solve(load_, !on_.body->gripped_dofs().empty());
-      if (std::isfinite(on_.fields->state().stress_squared)) return report;
+      report.iterations = body_->route().solve(load_, !body_->part().gripped_dofs().empty());
+      if (std::isfinite(body_->fields().state().stress_squared)) return report;
     }
     check_.event();
-    report.iterations += on_.route->solve(load_, true);
-    const auto energy = on_.route->energy_bound();
-    const double stress = std::sqrt(on_.fields->state().stress_squared);
+    report.iterations += body_->route().solve(load_, true);
+    const auto energy = body_->route().energy_bound();
+    const double stress = std::sqrt(body_->fields().state().stress_squared);
     if (energy) {
-      if (const auto error = check_.bounded(load_, *energy, stress, on_.route->bases())) {
+      if (const auto error = check_.bounded(load_, *energy, stress, body_->route().bases())) {
         report.error = *error;
         report.residual = residual();
         check_.checked(load_, report);
@@ -289,48 +220,39 @@ class VulkanBackend final : public Backend {
       }
     }
     for (int refinement = 0;; ++refinement) {
-      report.iterations += on_.route->correct();
+      report.iterations += body_->route().correct();
       const double error = estimate();
       report.residual = residual();
       if (refinement == 0) {
         report.polished = !(error <= tolerance());
-        if (on_.route->leaves_at(error, destroyed_list_)) return attempt();
+        if (body_->route().leaves_at(error, destroyed_list_)) return attempt();
       }
       // A correction that no longer shrinks is rounding: stop there if the promise holds.
       const bool stalled = refinement > 0 && !(error < report.error / 2);
       report.error = error;
       if (refinement == 0 && energy) {
-        check_.estimated(load_, error, *energy, stress, on_.route->bases());
+        check_.estimated(load_, error, *energy, stress, body_->route().bases());
       }
       if (refinement == 0 && error <= target) check_.checked(load_, report);
       if (error <= target || refinement == kRefinements || stalled) return report;
-      on_.route->add_correction();
+      body_->route().add_correction();
     }
   }
 
   double estimate() const {
-    double of_u = std::sqrt(on_.fields->state().stress_squared);
-    double of_du = std::sqrt(on_.fields->correction().stress_squared);
+    double of_u = std::sqrt(body_->fields().state().stress_squared);
+    double of_du = std::sqrt(body_->fields().correction().stress_squared);
     if (!std::isfinite(residual())) return residual();
     if (!std::isfinite(of_u)) return of_u;
-    if (on_.region) {
-      of_u = std::max(of_u, largest_outside(Field::displacement, whole_load_));
-      of_du = std::max(of_du, largest_outside(Field::correction, {}));
+    if (body_->region()) {
+      of_u = std::max(of_u, body_->largest_outside(Field::displacement, whole_load_));
+      of_du = std::max(of_du, body_->largest_outside(Field::correction, {}));
     }
     return of_du == 0 ? 0.0 : of_du / of_u;
   }
 
-  /// Stress of a field outside the region: the rest may be stiffer and feel what the region does
-  /// not.
-  double largest_outside(Field field, const Load& load) const {
-    std::vector<double> of_part(on_.body->dofs().size()), whole(problem().dofs().size());
-    on_.fields->read(field, of_part);
-    on_.region->expand(load, of_part, whole);
-    return on_.region->largest_outside(whole);
-  }
-
   double residual() const {
-    const shaders::Summary s = on_.fields->state();
+    const shaders::Summary s = body_->fields().state();
     const double load = force_squared_ + s.reaction_squared;
     return load > 0 ? std::sqrt(s.residual_squared / load) : 0.0;
   }
@@ -339,9 +261,9 @@ class VulkanBackend final : public Backend {
 
   StressSummary do_stress() override {
     if (!needs().yield) return {};
-    const shaders::Summary s = on_.fields->state();
+    const shaders::Summary s = body_->fields().state();
     const auto worst = [this](double ratio, std::uint32_t element) {
-      return ratio > 0 ? Worst{of_body(element), ratio} : Worst{};
+      return ratio > 0 ? Worst{body_->of_whole(element), ratio} : Worst{};
     };
     return {worst(s.any_ratio, s.any_element), worst(s.candidate_ratio, s.candidate_element),
             static_cast<Index>(s.over)};
@@ -349,20 +271,20 @@ class VulkanBackend final : public Backend {
 
   void do_destroy(std::span<const Index> elements) override {
     finish_display();
-    if (on_.region) follow_outside(elements);
+    if (body_->region()) follow_outside(elements);
     check_.event();
     solved_ = false;
-    const auto list = on_device(elements);
+    const auto list = body_->on_device(elements);
     destroyed_list_.insert(destroyed_list_.end(), list.begin(), list.end());
-    on_.fields->destroy(list);
-    on_.route->destroy(list, destroyed_list_);
+    body_->fields().destroy(list);
+    body_->route().destroy(list, destroyed_list_);
   }
 
   /// What the scene says can be destroyed is in the region; for what else a host destroys it grows.
   void follow_outside(std::span<const Index> elements) {
     const std::size_t before = beyond_.size();
     for (Index e : elements) {
-      if (on_.region->element(e) == kNone) beyond_.push_back(e);
+      if (!body_->holds(e)) beyond_.push_back(e);
     }
     if (beyond_.size() == before) return;
     try {
@@ -376,15 +298,14 @@ class VulkanBackend final : public Backend {
   /// The region anew, with the elements `beyond_`. The last solution, damage, load and what is no
   /// candidate go over to it; nothing changes when it cannot be made.
   void grow() {
-    static_cast<void>(whole_displacement());
     std::vector<Index> destroyed;
-    for (Index e : destroyed_list_) destroyed.push_back(of_body(static_cast<std::uint32_t>(e)));
-    OnDevice old = std::exchange(on_, OnDevice{});
+    for (Index e : destroyed_list_) destroyed.push_back(body_->of_whole(e));
+    auto other = make_body(engine::region_of(problem(), needs(), beyond_));
+    body_.swap(other);
     try {
-      put_on_device(engine::region_of(problem(), needs(), beyond_));
-      take_over_state(destroyed);
+      take_over_state(*other, destroyed);
     } catch (...) {
-      on_ = std::move(old);
+      body_.swap(other);
       number_anew(destroyed);
       throw;
     }
@@ -392,147 +313,49 @@ class VulkanBackend final : public Backend {
 
   /// Load and damage as the region on the device numbers them.
   void number_anew(std::span<const Index> destroyed) {
-    force_.assign(on_.fields->rows(), 0.0);
+    force_.assign(body_->fields().rows(), 0.0);
     load_ = {};
     do_set_load(Load(whole_load_));
-    const auto list = on_device(destroyed);
+    const auto list = body_->on_device(destroyed);
     destroyed_list_.assign(list.begin(), list.end());
   }
 
-  void take_over_state(std::span<const Index> destroyed) {
+  void take_over_state(const DeviceBody& before, std::span<const Index> destroyed) {
     check_ = FrameCheck(problem(), plan_.fp64);
     number_anew(destroyed);
-    show(whole_u_);
-    on_.fields->exclude(on_device(excluded_));
+    body_->show(before.whole_displacement());
+    body_->fields().exclude(body_->on_device(excluded_));
     if (!destroyed_list_.empty()) {
-      on_.fields->destroy(destroyed_list_);
-      on_.route->destroy(destroyed_list_, destroyed_list_);
+      body_->fields().destroy(destroyed_list_);
+      body_->route().destroy(destroyed_list_, destroyed_list_);
     }
     if (!instruments_) return;
     std::shared_ptr<InstrumentForces> forces = instruments_->forces();
-    instruments_.emplace(*on_.body);
+    instruments_.emplace(body_->part());
     instruments_->take_over(std::move(forces));
-  }
-
-  /// A displacement of all nodes of the problem, and the stress that goes with it.
-  void show(std::span<const double> displacement) {
-    std::vector<double> of_part(on_.body->dofs().size());
-    for (Index n = 0; n < problem().node_count(); ++n) {
-      if (on_.region->node(n) == kNone) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        of_part[3 * static_cast<std::size_t>(on_.region->node(n)) + axis] =
-            displacement[3 * static_cast<std::size_t>(n) + axis];
-      }
-    }
-    on_.fields->write_displacement(of_part);
-    vulkan::Commands commands(*device_);
-    commands.begin();
-    on_.fields->record_state(commands, false);
-    commands.end();
-    commands.submit();
   }
 
   void do_exclude_candidates(std::span<const Index> elements) override {
     finish_display();
-    if (on_.region) excluded_.insert(excluded_.end(), elements.begin(), elements.end());
-    on_.fields->exclude(on_device(elements));  // outside the region nothing is a candidate
+    if (body_->region()) excluded_.insert(excluded_.end(), elements.begin(), elements.end());
+    body_->fields().exclude(
+        body_->on_device(elements));  // outside the region nothing is a candidate
   }
 
-  void do_solve_pristine(const Load& of_problem, std::span<double> displacement) override {
-    const Load load = on_.region ? on_.region->load(of_problem) : of_problem;
-    const Loaded loaded{load.force_dofs, load.forces};
-    Eigen::VectorXd u = Eigen::VectorXd::Zero(on_.body->dof_count());
-    const Eigen::MatrixXd columns = on_.intact->columns(load.force_dofs);
-    for (std::size_t i = 0; i < load.forces.size(); ++i) {
-      u += load.forces[i] * columns.col(static_cast<Index>(i));
-    }
-    if (on_.pristine->count() > 0) {
-      u += on_.pristine->columns() *
-           on_.pristine->coefficients(on_.pristine->project(loaded), load.displacements);
-    }
-    const std::span<const double> unknowns(u.data(), static_cast<std::size_t>(u.size()));
-    if (!on_.region) {
-      fem::scatter(problem(), unknowns, displacement);
-      return;
-    }
-    std::vector<double> of_part(on_.body->dofs().size());
-    fem::scatter(*on_.body, unknowns, of_part);
-    on_.region->expand(of_problem, of_part, displacement);
+  void do_solve_pristine(const Load& load, std::span<double> displacement) override {
+    body_->solve_pristine(load, displacement);
   }
-
-  /// Displacement of the last solution at all nodes of the problem: outside a region it is solved
-  /// for, once a solution.
-  std::span<const double> whole_displacement() const {
-    if (whole_u_known_) return whole_u_;
-    std::vector<double> of_part(on_.body->dofs().size());
-    on_.fields->read_displacement(of_part);
-    whole_u_.resize(problem().dofs().size());
-    on_.region->expand(solved_load_, of_part, whole_u_);
-    whole_u_known_ = true;
-    return whole_u_;
-  }
-
   void do_read_displacement(std::span<double> displacement) const override {
-    if (!on_.region) {
-      on_.fields->read_displacement(displacement);
-      return;
-    }
-    const auto whole = whole_displacement();
-    std::copy(whole.begin(), whole.end(), displacement.begin());
+    body_->read_displacement(displacement);
   }
-
   void do_read_displacement(std::span<const Index> nodes,
                             std::span<Vec3> displacement) const override {
-    if (!on_.region) {
-      read_nodes(nodes, displacement);
-      return;
-    }
-    std::vector<Index> of_part;
-    for (Index n : nodes) {
-      if (on_.region->node(n) != kNone) of_part.push_back(on_.region->node(n));
-    }
-    if (of_part.size() == nodes.size()) {
-      read_nodes(of_part, displacement);
-      return;
-    }
-    const auto whole = whole_displacement();
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      displacement[i] = Vec3(&whole[3 * static_cast<std::size_t>(nodes[i])]);
-    }
+    body_->read_displacement(nodes, displacement);
   }
-
-  void read_nodes(std::span<const Index> nodes, std::span<Vec3> displacement) const {
-    if (nodes.size() > kFewNodes) {
-      on_.fields->read_displacement(nodes, displacement);
-      return;
-    }
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      displacement[i] = on_.fields->read_displacement(nodes[i]);
-    }
-  }
-
-  void do_read_stress(std::span<Voigt> stress) const override {
-    if (!on_.region) {
-      on_.fields->read_stress(stress);
-      return;
-    }
-    std::vector<Voigt> of_part(on_.body->mesh().tets.size());
-    on_.fields->read_stress(of_part);
-    for (std::size_t e = 0; e < of_part.size(); ++e) {
-      stress[on_.region->region().elements[e]] = of_part[e];
-    }
-    on_.region->stress_outside(whole_displacement(), stress);
-  }
-
-  Voigt do_read_stress(Index element) const override {
-    const Index e = on_.region ? on_.region->element(element) : element;
-    if (e != kNone) return on_.fields->read_stress(e);
-    return fem::stress(problem().shape(element), problem().material(element),
-                       fem::corner_displacement(problem().mesh(), element, whole_displacement()));
-  }
-
+  void do_read_stress(std::span<Voigt> stress) const override { body_->read_stress(stress); }
+  Voigt do_read_stress(Index element) const override { return body_->read_stress(element); }
   void do_read_reactions(std::span<double> reactions) const override {
-    on_.fields->read_reactions(on_.body->gripped_dofs(), reactions);
+    body_->fields().read_reactions(body_->part().gripped_dofs(), reactions);
   }
 
   std::future<IntactInverse> started_;
@@ -540,23 +363,11 @@ class VulkanBackend final : public Backend {
   Plan plan_;
   KernelFactory kernels_;
   InverseOptions inverse_;  // of routes inverse and condensed
-  struct OnDevice {
-    std::unique_ptr<engine::Substructure> region;  // route condensed; null: the whole is there
-    std::shared_ptr<const Problem> body;           // what the device has
-    std::unique_ptr<Fields> fields;
-    IntactInverse intact;
-    std::unique_ptr<Correction> pristine;  // of the intact body: its grips
-    std::unique_ptr<DeviceRoute> route;
-  };
-  OnDevice on_;
+  std::unique_ptr<DeviceBody> body_;
   FrameCheck check_;
   std::unique_ptr<Display> display_;
-  Load load_;  // of on_.body
-  // Of a region's problem: the load set, that of the last solution, and its displacement once read.
-  Load whole_load_, solved_load_;
-  mutable std::vector<double> whole_u_;
-  mutable bool whole_u_known_ = false;
-  std::vector<Index> in_part_;
+  Load load_;        // of body_->part()
+  Load whole_load_;  // of a region's problem
   // Of a region's problem: what has been destroyed outside the region planned, and excluded.
   std::vector<Index> beyond_, excluded_;
   std::optional<engine::InstrumentBlock> instruments_;  // once asked for
