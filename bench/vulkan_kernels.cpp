@@ -239,6 +239,7 @@ void register_kernel_rows(const Rows& rows) {
   }
   update(false, 2100, 24);
   update(false, 2100, 60);
+  update(true, 2100, 60);  // what the inversion is made of
   if (rows.big) {
     // Sizes that a device cannot hold are skipped with its error.
     for (const Index n : {2000, 20000, 50000}) {
