@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stability study: one difficulty at a time, then pairs, every method; one CSV row per cell.
-//   bench_stability FILE [ci|quick|full|many]
+//   bench_stability FILE [quick|full|many]
 // ci: the ends of every knob, few fractures; quick: one difficulty at a time; full: the pairs as
 // well; many: 640 fractures.
 // Exit code 1 when a cell is WRONG: a number that is off, or no number, and nothing said.
@@ -97,17 +97,6 @@ void pairs(std::vector<Cell>& cells) {
   }
 }
 
-/// The first and the last value of every knob.
-void keep_ends(std::vector<Cell>& cells) {
-  std::vector<Cell> kept;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const bool first = i == 0 || cells[i - 1].study != cells[i].study;
-    const bool last = i + 1 == cells.size() || cells[i + 1].study != cells[i].study;
-    if (first || last) kept.push_back(cells[i]);
-  }
-  cells = std::move(kept);
-}
-
 std::string quoted(std::string text) {
   for (std::size_t i = 0; (i = text.find('"', i)) != std::string::npos; i += 2)
     text.insert(i, 1, '"');
@@ -152,16 +141,14 @@ int run(std::ostream& out, const std::vector<Cell>& cells) {
 int main(int argc, char** argv) {
   using namespace sunder::bench;
   const std::string mode = argc > 2 ? argv[2] : "full";
-  if (argc < 2 || argc > 3 ||
-      (mode != "ci" && mode != "quick" && mode != "full" && mode != "many")) {
-    std::cerr << "usage: bench_stability FILE [ci|quick|full|many]\n";
+  if (argc < 2 || argc > 3 || (mode != "quick" && mode != "full" && mode != "many")) {
+    std::cerr << "usage: bench_stability FILE [quick|full|many]\n";
     return 2;
   }
   std::vector<Cell> cells;
   if (mode != "many") one_at_a_time(cells);
   if (mode == "many") many_fractures(cells);
   if (mode == "full") pairs(cells);
-  if (mode == "ci") keep_ends(cells);
   std::ofstream out(argv[1]);
   const int wrong = run(out, cells);
   out.close();
