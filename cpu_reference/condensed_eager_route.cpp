@@ -13,6 +13,8 @@
 namespace sunder::cpu_reference {
 namespace {
 
+constexpr std::size_t kReserved = 1024;  // room for lost elements
+
 class CondensedEagerRoute final : public InverseRoute {
  public:
   CondensedEagerRoute(const DamagedBody& body, const IntactBody& intact,
@@ -21,10 +23,12 @@ class CondensedEagerRoute final : public InverseRoute {
         factor_(std::shared_ptr<void>(), &intact.factor),  // without an owner: it outlives this
         intact_(&intact.factor),
         place_(static_cast<std::size_t>(body.problem().dof_count()), kNone),
-        gripped_(body.problem().gripped_dofs()) {
+        gripped_(body.problem().gripped_dofs()),
+        update_(static_cast<Eigen::Index>(dofs.size())) {
     dofs_.reserve(dofs.size());
     for (Index d : dofs) add_unknown(d);
     x_ = factor_->inverse_block(dofs_, dofs_);
+    lost_.reserve(std::min(body.scale().size(), kReserved));
     factor_grips();
   }
 
@@ -84,10 +88,10 @@ class CondensedEagerRoute final : public InverseRoute {
 
   void destroy(std::span<const Index> elements) override {
     ++bases_;
-    fem::EventFactor event = fem::event_factor(body_.problem(), elements);
-    grow(event.dofs);
-    for (Index& d : event.dofs) d = place_[d];
-    if (update_inverse(event, x_) && factor_grips()) {
+    const std::span<Index> touched = update_.gather(body_.problem(), elements);
+    grow(touched);
+    for (Index& d : touched) d = place_[d];
+    if (update_.apply(x_) && factor_grips()) {
       for (Index e : elements) lose(e);
     } else {  // rounding has made I - W^T X W indefinite
       rebase();
@@ -111,7 +115,8 @@ class CondensedEagerRoute final : public InverseRoute {
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)",
-                                  static_cast<std::size_t>(x_.size()) * sizeof(double)}};
+                                  static_cast<std::size_t>(x_.size()) * sizeof(double)},
+                                 {"room of the largest update so far", update_.bytes()}};
     if (!lost_.empty()) {
       plan.push_back({"stiffness lost since the factor", lost_.size() * sizeof(LostElement)});
     }
@@ -209,14 +214,14 @@ class CondensedEagerRoute final : public InverseRoute {
     const auto count = static_cast<Eigen::Index>(gripped_.size());
     grip_.setZero(count);
     if (count == 0) return true;
-    Eigen::MatrixXd block(count, count);
+    grip_compliance_.resize(count, count);
     for (Eigen::Index j = 0; j < count; ++j) {
       for (Eigen::Index i = 0; i < count; ++i) {
-        block(i, j) = x_(place_[gripped_[static_cast<std::size_t>(i)]],
-                         place_[gripped_[static_cast<std::size_t>(j)]]);
+        grip_compliance_(i, j) = x_(place_[gripped_[static_cast<std::size_t>(i)]],
+                                    place_[gripped_[static_cast<std::size_t>(j)]]);
       }
     }
-    grip_block_.compute(block);
+    grip_block_.compute(grip_compliance_);
     return grip_block_.info() == Eigen::Success && grip_block_.matrixLLT().allFinite();
   }
 
@@ -249,8 +254,10 @@ class CondensedEagerRoute final : public InverseRoute {
   const fem::Factor* intact_;
   std::vector<Index> dofs_, place_;  // S, and where in it each unknown is
   std::span<const Index> gripped_;
-  Eigen::MatrixXd x_;                                              // X_SS of the damaged body
+  Eigen::MatrixXd x_;  // X_SS of the damaged body
+  InverseUpdate update_;
   std::vector<LostElement> lost_;                                  // since factor_
+  Eigen::MatrixXd grip_compliance_;                                // X_GG
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};  // of X_GG
   // Of the last solution, on S: displacement, forces of grips and of D.
   Load load_;

@@ -26,8 +26,8 @@ int machine_threads() {
 class DenseInverseRoute final : public InverseRoute {
  public:
   DenseInverseRoute(const DamagedBody& body, const IntactBody& intact)
-      : body_(body), grips_(intact.grips.dofs()), x_(intact.factor.inverse()) {
-    read_grips();
+      : body_(body), grips_(intact.grips.dofs()), x_(intact.factor.inverse()), update_(x_.rows()) {
+    grips_.read(x_);
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
@@ -46,8 +46,9 @@ class DenseInverseRoute final : public InverseRoute {
   }
 
   void destroy(std::span<const Index> elements) override {
-    if (update_inverse(fem::event_factor(body_.problem(), elements), x_)) {
-      read_grips();
+    update_.gather(body_.problem(), elements);
+    if (update_.apply(x_)) {
+      grips_.read(x_);
     } else {  // rounding has made I - W^T X W indefinite
       rebase();
     }
@@ -55,24 +56,20 @@ class DenseInverseRoute final : public InverseRoute {
 
   bool rebase() override {
     x_ = fem::Factor(body_.problem(), body_.scale()).inverse();
-    read_grips();
+    grips_.read(x_);
     return true;
   }
 
   std::vector<BufferPlan> buffers() const override {
-    return {{"inverse (dense, n x n)", static_cast<std::size_t>(x_.size()) * sizeof(double)}};
+    return {{"inverse (dense, n x n)", static_cast<std::size_t>(x_.size()) * sizeof(double)},
+            {"room of the largest update so far", update_.bytes()}};
   }
 
  private:
-  void read_grips() {
-    if (grips_.none()) return;
-    const std::vector<Index> dofs(grips_.dofs().begin(), grips_.dofs().end());
-    grips_.set_columns(x_(Eigen::all, dofs));
-  }
-
   const DamagedBody& body_;
   Grips grips_;
   Eigen::MatrixXd x_;
+  InverseUpdate update_;
 };
 
 class ConjugateGradientRoute final : public InverseRoute {
@@ -127,8 +124,24 @@ class ConjugateGradientRoute final : public InverseRoute {
 
 void Grips::set_columns(Eigen::MatrixXd columns) {
   columns_ = std::move(columns);
-  const std::vector<Index> dofs(dofs_.begin(), dofs_.end());
-  block_.compute(columns_(dofs, Eigen::all));
+  factor();
+}
+
+void Grips::read(const Eigen::MatrixXd& inverse) {
+  if (none()) return;
+  columns_.resize(inverse.rows(), static_cast<Index>(dofs_.size()));
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    columns_.col(static_cast<Index>(i)) = inverse.col(dofs_[i]);
+  }
+  factor();
+}
+
+void Grips::factor() {
+  at_grips_.resize(columns_.cols(), columns_.cols());
+  for (Index i = 0; i < columns_.cols(); ++i) {
+    at_grips_.row(i) = columns_.row(dofs_[static_cast<std::size_t>(i)]);
+  }
+  block_.compute(at_grips_);
   if (block_.info() != Eigen::Success) {
     throw NumericalError("the compliance of the gripped nodes is singular in double precision");
   }

@@ -25,6 +25,8 @@ class Grips {
   explicit Grips(std::span<const Index> dofs) : dofs_(dofs) {}
   /// Takes new columns A^-1 E_G, shape (n x dofs). Throws NumericalError when C_G is singular.
   void set_columns(Eigen::MatrixXd columns);
+  /// The same out of the whole inverse.
+  void read(const Eigen::MatrixXd& inverse);
   /// Moves x so that x_G = displacement (empty: 0). By one thread at a time.
   void hold(Eigen::VectorXd& x, std::span<const double> displacement) const;
   [[nodiscard]] bool none() const { return dofs_.empty(); }
@@ -34,8 +36,10 @@ class Grips {
   }
 
  private:
+  void factor();
+
   std::span<const Index> dofs_;
-  Eigen::MatrixXd columns_;
+  Eigen::MatrixXd columns_, at_grips_;                        // C and C_G
   Eigen::LLT<Eigen::MatrixXd> block_{Eigen::MatrixXd(0, 0)};  // copied before its first use
   mutable Eigen::VectorXd gap_;                               // room to work in
 };

@@ -4,22 +4,35 @@
 #include <algorithm>
 
 #include "fem/element.hpp"
+#include "fem/row_product.hpp"
 
 namespace sunder::fem {
+namespace {
 
-EventFactor event_factor(const Problem& problem, std::span<const Index> elements) {
-  EventFactor event;
+/// Unknowns that elements touch, ascending.
+void touched_by(const Problem& problem, std::span<const Index> elements, std::vector<Index>& dofs) {
+  dofs.clear();
   for (Index e : elements) {
     for (Index n : problem.mesh().tets[e]) {
       for (int axis = 0; axis < 3; ++axis) {
-        if (problem.dof(n, axis) != kNone) event.dofs.push_back(problem.dof(n, axis));
+        if (problem.dof(n, axis) != kNone) dofs.push_back(problem.dof(n, axis));
       }
     }
   }
-  std::sort(event.dofs.begin(), event.dofs.end());
-  event.dofs.erase(std::unique(event.dofs.begin(), event.dofs.end()), event.dofs.end());
-  event.w.setZero(static_cast<Index>(event.dofs.size()), 6 * static_cast<Index>(elements.size()));
-  Index column = 0;
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+}
+
+}  // namespace
+
+void event_factor(const Problem& problem, std::span<const Index> elements, Eigen::Index stride,
+                  std::vector<Index>& dofs, std::vector<double>& w) {
+  touched_by(problem, elements, dofs);
+  const std::size_t size = dofs.size() * static_cast<std::size_t>(stride);
+  if (w.size() < size) w.resize(size);
+  Eigen::Map<RowMajor> rows(w.data(), static_cast<Eigen::Index>(dofs.size()), stride);
+  rows.setZero();
+  Eigen::Index column = 0;
   for (Index e : elements) {
     const Material& m = problem.material(e);
     const UpdateFactor u = update_factor(problem.shape(e), elasticity(m.young, m.poisson),
@@ -27,11 +40,19 @@ EventFactor event_factor(const Problem& problem, std::span<const Index> elements
     for (int i = 0; i < 12; ++i) {
       const Index dof = problem.dof(problem.mesh().tets[e][i / 3], i % 3);
       if (dof == kNone) continue;
-      const auto row = std::lower_bound(event.dofs.begin(), event.dofs.end(), dof);
-      event.w.block<1, 6>(row - event.dofs.begin(), column) = u.row(i);
+      const auto row = std::lower_bound(dofs.begin(), dofs.end(), dof);
+      rows.block<1, 6>(row - dofs.begin(), column) = u.row(i);
     }
     column += 6;
   }
+}
+
+EventFactor event_factor(const Problem& problem, std::span<const Index> elements) {
+  EventFactor event;
+  std::vector<double> w;
+  const auto columns = 6 * static_cast<Eigen::Index>(elements.size());
+  event_factor(problem, elements, columns, event.dofs, w);
+  event.w = Eigen::Map<RowMajor>(w.data(), static_cast<Eigen::Index>(event.dofs.size()), columns);
   return event;
 }
 

@@ -18,4 +18,9 @@ struct EventFactor {
 };
 [[nodiscard]] EventFactor event_factor(const Problem& problem, std::span<const Index> elements);
 
+/// The same into vectors that keep their room: W row by row at a stride of at least 6 k, zero
+/// beyond its columns. `w` is only ever made longer.
+void event_factor(const Problem& problem, std::span<const Index> elements, Eigen::Index stride,
+                  std::vector<Index>& dofs, std::vector<double>& w);
+
 }  // namespace sunder::fem
