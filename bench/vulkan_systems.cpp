@@ -93,13 +93,12 @@ void stiffness_product(benchmark::State& state, const Rows& rows, const std::str
   const std::size_t bytes = std::size_t{matrix.groups()} * shaders::kGroup * 4 * sizeof(double);
   const vulkan::Buffer p(device, bytes, vulkan::Placement::device);
   const vulkan::Buffer q(device, bytes, vulkan::Placement::device);
-  const vulkan::Buffer sums(device, matrix.groups() * sizeof(double), vulkan::Placement::device);
+  const vulkan::Buffer sums(device, matrix.groups() * kernels.parts() * sizeof(double),
+                            vulkan::Placement::device);
   using enum gpu::Reads;
-  const auto kernel =
-      kernels.make_fp64("cg_multiply", {doubles, plain, plain, words, doubles, plain, plain},
-                        sizeof(shaders::CgPush));
+  const auto kernel = kernels.make("cg_multiply", {reals, plain, words, reals, plain, plain}, 0);
   const vulkan::Buffer* buffers[] = {
-      &matrix.blocks(), &matrix.columns(), &matrix.slices(), &fields.dofs(), &p, &q, &sums};
+      &matrix.blocks(), &matrix.slices(), &fields.dofs(), &p, &q, &sums};
   const vulkan::Binding binding(device, *kernel, buffers);
   vulkan::Commands commands(device);
   commands.begin();
@@ -108,7 +107,7 @@ void stiffness_product(benchmark::State& state, const Rows& rows, const std::str
   commands.submit();
   commands.begin();
   commands.pass("product");
-  commands.dispatch(binding, shaders::CgPush{matrix.groups(), 0, 0, 0, 0}, matrix.groups());
+  commands.dispatch(binding, matrix.groups());
   commands.end();
   Work work;
   work.warm_up = true;

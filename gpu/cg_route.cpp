@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/cg_route.hpp"
 
+#include <limits>
+
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -11,7 +13,9 @@ using vulkan::Placement;
 
 // Iterations recorded in one submit; the device skips those that it does not need.
 constexpr int kIterations = 64;
-constexpr std::size_t kArguments = 9;  // words: sizes of three kinds of dispatches
+constexpr std::size_t kArguments = 3 * shaders::kCgSizes;  // words
+// Where in them the sizes of each kind of dispatches stand, in bytes.
+constexpr std::size_t kNodes = 0, kOne = 9 * sizeof(std::uint32_t);
 constexpr int kMaxIterations = 50000;
 // Energy norms of the residual: a solution to eleven digits, a correction to three.
 constexpr double kSolution = 1e-22;
@@ -32,74 +36,99 @@ CgRoute::CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& f
     vector->fill_zero();
   }
   for (Buffer* sums : {&pq_, &rz_}) {
-    *sums = Buffer(kernels.device(), matrix_.groups() * sizeof(double), Placement::device);
+    *sums = Buffer(kernels.device(), partials() * 4 * sizeof(double), Placement::device);
+    sums->fill_zero();
   }
   state_ = Buffer(kernels.device(), sizeof(shaders::CgState), Placement::host);
   arguments_ = Buffer(kernels.device(), kArguments * sizeof(std::uint32_t), Placement::device);
   create_kernels(fields);
 }
 
-std::size_t CgRoute::planned_bytes(const Problem& problem) {
-  const std::size_t nodes =
+std::uint32_t CgRoute::partials() const {
+  return round_up(matrix_.groups() * kernels_.parts(), 4) / 4;
+}
+
+std::size_t CgRoute::planned_bytes(const KernelFactory& kernels, const Problem& problem) {
+  const std::uint32_t nodes =
       round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
-  return 4 * nodes * 4 * sizeof(double) +
-         2 * Buffer::padded(nodes / shaders::kGroup * sizeof(double)) +
+  return std::size_t{4} * nodes * 4 * sizeof(double) +
+         2 * round_up(nodes / shaders::kGroup * kernels.parts(), 4) * sizeof(double) +
          Buffer::padded(sizeof(shaders::CgState)) +
          Buffer::padded(kArguments * sizeof(std::uint32_t)) + RigidSpace::planned_bytes(problem);
 }
 
 void CgRoute::create_kernels(const Fields& fields) {
   using enum Reads;
-  const auto make = [&](Pass& pass, const char* name, std::initializer_list<Reads> reads,
+  const KernelFactory kernels = kernels_.in_fp64();
+  const auto make = [&](Pass& pass, const char* name, std::uint32_t group,
+                        std::initializer_list<Reads> reads,
                         std::initializer_list<const Buffer*> buffers) {
-    pass.kernel = kernels_.make_fp64(name, reads, sizeof(shaders::CgPush));
-    pass.binding = std::make_unique<vulkan::Binding>(kernels_.device(), *pass.kernel,
+    pass.kernel = kernels.make(name, reads, sizeof(shaders::CgPush), group);
+    pass.binding = std::make_unique<vulkan::Binding>(kernels.device(), *pass.kernel,
                                                      std::vector<const Buffer*>(buffers));
   };
+  constexpr std::uint32_t all = shaders::kGroup;
+  const std::uint32_t one = kernels.summing_group();
   const Buffer& x = fields.nodal(Field::correction);
   const Buffer& m = matrix_.preconditioner();
-  make(begin_, "cg_begin", {plain, words, doubles, plain, plain, plain, plain},
-       {&fields.residual(), &fields.dofs(), &m, &x, &r_, &z_, &rz_});
-  make(start_, "cg_start", {plain, plain, plain, plain}, {&rz_, &state_, &arguments_, &rigid_.w()});
-  make(multiply_, "cg_multiply", {doubles, plain, plain, words, doubles, plain, plain},
-       {&matrix_.blocks(), &matrix_.columns(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_});
-  make(step_, "cg_step", {plain, plain, doubles, doubles, doubles, plain, plain, plain, plain},
-       {&pq_, &state_, &m, &p_, &q_, &x, &r_, &z_, &rz_});
-  make(direction_, "cg_direction", {plain, plain, plain, doubles, plain, plain, doubles, words},
-       {&rz_, &state_, &arguments_, &z_, &p_, &rigid_.w(), &rigid_.modes(), &fields.dofs()});
-  rigid_.bind(r_);
+  make(begin_, "cg_begin", all, {plain, words, reals, plain, plain, plain},
+       {&fields.residual(), &fields.dofs(), &m, &r_, &z_, &rz_});
+  make(multiply_, "cg_multiply", all, {reals, plain, words, reals, plain, plain},
+       {&matrix_.blocks(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_});
+  make(length_, "cg_length", one, {doubles, plain}, {&pq_, &state_});
+  make(step_, "cg_step", all,
+       {plain, reals, reals, reals, doubles, reals, plain, plain, plain, plain},
+       {&state_, &m, &p_, &q_, &x, &r_, &x, &r_, &z_, &rz_});
+  make(check_, "cg_check", one, {doubles, doubles, plain, plain},
+       {&rz_, &rigid_.terms(), &state_, &arguments_});
+  make(direction_, "cg_direction", all, {plain, reals, doubles, words, reals, plain},
+       {&state_, &z_, &rigid_.w(), &rigid_.modes(), &p_, &p_});
+  rigid_.bind(r_, true);
 }
 
-shaders::CgPush CgRoute::push(std::uint32_t parity, double reduction) const {
-  return {matrix_.groups(), parity, reduction, rigid_.groups(), rigid_.solve_groups()};
+shaders::CgPush CgRoute::push(bool first, double reduction) const {
+  shaders::CgPush push{};
+  push.groups = matrix_.groups();
+  push.partials = partials();
+  push.rigid_groups = rigid_.groups();
+  push.rigid_solves = rigid_.solve_groups();
+  push.first = first ? 1 : 0;
+  push.scale = 1;
+  push.reduction = reduction;
+  push.most = std::numeric_limits<double>::infinity();
+  return push;
 }
 
 void CgRoute::record_start(double reduction) {
-  commands_.dispatch(*begin_.binding, push(0, reduction), matrix_.groups());
+  const shaders::CgPush of_start = push(true, reduction);
+  const Buffer& x = fields_.nodal(Field::correction);
+  commands_.fill_zero(x, 0, x.bytes());
+  commands_.dispatch(*begin_.binding, of_start, matrix_.groups());
   commands_.barrier();
-  rigid_.record(commands_, push(0));
-  commands_.dispatch(*start_.binding, push(0, reduction), 1);
+  rigid_.record(commands_, of_start);
+  commands_.dispatch(*check_.binding, of_start, 1);
   commands_.barrier();
-  commands_.dispatch(*direction_.binding, push(shaders::kFirst), matrix_.groups());
+  commands_.dispatch(*direction_.binding, of_start, matrix_.groups());
   commands_.barrier();
 }
 
 void CgRoute::record_iterations() {
+  const shaders::CgPush of_iteration = push(false);
+  const auto dispatch = [&](const Pass& pass, std::size_t size) {
+    commands_.dispatch_indirect(*pass.binding, of_iteration, arguments_, size);
+    commands_.barrier();
+  };
   for (int i = 0; i < kIterations; ++i) {
-    const shaders::CgPush of_iteration = push(static_cast<std::uint32_t>(i % 2));
-    const auto dispatch = [&](const Pass& pass) {
-      commands_.dispatch_indirect(*pass.binding, of_iteration, arguments_, 0);
-      commands_.barrier();
-    };
-    dispatch(multiply_);
-    dispatch(step_);
+    dispatch(multiply_, kNodes);
+    dispatch(length_, kOne);
+    dispatch(step_, kNodes);
     rigid_.record_indirect(commands_, of_iteration, arguments_);
-    dispatch(direction_);
+    dispatch(check_, kOne);
+    dispatch(direction_, kNodes);
   }
 }
 
 int CgRoute::run(double reduction) {
-  static_assert(kIterations % 2 == 0);  // parity goes on where the last submit ended
   rigid_.update();
   for (int submits = 0;; ++submits) {
     commands_.begin();

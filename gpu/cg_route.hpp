@@ -15,7 +15,8 @@ class CgRoute final : public DeviceRoute {
   CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields);
 
   /// Device bytes of the route, before they exist.
-  [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
+  [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
+                                                 const Problem& problem);
 
   int solve(const Load& load, bool balance) override;
   int correct() override;
@@ -35,7 +36,9 @@ class CgRoute final : public DeviceRoute {
   void create_kernels(const Fields& fields);
   /// correction = K^-1 r, to a share of the first r^T M r. Returns iterations.
   int run(double reduction);
-  [[nodiscard]] shaders::CgPush push(std::uint32_t parity, double reduction = 0) const;
+  [[nodiscard]] shaders::CgPush push(bool first, double reduction = 0) const;
+  /// Of one sum, in packs of four.
+  [[nodiscard]] std::uint32_t partials() const;
   void record_start(double reduction);
   void record_iterations();
   void refresh_state(bool add);
@@ -50,7 +53,7 @@ class CgRoute final : public DeviceRoute {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::unique_ptr<vulkan::Binding> binding;
   };
-  Pass begin_, start_, multiply_, step_, direction_;
+  Pass begin_, multiply_, length_, step_, check_, direction_;
   vulkan::Commands commands_;
 };
 

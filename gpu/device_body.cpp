@@ -15,7 +15,7 @@ constexpr std::size_t kFewNodes = 64;
 
 Fields::RouteNeeds route_needs(const DeviceSetup& setup, const Problem& part) {
   const KernelFactory& kernels = setup.kernels;
-  if (setup.plan.cg) return {CgRoute::planned_bytes(part), true};
+  if (setup.plan.cg) return {CgRoute::planned_bytes(kernels, part), true};
   if (kernels.single()) {
     return {HostCorrectedRoute::planned_bytes(kernels, part, setup.inverse.panel_bytes), false};
   }

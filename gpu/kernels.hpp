@@ -48,7 +48,8 @@ class KernelFactory {
   }
 
   /// The same kernels with fp64 as storage precision.
-  [[nodiscard]] KernelFactory in_fp64() const { return {device_, variant_, true}; }
+  [[nodiscard]] KernelFactory in_fp64() const { return in(true); }
+  [[nodiscard]] KernelFactory in(bool fp64) const { return {device_, variant_, fp64}; }
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
   /// Kernels for a processor that emulates a device.
@@ -58,6 +59,11 @@ class KernelFactory {
   [[nodiscard]] std::size_t real_bytes() const { return fp64_ ? 8 : 4; }
   /// Partial results that a workgroup leaves behind (shaders/reduce.glsl).
   [[nodiscard]] std::uint32_t parts() const;
+  /// Invocations of a workgroup that leaves one sum: for lavapipe, where a barrier makes every
+  /// subgroup a coroutine, no more than one subgroup.
+  [[nodiscard]] std::uint32_t summing_group() const {
+    return emulated() ? device_.physical().subgroup : shaders::kGroup;
+  }
   /// Invocations of a workgroup of the low-rank update, and the columns that it updates
   /// (shaders/low_rank.comp).
   [[nodiscard]] std::uint32_t low_rank_group() const {

@@ -1,23 +1,33 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// w = (Z^T K Z)^-1 y, and y_i w_i behind it.
+// w = (Z^T K Z)^-1 y, four rows a workgroup, and their share of y^T w.
 #extension GL_GOOGLE_include_directive : require
 #include "cg.glsl"
 
-layout(std430, set = 0, binding = 0) readonly buffer Inverse { double data[]; } inverse_;
-layout(std430, set = 0, binding = 1) readonly buffer Y { double data[]; } y;
-OUT(2, W, double, w)
+IN_DVEC4(0, Inverse, inverse_)
+IN_DVEC4(1, Y, y)
+OUT(2, W, double, w)  // of each group: shift, 0, turn, 0
+OUT(3, Terms, double, terms)
 layout(push_constant) uniform Push { CgPush p; };
 
+const uint kPacks = 6u * kRigidGroups / 4u;  // of a row
+
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
-  double sum = 0;
-  // Symmetric: a column for the row, so that neighbours read neighbours.
-  for (uint j = 0u; j < 6u * p.rigid_groups; ++j) {
-    sum += inverse_.data[j * 6u * kRigidGroups + i] * y.data[j];
+  const uint first = 4u * gl_WorkGroupID.x;
+  dvec4 sum = dvec4(0);
+  for (uint j = gl_LocalInvocationID.x; j < p.rigid_solves; j += gl_WorkGroupSize.x) {
+    const dvec4 yj = DVEC4(y, j);
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+      sum[i] += dot(DVEC4(inverse_, (first + i) * kPacks + j), yj);
+    }
   }
-  if (i < 6u * p.rigid_groups) {
-    w.data[i] = sum;
-    w.data[kRigidTerms + i] = sum * y.data[i];
+  const dvec4 wi =
+      dvec4(part_sum(sum.x), part_sum(sum.y), part_sum(sum.z), part_sum(sum.w));
+  if (gl_LocalInvocationID.x == 0u) {
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+      const uint row = first + i, k = row % 6u;
+      w.data[8u * (row / 6u) + k + (k < 3u ? 0u : 1u)] = wi[i];
+    }
+    terms.data[gl_WorkGroupID.x] = dot(wi, DVEC4(y, gl_WorkGroupID.x));
   }
 }

@@ -1,53 +1,28 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// p = M r + (r^T M r of now / r^T M r of before) p with M r = z + Z w (rigid_space.hpp). The first workgroup keeps the state; at convergence it
-// sets the size of all further dispatches to 0.
+// p = M r + (r^T M r of now / r^T M r of before) p with M r = z + Z w (rigid_space.hpp); first: p = M r,
+// x = 0.
 #extension GL_GOOGLE_include_directive : require
 #include "cg.glsl"
 
-layout(std430, set = 0, binding = 0) readonly buffer RzPartial { double data[]; } rz_partial;
-INOUT(1, State, CgState, state)
-OUT(2, Arguments, uint, arguments)
-IN_DVEC4(3, Z, z)
-INOUT(4, P, dvec4, direction)
-layout(std430, set = 0, binding = 5) readonly buffer W { double data[]; } w;
-IN_DVEC4(6, Modes, modes)  // place in the group; its number, -1: none
-IN_UVEC4(7, Dofs, dofs)
+layout(std430, set = 0, binding = 0) readonly buffer State { CgState data[]; } state;
+IN_REAL4(1, Z, z)
+IN_DVEC4(2, W, w)  // of each group: shift, turn
+IN_UVEC4(3, Modes, modes)  // place in the group, fp32; axes held and number of the group
+IN_REAL4(4, PBefore, before)  // the same memory as p; each invocation its own value
+OUT_REAL4(5, P, direction)
 layout(push_constant) uniform Push { CgPush p; };
-
-dvec4 rigid_part(uint n) {
-  const dvec4 mode = DVEC4(modes, n);
-  const uint first = 6u * uint(max(mode.w, 0.0LF));
-  const dvec3 shift = dvec3(w.data[first], w.data[first + 1u], w.data[first + 2u]);
-  const dvec3 turn = dvec3(w.data[first + 3u], w.data[first + 4u], w.data[first + 5u]);
-  const dvec3 moved = shift + cross(turn, mode.xyz);
-  return free_part(mode.w < 0 ? dvec3(0) : moved, UVEC4(dofs, n));
-}
 
 void main() {
   const uint n = gl_GlobalInvocationID.x;
-  const dvec4 m_r = DVEC4(z, n) + rigid_part(n);
-  if (p.parity == kFirst) {
-    direction.data[n] = m_r;
-    return;
-  }
-  double sum = 0;
-  for (uint g = gl_LocalInvocationID.x; g < p.groups; g += kGroup) sum += rz_partial.data[g];
-  for (uint i = gl_LocalInvocationID.x; i < 6u * p.rigid_groups; i += kGroup) {
-    sum += w.data[kRigidTerms + i];
-  }
-  const double now = group_sum(sum);
-  const double before = state.data[0].rz[p.parity];
-  direction.data[n] = m_r + (now / before) * direction.data[n];
-  if (n == 0u) {
-    const bool broken = !(now >= 0) || isinf(now);
-    const bool run = !broken && now > state.data[0].target;
-    state.data[0].rz[1u - p.parity] = now;
-    state.data[0].iterations += 1u;
-    state.data[0].broken = broken ? 1u : 0u;
-    state.data[0].running = run ? 1u : 0u;
-    arguments.data[0] = run ? p.groups : 0u;
-    arguments.data[3] = run ? p.rigid_groups : 0u;
-    arguments.data[6] = run ? p.solve_groups : 0u;
-  }
+  const uvec4 mode = UVEC4(modes, n);
+  const bool loose = mode.w == kHeld;
+  const uint group = loose ? 0u : mode.w / (kNodeAxes + 1u);
+  const REAL3 shift = REAL3(DVEC4(w, 2u * group).xyz), turn = REAL3(DVEC4(w, 2u * group + 1u).xyz);
+  const REAL3 moved = shift + cross(turn, REAL3(uintBitsToFloat(mode.xyz)));
+  const bvec3 none = bvec3(loose || (mode.w & 1u) != 0u, loose || (mode.w & 2u) != 0u,
+                           loose || (mode.w & 4u) != 0u);
+  const REAL3 m_r = LOAD_REAL4(z, n).xyz + mix(moved, REAL3(0), none);
+  const REAL3 next = m_r + REAL(state.data[0].ratio) * LOAD_REAL4(before, n).xyz;
+  direction.data[n] = stored(REAL4(p.first == 1u ? m_r : next, 0));
 }

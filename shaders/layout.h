@@ -22,7 +22,6 @@ SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
 SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
 SUNDER_CONST kRigidGroups = 64u;   // groups of nodes in the second level of CG, at most
-SUNDER_CONST kFirst = 2u;          // in place of an iteration's parity
 SUNDER_CONST kHeld = 0xffffffffu;  // dof of an axis that a support holds
 
 // State of an element, bit by bit.
@@ -135,16 +134,27 @@ struct ComplementPush {
 };
 
 struct CgPush {
-  uint groups;                      // workgroups of 64 nodes
-  uint parity;                      // of the iteration; kFirst: the first direction
-  double reduction;                 // stop at this share of the first r^T M r
-  uint rigid_groups, solve_groups;  // of the second level: groups of nodes, workgroups
+  uint groups;        // workgroups of 64 nodes
+  uint partials;      // partial sums / 4
+  uint rigid_groups;  // of the second level: groups of nodes
+  uint rigid_solves;  // of the second level: workgroups of four unknowns
+  uint first;         // 1: nothing has been iterated yet
+  uint unused;
+  double scale;      // of r, a power of two
+  double reduction;  // stop at this share of the first r^T M r
+  double target;     // or at this value, whichever is larger
+  double most;       // do not begin over this value
 };
+
+SUNDER_CONST kCgSizes = 4u;  // kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup
 
 // State of conjugate gradients, on the device from the first iteration to the last.
 struct CgState {
-  double rz[2];  // r^T M r of this iteration and the next, by parity
+  double rz;       // r^T M r
+  double first;    // of the first iteration
   double target;
+  double length_;  // of the step along p
+  double ratio;    // r^T M r by the one before
   uint iterations;
   uint broken;  // 1: p^T K p was not positive, or something was not finite
   uint running;
@@ -198,9 +208,9 @@ static_assert(sizeof(StressPartial) == 32);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 64);
-static_assert(sizeof(CgPush) == 24);
+static_assert(sizeof(CgPush) == 56);
 static_assert(sizeof(ComplementPush) == 32);
-static_assert(sizeof(CgState) == 40);
+static_assert(sizeof(CgState) == 56);
 #undef SUNDER_CONST
 #undef SUNDER_WIDE_STRUCT
 }  // namespace sunder::shaders

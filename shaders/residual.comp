@@ -2,21 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // r = f - K u over the unknowns, from the 3 x 3 blocks of K (block_matrix.hpp) and displacement
 // differences: K's rows sum to zero, so (K u)_i = sum_j K_ij (u_j - u_i) and a rigid offset costs no
-// digits. At a gripped dof f - K u is minus the grip's reaction, and r = 0. Reads 100 bytes a block.
+// digits. At a gripped dof f - K u is minus the grip's reaction, and r = 0. Reads 96 bytes a block.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 #include "reduce.glsl"
 
 IN_DVEC4(0, Nodal, u)
-IN_DVEC4(1, Blocks, blocks)  // three rows a block
-IN_WORDS(2, Columns, columns)
-IN_WORDS(3, Slices, slices)  // first block of each slice, / 64
-IN_UVEC4(4, Dofs, dofs)      // x, y, z; w: gripped axes as bits
-IN_DVEC4(5, Load, load)      // of each node
-IN_DVEC4(6, Roots, roots)    // sqrt(X_jj) of each node's unknowns
-OUT(7, Balance, dvec4, balance)     // f - K u of each node
-OUT(8, Residual, double, residual)  // r of each unknown
-OUT(9, NodePartials, NodePartial, partials)
+IN_DVEC4(1, Blocks, blocks)  // three rows a block; the fourth value of the first: the column
+IN_WORDS(2, Slices, slices)  // first block of each slice, / 64
+IN_UVEC4(3, Dofs, dofs)      // x, y, z; w: gripped axes as bits
+IN_DVEC4(4, Load, load)      // of each node
+IN_DVEC4(5, Roots, roots)    // sqrt(X_jj) of each node's unknowns
+OUT(6, Balance, dvec4, balance)     // f - K u of each node
+OUT(7, Residual, double, residual)  // r of each unknown
+OUT(8, NodePartials, NodePartial, partials)
 
 #ifndef SUNDER_LVP
 shared dvec3 subgroup_sums[kGroup];
@@ -39,10 +38,11 @@ void main() {
   dvec3 k_u = dvec3(0);
   const uint last = slices.data[slice + 1u];
   for (uint k = slices.data[slice]; k < last; ++k) {
-    const uint at = k * kGroup + gl_LocalInvocationID.x;
-    const dvec3 d = DVEC4(u, columns.data[at]).xyz - own;
-    k_u += dvec3(dot(DVEC4(blocks, 3u * at).xyz, d), dot(DVEC4(blocks, 3u * at + 1u).xyz, d),
-                 dot(DVEC4(blocks, 3u * at + 2u).xyz, d));
+    const uint at = 3u * (k * kGroup + gl_LocalInvocationID.x);
+    const dvec4 row = DVEC4(blocks, at);
+    const dvec3 d = DVEC4(u, uint(row.w)).xyz - own;
+    k_u += dvec3(dot(row.xyz, d), dot(DVEC4(blocks, at + 1u).xyz, d),
+                 dot(DVEC4(blocks, at + 2u).xyz, d));
   }
   const uvec4 dof = UVEC4(dofs, n);
   const dvec3 gap = DVEC4(load, n).xyz - k_u, root = DVEC4(roots, n).xyz;

@@ -11,7 +11,8 @@
 namespace sunder::gpu {
 namespace {
 
-constexpr std::size_t kBlockDoubles = 12;  // three rows of four, the last unused
+constexpr std::size_t kBlockDoubles = 12;  // three rows of four
+constexpr std::size_t kColumnAt = 3;       // of a block: its column, exact in fp32 up to 2^24
 
 Index corner_of(const std::array<Index, 4>& tet, Index node) {
   return static_cast<Index>(std::find(tet.begin(), tet.end(), node) - tet.begin());
@@ -31,37 +32,32 @@ BlockMatrix::BlockMatrix(const Problem& problem)
 
 std::size_t BlockMatrix::planned_bytes(bool preconditioner) const {
   const std::size_t rows = std::size_t{groups_} * shaders::kGroup;
-  return columns_of_.size() * kBlockDoubles * sizeof(double) +
-         vulkan::Buffer::padded(columns_of_.size() * sizeof(std::uint32_t)) +
+  return block_count() * kBlockDoubles * sizeof(double) +
          vulkan::Buffer::padded(first_.size() * sizeof(std::uint32_t)) +
          (preconditioner ? rows * kBlockDoubles * sizeof(double) : 0);
 }
 
 void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wanted) {
   const Problem& problem = problem_;
-  std::vector<std::uint32_t> columns;
-  columns.swap(columns_of_);
   const vulkan::PhysicalDevice& device = kernels.device().physical();
-  const std::size_t bytes = columns.size() * kBlockDoubles * sizeof(double);
+  const std::size_t bytes = block_count() * kBlockDoubles * sizeof(double);
   const auto limit = std::min<std::size_t>(device.largest_buffer, device.largest_allocation);
   if (bytes > limit) {
     throw DeviceError("the stiffness needs a buffer of " + std::to_string(bytes) +
                       " bytes, but the device \"" + device.name + "\" takes buffers of " +
                       std::to_string(limit) + "; use backend cpu");
   }
-  std::vector<double> blocks(columns.size() * kBlockDoubles, 0.0);
+  std::vector<double> blocks(block_count() * kBlockDoubles, 0.0);  // padding: of node 0, zero
   std::vector<double> preconditioner(
       preconditioner_wanted ? std::size_t{groups_} * shaders::kGroup * kBlockDoubles : 0, 0.0);
   for (Index n = 0; n < problem.node_count(); ++n) {
     const auto row = static_cast<std::size_t>(n);
     for (std::size_t k = 0; k < neighbours_[row].size(); ++k) {
-      const Mat3 value = block(n, neighbours_[row][k]);
-      const std::size_t at =
-          (first_[row / shaders::kGroup] + k) * shaders::kGroup + row % shaders::kGroup;
-      pack(value, &blocks[at * kBlockDoubles]);
-      if (preconditioner_wanted && neighbours_[row][k] == n) {
-        pack(inverse_of_free(n, value), &preconditioner[row * kBlockDoubles]);
-      }
+      pack(block(n, neighbours_[row][k]), neighbours_[row][k],
+           &blocks[place(row, k) * kBlockDoubles]);
+    }
+    if (preconditioner_wanted) {
+      pack(inverse_of_free(n, block(n, n)), 0, &preconditioner[row * kBlockDoubles]);
     }
   }
   const auto upload = [&](vulkan::Buffer& buffer, auto& values) {
@@ -70,7 +66,6 @@ void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wante
     buffer.write(std::span<const std::remove_reference_t<decltype(values[0])>>(values));
   };
   upload(blocks_, blocks);
-  upload(columns_, columns);
   upload(slices_, first_);
   if (preconditioner_wanted) upload(preconditioner_, preconditioner);
 }
@@ -87,24 +82,18 @@ void BlockMatrix::build_pattern() {
   }
   add_surroundings(all);
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    all[n].erase(static_cast<Index>(n));
     neighbours_[n].assign(all[n].begin(), all[n].end());
   }
   first_.assign(groups_ + 1, 0);
   for (std::uint32_t slice = 0; slice < groups_; ++slice) {
-    std::size_t width = 0;
+    std::size_t width = 1;
     const std::size_t end =
         std::min<std::size_t>(std::size_t{slice + 1} * shaders::kGroup, neighbours_.size());
     for (std::size_t n = std::size_t{slice} * shaders::kGroup; n < end; ++n) {
       width = std::max(width, neighbours_[n].size());
     }
     first_[slice + 1] = first_[slice] + static_cast<std::uint32_t>(width);
-  }
-  columns_of_.assign(std::size_t{first_[groups_]} * shaders::kGroup, 0);  // padding: zero blocks
-  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
-    for (std::size_t k = 0; k < neighbours_[n].size(); ++k) {
-      columns_of_[(first_[n / shaders::kGroup] + k) * shaders::kGroup + n % shaders::kGroup] =
-          static_cast<std::uint32_t>(neighbours_[n][k]);
-    }
   }
 }
 
@@ -172,10 +161,15 @@ Mat3 BlockMatrix::block(Index row, Index column) const {
   return sum;
 }
 
-void BlockMatrix::pack(const Mat3& block, double* to) const {
+void BlockMatrix::pack(const Mat3& block, Index column, double* to) const {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) to[4 * i + j] = block(i, j);
   }
+  to[kColumnAt] = column;
+}
+
+std::size_t BlockMatrix::place(std::size_t row, std::size_t k) const {
+  return (first_[row / shaders::kGroup] + k) * shaders::kGroup + row % shaders::kGroup;
 }
 
 /// Inverse of a diagonal block over the axes that neither a support nor a grip holds.
@@ -208,23 +202,22 @@ void BlockMatrix::destroy(std::span<const Index> elements) {
   }
   std::array<double, kBlockDoubles> packed{};
   for (const auto& [i, j] : touched) {
-    const Mat3 value = block(i, j);
-    const auto& row = neighbours_[i];
-    const auto k =
-        static_cast<std::size_t>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
     const auto n = static_cast<std::size_t>(i);
-    pack(value, packed.data());
-    blocks_.write(std::span<const double>(packed),
-                  ((first_[n / shaders::kGroup] + k) * shaders::kGroup + n % shaders::kGroup) *
-                      kBlockDoubles);
-    if (i != j || preconditioner_.bytes() == 0) continue;
-    pack(inverse_of_free(i, value), packed.data());
-    preconditioner_.write(std::span<const double>(packed), n * kBlockDoubles);
+    if (i != j) {
+      const auto& row = neighbours_[i];
+      const auto k =
+          static_cast<std::size_t>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
+      pack(block(i, j), j, packed.data());
+      blocks_.write(std::span<const double>(packed), place(n, k) * kBlockDoubles);
+    } else if (preconditioner_.bytes() > 0) {
+      pack(inverse_of_free(i, block(i, i)), 0, packed.data());
+      preconditioner_.write(std::span<const double>(packed), n * kBlockDoubles);
+    }
   }
 }
 
 std::size_t BlockMatrix::bytes() const {
-  return blocks_.bytes() + columns_.bytes() + slices_.bytes() + preconditioner_.bytes();
+  return blocks_.bytes() + slices_.bytes() + preconditioner_.bytes();
 }
 
 }  // namespace sunder::gpu

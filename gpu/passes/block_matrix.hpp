@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The damaged stiffness as 3 x 3 blocks between nodes in slices of 64 rows (SELL-64), with its
-// block-Jacobi preconditioner. A destroyed element's 16 blocks are summed anew, element by element:
-// no cancellation between its remaining stiffness and what was taken out. The rest of a body round
-// a part of it (Surroundings) adds blocks between all nodes that it touches, and blocks to the
-// part's held node: rows sum to zero as they do for elements.
+// block-Jacobi preconditioner. Rows sum to zero and K u is summed from differences, so that no
+// block is kept on the diagonal; each carries the number of its column. A destroyed element's 16
+// blocks are summed anew, element by element: no cancellation between its remaining stiffness and
+// what was taken out. The rest of a body round a part of it (Surroundings) adds blocks between all
+// nodes that it touches, and blocks to the part's held node: rows sum to zero as they do for
+// elements.
 #pragma once
 
 #include <array>
@@ -32,7 +34,6 @@ class BlockMatrix {
   void destroy(std::span<const Index> elements);
 
   [[nodiscard]] const vulkan::Buffer& blocks() const { return blocks_; }
-  [[nodiscard]] const vulkan::Buffer& columns() const { return columns_; }
   [[nodiscard]] const vulkan::Buffer& slices() const { return slices_; }
   [[nodiscard]] const vulkan::Buffer& preconditioner() const { return preconditioner_; }
   /// Workgroups of 64 nodes.
@@ -44,18 +45,22 @@ class BlockMatrix {
   void add_surroundings(std::vector<std::set<Index>>& all);
   [[nodiscard]] Mat3 of_surroundings(Index row, Index column) const;
   [[nodiscard]] Mat3 block(Index row, Index column) const;
-  void pack(const Mat3& block, double* to) const;
+  void pack(const Mat3& block, Index column, double* to) const;
+  /// Of a row's k-th block, in blocks.
+  [[nodiscard]] std::size_t place(std::size_t row, std::size_t k) const;
+  [[nodiscard]] std::size_t block_count() const {
+    return std::size_t{first_.back()} * shaders::kGroup;
+  }
   [[nodiscard]] Mat3 inverse_of_free(Index node, const Mat3& diagonal) const;
 
   const Problem& problem_;
   std::uint32_t groups_;
   std::vector<double> scale_;                    // a_e
   std::vector<std::vector<Index>> elements_of_;  // per node, ascending
-  std::vector<std::vector<Index>> neighbours_;   // per node, ascending, itself included
+  std::vector<std::vector<Index>> neighbours_;   // per node, ascending
   std::vector<std::array<Index, 3>> around_;     // per node: rows of Surroundings, empty: none
   std::vector<std::uint32_t> first_;             // of each slice, in rows of 64 blocks
-  std::vector<std::uint32_t> columns_of_;        // of every block; empty once uploaded
-  vulkan::Buffer blocks_, columns_, slices_, preconditioner_;
+  vulkan::Buffer blocks_, slices_, preconditioner_;
 };
 
 }  // namespace sunder::gpu

@@ -186,11 +186,10 @@ void Fields::create_kernels() {
 void Fields::create_residual_pass() {
   using enum Reads;
   residual_pass_.kernel = kernels_.make_fp64(
-      "residual", {doubles, doubles, plain, plain, words, doubles, doubles, plain, plain, plain},
-      0);
-  const Buffer* buffers[] = {
-      &displacement_, &matrix_.blocks(), &matrix_.columns(), &matrix_.slices(), &dofs_,
-      &load_,         &roots_,           &balance_,          &residual_,        &node_partials_};
+      "residual", {doubles, doubles, plain, words, doubles, doubles, plain, plain, plain}, 0);
+  const Buffer* buffers[] = {&displacement_, &matrix_.blocks(), &matrix_.slices(), &dofs_,
+                             &load_,         &roots_,           &balance_,         &residual_,
+                             &node_partials_};
   residual_pass_.binding =
       std::make_unique<vulkan::Binding>(kernels_.device(), *residual_pass_.kernel, buffers);
   balance_gather_ = std::make_unique<Gather>(kernels_, balance_);

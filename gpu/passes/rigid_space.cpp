@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
 
 #include "fem/element.hpp"
@@ -22,6 +24,8 @@ constexpr Index kFewest = 4;  // nodes of a body worth a group: below, D alone i
 constexpr double kShift = 1e-13;
 
 std::size_t coarse_size() { return std::size_t{6} * kMost; }
+// Texels of four words.
+constexpr std::size_t kTexel = 4 * sizeof(std::uint32_t);
 
 }  // namespace
 
@@ -46,37 +50,44 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem)
     buffer.fill_zero();
     return buffer;
   };
-  modes_ = make(nodes * 4 * sizeof(double), Placement::device);
-  lists_ = make((kMost + 1 + nodes) * sizeof(std::uint32_t), Placement::device);
+  modes_ = make(nodes * kTexel, Placement::device);
+  first_ = make((kMost + 1) * sizeof(std::uint32_t), Placement::device);
+  members_ = make(nodes * kTexel, Placement::device);
   inverse_ = make(coarse_size() * coarse_size() * sizeof(double), Placement::device);
   y_ = make(coarse_size() * sizeof(double), Placement::device);
-  w_ = make(2 * coarse_size() * sizeof(double), Placement::device);
+  w_ = make(kMost * 8 * sizeof(double), Placement::device);
+  terms_ = make(coarse_size() / 4 * sizeof(double), Placement::device);
 }
 
 std::size_t RigidSpace::planned_bytes(const Problem& problem) {
   const std::size_t nodes =
       round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
-  return nodes * 4 * sizeof(double) + Buffer::padded((kMost + 1 + nodes) * sizeof(std::uint32_t)) +
-         (coarse_size() + 3) * coarse_size() * sizeof(double);
+  return 2 * nodes * kTexel + Buffer::padded((kMost + 1) * sizeof(std::uint32_t)) +
+         (coarse_size() + 1) * coarse_size() * sizeof(double) + kMost * 8 * sizeof(double) +
+         coarse_size() / 4 * sizeof(double);
 }
 
 std::size_t RigidSpace::bytes() const {
-  return modes_.bytes() + lists_.bytes() + inverse_.bytes() + y_.bytes() + w_.bytes();
+  return modes_.bytes() + first_.bytes() + members_.bytes() + inverse_.bytes() + y_.bytes() +
+         w_.bytes() + terms_.bytes();
 }
 
-void RigidSpace::bind(const Buffer& r) {
+void RigidSpace::bind(const Buffer& r, bool fp64) {
   using enum Reads;
-  restrict_ =
-      kernels_.make_fp64("cg_restrict", {plain, plain, plain, plain}, sizeof(shaders::CgPush));
-  solve_ = kernels_.make_fp64("cg_coarse", {plain, plain, plain}, sizeof(shaders::CgPush));
-  const Buffer* restricted[] = {&lists_, &modes_, &r, &y_};
-  const Buffer* solved[] = {&inverse_, &y_, &w_};
+  const std::uint32_t group = kernels_.summing_group();
+  restrict_binding_.reset();
+  restrict_ = kernels_.in(fp64).make("cg_restrict", {plain, words, reals, plain}, 0, group);
+  const Buffer* restricted[] = {&first_, &members_, &r, &y_};
   restrict_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *restrict_, restricted);
+  if (solve_) return;
+  solve_ = kernels_.in_fp64().make("cg_coarse", {doubles, doubles, plain, plain},
+                                   sizeof(shaders::CgPush), group);
+  const Buffer* solved[] = {&inverse_, &y_, &w_, &terms_};
   solve_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *solve_, solved);
 }
 
 void RigidSpace::record(vulkan::Commands& commands, const shaders::CgPush& push) const {
-  commands.dispatch(*restrict_binding_, push, groups());
+  commands.dispatch(*restrict_binding_, groups());
   commands.barrier();
   commands.dispatch(*solve_binding_, push, solve_groups());
   commands.barrier();
@@ -84,7 +95,7 @@ void RigidSpace::record(vulkan::Commands& commands, const shaders::CgPush& push)
 
 void RigidSpace::record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
                                  const Buffer& arguments) const {
-  commands.dispatch_indirect(*restrict_binding_, push, arguments, 3 * sizeof(std::uint32_t));
+  commands.dispatch_indirect(*restrict_binding_, arguments, 3 * sizeof(std::uint32_t));
   commands.barrier();
   commands.dispatch_indirect(*solve_binding_, push, arguments, 6 * sizeof(std::uint32_t));
   commands.barrier();
@@ -164,12 +175,11 @@ void RigidSpace::place_modes() {
   const auto& x = problem_.mesh().nodes;
   group_of_.assign(x.size(), kNone);
   place_.assign(x.size(), Vec3::Zero());
-  std::vector<double> modes(modes_.bytes() / sizeof(double), 0.0);
-  for (std::size_t n = 0; n < modes.size() / 4; ++n) modes[4 * n + 3] = -1;  // in no group
-  std::vector<std::uint32_t> lists(static_cast<std::size_t>(kMost) + 1, 0);
-  for (std::size_t g = 0; g < static_cast<std::size_t>(kMost); ++g) {
-    lists[g] = static_cast<std::uint32_t>(lists.size());
-    if (g >= groups_.size()) continue;
+  using Texel = std::array<std::uint32_t, 4>;
+  std::vector<Texel> modes(modes_.bytes() / kTexel, Texel{0, 0, 0, shaders::kHeld});  // no group
+  std::vector<Texel> members;
+  std::vector<std::uint32_t> first(static_cast<std::size_t>(kMost) + 1, 0);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
     Vec3 centre = Vec3::Zero();
     for (Index n : groups_[g]) centre += x[n];
     centre /= static_cast<double>(groups_[g].size());
@@ -177,15 +187,26 @@ void RigidSpace::place_modes() {
     for (Index n : groups_[g]) size = std::max(size, (x[n] - centre).norm());
     for (Index n : groups_[g]) {
       group_of_[n] = static_cast<Index>(g);
-      place_[n] = size > 0 ? Vec3((x[n] - centre) / size) : Vec3::Zero();
-      for (int axis = 0; axis < 3; ++axis) modes[4 * n + axis] = place_[n][axis];
-      modes[4 * static_cast<std::size_t>(n) + 3] = static_cast<double>(g);
-      lists.push_back(static_cast<std::uint32_t>(n));
+      // What the device has, to the last bit: Z^T K Z is of the same Z.
+      const Eigen::Vector3f place =
+          size > 0 ? ((x[n] - centre) / size).cast<float>() : Eigen::Vector3f(0, 0, 0);
+      place_[n] = place.cast<double>();
+      Texel texel{};
+      for (int axis = 0; axis < 3; ++axis) texel[axis] = std::bit_cast<std::uint32_t>(place[axis]);
+      texel[3] = static_cast<std::uint32_t>(n);
+      members.push_back(texel);
+      texel[3] = static_cast<std::uint32_t>(8 * g) + held_[n];
+      modes[static_cast<std::size_t>(n)] = texel;
     }
+    first[g + 1] = static_cast<std::uint32_t>(members.size());
   }
-  lists[static_cast<std::size_t>(kMost)] = static_cast<std::uint32_t>(lists.size());
-  modes_.write(std::span<const double>(modes));
-  lists_.write(std::span<const std::uint32_t>(lists));
+  std::fill(first.begin() + static_cast<std::ptrdiff_t>(groups_.size()) + 1, first.end(),
+            static_cast<std::uint32_t>(members.size()));
+  modes_.write(std::span<const Texel>(modes));
+  members_.write(std::span<const Texel>(members));
+  first_.write(std::span<const std::uint32_t>(first));
+  for (Buffer* of_groups : {&y_, &w_, &terms_})
+    of_groups->fill_zero();  // of groups no longer there
 }
 
 /// Columns: the node's part in three shifts and three rotations of its group; 0 on held axes.

@@ -33,13 +33,12 @@ class RigidSpace {
   [[nodiscard]] std::uint32_t groups() const {
     return std::max(1u, static_cast<std::uint32_t>(groups_.size()));
   }
-  /// Workgroups of the small matrix's product.
-  [[nodiscard]] std::uint32_t solve_groups() const {
-    return round_up(6 * groups(), shaders::kGroup) / shaders::kGroup;
-  }
+  /// Workgroups of the small matrix's product, four rows each; whole packs of terms.
+  [[nodiscard]] std::uint32_t solve_groups() const { return round_up(6 * groups(), 16) / 4; }
 
-  void bind(const vulkan::Buffer& r);
-  /// w = (Z^T K Z)^-1 Z^T r of the bound vector, and the terms of (Z^T r)^T w behind it.
+  /// `fp64`: of r; all else is fp64, but for places, which are fp32.
+  void bind(const vulkan::Buffer& r, bool fp64);
+  /// w = (Z^T K Z)^-1 Z^T r of the bound vector, and the terms of (Z^T r)^T w.
   void record(vulkan::Commands& commands, const shaders::CgPush& push) const;
   /// The same, sizes of the dispatches from the second and third three words of `arguments`.
   void record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
@@ -48,6 +47,7 @@ class RigidSpace {
   // What a kernel needs for z + Z w.
   [[nodiscard]] const vulkan::Buffer& modes() const { return modes_; }
   [[nodiscard]] const vulkan::Buffer& w() const { return w_; }
+  [[nodiscard]] const vulkan::Buffer& terms() const { return terms_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -67,7 +67,7 @@ class RigidSpace {
   std::vector<Vec3> place_;                 // of every node from its group's centre, by its size
   std::vector<std::uint8_t> held_;          // axes of every node that nothing moves, as bits
   Eigen::MatrixXd coarse_;                  // Z^T K Z
-  vulkan::Buffer modes_, lists_, inverse_, y_, w_;
+  vulkan::Buffer modes_, first_, members_, inverse_, y_, w_, terms_;
   std::unique_ptr<vulkan::Kernel> restrict_, solve_;
   std::unique_ptr<vulkan::Binding> restrict_binding_, solve_binding_;
 };

@@ -40,6 +40,10 @@ class Commands {
     bind(binding, &push, sizeof(Push));
     dispatch_indirect(arguments, offset);
   }
+  void dispatch_indirect(const Binding& binding, const Buffer& arguments, std::size_t offset) {
+    bind(binding, nullptr, 0);
+    dispatch_indirect(arguments, offset);
+  }
   /// What was written before is seen by what follows.
   void barrier();
   void copy(VkBuffer from, std::size_t from_offset, VkBuffer to, std::size_t to_offset,

@@ -17,17 +17,15 @@ class Multiply {
  public:
   Multiply(vulkan::Device& device, const gpu::KernelFactory& kernels, const gpu::Fields& fields,
            const gpu::BlockMatrix& matrix)
-      : groups_(matrix.groups()), commands_(device) {
+      : groups_(matrix.groups()), parts_(groups_ * kernels.parts()), commands_(device) {
     const std::size_t bytes = std::size_t{groups_} * shaders::kGroup * 4 * sizeof(double);
     p_ = vulkan::Buffer(device, bytes, vulkan::Placement::device);
     q_ = vulkan::Buffer(device, bytes, vulkan::Placement::device);
-    sums_ = vulkan::Buffer(device, groups_ * sizeof(double), vulkan::Placement::device);
+    sums_ = vulkan::Buffer(device, parts_ * sizeof(double), vulkan::Placement::device);
     using enum gpu::Reads;
-    kernel_ =
-        kernels.make_fp64("cg_multiply", {doubles, plain, plain, words, doubles, plain, plain},
-                          sizeof(shaders::CgPush));
+    kernel_ = kernels.make("cg_multiply", {reals, plain, words, reals, plain, plain}, 0);
     const vulkan::Buffer* buffers[] = {
-        &matrix.blocks(), &matrix.columns(), &matrix.slices(), &fields.dofs(), &p_, &q_, &sums_};
+        &matrix.blocks(), &matrix.slices(), &fields.dofs(), &p_, &q_, &sums_};
     binding_ = std::make_unique<vulkan::Binding>(device, *kernel_, buffers);
   }
 
@@ -38,19 +36,19 @@ class Multiply {
   Result operator()(std::span<const double> p) {
     p_.write(p);
     commands_.begin();
-    commands_.dispatch(*binding_, shaders::CgPush{groups_, 0, 0, 0, 0}, groups_);
+    commands_.dispatch(*binding_, groups_);
     commands_.end();
     commands_.submit();
     Result result{std::vector<double>(p.size()), 0};
     q_.read(std::span<double>(result.q));
-    std::vector<double> sums(groups_);
+    std::vector<double> sums(parts_);
     sums_.read(std::span<double>(sums));
     for (double s : sums) result.pq += s;
     return result;
   }
 
  private:
-  std::uint32_t groups_;
+  std::uint32_t groups_, parts_;
   vulkan::Buffer p_, q_, sums_;
   std::unique_ptr<vulkan::Kernel> kernel_;
   std::unique_ptr<vulkan::Binding> binding_;
