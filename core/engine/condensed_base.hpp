@@ -29,6 +29,7 @@ struct CondensedState {
   std::vector<Index> dofs;                             // S
   std::shared_ptr<const Eigen::MatrixXd> x;            // X_SS
   std::shared_ptr<const Eigen::MatrixXd> x_of_factor;  // X_SS without what was lost since
+  std::shared_ptr<const LostStiffness> lost;           // since; empty: nothing
   std::vector<Difference> vectors;                     // B
 };
 
@@ -57,7 +58,7 @@ class CondensedBase final : public Base {
   /// S; at first the unknowns given.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
   [[nodiscard]] CondensedState state() const {
-    return {factor_, dofs_, x_, x_of_factor_, vectors_};
+    return {factor_, dofs_, x_, x_of_factor_, lost_, vectors_};
   }
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 

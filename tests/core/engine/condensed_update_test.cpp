@@ -73,5 +73,46 @@ TEST(UpdatedInverse, IsThatOfTheDamagedBody) {
   }
 }
 
+// An inverse that was updated before has an error. Where damage and loads act it does not last.
+TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
+  constexpr double kLacks = 1e-7;
+  const Torn torn;
+  const std::span<const Index> elements = torn.elements;
+  const LostStiffness all(torn.problem, elements);
+  const auto before = std::make_shared<const LostStiffness>(torn.problem, elements.first(20));
+  std::vector<Index> dofs;
+  for (Index d = 0; d < torn.problem.dof_count(); ++d) {
+    if (d % 17 == 0 || std::ranges::binary_search(all.dofs(), d)) dofs.push_back(d);
+  }
+  std::vector<double> scale(torn.scale.size(), 1.0);
+  for (Index e : elements.first(20)) scale[e] = torn.problem.scene().fracture.alpha;
+  const auto intact = std::make_shared<const fem::Factor>(fem::assemble_lower(torn.problem, {}));
+  const Eigen::MatrixXd x0 = intact->inverse_block(dofs, dofs),
+                        x = fem::Factor(fem::assemble_lower(torn.problem, scale))
+                                .inverse_block(dofs, dofs) *
+                            (1 + kLacks);
+  const CondensedState worn{intact, dofs, nullptr, std::make_shared<const Eigen::MatrixXd>(x0),
+                            before, {}};
+  auto base = std::make_unique<CondensedBase>(worn, x, before);
+  const CondensedBase& condensed = *base;
+  Deferred deferred(torn.problem, std::move(base));
+  for (const Index& e : elements.subspan(20)) ASSERT_TRUE(deferred.destroy({&e, 1}));
+
+  const Index place = 3, loaded = dofs[place], elsewhere = 5;
+  CondensedState state = condensed.state();
+  const Eigen::MatrixXd mended = updated_inverse(state, deferred.damage(), {&loaded, 1});
+  state.lost = nullptr;  // as if it were the factor's own
+  const Eigen::MatrixXd plain = updated_inverse(state, deferred.damage(), {&loaded, 1});
+  const Eigen::MatrixXd expected =
+      fem::Factor(fem::assemble_lower(torn.problem, torn.scale)).inverse_block(dofs, dofs);
+  const auto error = [&](const Eigen::MatrixXd& of, Index column) {
+    return (of.col(column) - expected.col(column)).norm() / expected.col(column).norm();
+  };
+  EXPECT_LE(error(mended, place), 1e-10);
+  EXPECT_GE(error(plain, place), kLacks / 10);
+  EXPECT_GE(error(mended, elsewhere), kLacks / 10) << "other columns wait for damage or loads";
+  EXPECT_EQ(mended, mended.transpose());
+}
+
 }  // namespace
 }  // namespace sunder::engine
