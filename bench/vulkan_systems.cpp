@@ -59,6 +59,7 @@ void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::s
   int iterations = 1;
   double wall = 0;
   Work work;
+  work.warm_up = true;
   work.prepare = [&] { fields.write_displacement(rest); };
   work.run = [&] {
     const auto start = std::chrono::steady_clock::now();
@@ -67,9 +68,9 @@ void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::s
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
   work.milliseconds = [&] { return wall / iterations; };
-  // The matrix once, and some twelve passes over vectors of four values a node.
+  // The matrix once, 13 passes over vectors of four values a node, two over places in groups.
   work.bytes = static_cast<double>(fields.matrix().bytes()) +
-               12 * 32 * static_cast<double>(problem->node_count());
+               (13 * 32 + 2 * 16) * static_cast<double>(problem->node_count());
   Row& row = rows.table.measure(state, name, work);
   state.counters["iterations"] = iterations;
   const AssembledCg reference(*problem);
@@ -96,7 +97,8 @@ void stiffness_product(benchmark::State& state, const Rows& rows, const std::str
   const vulkan::Buffer sums(device, matrix.groups() * kernels.parts() * sizeof(double),
                             vulkan::Placement::device);
   using enum gpu::Reads;
-  const auto kernel = kernels.make("cg_multiply", {reals, plain, words, reals, plain, plain}, 0);
+  const auto kernel =
+      kernels.make("cg_multiply", {doubles, plain, words, doubles, plain, plain}, 0);
   const vulkan::Buffer* buffers[] = {
       &matrix.blocks(), &matrix.slices(), &fields.dofs(), &p, &q, &sums};
   const vulkan::Binding binding(device, *kernel, buffers);

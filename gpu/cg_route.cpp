@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/cg_route.hpp"
 
-#include <limits>
-
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -71,19 +69,19 @@ void CgRoute::create_kernels(const Fields& fields) {
   const std::uint32_t one = kernels.summing_group();
   const Buffer& x = fields.nodal(Field::correction);
   const Buffer& m = matrix_.preconditioner();
-  make(begin_, "cg_begin", all, {plain, words, reals, plain, plain, plain},
+  make(begin_, "cg_begin", all, {plain, words, doubles, plain, plain, plain},
        {&fields.residual(), &fields.dofs(), &m, &r_, &z_, &rz_});
-  make(multiply_, "cg_multiply", all, {reals, plain, words, reals, plain, plain},
+  make(multiply_, "cg_multiply", all, {doubles, plain, words, doubles, plain, plain},
        {&matrix_.blocks(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_});
   make(length_, "cg_length", one, {doubles, plain}, {&pq_, &state_});
   make(step_, "cg_step", all,
-       {plain, reals, reals, reals, doubles, reals, plain, plain, plain, plain},
+       {plain, doubles, doubles, doubles, doubles, doubles, plain, plain, plain, plain},
        {&state_, &m, &p_, &q_, &x, &r_, &x, &r_, &z_, &rz_});
   make(check_, "cg_check", one, {doubles, doubles, plain, plain},
        {&rz_, &rigid_.terms(), &state_, &arguments_});
-  make(direction_, "cg_direction", all, {plain, reals, doubles, words, reals, plain},
+  make(direction_, "cg_direction", all, {plain, doubles, doubles, words, doubles, plain},
        {&state_, &z_, &rigid_.w(), &rigid_.modes(), &p_, &p_});
-  rigid_.bind(r_, true);
+  rigid_.bind(r_);
 }
 
 shaders::CgPush CgRoute::push(bool first, double reduction) const {
@@ -93,9 +91,7 @@ shaders::CgPush CgRoute::push(bool first, double reduction) const {
   push.rigid_groups = rigid_.groups();
   push.rigid_solves = rigid_.solve_groups();
   push.first = first ? 1 : 0;
-  push.scale = 1;
   push.reduction = reduction;
-  push.most = std::numeric_limits<double>::infinity();
   return push;
 }
 

@@ -48,8 +48,7 @@ class KernelFactory {
   }
 
   /// The same kernels with fp64 as storage precision.
-  [[nodiscard]] KernelFactory in_fp64() const { return in(true); }
-  [[nodiscard]] KernelFactory in(bool fp64) const { return {device_, variant_, fp64}; }
+  [[nodiscard]] KernelFactory in_fp64() const { return {device_, variant_, true}; }
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
   /// Kernels for a processor that emulates a device.

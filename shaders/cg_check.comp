@@ -12,8 +12,7 @@ OUT(3, Arguments, uint, arguments)
 layout(push_constant) uniform Push { CgPush p; };
 
 void start(double rz) {
-  state.data[0].first = rz;
-  state.data[0].target = max(p.target, rz * p.reduction);
+  state.data[0].target = rz * p.reduction;
   state.data[0].iterations = 0u;
   state.data[0].broken = rz >= 0 ? 0u : 1u;  // NaN included
   for (uint i = 0u; i < 3u * kCgSizes; ++i) arguments.data[i] = 1u;
@@ -39,8 +38,7 @@ void main() {
     if (!(rz >= 0) || isinf(rz)) state.data[0].broken = 1u;
   }
   state.data[0].rz = rz;
-  const bool run = state.data[0].broken == 0u && rz > state.data[0].target &&
-                   (p.first == 0u || rz <= p.most);
+  const bool run = state.data[0].broken == 0u && rz > state.data[0].target;
   state.data[0].running = run ? 1u : 0u;
   arguments.data[0] = run ? p.groups : 0u;
   arguments.data[3] = run ? p.rigid_groups : 0u;

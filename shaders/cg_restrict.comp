@@ -6,7 +6,7 @@
 
 IN_WORDS(0, First, first)    // of each group in the list
 IN_UVEC4(1, Members, members)  // place in the group, fp32; node
-IN_REAL4(2, R, r)
+IN_DVEC4(2, R, r)
 OUT(3, Y, double, y)
 
 void main() {
@@ -15,7 +15,7 @@ void main() {
   const uint last = first.data[group + 1u];
   for (uint i = first.data[group] + gl_LocalInvocationID.x; i < last; i += gl_WorkGroupSize.x) {
     const uvec4 member = UVEC4(members, i);
-    const dvec3 rn = dvec3(LOAD_REAL4(r, member.w).xyz);
+    const dvec3 rn = DVEC4(r, member.w).xyz;
     force += rn;
     moment += cross(dvec3(uintBitsToFloat(member.xyz)), rn);
   }

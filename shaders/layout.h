@@ -140,10 +140,7 @@ struct CgPush {
   uint rigid_solves;  // of the second level: workgroups of four unknowns
   uint first;         // 1: nothing has been iterated yet
   uint unused;
-  double scale;      // of r, a power of two
   double reduction;  // stop at this share of the first r^T M r
-  double target;     // or at this value, whichever is larger
-  double most;       // do not begin over this value
 };
 
 SUNDER_CONST kCgSizes = 4u;  // kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup
@@ -151,7 +148,6 @@ SUNDER_CONST kCgSizes = 4u;  // kinds of dispatches: nodes, groups of nodes, unk
 // State of conjugate gradients, on the device from the first iteration to the last.
 struct CgState {
   double rz;       // r^T M r
-  double first;    // of the first iteration
   double target;
   double length_;  // of the step along p
   double ratio;    // r^T M r by the one before
@@ -208,9 +204,9 @@ static_assert(sizeof(StressPartial) == 32);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 64);
-static_assert(sizeof(CgPush) == 56);
+static_assert(sizeof(CgPush) == 32);
 static_assert(sizeof(ComplementPush) == 32);
-static_assert(sizeof(CgState) == 56);
+static_assert(sizeof(CgState) == 48);
 #undef SUNDER_CONST
 #undef SUNDER_WIDE_STRUCT
 }  // namespace sunder::shaders

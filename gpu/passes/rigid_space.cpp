@@ -72,14 +72,12 @@ std::size_t RigidSpace::bytes() const {
          w_.bytes() + terms_.bytes();
 }
 
-void RigidSpace::bind(const Buffer& r, bool fp64) {
+void RigidSpace::bind(const Buffer& r) {
   using enum Reads;
   const std::uint32_t group = kernels_.summing_group();
-  restrict_binding_.reset();
-  restrict_ = kernels_.in(fp64).make("cg_restrict", {plain, words, reals, plain}, 0, group);
+  restrict_ = kernels_.in_fp64().make("cg_restrict", {plain, words, doubles, plain}, 0, group);
   const Buffer* restricted[] = {&first_, &members_, &r, &y_};
   restrict_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *restrict_, restricted);
-  if (solve_) return;
   solve_ = kernels_.in_fp64().make("cg_coarse", {doubles, doubles, plain, plain},
                                    sizeof(shaders::CgPush), group);
   const Buffer* solved[] = {&inverse_, &y_, &w_, &terms_};

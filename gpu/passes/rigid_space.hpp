@@ -36,8 +36,7 @@ class RigidSpace {
   /// Workgroups of the small matrix's product, four rows each; whole packs of terms.
   [[nodiscard]] std::uint32_t solve_groups() const { return round_up(6 * groups(), 16) / 4; }
 
-  /// `fp64`: of r; all else is fp64, but for places, which are fp32.
-  void bind(const vulkan::Buffer& r, bool fp64);
+  void bind(const vulkan::Buffer& r);
   /// w = (Z^T K Z)^-1 Z^T r of the bound vector, and the terms of (Z^T r)^T w.
   void record(vulkan::Commands& commands, const shaders::CgPush& push) const;
   /// The same, sizes of the dispatches from the second and third three words of `arguments`.

@@ -23,7 +23,7 @@ class Multiply {
     q_ = vulkan::Buffer(device, bytes, vulkan::Placement::device);
     sums_ = vulkan::Buffer(device, parts_ * sizeof(double), vulkan::Placement::device);
     using enum gpu::Reads;
-    kernel_ = kernels.make("cg_multiply", {reals, plain, words, reals, plain, plain}, 0);
+    kernel_ = kernels.make("cg_multiply", {doubles, plain, words, doubles, plain, plain}, 0);
     const vulkan::Buffer* buffers[] = {
         &matrix.blocks(), &matrix.slices(), &fields.dofs(), &p_, &q_, &sums_};
     binding_ = std::make_unique<vulkan::Binding>(device, *kernel_, buffers);
