@@ -20,6 +20,9 @@ constexpr int kRebaseEvents = 96;
 // as much as the columns of X_SS.
 constexpr std::size_t kFewestColumns = 64, kMostColumns = 256;
 
+// Columns that a base is expected to serve, fractures of some elements among them.
+constexpr Index kColumns = kMostColumns + 2 * kRebaseEvents;
+
 // An updated X_SS whose check finds more is computed anew from a factor of the damaged body, which
 // takes as long as thousands of frames. energy_check.cpp allows for a growth of 100 up to 1e-8;
 // half of that, as the shares of several loads add up. Over 640 fractures of 1,000 unknowns there
@@ -39,7 +42,7 @@ Based lay_over(const Problem& problem, std::shared_ptr<const fem::Factor> factor
   Based based;
   based.factor = std::move(factor);
   based.condensed = base.get();
-  based.deferred = std::make_unique<engine::Deferred>(problem, std::move(base), damage);
+  based.deferred = std::make_unique<engine::Deferred>(problem, std::move(base), damage, kColumns);
   return based;
 }
 

@@ -15,6 +15,8 @@ namespace {
 // Columns that a fracture of one element adds to the damage, along a tear.
 constexpr double kColumns = 1.75;
 constexpr double kFewestColumns = 64;
+// Columns beyond those that a base is expected to serve, in fractures of several elements.
+constexpr Index kSpare = 64;
 
 // An event that touches more new unknowns than this costs more than a new factor: a share of all
 // within limits. Boards of 486 to 30,246 elements (bench_reconstruction, bench_engine).
@@ -44,6 +46,8 @@ class DeferredRoute final : public InverseRoute {
     rebased_at_ = body.problem().gripped_dofs().size() +
                   static_cast<std::size_t>(std::max(kColumns * frames, kFewestColumns));
     threshold_ = rebased_at_;
+    columns_ =
+        static_cast<Index>(rebased_at_ + static_cast<std::size_t>(kColumns * frames)) + kSpare;
     // The factor that takes the inverse's place solves backward for as much as so many columns.
     if (dense) threshold_ = std::max(threshold_, intact.factor.entries() / all_.size());
     coming_.emplace(body, frames);
@@ -130,7 +134,7 @@ class DeferredRoute final : public InverseRoute {
     Based based;
     based.factor = std::make_shared<const fem::Factor>(stiffness_->factor(work));
     based.deferred = std::make_unique<engine::Deferred>(
-        body.problem(), std::make_unique<engine::FactorBase>(*based.factor));
+        body.problem(), std::make_unique<engine::FactorBase>(*based.factor), true, columns_);
     // Room for predictions too: the frame that takes the base is to allocate nothing.
     if (body.problem().scene().solver.prepare) based.deferred->prepare({});
     return based;
@@ -143,6 +147,7 @@ class DeferredRoute final : public InverseRoute {
   Based based_;
   // Columns of the damage at which a new base begins: now, and over a factor.
   std::size_t threshold_ = 0, rebased_at_ = 0;
+  Index columns_ = 0;  // that a base over a factor is expected to serve
   int bases_ = 1;
   double saved_ms_ = 0;  // by the bases before this one
   double enough_ = 0;

@@ -11,9 +11,7 @@
 namespace sunder::engine {
 namespace {
 
-// Room reserved for touched unknowns: more than a rebase lets gather.
-constexpr Index kReserved = 1024;
-// And for the differences of predicted fractures.
+// Room for the differences of predicted fractures.
 constexpr std::size_t kPredicted = std::size_t{1} << 14;
 
 /// Rows and columns are processed in full vectors.
@@ -22,7 +20,12 @@ Eigen::Index padded(Eigen::Index n) { return (n + 7) / 8 * 8; }
 /// At least so large; what it held is lost when it grows.
 void make_room(fem::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
   if (a.rows() >= rows && a.cols() >= columns) return;
-  a.setZero(std::max(rows, a.rows()), std::max(columns, a.cols()));
+  a.resize(std::max(rows, a.rows()), std::max(columns, a.cols()));
+}
+
+/// So that the system gives the memory now and no frame waits for it.
+void clear_corner(fem::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
+  a.topLeftCorner(std::min(rows, a.rows()), std::min(columns, a.cols())).setZero();
 }
 
 /// y = S x for the leading n rows and columns of a symmetric S, n entries of x and y.
@@ -34,14 +37,14 @@ void multiply(const fem::RowMajor& s, Eigen::Index n, const Eigen::VectorXd& x,
 
 }  // namespace
 
-Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage)
+Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage, Index columns)
     : problem_(problem),
       base_(std::move(base)),
       basis_(problem),
       is_touched_(static_cast<std::size_t>(problem.dof_count()), 0) {
   const auto gripped = problem.gripped_dofs();
   grips_ = static_cast<Eigen::Index>(gripped.size());
-  if (damage) reserve_for_fractures();
+  if (damage) reserve_for_fractures(columns + static_cast<Index>(grips_));
   if (grips_ == 0) return;
   reserve(static_cast<Index>(grips_));
   touched_.assign(gripped.begin(), gripped.end());
@@ -61,7 +64,7 @@ Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool dama
 }
 
 /// What events of some sixteen elements need, so that they allocate nothing.
-void Deferred::reserve_for_fractures() {
+void Deferred::reserve_for_fractures(Index columns) {
   constexpr Eigen::Index kRows = 128, kColumns = 96;
   base_->make_room();
   reserve(std::min(problem_.dof_count(), kReserved) + static_cast<Index>(grips_));
@@ -74,6 +77,9 @@ void Deferred::reserve_for_fractures() {
   make_room(xu_, m_.rows(), kColumns);
   make_room(z_, m_.rows(), kColumns);
   make_room(zt_, kColumns, m_.cols());
+  clear_corner(u_, kRows, kColumns);
+  for (fem::RowMajor* a : {&columns_, &product_, &zt_}) clear_corner(*a, kRows, columns);
+  for (fem::RowMajor* a : {&gram_, &xu_, &z_}) clear_corner(*a, columns, kColumns);
   c_.resize(kColumns, kColumns);
   event_.rows.reserve(static_cast<std::size_t>(4 * kColumns));
   event_.values.reserve(static_cast<std::size_t>(24 * kColumns));

@@ -28,9 +28,13 @@ struct Damage {
 
 class Deferred {
  public:
+  /// Columns of B that there is room for: more than a rebase lets gather.
+  static constexpr Index kReserved = 1024;
+
   /// The problem must outlive it. Without `damage` nothing will be destroyed, and there is no room
-  /// for it.
-  Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage = true);
+  /// for it. Room for `columns` of B is touched now, for later ones by the frames that need it.
+  Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage = true,
+           Index columns = kReserved);
 
   /// Follows an event. Returns false and changes nothing when the damaged stiffness is not
   /// positive definite in double precision.
@@ -75,7 +79,7 @@ class Deferred {
     bool pushed;
   };
 
-  void reserve_for_fractures();
+  void reserve_for_fractures(Index columns);
   void reserve(Index columns);
   void push(std::span<const Index> elements);
   void pop();
