@@ -63,13 +63,15 @@ Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool dama
   }
 }
 
-/// What events of some sixteen elements need, so that they allocate nothing.
+/// What events of some fifty connected elements need, so that they allocate nothing; what those of
+/// sixteen need is touched. Wider rows would cost every frame.
 void Deferred::reserve_for_fractures(Index columns) {
-  constexpr Eigen::Index kRows = 128, kColumns = 96;
+  constexpr Eigen::Index kElements = 170, kRows = 512, kColumns = 96;
+  constexpr Eigen::Index kTouchedRows = 128;
   base_->make_room();
   reserve(std::min(problem_.dof_count(), kReserved) + static_cast<Index>(grips_));
   touched_.reserve(is_touched_.size());
-  rows_.reserve(kRows);
+  rows_.reserve(static_cast<std::size_t>(12 * kElements));
   make_room(u_, kRows, kColumns);
   make_room(columns_, kRows, m_.cols());
   make_room(product_, kRows, m_.cols());
@@ -77,14 +79,14 @@ void Deferred::reserve_for_fractures(Index columns) {
   make_room(xu_, m_.rows(), kColumns);
   make_room(z_, m_.rows(), kColumns);
   make_room(zt_, kColumns, m_.cols());
-  clear_corner(u_, kRows, kColumns);
-  for (fem::RowMajor* a : {&columns_, &product_, &zt_}) clear_corner(*a, kRows, columns);
+  clear_corner(u_, kTouchedRows, kColumns);
+  for (fem::RowMajor* a : {&columns_, &product_, &zt_}) clear_corner(*a, kTouchedRows, columns);
   for (fem::RowMajor* a : {&gram_, &xu_, &z_}) clear_corner(*a, columns, kColumns);
   c_.resize(kColumns, kColumns);
-  event_.rows.reserve(static_cast<std::size_t>(4 * kColumns));
-  event_.values.reserve(static_cast<std::size_t>(24 * kColumns));
-  event_.ends.reserve(static_cast<std::size_t>(kColumns));
-  event_.w.reserve(static_cast<std::size_t>(4 * kRows * kColumns));
+  event_.rows.reserve(static_cast<std::size_t>(12 * kElements));
+  event_.values.reserve(static_cast<std::size_t>(6 * 12 * kElements));
+  event_.ends.reserve(static_cast<std::size_t>(kElements));
+  event_.w.reserve(static_cast<std::size_t>(6 * kElements * kRows));
   event_.compress.reserve(static_cast<std::size_t>(kRows));
   events_.reserve(kReserved);
   elements_.reserve(kReserved);

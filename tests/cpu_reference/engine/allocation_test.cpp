@@ -180,17 +180,19 @@ Scene notch(const Tear& tear) {
 class Cascade : public ::testing::TestWithParam<Tear> {};
 
 // All of a step with a crack open, quiet or tearing: the notch grows, new cracks are born beside
-// it, up to 28 of them; new bases are begun and taken. The first step takes the notch out and is
-// the warm-up. What is left comes with large steps alone: a few lists follow an event larger than
-// all before it. Fields outside a condensed region, which the ring around a tip may reach, get
-// their room when they are first asked for: stress in one step, displacement in another.
+// it, up to 28 of them, by up to 170 elements in a step; new bases are begun and taken. The first
+// step takes the notch out and is the warm-up. What is left comes with steps of a hundred elements:
+// a few lists follow an event larger than all before it. And a condensed region's: a deferred base
+// that begins copies the damage for the thread that makes it, a first load from another direction
+// is kept, and fields outside the region, which the ring around a tip may reach, get their room
+// when they are first asked for: stress in one step, displacement in another.
 TEST_P(Cascade, AllocatesNothingOnceItIsWarm) {
-  constexpr int kLarge = 40;  // elements of a step
-  constexpr long kLists = 8, kFieldsOutside = 8;
+  constexpr int kLarge = 100;  // elements of a step
+  constexpr long kLists = 8, kCondensedLists = 16;
   constexpr int kMost = 200;  // the next step would tear the board in two
   const auto problem = std::make_shared<const Problem>(notch(GetParam()));
   Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
-  int readings = GetParam().route == Route::condensed ? 2 : 0;
+  int steps_with_lists = GetParam().route == Route::condensed ? 2 : 0;
   int before = simulation.step().destroyed, tearing = 0;
   while (!simulation.done() && before <= kMost) {
     const Count counted;
@@ -200,7 +202,7 @@ TEST_P(Cascade, AllocatesNothingOnceItIsWarm) {
     before = report.destroyed;
     tearing += destroyed > 0;
     long allowed = destroyed > kLarge ? kLists : 0;
-    if (sum > allowed && readings-- > 0) allowed += kFieldsOutside;
+    if (sum > allowed && steps_with_lists-- > 0) allowed += kCondensedLists;
     EXPECT_LE(sum, allowed) << "step " << report.step << ", " << destroyed << " elements";
   }
   EXPECT_GT(tearing, 0);
