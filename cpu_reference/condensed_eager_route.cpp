@@ -115,8 +115,8 @@ class CondensedEagerRoute final : public InverseRoute {
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)",
-                                  static_cast<std::size_t>(x_.size()) * sizeof(double)},
-                                 {"room of the largest update so far", update_.bytes()}};
+                                  static_cast<std::size_t>(x_.size()) * sizeof(double)}};
+    if (update_.bytes() > 0) plan.push_back({"room of the largest update", update_.bytes()});
     if (!lost_.empty()) {
       plan.push_back({"stiffness lost since the factor", lost_.size() * sizeof(LostElement)});
     }

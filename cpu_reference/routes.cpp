@@ -61,8 +61,10 @@ class DenseInverseRoute final : public InverseRoute {
   }
 
   std::vector<BufferPlan> buffers() const override {
-    return {{"inverse (dense, n x n)", static_cast<std::size_t>(x_.size()) * sizeof(double)},
-            {"room of the largest update so far", update_.bytes()}};
+    std::vector<BufferPlan> plan{
+        {"inverse (dense, n x n)", static_cast<std::size_t>(x_.size()) * sizeof(double)}};
+    if (update_.bytes() > 0) plan.push_back({"room of the largest update", update_.bytes()});
+    return plan;
   }
 
  private:
