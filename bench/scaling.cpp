@@ -87,13 +87,14 @@ void size_row(benchmark::State& state, const Method& method, Index cells) {
   }
 }
 
-/// Cells along an edge up to which a route is worth its rows: memory n^2, or minutes a frame where
-/// the Vulkan device is a software renderer.
+/// Cells along an edge up to which a route is worth its rows: memory n^2, or a minute a frame where
+/// the Vulkan device is a software renderer (and iterations are the same in both precisions).
 Index most_cells(const Method& method, bool software) {
   const bool slow = software && method.options.backend == "vulkan";
-  if (method.options.route != Route::inverse) return slow ? 141 : 409;
+  const bool fp64 = method.options.precision == Precision::fp64;
+  if (method.options.route != Route::inverse) return slow && !fp64 ? 141 : 409;
   if (method.options.update == Update::eager) return 18;
-  return slow && method.options.precision == Precision::fp64 ? 18 : 36;
+  return slow && fp64 ? 18 : 36;
 }
 
 bool software_renderer_only() {
