@@ -76,9 +76,9 @@ LARGE = [
     Program("bench_reconstruction", "inverse reconstruction on large boards",
             Share(0), Share(260, "board (30246|119286)/", 1)),
     Program("bench_scaling", "conjugate gradients on the Vulkan device, large boards",
-            Share(0), Share(40, "vulkan.*/(30246|119286)/", 1)),
+            Share(0), Share(400, "vulkan.*/(30246|119286|501126|1003686)/", 1)),
     Program("bench_scaling", "boards of half a million and a million tetrahedra",
-            Share(0), Share(150, "/(501126|1003686)/", 1)),
+            Share(0), Share(150, "cpu.*/(501126|1003686)/", 1)),
 ]
 
 
