@@ -41,7 +41,11 @@ void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wante
   const Problem& problem = problem_;
   const vulkan::PhysicalDevice& device = kernels.device().physical();
   const std::size_t bytes = block_count() * kBlockDoubles * sizeof(double);
-  const auto limit = std::min<std::size_t>(device.largest_buffer, device.largest_allocation);
+  // `lvp` reads blocks as texels alone, which lavapipe allows 16 times the range of storage
+  // buffers.
+  const std::size_t range = kernels.emulated() ? std::size_t{device.largest_texel_buffer} * 16
+                                               : std::size_t{device.largest_buffer};
+  const auto limit = std::min<std::size_t>(range, device.largest_allocation);
   if (bytes > limit) {
     throw DeviceError("the stiffness needs a buffer of " + std::to_string(bytes) +
                       " bytes, but the device \"" + device.name + "\" takes buffers of " +
