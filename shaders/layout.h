@@ -147,7 +147,7 @@ SUNDER_CONST kCgSizes = 4u;  // kinds of dispatches: nodes, groups of nodes, unk
 
 // State of conjugate gradients, on the device from the first iteration to the last.
 struct CgState {
-  double rz;       // r^T M r
+  double rz;  // r^T M r
   double target;
   double length_;  // of the step along p
   double ratio;    // r^T M r by the one before
