@@ -28,7 +28,8 @@ struct Based {
 /// factor on the way.
 using MakeBase = std::function<Based(const DamagedBody&, const Load&, const fem::FactorWork&)>;
 
-/// Starting, following and taking a base allocate nothing on the frame's thread.
+/// Starting, following and taking a base allocate nothing on the frame's thread, but for what the
+/// caller's MakeBase holds.
 class BackgroundRebase {
  public:
   /// `body` as it is now; a base is taken so many events after its start.

@@ -188,7 +188,7 @@ class Cascade : public ::testing::TestWithParam<Tear> {};
 // when they are first asked for: stress in one step, displacement in another.
 TEST_P(Cascade, AllocatesNothingOnceItIsWarm) {
   constexpr int kLarge = 100;  // elements of a step
-  constexpr long kLists = 8, kCondensedLists = 16;
+  constexpr long kLists = 8, kCondensedLists = 10;
   constexpr int kMost = 200;  // the next step would tear the board in two
   const auto problem = std::make_shared<const Problem>(notch(GetParam()));
   Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
