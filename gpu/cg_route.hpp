@@ -34,12 +34,13 @@ class CgRoute final : public DeviceRoute {
 
  private:
   void create_kernels(const Fields& fields);
-  /// correction = K^-1 r, to a share of the first r^T M r. Returns iterations.
-  int run(double reduction);
-  [[nodiscard]] shaders::CgPush push(bool first, double reduction = 0) const;
+  /// correction = K^-1 r, to a share of the first r^T M r; with a guess, or of u's energy if that
+  /// is more. Returns iterations.
+  int run(double reduction, bool guess);
+  [[nodiscard]] shaders::CgPush push(bool first) const;
   /// Of one sum, in packs of four.
   [[nodiscard]] std::uint32_t partials() const;
-  void record_start(double reduction);
+  void record_start(double reduction, bool guess);
   void record_iterations();
   void refresh_state(bool add);
 

@@ -148,7 +148,7 @@ class Frame {
     const double rows = static_cast<double>(s_.rows);
     work_.submit();
     if (s_.cg) {
-      iterate(kIterations / 4);  // to three digits of eleven
+      iterate(kIterations / 5);  // to two digits of eleven
     } else {
       work_.pass(rows * rows * real());
       work_.pass(2 * rows * sizeof(double));

@@ -12,7 +12,7 @@ OUT(3, Arguments, uint, arguments)
 layout(push_constant) uniform Push { CgPush p; };
 
 void start(double rz) {
-  state.data[0].target = rz * p.reduction;
+  state.data[0].target = max(rz, state.data[0].energy) * p.reduction;
   state.data[0].iterations = 0u;
   state.data[0].broken = rz >= 0 ? 0u : 1u;  // NaN included
   for (uint i = 0u; i < 3u * kCgSizes; ++i) arguments.data[i] = 1u;

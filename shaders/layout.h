@@ -139,8 +139,8 @@ struct CgPush {
   uint rigid_groups;  // of the second level: groups of nodes
   uint rigid_solves;  // of the second level: workgroups of four unknowns
   uint first;         // 1: nothing has been iterated yet
-  uint unused;
-  double reduction;  // stop at this share of the first r^T M r
+  uint guess;         // 1: the first step goes along u
+  double reduction;   // stop at this share of the first r^T M r, or of u's energy
 };
 
 SUNDER_CONST kCgSizes = 4u;  // kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup
@@ -151,6 +151,7 @@ struct CgState {
   double target;
   double length_;  // of the step along p
   double ratio;    // r^T M r by the one before
+  double energy;   // u^T K u of the free unknowns, of the first guess
   uint iterations;
   uint broken;  // 1: p^T K p was not positive, or something was not finite
   uint running;
@@ -206,7 +207,7 @@ static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 64);
 static_assert(sizeof(CgPush) == 32);
 static_assert(sizeof(ComplementPush) == 32);
-static_assert(sizeof(CgState) == 48);
+static_assert(sizeof(CgState) == 56);
 #undef SUNDER_CONST
 #undef SUNDER_WIDE_STRUCT
 }  // namespace sunder::shaders

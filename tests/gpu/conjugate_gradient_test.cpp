@@ -59,6 +59,30 @@ TEST_P(ConjugateGradient, GripsWithReactions) {
   pair.expect_reactions(kCrackTolerance);
 }
 
+/// The last solution is the first guess: it must help where it can and do no harm where it cannot.
+TEST_P(ConjugateGradient, LoadsThatGrowTurnVanishAndComeBack) {
+  Pair pair(held_board(), way());
+  const Load corner = corner_pull(pair.problem());
+  Load grown = corner;
+  for (double& f : grown.forces) f *= 1.7;
+  const auto edge = nodes_in(pair.problem().mesh(), {Vec3(49.9, 20, -1), Vec3(51, 30, 3)});
+  pair.load(corner);
+  expect(pair.solve(), kIntactTolerance, "corner");
+  pair.load(grown);
+  const auto multiple = pair.solve();
+  expect(multiple, kIntactTolerance, "grown");
+  EXPECT_EQ(multiple.report.iterations, 0);
+  pair.load(pull(pair.problem(), edge, Vec3(1e-6, 0, 0)));
+  expect(pair.solve(), kIntactTolerance, "a millionth of it, elsewhere");
+  pair.load(corner);
+  expect(pair.solve(), kIntactTolerance, "corner again");
+  pair.load({{}, {}, {}});
+  EXPECT_EQ(pair.vulkan->solve().error, 0);
+  for (double u : Pair::displacement(*pair.vulkan)) EXPECT_EQ(u, 0);
+  pair.load(corner);
+  expect(pair.solve(), kIntactTolerance, "after none");
+}
+
 TEST_P(ConjugateGradient, NothingLoadedTakesNoIteration) {
   Pair pair(held_board(), way());
   pair.load({{}, {}, {}});
