@@ -229,29 +229,32 @@ void add(const std::string& name, const Run& run) {
       ->Unit(benchmark::kMillisecond);
 }
 
-void add_rows(const BodyShape& body, const std::string& method, const Create& create, Index most) {
+struct Rows {
+  std::vector<std::size_t> events{1, 10, 100};  ///< elements each
+  Index most_accumulated = 0;                   ///< bodies up to which 640 events pay
+};
+
+void add_rows(const BodyShape& body, const std::string& method, const Create& create,
+              const Rows& rows) {
   const std::string start = "reconstruction/" + body.name + "/";
-  for (std::size_t k : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) {
+  for (std::size_t k : rows.events) {
     add(start + "k" + std::to_string(k) + "/" + method,
         [=](auto& state) { one_event(state, body, k, create); });
   }
-  if (body.tets() < 1000 || body.tets() > most) return;
+  if (body.tets() < 1000 || body.tets() > rows.most_accumulated) return;
   add(start + "to640/" + method, [=](auto& state) { accumulated(state, body, 640, create); });
 }
 
-/// Bodies up to which a method is worth its rows: memory n^2, or minutes on a software renderer.
-Index most_tets(const SolverOptions& options) {
-  const bool vulkan = options.backend == "vulkan";
+/// A dense inverse of more than 8,000 tetrahedra takes a minute to make, once for each row, and of
+/// 120,000 more memory than there is, which the row then says: one event shows it. Conjugate
+/// gradients and eager updates cost about the same for every fracture: one body shows it.
+Rows rows_of(const SolverOptions& options, const BodyShape& body) {
+  Rows rows;
   const bool dense = options.route == Route::inverse || options.route == Route::condensed;
-  if (!dense) return vulkan ? 2000 : 130000;
-  if (options.update == Update::eager) return 2000;
-  return vulkan && options.precision == Precision::fp64 ? 2000 : 8000;
-}
-
-/// Bodies that are torn 640 times: conjugate gradients and dense inverses cost the same every time.
-Index most_accumulated(const SolverOptions& options) {
-  if (options.route == Route::cg) return 0;
-  return options.backend == "vulkan" ? 2000 : 8000;
+  if (dense && body.tets() > 8000) rows.events = {10};
+  const bool deferred = options.backend == "cpu" && options.update == Update::deferred;
+  rows.most_accumulated = deferred ? 8000 : 2000;
+  return rows;
 }
 Index most_accumulated(const PeerKind& kind) {
   if (kind.name.find("updown") != std::string::npos) return 8000;
@@ -270,19 +273,17 @@ void register_rows() {
   for (const BodyShape& body : bodies()) {
     for (const PeerKind& kind : all_peers()) {
       if (body.tets() > kind.most_tets) continue;
-      add_rows(
-          body, kind.name,
-          [=](const TearingBoard& b) { return std::make_unique<PeerFollower>(b, kind); },
-          most_accumulated(kind));
+      add_rows(body, kind.name,
+               [=](const TearingBoard& b) { return std::make_unique<PeerFollower>(b, kind); },
+               {.most_accumulated = most_accumulated(kind)});
     }
     for (const Method& method : methods()) {
-      if (body.tets() > most_tets(method.options)) continue;
       add_rows(
           body, method.name,
           [=](const TearingBoard& b) {
             return std::make_unique<BackendFollower>(b, method.options);
           },
-          most_accumulated(method.options));
+          rows_of(method.options, body));
     }
   }
 }
