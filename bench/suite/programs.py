@@ -64,7 +64,8 @@ PROGRAMS = [
     Program("bench_stability", "stability of every method",
             Share(62, words=("quick",)), Share(400, words=("full",)), file="stability.csv"),
     Program("bench_scenes", "error against run time on scenes",
-            Share(38, words=("--seconds=2", *SCENES)), Share(500), file="scenes.csv"),
+            Share(38, words=("--seconds=2", "--tolerances=1e-4,1e-8", *SCENES)), Share(500),
+            file="scenes.csv"),
     Program("bench_convergence", "mesh size against error and time",
             Share(1, words=("30000",)), Share(7), file="convergence.csv"),
 ]
