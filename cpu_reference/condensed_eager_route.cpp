@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "cpu_reference/load_room.hpp"
 #include "cpu_reference/low_rank.hpp"
 #include "cpu_reference/routes.hpp"
 #include "fem/element.hpp"
@@ -25,6 +26,7 @@ class CondensedEagerRoute final : public InverseRoute {
         place_(static_cast<std::size_t>(body.problem().dof_count()), kNone),
         gripped_(body.problem().gripped_dofs()),
         update_(static_cast<Eigen::Index>(dofs.size())) {
+    reserve(load_, body.problem());
     dofs_.reserve(dofs.size());
     for (Index d : dofs) add_unknown(d);
     x_ = factor_->inverse_block(dofs_, dofs_);

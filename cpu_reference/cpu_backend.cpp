@@ -13,6 +13,7 @@
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/energy_check.hpp"
 #include "cpu_reference/frame_check.hpp"
+#include "cpu_reference/load_room.hpp"
 #include "cpu_reference/recent_checks.hpp"
 #include "cpu_reference/routes.hpp"
 #include "engine/instrument_block.hpp"
@@ -49,6 +50,8 @@ class CpuBackend final : public Backend {
         intact_(*problem, this->needs().damage && chosen_.update == Update::deferred &&
                               chosen_.route != Route::condensed && chosen_.route != Route::cg) {
     const auto n = problem->dof_count();
+    reserve(load_, *problem);
+    if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (chosen_.route == Route::condensed) {
       condensed_.emplace(*problem, engine::region_of(*problem, this->needs()));
     }
@@ -201,13 +204,18 @@ class CpuBackend final : public Backend {
     return report;
   }
 
+  void reserve_prepared() {
+    is_prepared_.reserve(problem().mesh().tets.size());
+    prepared_.reserve(std::min(is_prepared_.capacity(), std::size_t{1} << 14));
+  }
+
   void do_prepare(std::span<const Index> elements) override {
     using Clock = std::chrono::steady_clock;
     if (!prepares()) return;
     const auto start = Clock::now();
     is_prepared_.assign(problem().mesh().tets.size(), 0);
     prepared_.clear();
-    prepared_.reserve(std::min(is_prepared_.size(), std::size_t{1} << 14));
+    reserve_prepared();
     for (Index e : elements) {
       if (body_.destroyed()[e] || is_prepared_[e]) continue;
       is_prepared_[e] = 1;

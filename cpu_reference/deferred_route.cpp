@@ -5,6 +5,7 @@
 
 #include "cpu_reference/background_rebase.hpp"
 #include "cpu_reference/cost_model.hpp"
+#include "cpu_reference/load_room.hpp"
 #include "cpu_reference/routes.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
@@ -31,6 +32,7 @@ class DeferredRoute final : public InverseRoute {
         all_(static_cast<std::size_t>(body.problem().dof_count())),
         stiffness_(std::move(intact.stiffness)) {
     std::iota(all_.begin(), all_.end(), 0);
+    reserve(load_, body.problem());
     std::unique_ptr<engine::Base> base;
     if (dense) {
       base = std::make_unique<engine::InverseBase>(intact.factor);

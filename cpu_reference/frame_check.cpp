@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cpu_reference/check_terms.hpp"
+#include "cpu_reference/load_room.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -25,7 +26,9 @@ constexpr double kGrowth = 10;
 }  // namespace
 
 FrameCheck::FrameCheck(const Problem& problem)
-    : problem_(problem), stress_of_energy_(largest_stress_of_energy(problem)) {}
+    : problem_(problem), stress_of_energy_(largest_stress_of_energy(problem)) {
+  reserve(load_, problem);
+}
 
 void FrameCheck::checked(const Load& load, const Solution& solution, double stress, int bases) {
   load_ = load;

@@ -79,6 +79,7 @@ void Deferred::reserve_for_fractures(Index columns) {
   make_room(xu_, m_.rows(), kColumns);
   make_room(z_, m_.rows(), kColumns);
   make_room(zt_, kColumns, m_.cols());
+  make_room(at_grips_, kColumns, padded(grips_));
   clear_corner(u_, kTouchedRows, kColumns);
   for (fem::RowMajor* a : {&columns_, &product_, &zt_}) clear_corner(*a, kTouchedRows, columns);
   for (fem::RowMajor* a : {&gram_, &xu_, &z_}) clear_corner(*a, columns, kColumns);
