@@ -8,11 +8,16 @@ namespace sunder::cpu_reference {
 
 CondensedFields::CondensedFields(const Problem& problem, engine::Region region)
     : problem_(problem), region_(std::move(region)) {
-  for (Solution* s : {&displacement_, &of_stress_}) {  // loads and damage, so that frames allocate
-    s->of.dofs.reserve(2 * region_.dofs.size());       // nothing
-    s->of.forces.reserve(2 * region_.dofs.size());
-    s->of.lost_u.reserve(region_.dofs.size());
+  for (Solution* s : {&displacement_, &of_stress_}) {  // so that frames allocate nothing
+    s->of.reserve(region_.dofs.size(), region_.dofs.size());
   }
+}
+
+void CondensedFields::make_room(bool stress) {
+  for (Solution* s : {&displacement_, &of_stress_}) s->nodal.reserve(problem_.dofs().size());
+  room_.reserve(problem_.dof_count(), region_.dofs.size());
+  u_.resize(problem_.dof_count());
+  if (stress) stress_.reserve(problem_.mesh().tets.size());
 }
 
 void CondensedFields::take(const InverseRoute& route) {
@@ -62,7 +67,7 @@ std::span<const Voigt> CondensedFields::stress(std::span<const double> scale) {
 
 std::size_t CondensedFields::bytes() const {
   return (displacement_.nodal.capacity() + of_stress_.nodal.capacity()) * sizeof(double) +
-         static_cast<std::size_t>(room_.right_side.size() + u_.size()) * sizeof(double) +
+         room_.bytes() + static_cast<std::size_t>(u_.size()) * sizeof(double) +
          stress_.capacity() * sizeof(Voigt);
 }
 

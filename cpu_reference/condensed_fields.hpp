@@ -14,6 +14,8 @@ namespace sunder::cpu_reference {
 class CondensedFields {
  public:
   CondensedFields(const Problem& problem, engine::Region region);
+  /// Makes room now: frames will ask, such as a criterion that looks around a tip.
+  void make_room(bool stress);
   [[nodiscard]] const engine::Region& region() const { return region_; }
 
   /// A solution of the route on the region.

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "cpu_reference/background_rebase.hpp"
+#include "cpu_reference/load_room.hpp"
 #include "cpu_reference/routes.hpp"
 #include "engine/condensed_update.hpp"
 #include "fem/assembly.hpp"
@@ -22,6 +23,10 @@ constexpr std::size_t kFewestColumns = 64, kMostColumns = 256;
 
 // Columns that a base is expected to serve, fractures of some elements among them.
 constexpr Index kColumns = kMostColumns + 2 * kRebaseEvents;
+
+// Columns that an event brings: there is room for the damage of large ones (as in deferred.cpp),
+// and that of a few elements is touched from the start.
+constexpr std::size_t kLargestEvent = 512, kUsualEvent = 32;
 
 // An updated X_SS whose check finds more is computed anew from a factor of the damaged body, which
 // takes as long as thousands of frames. energy_check.cpp allows for a growth of 100 up to 1e-8;
@@ -98,27 +103,66 @@ std::vector<Index> elements_within(const Problem& problem, std::span<const Index
   return elements;
 }
 
-/// The base that comes next: the last one updated, or a new factor where that has drifted.
-struct NextBase {
-  engine::CondensedState state;
-  engine::Damage damage;
-  std::vector<Index> lost;    // elements destroyed since the factor
-  std::vector<Index> within;  // elements within S
+/// The base that comes next: the last one updated, or a new factor where that has drifted. It has
+/// its room from the start, so that beginning one allocates nothing.
+class NextBase {
+ public:
+  /// Over the unknowns `dofs`; it begins once the damage has more columns than `threshold`.
+  NextBase(const Problem& problem, std::span<const Index> dofs, std::size_t threshold)
+      : within_(elements_within(problem, dofs)) {
+    const std::size_t columns = std::min(dofs.size(), threshold + kLargestEvent);
+    state_.reserve(dofs.size(), columns);
+    lost_.reserve(static_cast<std::size_t>(problem.tet_count()));
+    const auto room = static_cast<Eigen::Index>(columns),
+               touched = static_cast<Eigen::Index>(std::min(columns, threshold + kUsualEvent));
+    for (fem::RowMajor* a : {&damage_.compliance, &damage_.m, &damage_.d}) {
+      a->resize(room, room);
+      a->topLeftCorner(touched, touched).setZero();  // so that no frame waits for the memory
+    }
+  }
 
-  Based operator()(const DamagedBody& body, const Load& load, const fem::FactorWork& work) const {
-    const Problem& problem = body.problem();
-    Based based = lay_over(problem, state.factor,
-                           std::make_unique<engine::CondensedBase>(
-                               state, engine::updated_inverse(state, damage, load.force_dofs),
-                               std::make_shared<const engine::LostStiffness>(problem, lost)),
-                           true);
-    if (!check_updated(based, body, load, within)) check_condensed(based, body, load);
+  /// Copies what the next base is to be made of; `lost`: elements destroyed since the factor.
+  void begin(const Based& last, std::span<const Index> lost) {
+    last.condensed->copy_state(state_);
+    last.deferred->copy_damage(damage_);
+    lost_.assign(lost.begin(), lost.end());
+  }
+
+  /// On another thread; holds nothing of the last base afterwards.
+  Based make(const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
+    const struct AtEnd {
+      NextBase& next;
+      ~AtEnd() { next.release(); }
+    } at_end{*this};
+    Based based = updated(body.problem(), load);
+    if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
     if (based.check.error <= kDrift) return based;
-    based = condensed_by(problem, std::make_shared<fem::Factor>(problem, body.scale(), work),
-                         state.dofs, true);
+    based = condensed_by(body.problem(),
+                         std::make_shared<fem::Factor>(body.problem(), body.scale(), work),
+                         state_.dofs, true);
     check_condensed(based, body, load);
     return based;
   }
+  void release() { state_.release(); }
+
+  [[nodiscard]] std::size_t bytes() const {
+    return sizeof(double) * static_cast<std::size_t>(damage_.compliance.size() + damage_.m.size() +
+                                                     damage_.d.size());
+  }
+
+ private:
+  Based updated(const Problem& problem, const Load& load) const {
+    return lay_over(problem, state_.factor,
+                    std::make_unique<engine::CondensedBase>(
+                        state_, engine::updated_inverse(state_, damage_, load.force_dofs),
+                        std::make_shared<const engine::LostStiffness>(problem, lost_)),
+                    true);
+  }
+
+  engine::CondensedState state_;
+  engine::Damage damage_;
+  std::vector<Index> lost_;    // elements destroyed since the factor
+  std::vector<Index> within_;  // elements within S
 };
 
 /// Deferred update over X_SS.
@@ -131,9 +175,10 @@ class CondensedRoute final : public InverseRoute {
     // Without an owner: the intact body outlives the route.
     based_ = condensed_by(body.problem(), {std::shared_ptr<void>(), &intact.factor}, dofs_, damage);
     intact_ = based_.factor.get();
-    lost_.reserve(body.scale().size());
+    make_room(body.problem());
     if (!damage) return;
-    within_ = elements_within(body.problem(), dofs_);
+    lost_.reserve(body.scale().size());
+    next_.emplace(body.problem(), dofs_, threshold());
     coming_.emplace(body, kRebaseEvents);
   }
 
@@ -167,14 +212,18 @@ class CondensedRoute final : public InverseRoute {
     } else if (!coming_->making() &&
                static_cast<std::size_t>(based_.deferred->rank()) > threshold()) {
       lost_at_start_ = lost_.size();
+      next_->begin(based_, lost_);
       coming_->start(
-          load_, NextBase{based_.condensed->state(), based_.deferred->damage(), lost_, within_});
+          load_, [this](const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
+            return next_->make(body, load, work);
+          });
     }
   }
 
   bool rebase() override {
     if (!coming_) return false;
     coming_->give_up();
+    next_->release();
     based_ = {};  // frees the old base first
     based_ =
         condensed_by(body_.problem(), std::make_shared<fem::Factor>(body_.problem(), body_.scale()),
@@ -195,12 +244,24 @@ class CondensedRoute final : public InverseRoute {
     if (based_.factor.get() != intact_) {
       plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
     }
+    if (next_) plan.push_back({"damage that the next base takes over", next_->bytes()});
+    plan.push_back(
+        {"room of full checks", whole_.bytes() + room_.bytes() +
+                                    static_cast<std::size_t>(everywhere_.size()) * sizeof(double)});
     return plan;
   }
 
  private:
   [[nodiscard]] std::size_t dof_count() const {
     return static_cast<std::size_t>(body_.problem().dof_count());
+  }
+
+  /// So that frames allocate nothing, a full check among them.
+  void make_room(const Problem& problem) {
+    reserve(load_, problem);
+    whole_.reserve(all_.size(), dofs_.size());
+    room_.reserve(problem.dof_count(), dofs_.size());
+    everywhere_.resize(problem.dof_count());
   }
 
   std::size_t threshold() const {
@@ -223,17 +284,30 @@ class CondensedRoute final : public InverseRoute {
   Load load_;  // of the last solution
   Based based_;
   std::vector<Index> lost_;        // elements destroyed since based_.factor
-  std::vector<Index> within_;      // elements all of whose unknowns are in S
   std::size_t lost_at_start_ = 0;  // of them, when coming_ started
   engine::Equilibrium whole_;
   WholeRoom room_;
   Eigen::VectorXd everywhere_;
   double enough_ = 0;
   int bases_ = 1;
-  std::optional<BackgroundRebase> coming_;  // where something can be destroyed
+  // Where something can be destroyed.
+  std::optional<NextBase> next_;
+  std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
 };
 
 }  // namespace
+
+void WholeRoom::reserve(Index unknowns, std::size_t touched) {
+  right_side.resize(unknowns);
+  lost.reserve(touched);
+  work.below.reserve(static_cast<std::size_t>(unknowns));
+  work.permuted.resize(unknowns);
+}
+
+std::size_t WholeRoom::bytes() const {
+  return sizeof(double) * (static_cast<std::size_t>(right_side.size() + work.permuted.size()) +
+                           lost.capacity() + work.below.capacity());
+}
 
 void solve_whole(const engine::Equilibrium& of, WholeRoom& room, Eigen::VectorXd& u) {
   Eigen::VectorXd& right_side = room.right_side;

@@ -54,6 +54,9 @@ class CpuBackend final : public Backend {
     if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (chosen_.route == Route::condensed) {
       condensed_.emplace(*problem, engine::region_of(*problem, this->needs()));
+      if (problem->scene().fracture.model != FractureModel::none) {
+        condensed_->make_room(this->needs().stress);
+      }
     }
     route_ = make_route();
     if (condensed_) {
@@ -114,7 +117,7 @@ class CpuBackend final : public Backend {
     }
     if (kernel_) plan.push_back({"shapes and elasticity of elements", kernel_->bytes()});
     if (condensed_ && condensed_->bytes() > 0) {
-      plan.push_back({"fields outside the condensed region, once asked for", condensed_->bytes()});
+      plan.push_back({"fields outside the condensed region", condensed_->bytes()});
     }
     return plan;
   }

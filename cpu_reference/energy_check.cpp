@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cpu_reference/check_terms.hpp"
+#include "cpu_reference/load_room.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -33,8 +34,22 @@ double largest_of(std::span<const double> v) {
 
 }  // namespace
 
+void EnergyCheck::Directions::reserve(const Problem& problem) {
+  for (Checked& slot : slots_) cpu_reference::reserve(slot.load, problem);
+}
+
+/// Whatever the direction of a load, a frame allocates nothing.
 EnergyCheck::EnergyCheck(const Problem& problem)
-    : problem_(problem), stress_of_energy_(largest_stress_of_energy(problem)) {}
+    : problem_(problem),
+      stress_of_energy_(largest_stress_of_energy(problem)),
+      r_(Directions::kMost, Directions::kMost) {
+  reserve(next_.load, problem);
+  checks_.reserve(problem);
+  others_.reserve(problem);
+  const std::size_t rows = most_forces(problem) + problem.gripped_dofs().size();
+  q_.reserve(rows * Directions::kMost);
+  v_.reserve(rows);
+}
 
 void EnergyCheck::checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                           double largest_u, double largest) {
@@ -75,13 +90,19 @@ bool EnergyCheck::on_same_unknowns(const Load& load) const {
          load.displacements.size() == checks_[0].load.displacements.size();
 }
 
+EnergyCheck::Column EnergyCheck::column(std::vector<double>& of, Eigen::Index i) const {
+  return {of.data() + i * rows_, rows_};
+}
+
 /// The load's entries as shares of the last full check's largest force and displacement.
 void EnergyCheck::write(const Load& load) {
   const auto forces = static_cast<Eigen::Index>(load.forces.size()),
              grips = static_cast<Eigen::Index>(load.displacements.size());
-  v_.resize(forces + grips);
-  v_.head(forces) = Eigen::Map<const Eigen::VectorXd>(load.forces.data(), forces) / force_unit_;
-  v_.tail(grips) =
+  rows_ = forces + grips;
+  v_.resize(static_cast<std::size_t>(rows_));
+  Column v = column(v_);
+  v.head(forces) = Eigen::Map<const Eigen::VectorXd>(load.forces.data(), forces) / force_unit_;
+  v.tail(grips) =
       Eigen::Map<const Eigen::VectorXd>(load.displacements.data(), grips) / displacement_unit_;
 }
 
@@ -89,21 +110,23 @@ void EnergyCheck::write(const Load& load) {
 double EnergyCheck::beyond_span(std::size_t directions) {
   const auto k = static_cast<Eigen::Index>(directions);
   shares_.setZero(k);
-  const double largest = v_.size() > 0 ? v_.cwiseAbs().maxCoeff() : 0.0;
+  Column v = column(v_);
+  const double largest = v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0;
   if (!(largest > 0)) return 0;
   for (Eigen::Index i = 0; i < k; ++i) {
-    shares_[i] = q_.col(i).dot(v_);
-    v_ -= shares_[i] * q_.col(i);
+    const Column q = column(q_, i);
+    shares_[i] = q.dot(v);
+    v -= shares_[i] * q;
   }
-  return v_.cwiseAbs().maxCoeff() / largest;
+  return v.cwiseAbs().maxCoeff() / largest;
 }
 
 /// Takes what is left of v_ for the next direction.
 void EnergyCheck::take_direction(const Checked& checked) {
   const auto k = static_cast<Eigen::Index>(checks_.size());
   r_.col(k).head(k) = shares_;
-  r_(k, k) = v_.norm();
-  q_.col(k) = v_ / r_(k, k);
+  r_(k, k) = column(v_).norm();
+  column(q_, k) = column(v_) / r_(k, k);
   checks_.push_back(checked);
 }
 
@@ -117,7 +140,7 @@ void EnergyCheck::add_direction(const Checked& checked) {
   displacement_unit_ = displacement > 0 ? displacement : 1;
   write(checked.load);
   if (!(beyond_span(0) > 0)) return;  // no load, no direction
-  q_.resize(v_.size(), Directions::kMost);
+  q_.resize(v_.size() * Directions::kMost);
   r_.setZero(Directions::kMost, Directions::kMost);
   take_direction(checked);
   while (checks_.size() < Directions::kMost) {

@@ -9,6 +9,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "cpu_reference/routes.hpp"
 
@@ -62,6 +63,7 @@ class EnergyCheck {
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] bool empty() const { return size_ == 0; }
     [[nodiscard]] const Checked& operator[](std::size_t i) const { return slots_[i]; }
+    void reserve(const Problem& problem);
     void clear() { size_ = 0; }
     void push_back(const Checked& checked) { slots_[size_++] = checked; }
     void swap(Directions& other) {
@@ -75,6 +77,8 @@ class EnergyCheck {
   };
   void add_direction(const Checked& checked);
   void take_direction(const Checked& checked);
+  using Column = Eigen::Map<Eigen::VectorXd>;
+  [[nodiscard]] Column column(std::vector<double>& of, Eigen::Index i = 0) const;
   void write(const Load& load);
   [[nodiscard]] double beyond_span(std::size_t directions);
   [[nodiscard]] bool shares_of(const Load& load);
@@ -86,9 +90,12 @@ class EnergyCheck {
   Checked next_;             // the check in work
   Directions checks_;        // the last one first, none in the span of those before it
   Directions others_;        // those before it, as they are sorted in
-  Eigen::MatrixXd q_, r_;    // their loads as columns, each entry by its unit: Q R
+  // Their loads as columns of rows_ entries, each by its unit: Q R.
+  std::vector<double> q_;
+  Eigen::MatrixXd r_;
   double force_unit_ = 1, displacement_unit_ = 1;
-  Eigen::VectorXd v_;  // a load
+  Eigen::Index rows_ = 0;
+  std::vector<double> v_;  // a load
   /// Its shares of checks_; its room does not follow its size.
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Directions::kMost, 1> shares_;
   int bases_ = 0;        // of the last full check; 0: there was none

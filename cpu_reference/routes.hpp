@@ -154,6 +154,9 @@ struct IntactBody {
                                                                   std::span<const Index> dofs);
 /// What solve_whole() works in.
 struct WholeRoom {
+  /// For a body of so many unknowns, some of them touched.
+  void reserve(Index unknowns, std::size_t touched);
+  [[nodiscard]] std::size_t bytes() const;
   Eigen::VectorXd right_side;
   std::vector<double> lost;
   fem::SolveWork work;

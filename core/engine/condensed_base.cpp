@@ -20,7 +20,31 @@ std::shared_ptr<const Eigen::MatrixXd> extended(const Eigen::MatrixXd& x,
   return result;
 }
 
+constexpr std::size_t kVectors = 1024;  // room for them
+
 }  // namespace
+
+void Equilibrium::reserve(std::size_t loaded, std::size_t touched) {
+  dofs.reserve(loaded + touched);
+  forces.reserve(loaded + touched);
+  lost_u.reserve(touched);
+}
+
+std::size_t Equilibrium::bytes() const {
+  return dofs.capacity() * sizeof(Index) + (forces.capacity() + lost_u.capacity()) * sizeof(double);
+}
+
+void CondensedState::reserve(std::size_t unknowns, std::size_t differences) {
+  dofs.reserve(unknowns);
+  vectors.reserve(differences);
+}
+
+void CondensedState::release() {
+  factor.reset();
+  x.reset();
+  x_of_factor.reset();
+  lost.reset();
+}
 
 CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::span<const Index> dofs)
     : CondensedBase(factor, dofs,
@@ -45,12 +69,27 @@ CondensedBase::CondensedBase(std::shared_ptr<const fem::Factor> factor, std::spa
   is_touched_.assign(dofs_.size(), kNone);
   of_load_.setZero(x_->rows());
   u_.setZero(x_->rows());
-  projected_.resize(1024);
+  projected_.resize(kVectors);
   touched_.reserve(dofs_.size());
   loaded_.reserve(dofs_.size());
   forces_.reserve(dofs_.size());
-  vectors_.reserve(1024);
-  pushes_.reserve(1024);
+  vectors_.reserve(kVectors);
+  pushes_.reserve(kVectors);
+  make_room_everywhere();
+}
+
+/// So that a load outside S, which is that of a full check, allocates nothing.
+void CondensedBase::make_room_everywhere() {
+  const auto all = static_cast<std::size_t>(size());
+  load_.reserve(all);
+  right_side_.setZero(size());
+  solution_.setZero(size());
+  work_.below.reserve(all);
+  work_.permuted.setZero(size());
+  moved_.reserve(dofs_.size());
+  of_moved_.reserve(dofs_.size());
+  forces_lost_.setZero(x_->rows());
+  of_lost_.setZero(x_->rows());
 }
 
 void CondensedBase::grow(std::span<const Difference> vectors) {
@@ -77,7 +116,7 @@ void CondensedBase::grow(std::span<const Difference> vectors) {
     x_ = x_of_factor_;
   }
   is_touched_.resize(dofs_.size(), kNone);
-  load_ = {};
+  load_.forget();
   u_.setZero(size);
 }
 
@@ -129,17 +168,35 @@ void CondensedBase::apply_inside(std::span<const Index> dofs, std::span<const do
   add_columns(*x_, loaded_, values, of_load_);
 }
 
+/// D u of one column u on S, on the unknowns of D; `moved` is u there.
+void CondensedBase::lose(const double* u, std::span<double> moved, std::span<double> forces) const {
+  const auto dofs = lost_->dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) moved[i] = u[place_[dofs[i]]];
+  lost_->multiply(moved, forces);
+}
+
 /// D u for columns u on S, as forces on S.
 Eigen::MatrixXd CondensedBase::forces_lost(const Eigen::MatrixXd& u) const {
   const auto dofs = lost_->dofs();
   std::vector<double> moved(dofs.size()), forces(dofs.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(u.rows(), u.cols());
   for (Eigen::Index j = 0; j < u.cols(); ++j) {
-    for (std::size_t i = 0; i < dofs.size(); ++i) moved[i] = u(place_[dofs[i]], j);
-    lost_->multiply(moved, forces);
+    lose(u.col(j).data(), moved, forces);
     for (std::size_t i = 0; i < dofs.size(); ++i) result(place_[dofs[i]], j) = forces[i];
   }
   return result;
+}
+
+/// of_load_ += X D of_load_.
+void CondensedBase::add_lost() {
+  const auto dofs = lost_->dofs();
+  moved_.resize(dofs.size());
+  of_moved_.resize(dofs.size());
+  lose(of_load_.data(), moved_, of_moved_);
+  forces_lost_.setZero(of_load_.size());
+  for (std::size_t i = 0; i < dofs.size(); ++i) forces_lost_[place_[dofs[i]]] = of_moved_[i];
+  of_lost_.noalias() = *x_ * forces_lost_;
+  of_load_ += of_lost_;
 }
 
 /// With g = X0 f, X f = g + X D g.
@@ -151,7 +208,7 @@ void CondensedBase::apply_everywhere(std::span<const Index> dofs, std::span<cons
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
     of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
   }
-  if (lost_) of_load_ += *x_ * forces_lost(of_load_);
+  if (lost_) add_lost();
 }
 
 const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
@@ -202,6 +259,21 @@ Eigen::VectorXd CondensedBase::drift() const {
   return lacks;
 }
 
+void CondensedBase::copy_state(CondensedState& to) const {
+  to.factor = factor_;
+  to.dofs = dofs_;
+  to.x = x_;
+  to.x_of_factor = x_of_factor_;
+  to.lost = lost_;
+  to.vectors = vectors_;
+}
+
+CondensedState CondensedBase::state() const {
+  CondensedState state;
+  copy_state(state);
+  return state;
+}
+
 void CondensedBase::equilibrium(Equilibrium& of) const {
   of.factor = factor_;
   of.dofs.assign(load_.dofs().begin(), load_.dofs().end());
@@ -221,6 +293,8 @@ std::vector<BufferPlan> CondensedBase::buffers() const {
   std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)", bytes}};
   if (x_ != x_of_factor_) plan.push_back({"condensed inverse of the factor", bytes});
   if (lost_) plan.push_back({"stiffness lost between factor and inverse", lost_->bytes()});
+  plan.push_back({"loads outside the condensed region",
+                  static_cast<std::size_t>(size()) * (5 * sizeof(double) + sizeof(Index))});
   return plan;
 }
 

@@ -16,6 +16,9 @@ namespace sunder::engine {
 /// Forces [N] on the body of `factor` whose solution is that of the damaged one: f + B c, and D u
 /// of what was lost between factor and base. An unknown may come twice.
 struct Equilibrium {
+  /// For forces on so many unknowns, loaded and touched by damage.
+  void reserve(std::size_t loaded, std::size_t touched);
+  [[nodiscard]] std::size_t bytes() const;
   std::shared_ptr<const fem::Factor> factor;
   std::vector<Index> dofs;
   std::vector<double> forces;
@@ -31,6 +34,11 @@ struct CondensedState {
   std::shared_ptr<const Eigen::MatrixXd> x_of_factor;  // X_SS without what was lost since
   std::shared_ptr<const LostStiffness> lost;           // since; empty: nothing
   std::vector<Difference> vectors;                     // B
+
+  /// For so many unknowns of S and vectors.
+  void reserve(std::size_t unknowns, std::size_t differences);
+  /// Lets go of what is shared; the lists keep their room.
+  void release();
 };
 
 class CondensedBase final : public Base {
@@ -57,9 +65,9 @@ class CondensedBase final : public Base {
   [[nodiscard]] bool inside(std::span<const Index> dofs) const;
   /// S; at first the unknowns given.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
-  [[nodiscard]] CondensedState state() const {
-    return {factor_, dofs_, x_, x_of_factor_, lost_, vectors_};
-  }
+  [[nodiscard]] CondensedState state() const;
+  /// The same into one that has room.
+  void copy_state(CondensedState& to) const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
  private:
@@ -68,7 +76,10 @@ class CondensedBase final : public Base {
   void grow(std::span<const Difference> vectors);
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
   void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
+  void make_room_everywhere();
+  void lose(const double* u, std::span<double> moved, std::span<double> forces) const;
   [[nodiscard]] Eigen::MatrixXd forces_lost(const Eigen::MatrixXd& u) const;
+  void add_lost();
 
   std::shared_ptr<const fem::Factor> factor_;
   std::vector<Index> dofs_, place_;                     // S, and where in it each unknown is
@@ -83,6 +94,10 @@ class CondensedBase final : public Base {
   std::vector<Index> loaded_;  // places that the load touches
   Eigen::VectorXd of_load_;    // (X f)_S
   Eigen::VectorXd u_, projected_, right_side_, solution_;
+  // Where a load is outside S and stiffness was lost: u on the unknowns of D, D u there and on S,
+  // and X D u.
+  std::vector<double> moved_, of_moved_;
+  Eigen::VectorXd forces_lost_, of_lost_;
   fem::SolveWork work_;
 };
 

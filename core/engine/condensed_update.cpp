@@ -199,7 +199,9 @@ Eigen::MatrixXd updated_inverse(const CondensedState& state, const Damage& damag
   Parts parts;
   parts.columns = differences_of(state, place);
   parts.of_load.assign(state.dofs.size(), kNone);
-  parts.damage = damage;
+  const auto r = static_cast<Eigen::Index>(state.vectors.size());
+  parts.damage = {damage.compliance.topLeftCorner(r, r), damage.m.topLeftCorner(r, r),
+                  damage.d.topLeftCorner(r, r)};
   if (state.lost) {
     make_exact(state, place, loaded, parts);
   } else {

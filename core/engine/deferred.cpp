@@ -383,8 +383,17 @@ void Deferred::add_grips(std::span<const double> displacement) {
 }
 
 Damage Deferred::damage() const {
+  Damage damage;
+  copy_damage(damage);
+  return damage;
+}
+
+void Deferred::copy_damage(Damage& to) const {
   const Eigen::Index n = count();
-  return {compliance_.topLeftCorner(n, n), m_.topLeftCorner(n, n), d_.topLeftCorner(n, n)};
+  for (fem::RowMajor* a : {&to.compliance, &to.m, &to.d}) make_room(*a, n, n);
+  to.compliance.topLeftCorner(n, n) = compliance_.topLeftCorner(n, n);
+  to.m.topLeftCorner(n, n) = m_.topLeftCorner(n, n);
+  to.d.topLeftCorner(n, n) = d_.topLeftCorner(n, n);
 }
 
 std::vector<BufferPlan> Deferred::buffers() const {

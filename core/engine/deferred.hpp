@@ -21,7 +21,7 @@
 
 namespace sunder::engine {
 
-/// What the damage is in the coordinates of B, n x n each: G = B^T X B, M and D.
+/// What the damage is in the coordinates of B, leading n x n blocks: G = B^T X B, M and D.
 struct Damage {
   fem::RowMajor compliance, m, d;
 };
@@ -70,6 +70,8 @@ class Deferred {
   /// Columns of B: what a frame pays for the damage.
   [[nodiscard]] Index rank() const { return count_; }
   [[nodiscard]] Damage damage() const;
+  /// The same into the leading blocks of matrices that have room, or get it.
+  void copy_damage(Damage& to) const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 
  private:

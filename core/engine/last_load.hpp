@@ -11,6 +11,10 @@ namespace sunder::engine {
 
 class LastLoad {
  public:
+  void reserve(std::size_t forces) {
+    dofs_.reserve(forces);
+    values_.reserve(forces);
+  }
   /// Takes a load; returns false when it is the one taken before.
   bool take(const Forces& forces) {
     const bool same = known_ && std::ranges::equal(forces.dofs, dofs_) &&
@@ -21,6 +25,8 @@ class LastLoad {
     known_ = true;
     return true;
   }
+  /// The next load is another one.
+  void forget() { known_ = false; }
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
   [[nodiscard]] std::span<const double> values() const { return values_; }
