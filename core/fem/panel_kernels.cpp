@@ -1,45 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fem/panel_kernels.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 #include "engine/vectorised.hpp"
 
 namespace sunder::fem {
 namespace {
 
-// Dot products are kept in this many partial sums, so that their bits do not depend on the width
-// of the processor's vectors.
-constexpr int kLanes = 16;
+typedef double Lanes __attribute__((vector_size(kPanelLanes * sizeof(double))));
+constexpr int kTogether = 8;  // columns
 
-// The panels are read from their end on, each column from its beginning: the processor's own
-// prefetching sees a new start at every column. Entries this far ahead are asked for.
-constexpr int kAhead = 1024;
-constexpr int kLine = 8;  // entries of a line of the cache
+inline __attribute__((always_inline)) void load(const double* p, Lanes& v) {
+  std::memcpy(&v, p, sizeof(v));
+}
 
-/// sums[c] = column c . below for some columns that begin `stride` apart; each in the same order.
-template <int Columns>
-inline __attribute__((always_inline)) void dots(const double* columns, Index stride, Index count,
-                                                const double* below, double* sums) {
-  double lanes[Columns][kLanes] = {};
-  Index i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    for (int c = 0; c < Columns; ++c) {
-      const double* column = columns + c * static_cast<std::ptrdiff_t>(stride) + i;
-      for (int l = 0; l < kLanes; l += kLine) __builtin_prefetch(column + l - kAhead);
-      for (int l = 0; l < kLanes; ++l) lanes[c][l] += column[l] * below[i + l];
-    }
+/// What is to be read next, line by line of the cache: backward, panels are read from the last one
+/// on, and the processor's own prefetching goes the other way.
+struct Ahead {
+  const double *at, *end;
+  inline __attribute__((always_inline)) void ask() {
+    if (at < end) __builtin_prefetch(at);
+    at += kPanelLanes;
   }
-  for (int l = 0; i < count; ++i, ++l) {
+};
+
+/// sums[c] = column c . v over whole vectors, for columns that begin `stride` apart. The order of
+/// each sum is fixed: lanes, then (((0+4)+(2+6)) + ((1+5)+(3+7))).
+template <int Columns>
+inline __attribute__((always_inline)) void dots(const double* columns, std::ptrdiff_t stride,
+                                                Index vectors, const double* v, double* sums,
+                                                Ahead& ahead) {
+  Lanes sum[Columns] = {};
+  for (Index i = 0; i < vectors; ++i) {
+    Lanes right, left;
+    load(v + i * kPanelLanes, right);
     for (int c = 0; c < Columns; ++c) {
-      lanes[c][l] += columns[c * static_cast<std::ptrdiff_t>(stride) + i] * below[i];
+      ahead.ask();
+      load(columns + c * stride + i * kPanelLanes, left);
+      sum[c] += left * right;
     }
   }
   for (int c = 0; c < Columns; ++c) {
-    sums[c] = 0;
-    for (int l = 0; l < kLanes; ++l) sums[c] += lanes[c][l];
+    const Lanes& s = sum[c];
+    sums[c] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
   }
 }
+
+/// The same for any number of columns up to kTogether.
+inline __attribute__((always_inline)) void some_dots(const double* columns, std::ptrdiff_t stride,
+                                                     Index count, Index vectors, const double* v,
+                                                     double* sums, Ahead& ahead) {
+  if (count == kTogether) {
+    dots<kTogether>(columns, stride, vectors, v, sums, ahead);
+    return;
+  }
+  Index c = 0;
+  for (; c + 4 <= count; c += 4) {
+    dots<4>(columns + c * stride, stride, vectors, v, sums + c, ahead);
+  }
+  for (; c + 2 <= count; c += 2) {
+    dots<2>(columns + c * stride, stride, vectors, v, sums + c, ahead);
+  }
+  for (; c < count; ++c) dots<1>(columns + c * stride, stride, vectors, v, sums + c, ahead);
+}
+
+Index vectors_of(Index n) { return (n + kPanelLanes - 1) / kPanelLanes; }
 
 }  // namespace
 
@@ -57,26 +85,29 @@ void panel_forward(const double* panel, Index width, Index height, double* x, do
 }
 
 SUNDER_VECTORISED
-void panel_backward(const double* panel, Index width, Index height, double* x,
-                    const double* below) {
-  constexpr Index kTogether = 4;
-  const Index under = height - width;
+void panel_backward(const double* panel, Index width, Index height, double* x, const double* below,
+                    double* solved, const double* ahead, const double* ahead_end) {
+  const std::ptrdiff_t stride = height;
+  Ahead next{ahead, ahead_end};
   double sums[kTogether];
+  const Index under = vectors_of(height - width);
+  for (Index begin = 0; begin < width; begin += kTogether) {
+    const Index count = std::min<Index>(kTogether, width - begin);
+    some_dots(panel + begin * stride + width, stride, count, under, below, sums, next);
+    for (Index j = 0; j < count; ++j) x[begin + j] -= sums[j];
+  }
+  std::fill_n(solved + width, kPanelLanes, 0.0);
   for (Index end = width; end > 0;) {
-    const Index begin = end >= kTogether ? end - kTogether : end - 1;
-    const double* columns =
-        panel + static_cast<std::size_t>(begin) * static_cast<std::size_t>(height);
-    if (end - begin == kTogether) {
-      dots<kTogether>(columns + width, height, under, below, sums);
-    } else {
-      dots<1>(columns + width, height, under, below, sums);
-    }
-    for (Index j = end - 1; j >= begin; --j) {
-      const double* column =
-          columns + static_cast<std::size_t>(j - begin) * static_cast<std::size_t>(height);
-      double sum = sums[j - begin];
-      for (Index r = j + 1; r < width; ++r) sum += column[r] * x[r];
-      x[j] = (x[j] - sum) / column[j];
+    const Index begin = (end - 1) / kTogether * kTogether, count = end - begin;
+    const double* columns = panel + begin * stride + begin;
+    double b[kTogether], inverse[kTogether];
+    for (Index j = 0; j < count; ++j) inverse[j] = 1 / columns[j * stride + j];
+    some_dots(columns + count, stride, count, vectors_of(width - end), solved + end, sums, next);
+    for (Index j = 0; j < count; ++j) b[j] = x[begin + j] - sums[j];
+    for (Index j = count - 1; j >= 0; --j) {
+      const double xj = b[j] * inverse[j];
+      x[begin + j] = solved[begin + j] = xj;
+      for (Index i = 0; i < j; ++i) b[i] -= columns[i * stride + j] * xj;
     }
     end = begin;
   }

@@ -7,6 +7,13 @@
 #include "fem/panel_kernels.hpp"
 
 namespace sunder::fem {
+namespace {
+
+// Entries of the panel before that are asked for: enough that the processor's own prefetching goes
+// on from there.
+constexpr std::ptrdiff_t kAhead = 1024;
+
+}  // namespace
 
 SupernodalCholesky::SupernodalCholesky(const SparseMatrix& lower, std::vector<Index> place,
                                        const FactorWork& work) {
@@ -24,8 +31,13 @@ SupernodalCholesky::SupernodalCholesky(std::shared_ptr<const Supernodes> nodes,
 
 void SupernodalCholesky::compute(const SparseMatrix& ordered, const FactorWork& work) {
   for (Index s = 0; s < nodes_->count(); ++s) tallest_ = std::max(tallest_, nodes_->height(s));
-  values_.assign(nodes_->value_begin.back(), 0.0);
+  values_.assign(nodes_->value_begin.back() + kPanelLanes, 0.0);
   succeeded_ = factorise(*nodes_, ordered, work, values_);
+}
+
+/// What lies under a panel, and its solved part.
+std::size_t SupernodalCholesky::room_of_a_panel() const {
+  return 2 * static_cast<std::size_t>(tallest_ + kPanelLanes);
 }
 
 SupernodalCholesky::ConstPanel SupernodalCholesky::panel(Index s) const {
@@ -34,7 +46,7 @@ SupernodalCholesky::ConstPanel SupernodalCholesky::panel(Index s) const {
 
 void SupernodalCholesky::make_room(Index columns, SolveWork& work) const {
   work.seen.resize(static_cast<std::size_t>(nodes_->count()), 0);
-  work.below.resize(static_cast<std::size_t>(tallest_));
+  work.below.resize(room_of_a_panel());
   work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * columns)));
 }
 
@@ -62,22 +74,26 @@ void SupernodalCholesky::forward_panel(Index s, Eigen::VectorXd& y, SolveWork& w
 
 void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::VectorXd& y,
                                  SolveWork& work) const {
-  work.below.resize(static_cast<std::size_t>(tallest_));
+  work.below.resize(room_of_a_panel());
   for (Index s : supernodes) forward_panel(s, y, work);
 }
 
 void SupernodalCholesky::forward(Eigen::VectorXd& y, SolveWork& work) const {
-  work.below.resize(static_cast<std::size_t>(tallest_));
+  work.below.resize(room_of_a_panel());
   for (Index s = 0; s < nodes_->count(); ++s) forward_panel(s, y, work);
 }
 
 void SupernodalCholesky::backward(Eigen::VectorXd& y, SolveWork& work) const {
-  work.below.resize(static_cast<std::size_t>(tallest_));
+  work.below.resize(room_of_a_panel());
   for (Index s = nodes_->count() - 1; s >= 0; --s) {
     const auto below = nodes_->below(s);
     for (std::size_t i = 0; i < below.size(); ++i) work.below[i] = y[below[i]];
-    panel_backward(values_.data() + nodes_->value_begin[s], nodes_->width(s), nodes_->height(s),
-                   y.data() + nodes_->first[s], work.below.data());
+    std::fill_n(work.below.begin() + static_cast<std::ptrdiff_t>(below.size()), kPanelLanes, 0.0);
+    const double* values = values_.data() + nodes_->value_begin[s];
+    const double* before = s > 0 ? values_.data() + nodes_->value_begin[s - 1] : values;
+    panel_backward(values, nodes_->width(s), nodes_->height(s), y.data() + nodes_->first[s],
+                   work.below.data(), work.below.data() + tallest_ + kPanelLanes, before,
+                   std::min(values, before + kAhead));
   }
 }
 

@@ -38,7 +38,7 @@ class SupernodalCholesky {
     return nodes_;
   }
   /// Entries of the panels: a triangular solve reads each once.
-  [[nodiscard]] std::size_t entries() const { return values_.size(); }
+  [[nodiscard]] std::size_t entries() const { return nodes_->value_begin.back(); }
   [[nodiscard]] std::size_t bytes() const;
 
   /// Room for `columns` right sides, so that what follows allocates nothing.
@@ -62,6 +62,7 @@ class SupernodalCholesky {
   using ConstPanel = Eigen::Map<const Eigen::MatrixXd>;
   using ConstRows = Eigen::Map<const RowMajor>;
   [[nodiscard]] ConstPanel panel(Index s) const;
+  [[nodiscard]] std::size_t room_of_a_panel() const;
   void forward_panel(Index s, Eigen::VectorXd& y, SolveWork& work) const;
 
   void compute(const SparseMatrix& ordered, const FactorWork& work);
