@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "engine/vectorised.hpp"
 #include "fem/element.hpp"
@@ -19,6 +20,24 @@ constexpr std::size_t kForces = 12 * StressKernel::kLanes;  // of a block's elem
 
 // The maximum shear stress lies between sqrt(3)/2 and 1 times sqrt(J_2); squared, and rounded off.
 constexpr double kShearRange = 0.75 * (1 - 1e-9);
+// By which a ratio may exceed its bound's, squared: a deviator beside a large pressure.
+constexpr double kRounding = 1e-6;
+
+/// Whether (s1 - s3)/2 >= k for a J_2 of k^2 to k^2/0.75, without principal stresses: two of them
+/// differ by 2k where the product of all (s_i - s_j)^2 - 4k^2 is 0, and two of the three factors
+/// are negative there. In units of k it is 4 J_2^3 - 27 J_3^2 - 36 J_2^2 + 96 J_2 - 64. Nothing:
+/// too close to tell.
+std::optional<bool> shears(const Voigt& s, double k) {
+  const double mean = (s[0] + s[1] + s[2]) / 3;
+  if (!(std::abs(mean) <= 1e6 * k)) return std::nullopt;
+  const double x = (s[0] - mean) / k, y = (s[1] - mean) / k, z = (s[2] - mean) / k, xy = s[3] / k,
+               yz = s[4] / k, zx = s[5] / k;
+  const double j2 = (x * x + y * y + z * z) / 2 + (xy * xy + yz * yz + zx * zx);
+  const double j3 = x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx);
+  const double product = 4 * j2 * j2 * j2 - 27 * j3 * j3 - 36 * j2 * j2 + 96 * j2 - 64;
+  if (!(std::abs(product) > 1e-6)) return std::nullopt;  // rounding: 1e-8
+  return product > 0;
+}
 
 int threads_for(std::size_t elements) {
   const auto machine = std::max(1U, std::thread::hardware_concurrency());
@@ -231,35 +250,54 @@ Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
     return e != kNone && (excluded.empty() || !excluded[e]);
   };
   double largest = 0;
+  std::size_t first = 0;
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
-    if (bounds_[i] > largest && counts(i)) largest = bounds_[i];
+    if (bounds_[i] > largest && counts(i)) {
+      largest = bounds_[i];
+      first = i;
+    }
   }
   Worst worst;
   if (!(largest > 0)) return worst;
-  for (std::size_t i = 0; i < bounds_.size(); ++i) {
-    if (!(bounds_[i] >= kShearRange * largest) || !counts(i)) continue;
+  const auto look_at = [&](std::size_t i) {
     const Index e = blocks_[i / kLanes].element[i % kLanes];
     const double ratio = fem::yield_measure(stress[i], problem_->scene().fracture.yield_measure) /
                          problem_->yield(e);
-    if (ratio > worst.ratio) worst = {e, ratio};
+    if (ratio > worst.ratio || (ratio == worst.ratio && e < worst.element)) worst = {e, ratio};
+  };
+  // The ratio is at most the bound's: the largest bound's element leaves few others to look at.
+  look_at(first);
+  const double least = least_bound() * worst.ratio * worst.ratio * (1 - kRounding);
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    if (bounds_[i] >= least && bounds_[i] > 0 && i != first && counts(i)) look_at(i);
   }
   return worst;
+}
+
+/// J_2 / yield^2 of an element whose ratio may just be 1.
+double StressKernel::least_bound() const {
+  return problem_->scene().fracture.yield_measure == YieldMeasure::tresca ? 0.25 : 1.0;
 }
 
 StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
                                       std::span<const Voigt> stress) const {
   StressSummary summary;
   summary.any = worst({}, stress);
-  summary.candidate = worst(excluded, stress);
+  // The worst of all is the worst candidate too, if it is one.
+  const Index worst_of_all = summary.any.element;
+  const bool candidate = excluded.empty() || worst_of_all == kNone || !excluded[worst_of_all];
+  summary.candidate = candidate ? summary.any : worst(excluded, stress);
   if (!(summary.any.ratio >= 1)) return summary;
   // At or over yield for sure, for sure not, or to be looked at; the bound is J_2 / yield^2.
   const YieldMeasure measure = problem_->scene().fracture.yield_measure;
-  const double least = measure == YieldMeasure::tresca ? 0.25 : 1.0;
+  const double least = least_bound();
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     if (!(bounds_[i] >= least * (1 - 1e-9))) continue;
     const Index e = blocks_[i / kLanes].element[i % kLanes];
-    if (bounds_[i] * kShearRange > least ||
-        fem::yield_measure(stress[i], measure) / problem_->yield(e) >= 1) {
+    const auto over = bounds_[i] * kShearRange > least
+                          ? std::optional(true)
+                          : shears(stress[i], std::sqrt(least) * problem_->yield(e));
+    if (over ? *over : fem::yield_measure(stress[i], measure) / problem_->yield(e) >= 1) {
       ++summary.over;
     }
   }

@@ -72,6 +72,7 @@ class StressKernel {
   [[nodiscard]] double run_storing(std::span<const double> u, Stores to);
   [[nodiscard]] Worst worst(std::span<const std::uint8_t> excluded,
                             std::span<const Voigt> stress) const;
+  [[nodiscard]] double least_bound() const;
 
   std::shared_ptr<const Problem> problem_;
   std::size_t size_ = 0;  // listed elements

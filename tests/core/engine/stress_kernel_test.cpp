@@ -80,6 +80,33 @@ TEST(StressKernel, FindsTheWorstRatiosThatALoopFinds) {
   }
 }
 
+TEST(StressKernel, CountsWhatIsOverYieldWhereSomeElementIsJustThere) {
+  for (YieldMeasure measure : {YieldMeasure::max_shear, YieldMeasure::tresca}) {
+    Scene scene = test::pulled_board();
+    scene.fracture.yield_measure = measure;
+    Field field;
+    field.problem = std::make_shared<Problem>(std::move(scene));
+    StressKernel kernel(field.problem, {}, 1);
+    kernel.keep_bounds();
+    std::vector<Voigt> stress(field.live.size());
+    kernel.run(field.u, stress);
+    const auto ratio = [&](Index e) {
+      return fem::yield_measure(stress[e], measure) / field.problem->yield(e);
+    };
+    for (Index at = 0; at < field.problem->tet_count(); at += 97) {
+      if (!field.problem->breakable(at)) continue;
+      for (double& d : field.u) d /= ratio(at);
+      kernel.run(field.u, stress);
+      Index over = 0;
+      for (Index e = 0; e < field.problem->tet_count(); ++e) {
+        over += field.problem->breakable(e) && ratio(e) >= 1;
+      }
+      EXPECT_NEAR(ratio(at), 1, 1e-9);
+      EXPECT_EQ(kernel.summarize({}, stress).over, over) << "element " << at;
+    }
+  }
+}
+
 TEST(StressKernel, SumsUpTheForcesOfTheStressTheSameForAnyNumberOfThreads) {
   const Field field;
   std::vector<double> scale;
