@@ -40,18 +40,22 @@ class DeferredRoute final : public InverseRoute {
       base = std::make_unique<engine::FactorBase>(intact.factor);
     }
     const bool damage = stiffness_ != nullptr;
-    based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), damage);
-    if (!damage) return;
+    if (!damage) {
+      based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), false);
+      return;
+    }
     const int frames = frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
     // As many as have followed a base when it is taken: where frames tear without a pause, the next
     // one begins at once.
     rebased_at_ = body.problem().gripped_dofs().size() +
                   static_cast<std::size_t>(std::max(kColumns * frames, kFewestColumns));
     threshold_ = rebased_at_;
-    columns_ =
-        static_cast<Index>(rebased_at_ + static_cast<std::size_t>(kColumns * frames)) + kSpare;
+    const Index followed = static_cast<Index>(kColumns * frames) + kSpare;
+    columns_ = static_cast<Index>(rebased_at_) + followed;
     // The factor that takes the inverse's place solves backward for as much as so many columns.
     if (dense) threshold_ = std::max(threshold_, intact.factor.entries() / all_.size());
+    based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), true,
+                                                         static_cast<Index>(threshold_) + followed);
     coming_.emplace(body, frames);
   }
 

@@ -83,6 +83,7 @@ void Deferred::reserve_for_fractures(Index columns) {
   clear_corner(u_, kTouchedRows, kColumns);
   for (fem::RowMajor* a : {&columns_, &product_, &zt_}) clear_corner(*a, kTouchedRows, columns);
   for (fem::RowMajor* a : {&gram_, &xu_, &z_}) clear_corner(*a, columns, kColumns);
+  for (fem::RowMajor* a : {&compliance_, &m_, &d_}) clear_corner(*a, columns, columns);
   c_.resize(kColumns, kColumns);
   event_.rows.reserve(static_cast<std::size_t>(12 * kElements));
   event_.values.reserve(static_cast<std::size_t>(6 * 12 * kElements));
