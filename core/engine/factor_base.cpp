@@ -6,6 +6,8 @@
 #include <chrono>
 #include <numeric>
 
+#include "fem/panel_kernels.hpp"
+
 namespace sunder::engine {
 namespace {
 
@@ -63,7 +65,12 @@ void FactorBase::forward_group(std::span<const Difference> vectors, std::span<co
     rows_(place[v.dof], static_cast<Index>(i)) = 1;
     if (v.other != kNone) rows_(place[v.other], static_cast<Index>(i)) = -1;
   }
-  l_.forward(path_, rows_.leftCols(padded(static_cast<Index>(which.size()))), work_);
+  const auto count = static_cast<Index>(which.size());
+  if (count <= fem::kFewColumns) {
+    l_.forward_few(path_, rows_.leftCols(count), work_);
+  } else {
+    l_.forward(path_, rows_.leftCols(padded(count)), work_);
+  }
 }
 
 void FactorBase::find_path(std::span<const Difference> vectors) {

@@ -69,7 +69,84 @@ inline __attribute__((always_inline)) void some_dots(const double* columns, std:
 
 Index vectors_of(Index n) { return (n + kPanelLanes - 1) / kPanelLanes; }
 
+/// t_c += L x_c for some right sides c, in the order of L's columns; whole vectors of rows.
+template <int Few>
+inline __attribute__((always_inline)) void add_columns(const double* l, std::ptrdiff_t l_stride,
+                                                       Index columns, Index vectors,
+                                                       const double* x, double* t,
+                                                       std::ptrdiff_t stride) {
+  constexpr int kAtOnce = 4;
+  Index k = 0;
+  for (; k + kAtOnce <= columns; k += kAtOnce, l += kAtOnce * l_stride) {
+    for (Index i = 0; i < vectors * kPanelLanes; i += kPanelLanes) {
+      Lanes left[kAtOnce], sum;
+      for (int a = 0; a < kAtOnce; ++a) load(l + a * l_stride + i, left[a]);
+      for (int c = 0; c < Few; ++c) {
+        load(t + c * stride + i, sum);
+        for (int a = 0; a < kAtOnce; ++a) sum += left[a] * x[c * stride + k + a];
+        std::memcpy(t + c * stride + i, &sum, sizeof(sum));
+      }
+    }
+  }
+  for (; k < columns; ++k, l += l_stride) {
+    for (Index i = 0; i < vectors * kPanelLanes; i += kPanelLanes) {
+      Lanes left, sum;
+      load(l + i, left);
+      for (int c = 0; c < Few; ++c) {
+        load(t + c * stride + i, sum);
+        sum += left * x[c * stride + k];
+        std::memcpy(t + c * stride + i, &sum, sizeof(sum));
+      }
+    }
+  }
+}
+
+template <int Few>
+inline __attribute__((always_inline)) void forward_few(const double* panel, Index width,
+                                                       Index height, double* x, double* below,
+                                                       double* product, std::ptrdiff_t stride) {
+  constexpr Index kColumns = 16;  // as in lower_solve()
+  const std::ptrdiff_t tall = height;
+  for (Index begin = 0; begin < width; begin += kColumns) {
+    const Index end = std::min<Index>(begin + kColumns, width);
+    for (Index j = begin; j < end; ++j) {
+      const double* column = panel + j * tall;
+      for (int c = 0; c < Few; ++c) {
+        double* of = x + c * stride;
+        of[j] /= column[j];
+        for (Index i = j + 1; i < end; ++i) of[i] -= column[i] * of[j];
+      }
+    }
+    if (end == width) break;
+    const Index vectors = vectors_of(width - end);
+    for (int c = 0; c < Few; ++c) std::fill_n(product + c * stride, vectors * kPanelLanes, 0.0);
+    add_columns<Few>(panel + begin * tall + end, tall, end - begin, vectors, x + begin, product,
+                     stride);
+    for (int c = 0; c < Few; ++c) {
+      for (Index i = end; i < width; ++i) x[c * stride + i] -= product[c * stride + i - end];
+    }
+  }
+  const Index under = vectors_of(height - width);
+  for (int c = 0; c < Few; ++c) std::fill_n(below + c * stride, under * kPanelLanes, 0.0);
+  add_columns<Few>(panel + width, tall, width, under, x, below, stride);
+}
+
 }  // namespace
+
+SUNDER_VECTORISED
+void panel_forward_few(const double* panel, Index width, Index height, Index columns, double* x,
+                       double* below, double* product, Index stride) {
+  switch (columns) {
+    case 1:
+      return forward_few<1>(panel, width, height, x, below, product, stride);
+    case 2:
+      return forward_few<2>(panel, width, height, x, below, product, stride);
+    case 3:
+      return forward_few<3>(panel, width, height, x, below, product, stride);
+    default:
+      return forward_few<kFewColumns>(panel, width, height, x, below, product, stride);
+  }
+}
 
 SUNDER_VECTORISED
 void panel_forward(const double* panel, Index width, Index height, double* x, double* below) {

@@ -47,7 +47,9 @@ SupernodalCholesky::ConstPanel SupernodalCholesky::panel(Index s) const {
 void SupernodalCholesky::make_room(Index columns, SolveWork& work) const {
   work.seen.resize(static_cast<std::size_t>(nodes_->count()), 0);
   work.below.resize(room_of_a_panel());
-  work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * columns)));
+  const Index few = 3 * kFewColumns * (tallest_ + kPanelLanes);
+  work.product.resize(
+      std::max(work.product.size(), static_cast<std::size_t>(std::max(tallest_ * columns, few))));
 }
 
 void SupernodalCholesky::reach(std::span<const Index> rows, std::vector<Index>& path,
@@ -114,6 +116,29 @@ void SupernodalCholesky::forward(std::span<const Index> supernodes, Eigen::Ref<R
     const ConstRows product(work.product.data(), under, y.cols());
     for (Eigen::Index i = 0; i < under; ++i) {
       y.row(below[static_cast<std::size_t>(i)]) -= product.row(i);
+    }
+  }
+}
+
+void SupernodalCholesky::forward_few(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y,
+                                     SolveWork& work) const {
+  const Index stride = tallest_ + kPanelLanes, columns = static_cast<Index>(y.cols());
+  const auto room = static_cast<std::size_t>(kFewColumns) * static_cast<std::size_t>(stride);
+  work.product.resize(std::max(work.product.size(), 3 * room));
+  double *x = work.product.data(), *under = x + room, *product = under + room;
+  for (Index s : supernodes) {
+    const Index first = nodes_->first[s], width = nodes_->width(s);
+    for (Index c = 0; c < columns; ++c) {
+      for (Index i = 0; i < width; ++i) x[c * stride + i] = y(first + i, c);
+    }
+    panel_forward_few(values_.data() + nodes_->value_begin[s], width, nodes_->height(s), columns, x,
+                      under, product, stride);
+    const auto below = nodes_->below(s);
+    for (Index c = 0; c < columns; ++c) {
+      for (Index i = 0; i < width; ++i) y(first + i, c) = x[c * stride + i];
+      for (std::size_t i = 0; i < below.size(); ++i) {
+        y(below[i], c) -= under[static_cast<std::size_t>(c * stride) + i];
+      }
     }
   }
 }

@@ -54,6 +54,9 @@ class SupernodalCholesky {
   void backward(Eigen::VectorXd& y, SolveWork& work) const;
   /// The same for several right sides at once, shape (size() x right sides).
   void forward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y, SolveWork& work) const;
+  /// The same bits for up to kFewColumns right sides, in less time.
+  void forward_few(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y,
+                   SolveWork& work) const;
   void backward(Eigen::Ref<RowMajor> y, SolveWork& work) const;
   /// The rows of L^-T y at the listed supernodes (ascending and closed under parents) alone.
   void backward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y, SolveWork& work) const;

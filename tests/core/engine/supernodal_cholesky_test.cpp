@@ -83,6 +83,27 @@ TEST(SupernodalCholesky, ForwardSolutionStaysOnItsPath) {
   }
 }
 
+TEST(SupernodalCholesky, SolvesForwardForFewRightSidesByTheBitsOfMany) {
+  const SparseMatrix a = random_matrix(597, 3, 7);
+  const SupernodalCholesky l(a);
+  SolveWork work;
+  std::vector<Index> path;
+  for (Index columns : {1, 2, 3, 4}) {
+    RowMajor few = RowMajor::Zero(597, 8);
+    std::vector<Index> rows;
+    for (Index c = 0; c < columns; ++c) {
+      rows.push_back(3 + 40 * c);
+      few(rows.back(), c) = 1 + c;
+    }
+    RowMajor many = few;
+    l.reach(rows, path, work);
+    l.forward(path, many, work);
+    l.forward_few(path, few.leftCols(columns), work);
+    EXPECT_EQ(few, many) << columns;
+    EXPECT_GT(few.cwiseAbs().sum(), 0);
+  }
+}
+
 TEST(SupernodalCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
   SparseMatrix a = random_matrix(43, 2, 5);
   a.coeffRef(20, 20) = -1;
