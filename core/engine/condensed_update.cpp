@@ -98,6 +98,7 @@ void make_exact(const CondensedState& state, std::span<const Index> place,
 fem::RowMajor projected(const CondensedState& state, std::span<const Index> place,
                         const fem::RowMajor& rows) {
   fem::RowMajor result(rows.rows(), static_cast<Eigen::Index>(state.vectors.size()));
+  if (rows.rows() == 0) return result;  // no load: there is no memory to point into
   for (std::size_t i = 0; i < state.vectors.size(); ++i) {
     const auto [dof, other] = state.vectors[i];
     auto column = result.col(static_cast<Eigen::Index>(i));
