@@ -47,6 +47,8 @@ PROGRAMS = [
             Share(6, repetitions=1), Share(2, repetitions=3)),
     Program("bench_engine", "the engine against CHOLMOD, event by event",
             Share(6, "/1944/k", 3), Share(200, repetitions=3)),
+    Program("bench_frame_parts", "where a frame goes, first and after 640 fractures",
+            Share(2, "/1944/", 1), Share(35, repetitions=3)),
     Program("bench_inversion", "the intact inverse against OpenBLAS and Eigen",
             Share(4, "/(486|1944)/", 3), Share(40, repetitions=3)),
     Program("bench_reconstruction", "inverse reconstruction by everyone",
