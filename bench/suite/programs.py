@@ -55,7 +55,8 @@ PROGRAMS = [
             Share(50, "board (486|1944)/k[0-9]+/(openblas|eigen SimplicialLDLT r|Jacobi|chol|stale|cpu|vulkan i)"
                   "|board 486/k10/|7776/k10/(cpu factor|cpu inverse def|chol|stale)"
                   "|1944/to640/(chol.*up|cpu.*def)", 3),
-            Share(980, "board (486|1944|7776)/(k|to640/([^v]|vulkan (i|con)))|block", 3)),
+            Share(800, "board (486|1944)/(k|to640/([^v]|vulkan (i|con)))"
+                  "|(7776|7986)/(to640/|.*(deferred| cg |chol|eigen|openblas|PCG))", 3)),
     Program("bench_needs", "what a scene saves that needs less",
             Share(3, "/1944/", 1), Share(200, repetitions=3)),
     Program("bench_scaling", "sizes against frames and memory",
@@ -75,8 +76,9 @@ PROGRAMS = [
 LARGE = [
     Program("bench_stability", "stability after 640 fractures",
             Share(0), Share(120, words=("many",)), file="stability.csv"),
-    Program("bench_reconstruction", "inverse reconstruction on large boards",
-            Share(0), Share(700, "board (30246|119286)/|1944/to640/vulkan cg", 1)),
+    Program("bench_reconstruction", "inverse reconstruction where an event takes seconds",
+            Share(0), Share(750, "board (30246|119286)/|(7776|7986)/.* eager"
+                            "|1944/to640/vulkan cg", 1)),
     Program("bench_scaling", "conjugate gradients on the Vulkan device, large boards",
             Share(0), Share(400, "vulkan.*/(30246|119286|501126|1003686)/", 1)),
     Program("bench_scaling", "boards of half a million and a million tetrahedra",
