@@ -27,9 +27,10 @@ class BadResults(Exception):
 
 
 def rows_of(program, output):
-    """Rows of one program's JSON output; repetitions become the samples of one row."""
+    """Rows of one program's JSON output, in the program's own order, whatever order it ran them in;
+    repetitions become the samples of one row."""
     rows = {}
-    for run in output.get("benchmarks", []):
+    for run in sorted(output.get("benchmarks", []), key=_place):
         if run.get("run_type", "iteration") != "iteration":
             continue
         name = name_of(run)
@@ -45,6 +46,10 @@ def rows_of(program, output):
             if key not in _KNOWN and isinstance(value, (int, float)):
                 row["counters"][key] = _merged(key, row["counters"].get(key), value)
     return list(rows.values())
+
+
+def _place(run):
+    return run.get("family_index", 0), run.get("per_family_instance_index", 0)
 
 
 def _merged(key, before, now):

@@ -126,6 +126,15 @@ class Rows(unittest.TestCase):
         self.assertEqual(rows[0]["samples_ms"], [0.002, 0.004])
         self.assertEqual(rows[0]["counters"], {"error": 3e-9})
 
+    def test_rows_stand_in_the_programs_order_however_they_ran(self):
+        def run(name, family, instance=0):
+            return {"name": name, "run_name": name, "run_type": "iteration", "real_time": 2.0,
+                    "cpu_time": 1.0, "time_unit": "ms", "iterations": 1, "family_index": family,
+                    "per_family_instance_index": instance}
+        ran = [run("d", 2), run("b", 0, 1), run("a", 0), run("c", 1), run("b", 0, 1)]
+        rows = results.rows_of("p", {"benchmarks": ran})
+        self.assertEqual([r["name"] for r in rows], ["a", "b", "c", "d"])
+
     def test_of_repetitions_the_least_time_and_the_largest_error_count(self):
         run = {"name": "a", "run_name": "a/iterations:1/manual_time", "run_type": "iteration",
                "real_time": 2.0, "cpu_time": 1.0, "time_unit": "ms", "iterations": 1,
