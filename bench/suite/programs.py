@@ -77,7 +77,7 @@ LARGE = [
     Program("bench_stability", "stability after 640 fractures",
             Share(0), Share(120, words=("many",)), file="stability.csv"),
     Program("bench_reconstruction", "inverse reconstruction where an event takes seconds",
-            Share(0), Share(750, "board (30246|119286)/|(7776|7986)/.* eager"
+            Share(0), Share(950, "board (30246|119286)/|(7776|7986)/.* eager"
                             "|1944/to640/vulkan cg", 1)),
     Program("bench_scaling", "conjugate gradients on the Vulkan device, large boards",
             Share(0), Share(400, "vulkan.*/(30246|119286|501126|1003686)/", 1)),
