@@ -268,12 +268,6 @@ void CondensedBase::copy_state(CondensedState& to) const {
   to.vectors = vectors_;
 }
 
-CondensedState CondensedBase::state() const {
-  CondensedState state;
-  copy_state(state);
-  return state;
-}
-
 void CondensedBase::equilibrium(Equilibrium& of) const {
   of.factor = factor_;
   of.dofs.assign(load_.dofs().begin(), load_.dofs().end());

@@ -65,8 +65,7 @@ class CondensedBase final : public Base {
   [[nodiscard]] bool inside(std::span<const Index> dofs) const;
   /// S; at first the unknowns given.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
-  [[nodiscard]] CondensedState state() const;
-  /// The same into one that has room.
+  /// Into one that may have room already.
   void copy_state(CondensedState& to) const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 

@@ -383,12 +383,6 @@ void Deferred::add_grips(std::span<const double> displacement) {
   x_.head(g) += forces_;
 }
 
-Damage Deferred::damage() const {
-  Damage damage;
-  copy_damage(damage);
-  return damage;
-}
-
 void Deferred::copy_damage(Damage& to) const {
   const Eigen::Index n = count();
   for (fem::RowMajor* a : {&to.compliance, &to.m, &to.d}) make_room(*a, n, n);

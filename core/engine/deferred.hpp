@@ -69,8 +69,7 @@ class Deferred {
   [[nodiscard]] std::span<const Index> touched() const { return touched_; }
   /// Columns of B: what a frame pays for the damage.
   [[nodiscard]] Index rank() const { return count_; }
-  [[nodiscard]] Damage damage() const;
-  /// The same into the leading blocks of matrices that have room, or get it.
+  /// Into the leading blocks of matrices that have room, or get it.
   void copy_damage(Damage& to) const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 

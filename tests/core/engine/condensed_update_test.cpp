@@ -43,6 +43,18 @@ TEST(LostStiffness, IsTheDifferenceOfTheBodies) {
   }
 }
 
+CondensedState state_of(const CondensedBase& base) {
+  CondensedState state;
+  base.copy_state(state);
+  return state;
+}
+
+Damage damage_of(const Deferred& deferred) {
+  Damage damage;
+  deferred.copy_damage(damage);
+  return damage;
+}
+
 TEST(LostStiffness, IsExactlyNothingForAMotionOfAll) {
   const Torn torn;
   const LostStiffness lost(torn.problem, std::span(torn.elements).first(1));
@@ -64,7 +76,7 @@ TEST(UpdatedInverse, IsThatOfTheDamagedBody) {
   const CondensedBase& condensed = *base;
   Deferred deferred(torn.problem, std::move(base));
   for (const Index& e : torn.elements) ASSERT_TRUE(deferred.destroy({&e, 1}));
-  const Eigen::MatrixXd x = updated_inverse(condensed.state(), deferred.damage());
+  const Eigen::MatrixXd x = updated_inverse(state_of(condensed), damage_of(deferred));
   const Eigen::MatrixXd expected =
       fem::Factor(fem::assemble_lower(torn.problem, torn.scale)).inverse_block(dofs, dofs);
   for (Eigen::Index j = 0; j < x.cols(); ++j) {
@@ -99,10 +111,10 @@ TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
   for (const Index& e : elements.subspan(20)) ASSERT_TRUE(deferred.destroy({&e, 1}));
 
   const Index place = 3, loaded = dofs[place], elsewhere = 5;
-  CondensedState state = condensed.state();
-  const Eigen::MatrixXd mended = updated_inverse(state, deferred.damage(), {&loaded, 1});
+  CondensedState state = state_of(condensed);
+  const Eigen::MatrixXd mended = updated_inverse(state, damage_of(deferred), {&loaded, 1});
   state.lost = nullptr;  // as if it were the factor's own
-  const Eigen::MatrixXd plain = updated_inverse(state, deferred.damage(), {&loaded, 1});
+  const Eigen::MatrixXd plain = updated_inverse(state, damage_of(deferred), {&loaded, 1});
   const Eigen::MatrixXd expected =
       fem::Factor(fem::assemble_lower(torn.problem, torn.scale)).inverse_block(dofs, dofs);
   const auto error = [&](const Eigen::MatrixXd& of, Index column) {

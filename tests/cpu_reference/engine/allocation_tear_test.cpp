@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cpu_reference/engine/allocation_count.hpp"
+#include "cpu_reference/engine/allocation_ways.hpp"
 #include "sunder/simulation.hpp"
 #include "support/body.hpp"
 #include "support/notch_board.hpp"
@@ -32,12 +33,6 @@ class Bases {
  private:
   int count_ = 1;
   std::size_t damage_ = 0;
-};
-
-struct Way {
-  const char* name;
-  Route route;
-  Update update = Update::deferred;
 };
 
 /// 50 x 50 x 2.5 mm, 1680 elements; five rows of cells around y = 26 can tear, and the lower right
@@ -100,12 +95,7 @@ TEST_P(TornFrames, AllocateNothingOnceTheyAreWarm) {
   EXPECT_GE(bases.count(), deferred ? 3 : 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Routes, TornFrames,
-                         ::testing::Values(Way{"Inverse", Route::inverse},
-                                           Way{"Condensed", Route::condensed},
-                                           Way{"Factor", Route::factor},
-                                           Way{"InverseEager", Route::inverse, Update::eager},
-                                           Way{"CondensedEager", Route::condensed, Update::eager}),
+INSTANTIATE_TEST_SUITE_P(Routes, TornFrames, every_way(),
                          [](const auto& p) { return p.param.name; });
 
 struct Tear {

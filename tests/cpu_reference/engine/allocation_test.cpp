@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cpu_reference/engine/allocation_count.hpp"
+#include "cpu_reference/engine/allocation_ways.hpp"
 #include "sunder/simulation.hpp"
 #include "support/body.hpp"
 #include "support/notch_board.hpp"
@@ -35,12 +36,6 @@ TEST(Count, SeesEveryWayToAllocate) {
   std::free(p);
   one_more("posix_memalign");
 }
-
-struct Way {
-  const char* name;
-  Route route;
-  Update update = Update::deferred;
-};
 
 class Allocations : public ::testing::TestWithParam<Way> {};
 
@@ -166,12 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
         eager(Tear{"CondensedEagerByShear", Route::condensed, FractureModel::a})),
     [](const auto& p) { return p.param.name; });
 
-INSTANTIATE_TEST_SUITE_P(Routes, Allocations,
-                         ::testing::Values(Way{"Inverse", Route::inverse},
-                                           Way{"Condensed", Route::condensed},
-                                           Way{"Factor", Route::factor},
-                                           Way{"InverseEager", Route::inverse, Update::eager},
-                                           Way{"CondensedEager", Route::condensed, Update::eager}),
+INSTANTIATE_TEST_SUITE_P(Routes, Allocations, every_way(),
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace
