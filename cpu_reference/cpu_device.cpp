@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Core>
+#include <fstream>
+#include <string>
+
+#include "cpu_reference/choose_route.hpp"
+#include "cpu_reference/cpu_reference.hpp"
+
+namespace sunder::cpu_reference {
+namespace {
+
+std::string cpu_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "CPU";
+}
+
+std::string eigen_version() {
+  return "Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." +
+         std::to_string(EIGEN_MAJOR_VERSION) + "." + std::to_string(EIGEN_MINOR_VERSION);
+}
+
+}  // namespace
+
+DeviceInfo device() {
+  DeviceInfo info;
+  info.backend = "cpu";
+  info.name = cpu_name();
+  info.driver = eigen_version();
+  info.precisions = "fp64";
+  info.limits = std::to_string(available_memory() / 1000000) +
+                " MB free memory, routes inverse, condensed, factor, cg";
+  info.chosen = true;
+  info.why = "always available";
+  return info;
+}
+
+}  // namespace sunder::cpu_reference

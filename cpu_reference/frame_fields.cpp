@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cpu_reference/frame_fields.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "fem/assembly.hpp"
+
+namespace sunder::cpu_reference {
+namespace {
+
+std::span<const double> view(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+}  // namespace
+
+FrameFields::FrameFields(const DamagedBody& body, const Needs& needs,
+                         std::optional<engine::Region> region)
+    : body_(body),
+      problem_(body.problem()),
+      nodal_(problem_.dofs().size(), 0.0),
+      next_nodal_(nodal_) {
+  if (needs.yield) excluded_.assign(problem_.mesh().tets.size(), 0);
+  std::vector<Index> elements;  // none: all
+  if (region) {
+    elements = region->elements;
+    condensed_.emplace(problem_, std::move(*region));
+    if (problem_.scene().fracture.model != FractureModel::none) {
+      condensed_->make_room(needs.stress);
+    }
+    if (elements.empty()) return;
+  }
+  if (needs.stress || needs.damage) kernel_.emplace(body.shared_problem(), std::move(elements), 0);
+  if (needs.stress) {
+    stress_.assign(kernel_->size(), Voigt::Zero());
+    next_stress_ = stress_;
+  }
+  if (needs.yield) kernel_->keep_bounds();
+}
+
+bool FrameFields::keep_forces() {
+  if (!kernel_) return false;
+  kernel_->keep_forces();
+  nodal_forces_ = nodal_;
+  return true;
+}
+
+std::optional<double> FrameFields::take(const Eigen::VectorXd& u) {
+  if (condensed_) {
+    for (Index n : condensed_->region().nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem_.dof(n, axis);
+        if (d != kNone) next_nodal_[3 * n + axis] = u[d];
+      }
+    }
+  } else {
+    fem::scatter(problem_, view(u), next_nodal_);
+  }
+  if (!kernel_) return std::nullopt;
+  fresh_ = false;
+  return kernel_->run(next_nodal_, next_stress_);
+}
+
+void FrameFields::forces(Eigen::VectorXd& f) {
+  kernel_->nodal_forces(nodal_forces_);
+  f.resize(problem_.dof_count());
+  fem::gather(problem_, nodal_forces_, {f.data(), static_cast<std::size_t>(f.size())});
+}
+
+double FrameFields::largest_stress(const Eigen::VectorXd& u) {
+  fem::scatter(problem_, view(u), nodal_forces_);
+  return kernel_->largest(nodal_forces_);
+}
+
+void FrameFields::publish(const InverseRoute& by) {
+  nodal_.swap(next_nodal_);
+  fresh_ = true;
+  if (condensed_) condensed_->take(by);
+}
+
+void FrameFields::publish_everywhere(const Eigen::VectorXd& u) {
+  nodal_.swap(next_nodal_);
+  fresh_ = true;
+  fem::scatter(problem_, view(u), nodal_);
+  condensed_->take(nodal_);
+}
+
+StressSummary FrameFields::publish_stress() {
+  if (fresh_) std::swap(stress_, next_stress_);
+  fresh_ = false;
+  stressed_ = true;
+  if (condensed_) condensed_->publish_stress();
+  if (!kernel_ || excluded_.empty()) return {};
+  return kernel_->summarize(excluded_, stress_);
+}
+
+void FrameFields::exclude_candidates(std::span<const Index> elements) {
+  for (Index e : elements) excluded_[e] = 1;
+}
+
+void FrameFields::destroy(std::span<const Index> elements) {
+  // What lies outside the region and has a stress keeps it, whatever it is scaled by from now on.
+  if (condensed_ && stressed_ &&
+      !std::ranges::all_of(elements, [this](Index e) { return place(e) != kNone; })) {
+    static_cast<void>(condensed_->stress(body_.scale()));
+  }
+  if (kernel_) kernel_->destroy(elements);
+}
+
+void FrameFields::read_displacement(std::span<double> displacement) const {
+  if (condensed_) condensed_->complete(nodal_);
+  std::copy(nodal_.begin(), nodal_.end(), displacement.begin());
+}
+
+void FrameFields::read_displacement(std::span<const Index> nodes,
+                                    std::span<Vec3> displacement) const {
+  if (condensed_ && !std::ranges::all_of(
+                        nodes, [this](Index n) { return condensed_->region().inside[n] != 0; })) {
+    condensed_->complete(nodal_);
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    displacement[i] = Vec3(&nodal_[3 * static_cast<std::size_t>(nodes[i])]);
+  }
+}
+
+void FrameFields::read_stress(std::span<Voigt> stress) const {
+  if (!condensed_) {
+    std::copy(stress_.begin(), stress_.end(), stress.begin());
+    return;
+  }
+  const auto whole = condensed_->stress(body_.scale());
+  std::copy(whole.begin(), whole.end(), stress.begin());
+  const auto& elements = condensed_->region().elements;
+  for (std::size_t i = 0; i < elements.size(); ++i) stress[elements[i]] = stress_[i];
+}
+
+Voigt FrameFields::read_stress(Index element) const {
+  if (!condensed_) return stress_[element];
+  const Index at = place(element);
+  return at != kNone ? stress_[at] : condensed_->stress(body_.scale())[element];
+}
+
+const engine::Region* FrameFields::region() const {
+  return condensed_ ? &condensed_->region() : nullptr;
+}
+
+std::size_t FrameFields::threads() const {
+  return kernel_ ? static_cast<std::size_t>(kernel_->threads()) : 1;
+}
+
+std::vector<BufferPlan> FrameFields::buffers() const {
+  std::vector<BufferPlan> plan;
+  if (!stress_.empty()) {
+    plan.push_back({"element stress", stress_.size() * sizeof(Voigt)});
+    plan.push_back({"element stress of the next frame", next_stress_.size() * sizeof(Voigt)});
+  }
+  if (kernel_) plan.push_back({"shapes and elasticity of elements", kernel_->bytes()});
+  if (condensed_ && condensed_->bytes() > 0) {
+    plan.push_back({"fields outside the condensed region", condensed_->bytes()});
+  }
+  return plan;
+}
+
+}  // namespace sunder::cpu_reference

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Displacement and stress of the damaged body, each twice: of the solution in work, and as
+// published. A solution that fails its checks leaves what is published as it was.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cpu_reference/condensed_fields.hpp"
+#include "engine/stress_kernel.hpp"
+
+namespace sunder::cpu_reference {
+
+class FrameFields {
+ public:
+  /// `region`: frames compute these alone of a condensed body.
+  FrameFields(const DamagedBody& body, const Needs& needs, std::optional<engine::Region> region);
+  /// Makes room for forces() and largest_stress(). False: no stress is needed, so there is neither.
+  /// For a body that is not condensed.
+  [[nodiscard]] bool keep_forces();
+
+  /// Takes the displacement in work and computes its stress. Returns the largest over live
+  /// elements; nothing: no stress is needed.
+  std::optional<double> take(const Eigen::VectorXd& u);
+  /// K u of the displacement in work.
+  void forces(Eigen::VectorXd& f);
+  /// Largest stress over live elements of another displacement.
+  [[nodiscard]] double largest_stress(const Eigen::VectorXd& u);
+
+  /// The displacement in work holds; the route that solved for it knows it outside a region.
+  void publish(const InverseRoute& by);
+  /// The same for a condensed body whose solution, u, is known everywhere.
+  void publish_everywhere(const Eigen::VectorXd& u);
+  /// The stress of the published displacement is published as well.
+  StressSummary publish_stress();
+  /// Takes elements out of the summary's candidates.
+  void exclude_candidates(std::span<const Index> elements);
+  /// Follows an event; the body has not destroyed the elements yet.
+  void destroy(std::span<const Index> elements);
+
+  /// What is published, at all nodes and elements or some; outside a region at the price of a
+  /// solve.
+  void read_displacement(std::span<double> displacement) const;
+  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;
+  void read_stress(std::span<Voigt> stress) const;
+  [[nodiscard]] Voigt read_stress(Index element) const;
+
+  /// Null: the body is not condensed.
+  [[nodiscard]] const engine::Region* region() const;
+  /// Elements whose stress a frame computes, and the threads that share it.
+  [[nodiscard]] std::size_t stressed() const { return kernel_ ? kernel_->size() : 0; }
+  [[nodiscard]] std::size_t threads() const;
+  [[nodiscard]] std::vector<BufferPlan> buffers() const;
+
+ private:
+  [[nodiscard]] Index place(Index element) const {
+    return kernel_ ? kernel_->place(element) : kNone;
+  }
+
+  const DamagedBody& body_;
+  const Problem& problem_;
+  mutable std::vector<double> nodal_;                 // outside a region only once read
+  std::vector<double> next_nodal_;                    // in work
+  mutable std::optional<CondensedFields> condensed_;  // computes what is read
+  std::optional<engine::StressKernel> kernel_;
+  std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
+  bool fresh_ = false;                       // next_stress_ is that of nodal_
+  bool stressed_ = false;                    // some stress has been published
+  std::vector<double> nodal_forces_;         // K u; also another displacement
+  std::vector<std::uint8_t> excluded_;       // per element; empty: there is no summary
+};
+
+}  // namespace sunder::cpu_reference

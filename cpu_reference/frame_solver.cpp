@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cpu_reference/frame_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "cpu_reference/load_room.hpp"
+#include "engine/instrument_block.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::cpu_reference {
+namespace {
+
+// A full check refines silently down to these stress errors, for the yardstick a tenth of what
+// double precision promises for an intact body; only frames over the scene's tolerance count as
+// polished.
+constexpr double kReferenceError = 1e-10, kDeferredError = 1e-9;
+constexpr int kRefinements = 4;
+
+[[noreturn]] void fail(const SolveReport& report) {
+  std::ostringstream message;
+  message << "the solution cannot be brought under the tolerance: estimated stress error "
+          << report.error << ", residual " << report.residual
+          << "; raise solver.tolerance or ease contrast, Poisson's ratio or slivers";
+  throw NumericalError(message.str());
+}
+
+}  // namespace
+
+FrameSolver::FrameSolver(const ChosenRoute& chosen, const DamagedBody& body,
+                         const IntactBody& intact, InverseRoute& route, FrameFields& fields)
+    : chosen_(chosen),
+      body_(body),
+      intact_(intact),
+      route_(route),
+      fields_(fields),
+      anchors_(engine::anchors_of(problem())) {
+  if (fields.region()) {
+    energy_checks_.emplace(problem());
+  } else if (route.deferred()) {
+    checks_.emplace(problem());
+    fast_ = fields.keep_forces();  // the yardstick has loops of its own
+  }
+  reserve(load_, problem());
+  force_.setZero(problem().dof_count());
+  u_ = force_;
+  reactions_.assign(problem().gripped_dofs().size(), 0.0);
+}
+
+void FrameSolver::set_load(const Load& load) {
+  for (Index d : load_.force_dofs) force_[d] = 0;
+  load_ = load;
+  for (std::size_t i = 0; i < load.forces.size(); ++i) force_[load.force_dofs[i]] = load.forces[i];
+}
+
+void FrameSolver::event() {
+  if (!energy_checks_) return;
+  for (EnergyCheck& check : energy_checks_->all()) check.event();
+}
+
+SolveReport FrameSolver::solve() { return energy_checks_ ? solve_condensed() : solve_everywhere(); }
+
+SolveReport FrameSolver::solve_everywhere() {
+  SolveReport report;
+  check_ = check_of_load();
+  const auto scale = check_ ? check_->scale_of(load_, route_) : std::nullopt;
+  route_.set_enough(scale ? check_->enough(*scale) : 0);
+  solve_by(route_, report);
+  const auto known =
+      scale && route_.deferred()->converged() ? check_->error(*scale, solution()) : std::nullopt;
+  if (known) {
+    report.error = *known;
+  } else {
+    check_fully(report);
+  }
+  if (!fast_) hand_out();
+  fields_.publish(route_);
+  return report;
+}
+
+/// Nothing: the route is checked fully in any case.
+FrameCheck* FrameSolver::check_of_load() {
+  if (!checks_) return nullptr;
+  for (FrameCheck& check : checks_->all()) check.follow(route_);
+  return &checks_->of(load_, route_);
+}
+
+/// A condensed frame has no residual outside its region: the energy of what damage lacks bounds
+/// its error.
+SolveReport FrameSolver::solve_condensed() {
+  for (EnergyCheck& each : energy_checks_->all()) each.follow(route_);
+  EnergyCheck& check = energy_checks_->of(load_, route_);
+  if (const auto known = solve_on_region(check)) {
+    fields_.publish(route_);
+    return *known;
+  }
+  route_.set_enough(0);
+  SolveReport report;
+  solve_by(route_, report);
+  check_fully(report);
+  hand_out();
+  fields_.publish_everywhere(u_);
+  check.checked(load_, report, unrefined_, route_.bases(), largest_in_region(), largest_);
+  return report;
+}
+
+/// The solution without a full check, where one like it has had its check.
+std::optional<SolveReport> FrameSolver::solve_on_region(EnergyCheck& check) {
+  const auto expected = check.expected(load_, route_);
+  if (!expected) return std::nullopt;
+  route_.set_enough(check.enough(*expected));
+  route_.solve(load_, force_, u_);
+  hand_out();
+  const auto gripped = problem().gripped_dofs();
+  for (std::size_t g = 0; g < gripped.size(); ++g) {
+    reactions_[g] = grip_force(g) - anchors_[g] * u_[gripped[g]];  // the anchor's share
+  }
+  return check.known(*expected, route_, largest_in_region(), largest_);
+}
+
+/// The solution by a route, with its residual.
+void FrameSolver::solve_by(InverseRoute& route, SolveReport& report) {
+  report.iterations += route.solve(load_, force_, u_).iterations;
+  route.complete(u_);
+  look_at(report);
+}
+
+/// Residual f - K u and reactions of the solution, and its largest stress.
+void FrameSolver::look_at(SolveReport& report) {
+  if (fast_) {
+    hand_out();
+    fields_.forces(product_);
+  } else {
+    body_.apply(u_, product_);
+    largest_ = body_.largest_stress(u_);
+  }
+  r_ = force_ - product_;
+  const auto gripped = problem().gripped_dofs();
+  double load_norm = force_.squaredNorm();
+  for (std::size_t g = 0; g < gripped.size(); ++g) {
+    reactions_[g] = -r_[gripped[g]];  // what the grip adds to the applied force
+    load_norm += reactions_[g] * reactions_[g];
+    r_[gripped[g]] = 0;
+  }
+  free_residual_ = r_.norm();
+  report.residual = load_norm > 0 ? free_residual_ / std::sqrt(load_norm) : 0.0;
+}
+
+/// Displacement at all nodes, and its stress.
+void FrameSolver::hand_out() {
+  if (const auto largest = fields_.take(u_)) largest_ = *largest;
+}
+
+void FrameSolver::check_fully(SolveReport& report) {
+  refine(route_, report);
+  if (!(report.error <= tolerance())) polish(report);
+  if (!(report.error <= tolerance())) fail(report);
+}
+
+/// Corrects the solution by a route until the estimate is rounding's.
+void FrameSolver::refine(InverseRoute& route, SolveReport& report) {
+  const double enough = checks_ ? kDeferredError : kReferenceError;
+  report.error = std::numeric_limits<double>::infinity();
+  for (int attempt = 0;; ++attempt) {
+    const double stress = correction(route, report);
+    const double error = stress == 0 ? 0.0 : stress / largest_;
+    if (attempt == 0) {
+      unrefined_ = error;
+      if (check_ && &route == &route_) {
+        check_->checked(load_, solution(), stress, route_.bases());
+      }
+      report.polished = report.polished || !(error <= tolerance());
+    }
+    // A correction that no longer shrinks is rounding.
+    const bool stalled = attempt > 0 && !(error < report.error / 2);
+    report.error = error;
+    if (!std::isfinite(error)) return;  // overflow: there is no correction
+    const bool done = error <= enough && (attempt > 0 || !yardstick());
+    if (done || attempt == kRefinements || stalled) return;
+    u_ += du_;
+    look_at(report);
+  }
+}
+
+/// du = A^-1 (f - K u); returns its largest stress over live elements.
+double FrameSolver::correction(InverseRoute& route, SolveReport& report) {
+  if (!std::isfinite(report.residual)) return report.residual;
+  report.iterations += route.apply(r_, du_).iterations;
+  return fast_ ? fields_.largest_stress(du_) : body_.largest_stress(du_);
+}
+
+/// Refinement converges only while the updated inverse is one; once it has drifted too far it is
+/// computed anew, and if that is not enough conjugate gradients on the intact base have the word.
+void FrameSolver::polish(SolveReport& report) {
+  if (route_.rebase()) {
+    solve_by(route_, report);
+    refine(route_, report);
+  }
+  if (report.error <= tolerance() || chosen_.route == Route::cg) return;
+  const auto cg = conjugate_gradient_route(body_, intact_);
+  solve_by(*cg, report);
+  refine(*cg, report);
+}
+
+/// The plain routes are what others are measured by: they refine once in any case.
+bool FrameSolver::yardstick() const {
+  return chosen_.route == Route::cg ||
+         (chosen_.route == Route::inverse && chosen_.update == Update::eager);
+}
+
+double FrameSolver::grip_force(std::size_t g) const {
+  if (!route_.deferred()) return route_.grip_force(g);
+  return route_.deferred()->grip_forces()[static_cast<Eigen::Index>(g)];
+}
+
+double FrameSolver::largest_u() const { return u_.size() > 0 ? u_.cwiseAbs().maxCoeff() : 0.0; }
+
+double FrameSolver::largest_in_region() const {
+  double largest = 0;
+  for (Index d : fields_.region()->dofs) largest = std::max(largest, std::abs(u_[d]));
+  return largest;
+}
+
+FrameCheck::Solution FrameSolver::solution() const {
+  return {free_residual_, largest_u(), largest_};
+}
+
+}  // namespace sunder::cpu_reference

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// One frame: the displacement under a load by the backend's route, checked and refined until its
+// stress error is under the scene's tolerance.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cpu_reference/choose_route.hpp"
+#include "cpu_reference/energy_check.hpp"
+#include "cpu_reference/frame_check.hpp"
+#include "cpu_reference/frame_fields.hpp"
+#include "cpu_reference/recent_checks.hpp"
+#include "cpu_reference/routes.hpp"
+
+namespace sunder::cpu_reference {
+
+class FrameSolver {
+ public:
+  /// What it refers to must outlive it. Solutions that hold are published in `fields`.
+  FrameSolver(const ChosenRoute& chosen, const DamagedBody& body, const IntactBody& intact,
+              InverseRoute& route, FrameFields& fields);
+
+  void set_load(const Load& load);
+  [[nodiscard]] const Load& load() const { return load_; }
+  /// Throws NumericalError when the solution cannot be brought under the tolerance.
+  SolveReport solve();
+  /// Force that the grips exert on the body, one per gripped unknown.
+  [[nodiscard]] std::span<const double> reactions() const { return reactions_; }
+  /// An event has changed the body.
+  void event();
+
+ private:
+  SolveReport solve_everywhere();
+  SolveReport solve_condensed();
+  [[nodiscard]] std::optional<SolveReport> solve_on_region(EnergyCheck& check);
+  [[nodiscard]] FrameCheck* check_of_load();
+
+  void solve_by(InverseRoute& route, SolveReport& report);
+  void look_at(SolveReport& report);
+  void hand_out();
+
+  void check_fully(SolveReport& report);
+  void refine(InverseRoute& route, SolveReport& report);
+  [[nodiscard]] double correction(InverseRoute& route, SolveReport& report);
+  void polish(SolveReport& report);
+
+  [[nodiscard]] const Problem& problem() const { return body_.problem(); }
+  [[nodiscard]] double tolerance() const { return problem().scene().solver.tolerance; }
+  [[nodiscard]] bool yardstick() const;
+  [[nodiscard]] double grip_force(std::size_t g) const;
+  [[nodiscard]] double largest_u() const;
+  [[nodiscard]] double largest_in_region() const;
+  [[nodiscard]] FrameCheck::Solution solution() const;
+
+  const ChosenRoute& chosen_;
+  const DamagedBody& body_;
+  const IntactBody& intact_;
+  InverseRoute& route_;
+  FrameFields& fields_;
+  std::optional<RecentChecks<FrameCheck>> checks_;  // of a deferred update that knows u everywhere
+  std::optional<RecentChecks<EnergyCheck>> energy_checks_;  // of a condensed body
+  bool fast_ = false;            // residual and stress come from the fields
+  std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
+
+  Load load_;
+  FrameCheck* check_ = nullptr;  // of load_, of checks_
+  Eigen::VectorXd force_, u_, du_, product_, r_;
+  std::vector<double> reactions_;
+  double free_residual_ = 0;  // |r_|
+  double unrefined_ = 0;      // error of the last full check's solution before it was refined
+  double largest_ = 0;        // stress of the last solution
+};
+
+}  // namespace sunder::cpu_reference
