@@ -1,8 +1,9 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // Stress a_e D B u of every element, principal stresses, ratio to yield, and the worst of each
-// workgroup. The displacement gradient is taken in fp64 from differences: neither a rigid offset
-// nor a rigid rotation (of a frame 10,000 times stiffer, say) costs accuracy in fp32 stress.
+// workgroup. Strain is taken in fp64 from differences: neither a rigid offset nor a rigid rotation
+// (of a frame 10,000 times stiffer, say, or of a part that hangs on by one element) costs accuracy
+// in fp32 stress.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_gpu_shader_int64 : enable
 #include "common.glsl"
@@ -112,48 +113,53 @@ void leave(Worst any, Worst candidate, REAL norm) {
   }
 }
 
-// Displacement gradient: derivatives along x, y, z; and the Lame constants.
-struct Gradient {
-  REAL3 x, y, z;
+// Strain, and the Lame constants.
+struct Deformation {
+  REAL3 strain, twice_shear;  // (xx, yy, zz), twice (xy, yz, zx)
   REAL lambda, mu;
 };
 
 #ifdef SUNDER_SINGLE
 #define LOAD_TWO3(name, i) two3(VEC4(name, 2u * (i)), VEC4(name, 2u * (i) + 1u))
-vec3 derivative(Two3 d1, vec2 s1, Two3 d2, vec2 s2, Two3 d3, vec2 s3) {
-  const Two3 sum = plus(plus(times(d1, s1), times(d2, s2)), times(d3, s3));
-  return sum.high + sum.low;
+Two3 derivative(Two3 d1, vec2 s1, Two3 d2, vec2 s2, Two3 d3, vec2 s3) {
+  return plus(plus(times(d1, s1), times(d2, s2)), times(d3, s3));
 }
-Gradient gradient(uint e, uvec4 n) {
+Deformation deformation(uint e, uvec4 n) {
   const Two3 u0 = LOAD_TWO3(u, n.x);
   const Two3 d1 = minus(LOAD_TWO3(u, n.y), u0), d2 = minus(LOAD_TWO3(u, n.z), u0),
              d3 = minus(LOAD_TWO3(u, n.w), u0);
   const vec4 a1 = VEC4(shape, 6u * e), b1 = VEC4(shape, 6u * e + 1u),
              a2 = VEC4(shape, 6u * e + 2u), b2 = VEC4(shape, 6u * e + 3u),
              a3 = VEC4(shape, 6u * e + 4u), b3 = VEC4(shape, 6u * e + 5u);
-  return Gradient(derivative(d1, a1.xy, d2, a2.xy, d3, a3.xy),
-                  derivative(d1, a1.zw, d2, a2.zw, d3, a3.zw),
-                  derivative(d1, b1.xy, d2, b2.xy, d3, b3.xy), b1.z, b2.z);
+  const Two3 hx = derivative(d1, a1.xy, d2, a2.xy, d3, a3.xy),
+             hy = derivative(d1, a1.zw, d2, a2.zw, d3, a3.zw),
+             hz = derivative(d1, b1.xy, d2, b2.xy, d3, b3.xy);
+  const Two3 twice_shear = plus(Two3(vec3(hy.high.x, hz.high.y, hx.high.z),
+                                     vec3(hy.low.x, hz.low.y, hx.low.z)),
+                                Two3(vec3(hx.high.y, hy.high.z, hz.high.x),
+                                     vec3(hx.low.y, hy.low.z, hz.low.x)));
+  return Deformation(vec3(hx.high.x + hx.low.x, hy.high.y + hy.low.y, hz.high.z + hz.low.z),
+                     twice_shear.high + twice_shear.low, b1.z, b2.z);
 }
 #else
-Gradient gradient(uint e, uvec4 n) {
+Deformation deformation(uint e, uvec4 n) {
   const dvec4 s1 = DVEC4(shape, 3u * e), s2 = DVEC4(shape, 3u * e + 1u),
               s3 = DVEC4(shape, 3u * e + 2u);
   const dvec3 u0 = DVEC4(u, n.x).xyz;
   const dvec3 d1 = DVEC4(u, n.y).xyz - u0, d2 = DVEC4(u, n.z).xyz - u0, d3 = DVEC4(u, n.w).xyz - u0;
-  return Gradient(REAL3(d1 * s1.x + d2 * s2.x + d3 * s3.x), REAL3(d1 * s1.y + d2 * s2.y + d3 * s3.y),
-                  REAL3(d1 * s1.z + d2 * s2.z + d3 * s3.z), REAL(s1.w), REAL(s2.w));
+  const dvec3 hx = d1 * s1.x + d2 * s2.x + d3 * s3.x, hy = d1 * s1.y + d2 * s2.y + d3 * s3.y,
+              hz = d1 * s1.z + d2 * s2.z + d3 * s3.z;
+  return Deformation(REAL3(hx.x, hy.y, hz.z),
+                     REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x), REAL(s1.w), REAL(s2.w));
 }
 #endif
 
 void main() {
   const uint e = gl_GlobalInvocationID.x;
-  const Gradient g = gradient(e, UVEC4(nodes, e));
-  const REAL3 hx = g.x, hy = g.y, hz = g.z;
-  const REAL mu = g.mu, pressure = g.lambda * (hx.x + hy.y + hz.z);
-  const REAL3 strain = REAL3(hx.x, hy.y, hz.z);
+  const Deformation d = deformation(e, UVEC4(nodes, e));
+  const REAL3 strain = d.strain, twice_shear = d.twice_shear;
+  const REAL mu = d.mu, pressure = d.lambda * (strain.x + strain.y + strain.z);
   const REAL3 normal = pressure + REAL(2) * mu * strain;
-  const REAL3 twice_shear = REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x);
   const REAL3 shear = mu * twice_shear;  // xy, yz, zx
   const uvec4 fact = UVEC4(facts, e);
   const uint bits = fact.x;
