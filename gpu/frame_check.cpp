@@ -13,6 +13,9 @@ constexpr double kFp64Error = 1e-9;
 constexpr double kFp32Error = 5e-4;  // however large the tolerance
 // What fp64 promises of a damaged body.
 constexpr double kFp64Damaged = 1e-8;
+// The errors of a fresh base and of those events later differ by less where it is the body that
+// lets them be no smaller.
+constexpr double kLikeFresh = 10;
 constexpr double kSameLoad = 1e-14;  // relative: rounding of a ramp's factor
 // Rounding's share of two residuals of one base differs in its places, not in its kind.
 constexpr double kNoise = 10;
@@ -57,6 +60,7 @@ bool is_multiple(const Load& now, const Load& then) {
 FrameCheck::FrameCheck(const Problem& problem, bool fp64)
     : tolerance_(problem.scene().solver.tolerance),
       target_(std::min(fp64 ? kFp64Error : kFp32Error, tolerance_ / 2)),
+      keeps_(fp64 ? std::min(kFp64Damaged, tolerance_) : tolerance_),
       fp64_(fp64),
       stress_of_energy_(stress_of_energy(problem)) {}
 
@@ -81,6 +85,11 @@ std::optional<double> FrameCheck::bounded(const Load& load, const EnergyBound& e
   const double error = of_noise + stress_of_energy_ * energy.touched / stress;
   if (!(error <= std::min(kFp64Damaged, tolerance_ / 2))) return std::nullopt;
   return error;
+}
+
+void FrameCheck::settled(double error) {
+  if (!fp64_ || !(error <= tolerance_)) return;
+  keeps_ = std::clamp(kLikeFresh * error, std::min(kFp64Damaged, tolerance_), tolerance_);
 }
 
 void FrameCheck::checked(const Load& load, const SolveReport& report) {

@@ -18,6 +18,11 @@ class FrameCheck {
 
   /// Stress error that needs no refinement.
   [[nodiscard]] double target() const { return target_; }
+  /// Stress error up to which a route is worth keeping: what the precision promises of a damaged
+  /// body, or somewhat above what a fresh base came to where that is more.
+  [[nodiscard]] double keeps() const { return keeps_; }
+  /// A solution of a fresh base has this error, or there is no fresher one.
+  void settled(double error);
   /// A multiple of a load whose solution needed no refinement, on the same damage: the solution is
   /// linear in the load, and so its relative error is the same. Empty: it is none.
   [[nodiscard]] std::optional<SolveReport> known(const Load& load) const;
@@ -45,7 +50,7 @@ class FrameCheck {
     int bases = 0;
   };
 
-  double tolerance_, target_;
+  double tolerance_, target_, keeps_;
   bool fp64_;
   double stress_of_energy_;
   std::optional<Checked> checked_;

@@ -107,6 +107,7 @@ void choose_route(const Problem& problem, const Needs& needs, const vulkan::Phys
             (asked == Route::automatic && !plan.region && problem.dof_count() > kDenseLimit);
   plan.why = std::to_string(all) + " unknowns";
   if (plan.region) {
+    plan.condensing_error = condensing_error(extremes(problem));
     plan.why += ", of which " + std::to_string(n) + " can break, are loaded or held by instruments";
   }
   plan.why += ": ";
