@@ -18,6 +18,11 @@ namespace {
 // polished.
 constexpr double kReferenceError = 1e-10, kDeferredError = 1e-9;
 constexpr int kRefinements = 4;
+// Half of what double precision promises of a damaged body: the rest is for the estimate's error.
+constexpr double kDamagedError = 5e-9;
+// The errors of a fresh base and of those events later differ by less where it is the body that
+// lets them be no smaller.
+constexpr double kLikeFresh = 10;
 
 [[noreturn]] void fail(const SolveReport& report) {
   std::ostringstream message;
@@ -36,7 +41,8 @@ FrameSolver::FrameSolver(const ChosenRoute& chosen, const DamagedBody& body,
       intact_(intact),
       route_(route),
       fields_(fields),
-      anchors_(engine::anchors_of(problem())) {
+      anchors_(engine::anchors_of(problem())),
+      keeps_(std::min(kDamagedError, tolerance())) {
   if (fields.region()) {
     energy_checks_.emplace(problem());
   } else if (route.deferred()) {
@@ -155,7 +161,7 @@ void FrameSolver::hand_out() {
 
 void FrameSolver::check_fully(SolveReport& report) {
   refine(route_, report);
-  if (!(report.error <= tolerance())) polish(report);
+  if (!(report.error <= keeps_)) polish(report);
   if (!(report.error <= tolerance())) fail(report);
 }
 
@@ -197,11 +203,14 @@ void FrameSolver::polish(SolveReport& report) {
   if (route_.rebase()) {
     solve_by(route_, report);
     refine(route_, report);
+    report.polished = true;
   }
-  if (report.error <= tolerance() || chosen_.route == Route::cg) return;
-  const auto cg = conjugate_gradient_route(body_, intact_);
-  solve_by(*cg, report);
-  refine(*cg, report);
+  if (!(report.error <= tolerance()) && chosen_.route != Route::cg) {
+    const auto cg = conjugate_gradient_route(body_, intact_);
+    solve_by(*cg, report);
+    refine(*cg, report);
+  }
+  keeps_ = std::max(keeps_, std::min(kLikeFresh * report.error, tolerance()));
 }
 
 /// The plain routes are what others are measured by: they refine once in any case.

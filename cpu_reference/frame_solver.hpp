@@ -64,6 +64,10 @@ class FrameSolver {
   bool fast_ = false;            // residual and stress come from the fields
   std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
 
+  // Stress error up to which a base is kept: what fp64 promises, or somewhat above what a fresh one
+  // came to where that is more.
+  double keeps_;
+
   Load load_;
   FrameCheck* check_ = nullptr;  // of load_, of checks_
   Eigen::VectorXd force_, u_, du_, product_, r_;

@@ -60,7 +60,7 @@ bool is_multiple(const Load& now, const Load& then) {
 FrameCheck::FrameCheck(const Problem& problem, bool fp64)
     : tolerance_(problem.scene().solver.tolerance),
       target_(std::min(fp64 ? kFp64Error : kFp32Error, tolerance_ / 2)),
-      keeps_(fp64 ? std::min(kFp64Damaged, tolerance_) : tolerance_),
+      keeps_(fp64 ? std::min(kFp64Damaged / 2, tolerance_) : tolerance_),
       fp64_(fp64),
       stress_of_energy_(stress_of_energy(problem)) {}
 
@@ -88,8 +88,7 @@ std::optional<double> FrameCheck::bounded(const Load& load, const EnergyBound& e
 }
 
 void FrameCheck::settled(double error) {
-  if (!fp64_ || !(error <= tolerance_)) return;
-  keeps_ = std::clamp(kLikeFresh * error, std::min(kFp64Damaged, tolerance_), tolerance_);
+  keeps_ = std::max(keeps_, std::min(kLikeFresh * error, tolerance_));
 }
 
 void FrameCheck::checked(const Load& load, const SolveReport& report) {
