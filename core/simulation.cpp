@@ -66,7 +66,11 @@ Needs needs_of(const Problem& problem) {
   needs.yield = needs.stress && any_breakable(problem);
   needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
   needs.pristine = breaks && scene.fracture.model == FractureModel::b;
-  if (!needs.stress) needs.left_out.push_back("stress: no fracture model and no output needs it");
+  if (!needs.stress) {
+    needs.left_out.push_back(
+        "stress of each element: no fracture model and no output needs it; a frame's check "
+        "takes the largest alone");
+  }
   if (!needs.yield) needs.left_out.push_back("yield summary: nothing breakable or no stress");
   if (!needs.damage) needs.left_out.push_back("update of the inverse: nothing can be destroyed");
   if (!needs.pristine) needs.left_out.push_back("intact body's field: only model B reads it");

@@ -31,19 +31,19 @@ FrameFields::FrameFields(const DamagedBody& body, const Needs& needs,
     }
     if (elements.empty()) return;
   }
-  if (needs.stress || needs.damage) kernel_.emplace(body.shared_problem(), std::move(elements), 0);
-  if (needs.stress) {
-    stress_.assign(kernel_->size(), Voigt::Zero());
-    next_stress_ = stress_;
+  if (needs.stress || (condensed_ && needs.damage)) {  // a region's check reads it too
+    kernel_.emplace(body.shared_problem(), std::move(elements), 0);
   }
+  if (!needs.stress) return;
+  stress_.assign(kernel_->size(), Voigt::Zero());
+  next_stress_ = stress_;
   if (needs.yield) kernel_->keep_bounds();
 }
 
-bool FrameFields::keep_forces() {
-  if (!kernel_) return false;
+void FrameFields::keep_forces() {
+  if (!kernel_) kernel_.emplace(body_.shared_problem(), std::vector<Index>(), 0);
   kernel_->keep_forces();
   nodal_forces_ = nodal_;
-  return true;
 }
 
 std::optional<double> FrameFields::take(const Eigen::VectorXd& u) {

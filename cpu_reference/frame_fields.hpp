@@ -17,12 +17,12 @@ class FrameFields {
  public:
   /// `region`: frames compute these alone of a condensed body.
   FrameFields(const DamagedBody& body, const Needs& needs, std::optional<engine::Region> region);
-  /// Makes room for forces() and largest_stress(). False: no stress is needed, so there is neither.
-  /// For a body that is not condensed.
-  [[nodiscard]] bool keep_forces();
+  /// Makes ready for forces() and largest_stress(), whether or not anybody needs stress: it is
+  /// stored only for those who do. For a body that is not condensed.
+  void keep_forces();
 
   /// Takes the displacement in work and computes its stress. Returns the largest over live
-  /// elements; nothing: no stress is needed.
+  /// elements; nothing: nobody needs stress, and forces are not kept.
   std::optional<double> take(const Eigen::VectorXd& u);
   /// K u of the displacement in work.
   void forces(Eigen::VectorXd& f);

@@ -47,7 +47,7 @@ FrameSolver::FrameSolver(const ChosenRoute& chosen, const DamagedBody& body,
     energy_checks_.emplace(problem());
   } else if (route.deferred()) {
     checks_.emplace(problem());
-    fast_ = fields.keep_forces();  // the yardstick has loops of its own
+    fields.keep_forces();
   }
   reserve(load_, problem());
   force_.setZero(problem().dof_count());
@@ -81,7 +81,7 @@ SolveReport FrameSolver::solve_everywhere() {
   } else {
     check_fully(report);
   }
-  if (!fast_) hand_out();
+  if (!by_fields()) hand_out();
   fields_.publish(route_);
   return report;
 }
@@ -135,7 +135,7 @@ void FrameSolver::solve_by(InverseRoute& route, SolveReport& report) {
 
 /// Residual f - K u and reactions of the solution, and its largest stress.
 void FrameSolver::look_at(SolveReport& report) {
-  if (fast_) {
+  if (by_fields()) {
     hand_out();
     fields_.forces(product_);
   } else {
@@ -194,7 +194,7 @@ void FrameSolver::refine(InverseRoute& route, SolveReport& report) {
 double FrameSolver::correction(InverseRoute& route, SolveReport& report) {
   if (!std::isfinite(report.residual)) return report.residual;
   report.iterations += route.apply(r_, du_).iterations;
-  return fast_ ? fields_.largest_stress(du_) : body_.largest_stress(du_);
+  return by_fields() ? fields_.largest_stress(du_) : body_.largest_stress(du_);
 }
 
 /// Refinement converges only while the updated inverse is one; once it has drifted too far it is

@@ -49,6 +49,8 @@ class FrameSolver {
   [[nodiscard]] const Problem& problem() const { return body_.problem(); }
   [[nodiscard]] double tolerance() const { return problem().scene().solver.tolerance; }
   [[nodiscard]] bool yardstick() const;
+  /// Residual and stress come from the fields; the yardstick has loops of its own.
+  [[nodiscard]] bool by_fields() const { return checks_.has_value(); }
   [[nodiscard]] double grip_force(std::size_t g) const;
   [[nodiscard]] double largest_u() const;
   [[nodiscard]] double largest_in_region() const;
@@ -61,7 +63,6 @@ class FrameSolver {
   FrameFields& fields_;
   std::optional<RecentChecks<FrameCheck>> checks_;  // of a deferred update that knows u everywhere
   std::optional<RecentChecks<EnergyCheck>> energy_checks_;  // of a condensed body
-  bool fast_ = false;            // residual and stress come from the fields
   std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
 
   // Stress error up to which a base is kept: what fp64 promises, or somewhat above what a fresh one
