@@ -24,6 +24,7 @@ class FailoverBackend final : public Backend {
     return info;
   }
   std::vector<BufferPlan> buffers() const override { return current_->buffers(); }
+  std::vector<KernelPlan> kernels() const override { return current_->kernels(); }
   bool prepares() const override { return current_->prepares(); }
   PreparationReport preparation() const override { return current_->preparation(); }
   void time_passes(bool on) override { current_->time_passes(on); }

@@ -8,6 +8,7 @@
 #include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/frame_fields.hpp"
+#include "cpu_reference/frame_kernels.hpp"
 #include "cpu_reference/frame_solver.hpp"
 #include "cpu_reference/routes.hpp"
 #include "engine/instrument_block.hpp"
@@ -74,6 +75,10 @@ class CpuBackend final : public Backend {
         {"displacement and forces", (problem().dofs().size() * 4 + unknowns * 2) * sizeof(double)});
     for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
     return plan;
+  }
+
+  std::vector<KernelPlan> kernels() const override {
+    return frame_kernels(shape(), needs(), problem().gripped_dofs().size());
   }
 
  private:

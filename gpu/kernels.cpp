@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/kernels.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include "shaders/embedded.hpp"
 #include "sunder/error.hpp"
@@ -17,7 +19,57 @@ vulkan::Access access(Reads reads, Variant variant, bool fp64, bool single) {
   return vulkan::Access::texel_uint4;
 }
 
+constexpr std::pair<std::string_view, std::string_view> kRoles[] = {
+    {"add", "u += du, where a solution is refined"},
+    {"apply", "the inverse's columns that carry load, summed in chunks"},
+    {"cg_begin", "residual and first direction of conjugate gradients"},
+    {"cg_check", "whether conjugate gradients go on"},
+    {"cg_coarse", "rigid motions of groups of nodes: their equations solved"},
+    {"cg_direction", "next direction of conjugate gradients"},
+    {"cg_length", "length of a step of conjugate gradients"},
+    {"cg_multiply", "K p by 3 x 3 blocks"},
+    {"cg_restrict", "rigid motions of groups of nodes: their share of the residual"},
+    {"cg_step", "step of conjugate gradients, and its preconditioner"},
+    {"complement", "last step of the inversion on the device"},
+    {"dense", "dense product with the inverse, to estimate errors and refine"},
+    {"display", "fields as a host draws them"},
+    {"gather", "values that the host asks for, side by side"},
+    {"hold", "gripped unknowns at exactly what is prescribed"},
+    {"low_rank", "update of the inverse, rank 6 for each destroyed element"},
+    {"narrow", "a vector rounded to what the inverse is stored in"},
+    {"pick", "entries of the inverse that an event needs"},
+    {"project", "the exact columns' products with the residual"},
+    {"residual", "f - K u by 3 x 3 blocks, reactions of grips"},
+    {"solve", "u from the exact columns that carry load and damage"},
+    {"stress", "stress of all elements: ratios to yield, and the norm for the error estimate"},
+    {"sum", "chunks of a product added up in order"},
+    {"summary", "what a frame returns, from all workgroups' partial results"},
+    {"update_vectors", "update vectors of destroyed elements through the inverse"},
+};
+
+/// Of "stress_lvp_fp64": "stress".
+std::string_view without_variant(std::string_view name) {
+  for (const std::string_view variant : {"_gpu_", "_lvp_"}) {
+    const std::size_t at = name.find(variant);
+    if (at != std::string_view::npos) return name.substr(0, at);
+  }
+  return name;
+}
+
 }  // namespace
+
+std::vector<KernelPlan> describe(const std::multiset<std::string>& pipelines) {
+  std::vector<KernelPlan> plan;
+  for (auto it = pipelines.begin(); it != pipelines.end(); it = pipelines.upper_bound(*it)) {
+    const auto* role = std::ranges::find(kRoles, without_variant(*it),
+                                         &std::pair<std::string_view, std::string_view>::first);
+    const std::size_t count = pipelines.count(*it);
+    std::string does(role != std::end(kRoles) ? role->second : std::string_view("?"));
+    if (count > 1) does += " (" + std::to_string(count) + " pipelines)";
+    plan.push_back({*it, std::move(does)});
+  }
+  return plan;
+}
 
 std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool fp64,
                                                     std::initializer_list<Reads> bindings,
@@ -28,6 +80,7 @@ std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool 
                             : fp64   ? "fp64"
                                      : "fp32");
   vulkan::KernelCode code;
+  code.name = full;
   code.spirv = shaders::find(full);
   if (code.spirv.empty()) throw DeviceError("this build lacks the kernel " + full);
   std::vector<vulkan::Access> accesses;

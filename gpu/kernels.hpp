@@ -4,10 +4,14 @@
 
 #include <initializer_list>
 #include <memory>
+#include <set>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "gpu/vulkan/kernel.hpp"
 #include "shaders/layout.h"
+#include "sunder/backend.hpp"
 
 namespace sunder::gpu {
 
@@ -84,6 +88,9 @@ class KernelFactory {
   Variant variant_;
   bool fp64_;
 };
+
+/// What pipelines do, by the names of their kernels, each name once.
+[[nodiscard]] std::vector<KernelPlan> describe(const std::multiset<std::string>& pipelines);
 
 /// lvp on lavapipe, gpu elsewhere; SUNDER_SHADER_VARIANT=gpu|lvp overrides. Throws UsageError for
 /// another value.

@@ -76,6 +76,10 @@ class VulkanBackend final : public Backend {
 
   std::vector<BufferPlan> buffers() const override { return body_->buffers(); }
 
+  std::vector<KernelPlan> kernels() const override {
+    return describe(device_->living_pipelines());
+  }
+
   std::shared_ptr<InstrumentForces> instrument_forces() override {
     if (!instruments_ && !body_->part().gripped_dofs().empty() && body_->route().grip_factor()) {
       instruments_.emplace(body_->part());

@@ -73,6 +73,11 @@ void print_buffers(const Backend& backend) {
                                byte_size(static_cast<double>(sum)) + ")");
 }
 
+void print_kernels(const Backend& backend) {
+  std::cout << "Kernels of a frame\n";
+  for (const KernelPlan& kernel : backend.kernels()) line(kernel.name, kernel.does);
+}
+
 void print_list(const std::string& title, const std::vector<std::string>& items) {
   std::cout << title << "\n";
   for (const std::string& item : items) std::cout << "  - " << item << "\n";
@@ -119,6 +124,7 @@ int plan(const SceneArguments& arguments, bool measure) {
   print_engine(backend);
   print_buffers(backend);
   print_list("Operations of a frame", operations(problem, backend.needs()));
+  print_kernels(backend);
   print_list("Left out: this scene does not need it", backend.needs().left_out);
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), problem.warnings().begin(), problem.warnings().end());

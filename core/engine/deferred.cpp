@@ -394,7 +394,7 @@ void Deferred::copy_damage(Damage& to) const {
 std::vector<BufferPlan> Deferred::buffers() const {
   std::vector<BufferPlan> plan = base_->buffers();
   const auto n = static_cast<std::size_t>(count());
-  plan.push_back({"small matrix of the damage", 3 * n * n * sizeof(double)});
+  if (n > 0) plan.push_back({"small matrix of the damage", 3 * n * n * sizeof(double)});
   return plan;
 }
 

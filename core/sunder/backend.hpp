@@ -96,6 +96,12 @@ struct BufferPlan {
   std::size_t bytes = 0;
 };
 
+/// Something that computes in a frame, for `plan`.
+struct KernelPlan {
+  std::string name;
+  std::string does;  ///< in words, with precision, sizes and threads where they are known
+};
+
 /// What preparing predicted fractures has come to so far.
 struct PreparationReport {
   Index destroyed = 0;  ///< elements, since something was first prepared
@@ -112,6 +118,8 @@ class Backend {
 
   [[nodiscard]] virtual BackendInfo info() const = 0;
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// What a frame runs, that with a fracture included; what a scene does not need is not there.
+  [[nodiscard]] virtual std::vector<KernelPlan> kernels() const = 0;
 
   /// Turns the device's clock on or off. Off at first: reading it may cost a frame more than the
   /// passes themselves (lavapipe: 15 us each).

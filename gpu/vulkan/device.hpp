@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstring>
 #include <memory>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -89,15 +91,24 @@ class Device {
   [[nodiscard]] std::size_t bytes_read() const { return bytes_read_; }
   void count_read(std::size_t bytes) { bytes_read_ += bytes; }
 
-  /// Bytes that buffers hold now, and the most they ever held; pipelines created so far.
+  /// Bytes that buffers hold now, and the most they ever held; pipelines created so far, and those
+  /// that exist, by the names of their kernels.
   [[nodiscard]] std::size_t held_bytes() const { return held_bytes_; }
   [[nodiscard]] std::size_t most_bytes() const { return most_bytes_; }
   [[nodiscard]] int pipelines() const { return pipelines_; }
+  [[nodiscard]] const std::multiset<std::string>& living_pipelines() const { return living_; }
   void count_buffer(std::ptrdiff_t bytes) {
     held_bytes_ += static_cast<std::size_t>(bytes);
     most_bytes_ = std::max(most_bytes_, held_bytes_);
   }
-  void count_pipeline() { ++pipelines_; }
+  void count_pipeline(const std::string& name) {
+    living_.insert(name);
+    ++pipelines_;
+  }
+  void forget_pipeline(const std::string& name) noexcept {
+    const auto it = living_.find(name);
+    if (it != living_.end()) living_.erase(it);
+  }
 
   /// Throws DeviceError when `bytes` more than the device's memory are asked for.
   void require_memory(VkDeviceSize bytes, const std::string& purpose) const;
@@ -112,6 +123,7 @@ class Device {
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::size_t bytes_read_ = 0, held_bytes_ = 0, most_bytes_ = 0;
   int pipelines_ = 0;
+  std::multiset<std::string> living_;
   bool timing_;
   std::vector<PassTime> times_;
   Queue queue_;

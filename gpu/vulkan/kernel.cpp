@@ -15,6 +15,7 @@ VkDescriptorType descriptor_type(Access access) {
 
 Kernel::Kernel(Device& device, const KernelCode& code)
     : device_(device),
+      name_(code.name),
       bindings_(code.bindings.begin(), code.bindings.end()),
       push_bytes_(code.push_bytes) {
   try {
@@ -29,6 +30,7 @@ Kernel::Kernel(Device& device, const KernelCode& code)
 Kernel::~Kernel() { release(); }
 
 void Kernel::release() noexcept {
+  if (pipeline_ != VK_NULL_HANDLE) device_.forget_pipeline(name_);
   device_.vk().DestroyPipeline(device_.handle(), pipeline_, nullptr);
   device_.vk().DestroyPipelineLayout(device_.handle(), layout_, nullptr);
   device_.vk().DestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);
@@ -86,7 +88,7 @@ void Kernel::create_pipeline(const KernelCode& code) {
                                                               &info, nullptr, &pipeline_);
   device_.vk().DestroyShaderModule(device_.handle(), shader, nullptr);
   check(result, "vkCreateComputePipelines");
-  device_.count_pipeline();
+  device_.count_pipeline(name_);
 }
 
 Binding::Binding(Device& device, const Kernel& kernel, std::span<const Buffer* const> buffers)

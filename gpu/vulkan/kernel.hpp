@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "gpu/vulkan/buffer.hpp"
@@ -23,6 +24,7 @@ struct KernelCode {
   std::span<const Access> bindings;  ///< in order of binding
   std::uint32_t push_bytes = 0;
   std::span<const std::uint32_t> constants;  ///< specialization constants, in order of id
+  std::string name = {};
 };
 
 class Kernel {
@@ -44,6 +46,7 @@ class Kernel {
   void release() noexcept;
 
   Device& device_;
+  std::string name_;
   std::vector<Access> bindings_;
   std::uint32_t push_bytes_;
   VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;

@@ -113,6 +113,37 @@ TEST_F(DeviceUse, OnlyThePipelinesThatTheSceneNeedsAreCreated) {
   EXPECT_EQ(pipelines(small_scene(true), {}, false), pipelines(small_scene(false), {}, false) + 1);
 }
 
+bool has_kernel(const Backend& backend, const std::string& name) {
+  return std::ranges::any_of(backend.kernels(), [&](const KernelPlan& kernel) {
+    return kernel.name.starts_with(name + "_");
+  });
+}
+
+TEST_F(DeviceUse, EveryKernelSaysWhatItDoes) {
+  for (const Way& way : ways_of_all_routes()) {
+    const auto problem = problem_for(small_scene(true), way);
+    const auto backend = gpu::create(problem, needs_with(true), watched(way));
+    const Index first = 100;
+    backend->destroy({&first, 1});  // an eager update makes its own then
+    int pipelines = 0;
+    for (const KernelPlan& kernel : backend->kernels()) {
+      EXPECT_GT(kernel.does.size(), 10u) << kernel.name;
+      const std::size_t count = kernel.does.find(" pipelines)");
+      const std::size_t open = kernel.does.rfind('(', count);
+      pipelines += count == std::string::npos ? 1 : std::stoi(kernel.does.substr(open + 1));
+      const std::string variant = way.variant == gpu::Variant::gpu ? "_gpu_" : "_lvp_";
+      EXPECT_NE(kernel.name.find(variant), std::string::npos) << kernel.name;
+    }
+    // An eager update puts another in the place of the one that reads the columns.
+    EXPECT_EQ(pipelines,
+              gpu::device_use(*backend).pipelines - (way.update == Update::eager ? 1 : 0));
+    EXPECT_EQ(has_kernel(*backend, "low_rank"), way.update == Update::eager);
+    EXPECT_EQ(has_kernel(*backend, "cg_step"), way.route == Route::cg);
+    EXPECT_EQ(has_kernel(*backend, "apply"), way.route != Route::cg);
+    EXPECT_TRUE(has_kernel(*backend, "hold") || !way.float64);
+  }
+}
+
 TEST_F(DeviceUse, AFrameIsOneSubmitAndAQuietOneReadsNoFieldBack) {
   const auto problem = problem_for(held_board(), {gpu::Variant::lvp, Precision::fp32});
   const auto backend = gpu::create(problem, needs_with(true), watched());

@@ -3,6 +3,7 @@
 // on machines without a loader, without a driver, without a GPU.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 
@@ -82,6 +83,40 @@ TEST_F(Program, TearsTheBoardAsOnTheCpuByEveryRouteAndPrecision) {
       EXPECT_EQ(board.summary("vulkan")["device"]["precision"], options[1]);
     }
   }
+}
+
+TEST_F(Program, PlansThePipelinesOfAScene) {
+  const Board board;
+  const Variable chosen("SUNDER_SHADER_VARIANT", "lvp");
+  const auto plan = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {
+        "plan", board.board.scene.string(), "--backend", "vulkan", "--precision", "fp64"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out;
+  };
+  const auto says = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  const std::string torn = plan({});
+  EXPECT_TRUE(says(torn, "660 (66 held by supports")) << torn;
+  EXPECT_TRUE(says(torn, "inverse, update deferred")) << torn;
+  EXPECT_TRUE(says(torn, "660 unknowns: the dense inverse takes 3484 kB")) << torn;
+  // 500 elements, padded to 512, eight values each.
+  EXPECT_TRUE(says(torn, "element stress (device)           32,768 bytes")) << torn;
+  EXPECT_TRUE(says(torn, "\n  stress_lvp_fp64 ")) << torn;
+  EXPECT_TRUE(says(torn, "\n  solve_lvp_fp64 ")) << torn;
+  EXPECT_FALSE(says(torn, "\n  cg_")) << torn;
+  EXPECT_FALSE(says(torn, "\n  hold_")) << torn;
+  const std::size_t ms = torn.find("predicted frame [ms]");
+  double quiet = 0, fracture = 0;
+  ASSERT_EQ(
+      std::sscanf(torn.c_str() + ms, "predicted frame [ms] %lf quiet, %lf with", &quiet, &fracture),
+      2);
+  EXPECT_GT(quiet, 0);
+  EXPECT_GT(fracture, quiet);
+  EXPECT_TRUE(says(plan({"--route", "cg"}), "\n  cg_step_lvp_fp64 "));
 }
 
 TEST_F(Program, GivesTheSameBytesAgain) {
