@@ -125,10 +125,13 @@ class Frame {
   /// Stress with its summary, and f - K u.
   void state(bool balance) {
     const double elements = static_cast<double>(s_.elements);
-    // Shape, corners, state, displacement of four nodes; what is kept.
-    const double bytes = 96 + 16 + 16 + 128 + (s_.stress ? 8 * real() : 0);
-    work_.pass(bytes * elements);
-    work_.seconds(elements * rates_.stress);
+    if (s_.norms) {
+      // Shape, corners, state, displacement of four nodes; what is kept.
+      const double bytes = 96 + 16 + 16 + 128 + (s_.stress ? 8 * real() : 0);
+      work_.pass(bytes * elements);
+      work_.seconds(elements * rates_.stress);
+    }
+    balance = balance || !s_.norms;
     if (balance && s_.host_corrects) {
       work_.seconds(elements * rates_.host_element);
     } else if (balance) {

@@ -21,6 +21,7 @@ struct FrameShape {
   std::size_t elements = 0;         ///< on the device
   std::size_t stiffness_bytes = 0;  ///< that f - K u reads
   bool stress = false;              ///< is kept
+  bool norms = true;                ///< stress is computed at all
 };
 
 struct FrameCost {

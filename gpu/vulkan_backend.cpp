@@ -76,9 +76,7 @@ class VulkanBackend final : public Backend {
 
   std::vector<BufferPlan> buffers() const override { return body_->buffers(); }
 
-  std::vector<KernelPlan> kernels() const override {
-    return describe(device_->living_pipelines());
-  }
+  std::vector<KernelPlan> kernels() const override { return describe(device_->living_pipelines()); }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override {
     if (!instruments_ && !body_->part().gripped_dofs().empty() && body_->route().grip_factor()) {
@@ -130,6 +128,7 @@ class VulkanBackend final : public Backend {
     shape.elements = body_->part().mesh().tets.size();
     shape.stiffness_bytes = body_->fields().matrix().bytes();
     shape.stress = needs().stress;
+    shape.norms = body_->fields().norms();
     return shape;
   }
 
@@ -214,12 +213,12 @@ class VulkanBackend final : public Backend {
     if (const auto known = check_.known(load_)) {
       report = *known;
       report.iterations = body_->route().solve(load_, !body_->part().gripped_dofs().empty());
-      if (std::isfinite(body_->fields().state().stress_squared)) return report;
+      if (body_->fields().finite()) return report;
     }
     check_.event();
     report.iterations += body_->route().solve(load_, true);
     const auto energy = body_->route().energy_bound();
-    const double stress = std::sqrt(body_->fields().state().stress_squared);
+    const double stress = energy ? body_->fields().largest_stress(Field::displacement) : 0.0;
     if (energy) {
       if (const auto error = check_.bounded(load_, *energy, stress, body_->route().bases())) {
         report.error = *error;
@@ -249,9 +248,9 @@ class VulkanBackend final : public Backend {
   }
 
   double estimate() const {
-    double of_u = std::sqrt(body_->fields().state().stress_squared);
-    double of_du = std::sqrt(body_->fields().correction().stress_squared);
     if (!std::isfinite(residual())) return residual();
+    double of_u = body_->fields().largest_stress(Field::displacement);
+    double of_du = body_->fields().largest_stress(Field::correction);
     if (!std::isfinite(of_u)) return of_u;
     if (body_->region()) {
       of_u = std::max(of_u, body_->largest_outside(Field::displacement, whole_load_));

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <limits>
+
+#include "fem/element.hpp"
 
 namespace sunder::gpu {
 namespace {
@@ -40,6 +44,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       problem_(problem),
       keep_stress_(needs.stress),
       list_over_(needs.yield),
+      norms_(needs.stress || needs.yield || needs.damage || kernels.single()),
       rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
       elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
       nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
@@ -67,12 +72,12 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   residual_ = make(rows_ * sizeof(double));
   balance_ = make(std::size_t{4} * nodes_ * sizeof(double));
   stress_ = make(keep_stress_ ? std::size_t{elements_} * 8 * kernels.real_bytes() : 16);
-  over_ = make((1 + std::size_t{elements_}) * sizeof(std::uint32_t));
-  stress_partials_ = make(element_parts_ * sizeof(shaders::StressPartial));
+  over_ = make((1 + (norms_ ? std::size_t{elements_} : 0)) * sizeof(std::uint32_t));
+  stress_partials_ = make((norms_ ? element_parts_ : 1) * sizeof(shaders::StressPartial));
   node_partials_ = make(node_parts_ * sizeof(shaders::NodePartial));
   summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
   upload_mesh();
-  upload_shapes();
+  if (norms_) upload_shapes();
   create_kernels();
   create_hold();
 }
@@ -86,14 +91,17 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
        {3 * (nodal + unknowns),  // displacement, kept, correction
         3 * nodal + unknowns,    // load, roots, balance; residual
         keep_stress_ ? elements * 8 * kernels_.real_bytes() : 16,
-        (1 + elements) * sizeof(std::uint32_t),  // over yield
-        element_parts_ * sizeof(shaders::StressPartial), node_parts_ * sizeof(shaders::NodePartial),
-        2 * sizeof(shaders::Summary),
-        4 * elements * sizeof(std::uint32_t),  // nodes of elements
-        elements * sizeof(shaders::ElementFacts), 12 * elements * sizeof(double),
+        (1 + (norms_ ? elements : 0)) * sizeof(std::uint32_t),  // over yield
+        (norms_ ? element_parts_ : 1) * sizeof(shaders::StressPartial),
+        node_parts_ * sizeof(shaders::NodePartial), 2 * sizeof(shaders::Summary),
+        elements * sizeof(shaders::ElementFacts),
         std::size_t{4} * nodes_ * sizeof(std::uint32_t),  // dofs
         rows_ * sizeof(std::uint32_t)}) {                 // positions
     sum += Buffer::padded(bytes);
+  }
+  if (norms_) {  // nodes and shapes of elements
+    sum += Buffer::padded(4 * elements * sizeof(std::uint32_t)) +
+           Buffer::padded(12 * elements * sizeof(double));
   }
   if (grips > 0) {
     sum += Buffer::padded(grips * sizeof(std::uint32_t)) + Buffer::padded(grips * sizeof(double));
@@ -137,7 +145,7 @@ void Fields::upload_mesh() {
     buffer = Buffer(kernels_.device(), words.size() * sizeof(std::uint32_t), Placement::device);
     buffer.write(std::span<const std::uint32_t>(words));
   };
-  upload(nodes_of_, nodes_of);
+  if (norms_) upload(nodes_of_, nodes_of);
   facts_ = Buffer(kernels_.device(), facts_host_.size() * sizeof(shaders::ElementFacts),
                   Placement::device);
   facts_.write(std::span<const shaders::ElementFacts>(facts_host_));
@@ -168,13 +176,15 @@ void Fields::create_kernels() {
   const auto bind = [&](const vulkan::Kernel& kernel, std::initializer_list<const Buffer*> list) {
     return std::make_unique<vulkan::Binding>(device, kernel, std::vector<const Buffer*>(list));
   };
-  stress_pass_.kernel =
-      kernels_.make("stress", {doubles, words, doubles, words, plain, plain, plain},
-                    sizeof(shaders::ElementPush));
-  stress_pass_.binding = bind(*stress_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &facts_,
+  if (norms_) {
+    stress_pass_.kernel =
+        kernels_.make("stress", {doubles, words, doubles, words, plain, plain, plain},
+                      sizeof(shaders::ElementPush));
+    stress_pass_.binding = bind(*stress_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &facts_,
+                                                       &stress_, &stress_partials_, &over_});
+    correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &facts_,
                                                      &stress_, &stress_partials_, &over_});
-  correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &facts_,
-                                                   &stress_, &stress_partials_, &over_});
+  }
   if (!host_balance_) create_residual_pass();
   summary_pass_.kernel =
       kernels_.make_fp64("summary", {plain, plain, plain, plain}, sizeof(shaders::SummaryPush));
@@ -252,6 +262,26 @@ shaders::Summary Fields::state() const {
     s.energy_root = host_balance_->energy_root();
   }
   return s;
+}
+
+double Fields::largest_stress(Field field) const {
+  if (norms_) return std::sqrt(summary(field == Field::displacement ? 0 : 1).stress_squared);
+  std::vector<double> u(3 * problem_.mesh().nodes.size());
+  read(field, u);
+  double largest = 0;
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    const Voigt stress = fem::stress(problem_.shape(e), problem_.material(e),
+                                     fem::corner_displacement(problem_.mesh(), e, u));
+    const double norm = fem::tensor(stress).norm();
+    if (!std::isfinite(norm)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, norm);
+  }
+  return largest;
+}
+
+bool Fields::finite() const {
+  const shaders::Summary s = state();
+  return std::isfinite(norms_ ? s.stress_squared : s.residual_squared);
 }
 
 void Fields::write_residual(std::span<const double> residual) {
@@ -356,25 +386,29 @@ void Fields::exclude(std::span<const Index> elements) {
 }
 
 void Fields::record_state(vulkan::Commands& commands, bool balance) const {
-  balance = balance && !host_balance_;
+  balance = (balance || !norms_) && !host_balance_;
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
   const std::uint32_t node_groups = nodes_ / shaders::kGroup;
-  commands.pass("stress");
-  commands.dispatch(*stress_pass_.binding,
-                    element_push((keep_stress_ ? shaders::kKeepStress : 0) |
-                                 (list_over_ ? shaders::kListOver : 0)),
-                    element_groups);
+  if (norms_) {
+    commands.pass("stress");
+    commands.dispatch(*stress_pass_.binding,
+                      element_push((keep_stress_ ? shaders::kKeepStress : 0) |
+                                   (list_over_ ? shaders::kListOver : 0)),
+                      element_groups);
+  }
   if (balance) {
     commands.pass("residual");
     commands.dispatch(*residual_pass_.binding, node_groups);
   }
   commands.barrier();
-  commands.pass("stress");
+  commands.pass(norms_ ? "stress" : "residual");
   commands.dispatch(*summary_pass_.binding,
-                    shaders::SummaryPush{element_parts_, balance ? node_parts_ : 0, 0}, 1);
+                    shaders::SummaryPush{norms_ ? element_parts_ : 0, balance ? node_parts_ : 0, 0},
+                    1);
 }
 
 void Fields::record_correction(vulkan::Commands& commands) const {
+  if (!norms_) return;
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
   commands.pass("estimate");
   commands.dispatch(*correction_stress_, element_push(0), element_groups);

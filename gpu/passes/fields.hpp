@@ -42,6 +42,10 @@ class Fields {
   [[nodiscard]] std::uint32_t rows() const { return rows_; }
   [[nodiscard]] std::uint32_t packs() const { return rows_ / 4; }
 
+  /// Whether the device computes stress. Not where nobody asks for it and nothing can break: its
+  /// norm is then wanted for checks alone, of which each kind of load has one.
+  [[nodiscard]] bool norms() const { return norms_; }
+
   void set_load(std::span<const double> force, std::span<const double> displacements);
   /// sqrt(X_jj) of every unknown: with them the summary bounds the energy of X r.
   void set_roots(std::span<const double> roots);
@@ -57,7 +61,8 @@ class Fields {
   void restore();
   /// The field at gripped dofs as prescribed (displacement), or 0 (correction).
   void record_hold(vulkan::Commands& commands, Field field) const;
-  /// Stress of the displacement and its summary; with `balance` f - K u with r (0 at grips) too.
+  /// Stress of the displacement and its summary; with `balance`, or without norms(), f - K u with r
+  /// (0 at grips) too.
   void record_state(vulkan::Commands& commands, bool balance = true) const;
   /// Largest stress of the correction.
   void record_correction(vulkan::Commands& commands) const;
@@ -66,11 +71,14 @@ class Fields {
   void balance_on_host();
   [[nodiscard]] const HostBalance& host_balance() const { return *host_balance_; }
 
-  /// After record_state() and record_correction() ran.
+  /// After record_state() and record_correction() ran. Without norms() there is no stress in it.
   [[nodiscard]] shaders::Summary state() const;
+  /// Largest stress of a live element, Frobenius; without norms() the host computes it.
+  [[nodiscard]] double largest_stress(Field field) const;
+  /// Whether the solution is made of numbers.
+  [[nodiscard]] bool finite() const;
   /// Live breakable elements at or over yield, ascending.
   [[nodiscard]] std::vector<Index> over_yield() const;
-  [[nodiscard]] shaders::Summary correction() const { return summary(1); }
 
   [[nodiscard]] const vulkan::Buffer& nodal(Field field) const {
     return field == Field::displacement ? displacement_ : correction_;
@@ -124,7 +132,7 @@ class Fields {
 
   const KernelFactory& kernels_;
   const Problem& problem_;
-  bool keep_stress_, list_over_;
+  bool keep_stress_, list_over_, norms_;
   std::uint32_t rows_, elements_, nodes_;          // padded
   std::uint32_t element_parts_, node_parts_;       // partial results
   std::vector<shaders::ElementFacts> facts_host_;  // copy of facts_

@@ -119,6 +119,68 @@ bool has_kernel(const Backend& backend, const std::string& name) {
   });
 }
 
+std::size_t buffer_bytes(const Backend& backend, const std::string& name) {
+  for (const BufferPlan& b : backend.buffers()) {
+    if (b.name == name) return b.bytes;
+  }
+  return 0;
+}
+
+TEST_F(DeviceUse, StressHasNoPipelineWhereNobodyAsksAndNothingBreaks) {
+  for (const Way& way : ways_of_all_routes()) {
+    if (!way.float64) continue;  // the host checks less there
+    const auto problem = problem_for(small_scene(true), way);
+    const auto made = [&](bool stress, bool damage) {
+      Needs needs;
+      needs.stress = stress;
+      needs.damage = damage;
+      return gpu::create(problem, needs, watched(way));
+    };
+    const auto none = made(false, false), stress = made(true, false), damage = made(false, true);
+    EXPECT_EQ(gpu::device_use(*none).pipelines, gpu::device_use(*stress).pipelines - 1);
+    EXPECT_FALSE(has_kernel(*none, "stress"));
+    EXPECT_TRUE(has_kernel(*stress, "stress"));
+    EXPECT_TRUE(has_kernel(*damage, "stress")) << "every event's frame is checked by its norm";
+    // Per element, padded to 64: 4 corners, 12 values of shape, 8 of stress.
+    const std::size_t elements = (9 * 6 * 6 + 63) / 64 * 64;
+    const std::string state = "mesh and element state (device)";
+    EXPECT_EQ(buffer_bytes(*none, state) + elements * (4 * 4 + 12 * 8),
+              buffer_bytes(*stress, state));
+    EXPECT_EQ(buffer_bytes(*none, "element stress (device)"), 16u);
+    EXPECT_EQ(buffer_bytes(*stress, "element stress (device)"),
+              elements * 8 * (way.precision == Precision::fp64 ? 8 : 4));
+  }
+}
+
+TEST_F(DeviceUse, AFrameWithoutStressKeepsItsPromise) {
+  for (const Way& way : ways_of_all_routes()) {
+    if (!way.float64) continue;
+    Pair pair(small_scene(true), way, Needs{});
+    const auto& mesh = pair.problem().mesh();
+    const std::vector<double> held(pair.problem().gripped_dofs().size(), 0.125);
+    const auto force = shared_force(mesh, nodes_in(mesh, {Vec3(4.9, 4.9, -1), Vec3(11, 5.1, 2)}),
+                                    Vec3(1, -2, 0.5));
+    for (const double factor : {1.0, 1.5}) {  // the second is known by the first
+      std::vector<double> scaled = force, moved = held;
+      for (double& f : scaled) f *= factor;
+      for (double& d : moved) d *= factor;
+      const Load load = load_of(pair.problem(), scaled, moved);
+      pair.load(load);
+      pair.reference->solve();
+      const SolveReport report = pair.vulkan->solve();
+      EXPECT_LE(report.error, way.tolerance);
+      EXPECT_GT(report.error, 0);
+      const std::vector<std::uint8_t> live(mesh.tets.size(), 0);
+      EXPECT_LE(displacement_error(mesh, live, Pair::displacement(*pair.vulkan),
+                                   Pair::displacement(*pair.reference)),
+                way.precision == Precision::fp64 ? kIntactTolerance : 1e-4);
+    }
+    pair.vulkan->set_load(load_of(pair.problem(), std::vector<double>(3 * mesh.nodes.size(), 1e300),
+                                  std::vector<double>(held.size(), 1e300)));
+    EXPECT_THROW(pair.vulkan->solve(), NumericalError);
+  }
+}
+
 TEST_F(DeviceUse, EveryKernelSaysWhatItDoes) {
   for (const Way& way : ways_of_all_routes()) {
     const auto problem = problem_for(small_scene(true), way);

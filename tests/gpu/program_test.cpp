@@ -117,6 +117,10 @@ TEST_F(Program, PlansThePipelinesOfAScene) {
   EXPECT_GT(quiet, 0);
   EXPECT_GT(fracture, quiet);
   EXPECT_TRUE(says(plan({"--route", "cg"}), "\n  cg_step_lvp_fp64 "));
+  const std::string still = plan({"--set", "fracture.model=none", "--set", "destroy=[]", "--set",
+                                  "output.fields=[\"displacement\"]"});
+  EXPECT_FALSE(says(still, "\n  stress_")) << still;
+  EXPECT_TRUE(says(still, "- stress: no fracture model and no output needs it")) << still;
 }
 
 TEST_F(Program, GivesTheSameBytesAgain) {
