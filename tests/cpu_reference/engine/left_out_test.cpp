@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <string>
 
+#include "sunder/simulation.hpp"
 #include "support/body.hpp"
 #include "support/structured_board.hpp"
 #include "support/table1_board.hpp"
@@ -127,6 +129,50 @@ TEST(LeftOut, RoomForDamageWhenNothingCanBreak) {
   EXPECT_EQ(without.of("small matrix of the damage"), 0u);
   // Three square matrices for the first thousand differences.
   EXPECT_GE(with.heap + kSlack, without.heap + 3u * 1000 * 1000 * 8);
+}
+
+// A pressed crack needs to know the elements around each node; a pull by the same force does not.
+TEST(LeftOut, PressureTermsWithoutPressure) {
+  const auto made = [](bool press, std::vector<std::string>& left_out) {
+    Scene scene;
+    scene.mesh = structured_board({60, 60, 1, 50, 50, 2});
+    scene.materials["board"] = {5, 0.4, 2.0};
+    scene.supports.push_back({top_edge(), Axes{7}});
+    scene.solver.backend = "cpu";
+    scene.solver.route = Route::factor;
+    PresetCrack crack;
+    crack.elements = std::vector<Index>{60 * 30 * 6};
+    crack.mouth = Vec3(0, 25, 1);
+    crack.tips = {Vec3(0.8, 25, 1)};
+    scene.cracks.push_back(crack);
+    Instrument tool;
+    tool.name = "tool";
+    if (press) {
+      Press action;
+      action.at = Vec3(0, 25, 1);
+      action.force = Vec3(0, -1, 0);
+      tool.action = action;
+    } else {
+      tool.action = Pull{Box{Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 2.1)}, Vec3(0, -1, 0)};
+    }
+    scene.instruments.push_back(tool);
+    const auto problem = std::make_shared<Problem>(std::move(scene));
+    Needs needs = needs_of(*problem);
+    left_out = needs.left_out;
+    auto backend = cpu_reference::create(problem, std::move(needs));
+    const std::size_t before = heap();
+    const Simulation simulation(problem, std::move(backend));
+    return heap() - before;
+  };
+  const auto has = [](const std::vector<std::string>& list) {
+    return std::ranges::count(list, "pressure terms K_b, K_c: no pressing instrument") == 1;
+  };
+  std::vector<std::string> of_pull, of_press;
+  const std::size_t pull = made(false, of_pull), press = made(true, of_press);
+  EXPECT_TRUE(has(of_pull));
+  EXPECT_FALSE(has(of_press));
+  // Four nodes of each of 21,600 elements.
+  EXPECT_GE(press + kSlack, pull + 21600u * 4 * sizeof(Index));
 }
 
 TEST(LeftOut, EverythingThatNobodyAsksForTogether) {
