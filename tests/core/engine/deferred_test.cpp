@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 
+#include "engine/condensed_update.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
 #include "pieces.hpp"
@@ -154,26 +156,105 @@ TEST(Deferred, KeepsTheAttachedPartRightAfterACut) {
   compare(board, all, cut, test::kCutTolerance);
 }
 
-TEST(Deferred, TakesEventsBackBitByBit) {
+Board gripped_board() {
   Scene scene = test::pulled_board();
   scene.instruments[0].action = Grip{test::lower_right_corner(), Vec3::Constant(0.25), Axes{7}};
-  const Board board(std::move(scene));
-  const std::vector<Index> crack = test::crack_sequence(board.problem, 60, 8);
+  return Board(std::move(scene));
+}
+
+/// Unknowns of some elements, of the load and of the grips.
+std::vector<Index> unknowns_of(const Board& board, std::span<const Index> elements) {
+  std::set<Index> dofs(board.dofs.begin(), board.dofs.end());
+  dofs.insert(board.problem.gripped_dofs().begin(), board.problem.gripped_dofs().end());
+  for (Index e : elements) {
+    for (Index n : board.problem.mesh().tets[e]) {
+      for (int axis = 0; axis < 3; ++axis) dofs.insert(board.problem.dof(n, axis));
+    }
+  }
+  dofs.erase(kNone);
+  return {dofs.begin(), dofs.end()};
+}
+
+/// A base, of the intact body or of one that has lost some elements: what a rebase makes.
+struct Based {
+  Based(const Board& board, const std::string& name, std::span<const Index> all,
+        std::span<const Index> lost)
+      : factor(std::make_shared<fem::Factor>(fem::assemble_lower(
+            board.problem, name == "condensed" ? Scale{} : scale(board, lost)))),
+        deferred(board.problem, base(board, name, all, lost)) {}
+
+  std::shared_ptr<const fem::Factor> factor;
+  Deferred deferred;
+
+ private:
+  using Scale = std::vector<double>;
+  static Scale scale(const Board& board, std::span<const Index> lost) {
+    Scale scale(board.problem.mesh().tets.size(), 1.0);
+    for (Index e : lost) scale[e] = board.problem.scene().fracture.alpha;
+    return scale;
+  }
+
+  [[nodiscard]] std::unique_ptr<Base> base(const Board& board, const std::string& name,
+                                           std::span<const Index> all,
+                                           std::span<const Index> lost) const {
+    if (name == "inverse") return std::make_unique<InverseBase>(*factor);
+    if (name == "factor") return std::make_unique<FactorBase>(*factor);
+    const std::vector<Index> dofs = unknowns_of(board, all);
+    auto first = std::make_unique<CondensedBase>(factor, dofs);
+    if (lost.empty()) return first;
+    const CondensedBase& condensed = *first;
+    Deferred before(board.problem, std::move(first));
+    for (const Index& e : lost) EXPECT_TRUE(before.destroy({&e, 1}));
+    CondensedState state;
+    condensed.copy_state(state);
+    Damage damage;
+    before.copy_damage(damage);
+    return std::make_unique<CondensedBase>(state, updated_inverse(state, damage, board.dofs),
+                                           std::make_shared<LostStiffness>(board.problem, lost));
+  }
+};
+
+/// Destroys elements, ten between two solutions, and takes them back again.
+void expect_the_way_back(const Board& board, Deferred& deferred, std::span<const Index> elements,
+                         std::size_t batch) {
   const std::vector<double> grips(board.problem.gripped_dofs().size(), 0.25);
-  for (Engine& engine : engines(board, {1, 10})) {
-    std::vector<Eigen::VectorXd> solutions;
-    for (std::size_t k = 0; k < crack.size(); k += 10) {
-      destroy_up_to(engine, crack, k, k + 10);
-      engine.deferred.solve({board.dofs, board.values}, grips, solutions.emplace_back());
+  const auto solution = [&] {
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(board.problem.dof_count());
+    deferred.solve({board.dofs, board.values}, grips, u);
+    return u;
+  };
+  std::vector<Eigen::VectorXd> solutions{solution()};
+  for (std::size_t k = 0; k < elements.size(); k += batch) {
+    ASSERT_TRUE(deferred.destroy(elements.subspan(k, batch)));
+    if ((k + batch) % 10 == 0) solutions.push_back(solution());
+  }
+  EXPECT_NE(solutions.front(), solutions.back());
+  for (std::size_t k = solutions.size() - 1; k-- > 0;) {
+    for (std::size_t i = 0; i < 10 / batch; ++i) deferred.take_back();
+    EXPECT_EQ(solution(), solutions[k]) << "back to element " << 10 * k;
+  }
+  EXPECT_THROW(deferred.take_back(), UsageError);
+}
+
+TEST(Deferred, TakesEventsBackBitByBit) {
+  const Board board = gripped_board();
+  const std::vector<Index> crack = test::crack_sequence(board.problem, 60, 8);
+  for (const char* name : {"inverse", "factor", "condensed"}) {
+    for (std::size_t batch : {std::size_t{1}, std::size_t{10}}) {
+      SCOPED_TRACE(name + (" in batches of " + std::to_string(batch)));
+      Based based(board, name, crack, {});
+      expect_the_way_back(board, based.deferred, crack, batch);
     }
-    const Index events = engine.deferred.events();
-    const Index events_of_ten = events / static_cast<Index>(crack.size() / 10);
-    for (std::size_t k = solutions.size() - 1; k-- > 0;) {
-      for (Index i = 0; i < events_of_ten; ++i) engine.deferred.take_back();
-      Eigen::VectorXd u;
-      engine.deferred.solve({board.dofs, board.values}, grips, u);
-      EXPECT_EQ(u, solutions[k]) << engine.name << " back to event " << k;
-    }
+  }
+}
+
+TEST(Deferred, TakesEventsBackToANewBaseBitByBit) {
+  const Board board = gripped_board();
+  const std::vector<Index> crack = test::crack_sequence(board.problem, 100, 8);
+  for (const char* name : {"inverse", "factor", "condensed"}) {
+    SCOPED_TRACE(name);
+    Based based(board, name, crack, std::span(crack).first(40));
+    expect_the_way_back(board, based.deferred, std::span(crack).subspan(40), 1);
   }
 }
 
