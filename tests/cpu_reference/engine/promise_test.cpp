@@ -2,6 +2,9 @@
 // The error that a frame reports while a body tears is never under the true one.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "sunder/error.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
 #include "support/direct_solution.hpp"
@@ -56,6 +59,75 @@ INSTANTIATE_TEST_SUITE_P(Boards, Estimate,
                                            Case{"InverseContrast1e4", Route::inverse, 1e2},
                                            Case{"FactorContrast1e4", Route::factor, 1e2},
                                            Case{"FactorPoisson499", Route::factor, 1, 0.499}),
+                         [](const auto& p) { return p.param.name; });
+
+/// A frame after 60 fractures along a crack, by a route and to a tolerance.
+struct Frame {
+  Frame(Route route, Update update, double tolerance) : body(scene(route, update, tolerance)) {
+    const auto sequence = crack_sequence(*body.problem, 60, 12);
+    for (std::size_t i = 0; i < sequence.size(); i += 10) {
+      body.backend->destroy(std::span(sequence).subspan(i, 10));
+    }
+    body.load(force());
+  }
+  static Scene scene(Route route, Update update, double tolerance) {
+    Scene scene = held_board();
+    scene.solver.route = route;
+    scene.solver.update = update;
+    scene.solver.tolerance = tolerance;
+    return scene;
+  }
+  [[nodiscard]] std::vector<double> force() const {
+    return corner_force(body.problem->mesh(), Vec3(0, -60, 0));
+  }
+  [[nodiscard]] double true_error() const {
+    const DirectSolution direct(*body.problem, body.scale());
+    return stress_error(body.backend->destroyed(), body.stress(),
+                        direct.stress(direct.solve(force())));
+  }
+  Body body;
+};
+
+struct Engine {
+  const char* name;
+  Route route;
+  Update update = Update::deferred;
+};
+
+class Polish : public ::testing::TestWithParam<Engine> {};
+
+// The tolerance lies under what the route finds by itself, and above what rounding allows.
+TEST_P(Polish, BringsAFrameUnderTheToleranceAndSaysSo) {
+  const Frame rough(GetParam().route, GetParam().update, 1e-4);
+  const SolveReport before = rough.body.backend->solve();
+  EXPECT_FALSE(before.polished);
+  const double tolerance = before.error / 3;
+  ASSERT_GT(tolerance, 2e-12);
+  const Frame fine(GetParam().route, GetParam().update, tolerance);
+  const SolveReport after = fine.body.backend->solve();
+  EXPECT_TRUE(after.polished);
+  EXPECT_LE(after.error, tolerance);
+  EXPECT_LE(fine.true_error(), 3 * tolerance) << "it was " << rough.true_error();
+}
+
+TEST_P(Polish, RefusesWithTheReasonWhatRoundingForbids) {
+  const Frame frame(GetParam().route, GetParam().update, 1e-17);
+  try {
+    frame.body.backend->solve();
+    ADD_FAILURE() << "not refused";
+  } catch (const NumericalError& error) {
+    const std::string what = error.what();
+    for (const char* part : {"cannot be brought under the tolerance", "estimated stress error ",
+                             "residual ", "raise solver.tolerance or ease contrast"}) {
+      EXPECT_NE(what.find(part), std::string::npos) << what;
+    }
+  }
+  for (double u : frame.body.displacement()) ASSERT_TRUE(std::isfinite(u));
+}
+
+INSTANTIATE_TEST_SUITE_P(Routes, Polish,
+                         ::testing::Values(Engine{"Inverse", Route::inverse},
+                                           Engine{"Factor", Route::factor}),
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace
