@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 
+#include "fem/analysis.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::cpu_reference {
@@ -13,18 +15,23 @@ struct ChosenRoute {
   Route route = Route::automatic;
   Update update = Update::automatic;
   std::string why;
+  /// Of the intact body's factor; empty: there is no room for it, and an incomplete one
+  /// preconditions conjugate gradients.
+  std::unique_ptr<const fem::Analysis> analysis;
 };
 
-/// Throws DeviceError for what the CPU does not offer (with what it does), InputError when the
-/// route asked for needs more memory than is free.
-[[nodiscard]] ChosenRoute choose_route(const Problem& problem, const Needs& needs);
+/// In so many bytes. Throws DeviceError for what the CPU does not offer (with what it does),
+/// InputError when the route asked for needs more, or any does.
+[[nodiscard]] ChosenRoute choose_route(const Problem& problem, const Needs& needs,
+                                       std::size_t memory);
 
 /// As in a scene: "inverse", "condensed", "factor", "cg".
 [[nodiscard]] std::string name_of(Route route);
 /// "eager", "deferred"; "matrix" for cg, whose only update is the matrix itself.
 [[nodiscard]] std::string name_of_update(const ChosenRoute& chosen);
 
-/// Bytes of free memory.
+/// Bytes that can be had without swapping: free ones and what caches files, within what a container
+/// is allowed.
 [[nodiscard]] std::size_t available_memory();
 
 }  // namespace sunder::cpu_reference

@@ -2,6 +2,7 @@
 #include "cpu_reference/cost_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sunder::cpu_reference {
 namespace {
@@ -21,6 +22,9 @@ constexpr double kValue = sizeof(double);
 constexpr double kTouched = 12;  // differences of a first fracture, each between two unknowns
 // Iterations of conjugate gradients preconditioned by the intact body: none broken, one broken.
 constexpr double kQuietIterations = 1, kFractureIterations = 6;
+// By an incomplete factor, for the cube root of the unknowns; a new crack hardly adds to them.
+constexpr double kIncompleteIterations = 8;
+constexpr double kStiffness = 22;  // entries of the stiffness for each unknown, lower triangle
 
 double seconds(double values_read) {
   const double bytes = kValue * values_read;
@@ -38,6 +42,11 @@ double solution_values(const FrameShape& s, double touched) {
 double solution(const FrameShape& s, double touched, double iterations) {
   if (s.route != Route::cg) return seconds(solution_values(s, touched));
   const double product = kProductSeconds * static_cast<double>(s.elements);
+  if (s.entries == 0) {
+    const double unknowns = static_cast<double>(s.unknowns);
+    const double incomplete = seconds(2 * kStiffness * unknowns);
+    return kIncompleteIterations * std::cbrt(unknowns) * (product + incomplete);
+  }
   return (iterations + 1) * (seconds(2 * static_cast<double>(s.entries)) + product);
 }
 

@@ -17,7 +17,7 @@ struct FrameShape {
   std::size_t unknowns = 0;  ///< of the body
   std::size_t kept = 0;      ///< rows of the dense inverse: all, or those of a condensed region
   std::size_t loaded = 0;    ///< unknowns with a force or a grip
-  std::size_t entries = 0;   ///< of the factor L
+  std::size_t entries = 0;   ///< of the factor L; 0: conjugate gradients do without
   std::size_t path = 0;      ///< of them on the elimination path of one element
   std::size_t elements = 0;  ///< of the body
   std::size_t stressed = 0;  ///< elements whose stress a frame computes

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -24,21 +27,30 @@ std::optional<engine::Region> condensed_region(const ChosenRoute& chosen, const 
   return engine::region_of(problem, needs);
 }
 
+/// The factor of the intact body, where it fits the memory.
+std::optional<IntactBody> intact_body(const Problem& problem, const Needs& needs,
+                                      ChosenRoute& chosen) {
+  const auto analysis = std::move(chosen.analysis);
+  if (!analysis) return std::nullopt;
+  const bool rebases = needs.damage && chosen.update == Update::deferred &&
+                       chosen.route != Route::condensed && chosen.route != Route::cg;
+  return std::optional<IntactBody>(std::in_place, problem, rebases, *analysis);
+}
+
 class CpuBackend final : public Backend {
  public:
   CpuBackend(std::shared_ptr<const Problem> problem, Needs needs, ChosenRoute chosen)
       : Backend(problem, std::move(needs)),
         chosen_(std::move(chosen)),
         body_(problem),
-        intact_(*problem, this->needs().damage && chosen_.update == Update::deferred &&
-                              chosen_.route != Route::condensed && chosen_.route != Route::cg),
+        intact_(intact_body(*problem, this->needs(), chosen_)),
         fields_(body_, this->needs(), condensed_region(chosen_, *problem, this->needs())),
         route_(make_route()),
-        solver_(chosen_, body_, intact_, *route_, fields_) {
+        solver_(chosen_, body_, intact_ ? &*intact_ : nullptr, *route_, fields_) {
     if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (this->needs().pristine) {  // so that the first time allocates no more than the next
       pristine_force_.setZero(problem->dof_count());
-      intact_.solve(pristine_force_, {}, pristine_u_);
+      if (intact_) intact_->solve(pristine_force_, {}, pristine_u_);
     }
     if (route_->deferred() && !problem->gripped_dofs().empty()) instruments_.emplace(*problem);
     if (!fields_.region()) return;
@@ -66,9 +78,9 @@ class CpuBackend final : public Backend {
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan = route_->buffers();
-    plan.push_back({"intact factor (sparse Cholesky)", intact_.factor.bytes()});
-    if (!intact_.grips.none()) {
-      plan.push_back({"compliance columns of grips", intact_.grips.bytes()});
+    if (intact_) plan.push_back({"intact factor (sparse Cholesky)", intact_->factor.bytes()});
+    if (intact_ && !intact_->grips.none()) {
+      plan.push_back({"compliance columns of grips", intact_->grips.bytes()});
     }
     const auto unknowns = static_cast<std::size_t>(problem().dof_count());
     plan.push_back(
@@ -92,8 +104,10 @@ class CpuBackend final : public Backend {
     for (const InstrumentNodes& i : problem().instrument_nodes()) {
       shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
     }
-    shape.entries = intact_.factor.entries();
-    shape.path = intact_.factor.path_entries(an_element_that_can_break());
+    if (intact_) {
+      shape.entries = intact_->factor.entries();
+      shape.path = intact_->factor.path_entries(an_element_that_can_break());
+    }
     shape.elements = problem().mesh().tets.size();
     shape.stressed = fields_.stressed();
     shape.threads = fields_.threads();
@@ -116,15 +130,20 @@ class CpuBackend final : public Backend {
   }
 
   std::unique_ptr<InverseRoute> make_route() {
-    if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, intact_);
+    if (!intact_) {
+      const auto preconditioner = incomplete_factor(problem());
+      if (needs().pristine) never_damaged_.emplace(body_.shared_problem(), preconditioner);
+      return incomplete_route(body_, preconditioner);
+    }
+    if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, *intact_);
     if (const engine::Region* region = fields_.region()) {
       if (chosen_.update == Update::eager) {
-        return condensed_eager_route(body_, intact_, region->dofs);
+        return condensed_eager_route(body_, *intact_, region->dofs);
       }
-      return condensed_route(body_, intact_, region->dofs, needs().damage);
+      return condensed_route(body_, *intact_, region->dofs, needs().damage);
     }
-    if (chosen_.update == Update::eager) return dense_inverse_route(body_, intact_);
-    return deferred_route(body_, intact_, chosen_.route == Route::inverse);
+    if (chosen_.update == Update::eager) return dense_inverse_route(body_, *intact_);
+    return deferred_route(body_, *intact_, chosen_.route == Route::inverse);
   }
 
   void do_set_load(const Load& load) override { solver_.set_load(load); }
@@ -200,7 +219,11 @@ class CpuBackend final : public Backend {
     for (std::size_t i = 0; i < load.forces.size(); ++i) {
       pristine_force_[load.force_dofs[i]] = load.forces[i];
     }
-    intact_.solve(pristine_force_, load.displacements, pristine_u_);
+    if (intact_) {
+      intact_->solve(pristine_force_, load.displacements, pristine_u_);
+    } else {
+      never_damaged_->solve(load, pristine_force_, pristine_u_);
+    }
     fem::scatter(problem(), {pristine_u_.data(), static_cast<std::size_t>(pristine_u_.size())},
                  displacement);
   }
@@ -221,7 +244,8 @@ class CpuBackend final : public Backend {
 
   ChosenRoute chosen_;
   DamagedBody body_;
-  IntactBody intact_;
+  std::optional<IntactBody> intact_;           // empty: its factor does not fit the memory
+  std::optional<NeverDamaged> never_damaged_;  // in its place, for the pristine field
   FrameFields fields_;
   std::unique_ptr<InverseRoute> route_;
   FrameSolver solver_;
@@ -235,9 +259,28 @@ class CpuBackend final : public Backend {
 
 }  // namespace
 
+CpuOptions options_from_environment() {
+  CpuOptions options;
+  const char* memory = std::getenv("SUNDER_CPU_MEMORY");
+  if (!memory || !*memory) return options;
+  const char* end = memory + std::strlen(memory);
+  const auto [rest, error] = std::from_chars(memory, end, options.memory);
+  if (error != std::errc() || rest != end || options.memory == 0) {
+    throw UsageError("SUNDER_CPU_MEMORY is \"" + std::string(memory) +
+                     "\"; it may be a number of bytes");
+  }
+  return options;
+}
+
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs) {
+  return create(std::move(problem), std::move(needs), options_from_environment());
+}
+
+std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
+                                const CpuOptions& options) {
   if (!problem) throw UsageError("a backend needs a problem");
-  ChosenRoute chosen = choose_route(*problem, needs);
+  ChosenRoute chosen =
+      choose_route(*problem, needs, options.memory > 0 ? options.memory : available_memory());
   return std::make_unique<CpuBackend>(std::move(problem), std::move(needs), std::move(chosen));
 }
 

@@ -2,6 +2,7 @@
 // The CPU reference backend: double precision, Eigen, plain. The yardstick of every other backend.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "sunder/backend.hpp"
@@ -11,8 +12,19 @@ namespace sunder::cpu_reference {
 /// The processor, as `sunder devices` lists it.
 [[nodiscard]] DeviceInfo device();
 
+/// What a test sets beside the scene's options.
+struct CpuOptions {
+  std::size_t memory = 0;  ///< bytes that it may take; 0: those that are free
+};
+};
+
+/// SUNDER_CPU_MEMORY=bytes (for tests). Throws UsageError for another value.
+[[nodiscard]] CpuOptions options_from_environment();
+
 /// Creates it for a problem. Throws DeviceError for a route or precision that it does not offer,
-/// InputError when the route needs more memory than the machine has.
+/// InputError when the route asked for needs more memory than there is, or any does.
 [[nodiscard]] std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs);
+[[nodiscard]] std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
+                                              const CpuOptions& options);
 
 }  // namespace sunder::cpu_reference

@@ -36,6 +36,12 @@ class Frame {
 
   void conjugate_gradients() {
     add("product K u", "element by element, " + std::to_string(shape_.elements) + " elements");
+    if (shape_.entries == 0) {  // which does not fit the memory
+      add("incomplete solve",
+          "forward and backward through an incomplete factor of the intact "
+          "body, with as many values as the stiffness");
+      return;
+    }
     add("intact solve", "forward and backward through the intact factor, " +
                             values(2 * shape_.entries) +
                             ": first guess and preconditioner of conjugate gradients");
@@ -92,8 +98,11 @@ class Frame {
     }
     if (needs_.yield) add("yield summary", "largest ratio, and where");
     if (needs_.pristine) {
-      add("intact body's field", "forward and backward through the intact factor, " +
-                                     values(2 * shape_.entries) + ", once a step that breaks");
+      add("intact body's field",
+          (shape_.entries == 0
+               ? std::string("conjugate gradients")
+               : "forward and backward through the intact factor, " + values(2 * shape_.entries)) +
+              ", once a step that breaks");
     }
   }
 

@@ -35,7 +35,7 @@ constexpr double kLikeFresh = 10;
 }  // namespace
 
 FrameSolver::FrameSolver(const ChosenRoute& chosen, const DamagedBody& body,
-                         const IntactBody& intact, InverseRoute& route, FrameFields& fields)
+                         const IntactBody* intact, InverseRoute& route, FrameFields& fields)
     : chosen_(chosen),
       body_(body),
       intact_(intact),
@@ -167,7 +167,7 @@ void FrameSolver::check_fully(SolveReport& report) {
 
 /// Corrects the solution by a route until the estimate is rounding's.
 void FrameSolver::refine(InverseRoute& route, SolveReport& report) {
-  const double enough = checks_ ? kDeferredError : kReferenceError;
+  const double enough = checks_ || !intact_ ? kDeferredError : kReferenceError;
   report.error = std::numeric_limits<double>::infinity();
   for (int attempt = 0;; ++attempt) {
     const double stress = correction(route, report);
@@ -190,10 +190,13 @@ void FrameSolver::refine(InverseRoute& route, SolveReport& report) {
   }
 }
 
-/// du = A^-1 (f - K u); returns its largest stress over live elements.
+/// du = A^-1 (f - K u); returns its largest stress over live elements, infinite where it was not
+/// found.
 double FrameSolver::correction(InverseRoute& route, SolveReport& report) {
   if (!std::isfinite(report.residual)) return report.residual;
-  report.iterations += route.apply(r_, du_).iterations;
+  const Applied applied = route.apply(r_, du_);
+  report.iterations += applied.iterations;
+  if (!applied.converged) return std::numeric_limits<double>::infinity();
   return by_fields() ? fields_.largest_stress(du_) : body_.largest_stress(du_);
 }
 
@@ -206,7 +209,7 @@ void FrameSolver::polish(SolveReport& report) {
     report.polished = true;
   }
   if (!(report.error <= tolerance()) && chosen_.route != Route::cg) {
-    const auto cg = conjugate_gradient_route(body_, intact_);
+    const auto cg = conjugate_gradient_route(body_, *intact_);
     solve_by(*cg, report);
     refine(*cg, report);
   }
@@ -215,7 +218,7 @@ void FrameSolver::polish(SolveReport& report) {
 
 /// The plain routes are what others are measured by: they refine once in any case.
 bool FrameSolver::yardstick() const {
-  return chosen_.route == Route::cg ||
+  return (chosen_.route == Route::cg && intact_) ||
          (chosen_.route == Route::inverse && chosen_.update == Update::eager);
 }
 

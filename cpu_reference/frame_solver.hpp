@@ -18,8 +18,9 @@ namespace sunder::cpu_reference {
 
 class FrameSolver {
  public:
-  /// What it refers to must outlive it. Solutions that hold are published in `fields`.
-  FrameSolver(const ChosenRoute& chosen, const DamagedBody& body, const IntactBody& intact,
+  /// What it refers to must outlive it. Solutions that hold are published in `fields`. `intact` is
+  /// null where its factor does not fit the memory.
+  FrameSolver(const ChosenRoute& chosen, const DamagedBody& body, const IntactBody* intact,
               InverseRoute& route, FrameFields& fields);
 
   void set_load(const Load& load);
@@ -58,7 +59,7 @@ class FrameSolver {
 
   const ChosenRoute& chosen_;
   const DamagedBody& body_;
-  const IntactBody& intact_;
+  const IntactBody* intact_;
   InverseRoute& route_;
   FrameFields& fields_;
   std::optional<RecentChecks<FrameCheck>> checks_;  // of a deferred update that knows u everywhere

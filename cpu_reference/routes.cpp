@@ -194,15 +194,11 @@ double DamagedBody::largest_stress(const Eigen::VectorXd& x,
   return cpu_reference::largest_stress(*problem_, destroyed_, nodal_in_, elements);
 }
 
-IntactBody::IntactBody(const Problem& problem, bool rebases)
-    : IntactBody(problem, rebases, fem::SparseMatrix()) {}
-
-IntactBody::IntactBody(const Problem& problem, bool rebases, fem::SparseMatrix ordered)
-    : factor(problem, {}, {.threads = machine_threads(), .ordered = rebases ? &ordered : nullptr}),
+IntactBody::IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis)
+    : factor(analysis.nodes, analysis.ordered, {.threads = machine_threads()}),
       grips(problem.gripped_dofs()) {
   if (rebases) {
-    stiffness = std::make_unique<fem::OrderedStiffness>(
-        problem, factor.cholesky().shared_supernodes(), ordered);
+    stiffness = std::make_unique<fem::OrderedStiffness>(problem, analysis.nodes, analysis.ordered);
   }
   if (!grips.none()) grips.set_columns(factor.inverse_columns(grips.dofs()));
 }

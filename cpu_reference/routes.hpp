@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ways of the CPU to apply the inverse of the damaged stiffness. Two are the plain yardstick: a
 // dense inverse with eager updates, and conjugate gradients preconditioned by the intact factor.
-// The others take from the engine (core/engine): deferred updates over an inverse or a factor, and
-// either update over the unknowns of a region alone.
+// Where that factor is larger than the memory an incomplete one takes its place. The others take
+// from the engine (core/engine): deferred updates over an inverse or a factor, and either update
+// over the unknowns of a region alone.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -12,6 +13,7 @@
 
 #include "engine/condensed_base.hpp"
 #include "engine/deferred.hpp"
+#include "fem/analysis.hpp"
 #include "fem/factor.hpp"
 #include "fem/ordered_stiffness.hpp"
 #include "sunder/backend.hpp"
@@ -121,10 +123,11 @@ class InverseRoute {
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
 };
 
-/// The intact body's factor with its grips; the preconditioner of the CG route.
+/// The intact body's factor with its grips; the preconditioner of the CG route where it fits the
+/// memory.
 struct IntactBody {
   /// `rebases`: factors of the damaged body are to follow.
-  IntactBody(const Problem& problem, bool rebases);
+  IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis);
   /// x = K0^-1 f with x_G = displacement (empty: 0). By one thread at a time.
   void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
              Eigen::VectorXd& x) const;
@@ -133,9 +136,11 @@ struct IntactBody {
   std::unique_ptr<fem::OrderedStiffness> stiffness;  // empty without `rebases`, or handed on
 
  private:
-  IntactBody(const Problem& problem, bool rebases, fem::SparseMatrix ordered);
   mutable fem::SolveWork work_;
 };
+
+/// An incomplete factor of the intact stiffness, with as many entries as the stiffness has.
+class IncompleteFactor;
 
 [[nodiscard]] std::unique_ptr<InverseRoute> dense_inverse_route(const DamagedBody& body,
                                                                 const IntactBody& intact);
@@ -165,5 +170,24 @@ struct WholeRoom {
 void solve_whole(const engine::Equilibrium& of, WholeRoom& room, Eigen::VectorXd& u);
 [[nodiscard]] std::unique_ptr<InverseRoute> conjugate_gradient_route(const DamagedBody& body,
                                                                      const IntactBody& intact);
+/// Conjugate gradients without any factor, for bodies whose factor is larger than the memory;
+/// `preconditioner` may serve several bodies of one problem.
+[[nodiscard]] std::unique_ptr<InverseRoute> incomplete_route(
+    const DamagedBody& body, std::shared_ptr<const IncompleteFactor> preconditioner);
+[[nodiscard]] std::shared_ptr<const IncompleteFactor> incomplete_factor(const Problem& problem);
+
+/// The intact body where there is no factor of it.
+class NeverDamaged {
+ public:
+  NeverDamaged(std::shared_ptr<const Problem> problem,
+               std::shared_ptr<const IncompleteFactor> preconditioner)
+      : body_(std::move(problem)), route_(incomplete_route(body_, std::move(preconditioner))) {}
+  /// Throws NumericalError when conjugate gradients do not converge.
+  void solve(const Load& load, const Eigen::VectorXd& f, Eigen::VectorXd& x) const;
+
+ private:
+  DamagedBody body_;
+  std::unique_ptr<InverseRoute> route_;
+};
 
 }  // namespace sunder::cpu_reference

@@ -77,6 +77,45 @@ TEST(ChooseRoute, CondensesABodyThatTearsInASmallRegion) {
   EXPECT_EQ(info_of(quiet).route, "inverse") << "any element may be destroyed by hand";
 }
 
+/// Gravity, say: a force on every node that moves.
+Scene with_a_force_everywhere(Scene scene) {
+  const Problem problem(scene);
+  std::vector<Index> moving;
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    if (problem.dof(n, 1) != kNone) moving.push_back(n);
+  }
+  Instrument gravity;
+  gravity.name = "gravity";
+  gravity.action = Pull{moving, Vec3(0, -5, 0)};
+  scene.instruments.push_back(gravity);
+  return scene;
+}
+
+// An inverse would be read whole in every frame; so would a condensed one, as nothing is left out.
+TEST(ChooseRoute, TakesTheFactorWhereEveryNodeIsLoaded) {
+  for (const Scene& light : {board(20, 20), strip(20, 2)}) {
+    EXPECT_NE(info_of(light).route, "factor");
+    const Scene loaded = with_a_force_everywhere(light);
+    const BackendInfo chosen = info_of(loaded);
+    EXPECT_EQ(chosen.route, "factor");
+    EXPECT_TRUE(mentions(chosen.why, "2520 unknowns, 2520 of them loaded")) << chosen.why;
+    for (Route other : {Route::inverse, Route::condensed}) {
+      Scene forced = loaded;
+      forced.solver.route = other;
+      const BackendInfo info = info_of(forced);
+      EXPECT_LE(chosen.quiet_ms, info.quiet_ms);
+      EXPECT_LT(chosen.memory_bytes, info.memory_bytes / 2);
+    }
+  }
+  // A loaded edge is no reason.
+  Scene edge = board(20, 20);
+  Instrument forceps;
+  forceps.name = "forceps";
+  forceps.action = Pull{Box{Vec3(9.9, -1, -1), Vec3(11, 11, 2)}, Vec3(1, 0, 0)};
+  edge.instruments.push_back(forceps);
+  EXPECT_EQ(info_of(edge).route, "inverse");
+}
+
 TEST(ChooseRoute, CanBeForced) {
   struct Pair {
     Route route;
