@@ -27,8 +27,9 @@ void check_base(Based& based, const DamagedBody& body, const Load& load,
   deferred.solve(forces, load.displacements, u);
 }
 
-BackgroundRebase::BackgroundRebase(const DamagedBody& body, int events)
-    : events_(events), body_(body) {
+BackgroundRebase::BackgroundRebase(const DamagedBody& body, int events,
+                                   std::chrono::milliseconds rest)
+    : events_(events), rest_(rest), body_(body) {
   const auto unknowns = static_cast<std::size_t>(body.problem().dof_count());
   load_.force_dofs.reserve(unknowns);
   load_.forces.reserve(unknowns);
@@ -109,6 +110,12 @@ void BackgroundRebase::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
     asked_.wait(lock, [this] { return work_waits(); });
+    if (rest_.count() > 0) {
+      lock.unlock();
+      std::this_thread::sleep_for(rest_);
+      lock.lock();
+      if (!work_waits()) continue;
+    }
     if (quit_) return;
     busy_ = true;
     if (old_.deferred) {

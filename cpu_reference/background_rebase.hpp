@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -32,8 +33,9 @@ using MakeBase = std::function<Based(const DamagedBody&, const Load&, const fem:
 /// caller's MakeBase holds.
 class BackgroundRebase {
  public:
-  /// `body` as it is now; a base is taken so many events after its start.
-  BackgroundRebase(const DamagedBody& body, int events);
+  /// `body` as it is now; a base is taken so many events after its start. The thread rests before
+  /// each thing that it does (CpuOptions::rest).
+  BackgroundRebase(const DamagedBody& body, int events, std::chrono::milliseconds rest);
   /// Gives up what is being made.
   ~BackgroundRebase();
   BackgroundRebase(const BackgroundRebase&) = delete;
@@ -68,6 +70,7 @@ class BackgroundRebase {
   bool making_ = false;
   double waited_ms_ = 0;
   // The thread's.
+  std::chrono::milliseconds rest_;
   DamagedBody body_;  // after the events up to at_
   std::vector<Index> event_;
   // Guarded by mutex_.

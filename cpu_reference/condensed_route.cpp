@@ -169,7 +169,7 @@ class NextBase {
 class CondensedRoute final : public InverseRoute {
  public:
   CondensedRoute(const DamagedBody& body, const IntactBody& intact, std::span<const Index> dofs,
-                 bool damage)
+                 bool damage, std::chrono::milliseconds rest)
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()) {
     std::iota(all_.begin(), all_.end(), 0);
     // Without an owner: the intact body outlives the route.
@@ -179,7 +179,7 @@ class CondensedRoute final : public InverseRoute {
     if (!damage) return;
     lost_.reserve(body.scale().size());
     next_.emplace(body.problem(), dofs_, threshold());
-    coming_.emplace(body, kRebaseEvents);
+    coming_.emplace(body, kRebaseEvents, rest);
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
@@ -323,8 +323,9 @@ void solve_whole(const engine::Equilibrium& of, WholeRoom& room, Eigen::VectorXd
 }
 
 std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body, const IntactBody& intact,
-                                              std::span<const Index> dofs, bool damage) {
-  return std::make_unique<CondensedRoute>(body, intact, dofs, damage);
+                                              std::span<const Index> dofs, bool damage,
+                                              std::chrono::milliseconds rest) {
+  return std::make_unique<CondensedRoute>(body, intact, dofs, damage, rest);
 }
 
 }  // namespace sunder::cpu_reference

@@ -39,13 +39,14 @@ std::optional<IntactBody> intact_body(const Problem& problem, const Needs& needs
 
 class CpuBackend final : public Backend {
  public:
-  CpuBackend(std::shared_ptr<const Problem> problem, Needs needs, ChosenRoute chosen)
+  CpuBackend(std::shared_ptr<const Problem> problem, Needs needs, ChosenRoute chosen,
+             std::chrono::milliseconds rest)
       : Backend(problem, std::move(needs)),
         chosen_(std::move(chosen)),
         body_(problem),
         intact_(intact_body(*problem, this->needs(), chosen_)),
         fields_(body_, this->needs(), condensed_region(chosen_, *problem, this->needs())),
-        route_(make_route()),
+        route_(make_route(rest)),
         solver_(chosen_, body_, intact_ ? &*intact_ : nullptr, *route_, fields_) {
     if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (this->needs().pristine) {  // so that the first time allocates no more than the next
@@ -129,7 +130,7 @@ class CpuBackend final : public Backend {
     return dofs;
   }
 
-  std::unique_ptr<InverseRoute> make_route() {
+  std::unique_ptr<InverseRoute> make_route(std::chrono::milliseconds rest) {
     if (!intact_) {
       const auto preconditioner = incomplete_factor(problem());
       if (needs().pristine) never_damaged_.emplace(body_.shared_problem(), preconditioner);
@@ -140,10 +141,10 @@ class CpuBackend final : public Backend {
       if (chosen_.update == Update::eager) {
         return condensed_eager_route(body_, *intact_, region->dofs);
       }
-      return condensed_route(body_, *intact_, region->dofs, needs().damage);
+      return condensed_route(body_, *intact_, region->dofs, needs().damage, rest);
     }
     if (chosen_.update == Update::eager) return dense_inverse_route(body_, *intact_);
-    return deferred_route(body_, *intact_, chosen_.route == Route::inverse);
+    return deferred_route(body_, *intact_, chosen_.route == Route::inverse, rest);
   }
 
   void do_set_load(const Load& load) override { solver_.set_load(load); }
@@ -281,7 +282,8 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
   if (!problem) throw UsageError("a backend needs a problem");
   ChosenRoute chosen =
       choose_route(*problem, needs, options.memory > 0 ? options.memory : available_memory());
-  return std::make_unique<CpuBackend>(std::move(problem), std::move(needs), std::move(chosen));
+  return std::make_unique<CpuBackend>(std::move(problem), std::move(needs), std::move(chosen),
+                                      options.rest);
 }
 
 }  // namespace sunder::cpu_reference

@@ -2,6 +2,7 @@
 // The CPU reference backend: double precision, Eigen, plain. The yardstick of every other backend.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 
@@ -15,7 +16,9 @@ namespace sunder::cpu_reference {
 /// What a test sets beside the scene's options.
 struct CpuOptions {
   std::size_t memory = 0;  ///< bytes that it may take; 0: those that are free
-};
+  /// The thread that makes new bases rests so long before each thing that it does: no result may
+  /// depend on how long it takes.
+  std::chrono::milliseconds rest{0};
 };
 
 /// SUNDER_CPU_MEMORY=bytes (for tests). Throws UsageError for another value.

@@ -26,7 +26,8 @@ constexpr double kLargestEvent = 600;
 
 class DeferredRoute final : public InverseRoute {
  public:
-  DeferredRoute(const DamagedBody& body, IntactBody& intact, bool dense)
+  DeferredRoute(const DamagedBody& body, IntactBody& intact, bool dense,
+                std::chrono::milliseconds rest)
       : body_(body),
         dense_(dense),
         all_(static_cast<std::size_t>(body.problem().dof_count())),
@@ -56,7 +57,7 @@ class DeferredRoute final : public InverseRoute {
     if (dense) threshold_ = std::max(threshold_, intact.factor.entries() / all_.size());
     based_.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), true,
                                                          static_cast<Index>(threshold_) + followed);
-    coming_.emplace(body, frames);
+    coming_.emplace(body, frames, rest);
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
@@ -164,8 +165,8 @@ class DeferredRoute final : public InverseRoute {
 }  // namespace
 
 std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body, IntactBody& intact,
-                                             bool dense) {
-  return std::make_unique<DeferredRoute>(body, intact, dense);
+                                             bool dense, std::chrono::milliseconds rest) {
+  return std::make_unique<DeferredRoute>(body, intact, dense, rest);
 }
 
 }  // namespace sunder::cpu_reference

@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -145,14 +146,17 @@ class IncompleteFactor;
 [[nodiscard]] std::unique_ptr<InverseRoute> dense_inverse_route(const DamagedBody& body,
                                                                 const IntactBody& intact);
 /// Deferred update over a dense inverse (`dense`) or over the factor itself. Takes the intact
-/// body's stiffness; without one nothing will be destroyed.
+/// body's stiffness; without one nothing will be destroyed. `rest`: of the thread that makes new
+/// bases (background_rebase.hpp).
 [[nodiscard]] std::unique_ptr<InverseRoute> deferred_route(const DamagedBody& body,
-                                                           IntactBody& intact, bool dense);
+                                                           IntactBody& intact, bool dense,
+                                                           std::chrono::milliseconds rest);
 /// Deferred update over the inverse restricted to some unknowns (ascending).
 [[nodiscard]] std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body,
                                                             const IntactBody& intact,
                                                             std::span<const Index> dofs,
-                                                            bool damage);
+                                                            bool damage,
+                                                            std::chrono::milliseconds rest);
 /// The inverse restricted to some unknowns (ascending), written over by every event.
 [[nodiscard]] std::unique_ptr<InverseRoute> condensed_eager_route(const DamagedBody& body,
                                                                   const IntactBody& intact,

@@ -3,10 +3,8 @@
 // that can be read is compared with a direct solution of the whole body.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <string>
-#include <thread>
 
 #include "pieces.hpp"
 #include "support/accuracy.hpp"
@@ -210,27 +208,6 @@ std::vector<double> pull(const Mesh& mesh, const Vec3& force) {
       nodal[3 * static_cast<std::size_t>(n) + axis] = force[axis];
   }
   return nodal;
-}
-
-/// Displacements along a tear of 180 elements; `wait`: for every frame's base to be ready.
-std::vector<std::vector<double>> torn(bool wait) {
-  const Body body(organ({"", true, 1}));
-  body.load(corner_force(body.problem->mesh()));
-  std::vector<std::vector<double>> all;
-  bool updated = false;
-  for (const Index& e : crack_sequence(*body.problem, 180, 12)) {
-    body.backend->destroy({&e, 1});
-    updated = updated || on_an_updated_inverse(body);
-    EXPECT_LE(body.backend->solve().error, kCrackTolerance);
-    if (wait) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    all.push_back(body.displacement());
-  }
-  EXPECT_TRUE(updated) << "the tear is long enough for a new base";
-  return all;
-}
-
-TEST(CondensedRoute, TakesNewBasesAtTheSameEventWhateverTheyTake) {
-  EXPECT_EQ(torn(false), torn(true));
 }
 
 // After a new base X_SS is no longer the factor's: what leaves S has to make up for that.

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// New bases come from another thread. What frames return depends on the events alone: not on
+// whether that thread has long been done or has hardly begun.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "support/accuracy.hpp"
+#include "support/body.hpp"
+#include "support/sequences.hpp"
+#include "support/table1_board.hpp"
+
+namespace sunder::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+struct Case {
+  const char* name;
+  Route route;
+  bool grips;
+};
+
+/// Everything that a tear of 240 elements returns.
+struct Tear {
+  std::vector<std::vector<double>> displacements, reactions;
+  std::vector<Voigt> stress;
+  std::vector<double> errors, residuals;
+  double waited_ms = 0;
+  bool new_base = false;
+
+  /// `rest`: of the thread, before each thing that it does; `pause`: after each frame.
+  Tear(const Case& c, milliseconds rest, milliseconds pause) {
+    Scene scene = pulled_board();
+    scene.solver.route = c.route;
+    if (c.grips) {
+      scene.instruments[0].action = Grip{lower_right_corner(), Vec3::Constant(0.25), Axes{7}};
+    }
+    const auto problem = std::make_shared<const Problem>(std::move(scene));
+    const auto backend = cpu_reference::create(problem, all_needs(), {.rest = rest});
+    backend->set_load(load_of(*problem,
+                              c.grips ? std::vector<double>(problem->dofs().size(), 0.0)
+                                      : corner_force(problem->mesh(), Vec3(0, -3, 0)),
+                              std::vector<double>(problem->gripped_dofs().size(), 0.25)));
+    for (const Index& e : crack_sequence(*problem, 240, 8)) {
+      backend->destroy({&e, 1});
+      const SolveReport report = backend->solve();
+      errors.push_back(report.error);
+      residuals.push_back(report.residual);
+      waited_ms += report.waited_ms;
+      backend->read_displacement(displacements.emplace_back(problem->dofs().size()));
+      backend->read_reactions(reactions.emplace_back(problem->gripped_dofs().size()));
+      std::this_thread::sleep_for(pause);
+    }
+    backend->stress();
+    stress.resize(problem->mesh().tets.size());
+    backend->read_stress(stress);
+    for (const BufferPlan& b : backend->buffers()) {
+      new_base =
+          new_base || b.name.starts_with("damaged factor") || b.name.starts_with("stiffness lost");
+    }
+  }
+};
+
+void expect_same(const Tear& a, const Tear& b) {
+  ASSERT_EQ(a.displacements.size(), b.displacements.size());
+  for (std::size_t i = 0; i < a.displacements.size(); ++i) {
+    ASSERT_EQ(a.displacements[i], b.displacements[i]) << "frame " << i;
+    ASSERT_EQ(a.reactions[i], b.reactions[i]) << "frame " << i;
+    ASSERT_EQ(a.errors[i], b.errors[i]) << "frame " << i;
+    ASSERT_EQ(a.residuals[i], b.residuals[i]) << "frame " << i;
+  }
+  EXPECT_EQ(a.stress, b.stress);
+}
+
+class Timing : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Timing, ChangesNoBit) {
+  const Tear as_it_comes(GetParam(), milliseconds(0), milliseconds(0));
+  const Tear rushed(GetParam(), milliseconds(0), milliseconds(2));
+  const Tear delayed(GetParam(), milliseconds(4), milliseconds(0));
+  EXPECT_TRUE(as_it_comes.new_base && rushed.new_base && delayed.new_base);
+  EXPECT_GT(delayed.waited_ms, 1) << "a frame waits for the base that it is to have";
+  for (double error : as_it_comes.errors) EXPECT_LE(error, kCrackTolerance);
+  expect_same(as_it_comes, rushed);
+  expect_same(as_it_comes, delayed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tears, Timing,
+                         ::testing::Values(Case{"Inverse", Route::inverse, false},
+                                           Case{"InverseGrips", Route::inverse, true},
+                                           Case{"Condensed", Route::condensed, false},
+                                           Case{"CondensedGrips", Route::condensed, true},
+                                           Case{"Factor", Route::factor, false},
+                                           Case{"FactorGrips", Route::factor, true}),
+                         [](const auto& p) { return p.param.name; });
+
+}  // namespace
+}  // namespace sunder::test
