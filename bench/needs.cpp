@@ -3,7 +3,8 @@
 // everything can tear (with each fracture prepared and without); only a patch of about 1,000
 // unknowns can, over the factor and condensed; nothing can; nobody asks for stress. The time of a
 // row is that of a frame with one fracture (a quiet one where nothing can break), the least of all;
-// predicted_* is what `sunder plan` says.
+// predicted_* is what `sunder plan` says. Rows "simulated" tear by themselves, one event a step:
+// hit_rate of the predictions, what they cost and what they spared in all.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "has_vulkan.hpp"
 #include "run_rows.hpp"
 #include "sunder/backends.hpp"
+#include "sunder/simulation.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder::bench {
@@ -160,6 +162,76 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
   }
 }
 
+constexpr int kSteps = 60;
+
+/// The board with a notch at the middle of its right edge, under model B: it tears by itself.
+Scene notched(const Variant& variant, Index cells) {
+  Scene scene = scene_of(variant, cells);
+  const double h = 50.0 / cells;
+  PresetCrack notch;
+  std::vector<Index> elements;
+  const Index row = cells / 2, depth = std::max<Index>(1, cells / 12);
+  for (Index i = cells - depth; i < cells; ++i) {
+    for (Index k = 0; k < 6; ++k) elements.push_back(6 * (i + cells * row) + k);
+  }
+  const double y = (row + 0.5) * h;
+  notch.elements = elements;
+  notch.mouth = Vec3(50, y, 1.25);
+  notch.tips = {Vec3(50 - depth * h, y, 1.25)};
+  scene.cracks.push_back(notch);
+  scene.fracture.model = FractureModel::b;
+  scene.fracture.max_events = 1;  // a step
+  scene.solver.prepare = variant.prepare;
+  scene.instruments[0].ramp = Ramp{0, 1};
+  scene.steps = kSteps;
+  return scene;
+}
+
+/// A simulation that predicts its fractures by itself, not all of them right. The time of the row:
+/// stage `update` of a step that tears.
+void simulated(benchmark::State& state, const Variant& variant, Index cells) {
+  const auto problem = std::make_shared<const Problem>(notched(variant, cells));
+  for (auto _ : state) {
+    Simulation simulation(problem, create_backend(problem, needs_of(*problem)).backend);
+    std::vector<double> update;
+    double total = 0;
+    while (!simulation.done()) {
+      const StepReport step = simulation.step();
+      if (step.step == 0 || step.events == 0) continue;  // the first has the notch
+      update.push_back(step.times.update);
+      total += step.times.update;
+    }
+    if (update.empty()) {
+      state.SkipWithError("nothing tears");
+      return;
+    }
+    state.SetIterationTime(1e-3 * median_of(update));
+    const PreparationReport preparation = simulation.backend().preparation();
+    state.counters["min_ms"] = median_of(update);
+    state.counters["update_ms"] = total;
+    state.counters["fractures"] = static_cast<double>(simulation.destroyed().size());
+    state.counters["prepare_ms"] = preparation.spent_ms;
+    state.counters["spared_ms"] = preparation.saved_ms;
+    state.counters["hit_rate"] =
+        preparation.destroyed > 0
+            ? static_cast<double>(preparation.predicted) / preparation.destroyed
+            : 0.0;
+  }
+}
+
+void register_simulated(Index cells) {
+  for (const bool prepare : {false, true}) {
+    const Variant v{prepare ? "prepared" : "unprepared", Route::factor, true, true, true, prepare};
+    benchmark::RegisterBenchmark(
+        ("needs/simulated_" + std::string(v.name) + "/" + std::to_string(6 * cells * cells))
+            .c_str(),
+        [=](auto& state) { simulated(state, v, cells); })
+        ->UseManualTime()
+        ->Iterations(1)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
 void register_rows() {
   std::vector<Variant> variants{
       {"all_tears_factor", Route::factor, true, true, true},
@@ -181,6 +253,7 @@ void register_rows() {
           ->Iterations(40)
           ->Unit(benchmark::kMillisecond);
     }
+    register_simulated(cells);
     for (Route route : {Route::factor, Route::condensed}) {
       const Variant v{route == Route::factor ? "factor" : "condensed", route, false, true, true};
       benchmark::RegisterBenchmark(
