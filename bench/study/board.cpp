@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/study/board.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -9,48 +8,13 @@
 
 #include "support/loads.hpp"
 #include "support/sequences.hpp"
+#include "support/sliver.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder::bench {
 namespace {
 
 constexpr double kSide = 50, kRow = 27.5;  // kRow: middle of a row of cells of the upper half
-
-double signed_volume(const Mesh& mesh, Index e) {
-  const auto& t = mesh.tets[e];
-  const Vec3 a = mesh.nodes[t[0]];
-  return (mesh.nodes[t[1]] - a).cross(mesh.nodes[t[2]] - a).dot(mesh.nodes[t[3]] - a) / 6;
-}
-
-bool positive_around(const Mesh& mesh, Index node) {
-  for (Index e = 0; e < mesh.tet_count(); ++e) {
-    const auto& t = mesh.tets[e];
-    if (std::find(t.begin(), t.end(), node) != t.end() && signed_volume(mesh, e) <= 0) return false;
-  }
-  return true;
-}
-
-/// Moves one corner of an element of the upper half towards the opposite face until the height is
-/// `quality` times the longest edge; its neighbours must keep a positive volume.
-void make_sliver(Mesh& mesh, double quality) {
-  for (Index e = 0; e < mesh.tet_count(); ++e) {
-    const Vec3 c = test::centroid(mesh, e);
-    if (std::abs(c.y() - 37.5) > 2.5 || std::abs(c.x() - kSide / 2) > 2.5) continue;
-    for (int corner = 0; corner < 4; ++corner) {
-      const auto& t = mesh.tets[e];
-      const Index node = t[corner];
-      const Vec3 a = mesh.nodes[t[(corner + 1) % 4]], b = mesh.nodes[t[(corner + 2) % 4]],
-                 d = mesh.nodes[t[(corner + 3) % 4]], from = mesh.nodes[node];
-      const Vec3 normal = (b - a).cross(d - a).normalized();
-      const double longest = std::max({(b - a).norm(), (d - a).norm(), (d - b).norm()});
-      const double height = normal.dot(from - a);
-      mesh.nodes[node] = from - (height - std::copysign(quality * longest, height)) * normal;
-      if (positive_around(mesh, node)) return;
-      mesh.nodes[node] = from;
-    }
-  }
-  throw std::invalid_argument("no vertex of the board gives such a sliver");
-}
 
 Scene scene_of(const Difficulty& difficulty) {
   Scene scene;
@@ -62,7 +26,8 @@ Scene scene_of(const Difficulty& difficulty) {
                : x.y() > 25 ? "upper"
                             : "lower";
       });
-  if (difficulty.sliver < 1) make_sliver(scene.mesh, difficulty.sliver);
+  if (difficulty.sliver < 1)
+    test::make_sliver(scene.mesh, Vec3(25, 37.5, 2.5), 2.5, difficulty.sliver);
   const double frame = 5 * difficulty.contrast, nu = difficulty.poisson;
   scene.materials = {{"upper", {5, nu, 2.0}},
                      {"lower", {8, nu, 4.0}},
