@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine against CHOLMOD: one event of k connected elements and the solution after it, one
-// thread. Ratio columns compare with the CHOLMOD rows of the same run; `error` is the difference to
-// CHOLMOD's refactored solution.
+// thread. bench/run adds the ratios to the peers' rows when all have run (suite/ratios.py); `error`
+// is the difference to CHOLMOD's refactored solution.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -35,12 +35,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Minimum times of the rows that ran, by name, in seconds.
-std::map<std::string, double>& best_times() {
-  static std::map<std::string, double> times;
-  return times;
-}
-
 const TearingBoard& board_of(Index cells) {
   static std::map<Index, std::unique_ptr<TearingBoard>> boards;
   auto& board = boards[cells];
@@ -64,9 +58,9 @@ Eigen::VectorXd& refactored(Index cells, std::size_t k) {
   return solutions[{cells, k}];
 }
 
-/// Repeats prepare (untimed) and run (timed) and reports minimum, median and ratios.
-void measure(benchmark::State& state, const std::string& name, Index cells, std::size_t k,
-             const std::function<void()>& prepare, const std::function<void()>& run) {
+/// Repeats prepare (untimed) and run (timed) and reports minimum and median.
+void measure(benchmark::State& state, const std::function<void()>& prepare,
+             const std::function<void()>& run) {
   std::vector<double> seconds;
   for (auto _ : state) {
     prepare();
@@ -76,26 +70,16 @@ void measure(benchmark::State& state, const std::string& name, Index cells, std:
     state.SetIterationTime(seconds.back());
   }
   std::sort(seconds.begin(), seconds.end());
-  best_times()[name] = seconds.front();
   state.counters["min_ms"] = 1e3 * seconds.front();
   state.counters["median_ms"] = 1e3 * seconds[seconds.size() / 2];
-  for (const std::string peer :
-       {"cholmod_updown", "cholmod_updown_solve", "cholmod_refactor", "openblas_inverse"}) {
-    const auto it = best_times().find(row(peer.c_str(), cells, k));
-    if (it == best_times().end()) continue;
-    const bool cholmod = peer.starts_with("cholmod_");
-    state.counters["over_" + (cholmod ? peer.substr(8) : peer)] = seconds.front() / it->second;
-  }
 }
 
-void cholmod_row(benchmark::State& state, const char* name, Index cells, std::size_t k,
-                 void (Cholmod::*run)()) {
+void cholmod_row(benchmark::State& state, Index cells, std::size_t k, void (Cholmod::*run)()) {
   const TearingBoard& board = board_of(cells);
   Cholmod cholmod(board);
   const auto elements = board.connected(k);
   measure(
-      state, row(name, cells, k), cells, k, [&] { cholmod.prepare(elements); },
-      [&] { (cholmod.*run)(); });
+      state, [&] { cholmod.prepare(elements); }, [&] { (cholmod.*run)(); });
   Eigen::VectorXd& reference = refactored(cells, k);
   if (run == &Cholmod::refactor) reference = cholmod.solution();
   if (reference.size() > 0) {
@@ -103,14 +87,14 @@ void cholmod_row(benchmark::State& state, const char* name, Index cells, std::si
   }
 }
 
-void engine_row(benchmark::State& state, const char* name, Index cells, std::size_t k,
+void engine_row(benchmark::State& state, Index cells, std::size_t k,
                 const std::function<std::unique_ptr<engine::Base>(const fem::Factor&)>& base) {
   const TearingBoard& board = board_of(cells);
   engine::Deferred deferred(*board.problem, base(factor_of(cells)));
   const auto elements = board.connected(k);
   Eigen::VectorXd u;
   measure(
-      state, row(name, cells, k), cells, k,
+      state,
       [&] {
         if (deferred.events() > 0) deferred.take_back();
       },
@@ -131,8 +115,7 @@ void own_refactor(benchmark::State& state, Index cells) {
     f[board.load_dofs[i]] = board.load_values[i];
   }
   measure(
-      state, row("sunder_factor_anew", cells, 1), cells, 1, [] {},
-      [&] { u = fem::Factor(*board.problem).solve(f); });
+      state, [] {}, [&] { u = fem::Factor(*board.problem).solve(f); });
   state.counters["nnz_L"] = static_cast<double>(factor_of(cells).entries());
 }
 
@@ -142,7 +125,7 @@ double median_of(std::vector<double> v) {
 }
 
 /// What a user without an update does with a dense inverse: all of it anew, and its loaded columns.
-void openblas_row(benchmark::State& state, const char* name, Index cells, std::size_t k) {
+void openblas_row(benchmark::State& state, Index cells, std::size_t k) {
   const TearingBoard& board = board_of(cells);
   std::vector<double> scale(board.problem->mesh().tets.size(), 1.0);
   for (Index e : board.connected(k)) scale[e] = board.problem->scene().fracture.alpha;
@@ -150,7 +133,7 @@ void openblas_row(benchmark::State& state, const char* name, Index cells, std::s
   Eigen::MatrixXd a;
   Eigen::VectorXd u;
   measure(
-      state, row(name, cells, k), cells, k, [&] { a = stiffness; },
+      state, [&] { a = stiffness; },
       [&] {
         const int n = static_cast<int>(a.rows());
         int info = 0;
@@ -181,12 +164,10 @@ void report_frames(benchmark::State& state, const std::string& unit, std::vector
   state.counters["last_" + unit] =
       median_of({ms.end() - static_cast<std::ptrdiff_t>(tail), ms.end()});
   std::sort(ms.begin(), ms.end());
-  const double median = ms[ms.size() / 2], p99 = ms[ms.size() * 99 / 100];
   state.counters["min_" + unit] = ms.front();
-  state.counters["median_" + unit] = median;
-  state.counters["p99_" + unit] = p99;
+  state.counters["median_" + unit] = ms[ms.size() / 2];
+  state.counters["p99_" + unit] = ms[ms.size() * 99 / 100];
   state.counters["worst_" + unit] = ms.back();
-  state.counters["p99_over_median_" + unit] = p99 / median;
 }
 
 /// A cascade: fractures one by one, each with its frame (update, solution with its check, stress
@@ -284,7 +265,7 @@ void stress_row(benchmark::State& state, Index cells, int threads) {
   std::vector<Voigt> stress(problem->mesh().tets.size());
   const std::vector<double> scale(stress.size(), 1.0);
   measure(
-      state, row("stress", cells, static_cast<std::size_t>(threads)), cells, 0, [] {},
+      state, [] {},
       [&] {
         if (threads > 0) {
           kernel.run(u, stress);
@@ -315,24 +296,23 @@ void add_once(const std::string& name, const std::function<void(benchmark::State
 void register_rows(bool full) {
   for (Index cells : {18, 36, 71, 141}) {
     if (cells == 18) {
-      add(row("openblas_inverse", cells, 1), 0.5,
-          [=](auto& s) { openblas_row(s, "openblas_inverse", cells, 1); });
+      add(row("openblas_inverse", cells, 1), 0.5, [=](auto& s) { openblas_row(s, cells, 1); });
     }
     for (std::size_t k : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) {
       const auto peer = [=](const char* name, void (Cholmod::*run)()) {
-        add(row(name, cells, k), 0.1, [=](auto& s) { cholmod_row(s, name, cells, k, run); });
+        add(row(name, cells, k), 0.1, [=](auto& s) { cholmod_row(s, cells, k, run); });
       };
       peer("cholmod_refactor", &Cholmod::refactor);
       peer("cholmod_updown", &Cholmod::updown_then_solve);
       peer("cholmod_updown_solve", &Cholmod::updown_solve);
       if (cells <= 36) {
         add(row("sunder_inverse_deferred", cells, k), 0.1, [=](auto& s) {
-          engine_row(s, "sunder_inverse_deferred", cells, k,
+          engine_row(s, cells, k,
                      [](const fem::Factor& f) { return std::make_unique<engine::InverseBase>(f); });
         });
       }
       add(row("sunder_factor_deferred", cells, k), 0.1, [=](auto& s) {
-        engine_row(s, "sunder_factor_deferred", cells, k,
+        engine_row(s, cells, k,
                    [](const fem::Factor& f) { return std::make_unique<engine::FactorBase>(f); });
       });
     }

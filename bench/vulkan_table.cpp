@@ -160,10 +160,7 @@ void Table::show(benchmark::State& state, const Row& row) const {
   state.counters["min_ms"] = row.min_ms;
   state.counters["median_ms"] = row.median_ms;
   state.counters["cpu_ms"] = row.cpu_ms;
-  if (row.reference_ms > 0) {
-    state.counters["reference_ms"] = row.reference_ms;
-    state.counters["over_reference"] = row.min_ms / row.reference_ms;
-  }
+  if (row.reference_ms > 0) state.counters["reference_ms"] = row.reference_ms;
   if (row.bytes > 0) state.counters["GB/s"] = row.gigabytes_per_second();
 }
 

@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 
-from . import results
+from . import ratios, results
 
 MODES = ("quick", "full")
 
@@ -187,6 +187,7 @@ def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: No
             made = run_program(build, program, share, repetitions)
             part, read = readers.get(program.file, ("rows", lambda rows: rows))
             outcome[part] += read(made)
+            ratios.add(outcome["rows"])
         except results.BadResults as error:
             entry["failed"] = True
             outcome["failures"].append(str(error))

@@ -56,7 +56,7 @@ def _merged(key, before, now):
     """Of repetitions: the least time, the largest error, the last of the rest."""
     if before is None:
         return now
-    if key.endswith("_ms"):
+    if re.search(r"(^|_)(ms|us)(_|$)", key):
         return min(before, now)
     if "error" in key:
         return before if math.isnan(before) or before > now else now
@@ -75,6 +75,11 @@ def minimum(row):
 
 def median(row):
     return statistics.median(row["samples_ms"]) if row["samples_ms"] else math.nan
+
+
+def least(row):
+    """The least time of all repetitions and, where the program tells it, of all iterations."""
+    return row["counters"].get("min_ms", minimum(row))
 
 
 def cells_of(text):
@@ -122,16 +127,18 @@ def write_text(path, text):
 
 
 def rows_csv(rows):
-    counters = sorted({key for row in rows for key in row["counters"]})
+    """A counter that is called like one of the times takes its place."""
+    times = ("min_ms", "median_ms", "cpu_ms")
+    counters = sorted({key for row in rows for key in row["counters"]} - set(times))
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["program", "name", "min_ms", "median_ms", "cpu_ms", "samples", *counters])
+    writer.writerow(["program", "name", *times, "samples", *counters])
     for row in rows:
-        cpu = min(row["cpu_samples_ms"]) if row["cpu_samples_ms"] else math.nan
-        writer.writerow([row["program"], row["name"], f"{minimum(row):.6g}", f"{median(row):.6g}",
-                         f"{cpu:.6g}", len(row["samples_ms"]),
-                         *(f"{row['counters'][c]:.6g}" if c in row["counters"] else ""
-                           for c in counters)])
+        own = {"min_ms": minimum(row), "median_ms": median(row),
+               "cpu_ms": min(row["cpu_samples_ms"], default=math.nan), **row["counters"]}
+        writer.writerow([row["program"], row["name"], *(f"{own[t]:.6g}" for t in times),
+                         len(row["samples_ms"]),
+                         *(f"{own[c]:.6g}" if c in own else "" for c in counters)])
     return out.getvalue()
 
 

@@ -13,7 +13,7 @@ import unittest
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
 from suite import (alone, checks, compare, error_plots, headline, heat_map, page, plots,  # noqa: E402
-                   programs, results, tables)
+                   programs, ratios, results, tables)
 
 
 def row(name, scale=1.0, seed=1, error=1e-12, count=9):
@@ -156,6 +156,61 @@ class Rows(unittest.TestCase):
         self.assertEqual(title, "board 1944 tetrahedra, 1 connected element")
         self.assertEqual(head[-1], "/ best peer")
         self.assertEqual([round(float(line[-1]), 1) for line in lines], [2.0, 1.0, 0.2])
+
+
+def timed(name, program="bench_engine", samples=(), **counters):
+    return {"program": program, "name": name, "samples_ms": list(samples), "cpu_samples_ms": [],
+            "counters": counters}
+
+
+class Ratios(unittest.TestCase):
+    def ratios(self, rows):
+        return [{k: v for k, v in r["counters"].items() if "over" in k or k == "share"}
+                for r in ratios.add(rows)]
+
+    def test_are_of_the_least_times_of_all_repetitions_whatever_ran_first(self):
+        own = timed("sunder_factor_deferred/7776/k1", samples=[5, 4], min_ms=3.0)
+        updown = timed("cholmod_updown/7776/k1", samples=[9, 8], min_ms=6.0)
+        refactor = timed("cholmod_refactor/7776/k1", samples=[40], min_ms=30.0)
+        other_event = timed("cholmod_updown/7776/k10", min_ms=1.0)
+        expected = {"over_updown": 0.5, "over_refactor": 0.1, "over_best": 0.5}
+        for rows in ([own, updown, refactor, other_event], [other_event, refactor, updown, own]):
+            made = self.ratios(rows)
+            self.assertEqual(made[rows.index(own)], expected)
+            self.assertEqual(made[rows.index(other_event)], {"over_updown": 1, "over_best": 1})
+
+    def test_a_ratio_of_an_earlier_run_does_not_stay(self):
+        row = timed("sunder_factor_deferred/7776/k1", min_ms=3.0, over_updown=7.0, share=1.0,
+                    p99_over_median_ms=9.0)
+        self.assertEqual(self.ratios([row]), [{}])
+
+    def test_the_best_is_any_peer_of_the_event(self):
+        rows = [torn("cpu factor deferred fp64", scale=2.0), torn("stale-factor PCG", scale=4.0),
+                torn("cholmod supernodal refactor", scale=8.0)]
+        made = self.ratios(rows)[0]
+        self.assertAlmostEqual(made.pop("over_best"), 0.5, 1)
+        self.assertAlmostEqual(made.pop("over_refactor"), 0.25, 1)
+        self.assertEqual(made, {"last_over_first": 2.0})
+
+    def test_of_a_rows_own_times(self):
+        rows = [timed("cascade_factor/1944/640", median_ms=2.0, p99_ms=5.0),
+                timed("needs/nothing_tears/1944", "bench_needs", min_ms=2.0, quiet_ms=2.0,
+                      predicted_quiet_ms=3.0, predicted_fracture_ms=0.0),
+                timed("frame/4", "bench_c_abi", us_c=6.0, us_cpp=5.0),
+                timed("board/fp32", "bench_vulkan", min_ms=6.0, reference_ms=2.0)]
+        (cascade, needs, through_c, vulkan) = self.ratios(rows)
+        self.assertEqual(cascade, {"p99_over_median_ms": 2.5})
+        self.assertEqual(needs, {"predicted_quiet_over_measured": 1.5})
+        self.assertAlmostEqual(through_c["share"], 0.2)
+        self.assertEqual(vulkan, {"over_reference": 3.0})
+
+    def test_repetitions_leave_the_least_of_each_time(self):
+        run = {"name": "a", "run_name": "a", "run_type": "iteration", "real_time": 2.0,
+               "cpu_time": 1.0, "time_unit": "ms", "iterations": 1, "us_c": 3.0, "p99_us": 4.0,
+               "at_50_ms": 2.0, "columns": 5.0}
+        again = dict(run, us_c=4.0, p99_us=3.0, at_50_ms=3.0, columns=6.0)
+        (made,) = results.rows_of("p", {"benchmarks": [run, again]})
+        self.assertEqual(made["counters"], {"us_c": 3, "p99_us": 3, "at_50_ms": 2, "columns": 6})
 
 
 class Checks(unittest.TestCase):
