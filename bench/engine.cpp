@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine against CHOLMOD: one event of k connected elements and the solution after it, one
-// thread. bench/run adds the ratios to the peers' rows when all have run (suite/ratios.py); `error`
-// is the difference to CHOLMOD's refactored solution.
+// thread. An event that the library takes a new factor for has one here (cost_model.hpp); rows
+// "forced_" show the update that it leaves. bench/run adds the ratios to the peers' rows when all
+// have run (suite/ratios.py); `error` is the difference to CHOLMOD's refactored solution.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -12,11 +13,15 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string_view>
 #include <thread>
 
 #include "cholmod_peer.hpp"
+#include "cpu_reference/choose_route.hpp"
+#include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/cpu_reference.hpp"
+#include "cpu_reference/routes.hpp"
 #include "cpu_reference/stress.hpp"
 #include "engine/deferred.hpp"
 #include "engine/factor_base.hpp"
@@ -53,9 +58,17 @@ std::string row(const char* name, Index cells, std::size_t k) {
   return std::string(name) + "/" + std::to_string(6 * cells * cells) + "/k" + std::to_string(k);
 }
 
-Eigen::VectorXd& refactored(Index cells, std::size_t k) {
+/// CHOLMOD's solution by a new factor: what the others are compared with.
+const Eigen::VectorXd& refactored(Index cells, std::size_t k) {
   static std::map<std::pair<Index, std::size_t>, Eigen::VectorXd> solutions;
-  return solutions[{cells, k}];
+  Eigen::VectorXd& u = solutions[{cells, k}];
+  if (u.size() == 0) {
+    Cholmod cholmod(board_of(cells));
+    cholmod.prepare(board_of(cells).connected(k));
+    cholmod.refactor();
+    u = cholmod.solution();
+  }
+  return u;
 }
 
 /// Repeats prepare (untimed) and run (timed) and reports minimum and median.
@@ -74,37 +87,88 @@ void measure(benchmark::State& state, const std::function<void()>& prepare,
   state.counters["median_ms"] = 1e3 * seconds[seconds.size() / 2];
 }
 
+void note_error(benchmark::State& state, Index cells, std::size_t k, const Eigen::VectorXd& u) {
+  const Eigen::VectorXd& reference = refactored(cells, k);
+  state.counters["error"] = (u - reference).norm() / reference.norm();
+}
+
 void cholmod_row(benchmark::State& state, Index cells, std::size_t k, void (Cholmod::*run)()) {
   const TearingBoard& board = board_of(cells);
   Cholmod cholmod(board);
   const auto elements = board.connected(k);
   measure(
       state, [&] { cholmod.prepare(elements); }, [&] { (cholmod.*run)(); });
-  Eigen::VectorXd& reference = refactored(cells, k);
-  if (run == &Cholmod::refactor) reference = cholmod.solution();
-  if (reference.size() > 0) {
-    state.counters["error"] = (cholmod.solution() - reference).norm() / reference.norm();
-  }
+  note_error(state, cells, k, cholmod.solution());
 }
 
-void engine_row(benchmark::State& state, Index cells, std::size_t k,
-                const std::function<std::unique_ptr<engine::Base>(const fem::Factor&)>& base) {
+/// Whether the inverse of a board and what else there is fit into the free memory.
+bool has_room_for_inverse(Index cells) {
+  const auto unknowns = static_cast<std::size_t>(board_of(cells).problem->dof_count());
+  return unknowns * unknowns * sizeof(double) < cpu_reference::available_memory();
+}
+
+/// The engine over an inverse or a factor; one inverse serves all rows of a board. None: no room.
+engine::Deferred* deferred_of(Index cells, bool dense) {
+  static std::map<std::pair<Index, bool>, std::unique_ptr<engine::Deferred>> all;
+  auto& deferred = all[{cells, dense}];
+  if (deferred) return deferred.get();
+  std::unique_ptr<engine::Base> base;
+  if (!dense) {
+    base = std::make_unique<engine::FactorBase>(factor_of(cells));
+  } else if (has_room_for_inverse(cells)) {
+    base = std::make_unique<engine::InverseBase>(factor_of(cells));
+  } else {
+    return nullptr;
+  }
+  deferred = std::make_unique<engine::Deferred>(*board_of(cells).problem, std::move(base));
+  return deferred.get();
+}
+
+void engine_row(benchmark::State& state, Index cells, std::size_t k, bool dense) {
   const TearingBoard& board = board_of(cells);
-  engine::Deferred deferred(*board.problem, base(factor_of(cells)));
+  engine::Deferred* deferred = deferred_of(cells, dense);
+  if (!deferred) return state.SkipWithError("refused: the inverse is larger than the free memory");
   const auto elements = board.connected(k);
   Eigen::VectorXd u;
   measure(
       state,
       [&] {
-        if (deferred.events() > 0) deferred.take_back();
+        if (deferred->events() > 0) deferred->take_back();
       },
       [&] {
-        if (!deferred.destroy(elements)) state.SkipWithError("not definite");
-        deferred.solve({board.load_dofs, board.load_values}, {}, u);
+        if (!deferred->destroy(elements)) state.SkipWithError("not definite");
+        deferred->solve({board.load_dofs, board.load_values}, {}, u);
       });
-  state.counters["rank"] = deferred.rank();
-  const Eigen::VectorXd& reference = refactored(cells, k);
-  if (reference.size() > 0) state.counters["error"] = (u - reference).norm() / reference.norm();
+  state.counters["rank"] = deferred->rank();
+  deferred->take_back();
+  note_error(state, cells, k, u);
+}
+
+/// The library's own route, made anew for each event.
+void route_row(benchmark::State& state, Index cells, std::size_t k, bool dense) {
+  const TearingBoard& board = board_of(cells);
+  const auto elements = board.connected(k);
+  const Load load{board.load_dofs, board.load_values, {}};
+  std::optional<cpu_reference::DamagedBody> body;
+  std::optional<cpu_reference::IntactBody> intact;
+  std::unique_ptr<cpu_reference::InverseRoute> route;
+  Eigen::VectorXd f, u;  // f: of routes that read all of it
+  measure(
+      state,
+      [&] {
+        route.reset();
+        body.emplace(board.problem);
+        intact.emplace(*board.problem, true);
+        route = cpu_reference::deferred_route(*body, *intact, dense);
+        route->solve(load, f, u);
+      },
+      [&] {
+        body->destroy(elements);
+        route->destroy(elements);
+        route->solve(load, f, u);
+      });
+  state.counters["new_bases"] = route->bases() - 1;
+  note_error(state, cells, k, u);
 }
 
 /// Assembly and order of elimination included; CHOLMOD is given the matrix and keeps its order.
@@ -292,7 +356,22 @@ void add_once(const std::string& name, const std::function<void(benchmark::State
       ->Unit(benchmark::kMillisecond);
 }
 
-/// `full`: cascades of 120,000 elements as well, some minutes.
+/// An event as the library follows it.
+void add_event(const std::string& base, Index cells, std::size_t k) {
+  const bool dense = base == "inverse";
+  const std::string name = row((base + "_deferred").c_str(), cells, k);
+  const auto update = [=](auto& s) { engine_row(s, cells, k, dense); };
+  const auto unknowns = static_cast<std::size_t>(board_of(cells).problem->dof_count());
+  if (cpu_reference::takes_new_factor(unknowns, k)) {
+    add("sunder_" + name, 0.1, [=](auto& s) { route_row(s, cells, k, dense); });
+    add("forced_" + name, 0.1, update);
+  } else {
+    add("sunder_" + name, 0.1, update);
+  }
+}
+
+/// `full`: cascades of 120,000 elements as well, some minutes. An inverse of 30,000 elements takes
+/// 7.5 GB and half a minute: bench/run --full asks for it once.
 void register_rows(bool full) {
   for (Index cells : {18, 36, 71, 141}) {
     if (cells == 18) {
@@ -305,16 +384,8 @@ void register_rows(bool full) {
       peer("cholmod_refactor", &Cholmod::refactor);
       peer("cholmod_updown", &Cholmod::updown_then_solve);
       peer("cholmod_updown_solve", &Cholmod::updown_solve);
-      if (cells <= 36) {
-        add(row("sunder_inverse_deferred", cells, k), 0.1, [=](auto& s) {
-          engine_row(s, cells, k,
-                     [](const fem::Factor& f) { return std::make_unique<engine::InverseBase>(f); });
-        });
-      }
-      add(row("sunder_factor_deferred", cells, k), 0.1, [=](auto& s) {
-        engine_row(s, cells, k,
-                   [](const fem::Factor& f) { return std::make_unique<engine::FactorBase>(f); });
-      });
+      if (cells <= 71) add_event("inverse", cells, k);
+      add_event("factor", cells, k);
     }
     add(row("sunder_factor_anew", cells, 1), 0.1, [=](auto& s) { own_refactor(s, cells); });
   }

@@ -86,6 +86,15 @@ int frames_of_a_factor(const fem::SupernodalCholesky& factor, std::size_t elemen
   return std::clamp(static_cast<int>(kAllowance * making / frame), 48, 256);
 }
 
+bool takes_new_factor(std::size_t unknowns, std::size_t elements) {
+  // An event that touches more new unknowns than this costs more than a new factor: a share of all
+  // within limits. Boards of 486 to 30,246 elements (bench_reconstruction, bench_engine).
+  constexpr double kLargestShare = 0.125, kSmallBody = 64, kLargestEvent = 600;
+  constexpr double kTouchedByOne = 4;
+  return kTouchedByOne * static_cast<double>(elements) >
+         std::clamp(kLargestShare * static_cast<double>(unknowns), kSmallBody, kLargestEvent);
+}
+
 FrameCost frame_cost(const FrameShape& s) {
   const bool region = s.route == Route::condensed;
   const double vectors = 6 * static_cast<double>(region ? s.kept : s.unknowns);

@@ -36,4 +36,7 @@ struct FrameCost {
 /// must not depend on how long anything took.
 [[nodiscard]] int frames_of_a_factor(const fem::SupernodalCholesky& factor, std::size_t elements);
 
+/// Whether an event of so many elements is worth a new factor of the body instead of an update.
+[[nodiscard]] bool takes_new_factor(std::size_t unknowns, std::size_t elements);
+
 }  // namespace sunder::cpu_reference

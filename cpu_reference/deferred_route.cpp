@@ -19,11 +19,6 @@ constexpr double kFewestColumns = 64;
 // Columns beyond those that a base is expected to serve, in fractures of several elements.
 constexpr Index kSpare = 64;
 
-// An event that touches more new unknowns than this costs more than a new factor: a share of all
-// within limits. Boards of 486 to 30,246 elements (bench_reconstruction, bench_engine).
-constexpr double kLargestShare = 0.125, kSmallBody = 64;
-constexpr double kLargestEvent = 600;
-
 class DeferredRoute final : public InverseRoute {
  public:
   DeferredRoute(const DamagedBody& body, IntactBody& intact, bool dense,
@@ -74,8 +69,7 @@ class DeferredRoute final : public InverseRoute {
   void destroy(std::span<const Index> elements) override {
     if (coming_->due()) take_base();
     coming_->follow(elements);
-    if (4 * static_cast<double>(elements.size()) > largest_event() ||
-        !based_.deferred->destroy(elements)) {
+    if (takes_new_factor(all_.size(), elements.size()) || !based_.deferred->destroy(elements)) {
       rebase();
     } else if (!coming_->making() &&
                static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
@@ -119,10 +113,6 @@ class DeferredRoute final : public InverseRoute {
   }
 
  private:
-  double largest_event() const {
-    return std::clamp(kLargestShare * body_.problem().dof_count(), kSmallBody, kLargestEvent);
-  }
-
   void take_base() {
     const double saved = saved_ms();
     if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again

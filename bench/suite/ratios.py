@@ -14,11 +14,12 @@ _LIBRARIES = {"cholmod_updown": "updown", "cholmod_updown_solve": "updown_solve"
 
 
 def _engine(rows):
-    """Events, {name: row} each, and the column that a peer's name gives the others."""
+    """Events, {name: row} each, and the column that a peer's name gives the others. An update that
+    the library leaves for a new factor is no match for a peer."""
     events = collections.defaultdict(dict)
     for row in rows:
         found = re.fullmatch(r"(\w+)/(\d+/k\d+)", row["name"])
-        if row["program"] == "bench_engine" and found:
+        if row["program"] == "bench_engine" and found and not found[1].startswith("forced_"):
             events[found[2]][found[1]] = row
     return events.values(), lambda name: _LIBRARIES.get(name, "")
 

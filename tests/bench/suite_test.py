@@ -173,9 +173,12 @@ class Ratios(unittest.TestCase):
         updown = timed("cholmod_updown/7776/k1", samples=[9, 8], min_ms=6.0)
         refactor = timed("cholmod_refactor/7776/k1", samples=[40], min_ms=30.0)
         other_event = timed("cholmod_updown/7776/k10", min_ms=1.0)
+        forced = timed("forced_factor_deferred/7776/k1", min_ms=2.0)
         expected = {"over_updown": 0.5, "over_refactor": 0.1, "over_best": 0.5}
-        for rows in ([own, updown, refactor, other_event], [other_event, refactor, updown, own]):
+        for rows in ([own, updown, refactor, other_event, forced],
+                     [forced, other_event, refactor, updown, own]):
             made = self.ratios(rows)
+            self.assertEqual(made[rows.index(forced)], {})
             self.assertEqual(made[rows.index(own)], expected)
             self.assertEqual(made[rows.index(other_event)], {"over_updown": 1, "over_best": 1})
 

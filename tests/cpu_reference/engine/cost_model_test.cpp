@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
+#include "cpu_reference/routes.hpp"
 #include "support/body.hpp"
 #include "support/table1_board.hpp"
 
@@ -51,6 +54,41 @@ TEST(CostModel, TakesAFractureForMoreWorkThanNone) {
   FrameShape eager = organ(Route::inverse), deferred = eager;
   eager.eager = true;
   EXPECT_GT(frame_cost(eager).fracture_ms, 100 * frame_cost(deferred).fracture_ms);
+}
+
+// Four new unknowns an element; an eighth of all, but not under 64 and not over 600.
+TEST(CostModel, TakesANewFactorForEventsThatTouchAnEighthOfTheBody) {
+  for (const auto& [unknowns, most] : {std::pair<std::size_t, std::size_t>{100, 16},
+                                       {1600, 50},
+                                       {2052, 64},
+                                       {7992, 150},
+                                       {120132, 150}}) {
+    EXPECT_FALSE(takes_new_factor(unknowns, most)) << unknowns;
+    EXPECT_TRUE(takes_new_factor(unknowns, most + 1)) << unknowns;
+  }
+}
+
+TEST(CostModel, IsTheRuleOfTheDeferredRoutes) {
+  for (Route route : {Route::inverse, Route::factor}) {
+    Scene scene = test::pulled_board();
+    scene.solver.route = route;
+    scene.solver.update = Update::deferred;
+    const auto problem = std::make_shared<Problem>(std::move(scene));
+    const auto unknowns = static_cast<std::size_t>(problem->dof_count());
+    std::size_t most = 1;
+    while (!takes_new_factor(unknowns, most + 1)) ++most;
+    ASSERT_LT(most + 1, problem->mesh().tets.size());
+    std::vector<Index> elements(most + 1);
+    std::iota(elements.begin(), elements.end(), 0);
+    for (std::size_t count : {most, most + 1}) {
+      DamagedBody body(problem);
+      IntactBody intact(*problem, true);
+      const auto own = deferred_route(body, intact, route == Route::inverse);
+      body.destroy(std::span(elements).first(count));
+      own->destroy(std::span(elements).first(count));
+      EXPECT_EQ(own->bases(), count > most ? 2 : 1) << count << " elements";
+    }
+  }
 }
 
 TEST(CostModel, SpeaksForEveryRouteOfABackend) {
