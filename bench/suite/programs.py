@@ -46,7 +46,7 @@ PROGRAMS = [
     Program("bench_c_abi", "a step through the C interface",
             Share(6, repetitions=1), Share(2, repetitions=3)),
     Program("bench_engine", "the engine against CHOLMOD, event by event",
-            Share(6, "/1944/k", 3), Share(200, repetitions=3)),
+            Share(6, "/1944/k", 3), Share(200, "-inverse_deferred/30246/", 3)),
     Program("bench_frame_parts", "where a frame goes, first and after 640 fractures",
             Share(2, "/1944/", 1), Share(35, repetitions=3)),
     Program("bench_inversion", "the intact inverse against OpenBLAS and Eigen",
@@ -76,6 +76,8 @@ PROGRAMS = [
 LARGE = [
     Program("bench_stability", "stability after 640 fractures",
             Share(0), Share(120, words=("many",)), file="stability.csv"),
+    Program("bench_engine", "deferred updates over the dense inverse of 30,246 tetrahedra",
+            Share(0), Share(60, "inverse_deferred/30246/", 1)),
     Program("bench_reconstruction", "inverse reconstruction where an event takes seconds",
             Share(0), Share(950, "board (30246|119286)/|(7776|7986)/.* eager"
                             "|1944/to640/vulkan cg", 1)),
