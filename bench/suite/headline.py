@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The figures that the README quotes: what, figure, command; computed from a results folder."""
-from . import plots, results
+"""The figures that the README quotes: what, figure, command; and its aims (targets.py). Computed
+from a results folder."""
+from . import plots, results, targets
 from .tables import PAPER_2, PAPER_3, number, paper_rows
 
 BEGIN, END = "<!-- figures of ", "<!-- end of figures -->"
@@ -62,17 +63,6 @@ def _against_updown(rows, body):
             f"bench_reconstruction --benchmark_filter='{body}/k'")
 
 
-def _accumulated(rows):
-    shares = []
-    for method in ("cpu inverse deferred fp64", "cpu factor deferred fp64"):
-        row = next((r for b, e, m, r in plots.reconstruction_rows(rows) if r["samples_ms"]
-                    and (b, e, m) == ("board 1944", "to640", method)), None)
-        shares.append(row and row["counters"]["last_ms"] / row["counters"]["first_ms"])
-    return ("640 fractures one by one, 1944 tetrahedra: last frames over first, inverse / factor",
-            _all(shares, lambda v: number(v, 2)),
-            "bench_reconstruction --benchmark_filter=1944/to640")
-
-
 def _patch(rows, tets):
     at = {route: next((r["counters"] for r in rows if r["samples_ms"]
                        and r["name"] == f"needs/patch_tears_{route}/{tets}"), None)
@@ -118,7 +108,7 @@ def figures(outcome):
     found = [_program(rows), _reconstruction_of_the_paper(rows), _decide(rows), _c_interface(rows),
              *(_against_updown(rows, b) for b in ("board 1944", "board 7776", "board 30246",
                                                   "board 119286", "block 7986")),
-             _accumulated(rows), *(_patch(rows, n) for n in (1944, 30246, 119286)),
+             *(_patch(rows, n) for n in (1944, 30246, 119286)),
              _largest(rows), _stability(outcome["cells"], outcome["machine"].get("mode", "full"))]
     return [f for f in found if f[1] is not None]
 
@@ -129,6 +119,9 @@ def markdown(outcome, folder):
     lines = [f"{BEGIN}{folder} -->", "",
              f"{about['cpu']}, {about['cores']} cores, {about['date']}, commit {about['commit']}, "
              f"load {about['load_before']} before the run. All of it: `{folder}/index.html`.", "",
-             "| what | figure | command in `build/bench/` |", "|---|---|---|"]
+             "| what | figure | command in build/bench/ |", "|---|---|---|"]
     lines += [f"| {what} | {figure} | `{command}` |" for what, figure, command in figures(outcome)]
+    lines += ["", f"| {' | '.join(targets.HEAD)} |", "|---|---|---|---|---|"]
+    lines += [f"| {what} | {aim} | {figure} | {missed or 'none'} | `{command}` |"
+              for what, aim, figure, missed, command in targets.targets(outcome)]
     return "\n".join([*lines, "", END])

@@ -4,7 +4,7 @@ import html
 import pathlib
 import re
 
-from . import checks, error_plots, headline, heat_map, plots, results, tables
+from . import checks, error_plots, headline, heat_map, plots, results, tables, targets
 
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:76em;padding:0 1em;color:#222}
@@ -169,6 +169,9 @@ def page(outcome):
     _problems(made, outcome)
     made.section("Figures of the README")
     made.add(_table(["what", "figure", "command in build/bench/"], headline.figures(outcome),
+                    "words"))
+    made.section("Aims")
+    made.add(_table(targets.HEAD, [(*t[:3], t[3] or "none", t[4]) for t in targets.targets(outcome)],
                     "words"))
     _paper(made, rows)
     _reconstruction(made, outcome)

@@ -54,7 +54,7 @@ def _over_peers(methods, column):
 
 # Of a row's own counters, by the name of the ratio: (above, below).
 _OWN = {"over_reference": ("min_ms", "reference_ms"),
-        "last_over_first": ("last_ms", "first_ms"),
+        "last_over_first_ms": ("last_ms", "first_ms"),
         "predicted_quiet_over_measured": ("predicted_quiet_ms", "quiet_ms"),
         "predicted_fracture_over_measured": ("predicted_fracture_ms", "min_ms"),
         **{f"p99_over_median_{unit}": (f"p99_{unit}", f"median_{unit}")

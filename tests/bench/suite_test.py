@@ -13,7 +13,7 @@ import unittest
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
 from suite import (alone, checks, compare, error_plots, headline, heat_map, page, plots,  # noqa: E402
-                   programs, ratios, results, tables)
+                   programs, ratios, results, tables, targets)
 
 
 def row(name, scale=1.0, seed=1, error=1e-12, count=9):
@@ -193,7 +193,7 @@ class Ratios(unittest.TestCase):
         made = self.ratios(rows)[0]
         self.assertAlmostEqual(made.pop("over_best"), 0.5, 1)
         self.assertAlmostEqual(made.pop("over_refactor"), 0.25, 1)
-        self.assertEqual(made, {"last_over_first": 2.0})
+        self.assertEqual(made, {"last_over_first_ms": 2.0})
 
     def test_of_a_rows_own_times(self):
         rows = [timed("cascade_factor/1944/640", median_ms=2.0, p99_ms=5.0),
@@ -214,6 +214,50 @@ class Ratios(unittest.TestCase):
         again = dict(run, us_c=4.0, p99_us=3.0, at_50_ms=3.0, columns=6.0)
         (made,) = results.rows_of("p", {"benchmarks": [run, again]})
         self.assertEqual(made["counters"], {"us_c": 3, "p99_us": 3, "at_50_ms": 2, "columns": 6})
+
+
+def engine_event(tets, k, ms, updown_solve, refactor):
+    return [timed(f"{name}/{tets}/k{k}", samples=[value], min_ms=value) for name, value in
+            (("sunder_factor_deferred", ms), ("sunder_inverse_deferred", ms),
+             ("cholmod_updown_solve", updown_solve), ("cholmod_refactor", refactor))]
+
+
+class Targets(unittest.TestCase):
+    def of(self, rows, words):
+        (found,) = [t for t in targets.targets(outcome(ratios.add(rows))) if words in t[0]]
+        return found[1:4]
+
+    def test_on_the_factor_the_best_library_counts(self):
+        rows = [r for k, updown_solve in ((1, 4.0), (10, 9.0), (100, 90.0))
+                for r in engine_event(7776, k, 2.0, updown_solve, 10.0)]
+        self.assertEqual(self.of(rows, "on the factor"),
+                         ("0.5 / 0.25 / 0.125", "0.5 / 0.222 / 0.2", "100"))
+        self.assertEqual(self.of(rows, "dense inverse"), ("0.1", "0.5 / 0.22", "1, 10"))
+
+    def test_nothing_is_said_of_what_lacks_a_row(self):
+        rows = engine_event(7776, 1, 2.0, 4.0, 10.0)
+        self.assertEqual(targets.targets(outcome(ratios.add(rows))), [])
+
+    def test_the_slower_deferred_route_is_compared_with_a_refactorisation(self):
+        rows = [torn("cpu inverse deferred fp64", "k100", 3.0), torn("cpu cg fp64", "k100", 9.0),
+                torn("cpu factor deferred fp64", "k100", 1.0),
+                torn("cholmod supernodal refactor", "k100", 2.0)]
+        aim, figure, missed = self.of(rows, "refactorisation")
+        self.assertEqual((aim, missed), ("1", "board 1944"))
+        self.assertAlmostEqual(float(figure), 1.5, 1)
+
+    def test_cascades_and_instruments(self):
+        cascade = timed("cascade_inverse/1944/640", samples=[9.0], first_ms=1.0, last_ms=4.0,
+                        median_ms=2.0, p99_ms=4.001)
+        patch = timed("needs/patch_cascade_condensed/1944", "bench_needs", samples=[2.0],
+                      median_ms=2.0, p99_ms=3.0)
+        haptic = timed("instrument_forces/1944", samples=[1.0], p99_us=60.0, median_us=2.0)
+        rows = [cascade, patch, haptic]
+        self.assertEqual(self.of(rows, "last frames"), ("2", "4", "inverse 1,944"))
+        # A miss that rounds to its aim is still seen.
+        self.assertEqual(self.of(rows, "one by one: 99th"), ("2", "2.001", "inverse 1,944"))
+        self.assertEqual(self.of(rows, "patch"), ("2", "1.5", ""))
+        self.assertEqual(self.of(rows, "instruments"), ("50 us", "60 us", "1,944"))
 
 
 class Checks(unittest.TestCase):
@@ -377,6 +421,7 @@ class Page(unittest.TestCase):
         for _, figure, _ in headline.figures(made):
             self.assertIn(figure, self.text)
             self.assertIn(figure, headline.markdown(made, "folder"))
+        self.assertIn("at most", self.text)
 
 
 class Readme(unittest.TestCase):
@@ -389,6 +434,9 @@ class Readme(unittest.TestCase):
         shown = (root / folder / "index.html").read_text(encoding="utf-8")
         for _, figure, _ in headline.figures(made):
             self.assertIn(html.escape(figure), shown)
+        self.assertGreater(len(targets.targets(made)), 9)
+        for entry in targets.targets(made):
+            self.assertIn("".join(f"<td>{html.escape(e or 'none')}</td>" for e in entry), shown)
 
 
 class Program(unittest.TestCase):
