@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stability study: one difficulty at a time, then pairs, every method; one CSV row per cell.
 //   bench_stability FILE [quick|full|many]
-// ci: the ends of every knob, few fractures; quick: one difficulty at a time; full: the pairs as
-// well; many: 640 fractures.
+// quick: one difficulty at a time; full: the pairs as well; many: 640 fractures. bench/run judges
+// the cells by the table of accuracy (suite/accuracy.py).
 // Exit code 1 when a cell is WRONG: a number that is off, or no number, and nothing said.
 #include <cstdio>
 #include <fstream>
@@ -19,6 +19,7 @@ namespace {
 struct Cell {
   std::string study;
   Difficulty difficulty;
+  std::size_t batch = 10;  ///< elements an event
 };
 
 using Set = std::function<void(Difficulty&, double)>;
@@ -69,6 +70,14 @@ void one_at_a_time(std::vector<Cell>& cells) {
     cell.difficulty.pattern = pattern;
     cells.push_back(cell);
   }
+  for (const char* pattern : {"crack", "scattered"}) {
+    for (std::size_t batch : {1, 10, 100}) {
+      Cell cell{std::string(pattern) == "crack" ? "batch" : "scattered batch", {}, batch};
+      cell.difficulty.pattern = pattern;
+      cell.difficulty.fractures = 200;
+      cells.push_back(cell);
+    }
+  }
 }
 
 /// Accumulated fractures past what one layer of cells can lose.
@@ -107,25 +116,24 @@ void write_row(std::ostream& out, const Cell& cell, const Method& method, std::s
                const Reference& reference, const Outcome& o) {
   const Difficulty& d = cell.difficulty;
   out << cell.study << ',' << d.contrast << ',' << d.poisson << ',' << d.sliver << ',' << d.alpha
-      << ',' << d.unit << ',' << d.pattern << ',' << removed << ',' << method.name << ','
-      << o.verdict << ',' << o.u_error << ',' << o.stress_error << ',' << o.residual << ','
-      << o.estimate << ',' << o.iterations << ',' << o.first_ms << ',' << o.median_ms << ','
-      << reference.rounding << ',' << quoted(o.reason) << '\n';
+      << ',' << d.unit << ',' << d.pattern << ',' << removed << ',' << cell.batch << ','
+      << method.name << ',' << o.verdict << ',' << o.u_error << ',' << o.stress_error << ','
+      << o.residual << ',' << o.estimate << ',' << o.iterations << ',' << o.first_ms << ','
+      << o.median_ms << ',' << reference.rounding << ',' << quoted(o.reason) << '\n';
 }
 
 /// Returns the number of cells that are WRONG.
 int run(std::ostream& out, const std::vector<Cell>& cells) {
   const auto all = methods();
-  out << "study,contrast,nu,sliver,alpha,unit,pattern,fractures,method,verdict,u_error,stress_"
-         "error,"
-         "residual,estimate,iterations,first_ms,median_ms,fp32_rounding,reason\n";
+  out << "study,contrast,nu,sliver,alpha,unit,pattern,fractures,batch,method,verdict,u_error,"
+         "stress_error,residual,estimate,iterations,first_ms,median_ms,fp32_rounding,reason\n";
   int wrong = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const DifficultBoard board = difficult_board(cells[i].difficulty);
     const Reference reference(*board.problem, board.removed, board.force);
     for (const Method& m : all) {
       const Outcome outcome =
-          run_cell(m, *board.problem, board.force, board.removed, 10, reference);
+          run_cell(m, *board.problem, board.force, board.removed, cells[i].batch, reference);
       wrong += outcome.verdict == "WRONG";
       write_row(out, cells[i], m, board.removed.size(), reference, outcome);
     }

@@ -67,13 +67,15 @@ def compare_rows(old, new):
 
 def cell_key(cell):
     return tuple(str(cell[k]) for k in ("study", "contrast", "nu", "sliver", "alpha", "unit",
-                                        "pattern", "fractures", "method"))
+                                        "pattern", "fractures", "batch", "method"))
 
 
 def compare_cells(old, new):
     name = " ".join(cell_key(new))
     if old["verdict"] in GOOD and new["verdict"] not in GOOD:
         return [Finding("wrong", name, f"{old['verdict']} -> {new['verdict']} {new['reason']}")]
+    if old.get("accuracy") == "within" and new.get("accuracy") == "beyond":
+        return [Finding("wrong", name, "beyond the promised accuracy: " + new["accuracy_reason"])]
     if new["verdict"] in GOOD and worse_error(old["stress_error"], new["stress_error"]):
         return [Finding("wrong", name, f"stress error {old['stress_error']:.3g} -> "
                         f"{new['stress_error']:.3g}")]

@@ -102,6 +102,14 @@ def _stability(cells, mode):
             f"{good} / {count['refused']} / {count['WRONG']}", f"bench_stability FILE {mode}")
 
 
+def _accuracy(cells, mode):
+    if not cells:
+        return "accuracy", None, ""
+    counts = [sum(c["accuracy"] == w for c in cells) for w in ("within", "beyond", "not named")]
+    return ("the same cells by the table of accuracy: within / beyond / not named by it",
+            " / ".join(map(str, counts)), f"bench/run --{mode}")
+
+
 def figures(outcome):
     """[(what, figure, command)] of what this run has measured."""
     rows = outcome["rows"]
@@ -109,7 +117,8 @@ def figures(outcome):
              *(_against_updown(rows, b) for b in ("board 1944", "board 7776", "board 30246",
                                                   "board 119286", "block 7986")),
              *(_patch(rows, n) for n in (1944, 30246, 119286)),
-             _largest(rows), _stability(outcome["cells"], outcome["machine"].get("mode", "full"))]
+             _largest(rows), *(made(outcome["cells"], outcome["machine"].get("mode", "full"))
+                               for made in (_stability, _accuracy))]
     return [f for f in found if f[1] is not None]
 
 

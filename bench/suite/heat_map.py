@@ -15,7 +15,9 @@ _MARKS = {"polished": "p", "rounded": "r", "WRONG": "X"}
 _TITLES = {"contrast": "contrast of E", "nu": "Poisson's ratio", "sliver": "sliver quality",
            "alpha": "alpha", "unit": "unit [mm]", "crack": "fractures along a crack",
            "scattered": "scattered fractures", "cut": "cut through", "island": "islands",
-           "bridge": "one bridge left"}
+           "bridge": "one bridge left", "batch": "crack, elements an event",
+           "scattered batch": "scattered, elements an event"}
+_COLUMNS = {"crack": "fractures", "scattered": "fractures", "scattered batch": "batch"}
 
 
 def _colours():
@@ -25,7 +27,7 @@ def _colours():
 
 
 def value_of(cell, knob):
-    return cell["fractures" if knob in ("crack", "scattered") else knob]
+    return cell[_COLUMNS.get(knob, knob)]
 
 
 def text_of(value):

@@ -4,7 +4,7 @@ import html
 import pathlib
 import re
 
-from . import checks, error_plots, headline, heat_map, plots, results, tables, targets
+from . import accuracy, checks, error_plots, headline, heat_map, plots, results, tables, targets
 
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:76em;padding:0 1em;color:#222}
@@ -145,10 +145,27 @@ def _errors(page, outcome):
     page.figure("mesh-size", error_plots.convergence(outcome["meshes"]))
 
 
+def _accuracy(page, cells):
+    page.add("<h3>By the table of accuracy</h3>")
+    page.text("Largest error of displacement (2-norm) and of stress (largest) that is promised, up "
+              f"to a contrast of {accuracy.CONTRAST:g}, a Poisson's ratio of {accuracy.NU:g}, "
+              f"slivers of {accuracy.SLIVER:g} and alpha of {accuracy.ALPHA:g}; at these contrasts "
+              f"and ratios fp32 may cost {accuracy.ROUNDINGS} times the stress that rounding the "
+              "exact displacement costs. A board that hangs on its last element is judged as one "
+              "torn along a crack. What is not named may be right, polished or refused.")
+    page.add(_table(*accuracy.TABLE))
+    page.add(_table(*tables.accuracy_of_methods(cells)))
+    head, lines = tables.beyond(cells)
+    if lines:
+        page.add(f"<p>Beyond it, {len(lines)} cells:</p>" + _table(head, lines, "words"))
+    else:
+        page.text("No cell is beyond it.")
+
+
 def _stability(page, cells):
     page.section("Stability")
     page.text("One difficulty at a time, then pairs, on a board of 600 tetrahedra torn in events "
-              "of ten. Yardstick: a fresh fp64 factorisation refined in extended precision. A "
+              "of ten where nothing else is said. Yardstick: a fresh fp64 factorisation refined in extended precision. A "
               "number that is off by more than the tolerance (1e-4) and is neither polished nor "
               "refused is WRONG.")
     page.figure("stability", heat_map.singles(cells))
@@ -156,6 +173,7 @@ def _stability(page, cells):
     if not cells:
         return
     page.add(_table(*tables.verdicts(cells)))
+    _accuracy(page, cells)
     refusals = sorted({(c["method"], c["reason"]) for c in cells if c["verdict"] == "refused"})
     if refusals:
         page.add(_details("Reasons of the refusals",

@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 
-from . import ratios, results
+from . import accuracy, ratios, results
 
 MODES = ("quick", "full")
 
@@ -65,7 +65,7 @@ PROGRAMS = [
     Program("bench_vulkan", "kernels and frames on the Vulkan device",
             Share(25, "board", 1), Share(120, repetitions=1)),
     Program("bench_stability", "stability of every method",
-            Share(62, words=("quick",)), Share(400, words=("full",)), file="stability.csv"),
+            Share(75, words=("quick",)), Share(420, words=("full",)), file="stability.csv"),
     Program("bench_scenes", "error against run time on scenes",
             Share(38, words=("--seconds=2", "--tolerances=1e-4,1e-8", *SCENES)), Share(500),
             file="scenes.csv"),
@@ -164,6 +164,13 @@ def nothing_yet():
             "failures": []}
 
 
+def conclude(outcome):
+    """What follows from what was measured: ratios of rows, judgement of cells."""
+    ratios.add(outcome["rows"])
+    accuracy.add(outcome["cells"])
+    return outcome
+
+
 def split_done(there, outcome):
     """What is still to run after an earlier run that was ended; its failures are tried again."""
     done = {p["about"] for p in outcome["programs"] if not p.get("failed")}
@@ -189,7 +196,7 @@ def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: No
             made = run_program(build, program, share, repetitions)
             part, read = readers.get(program.file, ("rows", lambda rows: rows))
             outcome[part] += read(made)
-            ratios.add(outcome["rows"])
+            conclude(outcome)
         except results.BadResults as error:
             entry["failed"] = True
             outcome["failures"].append(str(error))

@@ -127,6 +127,24 @@ def verdicts(cells):
     return ["method", *words, "largest stress error"], lines
 
 
+def accuracy_of_methods(cells):
+    """Head and lines: how often each judgement by the table of accuracy, by method."""
+    counts = collections.Counter((c["method"], c["accuracy"]) for c in cells)
+    words = ["within", "beyond", "not named"]
+    return (["method", *words],
+            [[m, *(counts[m, w] for w in words)] for m in dict.fromkeys(c["method"]
+                                                                        for c in cells)])
+
+
+def beyond(cells):
+    """Head and lines: every cell that is beyond its accuracy, and why."""
+    keys = ("contrast", "nu", "sliver", "alpha", "unit")
+    lines = [[c["study"], ", ".join(f"{k} {c[k]:g}" for k in keys),
+              f"{c['fractures']:g} by {c['batch']:g}", c["method"], c["accuracy_reason"]]
+             for c in cells if c["accuracy"] == "beyond"]
+    return ["study", "difficulty", "fractures", "method", "why"], lines
+
+
 def scene_verdicts(points):
     """Head and lines: what became of the runs of each method over all scenes and tolerances."""
     words = ["ok", "polished", "rounded", "other fractures", "over budget", "refused", "WRONG"]

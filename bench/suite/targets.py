@@ -119,6 +119,15 @@ def _lavapipe(ran):
                    unit=" ms")
 
 
+def _accuracy(cells):
+    if not cells:
+        return None
+    named = [c["accuracy"] for c in cells if c["accuracy"] != "not named"]
+    return _judged(f"cells of the stability study beyond the table of accuracy, of {len(named)} "
+                   "that it names", [("the cells listed on the page", named.count("beyond"), 0)],
+                   "bench/run --full")
+
+
 HEAD = ("aim", "at most", "figure", "missed at", "command in build/bench/")
 
 
@@ -136,5 +145,5 @@ def targets(outcome):
                for n in (200, 640)),
              _patch_cascade(_ran(rows, "bench_needs")),
              _instruments(engine), _stress(engine), _board_frame(rows),
-             _lavapipe(_ran(rows, "bench_vulkan"))]
+             _lavapipe(_ran(rows, "bench_vulkan")), _accuracy(outcome["cells"])]
     return [t for t in found if t is not None]

@@ -12,8 +12,8 @@ import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
-from suite import (alone, checks, compare, error_plots, headline, heat_map, page, plots,  # noqa: E402
-                   programs, ratios, results, tables, targets)
+from suite import (accuracy, alone, checks, compare, error_plots, headline, heat_map,  # noqa: E402
+                   page, plots, programs, ratios, results, tables, targets)
 
 
 def row(name, scale=1.0, seed=1, error=1e-12, count=9):
@@ -24,12 +24,14 @@ def row(name, scale=1.0, seed=1, error=1e-12, count=9):
             "cpu_samples_ms": samples, "counters": {"error": error, "rank": 12.0}}
 
 
-def cell(method="cpu factor deferred fp64", verdict="ok", stress_error=1e-11):
-    return {"study": "crack", "contrast": 100.0, "nu": 0.4, "sliver": 1.0, "alpha": 1e-6,
-            "unit": 1.0, "pattern": "crack", "fractures": 10.0, "method": method,
+def cell(method="cpu factor deferred fp64", verdict="ok", stress_error=1e-11, **what):
+    made = {"study": "crack", "contrast": 100.0, "nu": 0.4, "sliver": 1.0, "alpha": 1e-6,
+            "unit": 1.0, "pattern": "crack", "fractures": 10.0, "batch": 10.0, "method": method,
             "verdict": verdict, "u_error": 1e-12, "stress_error": stress_error, "residual": 1e-13,
             "estimate": 1e-12, "iterations": 0.0, "first_ms": 1.0, "median_ms": 0.5,
             "fp32_rounding": 1e-4, "reason": ""}
+    (judged,) = accuracy.add([dict(made, **what)])
+    return judged
 
 
 def outcome(rows, cells=(), points=(), meshes=(), alone=()):
@@ -260,6 +262,76 @@ class Targets(unittest.TestCase):
         self.assertEqual(self.of(rows, "instruments"), ("50 us", "60 us", "1,944"))
 
 
+class Accuracy(unittest.TestCase):
+    def judged(self, *words, **what):
+        return cell(*words, **what)["accuracy"]
+
+    def test_in_double_precision_each_pattern_has_its_error(self):
+        for pattern, error in (("scattered", 1e-9), ("crack", 1e-8), ("bridge", 1e-8),
+                               ("cut", 1e-5), ("island", 1e-5)):
+            for method in ("cpu factor deferred fp64", "vulkan inverse eager fp64"):
+                self.assertEqual(self.judged(method, "ok", error, pattern=pattern), "within")
+                self.assertEqual(self.judged(method, "ok", 1.1 * error, pattern=pattern), "beyond")
+                self.assertEqual(self.judged(method, pattern=pattern, u_error=1.1 * error),
+                                 "beyond")
+
+    def test_in_single_precision_rounding_counts_at_the_ends_of_what_is_named(self):
+        deferred, eager = "vulkan inverse deferred fp32", "vulkan inverse eager fp32"
+        self.assertEqual(self.judged(deferred, "ok", 1e-4), "within")
+        self.assertEqual(self.judged(deferred, "rounded", 3e-4), "beyond")
+        self.assertEqual(self.judged(deferred, "rounded", 3e-4, contrast=1e4), "within")
+        self.assertEqual(self.judged(deferred, "rounded", 3e-4, nu=0.499), "within")
+        self.assertEqual(self.judged(deferred, "WRONG", 5e-4, nu=0.499), "beyond")
+        self.assertEqual(self.judged(eager, "WRONG", 9e-4), "within")
+        self.assertEqual(self.judged(eager, "WRONG", 9e-4, fractures=50.0), "beyond")
+        self.assertEqual(self.judged(eager, "WRONG", 9e-4, pattern="cut"), "beyond")
+
+    def test_what_the_table_does_not_name_is_not_judged(self):
+        for what in ({"contrast": 1e5}, {"nu": 0.4999}, {"sliver": 1e-3}, {"alpha": 1e-10},
+                     {"fractures": 640.0}):
+            self.assertEqual(self.judged(stress_error=0.3, **what), "not named")
+        self.assertEqual(self.judged(pattern="scattered", fractures=640.0), "within")
+
+    def test_a_refusal_of_what_is_named_is_beyond_but_for_eager_single_precision(self):
+        refused = cell("cpu cg fp64", "refused", float("nan"), reason="no room")
+        self.assertEqual((refused["accuracy"], refused["accuracy_reason"]),
+                         ("beyond", "refused: no room"))
+        self.assertEqual(self.judged("vulkan inverse eager fp32", "refused"), "within")
+
+    def test_a_cell_beyond_says_why(self):
+        single = cell("vulkan cg fp32", "rounded", 0.02, fp32_rounding=1.4)
+        self.assertIn("rounding the exact u to fp32 alone costs 1.4", single["accuracy_reason"])
+        seen = cell(stress_error=2e-8, estimate=3e-8)
+        self.assertIn("check saw 3e-08, within its tolerance of 0.0001", seen["accuracy_reason"])
+        self.assertIn("check saw 1e-12", cell(stress_error=2e-8)["accuracy_reason"])
+        self.assertEqual(cell(stress_error=float("nan"))["accuracy_reason"], "no number")
+        self.assertEqual(cell()["accuracy_reason"], "")
+
+    def test_the_page_counts_them_and_lists_what_is_beyond(self):
+        cells = [cell(), cell(contrast=1e6), cell("cpu cg fp64", stress_error=2e-8)]
+        made = outcome([torn("cholmod updown_solve")], cells)
+        text = page.page(made)[0]
+        self.assertIn("Beyond it, 1 cells", text)
+        self.assertIn(html.escape(cells[2]["accuracy_reason"]), text)
+        self.assertIn("No cell is beyond it", page.page(outcome([], cells[:2]))[0])
+        self.assertIn(("1 / 1 / 1"), [f[1] for f in headline.figures(made)])
+        (aim,) = [t for t in targets.targets(made) if "of 2 that it names" in t[0]]
+        self.assertEqual(aim[2:4], ("1", "the cells listed on the page"))
+
+    def test_a_cell_that_leaves_it_is_a_finding_of_a_comparison(self):
+        old, new = cell(stress_error=9e-9), cell(stress_error=1.1e-8)
+        self.assertEqual(kinds(outcome([], [old]), outcome([], [new])), ["wrong"])
+
+    def test_events_of_other_sizes_are_other_cells(self):
+        cells = [cell(study="batch", batch=n) for n in (1.0, 10.0, 100.0)]
+        self.assertEqual(kinds(outcome([], cells[:1]), outcome([], cells)), ["new", "new"])
+        self.assertIn("elements an event", heat_map.singles(cells))
+
+    def test_cells_of_before_there_was_a_choice_tore_by_ten(self):
+        old = {k: v for k, v in cell().items() if k != "batch"}
+        self.assertEqual(results.cells_of(results.table_csv([old]))[0]["batch"], 10)
+
+
 class Checks(unittest.TestCase):
     def bad(self, **parts):
         return checks.problems(dict(every_part(), **parts))
@@ -318,7 +390,8 @@ class Modes(unittest.TestCase):
             self.assertEqual([(p["name"], p.get("failed", False)) for p in first["programs"]],
                              [("bench_stability", True), ("bench_convergence", False)])
             study.write_text("#!/bin/sh\nexit 4\n")  # not run again
-            broken.write_text("#!/bin/sh\necho study,verdict,nu > $1\necho one,ok,0.3 >> $1\n")
+            text = results.table_csv([cell()])
+            broken.write_text(f"#!/bin/sh\ncat > $1 <<END\n{text}END\n")
             again = programs.run_all(folder, "quick", outcome=first)
         self.assertEqual(saved, [1, 2])
         self.assertEqual(len(again["meshes"]), 1)
