@@ -19,7 +19,8 @@ constexpr double kFactorFlops = 26e9;       // of a factor's dense products
 constexpr double kCheckSeconds = 200e-9;    // per element of a full check by plain loops
 
 constexpr double kValue = sizeof(double);
-constexpr double kTouched = 12;  // differences of a first fracture, each between two unknowns
+constexpr double kTouched = 12;     // unknowns of a first fracture
+constexpr double kDifferences = 9;  // of them, that the element resists: columns of the damage
 // Iterations of conjugate gradients preconditioned by the intact body: none broken, one broken.
 constexpr double kQuietIterations = 1, kFractureIterations = 6;
 // By an incomplete factor, for the cube root of the unknowns; a new crack hardly adds to them.
@@ -33,10 +34,18 @@ double seconds(double values_read) {
 
 /// Values read by one solution with `touched` unknowns of damage.
 double solution_values(const FrameShape& s, double touched) {
+  // Forward from the loaded unknowns along their path alone, backward through all of it.
+  if (s.route == Route::factor) return static_cast<double>(s.load_path + s.entries);
   const double both = 2 * static_cast<double>(s.entries);
   const double dense = static_cast<double>(s.kept) * (static_cast<double>(s.loaded) + touched);
   if (s.route == Route::condensed) return dense;
-  return s.route == Route::inverse ? std::min(dense, both) : both;
+  return std::min(dense, both);
+}
+
+/// Seconds of the residual K u - f where no stress is at hand that it could be taken from.
+double plain_check(const FrameShape& s) {
+  const bool deferred = s.route == Route::factor || (s.route == Route::inverse && !s.eager);
+  return deferred && s.stressed == 0 ? kProductSeconds * static_cast<double>(s.elements) : 0;
 }
 
 double solution(const FrameShape& s, double touched, double iterations) {
@@ -56,9 +65,9 @@ double update(const FrameShape& s) {
   if (s.route == Route::cg) return 0;
   if (s.route == Route::factor) {
     const double path = static_cast<double>(s.path);
-    return std::max(seconds(path), 2 * kTouched * path / kFlops);
+    return std::max(seconds(path), 2 * kDifferences * path / kFlops);
   }
-  return seconds(2 * kTouched * kTouched);
+  return seconds(2 * kDifferences * kDifferences);
 }
 
 /// Multiply-adds of a factor: each column of a panel with those after it.
@@ -98,14 +107,14 @@ bool takes_new_factor(std::size_t unknowns, std::size_t elements) {
 FrameCost frame_cost(const FrameShape& s) {
   const bool region = s.route == Route::condensed;
   const double vectors = 6 * static_cast<double>(region ? s.kept : s.unknowns);
-  const double rest = kCall + seconds(vectors) +
+  const double rest = kCall + seconds(vectors) + plain_check(s) +
                       kStressSeconds * static_cast<double>(s.stressed) /
                           static_cast<double>(std::max<std::size_t>(s.threads, 1));
   FrameCost cost;
   cost.quiet_ms = 1e3 * (rest + solution(s, 0, kQuietIterations));
   if (s.damage) {
     cost.fracture_ms =
-        1e3 * (rest + kCall + update(s) + solution(s, 2 * kTouched, kFractureIterations));
+        1e3 * (rest + kCall + update(s) + solution(s, kTouched, kFractureIterations));
   }
   return cost;
 }

@@ -13,15 +13,16 @@ namespace sunder::cpu_reference {
 struct FrameShape {
   Route route = Route::inverse;
   bool eager = false;
-  bool damage = false;       ///< something can be destroyed
-  std::size_t unknowns = 0;  ///< of the body
-  std::size_t kept = 0;      ///< rows of the dense inverse: all, or those of a condensed region
-  std::size_t loaded = 0;    ///< unknowns with a force or a grip
-  std::size_t entries = 0;   ///< of the factor L; 0: conjugate gradients do without
-  std::size_t path = 0;      ///< of them on the elimination path of one element
-  std::size_t elements = 0;  ///< of the body
-  std::size_t stressed = 0;  ///< elements whose stress a frame computes
-  std::size_t threads = 1;   ///< that share the stress
+  bool damage = false;        ///< something can be destroyed
+  std::size_t unknowns = 0;   ///< of the body
+  std::size_t kept = 0;       ///< rows of the dense inverse: all, or those of a condensed region
+  std::size_t loaded = 0;     ///< unknowns with a force or a grip
+  std::size_t entries = 0;    ///< of the factor L; 0: conjugate gradients do without
+  std::size_t path = 0;       ///< of them on the elimination path of one element
+  std::size_t load_path = 0;  ///< of them on the elimination path of the loaded unknowns
+  std::size_t elements = 0;   ///< of the body
+  std::size_t stressed = 0;   ///< elements whose stress a frame computes
+  std::size_t threads = 1;    ///< that share the stress
 };
 
 struct FrameCost {

@@ -108,11 +108,34 @@ class CpuBackend final : public Backend {
     if (intact_) {
       shape.entries = intact_->factor.entries();
       shape.path = intact_->factor.path_entries(an_element_that_can_break());
+      shape.load_path = intact_->factor.path_entries(loaded_by_instruments());
     }
     shape.elements = problem().mesh().tets.size();
     shape.stressed = fields_.stressed();
     shape.threads = fields_.threads();
     return shape;
+  }
+
+  void add_unknowns(Index node, std::vector<Index>& dofs) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (problem().dof(node, axis) != kNone) dofs.push_back(problem().dof(node, axis));
+    }
+  }
+
+  /// Where forces act. A press takes its nodes at a crack when the time has come: an element that
+  /// can break stands for them.
+  std::vector<Index> loaded_by_instruments() const {
+    std::vector<Index> dofs;
+    for (std::size_t i = 0; i < problem().instrument_nodes().size(); ++i) {
+      const auto& action = problem().scene().instruments[i].action;
+      if (std::holds_alternative<Press>(action)) {
+        const auto crack = an_element_that_can_break();
+        dofs.insert(dofs.end(), crack.begin(), crack.end());
+      } else if (std::holds_alternative<Pull>(action)) {
+        for (Index n : problem().instrument_nodes()[i].nodes) add_unknowns(n, dofs);
+      }
+    }
+    return dofs;
   }
 
   /// Unknowns of one: the middle one that the scene itself can destroy, or of all.
@@ -122,11 +145,7 @@ class CpuBackend final : public Backend {
       if (problem().breakable(e)) all.push_back(e);
     }
     const Index e = all.empty() ? problem().tet_count() / 2 : all[all.size() / 2];
-    for (Index n : problem().mesh().tets[e]) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (problem().dof(n, axis) != kNone) dofs.push_back(problem().dof(n, axis));
-      }
-    }
+    for (Index n : problem().mesh().tets[e]) add_unknowns(n, dofs);
     return dofs;
   }
 

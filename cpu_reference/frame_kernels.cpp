@@ -60,7 +60,7 @@ class Frame {
   void deferred() {
     const bool factor = shape_.route == Route::factor;
     if (factor) {
-      add("forward solve", "of the load through the factor, " + values(shape_.entries));
+      add("forward solve", "of the load along its elimination path, " + values(shape_.load_path));
     } else {
       add("load columns",
           std::to_string(shape_.loaded) + " loaded columns of the inverse, " + square(shape_.kept));
