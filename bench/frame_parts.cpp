@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a frame with one fracture spends its time on a deferred route, part by part: the first
-// frames, and those after so many fractures that the base is a factor of the damaged body. The
-// parts of the engine are called as the backend calls them, on one thread with nothing beside it.
+// Where a frame with fractures spends its time on a deferred route, part by part: events of 1, 10
+// and 100 elements of an intact body; the first frames of a tear, element by element; the last
+// frames before a new base, which have the most columns; and those after so many fractures that the
+// base is a factor of the damaged body. The parts of the engine are called as the backend calls
+// them, on one thread with nothing beside it. Rows "frame_cascade" are frame_cascades.hpp's.
+// bench/frames makes the tables of docs/frames.md of all this.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -12,11 +15,13 @@
 #include <map>
 
 #include "cpu_reference/check_terms.hpp"
+#include "cpu_reference/cost_model.hpp"
 #include "engine/deferred.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
 #include "engine/stress_kernel.hpp"
 #include "fem/assembly.hpp"
+#include "frame_cascades.hpp"
 #include "run_rows.hpp"
 #include "sunder/error.hpp"
 #include "tearing_board.hpp"
@@ -96,21 +101,21 @@ class Frames {
     solve(0);
   }
 
-  void destroy() {
-    const std::span<const Index> element = board_.connected(next_ + 1).last(1);
-    ++next_;
+  void destroy(std::size_t count) {
+    next_ += count;
+    const std::span<const Index> elements = board_.connected(next_).last(count);
     const double forward = times_[kForward];
     times_[kUpdate] += us_of([&] {
-      kernel_.destroy(element);
-      if (!deferred_->destroy(element)) throw NumericalError("not definite");
+      kernel_.destroy(elements);
+      if (!deferred_->destroy(elements)) throw NumericalError("not definite");
     });
     times_[kUpdate] -= times_[kForward] - forward;
   }
 
-  /// The next fracture with its frame.
-  Times frame() {
+  /// The next event with its frame.
+  Times frame(std::size_t elements) {
     times_ = {};
-    destroy();
+    destroy(elements);
     // What a frame is content with (frame_check.hpp).
     const double e = 1e-5 * largest_ / of_energy_;
     solve(e * e);
@@ -160,11 +165,22 @@ const TearingBoard& board_of(Index cells) {
   return *board;
 }
 
-/// Which frames: `before` fractures in the base, `over` it, and then `count` that are measured.
+/// Fractures that a base serves, one by one, until the next one is taken: half of them until it is
+/// asked for (deferred_route.cpp).
+std::size_t frames_of_a_base(Index cells) {
+  const TearingBoard& board = board_of(cells);
+  const fem::Factor factor(*board.problem);
+  return 2 * static_cast<std::size_t>(cpu_reference::frames_of_a_factor(
+                 factor.cholesky(), board.problem->mesh().tets.size()));
+}
+
+/// Which frames: `before` fractures in the base, `over` it, and then `count` frames that are
+/// measured, of so many elements each.
 struct Which {
   const char* name;
   bool inverse;
-  std::size_t before, over, count;
+  std::size_t before, over, count, elements = 1;
+  bool up_to_the_next = false;  ///< `over`: all but the last frames that a base serves
 };
 
 /// Least time of each part of each frame, averaged over the frames.
@@ -174,10 +190,10 @@ void parts(benchmark::State& state, Index cells, Which which) {
   double columns = 0, megabytes = 0;
   for (auto _ : state) {
     Frames frames(board_of(cells), which.before, which.inverse);
-    for (std::size_t i = 0; i < which.over; ++i) frames.destroy();
+    for (std::size_t i = 0; i < which.over; ++i) frames.destroy(1);
     columns = megabytes = 0;
     for (Times& t : least) {
-      const Times now = frames.frame();
+      const Times now = frames.frame(which.elements);
       for (std::size_t p = 0; p < kParts; ++p) t[p] = std::min(t[p], now[p]);
       columns += frames.columns() / static_cast<double>(which.count);
     }
@@ -198,20 +214,48 @@ void parts(benchmark::State& state, Index cells, Which which) {
 }  // namespace
 }  // namespace sunder::bench
 
-int main(int argc, char** argv) {
-  using sunder::bench::Which;
-  for (sunder::Index cells : {18, 36, 71}) {
-    for (const Which which :
-         {Which{"inverse_first", true, 0, 0, 5}, Which{"factor_first", false, 0, 0, 5},
-          Which{"after_640", false, 544, 48, 48}}) {
-      if (which.inverse && cells > 36) continue;
-      const std::string name =
-          std::string("frame_parts/") + which.name + "/" + std::to_string(6 * cells * cells);
-      benchmark::RegisterBenchmark(
-          name.c_str(), [=](benchmark::State& s) { sunder::bench::parts(s, cells, which); })
-          ->Iterations(which.inverse && cells > 18 ? 2 : 10)
-          ->Unit(benchmark::kMillisecond);
+namespace sunder::bench {
+namespace {
+
+void add(Index cells, const Which& which) {
+  const std::string name =
+      std::string("frame_parts/") + which.name + "/" + std::to_string(6 * cells * cells);
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& s) {
+                                 Which own = which;
+                                 if (own.up_to_the_next) {
+                                   own.over = frames_of_a_base(cells) - own.count;
+                                 }
+                                 parts(s, cells, own);
+                               })
+      ->Iterations(cells > 71                    ? 3
+                   : which.inverse && cells > 18 ? 2
+                                                 : 10)
+      ->Unit(benchmark::kMillisecond);
+}
+
+void register_rows() {
+  for (Index cells : {18, 36, 71, 141}) {
+    if (cells <= 36) add(cells, {"inverse_first", true, 0, 0, 5});
+    add(cells, {"factor_first", false, 0, 0, 5});
+    add(cells, {"factor_fullest", false, 0, 0, 16, 1, true});
+    add(cells, {"after_640", false, 544, 48, 48});
+    const auto unknowns = static_cast<std::size_t>(board_of(cells).problem->dof_count());
+    for (const auto& [name, elements] :
+         {std::pair{"event_1", 1}, {"event_10", 10}, {"event_100", 100}}) {
+      const auto count = static_cast<std::size_t>(elements);
+      if (!cpu_reference::takes_new_factor(unknowns, count)) {
+        add(cells, {name, false, 0, 0, 1, count});
+      }
     }
   }
+}
+
+}  // namespace
+}  // namespace sunder::bench
+
+int main(int argc, char** argv) {
+  sunder::bench::register_rows();
+  sunder::bench::register_cascades();
   return sunder::bench::run_rows(argc, argv);
 }

@@ -127,6 +127,13 @@ def write_text(path, text):
     os.replace(temporary, path)
 
 
+def renew_section(path, text, begin, end):
+    """Puts a section in the place of the one between its marks. Raises ValueError without them."""
+    old = path.read_text(encoding="utf-8")
+    start, stop = old.index(begin), old.index(end) + len(end)
+    write_text(path, old[:start] + text + old[stop:])
+
+
 def rows_csv(rows):
     """A counter that is called like one of the times takes its place."""
     times = ("min_ms", "median_ms", "cpu_ms")

@@ -12,7 +12,7 @@ import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
-from suite import (accuracy, alone, checks, compare, error_plots, headline, heat_map,  # noqa: E402
+from suite import (accuracy, alone, checks, compare, error_plots, frames, headline, heat_map,  # noqa: E402
                    page, plots, programs, ratios, results, tables, targets)
 
 
@@ -510,6 +510,65 @@ class Readme(unittest.TestCase):
         self.assertGreater(len(targets.targets(made)), 9)
         for entry in targets.targets(made):
             self.assertIn("".join(f"<td>{html.escape(e or 'none')}</td>" for e in entry), shown)
+
+
+def parts_row(which, tets, first):
+    counters = {key: first + i for i, (key, _) in enumerate(frames.PARTS)}
+    return timed(f"frame_parts/{which}/{tets}", frames.PROGRAM, [1.0], columns=9.0, factor_MB=1.7,
+                 all_us=0.0, **counters)
+
+
+class Frames(unittest.TestCase):
+    def rows(self):
+        stages = [key for key, _ in frames.STAGES] + ["all_us"]
+        cascade = {f"{frame}_{key}": 1000.0 * i + j for i, (frame, _) in enumerate(frames.FRAMES)
+                   for j, key in enumerate(stages)}
+        return [parts_row("factor_first", 1944, 10.0), parts_row("after_640", 119286, 2000.0),
+                parts_row("event_10", 1944, 30.0),
+                timed("frame_cascade/condensed/1944", frames.PROGRAM, [1.0], **cascade),
+                timed("stress_plain/1944", "bench_engine", [1.0])]
+
+    def test_a_table_for_each_kind_of_frame_with_parts_that_add_up(self):
+        first, later, events, cascade = frames.tables(self.rows())
+        self.assertEqual(first[1], ["part", "factor: 1,944"])
+        by_part = dict(first[2])
+        self.assertEqual(by_part["all"], str(sum(range(10, 18))))
+        self.assertEqual(dict(later[2])["worst ratios"], "2,007")
+        self.assertEqual(events[1], ["part", "10: 1,944"])
+        self.assertEqual([line[0] for line in cascade[2]],
+                         [f"condensed 1,944, {w}" for w in ("first 5", "median",
+                                                            "slowest hundredth", "last 100")])
+        self.assertEqual(cascade[2][2], ["condensed 1,944, slowest hundredth", "2,005", "2,000",
+                                         "2,001", "2,002", "2,003", "2,004"])
+        self.assertEqual(frames.tables(self.rows()[:1])[0], first)
+
+    def test_the_document_has_the_marks_and_names_the_command(self):
+        text = (BENCH.parent / "docs" / "frames.md").read_text(encoding="utf-8")
+        self.assertEqual((text.count(frames.BEGIN), text.count(frames.END)), (1, 1))
+        self.assertIn("bench/frames --build DIR --write", text)
+
+    def test_a_section_is_renewed_between_its_marks(self):
+        about = {"cpu": "<test>", "cores": 2, "date": "today", "commit": "0", "load_before": 0.1}
+        text = frames.markdown(self.rows(), about)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "frames.md")
+            file.write_text(f"before\n{frames.BEGIN}\nold\n{frames.END}\nafter\n")
+            results.renew_section(file, text, frames.BEGIN, frames.END)
+            self.assertEqual(file.read_text(), f"before\n{text}\nafter\n")
+            file.write_text("no marks")
+            with self.assertRaises(ValueError):
+                results.renew_section(file, text, frames.BEGIN, frames.END)
+
+    def test_the_command_takes_rows_from_a_folder_or_says_that_there_are_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for rows, code in ((self.rows(), 0), ([row("a")], 3)):
+                results.write(folder, outcome(rows))
+                done = subprocess.run([BENCH / "frames", "--results", folder], text=True,
+                                      capture_output=True)
+                self.assertEqual(done.returncode, code)
+                self.assertIn(*(("factor: 1,944", done.stdout) if code == 0 else
+                                ("no row of bench_frame_parts", done.stderr)))
+            self.assertEqual(subprocess.run([BENCH / "frames"], capture_output=True).returncode, 2)
 
 
 class Program(unittest.TestCase):
