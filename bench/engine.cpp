@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine against CHOLMOD: one event of k connected elements and the solution after it, one
-// thread. An event that the library takes a new factor for has one here (cost_model.hpp); rows
-// "forced_" show the update that it leaves. bench/run adds the ratios to the peers' rows when all
-// have run (suite/ratios.py); `error` is the difference to CHOLMOD's refactored solution.
+// thread. The engine's load is new to every event; updown_solve keeps its own. An event that the
+// library takes a new factor for has one here (cost_model.hpp); rows "forced_" show the update that
+// it leaves. bench/run adds the ratios to the peers' rows when all have run (suite/ratios.py);
+// `error` is the difference to CHOLMOD's refactored solution.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -124,31 +125,50 @@ engine::Deferred* deferred_of(Index cells, bool dense) {
   return deferred.get();
 }
 
+/// A load that is new to every event: the one before, the other way round.
+class TurningLoad {
+ public:
+  explicit TurningLoad(const TearingBoard& board) : load{board.load_dofs, board.load_values, {}} {}
+  void turn() {
+    for (double& f : load.forces) f = -f;
+    sign_ = -sign_;
+  }
+  /// The solution as it is under the board's own load.
+  [[nodiscard]] Eigen::VectorXd turned_back(const Eigen::VectorXd& u) const { return sign_ * u; }
+
+  Load load;
+
+ private:
+  double sign_ = 1;
+};
+
 void engine_row(benchmark::State& state, Index cells, std::size_t k, bool dense) {
   const TearingBoard& board = board_of(cells);
   engine::Deferred* deferred = deferred_of(cells, dense);
   if (!deferred) return state.SkipWithError("refused: the inverse is larger than the free memory");
   const auto elements = board.connected(k);
+  TurningLoad turning(board);
   Eigen::VectorXd u;
   measure(
       state,
       [&] {
         if (deferred->events() > 0) deferred->take_back();
+        turning.turn();
       },
       [&] {
         if (!deferred->destroy(elements)) state.SkipWithError("not definite");
-        deferred->solve({board.load_dofs, board.load_values}, {}, u);
+        deferred->solve({turning.load.force_dofs, turning.load.forces}, {}, u);
       });
   state.counters["rank"] = deferred->rank();
   deferred->take_back();
-  note_error(state, cells, k, u);
+  note_error(state, cells, k, turning.turned_back(u));
 }
 
 /// The library's own route, made anew for each event.
 void route_row(benchmark::State& state, Index cells, std::size_t k, bool dense) {
   const TearingBoard& board = board_of(cells);
   const auto elements = board.connected(k);
-  const Load load{board.load_dofs, board.load_values, {}};
+  TurningLoad turning(board);
   std::optional<cpu_reference::DamagedBody> body;
   std::optional<cpu_reference::IntactBody> intact;
   std::unique_ptr<cpu_reference::InverseRoute> route;
@@ -160,15 +180,16 @@ void route_row(benchmark::State& state, Index cells, std::size_t k, bool dense) 
         body.emplace(board.problem);
         intact.emplace(*board.problem, true);
         route = cpu_reference::deferred_route(*body, *intact, dense);
-        route->solve(load, f, u);
+        route->solve(turning.load, f, u);
+        turning.turn();
       },
       [&] {
         body->destroy(elements);
         route->destroy(elements);
-        route->solve(load, f, u);
+        route->solve(turning.load, f, u);
       });
   state.counters["new_bases"] = route->bases() - 1;
-  note_error(state, cells, k, u);
+  note_error(state, cells, k, turning.turned_back(u));
 }
 
 /// Assembly and order of elimination included; CHOLMOD is given the matrix and keeps its order.
