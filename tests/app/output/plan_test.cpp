@@ -114,7 +114,7 @@ TEST(Plan, NamesTheKernelsOfTheRoute) {
       {"inverse", "new base", "on a thread"},
       {"inverse", "forward solve", nullptr},
       {"inverse", "product K u", nullptr},
-      {"factor", "forward solve", "of the load through the factor"},
+      {"factor", "forward solve", "of the load along its elimination path"},
       {"factor", "small update", "along its elimination path"},
       {"factor", "backward solve", "of load and damage"},
       {"factor", "load columns", nullptr},
