@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <optional>
+#include <string>
 
 #include "cpu_reference/cpu_reference.hpp"
 #ifdef SUNDER_GPU
@@ -47,15 +48,13 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 #endif
 }
 
-bool has_gpu() {
-  const auto list = vulkan_devices();
-  return std::any_of(list.begin(), list.end(), [](const DeviceInfo& d) { return d.chosen; });
-}
-
-/// The machine's GPU when there is one and it can do the scene, else the CPU.
+/// The machine's GPU when there is one and it can do the scene, else the CPU. A GPU that is missed
+/// is a warning: a build without the backend and a processor that emulates one miss none.
 CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, const Needs& needs) {
   CreatedBackend created;
-  if (has_gpu()) {
+#ifdef SUNDER_GPU
+  const std::optional<std::string> missing = gpu::missing_gpu();
+  if (!missing) {
     try {
       created.backend = create_vulkan(problem, needs, created.warnings);
       return created;
@@ -63,7 +62,10 @@ CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, c
       created.warnings.push_back(std::string("backend vulkan failed, cpu is used instead: ") +
                                  error.what());
     }
+  } else if (!missing->empty()) {
+    created.warnings.push_back("backend auto found no GPU, cpu is used instead: " + *missing);
   }
+#endif
   created.backend = cpu_reference::create(problem, needs);
   return created;
 }

@@ -25,6 +25,14 @@ class FailoverBackend final : public Backend {
   }
   std::vector<BufferPlan> buffers() const override { return current_->buffers(); }
   std::vector<KernelPlan> kernels() const override { return current_->kernels(); }
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> all = current_->warnings();
+    if (!lost_.empty()) {
+      all.push_back("backend vulkan failed in mid-run, cpu took over from the last frame: " +
+                    lost_ + "; look for a driver's reset in the system log, or use backend cpu");
+    }
+    return all;
+  }
   bool prepares() const override { return current_->prepares(); }
   PreparationReport preparation() const override { return current_->preparation(); }
   void time_passes(bool on) override { current_->time_passes(on); }

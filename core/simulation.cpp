@@ -369,6 +369,7 @@ void Simulation::note(const Finding& finding) {
 
 std::vector<std::string> Simulation::warnings() const {
   std::vector<std::string> all = problem_->warnings();
+  for (std::string& words : backend_->warnings()) all.push_back(std::move(words));
   for (const Finding& found : findings_) {  // instruments may have the same name
     std::string words = sentence(found, problem_->scene());
     if (std::ranges::find(all, words) == all.end()) all.push_back(std::move(words));

@@ -21,6 +21,17 @@ int first_gpu(const std::vector<vulkan::PhysicalDevice>& list) {
   return -1;
 }
 
+constexpr const char* kNoDevice =
+    "no Vulkan driver with a device was found; install one (mesa-vulkan-drivers, say) or use "
+    "backend cpu";
+
+std::vector<vulkan::PhysicalDevice> list_devices(const vulkan::Instance& instance,
+                                                 const vulkan::DeviceProbe& probe) {
+  auto list = vulkan::list_devices(instance);
+  for (auto& device : list) device = vulkan::probed(std::move(device), probe);
+  return list;
+}
+
 std::string megabytes(VkDeviceSize bytes) { return std::to_string(bytes / 1000000) + " MB"; }
 
 DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen) {
@@ -50,13 +61,10 @@ DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen)
 
 }  // namespace
 
-vulkan::PhysicalDevice choose_device(const vulkan::Instance& instance, int asked) {
-  const auto list = vulkan::list_devices(instance);
-  if (list.empty()) {
-    throw DeviceError(
-        "no Vulkan driver with a device was found; install one (mesa-vulkan-drivers, say) or use "
-        "backend cpu");
-  }
+vulkan::PhysicalDevice choose_device(const vulkan::Instance& instance, int asked,
+                                     const vulkan::DeviceProbe& probe) {
+  const auto list = list_devices(instance, probe);
+  if (list.empty()) throw DeviceError(kNoDevice);
   if (asked >= static_cast<int>(list.size())) {
     throw DeviceError("there is no Vulkan device " + std::to_string(asked) + "; devices 0 to " +
                       std::to_string(list.size() - 1) + " exist");
@@ -72,8 +80,9 @@ vulkan::PhysicalDevice choose_device(const vulkan::Instance& instance, int asked
 std::vector<DeviceInfo> devices() {
   std::vector<DeviceInfo> infos;
   std::vector<vulkan::PhysicalDevice> list;
+  const VulkanOptions options = options_from_environment();
   try {
-    list = vulkan::list_devices(vulkan::Instance(options_from_environment().instance));
+    list = list_devices(vulkan::Instance(options.instance), options.probe);
   } catch (const DeviceError&) {
     return infos;  // no loader or no driver: there are no Vulkan devices
   }
@@ -82,6 +91,24 @@ std::vector<DeviceInfo> devices() {
     infos.push_back(describe(list[d], static_cast<int>(d), chosen));
   }
   return infos;
+}
+
+std::optional<std::string> missing_gpu() {
+  std::vector<vulkan::PhysicalDevice> list;
+  const VulkanOptions options = options_from_environment();
+  try {
+    list = list_devices(vulkan::Instance(options.instance), options.probe);
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  if (first_gpu(list) >= 0) return std::nullopt;
+  if (list.empty()) return kNoDevice;
+  for (const auto& device : list) {
+    if (device.is_cpu()) continue;
+    return "the Vulkan device \"" + device.name + "\" cannot be used: " + device.shortcoming() +
+           "; update its driver or use backend cpu";
+  }
+  return "";
 }
 
 }  // namespace sunder::gpu

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <future>
 
 #include "engine/instrument_block.hpp"
@@ -22,9 +20,8 @@ constexpr int kRefinements = 6;
 std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int asked) {
   if (options.lent) return vulkan::borrow_device(*options.lent, options.probe);
   const auto instance = std::make_shared<vulkan::Instance>(options.instance);
-  vulkan::PhysicalDevice physical = choose_device(*instance, asked);
-  physical.float64 = physical.float64 && !options.probe.no_float64;
-  return vulkan::create_device(instance, physical, options.probe);
+  return vulkan::create_device(instance, choose_device(*instance, asked, options.probe),
+                               options.probe);
 }
 
 /// On a thread of its own, while loader, device and pipelines are made ready.
@@ -108,7 +105,7 @@ class VulkanBackend final : public Backend {
     return list;
   }
   std::size_t bytes_read() const { return device_->bytes_read(); }
-  const std::vector<std::string>& warnings() const { return plan_.warnings; }
+  const std::vector<std::string>& plan_warnings() const { return plan_.warnings; }
   Display* display() { return display_.get(); }
 
  private:
@@ -388,15 +385,6 @@ class VulkanBackend final : public Backend {
 
 }  // namespace
 
-VulkanOptions options_from_environment() {
-  VulkanOptions options;
-  const char* validation = std::getenv("SUNDER_VULKAN_VALIDATION");
-  options.instance.validation = validation && std::strcmp(validation, "1") == 0;
-  const char* no_float64 = std::getenv("SUNDER_VULKAN_NO_FLOAT64");
-  options.probe.no_float64 = no_float64 && std::strcmp(no_float64, "1") == 0;
-  return options;
-}
-
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs) {
   return create(std::move(problem), std::move(needs), options_from_environment());
 }
@@ -429,7 +417,7 @@ std::size_t bytes_read(const Backend& backend) {
 
 std::vector<std::string> warnings(const Backend& backend) {
   const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
-  return vulkan_backend ? vulkan_backend->warnings() : std::vector<std::string>{};
+  return vulkan_backend ? vulkan_backend->plan_warnings() : std::vector<std::string>{};
 }
 
 }  // namespace sunder::gpu

@@ -28,12 +28,19 @@ struct VulkanOptions {
 };
 
 /// Options from the environment: SUNDER_VULKAN_VALIDATION=1 turns the validation layers on and
-/// their messages into errors; SUNDER_VULKAN_NO_FLOAT64=1 (for tests) takes shaderFloat64 away.
+/// their messages into errors. For tests: SUNDER_VULKAN_NO_FLOAT64=1 takes shaderFloat64 away, and
+/// SUNDER_VULKAN_PROBE lists what else the device pretends, separated by commas: as_gpu,
+/// no_compute, memory=BYTES, lost=SUBMITS (vulkan::DeviceProbe). Throws UsageError for another
+/// word.
 [[nodiscard]] VulkanOptions options_from_environment();
 
 /// All Vulkan devices of the machine; empty without loader or driver. The one that `auto` would
 /// take is marked; a processor that emulates a GPU never is.
 [[nodiscard]] std::vector<DeviceInfo> devices();
+
+/// Why `auto` finds no GPU, with what to do about it; an empty sentence where there is none to be
+/// missed, for the only devices are processors that emulate one. None: there is a GPU.
+[[nodiscard]] std::optional<std::string> missing_gpu();
 
 /// Creates it for a problem, on the device that the scene names or the first GPU (without one: the
 /// first device). Throws DeviceError: no loader, no driver, no such device, a feature, a route or

@@ -101,7 +101,8 @@ RunResult Laboratory::run(const RunPlan& plan) const {
   result.destroyed = simulation.destroyed();
   result.cracks = simulation.cracks();
   result.backend = simulation.backend().info();
-  result.warnings = simulation.warnings();
+  result.warnings = std::move(created.warnings);
+  for (std::string& text : simulation.warnings()) result.warnings.push_back(std::move(text));
   return result;
 }
 

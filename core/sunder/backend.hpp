@@ -120,6 +120,8 @@ class Backend {
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
   /// What a frame runs, that with a fracture included; what a scene does not need is not there.
   [[nodiscard]] virtual std::vector<KernelPlan> kernels() const = 0;
+  /// What has happened to it since it was created that its caller should know, a sentence each.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 
   /// Turns the device's clock on or off. Off at first: reading it may cost a frame more than the
   /// passes themselves (lavapipe: 15 us each).

@@ -65,7 +65,7 @@ class Simulation {
   [[nodiscard]] Backend& backend() { return *backend_; }
   [[nodiscard]] const std::vector<DestroyedElement>& destroyed() const { return destroyed_; }
   [[nodiscard]] const std::vector<Crack>& cracks() const;
-  /// Problem's warnings, then what happened during the run, each once.
+  /// Problem's warnings, then the backend's, then what happened during the run, each once.
   [[nodiscard]] std::vector<std::string> warnings() const;
 
   /// Force each instrument exerts on the body in the last solve, N; pulls and presses: the force

@@ -41,11 +41,21 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
 
 }  // namespace
 
+PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe) {
+  if (probe.memory > 0) device.memory = probe.memory;
+  if (probe.no_float64) device.float64 = false;
+  if (probe.no_compute) device.compute_family = -1;
+  if (probe.as_gpu && device.is_cpu()) device.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  return device;
+}
+
 std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
-                                      const PhysicalDevice& physical, DeviceProbe probe) {
+                                      const PhysicalDevice& unprobed, DeviceProbe probe) {
+  const PhysicalDevice physical = probed(unprobed, probe);
   const std::string shortcoming = physical.shortcoming();
   if (!shortcoming.empty()) {
-    throw DeviceError("the Vulkan device \"" + physical.name + "\" cannot be used: " + shortcoming);
+    throw DeviceError("the Vulkan device \"" + physical.name + "\" cannot be used: " + shortcoming +
+                      "; update its driver or use backend cpu");
   }
   DeviceHandles handles;
   handles.device = create_handle(*instance, physical);
@@ -66,7 +76,6 @@ Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<M
       probe_(probe),
       timing_(physical_.timestamp_bits > 0),
       queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock) {
-  if (probe_.memory > 0) physical_.memory = probe_.memory;
   VkCommandPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool.queueFamilyIndex = handles_.family;

@@ -47,7 +47,15 @@ struct DeviceProbe {
   VkDeviceSize memory = 0;
   /// The device claims to lack shaderFloat64, and does not get it.
   bool no_float64 = false;
+  /// The device claims to have no compute queue.
+  bool no_compute = false;
+  /// A processor that emulates a GPU passes for a discrete one: `auto` takes it, and the host
+  /// reaches device-local memory by copies alone.
+  bool as_gpu = false;
 };
+
+/// What a device claims to be.
+[[nodiscard]] PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe);
 
 class Device {
  public:

@@ -54,7 +54,8 @@ std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe)
   handles.lock = lent.lock;
   handles.int64 = lent.int64;
   physical.int64 = lent.int64;
-  physical.float64 = lent.float64 && !probe.no_float64;
+  physical.float64 = lent.float64;
+  physical = probed(std::move(physical), probe);
   handles.vk = load_functions(vk.GetDeviceProcAddr, lent.device);
   vk.GetPhysicalDeviceMemoryProperties(lent.physical, &handles.memory);
   // Validation is the host's; its messages go to the host.

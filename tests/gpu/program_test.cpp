@@ -3,8 +3,10 @@
 // on machines without a loader, without a driver, without a GPU.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 
 #include "app/output/program.hpp"
@@ -52,6 +54,14 @@ struct Board {
   }
   [[nodiscard]] nlohmann::ordered_json summary(const std::string& out) const {
     return read_json(folder / out / "summary.json");
+  }
+  /// Those of its warnings that speak of a backend.
+  [[nodiscard]] std::vector<std::string> of_backend(const std::string& out) const {
+    std::vector<std::string> found;
+    const auto all = summary(out)["warnings"].get<std::vector<std::string>>();
+    std::copy_if(all.begin(), all.end(), std::back_inserter(found),
+                 [](const std::string& text) { return text.find("backend") != std::string::npos; });
+    return found;
   }
 };
 
@@ -154,6 +164,11 @@ void expect_cpu_only(const std::string& reason) {
   const Outcome automatic = board.run("auto", {});
   EXPECT_EQ(automatic.exit_code, 0) << automatic.err;
   EXPECT_EQ(board.summary("auto")["device"]["backend"], "cpu");
+  const auto warnings = board.of_backend("auto");
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].find("backend auto found no GPU, cpu is used instead: " + reason), 0u)
+      << warnings[0];
+  EXPECT_NE(warnings[0].find("; install "), std::string::npos) << warnings[0];
   const Outcome devices = run_program({"devices"});
   EXPECT_EQ(devices.exit_code, 0);
   EXPECT_EQ(devices.out.find("vulkan"), std::string::npos) << devices.out;
@@ -178,6 +193,64 @@ TEST_F(Program, AutoTakesTheCpuWhereTheOnlyDeviceIsAProcessor) {
   const Board board;
   ASSERT_EQ(board.run("auto", {}).exit_code, 0);
   EXPECT_EQ(board.summary("auto")["device"]["backend"], "cpu");
+  EXPECT_TRUE(board.of_backend("auto").empty());
+}
+
+TEST_F(Program, AutoTakesAGpu) {
+  const Variable probe("SUNDER_VULKAN_PROBE", "as_gpu");
+  const Board board;
+  ASSERT_EQ(board.run("auto", {}).exit_code, 0);
+  EXPECT_EQ(board.summary("auto")["device"]["backend"], "vulkan");
+  EXPECT_TRUE(board.of_backend("auto").empty());
+}
+
+TEST_F(Program, AutoSaysWhyAGpuThatIsThereIsNotUsed) {
+  struct Fault {
+    const char *probe, *reason;
+  };
+  const Fault faults[] = {
+      {"as_gpu,no_compute", "cannot be used: it has no compute queue; update its driver or use"},
+      {"as_gpu,memory=100000", " bytes on the device"},
+      {"as_gpu,lost=0", "the Vulkan device was lost in"},
+  };
+  const Board board;
+  ASSERT_EQ(board.run("cpu", {"--backend", "cpu"}).exit_code, 0);
+  for (const Fault& fault : faults) {
+    SCOPED_TRACE(fault.probe);
+    const Variable probe("SUNDER_VULKAN_PROBE", fault.probe);
+    const Outcome run = board.run("auto", {});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(board.summary("auto")["device"]["backend"], "cpu");
+    EXPECT_EQ(board.events("auto"), board.events("cpu"));
+    const auto warnings = board.of_backend("auto");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find(", cpu is used instead: "), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find(fault.reason), std::string::npos) << warnings[0];
+    // By name it is an error.
+    const Outcome asked = board.run("vulkan", {"--backend", "vulkan"});
+    EXPECT_EQ(asked.exit_code, 4);
+    EXPECT_NE(asked.err.find(fault.reason), std::string::npos) << asked.err;
+  }
+}
+
+TEST_F(Program, ADeviceLostInMidRunIsAWarningAndNothingElseChanges) {
+  const Board board;
+  ASSERT_EQ(board.run("cpu", {"--backend", "cpu"}).exit_code, 0);
+  int submits = 2;
+  for (bool in_mid_run = false; !in_mid_run; submits *= 2) {
+    ASSERT_LT(submits, 1000);
+    const Variable probe("SUNDER_VULKAN_PROBE", "as_gpu,lost=" + std::to_string(submits));
+    const Outcome run = board.run("auto", {});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(board.events("auto"), board.events("cpu"));
+    EXPECT_EQ(board.summary("auto")["device"]["backend"], "cpu");
+    const auto warnings = board.of_backend("auto");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("the Vulkan device was lost in"), std::string::npos);
+    EXPECT_NE(warnings[0].find("or use backend cpu"), std::string::npos);
+    in_mid_run = warnings[0].find("failed in mid-run, cpu took over") != std::string::npos;
+  }
+  EXPECT_EQ(read_csv(board.folder / "auto" / "frames.csv").size(), 6u);  // the head and five steps
 }
 
 }  // namespace

@@ -67,7 +67,8 @@ TEST(VulkanWithoutDriver, DISABLED_AutoTakesTheCpuAndVulkanSaysWhy) {
   scene.solver.backend = "auto";
   const auto created = create_backend(std::make_shared<const Problem>(scene), all_needs());
   EXPECT_EQ(created.backend->info().backend, "cpu");
-  EXPECT_TRUE(created.warnings.empty());
+  ASSERT_EQ(created.warnings.size(), 1u);
+  EXPECT_EQ(created.warnings.front(), "backend auto found no GPU, cpu is used instead: " + message);
 }
 
 TEST(VulkanMissing, DriverIsNamed) {
@@ -216,6 +217,15 @@ TEST_F(VulkanDevices, AnUnknownShaderVariantIsAnError) {
   EXPECT_NE(output.find("SUNDER_SHADER_VARIANT is \"fast\"; it may be gpu or lvp"),
             std::string::npos)
       << output;
+}
+
+TEST(VulkanMissing, AnUnknownProbeIsAnError) {
+  for (const char* probe : {"as_cpu", "memory", "memory=", "memory=1k", "lost=x", "as_gpu,,"}) {
+    const auto [output, code] =
+        run_again("SUNDER_VULKAN_PROBE=" + std::string(probe), "VulkanVariant.*");
+    EXPECT_NE(code, 0) << probe;
+    EXPECT_NE(output.find("SUNDER_VULKAN_PROBE has \""), std::string::npos) << output;
+  }
 }
 
 /// A device under validation, with the kernel `add` on two buffers.
