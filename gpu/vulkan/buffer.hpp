@@ -62,7 +62,8 @@ class Buffer {
   [[nodiscard]] std::byte* begin() const { return static_cast<std::byte*>(mapped_) + guard_; }
   void create();
   void write_guards();
-  void check_guards() const;
+  [[nodiscard]] bool guard_intact(std::size_t at) const;
+  void check_guards() const noexcept;
   void allocate(Placement placement);
   void release() noexcept;
 

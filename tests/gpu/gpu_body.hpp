@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cpu_reference/cpu_reference.hpp"
+#include "gpu/choose_device.hpp"
 #include "gpu/vulkan_backend.hpp"
 #include "sunder/simulation.hpp"
 #include "support/accuracy.hpp"
@@ -33,6 +34,20 @@ class WithVulkan : public Base {
 
 /// Everywhere but under a sanitizer.
 inline bool validated() { return std::getenv("SUNDER_WITHOUT_VALIDATION") == nullptr; }
+
+/// Sentinels round every buffer, and what SUNDER_VULKAN_PROBE lists: with as_gpu a program's tests
+/// run on memory that the host reaches by copies alone.
+inline vulkan::DeviceProbe watched_probe() {
+  vulkan::DeviceProbe probe = gpu::options_from_environment().probe;
+  probe.guard_bytes = 256;
+  return probe;
+}
+
+/// The device that a scene would get.
+inline std::unique_ptr<vulkan::Device> watched_device(
+    const std::shared_ptr<const vulkan::Instance>& instance, const vulkan::DeviceProbe& probe) {
+  return vulkan::create_device(instance, gpu::choose_device(*instance, kNone, probe), probe);
+}
 
 /// One way to run a scene on Vulkan.
 struct Way {
@@ -85,7 +100,7 @@ class WatchedBackend {
   WatchedBackend(Scene scene, const Way& way) : problem(vulkan_problem(std::move(scene), way)) {
     options.instance.validation = validated();
     options.instance.messages = messages_;
-    options.probe.guard_bytes = 256;
+    options.probe = watched_probe();
     options.variant = way.variant;
     options.panel_bytes = way.panel_bytes;
     options.probe.no_float64 = !way.float64;

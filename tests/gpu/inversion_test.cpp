@@ -19,7 +19,7 @@ struct OnDevice {
     vulkan::InstanceOptions options;
     options.validation = true;
     const auto instance = std::make_shared<vulkan::Instance>(options);
-    device = vulkan::create_device(instance, vulkan::list_devices(*instance).front(), {-1, 256});
+    device = watched_device(instance, watched_probe());
     factory = std::make_unique<gpu::KernelFactory>(*device, variant, fp64);
   }
   Eigen::MatrixXd invert(const fem::SparseMatrix& lower, std::size_t panel_bytes) {

@@ -31,7 +31,7 @@ class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
     options.validation = validated();
     options.messages = messages_;
     const auto instance = std::make_shared<vulkan::Instance>(options);
-    device_ = vulkan::create_device(instance, vulkan::list_devices(*instance).front(), {-1, 256});
+    device_ = watched_device(instance, watched_probe());
     factory_ = std::make_unique<gpu::KernelFactory>(*device_, GetParam().variant, GetParam().fp64);
   }
   void TearDown() override {

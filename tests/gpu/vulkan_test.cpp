@@ -230,13 +230,15 @@ TEST(VulkanMissing, AnUnknownProbeIsAnError) {
 
 /// A device under validation, with the kernel `add` on two buffers.
 struct Adder {
-  explicit Adder(std::size_t guard_bytes = 0, bool validation = true) {
+  explicit Adder(std::size_t guard_bytes = 0, bool validation = true, bool unmapped = false) {
     vulkan::InstanceOptions options;
     options.validation = validation;
     options.messages = messages;
     instance = std::make_shared<vulkan::Instance>(options);
-    device =
-        vulkan::create_device(instance, vulkan::list_devices(*instance).front(), {-1, guard_bytes});
+    vulkan::DeviceProbe probe = watched_probe();
+    probe.guard_bytes = guard_bytes;
+    probe.as_gpu = probe.as_gpu || unmapped;
+    device = watched_device(instance, probe);
     const Access access[] = {Access::storage, Access::storage};
     const std::uint32_t group[] = {shaders::kGroup};
     kernel = std::make_unique<vulkan::Kernel>(
@@ -314,18 +316,48 @@ TEST_F(VulkanWatch, ABarrierIsEnough) {
 }
 
 TEST_F(VulkanWatch, AWriteBehindABufferIsNoticed) {
-  Adder adder(256);
-  const std::vector<double> ones(256, 1.0);
-  adder.from.write(std::span<const double>(ones));
-  vulkan::Commands commands(*adder.device);
-  commands.begin();
-  commands.dispatch(*adder.binding, 128u, 2);  // 128 packs of four doubles; 64 are there
-  commands.end();
-  commands.submit();
-  adder.binding.reset();
-  adder.to = Buffer();
-  ASSERT_EQ(adder.messages->texts.size(), 1u);
-  EXPECT_NE(adder.messages->texts.front().find("wrote outside a buffer"), std::string::npos);
+  for (const bool unmapped : {false, true}) {
+    SCOPED_TRACE(unmapped ? "unmapped" : "mapped");
+    Adder adder(256, true, unmapped);
+    const std::vector<double> ones(256, 1.0);
+    adder.from.write(std::span<const double>(ones));
+    vulkan::Commands commands(*adder.device);
+    commands.begin();
+    commands.dispatch(*adder.binding, 128u, 2);  // 128 packs of four doubles; 64 are there
+    commands.end();
+    commands.submit();
+    adder.binding.reset();
+    adder.to = Buffer();
+    ASSERT_EQ(adder.messages->texts.size(), 1u);
+    EXPECT_NE(adder.messages->texts.front().find("wrote outside a buffer"), std::string::npos);
+  }
+}
+
+/// Sentinels before a buffer, where no kernel reaches: a copy changes them.
+TEST_F(VulkanWatch, AWriteBeforeABufferIsNoticed) {
+  for (const bool unmapped : {false, true}) {
+    SCOPED_TRACE(unmapped ? "unmapped" : "mapped");
+    Adder adder(256, true, unmapped);
+    vulkan::Commands commands(*adder.device);
+    commands.begin();
+    commands.copy(adder.from.handle(), adder.from.offset(), adder.to.handle(), 252, 4);
+    commands.end();
+    commands.submit();
+    adder.binding.reset();
+    adder.to = Buffer();
+    EXPECT_EQ(adder.messages->texts.size(), 1u);
+  }
+}
+
+TEST_F(VulkanWatch, WhatTheHostWritesAndReadsGoesByCopiesWhereMemoryIsNotMapped) {
+  Adder adder(256, true, true);
+  const std::size_t before = adder.device->queue().submits();
+  const std::vector<double> ones(10, 1.0);
+  adder.to.write(std::span<const double>(ones), 100);
+  std::vector<double> read(256);
+  adder.to.read(std::span<double>(read));
+  EXPECT_EQ(adder.device->queue().submits(), before + 2);
+  for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(read[i], i >= 100 && i < 110 ? 1 : 0) << i;
 }
 
 TEST_F(VulkanWatch, EachResultHasItsSentence) {
