@@ -56,6 +56,16 @@ std::string_view without_variant(std::string_view name) {
   return name;
 }
 
+/// What a device that is not lavapipe may lack for its variant.
+void require_lvp(const vulkan::PhysicalDevice& device) {
+  const char* missing = !device.int64              ? "64-bit integers"
+                        : !device.subgroup_known() ? "subgroups of a known size"
+                                                   : nullptr;
+  if (!missing) return;
+  throw UsageError("SUNDER_SHADER_VARIANT is \"lvp\", but the device \"" + device.name +
+                   "\" lacks " + missing + "; use gpu");
+}
+
 }  // namespace
 
 std::vector<KernelPlan> describe(const std::multiset<std::string>& pipelines) {
@@ -89,6 +99,7 @@ std::unique_ptr<vulkan::Kernel> KernelFactory::make(std::string_view name, bool 
   code.push_bytes = static_cast<std::uint32_t>(push_bytes);
   const std::uint32_t constants[] = {group, device_.physical().subgroup, choice};
   code.constants = constants;
+  if (emulated()) code.subgroup = device_.physical().subgroup;  // shaders/reduce.glsl
   return std::make_unique<vulkan::Kernel>(device_, code);
 }
 
@@ -101,7 +112,10 @@ Variant choose_variant(const vulkan::PhysicalDevice& device) {
   if (asked && *asked) {
     const std::string_view name = asked;
     if (name == "gpu") return Variant::gpu;
-    if (name == "lvp") return Variant::lvp;
+    if (name == "lvp") {
+      require_lvp(device);
+      return Variant::lvp;
+    }
     throw UsageError("SUNDER_SHADER_VARIANT is \"" + std::string(name) +
                      "\"; it may be gpu or lvp");
   }

@@ -93,7 +93,7 @@ class KernelFactory {
 [[nodiscard]] std::vector<KernelPlan> describe(const std::multiset<std::string>& pipelines);
 
 /// lvp on lavapipe, gpu elsewhere; SUNDER_SHADER_VARIANT=gpu|lvp overrides. Throws UsageError for
-/// another value.
+/// another value, and for lvp where the device lacks what it needs.
 [[nodiscard]] Variant choose_variant(const vulkan::PhysicalDevice& device);
 
 }  // namespace sunder::gpu

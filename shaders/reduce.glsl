@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reductions in a fixed order: subgroup first. `lvp` leaves one result for every subgroup to the
 // summary, for a barrier on lavapipe makes every subgroup a coroutine; `gpu` folds the subgroups'
-// results in shared memory and leaves one for every workgroup.
+// results in shared memory and leaves one for every workgroup, whatever a subgroup's size: drivers choose
+// it kernel by kernel. Only `lvp` counts on kSubgroup, which it asks for (gpu/vulkan/kernel.cpp).
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
-layout(constant_id = 1) const uint kSubgroup = 8u;  // invocations of a subgroup
-const uint kSubgroups = kGroup / kSubgroup;
-
 #ifdef SUNDER_LVP
-const uint kParts = kSubgroups;
+layout(constant_id = 1) const uint kSubgroup = 8u;  // invocations of a subgroup
+const uint kParts = kGroup / kSubgroup;
 // Where this invocation's group of invocations leaves its result, and which of them does so.
 uint part() { return gl_WorkGroupID.x * kParts + gl_SubgroupID; }
 bool leads_part() { return subgroupElect(); }

@@ -29,8 +29,17 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
   VkPhysicalDeviceFeatures features{};
   features.shaderFloat64 = physical.float64 ? VK_TRUE : VK_FALSE;
   features.shaderInt64 = physical.int64 ? VK_TRUE : VK_FALSE;
+  VkPhysicalDeviceSubgroupSizeControlFeatures control{};
+  control.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES;
+  control.subgroupSizeControl = VK_TRUE;
+  const char* extension = VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME;
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  if (physical.subgroup_on_request) {
+    info.pNext = &control;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = &extension;
+  }
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &features;

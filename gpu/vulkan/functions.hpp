@@ -12,6 +12,7 @@ namespace sunder::vulkan {
 #define SUNDER_VK_INSTANCE_FUNCTIONS(X)     \
   X(DestroyInstance)                        \
   X(EnumeratePhysicalDevices)               \
+  X(EnumerateDeviceExtensionProperties)     \
   X(GetPhysicalDeviceProperties2)           \
   X(GetPhysicalDeviceFeatures2)             \
   X(GetPhysicalDeviceMemoryProperties)      \

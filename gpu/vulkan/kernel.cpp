@@ -83,6 +83,10 @@ void Kernel::create_pipeline(const KernelCode& code) {
   info.stage.module = shader;
   info.stage.pName = "main";
   info.stage.pSpecializationInfo = &specialization;
+  VkPipelineShaderStageRequiredSubgroupSizeCreateInfo size{};
+  size.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO;
+  size.requiredSubgroupSize = code.subgroup;
+  if (code.subgroup > 0 && device_.physical().subgroup_on_request) info.stage.pNext = &size;
   info.layout = layout_;
   const VkResult result = device_.vk().CreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1,
                                                               &info, nullptr, &pipeline_);

@@ -25,6 +25,7 @@ struct KernelCode {
   std::uint32_t push_bytes = 0;
   std::span<const std::uint32_t> constants;  ///< specialization constants, in order of id
   std::string name = {};
+  std::uint32_t subgroup = 0;  ///< invocations that it counts on, 0: any number
 };
 
 class Kernel {

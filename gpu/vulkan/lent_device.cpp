@@ -55,6 +55,7 @@ std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe)
   handles.int64 = lent.int64;
   physical.int64 = lent.int64;
   physical.float64 = lent.float64;
+  physical.subgroup_on_request = false;  // the host need not have enabled it
   physical = probed(std::move(physical), probe);
   handles.vk = load_functions(vk.GetDeviceProcAddr, lent.device);
   vk.GetPhysicalDeviceMemoryProperties(lent.physical, &handles.memory);

@@ -2,9 +2,42 @@
 #include "gpu/vulkan/physical_device.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 namespace sunder::vulkan {
 namespace {
+
+bool offers(const InstanceFunctions& vk, VkPhysicalDevice device, std::string_view extension) {
+  std::uint32_t count = 0;
+  vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> list(count);
+  vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, list.data());
+  return std::ranges::any_of(list, [&](const VkExtensionProperties& offered) {
+    return extension == offered.extensionName;
+  });
+}
+
+/// Without the extension nobody knows which sizes a driver chooses from.
+void read_subgroup_control(const InstanceFunctions& vk, PhysicalDevice& device) {
+  if (!offers(vk, device.handle, VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME)) return;
+  VkPhysicalDeviceSubgroupSizeControlProperties sizes{};
+  sizes.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &sizes;
+  vk.GetPhysicalDeviceProperties2(device.handle, &properties);
+  VkPhysicalDeviceSubgroupSizeControlFeatures control{};
+  control.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES;
+  VkPhysicalDeviceFeatures2 features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  features.pNext = &control;
+  vk.GetPhysicalDeviceFeatures2(device.handle, &features);
+  device.subgroup_varies = sizes.minSubgroupSize != sizes.maxSubgroupSize;
+  device.subgroup_on_request =
+      control.subgroupSizeControl &&
+      (sizes.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
+      sizes.minSubgroupSize <= device.subgroup && device.subgroup <= sizes.maxSubgroupSize;
+}
 
 void read_properties(const InstanceFunctions& vk, PhysicalDevice& device) {
   VkPhysicalDeviceDriverProperties driver{};
@@ -83,6 +116,7 @@ PhysicalDevice describe_device(const InstanceFunctions& vk, VkPhysicalDevice han
   PhysicalDevice device;
   device.handle = handle;
   read_properties(vk, device);
+  read_subgroup_control(vk, device);
   read_features(vk, device);
   read_memory(vk, device);
   read_queues(vk, device);

@@ -26,9 +26,14 @@ struct PhysicalDevice {
   std::uint32_t largest_texel_buffer = 0;  ///< [texels]
   std::uint32_t subgroup = 0;              ///< invocations of a subgroup
   bool subgroup_arithmetic = true;         ///< sums and extrema over one, in compute kernels
+  /// A compute kernel may ask for subgroups of this size (VK_EXT_subgroup_size_control).
+  bool subgroup_on_request = false;
+  bool subgroup_varies = true;  ///< a driver may choose another size for a kernel that does not ask
 
   /// A processor that emulates a GPU (lavapipe, say).
   [[nodiscard]] bool is_cpu() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  /// Kernels of known subgroups (the lvp variant's) can be had.
+  [[nodiscard]] bool subgroup_known() const { return subgroup_on_request || !subgroup_varies; }
   /// Memory is one for host and device.
   [[nodiscard]] bool unified() const {
     return is_cpu() || type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;

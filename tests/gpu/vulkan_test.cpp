@@ -360,6 +360,42 @@ TEST_F(VulkanWatch, WhatTheHostWritesAndReadsGoesByCopiesWhereMemoryIsNotMapped)
   for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(read[i], i >= 100 && i < 110 ? 1 : 0) << i;
 }
 
+// Kernels with sums over subgroups, of both variants, where a subgroup has four invocations.
+TEST_F(VulkanWatch, SubgroupsOfAnotherSizeGiveTheSame) {
+  const auto [output, code] =
+      run_again("LP_NATIVE_VECTOR_WIDTH=128",
+                "*Products.DenseAndFew*:*Kernels.StressAndResidual*:*CgKernels.*:VulkanSubgroup.*");
+  EXPECT_EQ(code, 0) << output;
+  EXPECT_NE(output.find("[  PASSED  ] 11 tests"), std::string::npos) << output;
+}
+
+// In a process of the test above.
+TEST(VulkanSubgroup, DISABLED_OfFour) {
+  const Adder adder;
+  const vulkan::PhysicalDevice& physical = adder.device->physical();
+  EXPECT_EQ(physical.subgroup, 4u);
+  EXPECT_TRUE(physical.subgroup_on_request);
+}
+
+TEST_F(VulkanWatch, TheVariantOfKnownSubgroupsIsRefusedWhereADriverChoosesThem) {
+  vulkan::PhysicalDevice physical;
+  physical.name = "GPU";
+  physical.int64 = true;
+  EXPECT_EQ(gpu::choose_variant(physical), gpu::Variant::gpu);
+  setenv("SUNDER_SHADER_VARIANT", "lvp", 1);
+  try {
+    static_cast<void>(gpu::choose_variant(physical));
+    ADD_FAILURE() << "not refused";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("\"GPU\" lacks subgroups of a known size; use gpu"),
+              std::string::npos)
+        << error.what();
+  }
+  physical.subgroup_on_request = true;
+  EXPECT_EQ(gpu::choose_variant(physical), gpu::Variant::lvp);
+  unsetenv("SUNDER_SHADER_VARIANT");
+}
+
 TEST_F(VulkanWatch, EachResultHasItsSentence) {
   EXPECT_NO_THROW(vulkan::check(VK_SUCCESS, "a call"));
   EXPECT_THROW(vulkan::check(VK_ERROR_DEVICE_LOST, "a call"), DeviceLost);
