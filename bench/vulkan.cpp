@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Vulkan backend's kernels, frames and start, each beside the CPU reference in the same run.
 //   bench_vulkan [--results=DIR] [--big] [--device=N] [Google Benchmark's options]
-// --results writes vulkan.csv and vulkan.md. --big adds what only a large GPU does in good time:
-// updates up to n = 50,000, a million tetrahedra.
+// --results writes vulkan.csv and vulkan.md, anew after every row. --big adds what only a large GPU
+// does in good time: updates up to n = 50,000, a million tetrahedra.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -12,6 +12,7 @@
 #include <iostream>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "gpu/choose_device.hpp"
 #include "gpu/vulkan/commands.hpp"
@@ -58,7 +59,8 @@ double Gpu::copy_gigabytes_per_second() const {
 
 void add_row(const std::string& name, const std::function<void(benchmark::State&)>& run,
              double seconds) {
-  const auto guarded = [=](benchmark::State& state) {
+  const auto guarded = [=, begun = false](benchmark::State& state) mutable {
+    if (!std::exchange(begun, true)) std::cerr << "bench_vulkan: " << name << "\n";
     try {
       run(state);
     } catch (const Error& error) {
@@ -107,11 +109,16 @@ Options take_options(int& argc, char** argv) {
 void write_results(const std::filesystem::path& folder, const Table& table,
                    const Machine& machine) {
   std::filesystem::create_directories(folder);
-  std::ofstream csv(folder / "vulkan.csv"), markdown(folder / "vulkan.md");
-  table.write_csv(csv, machine);
-  table.write_markdown(markdown, machine);
-  if (!csv.flush() || !markdown.flush())
-    throw std::runtime_error("cannot write " + folder.string());
+  const auto replace = [&](const char* name, const auto& write) {
+    const auto part = folder / (std::string(name) + ".part");
+    std::ofstream out(part);
+    write(out);
+    out.close();
+    if (!out) throw std::runtime_error("cannot write " + part.string());
+    std::filesystem::rename(part, folder / name);
+  };
+  replace("vulkan.csv", [&](std::ostream& out) { table.write_csv(out, machine); });
+  replace("vulkan.md", [&](std::ostream& out) { table.write_markdown(out, machine); });
 }
 
 }  // namespace
@@ -128,14 +135,19 @@ int main(int argc, char** argv) try {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   const Gpu gpu(options.device);
   Table table;
+  const Machine machine = gpu.machine();  // while nothing else holds its memory
+  const auto write = [&] {
+    if (!options.results.empty()) write_results(options.results, table, machine);
+  };
+  table.on_row(write);
   const Rows rows{gpu, table, options.big, options.device};
   register_kernel_rows(rows);
   register_system_rows(rows);
   register_frame_rows(rows);
-  benchmark::AddCustomContext("device", gpu.machine().device);
-  benchmark::AddCustomContext("driver", gpu.machine().driver);
+  benchmark::AddCustomContext("device", machine.device);
+  benchmark::AddCustomContext("driver", machine.driver);
   benchmark::RunSpecifiedBenchmarks();
-  if (!options.results.empty()) write_results(options.results, table, gpu.machine());
+  write();
 } catch (const std::exception& error) {
   std::cerr << "bench_vulkan: " << error.what() << "\n";
   return 1;

@@ -58,6 +58,11 @@ class Frames {
     backend_->solve();
     benchmark::DoNotOptimize(backend_->stress());
   }
+  /// That a frame moves on its device at least; 0: there is none.
+  [[nodiscard]] double bytes(bool fracture) const {
+    const gpu::FrameCost cost = gpu::predicted(*backend_);
+    return fracture ? cost.fracture_bytes : cost.quiet_bytes;
+  }
   void prepare_fracture() {
     if (broken_ == crack_.size()) renew();
   }
@@ -80,6 +85,7 @@ void board_frame(benchmark::State& state, const Rows& rows, const std::string& n
   Frames vulkan(board("vulkan", fp64, rows.device, update)), cpu(board("cpu", true, kNone, update));
   Work work;
   work.warm_up = true;
+  work.bytes = vulkan.bytes(fracture);
   if (fracture) {
     work.prepare = [&] { vulkan.prepare_fracture(); };
     work.run = [&] { vulkan.fracture(); };

@@ -51,7 +51,9 @@ double real_bytes(bool fp64) { return fp64 ? 8 : 4; }
 /// X += Z Z^T with its update vectors, as an eager event does it: rank 6 an element, 12 dofs each.
 void low_rank(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
               Index n, Index rank) {
-  Inverse inverse(rows.gpu, fp64, n);
+  auto& inverse =
+      rows.gpu.kept<Inverse>("inverse/" + precision(fp64) + "/" + std::to_string(n),
+                             [&] { return std::make_shared<Inverse>(rows.gpu, fp64, n); });
   std::vector<Index> dofs(static_cast<std::size_t>(2 * rank));
   for (std::size_t t = 0; t < dofs.size(); ++t) {
     dofs[t] = static_cast<Index>(t) * (n / static_cast<Index>(dofs.size()));
@@ -110,10 +112,16 @@ struct Product {
   vulkan::Commands commands;
 };
 
+Product& kept_product(const Rows& rows, bool fp64, const Problem& problem, Read read) {
+  return rows.gpu.kept<Product>(
+      "product/" + precision(fp64) + "/" + std::to_string(problem.dof_count()) + as_read(read),
+      [&] { return std::make_shared<Product>(rows.gpu, fp64, problem, read); });
+}
+
 void dense_product(benchmark::State& state, const Rows& rows, const std::string& name, bool fp64,
                    Index cells, Read read) {
   const auto problem = plain_board(cells);
-  Product product(rows.gpu, fp64, *problem, read);
+  Product& product = kept_product(rows, fp64, *problem, read);
   product.record([&] { return product.inverse.matrix.record_dense(product.commands, 0); });
   Work work;
   work.warm_up = true;
@@ -135,7 +143,7 @@ void few_columns(benchmark::State& state, const Rows& rows, const std::string& n
                  Index cells, Read read) {
   constexpr Index kColumns = 12;
   const auto problem = plain_board(cells);
-  Product product(rows.gpu, fp64, *problem, read);
+  Product& product = kept_product(rows, fp64, *problem, read);
   const Index n = problem->dof_count();
   gpu::Loaded load;
   for (Index c = 0; c < kColumns; ++c) {
@@ -233,13 +241,10 @@ void register_kernel_rows(const Rows& rows) {
                              "/rank" + std::to_string(rank);
     add_row(name, [=, &rows](auto& s) { low_rank(s, rows, name, fp64, n, rank); });
   };
-  for (const bool fp64 : {false, true}) {
-    update(fp64, 2100, 6);
-    update(fp64, 6000, 6);
-  }
-  update(false, 2100, 24);
-  update(false, 2100, 60);
-  update(true, 2100, 60);  // what the inversion is made of
+  for (const Index rank : {6, 24, 60}) update(false, 2100, rank);
+  update(false, 6000, 6);
+  for (const Index rank : {6, 60}) update(true, 2100, rank);  // 60: what the inversion is made of
+  update(true, 6000, 6);
   if (rows.big) {
     // Sizes that a device cannot hold are skipped with its error.
     for (const Index n : {2000, 20000, 50000}) {

@@ -22,11 +22,30 @@ class Gpu {
   /// Measured once, over buffers far larger than caches; read plus written.
   [[nodiscard]] double copy_gigabytes_per_second() const;
 
+  /// What rows of one `name` work on, made once: Google Benchmark calls a row several times, and an
+  /// inverse of 50,000 unknowns takes the host minutes. The next name's replaces it.
+  template <class T, class Make>
+  [[nodiscard]] T& kept(const std::string& name, const Make& make) const {
+    if (name != kept_name_) {
+      release();
+      kept_ = std::shared_ptr<T>(make());
+      kept_name_ = name;
+    }
+    return *static_cast<T*>(kept_.get());
+  }
+  /// Gives its memory to rows that need their own.
+  void release() const {
+    kept_name_.clear();
+    kept_.reset();
+  }
+
  private:
   std::unique_ptr<vulkan::Device> device_;
   gpu::Variant variant_;
   std::unique_ptr<gpu::KernelFactory> k32_, k64_;
   mutable double copy_ = 0;
+  mutable std::string kept_name_;
+  mutable std::shared_ptr<void> kept_;
 };
 
 struct Rows {

@@ -44,6 +44,7 @@ class AssembledCg {
 /// Time per iteration, of a solution to ten digits.
 void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::string& name,
                          Index cells) {
+  rows.gpu.release();
   const auto problem = plain_board(cells);
   Fields fields(rows.gpu.kernels(true), *problem, field_needs(), {0, true});
   gpu::CgRoute route(rows.gpu.kernels(true), *problem, fields);
@@ -86,6 +87,7 @@ void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::s
 /// q = K p with its sum p^T q, from 3 x 3 blocks in fp64.
 void stiffness_product(benchmark::State& state, const Rows& rows, const std::string& name,
                        Index cells) {
+  rows.gpu.release();
   const auto problem = plain_board(cells);
   const gpu::KernelFactory& kernels = rows.gpu.kernels(true);
   vulkan::Device& device = rows.gpu.device();
@@ -125,6 +127,7 @@ void stiffness_product(benchmark::State& state, const Rows& rows, const std::str
 
 /// X from K, in fp64; beside it the host's, from its sparse factor.
 void inversion(benchmark::State& state, const Rows& rows, const std::string& name, Index cells) {
+  rows.gpu.release();
   const auto problem = plain_board(cells);
   const gpu::KernelFactory& kernels = rows.gpu.kernels(true);
   const fem::SparseMatrix lower = fem::assemble_lower(*problem, {});

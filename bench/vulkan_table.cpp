@@ -143,7 +143,9 @@ Row& Table::measure(benchmark::State& state, const std::string& name, const Work
   row.reference_ms = kept.reference_ms;
   if (work.reference && !(row.reference_ms > 0)) row.reference_ms = reference_ms(work);
   show(state, row);
-  return kept = row;
+  kept = row;
+  on_row_();
+  return kept;
 }
 
 // Google Benchmark calls a row several times until it has found its number of iterations; the last

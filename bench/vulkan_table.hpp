@@ -43,6 +43,8 @@ class Table {
  public:
   /// Runs `work` for as long as `state` wants, then the reference, and keeps the row.
   Row& measure(benchmark::State& state, const std::string& name, const Work& work);
+  /// Called after every row: a run that is ended has left what was measured by then.
+  void on_row(std::function<void()> act) { on_row_ = std::move(act); }
   void write_csv(std::ostream& out, const Machine& machine) const;
   void write_markdown(std::ostream& out, const Machine& machine) const;
 
@@ -50,6 +52,7 @@ class Table {
   [[nodiscard]] Row& row_of(const std::string& name);
   void show(benchmark::State& state, const Row& row) const;
   std::vector<Row> rows_;
+  std::function<void()> on_row_ = [] {};
 };
 
 }  // namespace sunder::bench

@@ -42,26 +42,31 @@ class Work {
  public:
   explicit Work(const Rates& rates) : rates_(rates) {}
   void submit() { seconds_ += rates_.submit; }
-  void pass(double bytes) { seconds_ += rates_.dispatch + bytes / rates_.bytes; }
+  void pass(double bytes) { passes(1, bytes); }
+  void passes(double dispatches, double bytes) {
+    seconds_ += dispatches * rates_.dispatch + bytes / rates_.bytes;
+    bytes_ += bytes;
+  }
   void host(double bytes) { seconds_ += bytes / rates_.host_bytes; }
   void seconds(double s) { seconds_ += s; }
   [[nodiscard]] double milliseconds() const { return 1e3 * seconds_; }
+  [[nodiscard]] double bytes() const { return bytes_; }
 
  private:
   Rates rates_;
-  double seconds_ = 0;
+  double seconds_ = 0, bytes_ = 0;
 };
 
 class Frame {
  public:
   Frame(const FrameShape& shape, const Rates& rates) : s_(shape), rates_(rates), work_(rates) {}
 
-  [[nodiscard]] double quiet() {
+  [[nodiscard]] const Work& quiet() {
     solve(0, s_.grips > 0);
-    return work_.milliseconds();
+    return work_;
   }
 
-  [[nodiscard]] double with_fracture() {
+  [[nodiscard]] const Work& with_fracture() {
     const double rows = static_cast<double>(s_.rows);
     work_.seconds(rates_.host_event);
     if (s_.eager) {
@@ -75,7 +80,7 @@ class Frame {
     }
     solve(kTouched, true);
     if (s_.eager || s_.cg) check();
-    return work_.milliseconds();
+    return work_;
   }
 
  private:
@@ -143,7 +148,7 @@ class Frame {
   void iterate(double iterations) {
     const double nodes = static_cast<double>(s_.rows) / 3;
     const double bytes = static_cast<double>(s_.stiffness_bytes) + kIterationBytes * nodes;
-    work_.seconds(iterations * (kIterationDispatches * rates_.dispatch + bytes / rates_.bytes));
+    work_.passes(iterations * kIterationDispatches, iterations * bytes);
   }
 
   /// du by the whole inverse or by conjugate gradients, and its stress.
@@ -171,8 +176,14 @@ class Frame {
 FrameCost frame_cost(const FrameShape& shape, const vulkan::PhysicalDevice& device) {
   const Rates of_device = rates(device);
   FrameCost cost;
-  cost.quiet_ms = Frame(shape, of_device).quiet();
-  if (shape.damage) cost.fracture_ms = Frame(shape, of_device).with_fracture();
+  Frame quiet(shape, of_device), fracture(shape, of_device);
+  const Work& of_quiet = quiet.quiet();
+  cost.quiet_ms = of_quiet.milliseconds();
+  cost.quiet_bytes = of_quiet.bytes();
+  if (!shape.damage) return cost;
+  const Work& of_fracture = fracture.with_fracture();
+  cost.fracture_ms = of_fracture.milliseconds();
+  cost.fracture_bytes = of_fracture.bytes();
   return cost;
 }
 

@@ -27,6 +27,8 @@ struct FrameShape {
 struct FrameCost {
   double quiet_ms = 0;
   double fracture_ms = 0;  ///< 0: nothing can be destroyed
+  // What the passes on the device read and write at least.
+  double quiet_bytes = 0, fracture_bytes = 0;
 };
 
 [[nodiscard]] FrameCost frame_cost(const FrameShape& shape, const vulkan::PhysicalDevice& device);

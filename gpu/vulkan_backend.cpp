@@ -7,7 +7,6 @@
 
 #include "engine/instrument_block.hpp"
 #include "gpu/choose_device.hpp"
-#include "gpu/cost_model.hpp"
 #include "gpu/device_body.hpp"
 #include "gpu/frame_check.hpp"
 #include "sunder/error.hpp"
@@ -65,7 +64,7 @@ class VulkanBackend final : public Backend {
     info.update = needs().damage ? body_->route().update() : "none";
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
-    const FrameCost cost = frame_cost(shape(), device_->physical());
+    const FrameCost cost = predicted();
     info.quiet_ms = cost.quiet_ms;
     info.fracture_ms = cost.fracture_ms;
     return info;
@@ -95,6 +94,7 @@ class VulkanBackend final : public Backend {
     return times;
   }
 
+  FrameCost predicted() const { return frame_cost(shape(), device_->physical()); }
   DeviceUse device_use() const {
     return {device_->held_bytes(), device_->most_bytes(), device_->queue().submits(),
             device_->pipelines()};
@@ -403,6 +403,11 @@ Display* display_of(Backend& backend) {
 DeviceUse device_use(const Backend& backend) {
   const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
   return vulkan_backend ? vulkan_backend->device_use() : DeviceUse{};
+}
+
+FrameCost predicted(const Backend& backend) {
+  const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
+  return vulkan_backend ? vulkan_backend->predicted() : FrameCost{};
 }
 
 std::vector<Index> over_yield(const Backend& backend) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu/cost_model.hpp"
 #include "gpu/kernels.hpp"
 #include "gpu/passes/display.hpp"
 #include "gpu/vulkan/commands.hpp"
@@ -60,6 +61,9 @@ struct DeviceUse {
   int pipelines = 0;           ///< created so far
 };
 [[nodiscard]] DeviceUse device_use(const Backend& backend);
+
+/// What a frame of such a backend will take, and the bytes that its passes move; else nothing.
+[[nodiscard]] FrameCost predicted(const Backend& backend);
 
 /// Live breakable elements at or over yield after the last solve, ascending, as the device listed
 /// them: only they cross to the host. Of a backend that create() returned; else empty.

@@ -67,6 +67,20 @@ TEST(DeviceCostModel, AnEagerUpdateIsBoundByTheInverse) {
   EXPECT_LT(ratio, 16);
 }
 
+// Of an element: shape 96 bytes, corners 16, state 16, the
+// displacement of four nodes 128, stress 8 values; f - K u reads the stiffness; columns are fp64.
+TEST(DeviceCostModel, CountsTheBytesOfAFrame) {
+  FrameShape shape = board(1024);
+  const auto gpu = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
+  const double columns = 6 * 1024 * 8;
+  const double state = 1024 * (96 + 16 + 16 + 128 + 8 * 4);
+  EXPECT_EQ(frame_cost(shape, gpu).quiet_bytes, columns + state);
+  // 12 unknowns more, in u = X f and in the columns' products with f - K u.
+  EXPECT_EQ(frame_cost(shape, gpu).fracture_bytes, 3 * columns + state + 500 * 1024 + 3 * columns);
+  shape.real_bytes = 8;
+  EXPECT_EQ(frame_cost(shape, gpu).quiet_bytes, columns + state + 1024 * 8 * 4);
+}
+
 TEST(DeviceCostModel, AGpuIsQuickerOnLargeBodies) {
   const FrameCost lavapipe = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_CPU));
   const FrameCost gpu = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU));
