@@ -122,10 +122,12 @@ void Device::add_time(const char* pass, double milliseconds) {
 
 void Device::submit(VkCommandBuffer commands) {
   check_messages();
-  if (probe_.submits_until_lost == 0) check(VK_ERROR_DEVICE_LOST, "a submit (injected fault)");
+  const bool lost = probe_.submits_until_lost == 0;
+  if (lost && !probe_.lost_in_wait) check(VK_ERROR_DEVICE_LOST, "a submit (injected fault)");
   if (probe_.submits_until_lost > 0) --probe_.submits_until_lost;
   queue_.submit(commands);
   queue_.wait();
+  if (lost) check(VK_ERROR_DEVICE_LOST, "a wait (injected fault)");
   check_messages();
 }
 

@@ -41,6 +41,8 @@ struct PassTime {
 struct DeviceProbe {
   /// After so many submits every further one reports a lost device. Negative: never.
   int submits_until_lost = -1;
+  /// Such a submit is taken and done, and the wait for it reports the loss.
+  bool lost_in_wait = false;
   /// Sentinel bytes before and after every buffer, a multiple of 256; a changed one is a message.
   std::size_t guard_bytes = 0;
   /// The device claims to have no more memory than this. 0: what it has.

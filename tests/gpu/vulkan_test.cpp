@@ -396,6 +396,31 @@ TEST_F(VulkanWatch, TheVariantOfKnownSubgroupsIsRefusedWhereADriverChoosesThem) 
   unsetenv("SUNDER_SHADER_VARIANT");
 }
 
+TEST_F(VulkanWatch, ADeviceLostWhileItWorksIsNoticedByTheWait) {
+  Adder adder;
+  vulkan::DeviceFunctions vk = adder.device->vk();
+  VkQueue handle = VK_NULL_HANDLE;
+  vk.GetDeviceQueue(adder.device->handle(),
+                    static_cast<std::uint32_t>(adder.device->physical().compute_family), 0,
+                    &handle);
+  vk.WaitForFences = [](VkDevice, std::uint32_t, const VkFence*, VkBool32, std::uint64_t) {
+    return VK_ERROR_DEVICE_LOST;
+  };
+  vulkan::Queue queue(vk, adder.device->handle(), handle);
+  VkSubmitInfo nothing{};
+  nothing.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  queue.submit(nothing, VK_NULL_HANDLE);
+  try {
+    queue.wait();
+    ADD_FAILURE() << "no DeviceLost was thrown";
+  } catch (const DeviceLost& error) {
+    EXPECT_NE(std::string(error.what()).find("was lost in vkWaitForFences"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(queue.submits(), 0u);
+  vk.DeviceWaitIdle(adder.device->handle());
+}
+
 TEST_F(VulkanWatch, EachResultHasItsSentence) {
   EXPECT_NO_THROW(vulkan::check(VK_SUCCESS, "a call"));
   EXPECT_THROW(vulkan::check(VK_ERROR_DEVICE_LOST, "a call"), DeviceLost);
