@@ -32,6 +32,10 @@ class CgRoute final : public DeviceRoute {
   std::vector<BufferPlan> buffers() const override;
   std::vector<vulkan::PassTime> pass_times() const override { return commands_.pass_times(); }
 
+  /// Sizes of the dispatches of an iteration, three words for each of kCgSizes kinds: the device
+  /// sets them to zero where it is done.
+  [[nodiscard]] const vulkan::Buffer& dispatch_sizes() const { return arguments_; }
+
  private:
   void create_kernels(const Fields& fields);
   /// correction = K^-1 r, to a share of the first r^T M r; with a guess, or of u's energy if that

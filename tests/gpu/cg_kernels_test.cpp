@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // K p by the blocked matrix of route cg, intact and with destroyed elements patched in place,
 // against the assembled stiffness.
+#include <algorithm>
+#include <array>
 #include <random>
 
 #include "fem/assembly.hpp"
+#include "gpu/cg_route.hpp"
 #include "gpu/passes/block_matrix.hpp"
 #include "gpu/passes/fields.hpp"
 #include "gpu_body.hpp"
@@ -38,8 +41,23 @@ class Multiply {
     commands_.begin();
     commands_.dispatch(*binding_, groups_);
     commands_.end();
+    return result(p.size());
+  }
+  /// What q holds after a dispatch of a size from a buffer; it held ones before.
+  std::vector<double> of_size(const vulkan::Buffer& sizes, std::size_t offset) {
+    const std::vector<double> ones(q_.bytes() / sizeof(double), 1.0);
+    q_.write(std::span<const double>(ones));
+    p_.fill_zero();
+    commands_.begin();
+    commands_.dispatch_indirect(*binding_, sizes, offset);
+    commands_.end();
+    return result(ones.size()).q;
+  }
+
+ private:
+  Result result(std::size_t values) {
     commands_.submit();
-    Result result{std::vector<double>(p.size()), 0};
+    Result result{std::vector<double>(values), 0};
     q_.read(std::span<double>(result.q));
     std::vector<double> sums(parts_);
     sums_.read(std::span<double>(sums));
@@ -47,7 +65,6 @@ class Multiply {
     return result;
   }
 
- private:
   std::uint32_t groups_, parts_;
   vulkan::Buffer p_, q_, sums_;
   std::unique_ptr<vulkan::Kernel> kernel_;
@@ -107,6 +124,38 @@ TEST_P(CgKernels, MultiplyByTheDamagedStiffness) {
     EXPECT_NEAR(pq, x.dot(expected),
                 (units + static_cast<double>(x.size())) * kEps64 * x.cwiseAbs().dot(size));
   }
+}
+
+/// The iterations recorded beyond the last one that is needed do nothing.
+TEST_P(CgKernels, DispatchesBeyondConvergenceAreEmpty) {
+  Scene scene;
+  scene.mesh = structured_board({7, 5, 1});
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, 9.9, -1), Vec3(11, 11, 2)}, Axes{7}});
+  const Problem problem(scene);
+  gpu::Fields fields(*factory_, problem, all_needs(), {0, true});
+  gpu::CgRoute route(*factory_, problem, fields);
+  std::vector<double> force(fields.rows(), 0.0);
+  const Load load{{0}, {1e-3}, {}};
+  force[0] = load.forces.front();
+  fields.set_load(force, {});
+  const int iterations = route.solve(load, true);
+  EXPECT_GT(iterations, 0);
+  EXPECT_NE(iterations % 64, 0) << "the recorded iterations were all needed";
+
+  std::array<std::uint32_t, 3 * shaders::kCgSizes> sizes{};
+  route.dispatch_sizes().read(std::span<std::uint32_t>(sizes));
+  Multiply multiply(*device_, *factory_, fields, fields.matrix());
+  for (std::size_t kind = 0; kind < shaders::kCgSizes; ++kind) {
+    EXPECT_EQ(sizes[3 * kind], 0u) << "kind " << kind;
+    const auto q = multiply.of_size(route.dispatch_sizes(), 12 * kind);
+    EXPECT_EQ(std::count(q.begin(), q.end(), 1.0), std::ssize(q)) << "kind " << kind;
+  }
+  // The same kernel by a size that is not zero.
+  vulkan::Buffer one(*device_, 12, vulkan::Placement::host);
+  std::fill_n(one.mapped<std::uint32_t>(), 3, 1u);
+  const auto q = multiply.of_size(one, 0);
+  EXPECT_EQ(std::count(q.begin(), q.end(), 0.0), 4 * shaders::kGroup);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CgKernels,
