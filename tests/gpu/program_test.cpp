@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <sstream>
 
 #include "app/output/program.hpp"
 
@@ -145,6 +149,95 @@ TEST_F(Program, GivesTheSameBytesAgain) {
           << file << " in " << precision;
     }
   }
+}
+
+const char* const kPasses[] = {"solve", "stress", "residual", "estimate", "refine", "update"};
+
+/// ms_gpu_* of a run's steps, by pass; checked to be numbers that fit into the step.
+std::map<std::string, std::vector<double>> gpu_times(const std::filesystem::path& frames) {
+  const auto rows = read_csv(frames);
+  const auto column = [&](const std::string& name) {
+    const auto found = std::find(rows.front().begin(), rows.front().end(), name);
+    EXPECT_NE(found, rows.front().end()) << name;
+    return static_cast<std::size_t>(found - rows.front().begin());
+  };
+  std::map<std::string, std::vector<double>> times;
+  for (std::size_t step = 1; step < rows.size(); ++step) {
+    double sum = 0;
+    for (const char* pass : kPasses) {
+      const std::string& cell = rows[step].at(column(std::string("ms_gpu_") + pass));
+      const double ms = std::strtod(cell.c_str(), nullptr);
+      EXPECT_FALSE(cell.empty()) << pass;
+      EXPECT_TRUE(std::isfinite(ms) && ms >= 0) << pass << ": " << cell;
+      sum += times[pass].emplace_back(ms);
+    }
+    // The passes lie within the step, whose clock is another one.
+    const double total = std::strtod(rows[step].at(column("ms_total")).c_str(), nullptr);
+    EXPECT_LE(sum, 1.05 * total + 0.1) << "step " << step;
+  }
+  return times;
+}
+
+TEST_F(Program, TellsTheDevicesTimeOfEachPass) {
+  struct Ran {
+    std::vector<std::string> options;
+    std::vector<std::string> passes;  ///< that some step of the torn board runs
+  };
+  const Ran all[] = {
+      {{"--precision", "fp32"}, {"residual"}},
+      {{"--precision", "fp64", "--update", "eager", "--route", "inverse"}, {"estimate", "update"}},
+      {{"--precision", "fp64", "--route", "cg"}, {"residual", "estimate"}},
+  };
+  const Board board;
+  for (Ran ran : all) {
+    SCOPED_TRACE(ran.options.back());
+    ran.options.insert(ran.options.end(), {"--backend", "vulkan"});
+    const Outcome run = board.run("vulkan", ran.options);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    auto times = gpu_times(board.folder / "vulkan" / "frames.csv");
+    for (const char* pass : {"solve", "stress"}) {
+      ASSERT_EQ(times[pass].size(), 5u);
+      for (double ms : times[pass]) EXPECT_GT(ms, 0) << pass;
+    }
+    for (const std::string& pass : ran.passes) {
+      EXPECT_GT(*std::max_element(times[pass].begin(), times[pass].end()), 0) << pass;
+    }
+  }
+}
+
+TEST_F(Program, LeavesTheDevicesTimesEmptyOnTheCpu) {
+  const Board board;
+  ASSERT_EQ(board.run("cpu", {"--backend", "cpu"}).exit_code, 0);
+  const auto rows = read_csv(board.folder / "cpu" / "frames.csv");
+  ASSERT_EQ(rows.size(), 6u);
+  for (std::size_t c = 0; c < rows[0].size(); ++c) {
+    if (rows[0][c].find("ms_gpu_") != 0) continue;
+    for (std::size_t step = 1; step < rows.size(); ++step) EXPECT_EQ(rows[step][c], "");
+  }
+}
+
+TEST_F(Program, PlanMeasuresThePassesOfTheFirstSteps) {
+  const Board board;
+  const Outcome plan =
+      run_program({"plan", board.board.scene.string(), "--measure", "--backend", "vulkan"});
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  const std::size_t measured = plan.out.find("Measured [ms], the first steps\n");
+  ASSERT_NE(measured, std::string::npos) << plan.out;
+  std::istringstream lines(plan.out.substr(measured));
+  int steps = 0, devices = 0;
+  for (std::string line; std::getline(lines, line);) {
+    steps += line.find("  step ") == 0 && line.find(", total ") != std::string::npos;
+    if (line.find("    device ") != 0) continue;
+    ++devices;
+    for (const std::string pass : {"solve", "stress"}) {
+      const std::size_t at = line.find(pass + " ");
+      ASSERT_NE(at, std::string::npos) << line;
+      const double ms = std::strtod(line.c_str() + at + pass.size(), nullptr);
+      EXPECT_TRUE(std::isfinite(ms) && ms > 0) << line;
+    }
+  }
+  EXPECT_EQ(steps, 5) << plan.out;
+  EXPECT_EQ(devices, 5) << plan.out;
 }
 
 TEST_F(Program, RunsUnderTheValidationLayerHere) {
