@@ -30,9 +30,10 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
   std::size_t bytes = base.bytes;
   std::uint32_t capacity = 0;
   const std::size_t grips = problem.gripped_dofs().size();
-  if (options.eager) {
-    if (grips > 0) bytes += DenseInverse::planned_pick(grips, grips);
-  } else {
+  auto picked = static_cast<std::size_t>(options.on_device ? DenseInverse::diagonal_block(n) : 0);
+  if (options.eager) picked = std::max(picked, grips);
+  if (picked > 0) bytes += DenseInverse::planned_pick(picked, picked);
+  if (!options.eager) {
     capacity = ExactColumns::planned_capacity(kernels.device().physical(), rows,
                                               static_cast<Index>(grips));
     bytes += ExactColumns::planned_bytes(rows, capacity);
@@ -41,8 +42,8 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
       std::size_t{base.chunks + base.panels + capacity / shaders::kChunk} * rows * sizeof(double);
   if (!options.on_device) return bytes + sums;
   // While it is computed: the fp64 matrix beside the stored one, before the rest exists.
-  const auto swept = DenseInverse::planned(kernels.in_fp64(), n, rows, options.panel_bytes);
-  return std::max(bytes + sums, base.bytes + swept.bytes);
+  return std::max(bytes + sums,
+                  base.bytes + planned_inversion_bytes(kernels, n, rows, options.panel_bytes));
 }
 
 InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,

@@ -26,8 +26,7 @@ class InverseRoute final : public DeviceRoute {
   InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
                std::shared_ptr<const HostInverse> intact, const InverseOptions& options);
 
-  /// Device bytes that the route begins with, before they exist (a page of small things aside
-  /// while the inverse is computed there).
+  /// Device bytes that the route begins with, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
                                                  const Problem& problem,
                                                  const InverseOptions& options);

@@ -35,6 +35,15 @@ double largest_diagonal(const fem::SparseMatrix& lower) {
 
 }  // namespace
 
+std::size_t planned_inversion_bytes(const KernelFactory& kernels, Index n, std::uint32_t rows,
+                                    std::size_t panel_bytes) {
+  const KernelFactory exact = kernels.in_fp64();
+  const auto block = static_cast<std::uint32_t>(std::min(kBlock, n));
+  return DenseInverse::planned(exact, n, rows, panel_bytes).bytes +
+         DenseInverse::planned_pick(block, block) +
+         DenseInverse::planned_update(exact, rows, block, block);
+}
+
 // With B = A - I and the columns k of a block, whose pivot is D = L L^T = B_kk + I, the update
 // B -= Y Y^T with Y = B(:, k) L^-T leaves A - A_k D^-1 A_k^T outside the block, A_k D^-1 in its
 // columns (and rows), and I - D^-1 where they meet: one step of Gauss-Jordan as a single low-rank

@@ -14,4 +14,8 @@ namespace sunder::gpu {
 void invert_on_device(const KernelFactory& kernels, const fem::SparseMatrix& lower,
                       std::uint32_t rows, std::size_t panel_bytes, DenseInverse& inverse);
 
+/// Device bytes of that beside `inverse`, before they exist.
+[[nodiscard]] std::size_t planned_inversion_bytes(const KernelFactory& kernels, Index n,
+                                                  std::uint32_t rows, std::size_t panel_bytes);
+
 }  // namespace sunder::gpu

@@ -259,6 +259,14 @@ std::size_t DenseInverse::planned_pick(std::size_t rows, std::size_t columns) {
   return Buffer::padded(2 * (rows + columns) * 4) + Buffer::padded(2 * rows * columns * 8);
 }
 
+std::size_t DenseInverse::planned_update(const KernelFactory& kernels, std::uint32_t rows,
+                                         std::uint32_t dofs, std::uint32_t rank) {
+  const std::size_t padded_rank = round_up(rank, shaders::kRankBlock);
+  return Buffer::padded(dofs * sizeof(Index)) +
+         Buffer::padded(dofs * padded_rank / shaders::kRankBlock * 8 * sizeof(double)) +
+         Buffer::padded(padded_rank * rows * kernels.real_bytes());
+}
+
 void DenseInverse::reserve_pick(std::size_t dofs, std::size_t values) {
   if (!pick_) {
     pick_ = kernels_.make("pick", {Reads::plain, Reads::plain, Reads::plain},
@@ -410,11 +418,11 @@ void DenseInverse::take_complement(const DenseInverse& other, double scale) {
 }
 
 std::vector<double> DenseInverse::diagonal() {
-  constexpr Index kBlock = 128;
+  const Index side = diagonal_block(n_);
   std::vector<double> values;
   std::vector<Index> dofs;
-  for (Index first = 0; first < n_; first += kBlock) {
-    dofs.resize(static_cast<std::size_t>(std::min(kBlock, n_ - first)));
+  for (Index first = 0; first < n_; first += side) {
+    dofs.resize(static_cast<std::size_t>(std::min(side, n_ - first)));
     std::iota(dofs.begin(), dofs.end(), first);
     const Eigen::VectorXd block = pick(dofs, dofs).diagonal();
     values.insert(values.end(), block.begin(), block.end());

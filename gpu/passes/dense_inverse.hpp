@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -61,6 +62,11 @@ class DenseInverse {
 
   /// Bytes that the first pick() of such a block takes.
   [[nodiscard]] static std::size_t planned_pick(std::size_t rows, std::size_t columns);
+  /// Side of the blocks that diagonal() picks.
+  [[nodiscard]] static Index diagonal_block(Index n) { return std::min<Index>(128, n); }
+  /// Of update() by a V of this shape.
+  [[nodiscard]] static std::size_t planned_update(const KernelFactory& kernels, std::uint32_t rows,
+                                                  std::uint32_t dofs, std::uint32_t rank);
 
   /// Fills the matrix from the host.
   void upload(const Columns& columns);

@@ -97,6 +97,7 @@ void Buffer::allocate(Placement placement) {
           ? device_->memory_type(needed.memoryTypeBits, visible, VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
           : device_->memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
                                  map ? visible : 0);
+  device_->count_allocation();
   const std::string purpose = "allocating " + std::to_string(bytes_) + " bytes";
   check(vk.AllocateMemory(device_->handle(), &info, nullptr, &memory_), purpose.c_str());
   check(vk.BindBufferMemory(device_->handle(), handle_, memory_, 0), "vkBindBufferMemory");

@@ -54,6 +54,8 @@ struct DeviceProbe {
   /// A processor that emulates a GPU passes for a discrete one: `auto` takes it, and the host
   /// reaches device-local memory by copies alone.
   bool as_gpu = false;
+  /// Counts the device's allocations of memory, where given.
+  std::size_t* allocations = nullptr;
 };
 
 /// What a device claims to be.
@@ -118,6 +120,9 @@ class Device {
   void forget_pipeline(const std::string& name) noexcept {
     const auto it = living_.find(name);
     if (it != living_.end()) living_.erase(it);
+  }
+  void count_allocation() {
+    if (probe_.allocations) ++*probe_.allocations;
   }
 
   /// Throws DeviceError when `bytes` more than the device's memory are asked for.

@@ -54,14 +54,30 @@ Scene small_scene(bool gripped) {
   return scene;
 }
 
-std::string refusal(const std::shared_ptr<const Problem>& problem,
-                    const gpu::VulkanOptions& options) {
+/// Why a problem is refused, before anything is allocated; empty: it is not.
+std::string refusal(const std::shared_ptr<const Problem>& problem, gpu::VulkanOptions options) {
+  std::size_t allocations = 0;
+  options.probe.allocations = &allocations;
   try {
     static_cast<void>(gpu::create(problem, needs_with(true), options));
   } catch (const DeviceError& error) {
+    EXPECT_EQ(allocations, 0u);
     return error.what();
   }
+  EXPECT_GT(allocations, 0u);
   return {};
+}
+
+/// Taken where the device has `bytes`, refused by name where it has one less.
+void expect_refused_under(std::size_t bytes, const std::shared_ptr<const Problem>& problem,
+                          gpu::VulkanOptions options) {
+  options.probe.memory = bytes;
+  EXPECT_EQ(refusal(problem, options), "");
+  options.probe.memory = bytes - 1;
+  const std::string message = refusal(problem, options);
+  EXPECT_NE(message.find("needs " + std::to_string(bytes) + " bytes"), std::string::npos)
+      << message;
+  EXPECT_NE(message.find("which has " + std::to_string(bytes - 1)), std::string::npos) << message;
 }
 
 std::vector<Way> ways_of_all_routes() {
@@ -78,17 +94,64 @@ TEST_F(DeviceUse, MemoryIsKnownToTheByteBeforeItIsAllocated) {
   for (const bool gripped : {false, true}) {
     for (const Way& way : ways_of_all_routes()) {
       const auto problem = problem_for(small_scene(gripped), way);
+      const gpu::VulkanOptions options = watched(way);
+      expect_refused_under(gpu::device_use(*gpu::create(problem, needs_with(true), options)).bytes,
+                           problem, options);
+    }
+  }
+}
+
+/// Three rows of cells can tear, of 20.
+Scene organ() {
+  Scene scene;
+  scene.mesh = structured_board({14, 20, 1, 50, 50, 2.5}, [](const Vec3& x) {
+    return x.y() > 22.5 && x.y() < 30 ? "tissue" : "organ";
+  });
+  scene.materials = {{"tissue", {5, 0.4, 2.0}}, {"organ", {5, 0.4, std::nullopt}}};
+  scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
+  return scene;
+}
+
+TEST_F(DeviceUse, MemoryOfACondensedSceneIsKnownToTheByteBeforeItIsAllocated) {
+  for (Way way : all_ways()) {
+    way.route = Route::condensed;
+    SCOPED_TRACE(name_of(way));
+    const auto problem = problem_for(organ(), way);
+    gpu::VulkanOptions options = watched(way);
+    options.probe.no_float64 = !way.float64;
+    const std::size_t bytes =
+        gpu::device_use(*gpu::create(problem, needs_with(true), options)).bytes;
+    expect_refused_under(bytes, problem, options);
+    options.probe.memory = 1000;  // not even for the region's inverse
+    const std::string message = refusal(problem, options);
+    EXPECT_EQ(message.find("route condensed needs "), 0u) << message;
+    EXPECT_NE(message.find(" bytes for "), std::string::npos) << message;
+    EXPECT_NE(message.find(" has 1000; use route cg"), std::string::npos) << message;
+  }
+}
+
+TEST_F(DeviceUse, MemoryOfAnInversionOnTheDeviceIsKnownBeforeItIsAllocated) {
+  for (const Precision precision : {Precision::fp32, Precision::fp64}) {
+    for (const Update update : {Update::deferred, Update::eager}) {
+      const Way way{gpu::Variant::lvp, precision, update};
+      SCOPED_TRACE(name_of(way));
+      const auto problem = problem_for(small_scene(true), way);
       gpu::VulkanOptions options = watched(way);
-      const std::size_t bytes =
-          gpu::device_use(*gpu::create(problem, needs_with(true), options)).bytes;
-      options.probe.memory = bytes;
-      EXPECT_EQ(refusal(problem, options), "");
-      options.probe.memory = bytes - 1;
+      options.invert_on_device = true;
+      const std::size_t most =
+          gpu::device_use(*gpu::create(problem, needs_with(true), options)).most_bytes;
+      options.probe.memory = most / 2;
       const std::string message = refusal(problem, options);
-      EXPECT_NE(message.find("needs " + std::to_string(bytes) + " bytes"), std::string::npos)
-          << message;
-      EXPECT_NE(message.find("which has " + std::to_string(bytes - 1)), std::string::npos)
-          << message;
+      const std::size_t at = message.find("needs ");
+      ASSERT_NE(at, std::string::npos) << message;
+      const std::size_t needed = std::stoull(message.substr(at + 6));
+      // The matrix that is swept in fp64 beside the one that is kept.
+      const auto n = static_cast<std::size_t>(problem->dof_count());
+      EXPECT_GE(needed, n * n * (8 + (precision == Precision::fp64 ? 8 : 4)));
+      if (!options.probe.as_gpu) {
+        EXPECT_EQ(needed, most);
+      }
+      expect_refused_under(needed, problem, options);
     }
   }
 }
