@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// K p by the blocked matrix of route cg, intact and with destroyed elements patched in place,
-// against the assembled stiffness.
+// Every kernel of route cg by itself: K p by the blocked matrix, intact and with destroyed elements
+// patched in place, against the assembled stiffness; the rest against plain sums, within bounds
+// derived from their lengths.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <limits>
+#include <numeric>
 #include <random>
 
 #include "fem/assembly.hpp"
@@ -72,7 +76,43 @@ class Multiply {
   vulkan::Commands commands_;
 };
 
-class CgKernels : public Kernels {};
+class CgKernels : public Kernels {
+ protected:
+  static constexpr std::uint32_t kGroups = 3;                       // of 64 nodes
+  static constexpr std::size_t kNodes = kGroups * shaders::kGroup;  // four values each
+
+  /// Four values a node, of which the fourth is zero.
+  [[nodiscard]] Doubles random_nodes() {
+    Doubles values(4 * kNodes);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 4 < 3 ? random() : 0;
+    return values;
+  }
+  void run(const char* name, std::initializer_list<gpu::Reads> reads,
+           const std::vector<const vulkan::Buffer*>& buffers, const shaders::CgPush& push,
+           std::uint32_t groups, std::uint32_t group = shaders::kGroup) {
+    Kernels::run(*factory_->make(name, reads, sizeof push, group), buffers, push, groups);
+  }
+  /// Partial results of a sum over nodes, each over the nodes that share a part.
+  void expect_parts(const vulkan::Buffer& sums, const Doubles& a, const Doubles& b) const {
+    const std::size_t parts = kGroups * factory_->parts(), per_part = 4 * kNodes / parts;
+    const Doubles got = read(sums, parts);
+    for (std::size_t part = 0; part < parts; ++part) {
+      double sum = 0, size = 0;
+      for (std::size_t i = part * per_part; i < (part + 1) * per_part; ++i) {
+        sum += a[i] * b[i];
+        size += std::abs(a[i] * b[i]);
+      }
+      EXPECT_LE(std::abs(got[part] - sum), static_cast<double>(per_part) * kEps64 * size) << part;
+    }
+  }
+  [[nodiscard]] shaders::CgState& state(vulkan::Buffer& of) const {
+    if (of.bytes() == 0) {
+      of = vulkan::Buffer(*device_, sizeof(shaders::CgState), vulkan::Placement::host);
+      of.fill_zero();
+    }
+    return *of.mapped<shaders::CgState>();
+  }
+};
 
 TEST_P(CgKernels, MultiplyByTheDamagedStiffness) {
   Scene scene;
@@ -156,6 +196,327 @@ TEST_P(CgKernels, DispatchesBeyondConvergenceAreEmpty) {
   std::fill_n(one.mapped<std::uint32_t>(), 3, 1u);
   const auto q = multiply.of_size(one, 0);
   EXPECT_EQ(std::count(q.begin(), q.end(), 0.0), 4 * shaders::kGroup);
+}
+
+TEST_P(CgKernels, BeginTakesWhatIsFree) {
+  // Unknowns in no order; some axes held by supports, some by grips.
+  Words dofs(4 * kNodes, 0), order(3 * kNodes);
+  std::iota(order.begin(), order.end(), 0u);
+  std::shuffle(order.begin(), order.end(), generator_);
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto kind = generator_() % 5;
+      dofs[4 * n + axis] = kind == 0 ? shaders::kHeld : order[3 * n + axis];
+      if (kind == 1) dofs[4 * n + 3] |= 1u << axis;
+    }
+  }
+  const Doubles residual = random_values(3 * kNodes), u = random_nodes();
+  const auto of_residual = buffer(residual), of_u = buffer(u);
+  const auto of_dofs = buffer(dofs);
+  for (const std::uint32_t guess : {0u, 1u}) {
+    const auto r = empty(4 * kNodes), p = empty(4 * kNodes), sums = empty(kNodes);
+    shaders::CgPush push{};
+    push.guess = guess;
+    using enum gpu::Reads;
+    run("cg_begin", {plain, words, doubles, plain, plain, plain},
+        {&of_residual, &of_dofs, &of_u, &r, &p, &sums}, push, kGroups);
+    Doubles expected_r(4 * kNodes, 0), expected_p(4 * kNodes, 0);
+    for (std::size_t i = 0; i < 4 * kNodes; ++i) {
+      const std::size_t axis = i % 4;
+      if (axis == 3 || dofs[i] == shaders::kHeld || (dofs[i - axis + 3] >> axis & 1)) continue;
+      expected_r[i] = residual[dofs[i]];
+      if (guess == 1) expected_p[i] = u[i];
+    }
+    EXPECT_EQ(read(r, 4 * kNodes), expected_r);
+    EXPECT_EQ(read(p, 4 * kNodes), expected_p);
+    expect_parts(sums, expected_r, expected_p);
+  }
+}
+
+TEST_P(CgKernels, StepAndItsPreconditioner) {
+  vulkan::Buffer of_state;
+  const double a = state(of_state).length_ = 0.7321;
+  const Doubles m = random_values(12 * kNodes), p = random_nodes(), q = random_nodes(),
+                x = random_nodes(), r = random_nodes();
+  const auto of_m = buffer(m), of_p = buffer(p), of_q = buffer(q), of_x = buffer(x),
+             of_r = buffer(r), new_x = empty(4 * kNodes), new_r = empty(4 * kNodes),
+             of_z = empty(4 * kNodes), sums = empty(kNodes);
+  using enum gpu::Reads;
+  run("cg_step", {plain, doubles, doubles, doubles, doubles, doubles, plain, plain, plain, plain},
+      {&of_state, &of_m, &of_p, &of_q, &of_x, &of_r, &new_x, &new_r, &of_z, &sums}, {}, kGroups);
+  const Doubles stepped = read(new_x, 4 * kNodes), left = read(new_r, 4 * kNodes),
+                z = read(of_z, 4 * kNodes);
+  for (std::size_t i = 0; i < 4 * kNodes; ++i) {
+    // A product and a sum; fused or not.
+    EXPECT_LE(std::abs(stepped[i] - (x[i] + a * p[i])),
+              kEps64 * (std::abs(x[i]) + 2 * std::abs(a * p[i])));
+    EXPECT_LE(std::abs(left[i] - (r[i] - a * q[i])),
+              kEps64 * (std::abs(r[i]) + 2 * std::abs(a * q[i])));
+    double sum = 0, size = 0;
+    const std::size_t n = i / 4, row = i % 4;
+    for (std::size_t axis = 0; axis < 3 && row < 3; ++axis) {
+      const double term = m[12 * n + 4 * row + axis] * left[4 * n + axis];
+      sum += term;
+      size += std::abs(term);
+    }
+    EXPECT_LE(std::abs(z[i] - sum), 3 * kEps64 * size);
+  }
+  expect_parts(sums, left, z);
+}
+
+TEST_P(CgKernels, LengthOfAStep) {
+  constexpr std::uint32_t kPacks = 45;  // no multiple of a workgroup
+  constexpr double kTerms = 4 * kPacks;
+  Doubles pq = random_values(4 * kPacks);
+  for (double& v : pq) v = std::abs(v);
+  const Doubles rp = random_values(4 * kPacks);
+  const double sum = std::accumulate(pq.begin(), pq.end(), 0.0);
+  double along = 0, size = 0;
+  for (double v : rp) {
+    along += v;
+    size += std::abs(v);
+  }
+  const auto length = [&](const Doubles& of_pq, bool first) {
+    vulkan::Buffer of_state;
+    shaders::CgState& s = state(of_state);
+    s.rz = 3.25;
+    s.broken = 7;
+    const auto pq_sums = buffer(of_pq), rp_sums = buffer(rp);
+    shaders::CgPush push{};
+    push.partials = kPacks;
+    push.first = first ? 1 : 0;
+    using enum gpu::Reads;
+    run("cg_length", {doubles, doubles, plain}, {&pq_sums, &rp_sums, &of_state}, push, 1,
+        factory_->summing_group());
+    return s;
+  };
+  const shaders::CgState later = length(pq, false);
+  EXPECT_EQ(later.broken, 0u);
+  EXPECT_NEAR(later.length_, 3.25 / sum, (kTerms + 2) * kEps64 * 3.25 / sum);
+  const shaders::CgState first = length(pq, true);
+  const double a = along / sum;
+  const double error = kEps64 * (kTerms * size / sum + (kTerms + 2) * std::abs(a));
+  EXPECT_NEAR(first.length_, a, error);
+  EXPECT_NEAR(first.energy, (1 + a) * (1 + a) * sum,
+              2 * std::abs(1 + a) * sum * error + (kTerms + 4) * kEps64 * (1 + a) * (1 + a) * sum);
+  // Not positive, or no number: it ends; without a guess there is no step along it.
+  for (const double bad : {-1e3, kNaN, std::numeric_limits<double>::infinity()}) {
+    Doubles broken = pq;
+    broken[77] = bad;
+    EXPECT_EQ(length(broken, false).broken, 1u) << bad;
+    EXPECT_EQ(length(broken, false).length_, 0) << bad;
+    EXPECT_EQ(length(broken, true).length_, 0) << bad;
+    EXPECT_EQ(length(broken, true).energy, 0) << bad;
+  }
+  EXPECT_EQ(length(Doubles(4 * kPacks, 0.0), true).length_, 0);
+}
+
+TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
+  constexpr std::uint32_t kPacks = 45, kSolves = 36;
+  Doubles rz = random_values(4 * kPacks), terms = random_values(kSolves);
+  rz[3] += 100;  // positive in all
+  double sum = 0, size = 0;
+  for (const Doubles* list : {&rz, &terms}) {
+    for (double v : *list) {
+      sum += v;
+      size += std::abs(v);
+    }
+  }
+  const double error = (4 * kPacks + kSolves) * kEps64 * size;
+  struct Outcome {
+    shaders::CgState state;
+    Words arguments;
+  };
+  const auto check = [&](const Doubles& of_rz, shaders::CgState before, bool first) {
+    vulkan::Buffer of_state;
+    state(of_state) = before;
+    const auto sums = buffer(of_rz), of_terms = buffer(terms);
+    const auto arguments = buffer(Words(12, 9));
+    shaders::CgPush push{};
+    push.groups = 50;
+    push.partials = kPacks;
+    push.rigid_groups = 23;
+    push.rigid_solves = kSolves;
+    push.first = first ? 1 : 0;
+    push.reduction = 1e-3;
+    using enum gpu::Reads;
+    run("cg_check", {doubles, doubles, plain, plain}, {&sums, &of_terms, &of_state, &arguments},
+        push, 1, factory_->summing_group());
+    Words sizes(12);
+    arguments.read(std::span<std::uint32_t>(sizes));
+    return Outcome{state(of_state), sizes};
+  };
+  const Words on = {50, 1, 1, 23, 1, 1, kSolves, 1, 1, 1, 1, 1};
+  shaders::CgState before{};
+  before.iterations = 99;
+  before.energy = 2 * sum;
+  const auto first = check(rz, before, true);
+  EXPECT_NEAR(first.state.rz, sum, error);
+  EXPECT_EQ(first.state.target, 2 * sum * 1e-3);
+  EXPECT_EQ(first.state.iterations, 0u);
+  EXPECT_EQ(first.state.broken, 0u);
+  EXPECT_EQ(first.state.running, 1u);
+  EXPECT_EQ(first.arguments, on);
+  before.energy = 0;
+  EXPECT_NEAR(check(rz, before, true).state.target, sum * 1e-3, 1e-3 * error);
+
+  before.rz = 7;
+  before.target = sum / 2;
+  const auto later = check(rz, before, false);
+  EXPECT_NEAR(later.state.ratio, sum / 7, error / 7 + 2 * kEps64 * sum / 7);
+  EXPECT_EQ(later.state.iterations, 100u);
+  EXPECT_EQ(later.state.target, sum / 2);
+  EXPECT_EQ(later.state.running, 1u);
+  EXPECT_EQ(later.arguments[0], 50u);
+  EXPECT_EQ(later.arguments[3], 23u);
+  EXPECT_EQ(later.arguments[6], kSolves);
+  EXPECT_EQ(later.arguments[9], 1u);
+
+  const auto expect_stopped = [](const Outcome& outcome, std::uint32_t broken, const char* why) {
+    EXPECT_EQ(outcome.state.running, 0u) << why;
+    EXPECT_EQ(outcome.state.broken, broken) << why;
+    for (std::size_t kind : {0, 3, 6, 9}) EXPECT_EQ(outcome.arguments[kind], 0u) << why;
+  };
+  before.target = 2 * sum;
+  expect_stopped(check(rz, before, false), 0, "converged");
+  before.target = 0;
+  Doubles bad = rz;
+  for (const double value : {kNaN, -1e6, std::numeric_limits<double>::infinity()}) {
+    bad[60] = value;
+    expect_stopped(check(bad, before, false), 1, "no number or negative");
+  }
+  bad[60] = kNaN;
+  expect_stopped(check(bad, before, true), 1, "no number at the start");
+  before.broken = 1;
+  expect_stopped(check(rz, before, false), 1, "broken before");
+}
+
+TEST_P(CgKernels, SmallProblemOfTheRigidMotions) {
+  constexpr std::uint32_t kRigid = 5, kRows = 6 * kRigid, kSolves = 8, kSize = 384;
+  Doubles inverse(std::size_t{kSize} * kSize, 0.0), y(kSize, 0.0);
+  for (std::uint32_t row = 0; row < kRows; ++row) {
+    y[row] = random();
+    for (std::uint32_t column = 0; column < kRows; ++column)
+      inverse[row * kSize + column] = random();
+  }
+  const auto of_inverse = buffer(inverse), of_y = buffer(y), of_w = buffer(Doubles(64 * 8, 0.0)),
+             of_terms = empty(kSolves);
+  shaders::CgPush push{};
+  push.rigid_solves = kSolves;
+  using enum gpu::Reads;
+  run("cg_coarse", {doubles, doubles, plain, plain}, {&of_inverse, &of_y, &of_w, &of_terms}, push,
+      kSolves, factory_->summing_group());
+  const Doubles w = read(of_w, 64 * 8), terms = read(of_terms, kSolves);
+  const auto place = [](std::uint32_t row) {
+    return 8 * (row / 6) + row % 6 + (row % 6 < 3 ? 0 : 1);
+  };
+  for (std::uint32_t row = 0; row < kRows; ++row) {
+    double sum = 0, size = 0;
+    for (std::uint32_t column = 0; column < kRows; ++column) {
+      sum += inverse[row * kSize + column] * y[column];
+      size += std::abs(inverse[row * kSize + column] * y[column]);
+    }
+    EXPECT_LE(std::abs(w[place(row)] - sum), 4 * kSolves * kEps64 * size) << "row " << row;
+  }
+  for (std::uint32_t k = 0; k < kSolves; ++k) {
+    double sum = 0, size = 0;
+    for (std::uint32_t row = 4 * k; row < 4 * k + 4; ++row) {
+      sum += w[place(row)] * y[row];
+      size += std::abs(w[place(row)] * y[row]);
+    }
+    EXPECT_LE(std::abs(terms[k] - sum), 4 * kEps64 * size) << "rows from " << 4 * k;
+  }
+}
+
+TEST_P(CgKernels, SumsOfTheRigidMotionsAndBack) {
+  // Three groups of 1, 70 and 100 nodes in no order; the other nodes are in none.
+  const Words first = {0, 1, 71, 171};
+  Words order(kNodes);
+  std::iota(order.begin(), order.end(), 0u);
+  std::shuffle(order.begin(), order.end(), generator_);
+  std::vector<std::array<std::uint32_t, 4>> members(171), modes(kNodes, {0, 0, 0, shaders::kHeld});
+  std::vector<Vec3> places(kNodes, Vec3::Zero());
+  Words group_of(kNodes, shaders::kHeld), held(kNodes, 0);
+  for (std::uint32_t g = 0; g < 3; ++g) {
+    for (std::uint32_t i = first[g]; i < first[g + 1]; ++i) {
+      const std::uint32_t n = order[i];
+      std::array<std::uint32_t, 4> texel{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto x = static_cast<float>(random());
+        places[n][static_cast<Index>(axis)] = static_cast<double>(x);
+        texel[axis] = std::bit_cast<std::uint32_t>(x);
+      }
+      texel[3] = n;
+      members[i] = texel;
+      group_of[n] = g;
+      held[n] = generator_() % 8;
+      texel[3] = 8 * g + held[n];
+      modes[n] = texel;
+    }
+  }
+  const Doubles r = random_nodes(), z = random_nodes(), before = random_nodes();
+  const auto of_first = buffer(first);
+  const auto of_members = buffer(members), of_modes = buffer(modes);
+  const auto of_r = buffer(r), of_y = empty(18);
+  const auto node = [](const Doubles& of, std::size_t n) { return Vec3(&of[4 * n]); };
+  using enum gpu::Reads;
+  run("cg_restrict", {plain, words, doubles, plain}, {&of_first, &of_members, &of_r, &of_y}, {}, 3,
+      factory_->summing_group());
+  const Doubles y = read(of_y, 18);
+  for (std::uint32_t g = 0; g < 3; ++g) {
+    Vec3 force = Vec3::Zero(), moment = force, force_size = force, moment_size = force;
+    for (std::uint32_t i = first[g]; i < first[g + 1]; ++i) {
+      const Vec3 rn = node(r, order[i]), x = places[order[i]];
+      force += rn;
+      force_size += rn.cwiseAbs();
+      moment += x.cross(rn);
+      const Vec3 a = x.cwiseAbs(), b = rn.cwiseAbs();
+      moment_size +=
+          Vec3(a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]);
+    }
+    const double units = static_cast<double>(first[g + 1] - first[g]) + 2;
+    for (Index k = 0; k < 3; ++k) {
+      const std::size_t at = 6 * g + static_cast<std::size_t>(k);
+      EXPECT_LE(std::abs(y[at] - force[k]), units * kEps64 * force_size[k]);
+      EXPECT_LE(std::abs(y[at + 3] - moment[k]), units * kEps64 * moment_size[k]);
+    }
+  }
+
+  const Doubles w = random_values(3 * 8);
+  const auto of_w = buffer(w), of_z = buffer(z), of_before = buffer(before);
+  vulkan::Buffer of_state;
+  const double ratio = state(of_state).ratio = 0.37;
+  for (const bool starts : {true, false}) {
+    const auto direction = empty(4 * kNodes);
+    shaders::CgPush push{};
+    push.first = starts ? 1 : 0;
+    run("cg_direction", {plain, doubles, doubles, words, doubles, plain},
+        {&of_state, &of_z, &of_w, &of_modes, &of_before, &direction}, push, kGroups);
+    const Doubles p = read(direction, 4 * kNodes);
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      Vec3 moved = Vec3::Zero(), size = Vec3::Zero();
+      if (group_of[n] != shaders::kHeld) {
+        const Vec3 shift(&w[8 * group_of[n]]), turn(&w[8 * group_of[n] + 4]);
+        moved = shift + turn.cross(places[n]);
+        const Vec3 a = turn.cwiseAbs(), b = places[n].cwiseAbs();
+        size = shift.cwiseAbs() + Vec3(a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2],
+                                       a[0] * b[1] + a[1] * b[0]);
+      }
+      for (Index axis = 0; axis < 3; ++axis) {
+        if (held[n] >> axis & 1) moved[axis] = size[axis] = 0;
+        double expected = node(z, n)[axis] + moved[axis];
+        double most = std::abs(node(z, n)[axis]) + size[axis];
+        if (!starts) {
+          expected += ratio * node(before, n)[axis];
+          most += std::abs(ratio * node(before, n)[axis]);
+        }
+        // A cross product, three sums, a product.
+        EXPECT_LE(std::abs(p[4 * n + static_cast<std::size_t>(axis)] - expected),
+                  6 * kEps64 * most);
+      }
+      EXPECT_EQ(p[4 * n + 3], 0);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CgKernels,

@@ -2,6 +2,7 @@
 // A watched device with kernels of one variant and precision, for tests of single kernels.
 #pragma once
 
+#include <limits>
 #include <random>
 
 #include "gpu_body.hpp"
@@ -10,6 +11,7 @@ namespace sunder::test {
 
 inline constexpr double kEps32 = 1.1920928955078125e-7;
 inline constexpr double kEps64 = 2.220446049250313e-16;
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Numbers {
   gpu::Variant variant;
@@ -24,6 +26,10 @@ inline std::string name_of(const Numbers& numbers) {
 
 class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
  protected:
+  using Doubles = std::vector<double>;
+  using Floats = std::vector<float>;
+  using Words = std::vector<std::uint32_t>;
+
   void SetUp() override {
     WithVulkan<testing::TestWithParam<Numbers>>::SetUp();
     if (IsSkipped()) return;
@@ -51,6 +57,48 @@ class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
   double random() {
     const double v = uniform_(generator_);
     return GetParam().fp64 ? v : static_cast<double>(static_cast<float>(v));
+  }
+  [[nodiscard]] Doubles random_values(std::size_t count) {
+    Doubles values(count);
+    for (double& v : values) v = random();
+    return values;
+  }
+
+  template <class T>
+  [[nodiscard]] vulkan::Buffer buffer(const std::vector<T>& values) const {
+    vulkan::Buffer made(*device_, values.size() * sizeof(T), vulkan::Placement::device);
+    made.write(std::span<const T>(values));
+    return made;
+  }
+  /// Of numbers that are none: whatever is not written shows.
+  [[nodiscard]] vulkan::Buffer empty(std::size_t doubles) const {
+    return buffer(Doubles(doubles, kNaN));
+  }
+  template <class T = double>
+  [[nodiscard]] static std::vector<T> read(const vulkan::Buffer& from, std::size_t count) {
+    std::vector<T> values(count);
+    from.read(std::span<T>(values));
+    return values;
+  }
+  /// One dispatch of a kernel that make() or make_fp64() gave.
+  void run(const vulkan::Kernel& kernel, const std::vector<const vulkan::Buffer*>& buffers,
+           std::uint32_t x) const {
+    const vulkan::Binding binding(*device_, kernel, buffers);
+    vulkan::Commands commands(*device_);
+    commands.begin();
+    commands.dispatch(binding, x);
+    commands.end();
+    commands.submit();
+  }
+  template <class Push>
+  void run(const vulkan::Kernel& kernel, const std::vector<const vulkan::Buffer*>& buffers,
+           const Push& push, std::uint32_t x, std::uint32_t y = 1) const {
+    const vulkan::Binding binding(*device_, kernel, buffers);
+    vulkan::Commands commands(*device_);
+    commands.begin();
+    commands.dispatch(binding, push, x, y);
+    commands.end();
+    commands.submit();
   }
 
   std::shared_ptr<vulkan::Messages> messages_ = std::make_shared<vulkan::Messages>();

@@ -2,10 +2,11 @@
 // Single kernels against plain double precision on equal inputs, rounded to storage precision
 // first; sizes are no multiples of 64. Bounds are derived from the sums' lengths.
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <numeric>
 #include <random>
 
-#include "fem/assembly.hpp"
 #include "fem/element.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "gpu/passes/exact_columns.hpp"
@@ -109,16 +110,21 @@ void Products::expect_products(std::size_t panel_bytes, bool update) {
     std::iota(dofs.begin(), dofs.end(), 0);
     return fields.read_unknowns(gpu::Field::displacement, dofs);
   };
-  // Fp64 sums of n + 70 products of numbers up to 1, whatever the storage.
-  const double largest = std::max(1.0, x.cwiseAbs().maxCoeff());
-  const double allowed =
-      (static_cast<double>(n) + 70) * kEps64 * (static_cast<double>(n) + 70) * largest;
+  // Each entry within what the sum of its own products may lose: in fp64 whatever the storage, and
+  // the reference loses as much.
+  const auto within = [](const Eigen::VectorXd& got, const Eigen::VectorXd& expected,
+                         const Eigen::VectorXd& allowed) {
+    return ((got - expected).cwiseAbs().array() <= allowed.array()).all();
+  };
+  const double terms = static_cast<double>(load.dofs.size()) + 70;
   const Eigen::VectorXd few = result([&](vulkan::Commands& commands) {
     const auto chunks = inverse.record_loaded(commands, 0);
     commands.barrier();
     return chunks + exact.record_apply(commands, chunks);
   });
-  EXPECT_LE((few - (x * f + columns * c)).cwiseAbs().maxCoeff(), allowed);
+  EXPECT_TRUE(within(
+      few, x * f + columns * c,
+      2 * terms * kEps64 * (x.cwiseAbs() * f.cwiseAbs() + columns.cwiseAbs() * c.cwiseAbs())));
 
   std::vector<double> r(fields.rows(), 0.0);
   for (Index i = 0; i < n; ++i) r[static_cast<std::size_t>(i)] = uniform_(generator_);
@@ -127,15 +133,18 @@ void Products::expect_products(std::size_t panel_bytes, bool update) {
   const Eigen::VectorXd dense =
       result([&](vulkan::Commands& commands) { return inverse.record_dense(commands, 0); });
   // Chunks of 64 products, and their inputs, in storage precision.
-  EXPECT_LE((dense - x * rhs).cwiseAbs().maxCoeff(),
-            allowed + 66 * GetParam().eps() * static_cast<double>(n) * largest);
+  EXPECT_TRUE(within(dense, x * rhs,
+                     (66 * GetParam().eps() + 2 * static_cast<double>(n) * kEps64) *
+                         (x.cwiseAbs() * rhs.cwiseAbs())));
 
   vulkan::Commands commands(*device_);
   commands.begin();
   exact.record_project(commands);
   commands.end();
   commands.submit();
-  EXPECT_LE((exact.projection() - columns.transpose() * rhs).cwiseAbs().maxCoeff(), allowed);
+  EXPECT_TRUE(within(
+      exact.projection(), columns.transpose() * rhs,
+      2 * static_cast<double>(n) * kEps64 * (columns.transpose().cwiseAbs() * rhs.cwiseAbs())));
   EXPECT_EQ(exact.values(), Eigen::VectorXd(rhs(of_columns)));
 }
 
@@ -146,6 +155,51 @@ TEST_P(Products, ProductsOfAnUpdatedMatrix) {
 }
 TEST_P(Products, ProductsOverSeveralPanels) { expect_products(64 * 512 * 8, false); }
 
+/// f - K u from displacement differences, and what fp64 may lose of each entry: a row sums some 30
+/// blocks of three products, each entry of up to 24 elements.
+struct Balance {
+  std::vector<double> expected, allowed;  // 3 * nodes
+
+  Balance(const Problem& problem, std::span<const double> scale, std::span<const double> force,
+          std::span<const double> u)
+      : expected(force.begin(), force.end()), allowed(force.size()) {
+    constexpr double kUnits = 3 * 30 + 24 + 16;
+    std::vector<long double> sum(force.begin(), force.end());
+    std::vector<double> size(force.size());
+    for (std::size_t i = 0; i < size.size(); ++i) size[i] = std::abs(force[i]);
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      const auto& tet = problem.mesh().tets[e];
+      const TetShape& shape = problem.shape(e);
+      const Material& m = problem.material(e);
+      const long double young = m.young, nu = m.poisson, mu = young / (2 * (1 + nu)),
+                        lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
+      using Vector = Eigen::Matrix<long double, 3, 1>;
+      for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b < 4; ++b) {
+          const Vector ga = shape.gradient.col(a).cast<long double>(),
+                       gb = shape.gradient.col(b).cast<long double>(),
+                       d = Vec3(&u[3 * tet[b]]).cast<long double>() -
+                           Vec3(&u[3 * tet[a]]).cast<long double>();
+          const long double weight = scale[e] * shape.volume;
+          const Vector force_of =
+              weight * (lambda * ga * gb.dot(d) + mu * gb * ga.dot(d) + mu * ga.dot(gb) * d);
+          const auto most =
+              static_cast<double>(weight * (lambda + 2 * mu) * ga.norm() * gb.norm() * d.norm());
+          for (int axis = 0; axis < 3; ++axis) {
+            const std::size_t at = 3 * static_cast<std::size_t>(tet[a]) + axis;
+            sum[at] -= force_of[axis];
+            size[at] += most;
+          }
+        }
+      }
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      expected[i] = static_cast<double>(sum[i]);
+      allowed[i] = kUnits * kEps64 * size[i];
+    }
+  }
+};
+
 /// Random boards, rigid motions far larger than the strain, up to nu 0.499.
 TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
   for (const double nu : {0.0, 0.4, 0.499}) {
@@ -154,12 +208,25 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     for (Vec3& x : scene.mesh.nodes) x += 0.1 * Vec3(random(), random(), random());
     scene.materials["board"] = {5, nu, 2.0};
     scene.supports.push_back({Box{Vec3(-1, 9.5, -1), Vec3(11, 11, 2)}, Axes{7}});
+    Instrument low;
+    low.name = "low";
+    low.action = Grip{Box{Vec3(-1, -1, -1), Vec3(11, 0.5, 2)}, Vec3(1, -2, 0.5), Axes{5}};
+    scene.instruments.push_back(low);
     const Problem problem(scene);
     gpu::Fields fields(*factory_, problem, all_needs());
     std::vector<double> u(3 * problem.mesh().nodes.size());
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = 10 + 0.01 * uniform_(generator_);
     fields.write_displacement(u);
-    fields.set_load(std::vector<double>(fields.rows(), 0.0), {});
+    std::vector<double> force(fields.rows(), 0.0), nodal_force(u.size(), 0.0),
+        roots(static_cast<std::size_t>(problem.dof_count()));
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const Index dof = problem.dofs()[i];
+      if (dof == kNone) continue;
+      force[static_cast<std::size_t>(dof)] = nodal_force[i] = uniform_(generator_);
+      roots[static_cast<std::size_t>(dof)] = 1 + uniform_(generator_);
+    }
+    fields.set_load(force, {});
+    fields.set_roots(roots);
     const Index gone = 7;
     fields.destroy({&gone, 1});
     vulkan::Commands commands(*device_);
@@ -197,14 +264,34 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     EXPECT_NEAR(std::sqrt(summary.stress_squared), largest,
                 32 * GetParam().eps() / (1 - 2 * nu) * largest);
 
-    std::vector<double> k_u(u.size());
-    fem::apply_stiffness(problem, scale, u, k_u);
-    double squared = 0;
+    const Balance balance(problem, scale, nodal_force, u);
+    std::vector<Index> dofs(roots.size());
+    std::iota(dofs.begin(), dofs.end(), 0);
+    std::vector<double> reactions(roots.size()), residual(roots.size());
+    fields.read_reactions(dofs, reactions);
+    fields.residual().read(std::span<double>(residual));
+    const auto gripped = problem.gripped_dofs();
+    ASSERT_FALSE(gripped.empty());
+    // Of free and of gripped unknowns; what each sum may lose by its terms and by their sum.
+    std::array<double, 2> squared{}, lost{};
+    double energy = 0, energy_lost = 0;
+    const double terms = static_cast<double>(roots.size());
     for (std::size_t i = 0; i < u.size(); ++i) {
-      if (problem.dofs()[i] != kNone) squared += k_u[i] * k_u[i];
+      if (problem.dofs()[i] == kNone) continue;
+      const auto dof = static_cast<std::size_t>(problem.dofs()[i]);
+      const bool held = std::binary_search(gripped.begin(), gripped.end(), problem.dofs()[i]);
+      const double gap = balance.expected[i], allowed = balance.allowed[i];
+      EXPECT_LE(std::abs(-reactions[dof] - gap), allowed) << "unknown " << dof << ", nu " << nu;
+      EXPECT_EQ(residual[dof], held ? 0 : -reactions[dof]) << "unknown " << dof;
+      squared[held] += gap * gap;
+      lost[held] += (2 * std::abs(gap) + allowed) * allowed + terms * kEps64 * gap * gap;
+      if (held) continue;
+      energy += std::abs(gap) * roots[dof];
+      energy_lost += (allowed + terms * kEps64 * std::abs(gap)) * roots[dof];
     }
-    // Fp64 in every precision; a node sums 24 elements or so.
-    EXPECT_NEAR(summary.residual_squared, squared, 1e4 * kEps64 / (1 - 2 * nu) * squared);
+    EXPECT_NEAR(summary.residual_squared, squared[0], lost[0]);
+    EXPECT_NEAR(summary.reaction_squared, squared[1], lost[1]);
+    EXPECT_NEAR(summary.energy_root, energy, energy_lost);
   }
 }
 
