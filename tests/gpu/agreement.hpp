@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the Vulkan backend may differ from the CPU reference by, way by way: the accuracy table.
+#pragma once
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "gpu_body.hpp"
+#include "pieces.hpp"
+
+namespace sunder::test {
+
+// Fp32 storage by the mixed recipe, any damage (design of the accuracy table).
+inline constexpr double kFp32Tolerance = 1e-4;
+// Eager fp32: promised up to ten fractures. Beyond them it refines what it hands out to less, or
+// has left for the recipe.
+inline constexpr double kEagerFp32Tolerance = 1e-3;
+
+/// All ways of route inverse, and those of route cg.
+inline std::vector<Way> ways_of_every_route() {
+  std::vector<Way> ways = all_ways();
+  for (gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
+    for (Precision precision : {Precision::fp32, Precision::fp64}) {
+      ways.push_back({variant, precision, Update::automatic, 1e-4, 0, Route::cg});
+    }
+  }
+  return ways;
+}
+
+/// Route cg solves anew whatever came before, in the time of all else: it is not compared at every
+/// count but in the soak.
+#ifdef SUNDER_SOAK
+inline constexpr bool kSoak = true;
+#else
+inline constexpr bool kSoak = false;
+#endif
+
+/// Elements of pieces that nothing holds any more: they have no displacement to compare.
+inline std::vector<std::uint8_t> loose_elements(const Backend& backend) {
+  std::vector<std::uint8_t> loose(backend.problem().mesh().tets.size(), 0);
+  for (const auto& piece : find_loose_parts(backend.problem(), backend.destroyed()).pieces) {
+    for (Index e : piece) loose[static_cast<std::size_t>(e)] = 1;
+  }
+  return loose;
+}
+
+/// A pull of the part that a cut at y = 26.5 leaves attached, so that its field is one worth
+/// checking; a little hangs below.
+inline std::vector<double> force_above_the_cut(const Mesh& mesh) {
+  std::vector<double> force =
+      shared_force(mesh, nodes_in(mesh, {Vec3(49.9, 35, -1), Vec3(51, 45, 3)}), Vec3(5, 0, 0));
+  const auto below = corner_force(mesh, Vec3(0, -6e-3, 0));
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += below[i];
+  return force;
+}
+
+class Agreement : public WithVulkan<testing::TestWithParam<Way>> {
+ protected:
+  [[nodiscard]] bool fp64() const { return GetParam().precision == Precision::fp64; }
+  /// By the update that the backend is at.
+  [[nodiscard]] double allowed(const Pair& pair, double of_fp64) const {
+    if (fp64()) return of_fp64;
+    return pair.vulkan->info().update == "eager" ? kEagerFp32Tolerance : kFp32Tolerance;
+  }
+  /// Solves, and compares all but `ignored` and destroyed elements.
+  Pair::Errors expect(Pair& pair, double of_fp64, const std::string& where,
+                      std::span<const std::uint8_t> ignored = {}) const {
+    const auto e = pair.solve(ignored);
+    const double most = allowed(pair, of_fp64);
+    EXPECT_TRUE(e.u <= most) << where << ": displacement error " << e.u;
+    EXPECT_TRUE(e.stress <= most) << where << ": stress error " << e.stress;
+    EXPECT_LE(e.report.error, GetParam().tolerance) << where;
+    return e;
+  }
+  void expect_same_summary(const Pair& pair, const Pair::Errors& e, double of_fp64) const {
+    EXPECT_EQ(e.summary.any.element, e.reference_summary.any.element);
+    EXPECT_NEAR(e.summary.any.ratio, e.reference_summary.any.ratio,
+                10 * allowed(pair, of_fp64) * e.reference_summary.any.ratio);
+    EXPECT_EQ(e.summary.candidate.element, e.reference_summary.candidate.element);
+  }
+
+  /// Destroys a sequence one by one, and compares at the accuracy table's counts up to its end.
+  void follow(Pair& pair, const std::vector<Index>& sequence, double tolerance) const {
+    std::size_t done = 0;
+    for (std::size_t count : {1, 10, 50, 100, 200}) {
+      if (count > sequence.size()) break;
+      if (!kSoak && GetParam().route == Route::cg && count != 10 && count != 200) continue;
+      for (; done < count; ++done) pair.destroy({&sequence[done], 1});
+      const auto errors = expect(pair, tolerance, std::to_string(count) + " fractures");
+      expect_same_summary(pair, errors, tolerance);
+      record(count, errors);
+    }
+  }
+  /// The drift curve, in the test's report.
+  static void record(std::size_t count, const Pair::Errors& errors) {
+    const auto text = [](double value) { return (std::ostringstream() << value).str(); };
+    RecordProperty("u_after_" + std::to_string(count), text(errors.u));
+    RecordProperty("stress_after_" + std::to_string(count), text(errors.stress));
+  }
+};
+
+}  // namespace sunder::test
