@@ -327,18 +327,23 @@ TEST_F(CVulkan, AStepSubmitsNoMoreThanOnItsOwnDevice) {
   create();
   const auto lent = c::find<c::SimulationObject>(simulation, "simulation");
   const auto problem = std::make_shared<const Problem>(lent->problem().scene());
-  Simulation own(problem, gpu::create(problem, needs_of(*problem)));
-  std::size_t before = gpu::device_use(own.backend()).submits;
+  gpu::VulkanOptions options;
+  options.probe.guard_bytes = 256;
+  std::optional<Simulation> own;
+  own.emplace(problem, gpu::create(problem, needs_of(*problem), options));
+  std::size_t before = gpu::device_use(own->backend()).submits;
   for (int i = 0; i < 3; ++i) {
     const int host_before = VulkanHost::calls.submits;
-    own.step();
+    own->step();
     EXPECT_EQ(VulkanHost::calls.submits, host_before) << "own device, yet the host's queue";
     steps(1);
-    const std::size_t now = gpu::device_use(own.backend()).submits;
+    const std::size_t now = gpu::device_use(own->backend()).submits;
     EXPECT_GT(now, before);
     EXPECT_EQ(static_cast<std::size_t>(VulkanHost::calls.submits - host_before), now - before);
     before = now;
   }
+  own.reset();
+  for (const std::string& message : options.instance.messages->texts) ADD_FAILURE() << message;
 }
 
 TEST_F(CVulkan, CyclesLeaveNothing) {

@@ -121,21 +121,9 @@ TEST_P(FieldSif, GripsHaveTheForcesOfTheCpu) {
     EXPECT_NEAR(reactions[i], expected[i], tolerance() * largest) << i;
 }
 
-std::vector<DestroyedElement> tear(const Scene& scene, bool vulkan, const Way& way) {
-  Scene copy = scene;
-  copy.solver.backend = vulkan ? "vulkan" : "cpu";
-  if (vulkan) {
-    copy.solver.precision = way.precision;
-    copy.solver.route = way.route;
-    copy.solver.update = way.update;
-    copy.solver.tolerance = way.tolerance;
-  }
-  auto problem = std::make_shared<const Problem>(std::move(copy));
-  gpu::VulkanOptions options;
-  options.variant = way.variant;
-  const Needs needs = needs_of(*problem);
-  Simulation simulation(problem, vulkan ? gpu::create(problem, needs, options)
-                                        : cpu_reference::create(problem, needs));
+std::vector<DestroyedElement> tear(const std::shared_ptr<const Problem>& problem,
+                                   std::unique_ptr<Backend> backend) {
+  Simulation simulation(problem, std::move(backend));
   while (!simulation.done() && simulation.destroyed().size() < 60) simulation.step();
   return simulation.destroyed();
 }
@@ -143,9 +131,12 @@ std::vector<DestroyedElement> tear(const Scene& scene, bool vulkan, const Way& w
 using FieldSifRun = WithVulkan<>;
 
 TEST_F(FieldSifRun, TearsAsOnTheCpu) {
-  const Way way;  // fp64
-  const auto cpu = tear(notched(false), false, way);
-  const auto device = tear(notched(false), true, way);
+  Scene scene = notched(false);
+  scene.solver.backend = "cpu";
+  const auto problem = std::make_shared<const Problem>(scene);
+  const auto cpu = tear(problem, cpu_reference::create(problem, needs_of(*problem)));
+  const WatchedBackend watched(scene, {});  // fp64
+  const auto device = tear(watched.problem, watched.create());
   int compared = 0;
   ASSERT_EQ(device.size(), cpu.size());
   for (std::size_t i = 0; i < cpu.size(); ++i) {

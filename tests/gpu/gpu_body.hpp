@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -136,8 +137,11 @@ inline std::vector<Index> destroyed_by(const std::shared_ptr<const Problem>& pro
 
 class Pair {
  public:
-  Pair(Scene scene, const Way& way, const Needs& needs = all_needs())
+  /// `adjust` may set more of what the Vulkan backend is created with.
+  Pair(Scene scene, const Way& way, const Needs& needs = all_needs(),
+       const std::function<void(gpu::VulkanOptions&)>& adjust = {})
       : problem_(cpu_problem(scene)), watched_(std::move(scene), way) {
+    if (adjust) adjust(watched_.options);
     reference = cpu_reference::create(problem_, needs);
     vulkan = watched_.create(needs);
   }

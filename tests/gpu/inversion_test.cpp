@@ -15,13 +15,21 @@ namespace {
 using Inversion = WithVulkan<>;
 
 struct OnDevice {
-  explicit OnDevice(gpu::Variant variant, bool fp64) {
+  OnDevice(gpu::Variant variant, bool fp64) {
     vulkan::InstanceOptions options;
-    options.validation = true;
+    options.validation = validated();
+    options.messages = messages;
     const auto instance = std::make_shared<vulkan::Instance>(options);
     device = watched_device(instance, watched_probe());
     factory = std::make_unique<gpu::KernelFactory>(*device, variant, fp64);
   }
+  ~OnDevice() {
+    factory.reset();
+    device.reset();
+    for (const std::string& m : messages->texts) ADD_FAILURE() << m;
+  }
+  OnDevice(const OnDevice&) = delete;
+  OnDevice& operator=(const OnDevice&) = delete;
   Eigen::MatrixXd invert(const fem::SparseMatrix& lower, std::size_t panel_bytes) {
     const auto n = static_cast<Index>(lower.rows());
     const auto rows = gpu::round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
@@ -31,6 +39,7 @@ struct OnDevice {
     std::iota(all.begin(), all.end(), 0);
     return inverse.pick(all, all);
   }
+  std::shared_ptr<vulkan::Messages> messages = std::make_shared<vulkan::Messages>();
   std::unique_ptr<vulkan::Device> device;
   std::unique_ptr<gpu::KernelFactory> factory;
 };
@@ -70,35 +79,16 @@ TEST_F(Inversion, AMatrixThatIsNotPositiveDefiniteIsRefused) {
 }
 
 TEST_F(Inversion, CarriesTheBoardThroughACrack) {
-  Scene scene = held_board();
-  Scene on_cpu = scene;
-  on_cpu.solver.backend = "cpu";
-  scene.solver.backend = "vulkan";
-  scene.solver.precision = Precision::fp64;
-  scene.solver.route = Route::inverse;
-  const auto problem = std::make_shared<const Problem>(scene);
-  Needs needs;
-  needs.stress = needs.yield = needs.damage = true;
-  const auto reference = cpu_reference::create(std::make_shared<const Problem>(on_cpu), needs);
-  gpu::VulkanOptions options;
-  options.invert_on_device = true;
-  const auto backend = gpu::create(problem, needs, options);
+  Pair pair(held_board(), {}, all_needs(),
+            [](gpu::VulkanOptions& options) { options.invert_on_device = true; });
+  pair.load(corner_pull(pair.problem()));
   const auto compare = [&](double allowed) {
-    for (Backend* b : {reference.get(), backend.get()}) {
-      b->set_load(corner_pull(b->problem()));
-      b->solve();
-      b->stress();
-    }
-    EXPECT_LE(displacement_error(problem->mesh(), backend->destroyed(),
-                                 Pair::displacement(*backend), Pair::displacement(*reference)),
-              allowed);
-    EXPECT_LE(stress_error(backend->destroyed(), Pair::stress(*backend), Pair::stress(*reference)),
-              allowed);
+    const auto errors = pair.solve();
+    EXPECT_LE(errors.u, allowed);
+    EXPECT_LE(errors.stress, allowed);
   };
   compare(kIntactTolerance);
-  const auto crack = crack_sequence(*problem, 20, 10);
-  reference->destroy(crack);
-  backend->destroy(crack);
+  pair.destroy(crack_sequence(pair.problem(), 20, 10));
   compare(kCrackTolerance);
 }
 
