@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gpu_body.hpp"
+#include "organ.hpp"
 #include "pieces.hpp"
 #include "sunder/error.hpp"
 #include "support/direct_solution.hpp"
@@ -13,26 +14,6 @@ namespace {
 
 constexpr double kFp32Tolerance = 1e-4;
 constexpr double kEagerFp32Tolerance = 1e-3;  // up to ten fractures
-
-/// 50 x 50 x 2.5 mm, 1680 elements; three rows of cells around y = 26 can tear, 360 of 1800
-/// unknowns.
-Scene organ(double contrast = 1, double poisson = 0.4) {
-  Scene scene;
-  scene.mesh = structured_board({14, 20, 1, 50, 50, 2.5}, [](const Vec3& x) {
-    return x.y() > 22.5 && x.y() < 30 ? "tissue" : "organ";
-  });
-  scene.materials = {{"tissue", {5, poisson, 2.0}},
-                     {"organ", {5 * contrast, poisson, std::nullopt}}};
-  scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
-  return scene;
-}
-
-void add_pull(Scene& scene, double force = -60) {
-  Instrument forceps;
-  forceps.name = "forceps";
-  forceps.action = Pull{lower_right_corner(), Vec3(0, force, 0)};
-  scene.instruments.push_back(forceps);
-}
 
 /// What is destroyed or has come loose.
 std::vector<std::uint8_t> ignore_loose(const Backend& backend) {

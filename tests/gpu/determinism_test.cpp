@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "gpu_body.hpp"
+#include "organ.hpp"
 #include "run_again.hpp"
 
 namespace sunder::test {
@@ -28,7 +29,42 @@ class Hash {
   std::uint64_t state_ = 14695981039346656037ull;
 };
 
-/// Everything that a gripped, tearing board's backend hands out, frame by frame.
+/// Everything that a backend hands out, frame by frame.
+class Recorder {
+ public:
+  Recorder(Backend& backend, Load load) : backend_(backend), load_(std::move(load)) {}
+
+  void frame() {
+    backend_.set_load(load_);
+    const SolveReport report = backend_.solve();
+    const StressSummary summary = backend_.stress();
+    hash_.add(std::array{report.error, report.residual, summary.any.ratio});
+    hash_.add(Pair::displacement(backend_));
+    for (const Voigt& s : Pair::stress(backend_)) hash_.add({s.data(), 6});
+    std::vector<double> reactions(load_.displacements.size());
+    backend_.read_reactions(reactions);
+    hash_.add(reactions);
+  }
+  void pristine() {
+    std::vector<double> u(3 * backend_.problem().mesh().nodes.size());
+    backend_.solve_pristine(load_, u);
+    hash_.add(u);
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_.value(); }
+
+ private:
+  Backend& backend_;
+  Load load_;
+  Hash hash_;
+};
+
+Load pull_and_grip(const Problem& problem) {
+  Load load = corner_pull(problem);
+  for (double& d : load.displacements) d = 0.1;
+  return load;
+}
+
+/// Of a gripped board with a crack of eight elements.
 std::uint64_t bits_of(const Way& way) {
   Scene scene = held_board();
   Instrument low;
@@ -37,27 +73,39 @@ std::uint64_t bits_of(const Way& way) {
   scene.instruments.push_back(low);
   const WatchedBackend watched(std::move(scene), way);
   const auto backend = watched.create(all_needs());
-  Load load = corner_pull(*watched.problem);
-  for (double& d : load.displacements) d = 0.1;
-  Hash hash;
-  const auto frame = [&] {
-    backend->set_load(load);
-    const SolveReport report = backend->solve();
-    const StressSummary summary = backend->stress();
-    hash.add(std::array{report.error, report.residual, summary.any.ratio});
-    hash.add(Pair::displacement(*backend));
-    for (const Voigt& s : Pair::stress(*backend)) hash.add({s.data(), 6});
-    std::vector<double> reactions(load.displacements.size());
-    backend->read_reactions(reactions);
-    hash.add(reactions);
-  };
-  if (way.route != Route::cg) frame();  // its iterations take the time of all other ways
+  Recorder recorder(*backend, pull_and_grip(*watched.problem));
+  if (way.route != Route::cg) recorder.frame();  // its iterations take the time of all other ways
   for (Index e : crack_sequence(*watched.problem, 8, 10)) backend->destroy({&e, 1});
-  frame();
-  std::vector<double> pristine(3 * watched.problem->mesh().nodes.size());
-  backend->solve_pristine(load, pristine);
-  hash.add(pristine);
-  return hash.value();
+  recorder.frame();
+  recorder.pristine();
+  return recorder.value();
+}
+
+/// Bytes that the damage since the base takes.
+std::size_t damage_bytes(const Backend& backend) {
+  for (const BufferPlan& b : backend.buffers()) {
+    if (b.name == "exact columns and small matrix (host)") return b.bytes;
+  }
+  return 0;
+}
+
+/// Of an organ that tears until a base that a thread has made meanwhile takes over, and on.
+std::uint64_t bits_across_a_new_base(const Way& way) {
+  Scene scene = organ();
+  add_pull(scene);
+  const WatchedBackend watched(std::move(scene), way);
+  const auto backend = watched.create(all_needs());
+  Recorder recorder(*backend, corner_pull(*watched.problem));
+  int destroyed = 0, taken = 0;
+  for (Index e : crack_sequence(*watched.problem, 210, 0)) {
+    const std::size_t before = damage_bytes(*backend);
+    backend->destroy({&e, 1});
+    if (damage_bytes(*backend) < before) ++taken;
+    if (++destroyed % 30 == 0) recorder.frame();
+  }
+  EXPECT_GE(taken, 1) << name_of(way) << ": no new base has been taken";
+  recorder.pristine();
+  return recorder.value();
 }
 
 std::vector<Way> every_way() {
@@ -68,12 +116,24 @@ std::vector<Way> every_way() {
   return ways;
 }
 
+std::vector<Way> ways_across_a_new_base() {
+  using gpu::Variant;
+  using enum Precision;
+  return {{.variant = Variant::gpu, .precision = fp64},
+          {.variant = Variant::lvp, .precision = fp32},
+          {.variant = Variant::gpu, .precision = fp32, .route = Route::condensed},
+          {.variant = Variant::lvp, .precision = fp64, .route = Route::condensed}};
+}
+
 // Prints a line per way; run by the test below.
 TEST(DeterminismState, DISABLED_Print) {
-  for (const Way& way : every_way()) {
-    std::printf("state %s %016llx\n", name_of(way).c_str(),
-                static_cast<unsigned long long>(bits_of(way)));
-  }
+  const auto print = [](const char* what, const Way& way, std::uint64_t bits) {
+    std::printf("state %s_%s%s %016llx\n", what, name_of(way).c_str(),
+                way.route == Route::condensed ? "_condensed" : "",
+                static_cast<unsigned long long>(bits));
+  };
+  for (const Way& way : every_way()) print("short", way, bits_of(way));
+  for (const Way& way : ways_across_a_new_base()) print("long", way, bits_across_a_new_base(way));
 }
 
 using States = std::map<std::string, std::string>;
@@ -95,7 +155,7 @@ using Determinism = WithVulkan<>;
 
 TEST_F(Determinism, SameBitsInEveryRunAndForEveryThreadCount) {
   const States first = states_with("0");
-  ASSERT_EQ(first.size(), every_way().size());
+  ASSERT_EQ(first.size(), every_way().size() + ways_across_a_new_base().size());
   for (const char* threads : {"1", "2", "2"}) {
     EXPECT_EQ(states_with(threads), first) << "with " << threads << " threads";
   }
@@ -105,6 +165,7 @@ TEST_F(Determinism, SameBitsInOneProcess) {
   for (const Precision precision : {Precision::fp32, Precision::fp64}) {
     const Way way{.precision = precision};
     EXPECT_EQ(bits_of(way), bits_of(way)) << name_of(way);
+    EXPECT_EQ(bits_across_a_new_base(way), bits_across_a_new_base(way)) << name_of(way);
   }
 }
 
