@@ -20,10 +20,14 @@ class EagerFp32 : public WithVulkan<testing::TestWithParam<gpu::Variant>> {
 // The default of 1e-4 carries it along a crack where all is of one stiffness, 1e-3 where frames are
 // 100 times as stiff.
 TEST_P(EagerFp32, LeavesBeforeAFrameBreaksItsPromise) {
-  for (const auto& [tolerance, contrast] : {std::pair{1e-4, 1.0}, std::pair{1e-3, 100.0}}) {
+  struct Case {
+    double tolerance, contrast;
+  };
+  for (const Case& of : {Case{1e-4, 1}, Case{1e-3, 100}}) {
+    const double tolerance = of.tolerance;
     SCOPED_TRACE(tolerance);
     Scene scene = held_board();
-    set_contrast(scene, contrast);
+    set_contrast(scene, of.contrast);
     Pair pair(std::move(scene), way(tolerance));
     const auto update = [&] { return pair.vulkan->info().update; };
     const auto frame = [&] {
