@@ -380,8 +380,7 @@ std::vector<std::string> Simulation::warnings() const {
         " events; more may have been ready to break"));
   }
   if (polished_.count > 0) {
-    all.push_back(polished_.sentence(
-        "had a frame over the tolerance, or over what fp64 promises, which was polished"));
+    all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
   }
   if (loose_nodes_ > 0) {
     all.push_back(std::to_string(loose_nodes_) +

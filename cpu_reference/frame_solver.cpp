@@ -206,7 +206,6 @@ void FrameSolver::polish(SolveReport& report) {
   if (route_.rebase()) {
     solve_by(route_, report);
     refine(route_, report);
-    report.polished = true;
   }
   if (!(report.error <= tolerance()) && chosen_.route != Route::cg) {
     const auto cg = conjugate_gradient_route(body_, *intact_);

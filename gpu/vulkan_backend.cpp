@@ -188,8 +188,9 @@ class VulkanBackend final : public Backend {
     SolveReport report = attempt();
     if (!(report.error <= check_.keeps())) {
       if (body_->route().restart(destroyed_list_)) {
+        const bool polished = report.polished;
         report = attempt();
-        report.polished = true;
+        report.polished = report.polished || polished;
       }
       check_.settled(report.error);
     }

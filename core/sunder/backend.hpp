@@ -38,9 +38,8 @@ struct SolveReport {
   double residual = 0;  ///< |f - K u| / |f|, fp64, 0 without load (design.md "Accuracy")
   double error = 0;     ///< estimate: largest |stress(du)| / largest |stress(u)| over live elements
   int iterations = 0;   ///< of conjugate gradients, when they ran
-  /// The frame was over tolerance and was refined; or, in fp64, over 1e-8 and got a new base.
-  bool polished = false;
-  double waited_ms = 0;  ///< for a new base from another thread, since the last solve
+  bool polished = false;  ///< the frame was over tolerance and was refined
+  double waited_ms = 0;   ///< for a new base from another thread, since the last solve
 };
 
 struct Worst {
