@@ -168,6 +168,7 @@ void engine_row(benchmark::State& state, Index cells, std::size_t k, bool dense)
 void route_row(benchmark::State& state, Index cells, std::size_t k, bool dense) {
   const TearingBoard& board = board_of(cells);
   const auto elements = board.connected(k);
+  const auto analysis = fem::analyse(*board.problem);
   TurningLoad turning(board);
   std::optional<cpu_reference::DamagedBody> body;
   std::optional<cpu_reference::IntactBody> intact;
@@ -178,8 +179,8 @@ void route_row(benchmark::State& state, Index cells, std::size_t k, bool dense) 
       [&] {
         route.reset();
         body.emplace(board.problem);
-        intact.emplace(*board.problem, true);
-        route = cpu_reference::deferred_route(*body, *intact, dense);
+        intact.emplace(*board.problem, true, *analysis);
+        route = cpu_reference::deferred_route(*body, *intact, dense, {});
         route->solve(turning.load, f, u);
         turning.turn();
       },

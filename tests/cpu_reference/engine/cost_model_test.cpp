@@ -83,8 +83,8 @@ TEST(CostModel, IsTheRuleOfTheDeferredRoutes) {
     std::iota(elements.begin(), elements.end(), 0);
     for (std::size_t count : {most, most + 1}) {
       DamagedBody body(problem);
-      IntactBody intact(*problem, true);
-      const auto own = deferred_route(body, intact, route == Route::inverse);
+      IntactBody intact(*problem, true, *fem::analyse(*problem));
+      const auto own = deferred_route(body, intact, route == Route::inverse, {});
       body.destroy(std::span(elements).first(count));
       own->destroy(std::span(elements).first(count));
       EXPECT_EQ(own->bases(), count > most ? 2 : 1) << count << " elements";
@@ -111,7 +111,8 @@ TEST(CostModel, CountsTheWayForwardOfTheLoadedUnknownsAlone) {
     for (Index n : problem.instrument_nodes()[0].nodes) {
       for (int axis = 0; axis < 3; ++axis) loaded.push_back(problem.dof(n, axis));
     }
-    entries.push_back(static_cast<double>(IntactBody(problem, false).factor.path_entries(loaded)));
+    entries.push_back(static_cast<double>(
+        IntactBody(problem, false, *fem::analyse(problem)).factor.path_entries(loaded)));
     quiet_ms.push_back(test::Body(scene).backend->info().quiet_ms);
   }
   ASSERT_LT(2 * entries[0], entries[1]);
