@@ -45,6 +45,7 @@ class FrameSolver {
   void check_fully(SolveReport& report);
   void refine(InverseRoute& route, SolveReport& report);
   [[nodiscard]] double correction(InverseRoute& route, SolveReport& report);
+  [[nodiscard]] bool is_off(double error) const;
   void polish(SolveReport& report);
 
   [[nodiscard]] const Problem& problem() const { return body_.problem(); }

@@ -23,11 +23,12 @@ constexpr double kSameLoad = 1e-14;  // relative: rounding of a ramp's factor
 // Rounding's share of two residuals of one base differs in its places, not in its kind.
 constexpr double kNoise = 10;
 
-double fp64_error(const Problem& problem) {
+/// Of the stress errors that fp64 promises, what keeps displacement within the same.
+double of_displacement(const Problem& problem) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (problem.material(e).poisson > kNearlyIncompressible) return kOfDisplacement * kFp64Error;
+    if (problem.material(e).poisson > kNearlyIncompressible) return kOfDisplacement;
   }
-  return kFp64Error;
+  return 1;
 }
 
 /// Largest |stress| of an element, Frobenius, for a strain energy norm sqrt(u^T K u) of 1:
@@ -69,8 +70,9 @@ bool is_multiple(const Load& now, const Load& then) {
 
 FrameCheck::FrameCheck(const Problem& problem, bool fp64)
     : tolerance_(problem.scene().solver.tolerance),
-      target_(std::min(fp64 ? fp64_error(problem) : kFp32Error, tolerance_ / 2)),
-      keeps_(fp64 ? std::min(kFp64Damaged / 2, tolerance_) : tolerance_),
+      of_displacement_(fp64 ? of_displacement(problem) : 1),
+      target_(std::min(fp64 ? of_displacement_ * kFp64Error : kFp32Error, tolerance_ / 2)),
+      keeps_(fp64 ? std::min(kFp64Damaged, tolerance_) : tolerance_),
       fp64_(fp64),
       stress_of_energy_(stress_of_energy(problem)) {}
 
@@ -93,7 +95,7 @@ std::optional<double> FrameCheck::bounded(const Load& load, const EnergyBound& e
   const double of_noise =
       kNoise * estimated_->error * std::max(1.0, energy.base / stress / estimated_->noise);
   const double error = of_noise + stress_of_energy_ * energy.touched / stress;
-  if (!(error <= std::min(kFp64Damaged, tolerance_ / 2))) return std::nullopt;
+  if (!(error <= std::min(of_displacement_ * kFp64Damaged, tolerance_ / 2))) return std::nullopt;
   return error;
 }
 

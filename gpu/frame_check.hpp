@@ -50,7 +50,7 @@ class FrameCheck {
     int bases = 0;
   };
 
-  double tolerance_, target_, keeps_;
+  double tolerance_, of_displacement_, target_, keeps_;
   bool fp64_;
   double stress_of_energy_;
   std::optional<Checked> checked_;

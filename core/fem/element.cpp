@@ -4,7 +4,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sunder::fem {
 
@@ -91,6 +93,16 @@ double max_shear(const Voigt& s) {
 
 double yield_measure(const Voigt& s, YieldMeasure measure) {
   return measure == YieldMeasure::max_shear ? max_shear(s) : 2 * max_shear(s);
+}
+
+double stress_of_rounding(const Problem& problem, double largest_u) {
+  double largest = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const Material& m = problem.material(e);
+    largest =
+        std::max(largest, elasticity(m.young, m.poisson).norm() * problem.shape(e).gradient.norm());
+  }
+  return std::numeric_limits<double>::epsilon() / 2 * largest_u * largest;
 }
 
 Eigen::Matrix<double, 3, 4> corner_displacement(const Mesh& mesh, Index e,

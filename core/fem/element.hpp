@@ -45,6 +45,10 @@ using UpdateFactor = Eigen::Matrix<double, 12, 6>;
 /// The chosen measure of a stress (method.md "Elasticity" 2).
 [[nodiscard]] double yield_measure(const Voigt& stress, YieldMeasure measure);
 
+/// A bound on the stress that rounding displacements to fp64 costs an element [MPa], where the
+/// largest is `largest_u` [mm]: half an ulp of it times the largest |D| |B|.
+[[nodiscard]] double stress_of_rounding(const Problem& problem, double largest_u);
+
 /// Corners' displacement of element e from the displacement at all nodes (3 * nodes).
 [[nodiscard]] Eigen::Matrix<double, 3, 4> corner_displacement(const Mesh& mesh, Index e,
                                                               std::span<const double> u);
