@@ -14,15 +14,22 @@ namespace {
 
 // Events between the start of a new base and the frame that takes it. For 1,000 unknowns it takes
 // 30 to 60 ms: after 64 events frames that follow without a pause waited up to 40 ms (two
-// processors shared by four programs), after 96 up to 17; later ones gather more columns.
-constexpr int kRebaseEvents = 96;
+// processors shared by four programs), after 96 up to 17; later ones gather more columns. A base
+// takes n^2 multiply-adds a column and a frame n, so that more unknowns need more frames.
+constexpr Index kFewestEvents = 96, kMostEvents = 384, kUnknownsPerEvent = 16;
+
+Index events_of_a_base(std::size_t dofs) {
+  return std::clamp(static_cast<Index>(dofs) / kUnknownsPerEvent, kFewestEvents, kMostEvents);
+}
 
 // A new base begins when the damage has so many columns: the small matrices then cost a frame about
 // as much as the columns of X_SS.
 constexpr std::size_t kFewestColumns = 64, kMostColumns = 256;
 
 // Columns that a base is expected to serve, fractures of some elements among them.
-constexpr Index kColumns = kMostColumns + 2 * kRebaseEvents;
+Index columns_of_a_base(std::size_t dofs) {
+  return static_cast<Index>(kMostColumns) + 2 * events_of_a_base(dofs);
+}
 
 // Columns that an event brings: there is room for the damage of large ones (as in deferred.cpp),
 // and that of a few elements is touched from the start.
@@ -47,7 +54,8 @@ Based lay_over(const Problem& problem, std::shared_ptr<const fem::Factor> factor
   Based based;
   based.factor = std::move(factor);
   based.condensed = base.get();
-  based.deferred = std::make_unique<engine::Deferred>(problem, std::move(base), damage, kColumns);
+  const Index columns = columns_of_a_base(base->dofs().size());
+  based.deferred = std::make_unique<engine::Deferred>(problem, std::move(base), damage, columns);
   return based;
 }
 
@@ -179,7 +187,7 @@ class CondensedRoute final : public InverseRoute {
     if (!damage) return;
     lost_.reserve(body.scale().size());
     next_.emplace(body.problem(), dofs_, threshold());
-    coming_.emplace(body, kRebaseEvents, rest);
+    coming_.emplace(body, static_cast<int>(events_of_a_base(dofs_.size())), rest);
   }
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
