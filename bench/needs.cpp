@@ -15,7 +15,7 @@
 #include "run_rows.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/simulation.hpp"
-#include "support/structured_board.hpp"
+#include "torn_patch.hpp"
 
 namespace sunder::bench {
 namespace {
@@ -33,43 +33,15 @@ struct Variant {
   bool stress, damage;
   bool prepare = false;  ///< each fracture, before its frame
   const char* backend = "cpu";
-  Index patch = 12;  ///< cells along its edge
+  Index patch = kPatch;  ///< cells along its edge
 };
 
-/// 50 x 50 x 2.5 mm, one layer of cells; the patch lies at the middle of the right edge.
 Scene scene_of(const Variant& variant, Index cells) {
-  const double h = 50.0 / cells;
-  Scene scene;
-  scene.mesh = test::structured_board({cells, cells, 1, 50, 50, 2.5}, [&](const Vec3& x) {
-    const double edge = h * static_cast<double>(variant.patch);
-    return x.x() > 50 - edge && std::abs(x.y() - 25) < 0.5 * edge ? "patch" : "organ";
-  });
-  scene.materials = {{"patch", {5, 0.4, 2.0}}, {"organ", {5, 0.4, std::nullopt}}};
+  Scene scene = patch_scene(cells, variant.patch);
   if (variant.all_breakable) scene.materials["organ"].yield = 2.0;
-  scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
-  Instrument forceps;
-  forceps.name = "forceps";
-  forceps.action = Pull{Box{Vec3(49.999, -0.001, -1), Vec3(50.001, 0.001, 4)}, Vec3(0, -60, 0)};
-  scene.instruments.push_back(forceps);
   scene.solver.backend = variant.backend;
   scene.solver.route = variant.route;
   return scene;
-}
-
-/// Elements of the patch, row by row from its middle, from the edge inwards.
-std::vector<Index> tear(const Problem& problem) {
-  const Mesh& mesh = problem.mesh();
-  std::vector<std::pair<std::pair<double, double>, Index>> keys;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (mesh.volumes[mesh.volume_of[e]].name != "patch") continue;
-    Vec3 c = Vec3::Zero();
-    for (Index n : mesh.tets[e]) c += mesh.nodes[n] / 4;
-    keys.push_back({{std::round(std::abs(c.y() - 25.01)), -c.x()}, e});
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<Index> order;
-  for (const auto& k : keys) order.push_back(k.second);
-  return order;
 }
 
 struct FrameTime {
@@ -99,7 +71,7 @@ void row(benchmark::State& state, const Variant& variant, Index cells) {
     load.forces.push_back(-30);
   }
   frame(*backend, load, {});  // has the full check
-  const auto order = tear(*problem);
+  const auto order = patch_tear(*problem);
   double quiet = 1e300, fracture = 1e300;
   std::size_t next = 0;
   for (auto _ : state) {
@@ -141,7 +113,7 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
   const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
   Needs needs;
   needs.stress = needs.yield = needs.damage = true;
-  const auto order = tear(*problem);
+  const auto order = patch_tear(*problem);
   const std::size_t count = std::min<std::size_t>(640, order.size());
   Load load;
   for (Index n : problem->instrument_nodes()[0].nodes) {
