@@ -129,11 +129,8 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
   return names;
 }
 
-TearingBoard::TearingBoard(const TempFolder& folder) : scene(folder / "torn.toml") {
-  const Outcome mesh = run_program({"mesh", "board", "--nx", "10", "--ny", "10", "--nz", "1", "-o",
-                                    (folder / "board.msh").string()});
-  if (mesh.exit_code != 0) throw std::runtime_error("no board: " + mesh.err);
-  write_text(scene, R"toml(title = "Board <pulled> & torn"
+std::string board_toml(const std::string& title) {
+  return "title = \"" + title + "\"" + R"toml(
 mesh = "board.msh"
 [material]
 upper = { young = 5.0, poisson = 0.4, yield = 2.0 }
@@ -148,7 +145,14 @@ kind = "expansion"
 box = [[49.999, -0.001, -1.0], [50.001, 0.001, 3.0]]
 force = [0.0, -150.0, 0.0]
 ramp = [0.0, 1.0]
-[[destroy]]
+)toml";
+}
+
+TearingBoard::TearingBoard(const TempFolder& folder) : scene(folder / "torn.toml") {
+  const Outcome mesh = run_program({"mesh", "board", "--nx", "10", "--ny", "10", "--nz", "1", "-o",
+                                    (folder / "board.msh").string()});
+  if (mesh.exit_code != 0) throw std::runtime_error("no board: " + mesh.err);
+  write_text(scene, board_toml("Board <pulled> & torn") + R"toml([[destroy]]
 step = 1
 elements = [0, 1]
 [fracture]

@@ -50,6 +50,9 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 /// File names in a folder, sorted.
 [[nodiscard]] std::vector<std::string> names_in(const std::filesystem::path& folder);
 
+/// Head of a scene: the board of board.msh beside it, pulled at the lower right corner.
+[[nodiscard]] std::string board_toml(const std::string& title);
+
 /// The scene that most tests use: a structured board of 500 tetrahedra (242 nodes), pulled at the
 /// lower right corner under model B until it tears.
 struct TearingBoard {

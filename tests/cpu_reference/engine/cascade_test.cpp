@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cpu_reference/routes.hpp"
+#include "rebasing_routes.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
 #include "support/direct_solution.hpp"
@@ -65,13 +66,7 @@ std::vector<std::vector<double>> tear(Route route, int& bases, bool grips, bool 
   return all;
 }
 
-struct Case {
-  const char* name;
-  Route route;
-  bool grips;
-};
-
-class Cascade : public ::testing::TestWithParam<Case> {};
+class Cascade : public ::testing::TestWithParam<RebasingRoute> {};
 
 TEST_P(Cascade, StaysRightThroughRebasesAndRepeatsBitByBit) {
   int bases = 0;
@@ -80,14 +75,7 @@ TEST_P(Cascade, StaysRightThroughRebasesAndRepeatsBitByBit) {
   EXPECT_EQ(once, tear(GetParam().route, bases, GetParam().grips, false));
 }
 
-INSTANTIATE_TEST_SUITE_P(Tears, Cascade,
-                         ::testing::Values(Case{"Inverse", Route::inverse, false},
-                                           Case{"InverseGrips", Route::inverse, true},
-                                           Case{"Condensed", Route::condensed, false},
-                                           Case{"CondensedGrips", Route::condensed, true},
-                                           Case{"Factor", Route::factor, false},
-                                           Case{"FactorGrips", Route::factor, true}),
-                         [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(Tears, Cascade, rebasing_routes(), name_of);
 
 }  // namespace
 }  // namespace sunder::test

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "rebasing_routes.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
 #include "support/sequences.hpp"
@@ -21,12 +22,6 @@ using Clock = std::chrono::steady_clock;
 constexpr milliseconds kRest(4);
 constexpr int kFewestEvents = 48;
 
-struct Case {
-  const char* name;
-  Route route;
-  bool grips;
-};
-
 /// Everything that a tear of 240 elements returns.
 struct Tear {
   std::vector<std::vector<double>> displacements, reactions;
@@ -36,7 +31,7 @@ struct Tear {
   bool new_base = false;
 
   /// `rest`: of the thread, before each thing that it does; `pause`: after each frame.
-  Tear(const Case& c, milliseconds rest, milliseconds pause) {
+  Tear(const RebasingRoute& c, milliseconds rest, milliseconds pause) {
     Scene scene = pulled_board();
     scene.solver.route = c.route;
     if (c.grips) {
@@ -80,7 +75,7 @@ void expect_same(const Tear& a, const Tear& b) {
   EXPECT_EQ(a.stress, b.stress);
 }
 
-class Timing : public ::testing::TestWithParam<Case> {};
+class Timing : public ::testing::TestWithParam<RebasingRoute> {};
 
 TEST_P(Timing, ChangesNoBit) {
   const Tear as_it_comes(GetParam(), milliseconds(0), milliseconds(0));
@@ -93,14 +88,7 @@ TEST_P(Timing, ChangesNoBit) {
   expect_same(as_it_comes, delayed);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tears, Timing,
-                         ::testing::Values(Case{"Inverse", Route::inverse, false},
-                                           Case{"InverseGrips", Route::inverse, true},
-                                           Case{"Condensed", Route::condensed, false},
-                                           Case{"CondensedGrips", Route::condensed, true},
-                                           Case{"Factor", Route::factor, false},
-                                           Case{"FactorGrips", Route::factor, true}),
-                         [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(Tears, Timing, rebasing_routes(), name_of);
 
 }  // namespace
 }  // namespace sunder::test
