@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "gpu/passes/fields.hpp"
 #include "gpu_body.hpp"
 
 namespace sunder::test {
@@ -44,6 +45,15 @@ class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
     factory_.reset();
     device_.reset();
     for (const std::string& m : messages_->texts) ADD_FAILURE() << m;
+  }
+
+  /// Stress of the displacement, its summary and f - K u.
+  void compute_state(const gpu::Fields& fields) {
+    vulkan::Commands commands(*device_);
+    commands.begin();
+    fields.record_state(commands);
+    commands.end();
+    commands.submit();
   }
 
   /// Symmetric, entries in [-1, 1], representable in storage precision.

@@ -229,11 +229,7 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     fields.set_roots(roots);
     const Index gone = 7;
     fields.destroy({&gone, 1});
-    vulkan::Commands commands(*device_);
-    commands.begin();
-    fields.record_state(commands);
-    commands.end();
-    commands.submit();
+    compute_state(fields);
 
     std::vector<Voigt> stress(problem.mesh().tets.size());
     fields.read_stress(stress);
@@ -316,11 +312,7 @@ TEST_P(Kernels, NoRotationCostsStress) {
   }
   fields.write_displacement(u);
   fields.set_load(std::vector<double>(fields.rows(), 0.0), {});
-  vulkan::Commands commands(*device_);
-  commands.begin();
-  fields.record_state(commands);
-  commands.end();
-  commands.submit();
+  compute_state(fields);
   std::vector<Voigt> stress(problem.mesh().tets.size());
   fields.read_stress(stress);
   const Mat3 strain = (h + h.transpose()) / 2;
@@ -358,11 +350,7 @@ TEST_P(Kernels, YieldRatioOfKnownStates) {
         u.insert(u.end(), at.data(), at.data() + 3);
       }
       fields.write_displacement(u);
-      vulkan::Commands commands(*device_);
-      commands.begin();
-      fields.record_state(commands);
-      commands.end();
-      commands.submit();
+      compute_state(fields);
       // tau = mu (largest - smallest principal strain), mu = 2 MPa; yield 2 MPa.
       const double ratio = 0.01 * (strain.maxCoeff() - strain.minCoeff());
       EXPECT_NEAR(fields.state().any_ratio, ratio, 16 * GetParam().eps() * 0.01 * 4)
