@@ -218,7 +218,6 @@ double start_up_ms(bool fp64, int device) {
 void register_frame_rows(const Rows& rows) {
   const std::string cut = "board_cut_by_cg/fp64";
   add_row(cut, [=, &rows](auto& s) { board_cut_by_cg(s, rows, cut); });
-  // In fp32 a crack leaves the eager update after a few events.
   const std::string eager = "board_fracture_frame_eager/fp64";
   add_row(eager, [=, &rows](auto& s) { board_frame(s, rows, eager, true, true, Update::eager); });
   for (const bool fp64 : {false, true}) {

@@ -25,10 +25,11 @@ void check_options(const SolverOptions& solver) {
   if (solver.device > 0) {
     throw DeviceError("backend cpu has device 0 only, not " + std::to_string(solver.device));
   }
-  if (solver.update == Update::eager && solver.route == Route::factor) {
-    throw DeviceError(
-        "route factor has the update deferred only; use update deferred or auto, or route inverse "
-        "or condensed");
+  if (solver.update == Update::eager &&
+      (solver.route == Route::factor || solver.route == Route::condensed)) {
+    throw DeviceError("route " + name_of(solver.route) +
+                      " has the update deferred only; use update deferred or auto, or route "
+                      "inverse, which update eager writes over");
   }
   if (solver.update != Update::automatic && solver.route == Route::cg) {
     throw DeviceError("route cg has no update to choose; use update auto, or route inverse");
@@ -92,8 +93,7 @@ std::string megabytes(std::size_t unknowns) {
 }
 
 Update update_of(Route route, Update asked) {
-  const bool offered = route == Route::inverse || route == Route::condensed;
-  return offered && asked == Update::eager ? Update::eager : Update::deferred;
+  return route == Route::inverse && asked == Update::eager ? Update::eager : Update::deferred;
 }
 
 /// Unknowns with a force that an instrument brings, at most.
@@ -147,8 +147,7 @@ ChosenRoute asked_for(const Problem& problem, const Needs& needs) {
   const SolverOptions& solver = problem.scene().solver;
   if (solver.route == Route::automatic) {
     return {Route::inverse, Update::eager,
-            "update eager was asked for: an inverse has it (route condensed too, when asked for)",
-            nullptr};
+            "update eager was asked for, which route inverse alone has", nullptr};
   }
   std::string why = "asked for";
   if (solver.route == Route::condensed) {

@@ -157,9 +157,6 @@ class CpuBackend final : public Backend {
     }
     if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, *intact_);
     if (const engine::Region* region = fields_.region()) {
-      if (chosen_.update == Update::eager) {
-        return condensed_eager_route(body_, *intact_, region->dofs);
-      }
       return condensed_route(body_, *intact_, region->dofs, needs().damage, rest);
     }
     if (chosen_.update == Update::eager) return dense_inverse_route(body_, *intact_);

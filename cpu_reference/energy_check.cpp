@@ -204,8 +204,7 @@ std::optional<SolveReport> EnergyCheck::known(const Expected& expected, const In
   }
   if (!(largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
   if (!(expected.largest <= kGrowth * largest)) return std::nullopt;  // shares that cancel
-  // Without a deferred update every event is another base, and nothing is lacking.
-  const double energy = route.deferred() ? std::max(0.0, route.deferred()->defect_energy()) : 0.0;
+  const double energy = std::max(0.0, route.deferred()->defect_energy());
   report.error = kAmplified * std::max(expected.worst, expected.base_error / largest) +
                  stress_of_energy_ * std::sqrt(energy) / largest;
   if (!(report.error <= std::min(kEnough, tolerance / 10))) return std::nullopt;

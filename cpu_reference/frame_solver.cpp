@@ -232,7 +232,6 @@ bool FrameSolver::yardstick() const {
 }
 
 double FrameSolver::grip_force(std::size_t g) const {
-  if (!route_.deferred()) return route_.grip_force(g);
   return route_.deferred()->grip_forces()[static_cast<Eigen::Index>(g)];
 }
 

@@ -37,11 +37,10 @@ InverseUpdate::InverseUpdate(Eigen::Index unknowns) {
   product_.reserve(std::max<std::size_t>(kWidth, kColumns) * n);
 }
 
-std::span<Index> InverseUpdate::gather(const Problem& problem, std::span<const Index> elements) {
+void InverseUpdate::gather(const Problem& problem, std::span<const Index> elements) {
   rank_ = 6 * static_cast<Eigen::Index>(elements.size());
   width_ = padded(rank_);
   fem::event_factor(problem, elements, width_, dofs_, w_);
-  return dofs_;
 }
 
 bool InverseUpdate::apply(Eigen::MatrixXd& x) {

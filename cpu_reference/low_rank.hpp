@@ -19,9 +19,8 @@ class InverseUpdate {
   /// Room for an inverse of so many unknowns. The system gives the memory where it is used.
   explicit InverseUpdate(Eigen::Index unknowns);
 
-  /// Takes up an event: the unknowns that it touches, ascending, which may be renamed to where they
-  /// are in X.
-  std::span<Index> gather(const Problem& problem, std::span<const Index> elements);
+  /// Takes up an event.
+  void gather(const Problem& problem, std::span<const Index> elements);
   /// Updates X by the event taken up. Returns false and leaves X alone when C is not positive
   /// definite in double precision. Cost 12 k n^2 flops.
   [[nodiscard]] bool apply(Eigen::MatrixXd& x);

@@ -2,8 +2,8 @@
 // The ways of the CPU to apply the inverse of the damaged stiffness. Two are the plain yardstick: a
 // dense inverse with eager updates, and conjugate gradients preconditioned by the intact factor.
 // Where that factor is larger than the memory an incomplete one takes its place. The others take
-// from the engine (core/engine): deferred updates over an inverse or a factor, and either update
-// over the unknowns of a region alone.
+// from the engine (core/engine): deferred updates over an inverse, over a factor, or over the
+// inverse of a region's unknowns alone.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -107,9 +107,6 @@ class InverseRoute {
   virtual bool rebase() { return false; }
   /// The deferred update, where there is one: it makes a frame's check cheap.
   [[nodiscard]] virtual const engine::Deferred* deferred() const { return nullptr; }
-  /// Force of a grip on the base in the last solve(), anchors included, where solve() leaves
-  /// something out of x and there is no deferred update.
-  [[nodiscard]] virtual double grip_force(std::size_t) const { return 0; }
   /// A deferred update may stop refining at this energy of the defect [N mm].
   virtual void set_enough(double) {}
   /// Bases there have been so far: another one needs a full check.
@@ -157,10 +154,6 @@ class IncompleteFactor;
                                                             std::span<const Index> dofs,
                                                             bool damage,
                                                             std::chrono::milliseconds rest);
-/// The inverse restricted to some unknowns (ascending), written over by every event.
-[[nodiscard]] std::unique_ptr<InverseRoute> condensed_eager_route(const DamagedBody& body,
-                                                                  const IntactBody& intact,
-                                                                  std::span<const Index> dofs);
 /// What solve_whole() works in.
 struct WholeRoom {
   /// For a body of so many unknowns, some of them touched.

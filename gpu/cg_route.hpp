@@ -24,7 +24,6 @@ class CgRoute final : public DeviceRoute {
   void destroy(std::span<const Index> elements, std::span<const Index>) override {
     rigid_.destroy(elements);  // Fields' matrix follows by itself
   }
-  bool leaves_at(double, std::span<const Index>) override { return false; }
   bool restart(std::span<const Index>) override { return false; }
 
   std::string name() const override { return "cg"; }

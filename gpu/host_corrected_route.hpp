@@ -28,7 +28,6 @@ class HostCorrectedRoute final : public DeviceRoute {
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
-  bool leaves_at(double, std::span<const Index>) override { return false; }
   bool restart(std::span<const Index> destroyed) override;
 
   const Eigen::MatrixXd* grip_factor() const override { return &correction_->grip_factor(); }

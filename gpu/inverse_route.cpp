@@ -12,9 +12,6 @@
 namespace sunder::gpu {
 namespace {
 
-// A pivot of C below this means that the event isolates something: fp32 has no digits left there
-// (method.md "Stability"), so the eager inverse must not take it in.
-constexpr double kLeastPivot32 = 1e-3;
 // So many exact columns begin a new base, which replaces the old one so many events later: a frame
 // reads all exact columns, and the inverse of the board takes a thread some 50 frames.
 constexpr Index kColumnsPerBase = 256;
@@ -374,15 +371,7 @@ bool InverseRoute::update_eager(std::span<const Index> elements) {
   c.diagonal().array() += 1;
   const Eigen::LLT<Eigen::MatrixXd> llt(c);
   if (llt.info() != Eigen::Success || !llt.matrixLLT().allFinite()) return false;
-  const Eigen::VectorXd pivots = llt.matrixLLT().diagonal().array().square();
-  if (!kernels_.fp64() && !(pivots.minCoeff() > kLeastPivot32)) return false;
   base_.update(event.dofs, llt.matrixL().solve(w.transpose()).transpose());
-  return true;
-}
-
-bool InverseRoute::leaves_at(double error, std::span<const Index> destroyed) {
-  if (!eager_ || kernels_.fp64() || error <= options_.tolerance / 2) return false;
-  defer(destroyed);
   return true;
 }
 

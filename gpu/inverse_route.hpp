@@ -16,7 +16,6 @@ namespace sunder::gpu {
 
 struct InverseOptions {
   bool eager = false;
-  double tolerance = 1e-4;
   std::size_t panel_bytes = 0;  ///< largest buffer wanted, 0: the device's limit
   bool on_device = false;       ///< the inverse is computed there
 };
@@ -37,7 +36,6 @@ class InverseRoute final : public DeviceRoute {
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
-  bool leaves_at(double error, std::span<const Index> destroyed) override;
   bool restart(std::span<const Index> destroyed) override;
 
   const Eigen::MatrixXd* grip_factor() const override {

@@ -139,13 +139,29 @@ void require_double(const Plan& plan, const SolverOptions& solver,
         "\" lacks shaderFloat64; use route inverse or condensed with update deferred and a "
         "tolerance of 1e-4 or more, another device or backend cpu");
   };
+  if (plan.eager) refuse("the update eager needs fp64");
   if (plan.fp64) {
     refuse(solver.precision == Precision::fp64
                ? "precision fp64 was asked for"
                : "tolerance " + number(solver.tolerance) + " needs fp64");
   }
   if (plan.cg) refuse("route cg sums in fp64");
-  if (plan.eager) refuse("the eager update watches its residual in fp64");
+}
+
+/// What update eager does not go with.
+void check_eager(const SolverOptions& solver) {
+  if (solver.update != Update::eager) return;
+  if (solver.route == Route::condensed) {
+    throw DeviceError(
+        "route condensed has the update deferred only; use update deferred or auto, or route "
+        "inverse, which update eager writes over");
+  }
+  if (solver.precision == Precision::fp32) {
+    throw DeviceError(
+        "update eager has precision fp64 only, since a crack destroys an inverse in fp32 that "
+        "events write over (docs/method.md \"Stability\"); use precision fp64 or auto, or update "
+        "deferred");
+  }
 }
 
 /// What of the materials is past kFp32Contrast and kFp32Poisson; empty: nothing.
@@ -173,8 +189,10 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
         "backend vulkan offers the routes inverse, condensed and cg; choose one, auto or "
         "backend cpu");
   }
+  check_eager(solver);
   Plan plan;
-  plan.fp64 = solver.precision == Precision::fp64 ||
+  plan.eager = solver.update == Update::eager;
+  plan.fp64 = plan.eager || solver.precision == Precision::fp64 ||
               (solver.precision == Precision::automatic && !(solver.tolerance >= kFp32Tolerance));
   const std::string past = plan.fp64 ? "" : past_fp32(problem);
   const bool stiff = !past.empty() && solver.precision == Precision::automatic && device.float64;
@@ -183,6 +201,8 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
   if (solver.precision != Precision::automatic) {
     plan.why += plan.fp64 ? "; fp64 was asked for" : "; fp32 storage was asked for";
     if (!past.empty()) plan.why += ", though these materials need fp64";
+  } else if (plan.eager) {
+    plan.why += "; the update eager needs fp64";
   } else if (stiff) {
     plan.why += "; these materials need fp64: contrast over 1000 or Poisson's ratio over 0.4999";
   } else {
@@ -198,7 +218,6 @@ Plan make_plan(const Problem& problem, const Needs& needs, const vulkan::Physica
         number(kFp32Tolerance) + " of its largest value; use " +
         (device.float64 ? "precision fp64 or auto" : "a device with shaderFloat64 or backend cpu"));
   }
-  plan.eager = solver.update == Update::eager;
   if (!device.float64) {
     require_double(plan, solver, device);
     plan.why += "; the device lacks shaderFloat64, so the host corrects for the damage";

@@ -41,9 +41,6 @@ class DeviceRoute {
   virtual void add_correction() = 0;
   /// Follows an event; `destroyed`: all that are destroyed now, this event's included.
   virtual void destroy(std::span<const Index> elements, std::span<const Index> destroyed) = 0;
-  /// Shown the stress error estimate of a solve before refinement. True: the route left for a
-  /// sounder way in time, solve anew.
-  [[nodiscard]] virtual bool leaves_at(double error, std::span<const Index> destroyed) = 0;
   /// Called when refinement failed. True: the route started afresh, solve anew.
   [[nodiscard]] virtual bool restart(std::span<const Index> destroyed) = 0;
 

@@ -41,7 +41,7 @@ class VulkanBackend final : public Backend {
         plan_(make_plan(*problem, this->needs(), device_->physical(), options.lent.has_value())),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
-        inverse_{plan_.eager, problem->scene().solver.tolerance, options.panel_bytes,
+        inverse_{plan_.eager, options.panel_bytes,
                  options.invert_on_device.value_or(plan_.invert_on_device)},
         check_(*problem, plan_.fp64) {
     device_->set_timing(false);
@@ -245,7 +245,6 @@ class VulkanBackend final : public Backend {
       report.residual = residual();
       if (refinement == 0) {
         report.polished = !(error <= tolerance());
-        if (body_->route().leaves_at(error, destroyed_list_)) return attempt();
       }
       // A correction that no longer shrinks is rounding: stop there if the promise holds.
       const bool stalled = refinement > 0 && !(error < report.error / 2);

@@ -87,18 +87,14 @@ std::vector<Method> methods() {
   constexpr auto fp32 = Precision::fp32, fp64 = Precision::fp64;
   std::vector<Method> list{method("cpu inverse eager fp64", "cpu", inverse, eager, fp64),
                            method("cpu inverse deferred fp64", "cpu", inverse, deferred, fp64),
-                           method("cpu condensed eager fp64", "cpu", condensed, eager, fp64),
                            method("cpu condensed deferred fp64", "cpu", condensed, deferred, fp64),
                            method("cpu factor deferred fp64", "cpu", factor, deferred, fp64),
                            method("cpu cg fp64", "cpu", cg, Update::automatic, fp64)};
   if (has_vulkan()) {
     for (const auto& m :
-         {method("vulkan inverse eager fp32", "vulkan", inverse, eager, fp32),
-          method("vulkan inverse eager fp64", "vulkan", inverse, eager, fp64),
+         {method("vulkan inverse eager fp64", "vulkan", inverse, eager, fp64),
           method("vulkan inverse deferred fp32", "vulkan", inverse, deferred, fp32),
           method("vulkan inverse deferred fp64", "vulkan", inverse, deferred, fp64),
-          method("vulkan condensed eager fp32", "vulkan", condensed, eager, fp32),
-          method("vulkan condensed eager fp64", "vulkan", condensed, eager, fp64),
           method("vulkan condensed deferred fp32", "vulkan", condensed, deferred, fp32),
           method("vulkan condensed deferred fp64", "vulkan", condensed, deferred, fp64),
           method("vulkan cg fp32", "vulkan", cg, Update::automatic, fp32),

@@ -7,33 +7,31 @@ import math
 CONTRAST, NU, SLIVER, ALPHA, FRACTURES = 1e4, 0.499, 1e-2, 1e-9, 200
 # Largest error of u and of stress. A board that hangs on one element counts as torn along a crack.
 FP64 = {"scattered": 1e-9, "crack": 1e-8, "bridge": 1e-8, "cut": 1e-5, "island": 1e-5}
-FP32, FP32_EAGER, EAGER_FRACTURES = 1e-4, 1e-3, 10
+FP32 = 1e-4
 ROUNDINGS = 4  # of u to fp32, at the ends of what is named: so much stress may cost
 TOLERANCE = 1e-4  # of a frame: what the study runs with
-CUTS = ("cut", "island")
+# Ways that results of earlier versions hold and that are offered no more.
+DROPPED = ("condensed eager", "eager fp32")
 
 TABLE = (["", "scattered", "along a crack, up to 200 fractures", "after a cut, attached part"],
          [["fp64", *(f"{FP64[p]:g}" for p in ("scattered", "crack", "cut"))],
-          ["fp32", *[f"{FP32:g}"] * 3],
-          ["fp32, eager", *[f"{FP32_EAGER:g} up to {EAGER_FRACTURES} fractures, then {FP32:g}, or "
-                            "refused"] * 2, f"{FP32:g}, or refused"]])
+          ["fp32", *[f"{FP32:g}"] * 3]])
 
 
 def is_named(cell):
     along_a_crack = cell["pattern"] in ("crack", "bridge")
+    if any(way in cell["method"] for way in DROPPED):
+        return False
     return (cell["contrast"] <= CONTRAST and cell["nu"] <= NU and cell["sliver"] >= SLIVER
             and cell["alpha"] >= ALPHA and not (along_a_crack and cell["fractures"] > FRACTURES))
 
 
 def promised(cell):
     """Largest error of u, and of stress."""
-    words = cell["method"].split()
-    if words[-1] == "fp64":
+    if cell["method"].endswith("fp64"):
         return (FP64[cell["pattern"]],) * 2
-    short = cell["fractures"] <= EAGER_FRACTURES and cell["pattern"] not in CUTS
-    error = FP32_EAGER if "eager" in words and short else FP32
     extreme = cell["contrast"] >= CONTRAST or cell["nu"] >= NU
-    return error, max(error, ROUNDINGS * cell["fp32_rounding"]) if extreme else error
+    return FP32, max(FP32, ROUNDINGS * cell["fp32_rounding"]) if extreme else FP32
 
 
 def _cause(cell, stress):
@@ -49,9 +47,8 @@ def judged(cell):
     """("within" | "beyond" | "not named", reason)."""
     if not is_named(cell):
         return "not named", ""
-    may_refuse = "eager" in cell["method"] and cell["method"].endswith("fp32")
     if cell["verdict"] == "refused":
-        return ("within", "") if may_refuse else ("beyond", "refused: " + cell["reason"])
+        return "beyond", "refused: " + cell["reason"]
     u, stress = promised(cell)
     if cell["u_error"] <= u and cell["stress_error"] <= stress:
         return "within", ""

@@ -13,9 +13,6 @@ namespace sunder::test {
 
 // Fp32 storage by the mixed recipe, any damage (design of the accuracy table).
 inline constexpr double kFp32Tolerance = 1e-4;
-// Eager fp32: promised up to ten fractures. Beyond them it refines what it hands out to less, or
-// has left for the recipe.
-inline constexpr double kEagerFp32Tolerance = 1e-3;
 
 /// All ways of route inverse, and those of route cg.
 inline std::vector<Way> ways_of_every_route() {
@@ -58,25 +55,21 @@ inline std::vector<double> force_above_the_cut(const Mesh& mesh) {
 class Agreement : public WithVulkan<testing::TestWithParam<Way>> {
  protected:
   [[nodiscard]] bool fp64() const { return GetParam().precision == Precision::fp64; }
-  /// By the update that the backend is at.
-  [[nodiscard]] double allowed(const Pair& pair, double of_fp64) const {
-    if (fp64()) return of_fp64;
-    return pair.vulkan->info().update == "eager" ? kEagerFp32Tolerance : kFp32Tolerance;
-  }
+  [[nodiscard]] double allowed(double of_fp64) const { return fp64() ? of_fp64 : kFp32Tolerance; }
   /// Solves, and compares all but `ignored` and destroyed elements.
   Pair::Errors expect(Pair& pair, double of_fp64, const std::string& where,
                       std::span<const std::uint8_t> ignored = {}) const {
     const auto e = pair.solve(ignored);
-    const double most = allowed(pair, of_fp64);
+    const double most = allowed(of_fp64);
     EXPECT_TRUE(e.u <= most) << where << ": displacement error " << e.u;
     EXPECT_TRUE(e.stress <= most) << where << ": stress error " << e.stress;
     EXPECT_LE(e.report.error, GetParam().tolerance) << where;
     return e;
   }
-  void expect_same_summary(const Pair& pair, const Pair::Errors& e, double of_fp64) const {
+  void expect_same_summary(const Pair::Errors& e, double of_fp64) const {
     EXPECT_EQ(e.summary.any.element, e.reference_summary.any.element);
     EXPECT_NEAR(e.summary.any.ratio, e.reference_summary.any.ratio,
-                10 * allowed(pair, of_fp64) * e.reference_summary.any.ratio);
+                10 * allowed(of_fp64) * e.reference_summary.any.ratio);
     EXPECT_EQ(e.summary.candidate.element, e.reference_summary.candidate.element);
   }
 
@@ -88,7 +81,7 @@ class Agreement : public WithVulkan<testing::TestWithParam<Way>> {
       if (!kSoak && GetParam().route == Route::cg && count != 10 && count != 200) continue;
       for (; done < count; ++done) pair.destroy({&sequence[done], 1});
       const auto errors = expect(pair, tolerance, std::to_string(count) + " fractures");
-      expect_same_summary(pair, errors, tolerance);
+      expect_same_summary(errors, tolerance);
       record(count, errors);
     }
   }

@@ -133,6 +133,7 @@ TEST_F(DeviceUse, MemoryOfACondensedSceneIsKnownToTheByteBeforeItIsAllocated) {
 TEST_F(DeviceUse, MemoryOfAnInversionOnTheDeviceIsKnownBeforeItIsAllocated) {
   for (const Precision precision : {Precision::fp32, Precision::fp64}) {
     for (const Update update : {Update::deferred, Update::eager}) {
+      if (update == Update::eager && precision == Precision::fp32) continue;  // not offered
       const Way way{gpu::Variant::lvp, precision, update};
       SCOPED_TRACE(name_of(way));
       const auto problem = problem_for(small_scene(true), way);

@@ -80,9 +80,7 @@ class Extremes : public WithVulkan<testing::TestWithParam<Extreme>> {
         for (; done < stage.fractures; ++done) backend->destroy({&sequence_[done], 1});
         EXPECT_LE(backend->solve().error, way.tolerance);
         const StressSummary summary = backend->stress();
-        const bool fp64 = way.precision == Precision::fp64;
-        const bool eager = backend->info().update == "eager";
-        const double allowed = fp64 ? of_fp64 : eager ? kEagerFp32Tolerance : kFp32Tolerance;
+        const double allowed = way.precision == Precision::fp64 ? of_fp64 : kFp32Tolerance;
         expect(*backend, stage, allowed);
         expect_worst(summary, stage, allowed);
       }

@@ -44,8 +44,8 @@ std::vector<Way> block_ways() {
       ways.push_back({.precision = precision, .route = route});
     }
     ways.push_back({.precision = Precision::fp32, .route = route, .float64 = false});
-    ways.push_back({.update = Update::eager, .route = route});
   }
+  ways.push_back({.update = Update::eager});
   return ways;
 }
 

@@ -18,15 +18,6 @@ using vulkan::Access;
 using vulkan::Buffer;
 using vulkan::Placement;
 
-std::string message_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const DeviceError& error) {
-    return error.what();
-  }
-  return "no DeviceError was thrown";
-}
-
 TEST(VulkanExpected, ADeviceIsThereUnlessNoneIsExpected) {
   EXPECT_EQ(gpu::devices().empty(), std::getenv("SUNDER_EXPECT_NO_VULKAN") != nullptr)
       << "a Vulkan device is missing; set SUNDER_EXPECT_NO_VULKAN where none is expected";

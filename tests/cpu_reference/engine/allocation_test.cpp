@@ -155,10 +155,8 @@ INSTANTIATE_TEST_SUITE_P(
         Tear{"BirthThrough", Route::inverse, FractureModel::b, SifSource::formula,
              CrackBirth::through},
         eager(Tear{"InverseEager", Route::inverse}),
-        eager(Tear{"CondensedEager", Route::condensed}),
         eager(Tear{"InverseEagerByField", Route::inverse, FractureModel::b, SifSource::field}),
-        eager(Tear{"InverseEagerByShear", Route::inverse, FractureModel::a}),
-        eager(Tear{"CondensedEagerByShear", Route::condensed, FractureModel::a})),
+        eager(Tear{"InverseEagerByShear", Route::inverse, FractureModel::a})),
     [](const auto& p) { return p.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(Routes, Allocations, every_way(),

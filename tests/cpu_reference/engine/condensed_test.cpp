@@ -23,13 +23,7 @@ struct Case {
   std::size_t batch;
   double contrast = 1, poisson = 0.4, alpha = 1e-6;
   bool instrument = true, grip = false;
-  Update update = Update::deferred;
 };
-
-Case eager(Case c) {
-  c.update = Update::eager;
-  return c;
-}
 
 /// 50 x 50 x 2.5 mm, 1680 elements; three rows of cells around y = 26 can tear, 360 of 1800
 /// unknowns.
@@ -43,7 +37,6 @@ Scene organ(const Case& c) {
   scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
   scene.solver.backend = "cpu";
   scene.solver.route = Route::condensed;
-  scene.solver.update = c.update;
   scene.fracture.alpha = c.alpha;
   if (c.instrument) {
     Instrument forceps;
@@ -98,7 +91,7 @@ TEST_P(Condensed, StaysWithinTheTable) {
   const Case& c = GetParam();
   const Body body(organ(c));
   EXPECT_EQ(body.backend->info().route, "condensed");
-  EXPECT_EQ(body.backend->info().update, c.update == Update::eager ? "eager" : "deferred");
+  EXPECT_EQ(body.backend->info().update, "deferred");
   const std::vector<double> force = corner_force(body.problem->mesh());
   const auto sequence =
       c.crack ? crack_sequence(*body.problem, 180, 12) : scattered_sequence(*body.problem, 180);
@@ -122,35 +115,19 @@ TEST_P(Condensed, StaysWithinTheTable) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Sequences, Condensed,
-    ::testing::Values(Case{"Scattered", false, 1}, Case{"Crack", true, 1},
-                      Case{"CrackBy60", true, 60}, Case{"Contrast1e4", true, 10, 1e4},
-                      Case{"Poisson499", true, 10, 1, 0.499},
-                      Case{"Alpha1e9", true, 10, 1, 0.4, 1e-9},
-                      Case{"LoadedOutside", true, 10, 1, 0.4, 1e-6, false},
-                      Case{"Grips", true, 10, 1, 0.4, 1e-6, true, true},
-                      eager(Case{"EagerScattered", false, 1}), eager(Case{"EagerCrack", true, 1}),
-                      eager(Case{"EagerContrast1e4", true, 10, 1e4}),
-                      eager(Case{"EagerLoadedOutside", true, 10, 1, 0.4, 1e-6, false}),
-                      eager(Case{"EagerGrips", true, 10, 1, 0.4, 1e-6, true, true})),
-    [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(Sequences, Condensed,
+                         ::testing::Values(Case{"Scattered", false, 1}, Case{"Crack", true, 1},
+                                           Case{"CrackBy60", true, 60},
+                                           Case{"Contrast1e4", true, 10, 1e4},
+                                           Case{"Poisson499", true, 10, 1, 0.499},
+                                           Case{"Alpha1e9", true, 10, 1, 0.4, 1e-9},
+                                           Case{"LoadedOutside", true, 10, 1, 0.4, 1e-6, false},
+                                           Case{"Grips", true, 10, 1, 0.4, 1e-6, true, true}),
+                         [](const auto& p) { return p.param.name; });
 
-class CondensedUpdate : public ::testing::TestWithParam<Update> {
- protected:
-  static Scene torn_organ() {
-    Case c{"", true, 1};
-    c.update = GetParam();
-    return organ(c);
-  }
-};
+Scene torn_organ() { return organ({"", true, 1}); }
 
-INSTANTIATE_TEST_SUITE_P(Updates, CondensedUpdate,
-                         ::testing::Values(Update::deferred, Update::eager), [](const auto& p) {
-                           return p.param == Update::eager ? "Eager" : "Deferred";
-                         });
-
-TEST_P(CondensedUpdate, KeepsTheAttachedPartRightAfterACut) {
+TEST(CondensedRoute, KeepsTheAttachedPartRightAfterACut) {
   const Body body(torn_organ());
   const auto force = corner_force(body.problem->mesh());
   // Pulled above the cut as well, or nothing would be left to compare.
@@ -175,7 +152,7 @@ TEST_P(CondensedUpdate, KeepsTheAttachedPartRightAfterACut) {
   expect_agreement(body, both, ignored, kCutTolerance);
 }
 
-TEST_P(CondensedUpdate, FollowsAnElementThatNobodyExpectedToBreak) {
+TEST(CondensedRoute, FollowsAnElementThatNobodyExpectedToBreak) {
   const Body body(torn_organ());
   const auto force = corner_force(body.problem->mesh());
   body.load(force);
@@ -211,7 +188,7 @@ std::vector<double> pull(const Mesh& mesh, const Vec3& force) {
 }
 
 // After a new base X_SS is no longer the factor's: what leaves S has to make up for that.
-TEST_P(CondensedUpdate, GrowsAndIsLoadedOutsideItsRegionOnANewBase) {
+TEST(CondensedRoute, GrowsAndIsLoadedOutsideItsRegionOnANewBase) {
   const Body body(torn_organ());
   std::vector<double> force = corner_force(body.problem->mesh());
   const auto far = nodes_in(body.problem->mesh(), {Vec3(-0.1, 9.9, -1), Vec3(0.1, 10.1, 3)});
@@ -219,7 +196,7 @@ TEST_P(CondensedUpdate, GrowsAndIsLoadedOutsideItsRegionOnANewBase) {
   for (Index n : far) force[3 * static_cast<std::size_t>(n)] = -4;
   body.load(force);
   for (const Index& e : crack_sequence(*body.problem, 150, 12)) body.backend->destroy({&e, 1});
-  ASSERT_TRUE(GetParam() == Update::eager || on_an_updated_inverse(body));
+  ASSERT_TRUE(on_an_updated_inverse(body));
   const auto outside = elements_across(body.problem->mesh(), 10.1);
   body.backend->destroy(std::span(outside).first(5));
   EXPECT_LE(body.backend->solve().error, kCrackTolerance);
@@ -252,7 +229,7 @@ TEST(CondensedRoute, SeldomChecksTheWholeBodyWhileTheLoadTurns) {
 }
 
 // Fields outside the region are solved for late; they must be those of the solve they belong to.
-TEST_P(CondensedUpdate, ReadsTheStressOfTheLastStressCallEverywhere) {
+TEST(CondensedRoute, ReadsTheStressOfTheLastStressCallEverywhere) {
   const Body body(torn_organ());
   auto force = corner_force(body.problem->mesh());
   body.load(force);
@@ -291,26 +268,6 @@ TEST(CondensedRoute, SolvesTheIntactBodyEverywhere) {
       displacement_error(body.problem->mesh(),
                          std::vector<std::uint8_t>(body.problem->mesh().tets.size(), 0), u, intact),
       kIntactTolerance);
-}
-
-// An eager update writes over the inverse: each event needs a check, the frames between them none.
-TEST(CondensedRoute, ChecksTheWholeBodyOnceAnEventWhenEager) {
-  const Body body(organ(eager({"", true, 1})));
-  auto force = corner_force(body.problem->mesh());
-  const auto sequence = crack_sequence(*body.problem, 12, 12);
-  int full = 0;
-  double last = -1;
-  for (std::size_t i = 0; i < 48; ++i) {
-    if (i % 4 == 0) body.backend->destroy(std::span(sequence).subspan(i / 4, 1));
-    for (double& f : force) f *= 1.01;
-    body.load(force);
-    const SolveReport report = body.backend->solve();
-    EXPECT_LE(report.error, kCrackTolerance);
-    full += report.residual != last;
-    last = report.residual;
-  }
-  EXPECT_EQ(full, 12);
-  expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
 }
 
 // 366 unknowns of the strip and the pulled corner; 756 elements between them.

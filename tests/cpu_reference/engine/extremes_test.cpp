@@ -105,7 +105,6 @@ INSTANTIATE_TEST_SUITE_P(
                                          Extreme{"AllAtOnce", 1e6, 0.4999, 1e-3, false}),
                        ::testing::Values(Engine{"InverseEager", Route::inverse, Update::eager},
                                          Engine{"Inverse", Route::inverse},
-                                         Engine{"CondensedEager", Route::condensed, Update::eager},
                                          Engine{"Condensed", Route::condensed},
                                          Engine{"Factor", Route::factor}, Engine{"Cg", Route::cg})),
     [](const auto& p) {

@@ -21,7 +21,6 @@ TEST_P(SameFractures, ByEveryRouteAndUpdate) {
   ASSERT_GT(reference.elements.size(), 40u);
   const std::pair<Route, Update> others[] = {{Route::inverse, Update::deferred},
                                              {Route::condensed, Update::deferred},
-                                             {Route::condensed, Update::eager},
                                              {Route::factor, Update::deferred},
                                              {Route::cg, Update::automatic}};
   for (const auto& [route, update] : others) {
