@@ -35,9 +35,8 @@ using StressDisplacement = Eigen::Matrix<double, 6, 12>;
 
 void stress_displacement(const Problem& problem, std::vector<StressDisplacement>& all) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    const Material& m = problem.material(e);
     all[static_cast<std::size_t>(e)] =
-        fem::elasticity(m.young, m.poisson) * fem::strain_displacement(problem.shape(e));
+        elasticity(problem.small_strain(e)) * fem::strain_displacement(problem.shape(e));
   }
 }
 

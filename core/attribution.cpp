@@ -4,14 +4,14 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder {
 namespace {
 
 /// d tau / d sigma of tau = (s1 - s3)/2: G = (n1 n1^T - n3 n3^T)/2, so that tau = G : sigma.
 Mat3 shear_gradient(const Voigt& stress) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> principal(fem::tensor(stress));
+  const Eigen::SelfAdjointEigenSolver<Mat3> principal(tensor(stress));
   const Vec3 n3 = principal.eigenvectors().col(0), n1 = principal.eigenvectors().col(2);
   return (n1 * n1.transpose() - n3 * n3.transpose()) / 2;
 }
@@ -19,9 +19,8 @@ Mat3 shear_gradient(const Voigt& stress) {
 /// d tau / d u of the element's corners (columns). G has no trace, hence tau = 2 mu G : grad u.
 Eigen::Matrix<double, 3, 4> corner_gradient(const Problem& problem, const Voigt& stress,
                                             Index element) {
-  const Material& m = problem.material(element);
-  const double mu = m.young / (2 * (1 + m.poisson));
-  return 2 * mu * shear_gradient(stress) * problem.shape(element).gradient;
+  return 2 * problem.small_strain(element).mu * shear_gradient(stress) *
+         problem.shape(element).gradient;
 }
 
 /// The gradient as a load with all grips at 0; gripped dofs do not move and take none of it.

@@ -7,6 +7,7 @@
 
 #include "fem/element.hpp"
 #include "fem/supports.hpp"
+#include "material/linear.hpp"
 #include "selection.hpp"
 #include "sunder/error.hpp"
 #include "sunder/in_quotes.hpp"
@@ -175,7 +176,9 @@ void Problem::resolve_materials() {
                                                     " elements) has no material; add [material." +
                                                     mesh().volumes[v].name + "]");
     }
-    material_of_volume_.push_back(it == scene_.materials.end() ? nullptr : &it->second);
+    const Material* material = it == scene_.materials.end() ? nullptr : &it->second;
+    material_of_volume_.push_back(material);
+    small_strain_of_volume_.push_back(material ? sunder::small_strain(*material) : SmallStrain{});
   }
 }
 

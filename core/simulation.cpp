@@ -11,6 +11,7 @@
 #include "loads.hpp"
 #include "pieces.hpp"
 #include "sunder/error.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder {
 namespace {
@@ -430,9 +431,9 @@ Vec3 Simulation::support_reaction() const {
         if (problem_->dof(tet[a], axis) != kNone) continue;
         const double scale = destroyed[e] ? problem_->scene().fracture.alpha : 1.0;
         const TetShape& shape = problem_->shape(e);
-        const Voigt s = fem::stress(shape, problem_->material(e),
+        const Voigt s = fem::stress(shape, problem_->small_strain(e),
                                     fem::corner_displacement(problem_->mesh(), e, u));
-        sum[axis] += scale * shape.volume * (fem::tensor(s) * shape.gradient.col(a))[axis];
+        sum[axis] += scale * shape.volume * (tensor(s) * shape.gradient.col(a))[axis];
       }
     }
   }

@@ -23,18 +23,6 @@ double ratio(std::span<const double> a, std::span<const double> b) {
 
 }  // namespace
 
-/// |sigma|^2 <= c (sigma : eps) with c the largest eigenvalue of the elasticity of tensors, and
-/// V (sigma : eps) is at most the energy u^T K u of the whole body.
-double largest_stress_of_energy(const Problem& problem) {
-  double largest = 0;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    const Material& m = problem.material(e);
-    const double c = std::max(m.young / (1 - 2 * m.poisson), m.young / (1 + m.poisson));
-    largest = std::max(largest, c / problem.shape(e).volume);
-  }
-  return std::sqrt(largest);
-}
-
 std::optional<double> multiple(const Load& a, const Load& b) {
   if (a.force_dofs != b.force_dofs) return std::nullopt;
   const double s = std::max(ratio(a.forces, b.forces), ratio(a.displacements, b.displacements));

@@ -8,9 +8,6 @@
 
 namespace sunder::cpu_reference {
 
-/// Bound on |sigma| / sqrt(u^T K u) over all elements and displacements [MPa / sqrt(N mm)].
-[[nodiscard]] double largest_stress_of_energy(const Problem& problem);
-
 /// s > 0 with a = s b, but for the rounding of a ramp; nothing: a has another direction.
 [[nodiscard]] std::optional<double> multiple(const Load& a, const Load& b);
 

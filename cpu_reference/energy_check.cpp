@@ -6,6 +6,7 @@
 
 #include "cpu_reference/check_terms.hpp"
 #include "cpu_reference/load_room.hpp"
+#include "engine/stress_bounds.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -41,7 +42,7 @@ void EnergyCheck::Directions::reserve(const Problem& problem) {
 /// Whatever the direction of a load, a frame allocates nothing.
 EnergyCheck::EnergyCheck(const Problem& problem)
     : problem_(problem),
-      stress_of_energy_(largest_stress_of_energy(problem)),
+      stress_of_energy_(engine::largest_stress_of_energy(problem)),
       r_(Directions::kMost, Directions::kMost) {
   reserve(next_.load, problem);
   checks_.reserve(problem);

@@ -6,6 +6,7 @@
 
 #include "cpu_reference/check_terms.hpp"
 #include "cpu_reference/load_room.hpp"
+#include "engine/stress_bounds.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -27,7 +28,7 @@ constexpr double kGrowth = 10;
 }  // namespace
 
 FrameCheck::FrameCheck(const Problem& problem)
-    : problem_(problem), stress_of_energy_(largest_stress_of_energy(problem)) {
+    : problem_(problem), stress_of_energy_(engine::largest_stress_of_energy(problem)) {
   reserve(load_, problem);
 }
 

@@ -8,7 +8,7 @@
 
 #include "cpu_reference/load_room.hpp"
 #include "engine/instrument_block.hpp"
-#include "fem/element.hpp"
+#include "engine/stress_bounds.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::cpu_reference {
@@ -207,7 +207,7 @@ double FrameSolver::correction(InverseRoute& route, SolveReport& report) {
 /// came to.
 bool FrameSolver::is_off(double error) const {
   if (!(error > keeps_)) return false;
-  return error > kRoundings * fem::stress_of_rounding(problem(), largest_u()) / largest_;
+  return error > kRoundings * engine::stress_of_rounding(problem(), largest_u()) / largest_;
 }
 
 /// Refinement converges only while the updated inverse is one; once it has drifted too far it is

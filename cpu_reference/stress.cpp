@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::cpu_reference {
 
 void element_stress(const Problem& problem, std::span<const double> scale,
                     std::span<const double> u, std::span<Voigt> stress) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    stress[e] = scale[e] * fem::stress(problem.shape(e), problem.material(e),
-                                       fem::corner_displacement(problem.mesh(), e, u));
+    stress[e] = scale[e] * fem::stress(problem, e, u);
   }
 }
 
@@ -22,7 +22,7 @@ StressSummary summarize(const Problem& problem, std::span<const std::uint8_t> de
   StressSummary summary;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (destroyed[e] || !problem.breakable(e)) continue;
-    const double ratio = fem::yield_measure(stress[e], measure) / problem.yield(e);
+    const double ratio = yield_measure(stress[e], measure) / problem.yield(e);
     if (ratio > summary.any.ratio) summary.any = {e, ratio};
     if (ratio >= 1) ++summary.over;
     if (!excluded[e] && ratio > summary.candidate.ratio) summary.candidate = {e, ratio};
@@ -34,8 +34,7 @@ namespace {
 
 /// Square of the stress tensor's Frobenius norm.
 double squared_stress(const Problem& problem, Index e, std::span<const double> u) {
-  const Voigt s = fem::stress(problem.shape(e), problem.material(e),
-                              fem::corner_displacement(problem.mesh(), e, u));
+  const Voigt s = fem::stress(problem, e, u);
   return s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm();
 }
 

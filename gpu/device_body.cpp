@@ -178,7 +178,7 @@ void DeviceBody::read_stress(std::span<Voigt> stress) const {
 Voigt DeviceBody::read_stress(Index element) const {
   const Index e = region_ ? region_->element(element) : element;
   if (e != kNone) return fields_->read_stress(e);
-  return fem::stress(whole_.shape(element), whole_.material(element),
+  return fem::stress(whole_.shape(element), whole_.small_strain(element),
                      fem::corner_displacement(whole_.mesh(), element, whole_displacement()));
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/stress_bounds.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -26,22 +28,9 @@ constexpr double kNoise = 10;
 /// Of the stress errors that fp64 promises, what keeps displacement within the same.
 double of_displacement(const Problem& problem) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (problem.material(e).poisson > kNearlyIncompressible) return kOfDisplacement;
+    if (problem.small_strain(e).poisson > kNearlyIncompressible) return kOfDisplacement;
   }
   return 1;
-}
-
-/// Largest |stress| of an element, Frobenius, for a strain energy norm sqrt(u^T K u) of 1:
-/// |s|^2 <= (3 lambda + 2 mu) s:e, and V s:e is the element's share of u^T K u.
-double stress_of_energy(const Problem& problem) {
-  double largest = 0;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    const Material& m = problem.material(e);
-    const double bulk = m.young / (1 - 2 * m.poisson);  // 3 lambda + 2 mu
-    const double stiffest = std::max(bulk, m.young / (1 + m.poisson));
-    largest = std::max(largest, stiffest / problem.shape(e).volume);
-  }
-  return std::sqrt(largest);
 }
 
 /// Whether `now` is a multiple of `then`, other than zero.
@@ -74,7 +63,7 @@ FrameCheck::FrameCheck(const Problem& problem, bool fp64)
       target_(std::min(fp64 ? of_displacement_ * kFp64Error : kFp32Error, tolerance_ / 2)),
       keeps_(fp64 ? std::min(kFp64Damaged, tolerance_) : tolerance_),
       fp64_(fp64),
-      stress_of_energy_(stress_of_energy(problem)) {}
+      stress_of_energy_(engine::largest_stress_of_energy(problem)) {}
 
 std::optional<SolveReport> FrameCheck::known(const Load& load) const {
   if (!checked_ || !is_multiple(load, checked_->load)) return std::nullopt;

@@ -41,11 +41,11 @@ struct Extremes {
 };
 
 Extremes extremes(const Problem& problem) {
-  double softest = problem.material(0).young, stiffest = softest, poisson = 0;
+  double softest = problem.small_strain(0).young, stiffest = softest, poisson = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    softest = std::min(softest, problem.material(e).young);
-    stiffest = std::max(stiffest, problem.material(e).young);
-    poisson = std::max(poisson, problem.material(e).poisson);
+    softest = std::min(softest, problem.small_strain(e).young);
+    stiffest = std::max(stiffest, problem.small_strain(e).young);
+    poisson = std::max(poisson, problem.small_strain(e).poisson);
   }
   return {stiffest / softest, poisson};
 }

@@ -6,7 +6,7 @@
 #include <future>
 
 #include "engine/instrument_block.hpp"
-#include "fem/element.hpp"
+#include "engine/stress_bounds.hpp"
 #include "gpu/choose_device.hpp"
 #include "gpu/device_body.hpp"
 #include "gpu/frame_check.hpp"
@@ -214,7 +214,7 @@ class VulkanBackend final : public Backend {
     double largest = 0;
     for (double v : u) largest = std::max(largest, std::abs(v));
     constexpr double kRoundings = 10;
-    return error > kRoundings * fem::stress_of_rounding(body_->part(), largest) /
+    return error > kRoundings * engine::stress_of_rounding(body_->part(), largest) /
                        body_->fields().largest_stress(Field::displacement);
   }
 

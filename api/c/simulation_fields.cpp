@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "c/simulation.hpp"
-#include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace {
 
@@ -67,7 +67,7 @@ sunder_status sunder_simulation_stress(sunder_simulation simulation, double* val
 sunder_status sunder_simulation_max_shear(sunder_simulation simulation, double* values,
                                           size_t size) {
   return read(simulation, values, size, tets, [&](SimulationObject& object) {
-    per_element(object, values, [](Index, const Voigt& s) { return sunder::fem::max_shear(s); });
+    per_element(object, values, [](Index, const Voigt& s) { return sunder::max_shear(s); });
   });
 }
 
@@ -79,7 +79,7 @@ sunder_status sunder_simulation_yield_ratio(sunder_simulation simulation, double
     const auto destroyed = object.simulation().backend().destroyed();
     per_element(object, values, [&](Index e, const Voigt& s) {
       if (!problem.breakable(e) || destroyed[static_cast<std::size_t>(e)]) return 0.0;
-      return sunder::fem::yield_measure(s, measure) / problem.yield(e);
+      return sunder::yield_measure(s, measure) / problem.yield(e);
     });
   });
 }

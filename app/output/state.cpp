@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::app {
 
@@ -42,13 +42,13 @@ std::vector<double> yield_ratios(const Problem& problem, const State& state) {
   std::vector<double> ratios(state.stress.size(), 0.0);
   for (Index e = 0; e < static_cast<Index>(ratios.size()); ++e)
     if (problem.breakable(e) && !state.destroyed[e])
-      ratios[e] = fem::yield_measure(state.stress[e], measure) / problem.yield(e);
+      ratios[e] = yield_measure(state.stress[e], measure) / problem.yield(e);
   return ratios;
 }
 
 std::vector<double> max_shears(const State& state) {
   std::vector<double> shears(state.stress.size());
-  std::transform(state.stress.begin(), state.stress.end(), shears.begin(), fem::max_shear);
+  std::transform(state.stress.begin(), state.stress.end(), shears.begin(), max_shear);
   return shears;
 }
 

@@ -55,7 +55,7 @@ std::vector<Voigt> plain_stress(const Problem& problem, std::span<const double> 
   std::vector<Voigt> all(problem.mesh().tets.size());
   for (Index e = 0; e < problem.tet_count(); ++e) {
     all[static_cast<std::size_t>(e)] = scale[static_cast<std::size_t>(e)] *
-                                       fem::stress(problem.shape(e), problem.material(e),
+                                       fem::stress(problem.shape(e), problem.small_strain(e),
                                                    fem::corner_displacement(problem.mesh(), e, u));
   }
   return all;

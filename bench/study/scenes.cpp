@@ -78,7 +78,7 @@ double rounding_of(const Problem& problem, const Run& run) {
   for (double x : run.u) rounded.push_back(static_cast<double>(static_cast<float>(x)));
   std::vector<Voigt> stress;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    stress.push_back(fem::stress(problem.shape(e), problem.material(e),
+    stress.push_back(fem::stress(problem.shape(e), problem.small_strain(e),
                                  fem::corner_displacement(problem.mesh(), e, rounded)));
   }
   return test::stress_error(run.destroyed, stress, run.stress);

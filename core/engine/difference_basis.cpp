@@ -79,10 +79,7 @@ void DifferenceBasis::shrink(std::size_t count) {
 }
 
 void DifferenceBasis::coordinates(Index element, std::vector<Index>& rows, fem::RowMajor& u) {
-  const Material& m = problem_.material(element);
-  const fem::UpdateFactor factor =
-      fem::update_factor(problem_.shape(element), fem::elasticity(m.young, m.poisson),
-                         problem_.scene().fracture.alpha);
+  const fem::UpdateFactor factor = fem::update_factor(problem_, element);
   rows.clear();
   for (int axis = 0; axis < 3; ++axis) {
     const auto v = corners(element, axis);

@@ -8,10 +8,8 @@ namespace sunder::engine {
 LostStiffness::LostStiffness(const Problem& problem, std::span<const Index> elements) {
   elements_.reserve(elements.size());
   for (Index e : elements) {
-    const Material& m = problem.material(e);
     Element& lost = elements_.emplace_back();
-    lost.u = fem::update_factor(problem.shape(e), fem::elasticity(m.young, m.poisson),
-                                problem.scene().fracture.alpha);
+    lost.u = fem::update_factor(problem, e);
     for (std::size_t i = 0; i < 12; ++i) {
       lost.dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], static_cast<int>(i % 3));
       if (lost.dofs[i] != kNone) dofs_.push_back(lost.dofs[i]);

@@ -9,6 +9,7 @@
 
 #include "engine/vectorised.hpp"
 #include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::engine {
 namespace {
@@ -65,15 +66,15 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
       continue;
     }
     const Index e = elements[i];
-    const Material& m = problem_->material(e);
     place_[e] = static_cast<Index>(i);
     b.element[l] = e;
     for (int g = 0; g < 9; ++g) b.gradient[g][l] = problem_->shape(e).gradient(g % 3, g / 3 + 1);
-    b.mu[l] = m.young / (2 * (1 + m.poisson));
-    b.lambda[l] = m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
+    b.mu[l] = problem_->small_strain(e).mu;
+    b.lambda[l] = problem_->small_strain(e).lambda;
     b.scale[l] = b.live[l] = 1;
     b.volume[l] = problem_->shape(e).volume;
-    b.strength[l] = m.yield ? 1 / (*m.yield * *m.yield) : 0;
+    const double yield = problem_->yield(e);
+    b.strength[l] = yield > 0 ? 1 / (yield * yield) : 0;
     for (int a = 0; a < 4; ++a) b.corner[a][l] = 3 * problem_->mesh().tets[e][a];
   }
   workers_ = std::make_unique<Workers>(threads > 0 ? threads : threads_for(elements.size()));
@@ -261,8 +262,8 @@ Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
   if (!(largest > 0)) return worst;
   const auto look_at = [&](std::size_t i) {
     const Index e = blocks_[i / kLanes].element[i % kLanes];
-    const double ratio = fem::yield_measure(stress[i], problem_->scene().fracture.yield_measure) /
-                         problem_->yield(e);
+    const double ratio =
+        yield_measure(stress[i], problem_->scene().fracture.yield_measure) / problem_->yield(e);
     if (ratio > worst.ratio || (ratio == worst.ratio && e < worst.element)) worst = {e, ratio};
   };
   // The ratio is at most the bound's: the largest bound's element leaves few others to look at.
@@ -297,7 +298,7 @@ StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
     const auto over = bounds_[i] * kShearRange > least
                           ? std::optional(true)
                           : shears(stress[i], std::sqrt(least) * problem_->yield(e));
-    if (over ? *over : fem::yield_measure(stress[i], measure) / problem_->yield(e) >= 1) {
+    if (over ? *over : yield_measure(stress[i], measure) / problem_->yield(e) >= 1) {
       ++summary.over;
     }
   }

@@ -5,6 +5,7 @@
 
 #include "fem/assembly.hpp"
 #include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::engine {
 
@@ -178,7 +179,7 @@ void Substructure::expand(const Load& of_body, std::span<const double> of_part,
 }
 
 Voigt Substructure::stress_of(Index element, std::span<const double> displacement) const {
-  return fem::stress(whole_.shape(element), whole_.material(element),
+  return fem::stress(whole_.shape(element), whole_.small_strain(element),
                      fem::corner_displacement(whole_.mesh(), element, displacement));
 }
 
@@ -193,7 +194,7 @@ double Substructure::largest_outside(std::span<const double> displacement) const
   double largest = 0;
   for (Index e = 0; e < whole_.tet_count(); ++e) {
     if (element_[e] == kNone) {
-      largest = std::max(largest, fem::tensor(stress_of(e, displacement)).norm());
+      largest = std::max(largest, tensor(stress_of(e, displacement)).norm());
     }
   }
   return largest;

@@ -9,10 +9,6 @@
 namespace sunder::fem {
 namespace {
 
-Matrix6 elasticity_of(const Problem& problem, Index e) {
-  return elasticity(problem.material(e).young, problem.material(e).poisson);
-}
-
 void add_element(const Problem& problem, Index e, const ElementMatrix& k,
                  std::vector<Eigen::Triplet<double, Index>>& triplets) {
   std::array<Index, 12> dofs;
@@ -52,7 +48,7 @@ SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scal
   std::vector<Eigen::Triplet<double, Index>> triplets;
   triplets.reserve(static_cast<std::size_t>(problem.tet_count()) * 78);
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    ElementMatrix k = element_stiffness(problem.shape(e), elasticity_of(problem, e));
+    ElementMatrix k = element_stiffness(problem, e);
     if (!scale.empty()) k *= scale[e];
     add_element(problem, e, k, triplets);
   }
@@ -76,7 +72,7 @@ void apply_stiffness(const Problem& problem, std::span<const double> scale,
   std::fill(y.begin(), y.end(), 0.0);
   for (Index e = 0; e < problem.tet_count(); ++e) {
     const TetShape& shape = problem.shape(e);
-    const Voigt s = stress(shape, problem.material(e), corner_displacement(problem.mesh(), e, u));
+    const Voigt s = stress(problem, e, u);
     const double weight = shape.volume * (scale.empty() ? 1.0 : scale[e]);
     const Eigen::Matrix<double, 3, 4> force = weight * (tensor(s) * shape.gradient);
     for (int a = 0; a < 4; ++a) {

@@ -2,11 +2,8 @@
 #include "fem/element.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sunder::fem {
 
@@ -19,16 +16,6 @@ TetShape tet_shape(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x
   shape.gradient.rightCols<3>() = edges.inverse().transpose();
   shape.gradient.col(0) = -shape.gradient.rightCols<3>().rowwise().sum();
   return shape;
-}
-
-Matrix6 elasticity(double young, double poisson) {
-  const double mu = young / (2 * (1 + poisson));
-  const double lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-  Matrix6 d = Matrix6::Zero();
-  d.topLeftCorner<3, 3>().setConstant(lambda);
-  d.diagonal().head<3>().array() += 2 * mu;
-  d.diagonal().tail<3>().setConstant(mu);
-  return d;
 }
 
 StrainDisplacement strain_displacement(const TetShape& shape) {
@@ -59,50 +46,12 @@ UpdateFactor update_factor(const TetShape& shape, const Matrix6& d, double alpha
   return strain_displacement(shape).transpose() * l * std::sqrt(shape.volume * (1 - alpha));
 }
 
-Voigt stress(const TetShape& shape, const Material& material,
+Voigt stress(const TetShape& shape, const SmallStrain& law,
              const Eigen::Matrix<double, 3, 4>& displacement) {
   // Gradient H_ij = du_i/dx_j from differences to corner 0 (the gradients sum to zero).
   const Mat3 h = (displacement.rightCols<3>().colwise() - displacement.col(0)) *
                  shape.gradient.rightCols<3>().transpose();
-  const double mu = material.young / (2 * (1 + material.poisson));
-  const double lambda =
-      material.young * material.poisson / ((1 + material.poisson) * (1 - 2 * material.poisson));
-  const double pressure = lambda * h.trace();
-  Voigt s;
-  s << pressure + 2 * mu * h(0, 0), pressure + 2 * mu * h(1, 1), pressure + 2 * mu * h(2, 2),
-      mu * (h(0, 1) + h(1, 0)), mu * (h(1, 2) + h(2, 1)), mu * (h(2, 0) + h(0, 2));
-  return s;
-}
-
-Mat3 tensor(const Voigt& s) {
-  Mat3 t;
-  t << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
-  return t;
-}
-
-Vec3 principal_stresses(const Voigt& s) {
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
-  solver.compute(tensor(s), Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().reverse();
-}
-
-double max_shear(const Voigt& s) {
-  const Vec3 p = principal_stresses(s);
-  return (p[0] - p[2]) / 2;
-}
-
-double yield_measure(const Voigt& s, YieldMeasure measure) {
-  return measure == YieldMeasure::max_shear ? max_shear(s) : 2 * max_shear(s);
-}
-
-double stress_of_rounding(const Problem& problem, double largest_u) {
-  double largest = 0;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    const Material& m = problem.material(e);
-    largest =
-        std::max(largest, elasticity(m.young, m.poisson).norm() * problem.shape(e).gradient.norm());
-  }
-  return std::numeric_limits<double>::epsilon() / 2 * largest_u * largest;
+  return sunder::stress(law, h);
 }
 
 Eigen::Matrix<double, 3, 4> corner_displacement(const Mesh& mesh, Index e,
@@ -113,6 +62,20 @@ Eigen::Matrix<double, 3, 4> corner_displacement(const Mesh& mesh, Index e,
     for (int axis = 0; axis < 3; ++axis) corners(axis, a) = u[3 * n + axis];
   }
   return corners;
+}
+
+ElementMatrix element_stiffness(const Problem& problem, Index e) {
+  return element_stiffness(problem.shape(e), elasticity(problem.small_strain(e)));
+}
+
+UpdateFactor update_factor(const Problem& problem, Index e) {
+  return update_factor(problem.shape(e), elasticity(problem.small_strain(e)),
+                       problem.scene().fracture.alpha);
+}
+
+Voigt stress(const Problem& problem, Index e, std::span<const double> u) {
+  return stress(problem.shape(e), problem.small_strain(e),
+                corner_displacement(problem.mesh(), e, u));
 }
 
 }  // namespace sunder::fem

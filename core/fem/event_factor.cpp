@@ -34,9 +34,7 @@ void event_factor(const Problem& problem, std::span<const Index> elements, Eigen
   rows.setZero();
   Eigen::Index column = 0;
   for (Index e : elements) {
-    const Material& m = problem.material(e);
-    const UpdateFactor u = update_factor(problem.shape(e), elasticity(m.young, m.poisson),
-                                         problem.scene().fracture.alpha);
+    const UpdateFactor u = update_factor(problem, e);
     for (int i = 0; i < 12; ++i) {
       const Index dof = problem.dof(problem.mesh().tets[e][i / 3], i % 3);
       if (dof == kNone) continue;

@@ -75,8 +75,7 @@ void OrderedStiffness::clear(Index element) {
 }
 
 void OrderedStiffness::add(Index element) {
-  const Material& m = problem_.material(element);
-  ElementMatrix k = element_stiffness(problem_.shape(element), elasticity(m.young, m.poisson));
+  ElementMatrix k = element_stiffness(problem_, element);
   k *= scale_[element];
   for_pairs(problem_, element, [&](int i, int j, Index dof, Index other) {
     const Index at = entry(dof, other);

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "fem/element.hpp"
 #include "fracture/crack_birth.hpp"
 #include "fracture/crack_path.hpp"
 #include "fracture/max_shear.hpp"
 #include "fracture/preset_cracks.hpp"
 #include "fracture/pressed_nodes.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -244,8 +244,8 @@ void Combined::cut_through(Crack& crack, const FractureState& state, Decision& d
     if (beside.rho > along.norm() || taken_[beside.element]) continue;
     DestroyedElement row = decision.elements.front();
     row.element = beside.element;
-    row.ratio = fem::yield_measure(state.current_stress(beside.element),
-                                   problem_.scene().fracture.yield_measure) /
+    row.ratio = yield_measure(state.current_stress(beside.element),
+                              problem_.scene().fracture.yield_measure) /
                 problem_.yield(beside.element);
     take(row, decision);
     crack.elements.push_back(beside.element);

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::fracture {
 
 InPlane in_plane(const Voigt& stress, const BoardPlane& plane) {
   Eigen::Matrix<double, 3, 2> axes;
   axes << plane.e1, plane.e2;
-  return axes.transpose() * fem::tensor(stress) * axes;
+  return axes.transpose() * tensor(stress) * axes;
 }
 
 Principal principal(const InPlane& stress) {

@@ -13,7 +13,7 @@ std::optional<InPlane> PristineField::at(const Vec2& p) const {
     if (!problem_.breakable(e)) continue;
     const TetShape& shape = problem_.shape(e);
     const auto u = fem::corner_displacement(problem_.mesh(), e, displacement_);
-    sum += shape.volume * fem::stress(shape, problem_.material(e), u);
+    sum += shape.volume * fem::stress(shape, problem_.small_strain(e), u);
     volume += shape.volume;
   }
   if (!(volume > 0)) return std::nullopt;

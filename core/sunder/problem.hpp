@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sunder/scene.hpp"
+#include "sunder/small_strain.hpp"
 
 namespace sunder {
 
@@ -56,6 +57,10 @@ class Problem {
   /// Material of element e.
   [[nodiscard]] const Material& material(Index e) const {
     return *material_of_volume_[mesh().volume_of[e]];
+  }
+  /// What the law of element e is at small strain.
+  [[nodiscard]] const SmallStrain& small_strain(Index e) const {
+    return small_strain_of_volume_[mesh().volume_of[e]];
   }
   /// Yield stress of element e [MPa]; 0: unbreakable.
   [[nodiscard]] double yield(Index e) const { return material(e).yield.value_or(0.0); }
@@ -104,6 +109,7 @@ class Problem {
   Scene scene_;
   std::vector<TetShape> shapes_;
   std::vector<const Material*> material_of_volume_;
+  std::vector<SmallStrain> small_strain_of_volume_;
   std::vector<Index> dof_;
   Index dof_count_ = 0;
   std::vector<Index> gripped_dofs_, anchored_dofs_;

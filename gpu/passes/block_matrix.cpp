@@ -154,9 +154,7 @@ Mat3 BlockMatrix::block(Index row, Index column) const {
     const Index j = corner_of(tet, column);
     if (j == 4) continue;
     const TetShape& shape = problem_.shape(e);
-    const Material& m = problem_.material(e);
-    const double mu = m.young / (2 * (1 + m.poisson));
-    const double lambda = m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
+    const double mu = problem_.small_strain(e).mu, lambda = problem_.small_strain(e).lambda;
     const Vec3 gi = shape.gradient.col(corner_of(tet, row)), gj = shape.gradient.col(j);
     sum += scale_[e] * shape.volume *
            (lambda * gi * gj.transpose() + mu * gj * gi.transpose() +

@@ -8,21 +8,13 @@
 #include <limits>
 
 #include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::gpu {
 namespace {
 
 using vulkan::Buffer;
 using vulkan::Placement;
-
-struct Lame {
-  double lambda, mu;
-};
-
-Lame lame(const Material& m) {
-  return {m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson)),
-          m.young / (2 * (1 + m.poisson))};
-}
 
 /// An fp64 number as two floats, interleaved (shaders/two_float.glsl).
 std::vector<float> two_floats(std::span<const double> values) {
@@ -158,7 +150,7 @@ void Fields::upload_shapes() {
   std::vector<double> shape(std::size_t{12} * elements_, 0.0);
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     const TetShape& s = problem_.shape(e);
-    const Lame m = lame(problem_.material(e));
+    const SmallStrain& m = problem_.small_strain(e);
     const std::array<double, 3> last = {m.lambda, m.mu, s.volume};
     for (int corner = 1; corner < 4; ++corner) {
       double* to = &shape[12 * static_cast<std::size_t>(e) + 4 * (corner - 1)];
@@ -270,9 +262,9 @@ double Fields::largest_stress(Field field) const {
   read(field, u);
   double largest = 0;
   for (Index e = 0; e < problem_.tet_count(); ++e) {
-    const Voigt stress = fem::stress(problem_.shape(e), problem_.material(e),
+    const Voigt stress = fem::stress(problem_.shape(e), problem_.small_strain(e),
                                      fem::corner_displacement(problem_.mesh(), e, u));
-    const double norm = fem::tensor(stress).norm();
+    const double norm = tensor(stress).norm();
     if (!std::isfinite(norm)) return std::numeric_limits<double>::infinity();
     largest = std::max(largest, norm);
   }

@@ -223,9 +223,8 @@ Eigen::Matrix<double, 3, 6> RigidSpace::motion(Index node) const {
 void RigidSpace::add_element(Index element, double scale) {
   const auto& tet = problem_.mesh().tets[element];
   const TetShape& shape = problem_.shape(element);
-  const Material& m = problem_.material(element);
-  const double mu = m.young / (2 * (1 + m.poisson));
-  const double lambda = m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
+  const double mu = problem_.small_strain(element).mu,
+               lambda = problem_.small_strain(element).lambda;
   const double weight = scale * shape.volume;
   for (int i = 0; i < 4; ++i) {
     const Index a = group_of_[tet[i]];

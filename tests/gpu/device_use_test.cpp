@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/element.hpp"
 #include "gpu_body.hpp"
 #include "sunder/error.hpp"
+#include "sunder/stress_measures.hpp"
 #include "support/table1_board.hpp"
 
 namespace sunder::test {
@@ -324,7 +324,7 @@ TEST_F(DeviceUse, TheDeviceListsWhatIsOverYield) {
         std::vector<Index> expected;
         for (Index e = 0; e < problem->tet_count(); ++e) {
           if (e == gone || !problem->breakable(e)) continue;
-          const double ratio = fem::max_shear(stress[e]) / problem->yield(e);
+          const double ratio = max_shear(stress[e]) / problem->yield(e);
           ASSERT_GT(std::abs(ratio - 1), 1e-5) << "element " << e << " is too near to yield";
           if (ratio >= 1) expected.push_back(e);
         }

@@ -3,7 +3,7 @@
 // scattered, after a cut, by every route, update, precision and variant. The yardstick is refined
 // with residuals in extended precision: a factor in fp64 alone is off by more than fp64 promises.
 #include "agreement.hpp"
-#include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 #include "support/direct_solution.hpp"
 
 namespace sunder::test {
@@ -99,7 +99,7 @@ class Extremes : public WithVulkan<testing::TestWithParam<Extreme>> {
   void expect_worst(const StressSummary& summary, const Stage& stage, double allowed) const {
     double worst = 0, largest = 0, least_yield = 1e300;
     const auto ratio = [&](Index e) {
-      return fem::max_shear(stage.stress[static_cast<std::size_t>(e)]) / problem_.yield(e);
+      return max_shear(stage.stress[static_cast<std::size_t>(e)]) / problem_.yield(e);
     };
     for (Index e = 0; e < problem_.tet_count(); ++e) {
       if (stage.ignored[static_cast<std::size_t>(e)]) continue;

@@ -7,11 +7,11 @@
 #include <set>
 
 #include "app/input/scene_toml.hpp"
-#include "fem/element.hpp"
 #include "fracture_lists.hpp"
 #include "gpu_body.hpp"
 #include "pieces.hpp"
 #include "sunder/simulation.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::test {
 namespace {
@@ -54,7 +54,7 @@ std::function<Yielding(Index)> yielding_at(const std::shared_ptr<const Problem>&
   // The measure (s1 - s3)/2 moves by no more than the norm of the stress error.
   const bool tresca = problem->scene().fracture.yield_measure == YieldMeasure::tresca;
   return [=](Index e) {
-    const double measure = (tresca ? 2 : 1) * fem::max_shear(stress[static_cast<std::size_t>(e)]);
+    const double measure = (tresca ? 2 : 1) * max_shear(stress[static_cast<std::size_t>(e)]);
     return Yielding{measure / problem->yield(e), error * largest / problem->yield(e)};
   };
 }

@@ -56,7 +56,7 @@ bool straight(std::span<const Vec2> tail, const TipFrame& frame, double toleranc
       tail, [&](const Vec2& p) { return std::abs(frame.local(p).y()) <= tolerance; });
 }
 
-bool same(const Material& a, const Material& b) {
+bool same(const SmallStrain& a, const SmallStrain& b) {
   return a.young == b.young && a.poisson == b.poisson;
 }
 
@@ -150,18 +150,18 @@ FieldIntensityMeter::Surroundings FieldIntensityMeter::look_around(const Crack& 
   Surroundings found;
   board_.elements_within(tip, radius, near_);
   double nearest = std::numeric_limits<double>::infinity();
-  const Material* material = nullptr;  // of the nearest live element
+  const SmallStrain* material = nullptr;  // of the nearest live element
   for (Index e : near_) {
     const double r = (board_.centroid(e) - tip).norm();
     if (view.destroyed[e]) {
       if (!own_[e]) found.other_damage = std::min(found.other_damage, r);
     } else if (r < nearest) {
       nearest = r;
-      material = &problem_.material(e);
+      material = &problem_.small_strain(e);
     }
   }
   for (Index e : near_)
-    if (!view.destroyed[e] && !same(problem_.material(e), *material))  // set: e is live
+    if (!view.destroyed[e] && !same(problem_.small_strain(e), *material))  // set: e is live
       found.other_material = std::min(found.other_material, (board_.centroid(e) - tip).norm());
   for (Index e : crack.elements) own_[e] = 0;
   return found;
@@ -232,8 +232,8 @@ TipMaterial FieldIntensityMeter::tip_material(const TipDomain& domain) const {
   for (Index e : domain.elements) {
     const double v = problem_.shape(e).volume;
     volume += v;
-    compliance += v / problem_.material(e).young;
-    poisson += v * problem_.material(e).poisson;
+    compliance += v / problem_.small_strain(e).young;
+    poisson += v * problem_.small_strain(e).poisson;
   }
   const auto held = std::count_if(domain.nodes.begin(), domain.nodes.end(),
                                   [&](Index n) { return problem_.dof(n, normal_axis_) == kNone; });

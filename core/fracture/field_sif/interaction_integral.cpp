@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "fracture/crack_path.hpp"
+#include "material/linear.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -17,14 +19,6 @@ struct ElementField {
   Vec3 weight_gradient;
 };
 
-Mat3 stress_of(const Mat3& gradient, const Material& m) {
-  const double mu = m.young / (2 * (1 + m.poisson));
-  const double lambda = 2 * mu * m.poisson / (1 - 2 * m.poisson);
-  Mat3 stress = mu * (gradient + gradient.transpose());
-  stress.diagonal().array() += lambda * gradient.trace();
-  return stress;
-}
-
 ElementField element_field(const IntegralInput& in, std::size_t i, const Mat3& axes) {
   const auto& corners = in.domain.corners[i];
   const Index e = in.domain.elements[i];
@@ -36,7 +30,7 @@ ElementField element_field(const IntegralInput& in, std::size_t i, const Mat3& a
     gradient += u * shape.col(a).transpose();
     weight_gradient += (in.domain.weight[corners[a]] - in.domain.weight[corners[0]]) * shape.col(a);
   }
-  return {gradient, stress_of(gradient, in.problem.material(e)), weight_gradient};
+  return {gradient, tensor(stress(in.problem.small_strain(e), gradient)), weight_gradient};
 }
 
 std::array<AuxiliaryState, kModes> auxiliary_at(const IntegralInput& in, const Vec2& place,

@@ -10,6 +10,7 @@
 
 #include "fem/assembly.hpp"
 #include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 #include "support/accuracy.hpp"
 #include "support/table1_board.hpp"
 
@@ -26,7 +27,7 @@ struct Field {
     for (Index e : destroyed) live[e] = 0;
   }
   [[nodiscard]] Voigt plain(Index e) const {
-    const Voigt s = fem::stress(problem->shape(e), problem->material(e),
+    const Voigt s = fem::stress(problem->shape(e), problem->small_strain(e),
                                 fem::corner_displacement(problem->mesh(), e, u));
     return (live[e] ? 1.0 : problem->scene().fracture.alpha) * s;
   }
@@ -65,7 +66,7 @@ TEST(StressKernel, FindsTheWorstRatiosThatALoopFinds) {
     StressSummary expected;
     for (Index e = 0; e < field.problem->tet_count(); ++e) {
       if (!field.live[e] || !field.problem->breakable(e)) continue;
-      const double ratio = fem::max_shear(stress[e]) / field.problem->yield(e);
+      const double ratio = max_shear(stress[e]) / field.problem->yield(e);
       if (ratio >= 1) ++expected.over;
       if (ratio > expected.any.ratio) expected.any = {e, ratio};
       if (!excluded[e] && ratio > expected.candidate.ratio) expected.candidate = {e, ratio};
@@ -91,7 +92,7 @@ TEST(StressKernel, CountsWhatIsOverYieldWhereSomeElementIsJustThere) {
     std::vector<Voigt> stress(field.live.size());
     kernel.run(field.u, stress);
     const auto ratio = [&](Index e) {
-      return fem::yield_measure(stress[e], measure) / field.problem->yield(e);
+      return yield_measure(stress[e], measure) / field.problem->yield(e);
     };
     for (Index at = 0; at < field.problem->tet_count(); at += 97) {
       if (!field.problem->breakable(at)) continue;
@@ -153,7 +154,7 @@ TEST(StressKernel, TakesSomeElementsOnly) {
   for (std::size_t i = 0; i < some.size(); ++i) {
     EXPECT_EQ(kernel.place(some[i]), static_cast<Index>(i));
     const Index e = some[i];
-    EXPECT_EQ(stress[i], fem::stress(field.problem->shape(e), field.problem->material(e),
+    EXPECT_EQ(stress[i], fem::stress(field.problem->shape(e), field.problem->small_strain(e),
                                      fem::corner_displacement(field.problem->mesh(), e, field.u)));
   }
 }

@@ -2,6 +2,7 @@
 // One tetrahedron against values worked out by hand: corners at the origin and at (2,0,0),
 // (0,3,0), (0,0,4), so V = 4 and the gradients are the reciprocal edge lengths.
 #include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +32,8 @@ TEST(Element, ElasticityByHand) {
   Matrix6 expected = Matrix6::Zero();
   expected.topLeftCorner<3, 3>().setConstant(2);
   expected.diagonal() << 6, 6, 6, 2, 2, 2;
-  EXPECT_LE((elasticity(5, 0.25) - expected).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LE((elasticity(small_strain({5, 0.25, std::nullopt})) - expected).cwiseAbs().maxCoeff(),
+            1e-15);
 }
 
 // Rows xx, yy, zz, xy, yz, zx; node 1 moves gradients (1/2, 0, 0), node 2 (0, 1/3, 0).
@@ -56,7 +58,8 @@ TEST(Element, StrainDisplacementByHand) {
 
 // K_e = V B^T D B with lambda = mu = 2, V = 4: entries of the product by hand.
 TEST(Element, StiffnessByHand) {
-  const ElementMatrix k = element_stiffness(hand_tet(), elasticity(5, 0.25));
+  const ElementMatrix k =
+      element_stiffness(hand_tet(), elasticity(small_strain({5, 0.25, std::nullopt})));
   EXPECT_NEAR(k(3, 3), 4 * 6 * 0.25, 1e-14);     // V (lambda + 2 mu) / 2^2
   EXPECT_NEAR(k(4, 4), 4 * 2 * 0.25, 1e-14);     // V mu / 2^2
   EXPECT_NEAR(k(3, 7), 4 * 2 * 0.5 / 3, 1e-14);  // V lambda / (2 * 3)
@@ -78,12 +81,12 @@ TEST(Element, StiffnessAgreesWithIndependentDerivation) {
   const ElementMatrix expected =
       (volume * (b.transpose() * test::DirectSolution::elasticity(m) * b)).cast<double>();
   const TetShape shape = tet_shape(mesh.nodes[0], mesh.nodes[1], mesh.nodes[2], mesh.nodes[3]);
-  const ElementMatrix k = element_stiffness(shape, elasticity(m.young, m.poisson));
+  const ElementMatrix k = element_stiffness(shape, elasticity(small_strain(m)));
   EXPECT_LE((k - expected).norm(), 1e-14 * expected.norm());
 }
 
 TEST(Element, UpdateFactorSquaresToTheDestroyedShare) {
-  const Matrix6 d = elasticity(8, 0.4);
+  const Matrix6 d = elasticity(small_strain({8, 0.4, std::nullopt}));
   const double alpha = 1e-6;
   const UpdateFactor u = update_factor(hand_tet(), d, alpha);
   const ElementMatrix expected = (1 - alpha) * element_stiffness(hand_tet(), d);
@@ -101,7 +104,8 @@ Eigen::Matrix<double, 3, 4> linear_field(const Mat3& gradient, const Vec3& offse
 TEST(Element, StressByHand) {
   Mat3 h;
   h << 0.1, 0.2, 0, 0, 0.3, 0, 0.5, 0, 0.4;
-  const Voigt s = stress(hand_tet(), {5, 0.25, std::nullopt}, linear_field(h, Vec3::Zero()));
+  const Voigt s =
+      stress(hand_tet(), small_strain({5, 0.25, std::nullopt}), linear_field(h, Vec3::Zero()));
   Voigt expected;
   expected << 1.6 + 0.4, 1.6 + 1.2, 1.6 + 1.6, 0.4, 0.0, 1.0;
   EXPECT_LE((s - expected).cwiseAbs().maxCoeff(), 1e-15 * 8);
@@ -111,16 +115,17 @@ TEST(Element, RigidTranslationLeavesStressExact) {
   Mat3 h = Mat3::Zero();
   h(0, 0) = 1;
   const Material m{5, 0.25, std::nullopt};
-  const Voigt at_rest = stress(hand_tet(), m, linear_field(h, Vec3::Zero()));
+  const Voigt at_rest = stress(hand_tet(), small_strain(m), linear_field(h, Vec3::Zero()));
   // 2^20 is exact in double: the differences, and so the stress, must not change at all.
-  const Voigt moved = stress(hand_tet(), m, linear_field(h, Vec3::Constant(1048576)));
+  const Voigt moved = stress(hand_tet(), small_strain(m), linear_field(h, Vec3::Constant(1048576)));
   EXPECT_EQ(at_rest, moved);
 }
 
 TEST(Element, RigidRotationGivesNoForce) {
   Mat3 h;
   h << 0, -0.3, 0.2, 0.3, 0, -0.1, -0.2, 0.1, 0;  // infinitesimal rotation
-  const Voigt s = stress(hand_tet(), {5, 0.25, std::nullopt}, linear_field(h, Vec3(1, 2, 3)));
+  const Voigt s =
+      stress(hand_tet(), small_strain({5, 0.25, std::nullopt}), linear_field(h, Vec3(1, 2, 3)));
   EXPECT_LE(s.cwiseAbs().maxCoeff(), 6 * 4 * 2.3e-16);  // (lambda + 2 mu) times rounding of u
 }
 

@@ -78,7 +78,7 @@ TEST(PristineField, IsTheVolumeWeightedMeanOverBreakableNeighbours) {
   double volume = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (!problem.breakable(e) || (board.centroid(e) - p).norm() > 1.5 * board.h()) continue;
-    const Voigt s = fem::stress(problem.shape(e), problem.material(e),
+    const Voigt s = fem::stress(problem.shape(e), problem.small_strain(e),
                                 fem::corner_displacement(problem.mesh(), e, u));
     sum += problem.shape(e).volume * in_plane(s, board.plane());
     volume += problem.shape(e).volume;

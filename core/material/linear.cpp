@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "material/linear.hpp"
+
+namespace sunder {
+
+SmallStrain small_strain(const Material& material) {
+  const double e = material.young, nu = material.poisson;
+  return {.young = e,
+          .poisson = nu,
+          .lambda = e * nu / ((1 + nu) * (1 - 2 * nu)),
+          .mu = e / (2 * (1 + nu)),
+          .triple_bulk = e / (1 - 2 * nu),
+          .double_shear = e / (1 + nu)};
+}
+
+Matrix6 elasticity(const SmallStrain& law) {
+  Matrix6 d = Matrix6::Zero();
+  d.topLeftCorner<3, 3>().setConstant(law.lambda);
+  d.diagonal().head<3>().array() += 2 * law.mu;
+  d.diagonal().tail<3>().setConstant(law.mu);
+  return d;
+}
+
+Voigt stress(const SmallStrain& law, const Mat3& h) {
+  const double mu = law.mu, pressure = law.lambda * h.trace();
+  Voigt s;
+  s << pressure + 2 * mu * h(0, 0), pressure + 2 * mu * h(1, 1), pressure + 2 * mu * h(2, 2),
+      mu * (h(0, 1) + h(1, 0)), mu * (h(1, 2) + h(2, 1)), mu * (h(2, 0) + h(0, 2));
+  return s;
+}
+
+}  // namespace sunder
