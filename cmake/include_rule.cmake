@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+# Which room may include which: checked before anything is compiled, in every build.
+#   cmake -DROOT=SOURCE [-DSTAMP=FILE] -P cmake/include_rule.cmake
+# A room is a folder; a file belongs to the innermost one that is named here. It may include its own
+# room, the rooms after the colon, and headers in angle brackets. The first word of a header that has
+# no folder in its name ("loads.hpp") is looked up next to the file.
+cmake_minimum_required(VERSION 3.22)
+
+set(rooms
+  "core/sunder:"
+  "core/material:core/sunder"
+  "core/fem:core/sunder core/material core/engine"
+  "core/engine:core/sunder core/material core/fem"
+  "core/fracture:core/sunder core/material core/fem"
+  "core:core/sunder core/material core/fem core/engine core/fracture"
+  "cpu_reference:core core/sunder core/material core/fem core/engine"
+  "shaders:"
+  "gpu:core core/sunder core/material core/fem core/engine shaders"
+  "api/sunder:core/sunder"
+  "api:core core/sunder api/sunder cpu_reference gpu"
+  "app/input:core/sunder"
+  "app/mesh_board:core/sunder app/input app/output"
+  "app/output:core core/sunder"
+  "app/figure:core core/sunder app/output"
+  "app/report:core/sunder app/output app/figure"
+  "app/reproduce:core/sunder api/sunder app/input app/output app/figure app/report"
+  "app/commands:core/sunder api/sunder app/input app/mesh_board app/output app/figure app/report app/reproduce"
+  "app/cli:core/sunder api/sunder app/input app/commands"
+)
+# Where the headers of a room are looked for: "fem/element.hpp" is core/fem/element.hpp.
+set(include_folders . core api)
+
+set(names "")
+foreach(entry IN LISTS rooms)
+  string(REGEX MATCH "^([^:]*):(.*)$" _ "${entry}")
+  set(name "${CMAKE_MATCH_1}")
+  string(REPLACE " " ";" allowed "${CMAKE_MATCH_2}")
+  list(APPEND names "${name}")
+  string(MAKE_C_IDENTIFIER "${name}" id)
+  set(allowed_${id} "${name};${allowed}")
+endforeach()
+
+# room_of(FILE OUT): the innermost room that holds a path.
+function(room_of path out)
+  set(best "")
+  foreach(name IN LISTS names)
+    string(LENGTH "${name}/" length)
+    string(SUBSTRING "${path}////////////////" 0 ${length} head)
+    if(head STREQUAL "${name}/")
+      string(LENGTH "${best}" before)
+      string(LENGTH "${name}" now)
+      if(now GREATER before)
+        set(best "${name}")
+      endif()
+    endif()
+  endforeach()
+  set(${out} "${best}" PARENT_SCOPE)
+endfunction()
+
+# header_path(HEADER FROM OUT): the header's path below ROOT; empty: it is none of ours.
+function(header_path header from out)
+  get_filename_component(beside "${from}" DIRECTORY)
+  set(found "")
+  foreach(folder IN LISTS include_folders ITEMS "${beside}")
+    if(NOT found AND EXISTS "${ROOT}/${folder}/${header}")
+      set(found "${folder}/${header}")
+    endif()
+  endforeach()
+  string(REGEX REPLACE "^\\./" "" found "${found}")
+  set(${out} "${found}" PARENT_SCOPE)
+endfunction()
+
+set(wrong "")
+foreach(top core cpu_reference shaders gpu api app)
+  file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/${top}/*.cpp" "${ROOT}/${top}/*.hpp"
+    "${ROOT}/${top}/*.h")
+  foreach(file IN LISTS files)
+    room_of("${file}" room)
+    string(MAKE_C_IDENTIFIER "${room}" id)
+    if(room STREQUAL "")
+      list(APPEND wrong "${file} lies in no room; name its folder in cmake/include_rule.cmake")
+      continue()
+    endif()
+    file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*\"")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*$" "\\1" header "${line}")
+      header_path("${header}" "${file}" path)
+      if(path STREQUAL "")
+        continue()
+      endif()
+      room_of("${path}" target)
+      if(NOT target IN_LIST allowed_${id})
+        string(REPLACE ";" ", " may "${allowed_${id}}")
+        list(APPEND wrong "${file} includes ${path}; ${room} may include ${may}")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
+
+if(wrong)
+  list(JOIN wrong "\n  " text)
+  message(FATAL_ERROR "The include rule is broken:\n  ${text}")
+endif()
+if(STAMP)
+  file(TOUCH "${STAMP}")
+endif()
