@@ -98,9 +98,7 @@ void stiffness_product(benchmark::State& state, const Rows& rows, const std::str
   const vulkan::Buffer q(device, bytes, vulkan::Placement::device);
   const vulkan::Buffer sums(device, matrix.groups() * kernels.parts() * sizeof(double),
                             vulkan::Placement::device);
-  using enum gpu::Reads;
-  const auto kernel =
-      kernels.make("cg_multiply", {doubles, plain, words, doubles, plain, plain}, 0);
+  const auto kernel = kernels.make("cg_multiply");
   const vulkan::Buffer* buffers[] = {
       &matrix.blocks(), &matrix.slices(), &fields.dofs(), &p, &q, &sums};
   const vulkan::Binding binding(device, *kernel, buffers);

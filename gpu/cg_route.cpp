@@ -57,12 +57,10 @@ std::size_t CgRoute::planned_bytes(const KernelFactory& kernels, const Problem& 
 }
 
 void CgRoute::create_kernels(const Fields& fields) {
-  using enum Reads;
   const KernelFactory kernels = kernels_.in_fp64();
   const auto make = [&](Pass& pass, const char* name, std::uint32_t group,
-                        std::initializer_list<Reads> reads,
                         std::initializer_list<const Buffer*> buffers) {
-    pass.kernel = kernels.make(name, reads, sizeof(shaders::CgPush), group);
+    pass.kernel = kernels.make(name, group);
     pass.binding = std::make_unique<vulkan::Binding>(kernels.device(), *pass.kernel,
                                                      std::vector<const Buffer*>(buffers));
   };
@@ -70,18 +68,14 @@ void CgRoute::create_kernels(const Fields& fields) {
   const std::uint32_t one = kernels.summing_group();
   const Buffer& x = fields.nodal(Field::correction);
   const Buffer& m = matrix_.preconditioner();
-  make(begin_, "cg_begin", all, {plain, words, doubles, plain, plain, plain},
+  make(begin_, "cg_begin", all,
        {&fields.residual(), &fields.dofs(), &fields.nodal(Field::displacement), &r_, &p_, &rz_});
-  make(multiply_, "cg_multiply", all, {doubles, plain, words, doubles, plain, plain},
+  make(multiply_, "cg_multiply", all,
        {&matrix_.blocks(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_});
-  make(length_, "cg_length", one, {doubles, doubles, plain}, {&pq_, &rz_, &state_});
-  make(step_, "cg_step", all,
-       {plain, doubles, doubles, doubles, doubles, doubles, plain, plain, plain, plain},
-       {&state_, &m, &p_, &q_, &x, &r_, &x, &r_, &z_, &rz_});
-  make(check_, "cg_check", one, {doubles, doubles, plain, plain},
-       {&rz_, &rigid_.terms(), &state_, &arguments_});
-  make(direction_, "cg_direction", all, {plain, doubles, doubles, words, doubles, plain},
-       {&state_, &z_, &rigid_.w(), &rigid_.modes(), &p_, &p_});
+  make(length_, "cg_length", one, {&pq_, &rz_, &state_});
+  make(step_, "cg_step", all, {&state_, &m, &p_, &q_, &x, &r_, &x, &r_, &z_, &rz_});
+  make(check_, "cg_check", one, {&rz_, &rigid_.terms(), &state_, &arguments_});
+  make(direction_, "cg_direction", all, {&state_, &z_, &rigid_.w(), &rigid_.modes(), &p_, &p_});
   rigid_.bind(r_);
 }
 

@@ -2,13 +2,13 @@
 // Turns embedded kernels into pipelines, in the variant that suits the driver.
 #pragma once
 
-#include <initializer_list>
 #include <memory>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "gpu/kernel_table.hpp"
 #include "gpu/vulkan/kernel.hpp"
 #include "shaders/layout.h"
 #include "sunder/backend.hpp"
@@ -22,33 +22,22 @@ namespace sunder::gpu {
 /// How kernels read (shaders/common.glsl).
 enum class Variant { gpu, lvp };
 
-/// What a kernel reads through a binding; decides how the variant binds it.
-enum class Reads {
-  reals,    ///< IN_REAL4: the storage precision
-  doubles,  ///< IN_DVEC4
-  words,    ///< IN_UVEC4
-  plain,    ///< everything else: a storage buffer in both variants
-};
-
 class KernelFactory {
  public:
   /// `fp64`: storage precision of the inverse and of element stress.
   KernelFactory(vulkan::Device& device, Variant variant, bool fp64)
       : device_(device), variant_(variant), fp64_(fp64) {}
 
-  /// A kernel in storage precision; `choice`: its third specialization constant, where it has one.
+  /// A kernel of the table in storage precision; `choice`: its third specialization constant, where
+  /// it has one.
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name,
-                                                     std::initializer_list<Reads> bindings,
-                                                     std::size_t push_bytes,
                                                      std::uint32_t group = shaders::kGroup,
                                                      std::uint32_t choice = 0) const {
-    return make(name, fp64_, bindings, push_bytes, group, choice);
+    return make(name, fp64_, group, choice);
   }
   /// A kernel that computes in fp64 always (in two floats where the device has none).
-  [[nodiscard]] std::unique_ptr<vulkan::Kernel> make_fp64(std::string_view name,
-                                                          std::initializer_list<Reads> bindings,
-                                                          std::size_t push_bytes) const {
-    return make(name, true, bindings, push_bytes, shaders::kGroup, 0);
+  [[nodiscard]] std::unique_ptr<vulkan::Kernel> make_fp64(std::string_view name) const {
+    return make(name, true, shaders::kGroup, 0);
   }
 
   /// The same kernels with fp64 as storage precision.
@@ -80,14 +69,17 @@ class KernelFactory {
 
  private:
   [[nodiscard]] std::unique_ptr<vulkan::Kernel> make(std::string_view name, bool fp64,
-                                                     std::initializer_list<Reads> bindings,
-                                                     std::size_t push_bytes, std::uint32_t group,
+                                                     std::uint32_t group,
                                                      std::uint32_t choice) const;
 
   vulkan::Device& device_;
   Variant variant_;
   bool fp64_;
 };
+
+/// How a binding is bound in a variant: of a kernel that computes in fp64 or not, on a device that
+/// has fp64 or (`single`) has none.
+[[nodiscard]] vulkan::Access access(Reads reads, Variant variant, bool fp64, bool single);
 
 /// What pipelines do, by the names of their kernels, each name once.
 [[nodiscard]] std::vector<KernelPlan> describe(const std::multiset<std::string>& pipelines);

@@ -10,7 +10,7 @@ class AddCorrection {
  public:
   AddCorrection(const KernelFactory& kernels, const Fields& fields)
       : packs_(static_cast<std::uint32_t>(fields.nodal(Field::correction).bytes() / 32)),
-        kernel_(kernels.make_fp64("add", {Reads::doubles, Reads::plain}, sizeof(packs_))) {
+        kernel_(kernels.make_fp64("add")) {
     const vulkan::Buffer* buffers[] = {&fields.nodal(Field::correction),
                                        &fields.nodal(Field::displacement)};
     binding_ = std::make_unique<vulkan::Binding>(kernels.device(), *kernel_, buffers);

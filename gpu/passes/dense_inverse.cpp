@@ -48,10 +48,7 @@ std::uint32_t panel_columns(const KernelFactory& kernels, std::uint32_t rows,
 }  // namespace
 
 PartialSums::PartialSums(const KernelFactory& kernels, std::uint32_t rows, std::uint32_t chunks)
-    : kernels_(kernels),
-      rows_(rows),
-      sum_(kernels.make_fp64("sum", {Reads::doubles, Reads::words, Reads::plain},
-                             sizeof(shaders::SumPush))) {
+    : kernels_(kernels), rows_(rows), sum_(kernels.make_fp64("sum")) {
   reserve(chunks);
 }
 
@@ -108,8 +105,7 @@ void DenseInverse::create_panels(std::size_t panel_bytes) {
 }
 
 void DenseInverse::create_apply() {
-  apply_ = kernels_.make("apply", {Reads::reals, Reads::words, Reads::plain},
-                         sizeof(shaders::ApplyPush), shaders::kGroup, lower_ ? 1 : 0);
+  apply_ = kernels_.make("apply", shaders::kGroup, lower_ ? 1 : 0);
 }
 
 /// Whether to read the lower tiles alone: kernels that read them are others.
@@ -163,10 +159,9 @@ void DenseInverse::bind(const PartialSums& partials, const Buffer& vector) {
 void DenseInverse::create_dense() {
   const bool narrow = narrows(kernels_);
   if (!dense_) {
-    dense_ = kernels_.make("dense", {Reads::reals, Reads::reals, Reads::plain},
-                           sizeof(shaders::ApplyPush), shaders::kGroup, lower_ ? 1 : 0);
+    dense_ = kernels_.make("dense", shaders::kGroup, lower_ ? 1 : 0);
     if (narrow && !narrow_) {
-      narrow_ = kernels_.make_fp64("narrow", {Reads::doubles, Reads::plain}, 0);
+      narrow_ = kernels_.make_fp64("narrow");
     }
   }
   if (narrow) narrowing_ = bind_buffers(kernels_, *narrow_, {dense_vector_, &vector_});
@@ -269,8 +264,7 @@ std::size_t DenseInverse::planned_update(const KernelFactory& kernels, std::uint
 
 void DenseInverse::reserve_pick(std::size_t dofs, std::size_t values) {
   if (!pick_) {
-    pick_ = kernels_.make("pick", {Reads::plain, Reads::plain, Reads::plain},
-                          sizeof(shaders::PickPush));
+    pick_ = kernels_.make("pick");
   } else if (dofs * 4 <= pick_dofs_.bytes() && values * 8 <= picked_.bytes()) {
     return;
   }
@@ -311,9 +305,7 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
   const std::size_t z_bytes =
       std::size_t{blocks} * shaders::kRankBlock * rows_ * kernels_.real_bytes();
   if (!vectors_) {
-    vectors_ =
-        kernels_.make("update_vectors", {Reads::reals, Reads::plain, Reads::doubles, Reads::plain},
-                      sizeof(shaders::VectorsPush), shaders::kGroup, lower_ ? 1 : 0);
+    vectors_ = kernels_.make("update_vectors", shaders::kGroup, lower_ ? 1 : 0);
   } else if (dofs * 4 <= update_dofs_.bytes() && factor_bytes <= factors_.bytes() &&
              z_bytes <= z_.bytes()) {
     return;
@@ -335,9 +327,7 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
 void DenseInverse::bind_update(std::uint32_t blocks) {
   auto& kernel = blocks == 1 ? rank_6_ : low_rank_;
   if (!kernel) {
-    kernel =
-        kernels_.make("low_rank", {Reads::reals, Reads::reals, Reads::plain},
-                      sizeof(shaders::LowRankPush), kernels_.low_rank_group(), blocks == 1 ? 1 : 0);
+    kernel = kernels_.make("low_rank", kernels_.low_rank_group(), blocks == 1 ? 1 : 0);
   }
   for (Panel& panel : panels_) {
     auto& binding = blocks == 1 ? panel.rank_6 : panel.low_rank;
@@ -399,8 +389,7 @@ void DenseInverse::record_low_rank(vulkan::Commands& commands, const Panel& pane
 }
 
 void DenseInverse::take_complement(const DenseInverse& other, double scale) {
-  const auto kernel =
-      kernels_.make("complement", {Reads::doubles, Reads::plain}, sizeof(shaders::ComplementPush));
+  const auto kernel = kernels_.make("complement");
   trust(false);
   for (const Panel& from : other.panels_) {
     for (const Panel& to : panels_) {

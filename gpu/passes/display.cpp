@@ -23,10 +23,7 @@ Display::Display(const KernelFactory& kernels, const Problem& problem, const Fie
       displacement_(target(targets.displacement, std::size_t{16} * push_.nodes, "displacement")),
       stress_(target(targets.stress, std::size_t{8} * push_.elements, "stress")),
       live_(target(targets.live, std::size_t{4} * push_.elements, "liveness")),
-      kernel_(kernels.make(
-          "display",
-          {Reads::doubles, Reads::reals, Reads::plain, Reads::plain, Reads::plain, Reads::plain},
-          sizeof(shaders::DisplayPush))) {
+      kernel_(kernels.make("display")) {
   const vulkan::Buffer* buffers[] = {&fields.nodal(Field::displacement),
                                      &fields.stress(),
                                      &fields.facts(),

@@ -13,14 +13,9 @@ using vulkan::Placement;
 ExactColumns::ExactColumns(const KernelFactory& kernels, std::uint32_t rows)
     : kernels_(kernels),
       rows_(rows),
-      dense_(kernels.make_fp64("dense", {Reads::doubles, Reads::doubles, Reads::plain},
-                               sizeof(shaders::ApplyPush))),
-      project_(kernels.make_fp64(
-          "project", {Reads::doubles, Reads::doubles, Reads::plain, Reads::plain, Reads::plain},
-          sizeof(shaders::ProjectPush))),
-      solve_(kernels.make_fp64("solve",
-                               {Reads::doubles, Reads::doubles, Reads::words, Reads::plain},
-                               sizeof(shaders::SolvePush))) {}
+      dense_(kernels.make_fp64("dense")),
+      project_(kernels.make_fp64("project")),
+      solve_(kernels.make_fp64("solve")) {}
 
 namespace {
 

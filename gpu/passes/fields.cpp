@@ -163,32 +163,26 @@ void Fields::upload_shapes() {
 }
 
 void Fields::create_kernels() {
-  using enum Reads;
   vulkan::Device& device = kernels_.device();
   const auto bind = [&](const vulkan::Kernel& kernel, std::initializer_list<const Buffer*> list) {
     return std::make_unique<vulkan::Binding>(device, kernel, std::vector<const Buffer*>(list));
   };
   if (norms_) {
-    stress_pass_.kernel =
-        kernels_.make("stress", {doubles, words, doubles, words, plain, plain, plain},
-                      sizeof(shaders::ElementPush));
+    stress_pass_.kernel = kernels_.make("stress");
     stress_pass_.binding = bind(*stress_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &facts_,
                                                        &stress_, &stress_partials_, &over_});
     correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &facts_,
                                                      &stress_, &stress_partials_, &over_});
   }
   if (!host_balance_) create_residual_pass();
-  summary_pass_.kernel =
-      kernels_.make_fp64("summary", {plain, plain, plain, plain}, sizeof(shaders::SummaryPush));
+  summary_pass_.kernel = kernels_.make_fp64("summary");
   summary_pass_.binding =
       bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_, &over_});
   displacement_gather_ = std::make_unique<Gather>(kernels_, displacement_);
 }
 
 void Fields::create_residual_pass() {
-  using enum Reads;
-  residual_pass_.kernel = kernels_.make_fp64(
-      "residual", {doubles, doubles, plain, words, doubles, doubles, plain, plain, plain}, 0);
+  residual_pass_.kernel = kernels_.make_fp64("residual");
   const Buffer* buffers[] = {&displacement_, &matrix_.blocks(), &matrix_.slices(), &dofs_,
                              &load_,         &roots_,           &balance_,         &residual_,
                              &node_partials_};
@@ -317,8 +311,7 @@ void Fields::create_hold() {
   held_ = Buffer(device, held.size() * sizeof(std::uint32_t), Placement::device);
   held_.write(std::span<const std::uint32_t>(held));
   prescribed_ = Buffer(device, held.size() * sizeof(double), Placement::host);
-  hold_pass_.kernel = kernels_.make_fp64("hold", {Reads::plain, Reads::plain, Reads::plain},
-                                         sizeof(shaders::HoldPush));
+  hold_pass_.kernel = kernels_.make_fp64("hold");
   const Buffer* of_displacement[] = {&held_, &prescribed_, &displacement_};
   const Buffer* of_correction[] = {&held_, &prescribed_, &correction_};
   hold_pass_.binding =

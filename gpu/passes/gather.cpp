@@ -23,8 +23,7 @@ Gather::Gather(const KernelFactory& kernels, const Buffer& values)
     : device_(kernels.device()),
       single_(kernels.single()),
       values_(values),
-      kernel_(kernels.make_fp64("gather", {Reads::plain, Reads::plain, Reads::plain},
-                                sizeof(shaders::GatherPush))),
+      kernel_(kernels.make_fp64("gather")),
       commands_(kernels.device()) {}
 
 void Gather::make_room(std::uint32_t count) {

@@ -73,13 +73,11 @@ std::size_t RigidSpace::bytes() const {
 }
 
 void RigidSpace::bind(const Buffer& r) {
-  using enum Reads;
   const std::uint32_t group = kernels_.summing_group();
-  restrict_ = kernels_.in_fp64().make("cg_restrict", {plain, words, doubles, plain}, 0, group);
+  restrict_ = kernels_.in_fp64().make("cg_restrict", group);
   const Buffer* restricted[] = {&first_, &members_, &r, &y_};
   restrict_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *restrict_, restricted);
-  solve_ = kernels_.in_fp64().make("cg_coarse", {doubles, doubles, plain, plain},
-                                   sizeof(shaders::CgPush), group);
+  solve_ = kernels_.in_fp64().make("cg_coarse", group);
   const Buffer* solved[] = {&inverse_, &y_, &w_, &terms_};
   solve_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *solve_, solved);
 }

@@ -29,8 +29,7 @@ class Multiply {
     p_ = vulkan::Buffer(device, bytes, vulkan::Placement::device);
     q_ = vulkan::Buffer(device, bytes, vulkan::Placement::device);
     sums_ = vulkan::Buffer(device, parts_ * sizeof(double), vulkan::Placement::device);
-    using enum gpu::Reads;
-    kernel_ = kernels.make("cg_multiply", {doubles, plain, words, doubles, plain, plain}, 0);
+    kernel_ = kernels.make("cg_multiply");
     const vulkan::Buffer* buffers[] = {
         &matrix.blocks(), &matrix.slices(), &fields.dofs(), &p_, &q_, &sums_};
     binding_ = std::make_unique<vulkan::Binding>(device, *kernel_, buffers);
@@ -87,10 +86,10 @@ class CgKernels : public Kernels {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 4 < 3 ? random() : 0;
     return values;
   }
-  void run(const char* name, std::initializer_list<gpu::Reads> reads,
-           const std::vector<const vulkan::Buffer*>& buffers, const shaders::CgPush& push,
-           std::uint32_t groups, std::uint32_t group = shaders::kGroup) {
-    Kernels::run(*factory_->make(name, reads, sizeof push, group), buffers, push, groups);
+  void run(const char* name, const std::vector<const vulkan::Buffer*>& buffers,
+           const shaders::CgPush& push, std::uint32_t groups,
+           std::uint32_t group = shaders::kGroup) {
+    Kernels::run(*factory_->make(name, group), buffers, push, groups);
   }
   /// Partial results of a sum over nodes, each over the nodes that share a part.
   void expect_parts(const vulkan::Buffer& sums, const Doubles& a, const Doubles& b) const {
@@ -217,9 +216,7 @@ TEST_P(CgKernels, BeginTakesWhatIsFree) {
     const auto r = empty(4 * kNodes), p = empty(4 * kNodes), sums = empty(kNodes);
     shaders::CgPush push{};
     push.guess = guess;
-    using enum gpu::Reads;
-    run("cg_begin", {plain, words, doubles, plain, plain, plain},
-        {&of_residual, &of_dofs, &of_u, &r, &p, &sums}, push, kGroups);
+    run("cg_begin", {&of_residual, &of_dofs, &of_u, &r, &p, &sums}, push, kGroups);
     Doubles expected_r(4 * kNodes, 0), expected_p(4 * kNodes, 0);
     for (std::size_t i = 0; i < 4 * kNodes; ++i) {
       const std::size_t axis = i % 4;
@@ -241,9 +238,8 @@ TEST_P(CgKernels, StepAndItsPreconditioner) {
   const auto of_m = buffer(m), of_p = buffer(p), of_q = buffer(q), of_x = buffer(x),
              of_r = buffer(r), new_x = empty(4 * kNodes), new_r = empty(4 * kNodes),
              of_z = empty(4 * kNodes), sums = empty(kNodes);
-  using enum gpu::Reads;
-  run("cg_step", {plain, doubles, doubles, doubles, doubles, doubles, plain, plain, plain, plain},
-      {&of_state, &of_m, &of_p, &of_q, &of_x, &of_r, &new_x, &new_r, &of_z, &sums}, {}, kGroups);
+  run("cg_step", {&of_state, &of_m, &of_p, &of_q, &of_x, &of_r, &new_x, &new_r, &of_z, &sums}, {},
+      kGroups);
   const Doubles stepped = read(new_x, 4 * kNodes), left = read(new_r, 4 * kNodes),
                 z = read(of_z, 4 * kNodes);
   for (std::size_t i = 0; i < 4 * kNodes; ++i) {
@@ -285,9 +281,7 @@ TEST_P(CgKernels, LengthOfAStep) {
     shaders::CgPush push{};
     push.partials = kPacks;
     push.first = first ? 1 : 0;
-    using enum gpu::Reads;
-    run("cg_length", {doubles, doubles, plain}, {&pq_sums, &rp_sums, &of_state}, push, 1,
-        factory_->summing_group());
+    run("cg_length", {&pq_sums, &rp_sums, &of_state}, push, 1, factory_->summing_group());
     return s;
   };
   const shaders::CgState later = length(pq, false);
@@ -339,9 +333,7 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
     push.rigid_solves = kSolves;
     push.first = first ? 1 : 0;
     push.reduction = 1e-3;
-    using enum gpu::Reads;
-    run("cg_check", {doubles, doubles, plain, plain}, {&sums, &of_terms, &of_state, &arguments},
-        push, 1, factory_->summing_group());
+    run("cg_check", {&sums, &of_terms, &of_state, &arguments}, push, 1, factory_->summing_group());
     Words sizes(12);
     arguments.read(std::span<std::uint32_t>(sizes));
     return Outcome{state(of_state), sizes};
@@ -403,9 +395,8 @@ TEST_P(CgKernels, SmallProblemOfTheRigidMotions) {
              of_terms = empty(kSolves);
   shaders::CgPush push{};
   push.rigid_solves = kSolves;
-  using enum gpu::Reads;
-  run("cg_coarse", {doubles, doubles, plain, plain}, {&of_inverse, &of_y, &of_w, &of_terms}, push,
-      kSolves, factory_->summing_group());
+  run("cg_coarse", {&of_inverse, &of_y, &of_w, &of_terms}, push, kSolves,
+      factory_->summing_group());
   const Doubles w = read(of_w, 64 * 8), terms = read(of_terms, kSolves);
   const auto place = [](std::uint32_t row) {
     return 8 * (row / 6) + row % 6 + (row % 6 < 3 ? 0 : 1);
@@ -459,9 +450,7 @@ TEST_P(CgKernels, SumsOfTheRigidMotionsAndBack) {
   const auto of_members = buffer(members), of_modes = buffer(modes);
   const auto of_r = buffer(r), of_y = empty(18);
   const auto node = [](const Doubles& of, std::size_t n) { return Vec3(&of[4 * n]); };
-  using enum gpu::Reads;
-  run("cg_restrict", {plain, words, doubles, plain}, {&of_first, &of_members, &of_r, &of_y}, {}, 3,
-      factory_->summing_group());
+  run("cg_restrict", {&of_first, &of_members, &of_r, &of_y}, {}, 3, factory_->summing_group());
   const Doubles y = read(of_y, 18);
   for (std::uint32_t g = 0; g < 3; ++g) {
     Vec3 force = Vec3::Zero(), moment = force, force_size = force, moment_size = force;
@@ -490,8 +479,8 @@ TEST_P(CgKernels, SumsOfTheRigidMotionsAndBack) {
     const auto direction = empty(4 * kNodes);
     shaders::CgPush push{};
     push.first = starts ? 1 : 0;
-    run("cg_direction", {plain, doubles, doubles, words, doubles, plain},
-        {&of_state, &of_z, &of_w, &of_modes, &of_before, &direction}, push, kGroups);
+    run("cg_direction", {&of_state, &of_z, &of_w, &of_modes, &of_before, &direction}, push,
+        kGroups);
     const Doubles p = read(direction, 4 * kNodes);
     for (std::size_t n = 0; n < kNodes; ++n) {
       Vec3 moved = Vec3::Zero(), size = Vec3::Zero();

@@ -72,8 +72,6 @@ class SingleKernels : public Kernels {
   }
 };
 
-using enum gpu::Reads;
-
 TEST_P(SingleKernels, GatherPicksBitForBit) {
   const Doubles values = random_values(500);
   const auto of_values = buffer(values);
@@ -95,7 +93,7 @@ TEST_P(SingleKernels, HoldSetsGrippedDofsAlone) {
   const Doubles prescribed = random_values(kHolds), before = random_values(400);
   const auto of_held = buffer(held);
   const auto of_prescribed = buffer(prescribed);
-  const auto kernel = factory_->make_fp64("hold", {plain, plain, plain}, sizeof(shaders::HoldPush));
+  const auto kernel = factory_->make_fp64("hold");
   for (const std::uint32_t to_zero : {0u, 1u}) {
     const auto u = buffer(before);
     run(*kernel, {&of_held, &of_prescribed, &u}, shaders::HoldPush{kHolds, to_zero}, 2);
@@ -114,7 +112,7 @@ TEST_P(SingleKernels, SumOfChunksGoesToTheNodes) {
   partial.resize(kRows * (kChunks + 1), kNaN);
   const auto of_partial = buffer(partial);
   const auto of_positions = buffer(u.positions);
-  const auto kernel = factory_->make_fp64("sum", {doubles, words, plain}, sizeof(shaders::SumPush));
+  const auto kernel = factory_->make_fp64("sum");
   for (const std::uint32_t add : {0u, 1u}) {
     const auto of_u = buffer(u.before);
     run(*kernel, {&of_partial, &of_positions, &of_u}, shaders::SumPush{kPacks, kChunks, add},
@@ -144,9 +142,8 @@ TEST_P(SingleKernels, SolveSumsColumnsAtTheNodes) {
   const auto of_columns = buffer(Doubles(columns.data(), columns.data() + columns.size()));
   const auto of_c = buffer(c), of_u = buffer(u.before);
   const auto of_positions = buffer(u.positions);
-  run(*factory_->make_fp64("solve", {doubles, doubles, words, plain}, sizeof(shaders::SolvePush)),
-      {&of_columns, &of_c, &of_positions, &of_u}, shaders::SolvePush{kPacks, kRead},
-      kRows / shaders::kRowPad);
+  run(*factory_->make_fp64("solve"), {&of_columns, &of_c, &of_positions, &of_u},
+      shaders::SolvePush{kPacks, kRead}, kRows / shaders::kRowPad);
   const Doubles got = read(of_u, u.before.size());
   expect_untouched(u, got);
   const Eigen::Map<const Eigen::VectorXd> coefficients(c.data(), kColumns);
@@ -169,8 +166,7 @@ TEST_P(SingleKernels, NarrowRoundsToANeighbour) {
   }();
   const auto of_values = buffer(values);
   const auto narrow = buffer(Floats(kRows, 7));
-  run(*factory_->make_fp64("narrow", {doubles, plain}, 0), {&of_values, &narrow},
-      kRows / shaders::kRowPad);
+  run(*factory_->make_fp64("narrow"), {&of_values, &narrow}, kRows / shaders::kRowPad);
   const Floats got = read<float>(narrow, kRows);
   for (std::size_t i = 0; i < kRows; ++i) {
     EXPECT_LE(std::abs(static_cast<double>(got[i]) - values[i]), kEps32 * std::abs(values[i]));
@@ -181,8 +177,7 @@ TEST_P(SingleKernels, AddIsExact) {
   constexpr std::uint32_t kAdded = 90;  // packs, no multiple of a workgroup
   const Doubles du = random_values(4 * 128), before = random_values(4 * 128);
   const auto of_du = buffer(du), u = buffer(before);
-  run(*factory_->make_fp64("add", {doubles, plain}, sizeof(std::uint32_t)), {&of_du, &u}, kAdded,
-      2);
+  run(*factory_->make_fp64("add"), {&of_du, &u}, kAdded, 2);
   Doubles expected = before;
   for (std::size_t i = 0; i < std::size_t{4} * kAdded; ++i) expected[i] += du[i];
   EXPECT_EQ(read(u, expected.size()), expected);
@@ -196,8 +191,7 @@ TEST_P(SingleKernels, DisplayIsTheFieldsInFp32) {
   for (auto& fact : facts) fact.state = generator_() % 8;
   const auto of_u = buffer(u), of_stress = stored(stress);
   const auto of_facts = buffer(facts);
-  const auto kernel = factory_->make("display", {doubles, reals, plain, plain, plain, plain},
-                                     sizeof(shaders::DisplayPush));
+  const auto kernel = factory_->make("display");
   for (const std::uint32_t has_stress : {1u, 0u}) {
     const auto shown = buffer(Floats(4 * 128, 7)), colour = buffer(Floats(2 * kPadded, 7));
     const auto live = buffer(Words(kPadded, 7));
@@ -240,8 +234,7 @@ TEST_P(SingleKernels, SummaryOfPartialResults) {
   const auto of_nodes = buffer(nodes);
   const auto over = buffer(Words(8, 5));
   const auto summaries = empty(16);
-  const auto kernel =
-      factory_->make_fp64("summary", {plain, plain, plain, plain}, sizeof(shaders::SummaryPush));
+  const auto kernel = factory_->make_fp64("summary");
   const auto summary = [&](std::uint32_t node_parts, std::uint32_t slot) {
     run(*kernel, {&of_elements, &of_nodes, &summaries, &over},
         shaders::SummaryPush{kElementParts, node_parts, slot}, 1);
@@ -281,8 +274,7 @@ TEST_P(SingleKernels, ComplementMirrorsTheLowerTiles) {
   constexpr double kScale = 0.37;
   const Matrix b = random_symmetric(kUnknowns);
   const Matrix swept = lower_tiles(b, kColumns);
-  const auto kernel =
-      factory_->make("complement", {doubles, plain}, sizeof(shaders::ComplementPush));
+  const auto kernel = factory_->make("complement");
   for (const bool panels : {false, true}) {
     const auto x = stored(Matrix::Constant(shaders::kRowPad, kColumns, kNaN));
     for (const Index first : panels ? std::vector<Index>{0, kSplit} : std::vector<Index>{0}) {
@@ -328,8 +320,7 @@ TEST_P(SingleKernels, UpdateVectorsOfAWholeMatrixAndOfLowerTiles) {
   const std::vector<Index> at(dofs.begin(), dofs.end());
   const Matrix columns = x(Eigen::all, at);
   for (const std::uint32_t lower : {0u, 1u}) {
-    const auto kernel = factory_->make("update_vectors", {reals, plain, doubles, plain},
-                                       sizeof(shaders::VectorsPush), shaders::kGroup, lower);
+    const auto kernel = factory_->make("update_vectors", shaders::kGroup, lower);
     const auto of_x = stored(lower == 1 ? lower_tiles(x, kColumns) : whole);
     Matrix expected = columns * v, size = columns.cwiseAbs() * v.cwiseAbs();
     const auto z = stored(Matrix::Constant(shaders::kRowPad, kRank, kNaN));
@@ -355,9 +346,7 @@ TEST_P(SingleKernels, LowRankUpdateLeavesUpperTilesAlone) {
     const std::uint32_t rank = blocks * shaders::kRankBlock, one = blocks == 1 ? 1 : 0;
     const Matrix z = random_matrix(kRows1, rank);
     const auto of_z = stored(z);
-    const auto kernel =
-        factory_->make("low_rank", {reals, reals, plain}, sizeof(shaders::LowRankPush),
-                       factory_->low_rank_group(), one);
+    const auto kernel = factory_->make("low_rank", factory_->low_rank_group(), one);
     for (const bool panels : {false, true}) {
       for (const float sign : {1.0F, -1.0F}) {
         for (const Index first : panels ? std::vector<Index>{0, kSplit} : std::vector<Index>{0}) {
