@@ -9,8 +9,9 @@ cmake_minimum_required(VERSION 3.22)
 set(rooms
   "core/sunder:"
   "core/material:core/sunder"
-  "core/fem:core/sunder core/material core/engine"
-  "core/engine:core/sunder core/material core/fem"
+  "core/parallel:"
+  "core/fem:core/sunder core/material core/parallel"
+  "core/engine:core/sunder core/material core/parallel core/fem"
   "core/fracture:core/sunder core/material core/fem"
   "core:core/sunder core/material core/fem core/engine core/fracture"
   "cpu_reference:core core/sunder core/material core/fem core/engine"
@@ -78,7 +79,7 @@ foreach(top core cpu_reference shaders gpu api app)
     room_of("${file}" room)
     string(MAKE_C_IDENTIFIER "${room}" id)
     if(room STREQUAL "")
-      list(APPEND wrong "${file} lies in no room; name its folder in cmake/include_rule.cmake")
+      list(APPEND wrong "${file} lies in no room: name its folder in cmake/include_rule.cmake")
       continue()
     endif()
     file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*\"")
@@ -90,8 +91,9 @@ foreach(top core cpu_reference shaders gpu api app)
       endif()
       room_of("${path}" target)
       if(NOT target IN_LIST allowed_${id})
-        string(REPLACE ";" ", " may "${allowed_${id}}")
-        list(APPEND wrong "${file} includes ${path}; ${room} may include ${may}")
+        string(REPLACE ";" " " may "${allowed_${id}}")
+        string(STRIP "${may}" may)
+        list(APPEND wrong "${file} includes ${path} (${room} may include: ${may})")
       endif()
     endforeach()
   endforeach()

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fracture/criterion.hpp"
-#include "node_elements.hpp"
+#include "fem/node_elements.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder {

@@ -6,7 +6,7 @@
 
 #include "attribution.hpp"
 #include "fem/element.hpp"
-#include "finding.hpp"
+#include "fracture/finding.hpp"
 #include "fracture/criterion.hpp"
 #include "loads.hpp"
 #include "pieces.hpp"

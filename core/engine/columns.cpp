@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/vectorised.hpp"
+#include "parallel/vectorised.hpp"
 
 namespace sunder::engine {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "engine/columns.hpp"
-#include "engine/vectorised.hpp"
+#include "parallel/vectorised.hpp"
 
 namespace sunder::engine {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "engine/vectorised.hpp"
+#include "parallel/vectorised.hpp"
 #include "fem/element.hpp"
 #include "sunder/stress_measures.hpp"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/workers.hpp"
+#include "parallel/workers.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::engine {

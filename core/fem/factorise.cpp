@@ -6,7 +6,7 @@
 #include <atomic>
 #include <numeric>
 
-#include "engine/workers.hpp"
+#include "parallel/workers.hpp"
 #include "fem/row_product.hpp"
 
 namespace sunder::fem {
@@ -187,7 +187,7 @@ class Factorisation {
   const SparseMatrix& matrix_;
   std::span<double> values_;
   const std::atomic<bool>* stop_;
-  engine::Workers workers_;
+  Workers workers_;
   std::vector<Room> rooms_;
   std::vector<Index> head_, next_;  // lists of the descendants that wait for a panel
   std::vector<Index> done_;         // rows below a panel that have contributed

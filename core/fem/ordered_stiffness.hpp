@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fem/factor.hpp"
-#include "node_elements.hpp"
+#include "fem/node_elements.hpp"
 
 namespace sunder::fem {
 

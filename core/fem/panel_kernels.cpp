@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "engine/vectorised.hpp"
+#include "parallel/vectorised.hpp"
 
 namespace sunder::fem {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "engine/vectorised.hpp"
+#include "parallel/vectorised.hpp"
 
 namespace sunder::fem {
 namespace {

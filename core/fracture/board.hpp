@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fracture/point_grid.hpp"
-#include "node_elements.hpp"
+#include "fem/node_elements.hpp"
 #include "sunder/board_plane.hpp"
 #include "sunder/mesh.hpp"
 

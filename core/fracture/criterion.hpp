@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "finding.hpp"
+#include "fracture/finding.hpp"
 #include "sunder/backend.hpp"
 #include "sunder/crack.hpp"
 #include "sunder/report.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/workers.hpp"
+#include "parallel/workers.hpp"
 
-namespace sunder::engine {
+namespace sunder {
 
 Workers::Workers(int count) {
   for (int w = 1; w < count; ++w) threads_.emplace_back([this, w] { work(w); });
@@ -36,4 +36,4 @@ void Workers::work(int worker) {
   }
 }
 
-}  // namespace sunder::engine
+}  // namespace sunder

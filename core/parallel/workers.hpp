@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace sunder::engine {
+namespace sunder {
 
 class Workers {
  public:
@@ -46,4 +46,4 @@ class Workers {
   void* body_ = nullptr;
 };
 
-}  // namespace sunder::engine
+}  // namespace sunder

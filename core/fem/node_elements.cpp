@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "node_elements.hpp"
+#include "fem/node_elements.hpp"
 
 namespace sunder {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "finding.hpp"
+#include "fracture/finding.hpp"
 
 #include "sunder/in_quotes.hpp"
 
