@@ -51,18 +51,24 @@ class GripsObject final : public Object {
     }
     if (!block_->forces(displacement_, force_)) explain();
     for (std::size_t g = 0; g < place_.size(); ++g) forces[place_[g]] += force_[g];
+    const bool finite =
+        std::all_of(forces, forces + size(), [](double f) { return std::isfinite(f); });
+    if (finite) return;
+    std::fill_n(forces, size(), 0.0);  // each node's was finite, their sum is not
+    overflow();
   }
 
  private:
+  [[noreturn]] static void overflow() {
+    throw Failure(SUNDER_ERROR_VALUE, "the displacements are so large that their forces overflow");
+  }
+
   /// Returns when the first frame came in between, with the forces that it gives.
   void explain() {
     if (!block_->forces(std::vector<double>(place_.size()), force_)) {
       throw Failure(SUNDER_ERROR_ORDER, "there are no forces before the first step");
     }
-    if (!block_->forces(displacement_, force_)) {
-      throw Failure(SUNDER_ERROR_VALUE,
-                    "the displacements are so large that their forces overflow");
-    }
+    if (!block_->forces(displacement_, force_)) overflow();
   }
 
   std::shared_ptr<InstrumentForces> block_;
