@@ -3,7 +3,5 @@
    appended to a struct but not to its initialiser does not compile here. */
 #include "api/initialisers.h"
 
-void initialise_in_c99(struct initialised* to) {
-  const struct initialised all = INITIALISED;
-  *to = all;
-}
+extern const struct initialised initialised_in_c99;
+const struct initialised initialised_in_c99 = INITIALISED;

@@ -34,10 +34,4 @@ struct initialised {
         SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT                                    \
   }
 
-#ifdef __cplusplus
-extern "C"
-#endif
-    void
-    initialise_in_c99(struct initialised* to);
-
 #endif
