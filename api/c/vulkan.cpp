@@ -122,7 +122,7 @@ extern "C" {
 sunder_status sunder_vulkan_create(sunder_scene scene, const sunder_vulkan_host* host,
                                    const sunder_callbacks* callbacks,
                                    sunder_simulation* simulation) {
-  return call<SceneObject>(scene, [&](SceneObject& object) {
+  return call<SceneObject>(scene, [&]([[maybe_unused]] SceneObject& object) {
     const auto given = read_struct(host, sized<sunder_vulkan_host>(), "host");
 #ifdef SUNDER_GPU
     if (object.scene.solver.backend == "cpu") {
