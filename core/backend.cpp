@@ -39,7 +39,7 @@ void Backend::set_load(const Load& load) {
 }
 
 SolveReport Backend::solve() {
-  require(stage_ != Stage::created, "solve() needs set_load() first");
+  require(stage_ != Stage::created, "there is nothing to solve before a load is set");
   const SolveReport report = do_solve();
   stage_ = Stage::solved;
   return report;
@@ -47,7 +47,8 @@ SolveReport Backend::solve() {
 
 StressSummary Backend::stress() {
   require(needs_.stress, "stress was left out of this backend's needs");
-  require(stage_ == Stage::solved || stage_ == Stage::stressed, "stress() needs solve() first");
+  require(stage_ == Stage::solved || stage_ == Stage::stressed,
+          "there is no stress before the first solution");
   const StressSummary summary = do_stress();
   stage_ = Stage::stressed;
   stress_known_ = true;
@@ -62,9 +63,9 @@ void Backend::destroy(std::span<const Index> elements) {
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     require(sorted[i] >= 0 && sorted[i] < problem_->tet_count(),
-            "destroy() names an element outside the mesh");
-    require(i == 0 || sorted[i] != sorted[i - 1], "destroy() names an element twice");
-    require(!destroyed_[sorted[i]], "destroy() names an element that is destroyed already");
+            "an element to be destroyed lies outside the mesh");
+    require(i == 0 || sorted[i] != sorted[i - 1], "an element to be destroyed is named twice");
+    require(!destroyed_[sorted[i]], "an element to be destroyed is destroyed already");
   }
   do_destroy(elements);
   for (Index e : elements) destroyed_[e] = 1;
@@ -74,7 +75,7 @@ void Backend::destroy(std::span<const Index> elements) {
 void Backend::prepare(std::span<const Index> elements) {
   require(needs_.damage, "damage was left out of this backend's needs");
   for (Index e : elements) {
-    require(e >= 0 && e < problem_->tet_count(), "prepare() names an element outside the mesh");
+    require(e >= 0 && e < problem_->tet_count(), "an element to prepare for lies outside the mesh");
   }
   do_prepare(elements);
 }
@@ -82,8 +83,7 @@ void Backend::prepare(std::span<const Index> elements) {
 void Backend::exclude_candidates(std::span<const Index> elements) {
   require(needs_.yield, "the yield summary was left out of this backend's needs");
   for (Index e : elements) {
-    require(e >= 0 && e < problem_->tet_count(),
-            "exclude_candidates() names an element outside the mesh");
+    require(e >= 0 && e < problem_->tet_count(), "an element to exclude lies outside the mesh");
   }
   do_exclude_candidates(elements);
 }
@@ -99,33 +99,33 @@ void Backend::solve_pristine(const Load& load, std::span<double> displacement) {
 }
 
 void Backend::read_displacement(std::span<double> displacement) const {
-  require(stage_ != Stage::created, "there is no displacement before the first solve()");
+  require(stage_ != Stage::created, "there is no displacement before the first solution");
   require(displacement.size() == 3 * problem_->mesh().nodes.size(),
           "the displacement needs 3 values per node");
   do_read_displacement(displacement);
 }
 
 void Backend::read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const {
-  require(stage_ != Stage::created, "there is no displacement before the first solve()");
+  require(stage_ != Stage::created, "there is no displacement before the first solution");
   require(nodes.size() == displacement.size(), "one displacement per node");
   for (Index n : nodes) require(n >= 0 && n < problem_->node_count(), "a node outside the mesh");
   do_read_displacement(nodes, displacement);
 }
 
 void Backend::read_stress(std::span<Voigt> stress) const {
-  require(stress_known_, "there is no stress before stress()");
+  require(stress_known_, "there is no stress before it is computed");
   require(stress.size() == problem_->mesh().tets.size(), "one stress per element");
   do_read_stress(stress);
 }
 
 Voigt Backend::read_stress(Index element) const {
-  require(stress_known_, "there is no stress before stress()");
+  require(stress_known_, "there is no stress before it is computed");
   require(element >= 0 && element < problem_->tet_count(), "an element outside the mesh");
   return do_read_stress(element);
 }
 
 void Backend::read_reactions(std::span<double> reactions) const {
-  require(stage_ != Stage::created, "there are no reactions before the first solve()");
+  require(stage_ != Stage::created, "there are no reactions before the first solution");
   require(reactions.size() == problem_->gripped_dofs().size(), "one reaction per gripped dof");
   do_read_reactions(reactions);
 }

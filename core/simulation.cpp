@@ -45,7 +45,7 @@ void check_needs(const Needs& scene, const Needs& backend) {
   const auto check = [](bool needed, bool offered, const char* what) {
     if (needed && !offered) {
       throw UsageError(std::string("the scene needs ") + what +
-                       ", which was left out of the backend's needs; create it with needs_of()");
+                       ", which was left out of the backend's needs");
     }
   };
   check(scene.stress, backend.stress, "stress");

@@ -33,36 +33,32 @@ int main(void) {
   sunder_scene scene;
   CHECK(sunder_scene_create(&scene));
   CHECK(sunder_scene_set_mesh(scene, nodes[0], 3 * kNodes, tets[0], 4 * kTets, NULL, 0));
-  sunder_material tissue;
-  sunder_material_init(&tissue);
+  sunder_material tissue = SUNDER_MATERIAL_INIT;
   tissue.young = 5, tissue.poisson = 0.4, tissue.yield = 2;  // MPa
   CHECK(sunder_scene_add_material(scene, &tissue, NULL));
-  sunder_support top;
-  sunder_support_init(&top);
+  sunder_support top = SUNDER_SUPPORT_INIT;
   top.nodes = (sunder_selection){.kind = SUNDER_SELECT_BOX, .min = {0, 10, 0}, .max = {10, 10, 1}};
   CHECK(sunder_scene_add_support(scene, &top));
-  sunder_instrument forceps;
-  sunder_instrument_init(&forceps);
+  sunder_instrument forceps = SUNDER_INSTRUMENT_INIT;
   forceps.nodes =
       (sunder_selection){.kind = SUNDER_SELECT_BOX, .min = {10, 0, 0}, .max = {10, 0, 1}};
   forceps.value[1] = -2.4;  // N, growing from step to step
   forceps.has_ramp = 1, forceps.ramp[1] = 1;
   CHECK(sunder_scene_add_instrument(scene, &forceps, NULL));
-  sunder_fracture_options fracture;
-  sunder_fracture_options_init(&fracture);
+  sunder_fracture_options fracture = SUNDER_FRACTURE_OPTIONS_INIT;
   fracture.model = SUNDER_FRACTURE_B;
   CHECK(sunder_scene_set_fracture(scene, &fracture));
   CHECK(sunder_scene_set_steps(scene, 20));
 
   sunder_simulation simulation;
   CHECK(sunder_simulation_create(scene, NULL, &simulation));
-  sunder_step step = {.struct_size = sizeof step};
+  sunder_step step = SUNDER_STEP_INIT;
   for (int i = 0; i < 20; ++i) {
     CHECK(sunder_simulation_step(simulation, &step));
     printf("step %2d: %.2f N, %2d destroyed, %.3f ms\n", step.step, 2.4 * step.load_factor,
            step.destroyed, step.ms_total);
   }
-  sunder_event event = {.struct_size = sizeof event};
+  sunder_event event = SUNDER_EVENT_INIT;
   CHECK(sunder_simulation_event_at(simulation, 0, &event));
   printf("element %d broke first: %.2f times its yield stress\n", event.element, event.ratio);
   CHECK(sunder_simulation_destroy(simulation));

@@ -27,6 +27,13 @@ void remember(const char* text) noexcept {
 
 const char* last_text_of_thread() noexcept { return last_text.data(); }
 
+void not_finite(double value, std::ptrdiff_t at, const char* what) {
+  std::string text = what;
+  if (at >= 0) text += "[" + std::to_string(at) + "]";
+  text += std::isnan(value) ? " = nan" : value > 0 ? " = inf" : " = -inf";
+  throw Failure(SUNDER_ERROR_VALUE, text + " is not a finite number");
+}
+
 sunder_status status_of_exception() noexcept {
   try {
     throw;
@@ -47,7 +54,8 @@ sunder_status status_of_exception() noexcept {
   } catch (const std::exception& e) {
     return failed(SUNDER_ERROR_INTERNAL, e.what());
   } catch (...) {
-    return failed(SUNDER_ERROR_INTERNAL, "something was thrown that is no std::exception");
+    return failed(SUNDER_ERROR_INTERNAL,
+                  "something unknown was thrown, by the library or by a callback");
   }
 }
 

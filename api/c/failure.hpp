@@ -2,6 +2,9 @@
 // The border: what is thrown inside becomes a status and a sentence; nothing passes it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <exception>
 #include <string>
 
@@ -38,20 +41,13 @@ template <class Body>
   }
 }
 
-/// The same for a body that returns a status of its own.
-template <class Body>
-[[nodiscard]] sunder_status guarded_status(Body&& body) noexcept {
-  try {
-    return body();
-  } catch (...) {
-    return status_of_exception();
-  }
-}
-
 /// Throws SUNDER_ERROR_NULL.
 inline void require(const void* pointer, const char* what) {
   if (!pointer) throw Failure(SUNDER_ERROR_NULL, std::string(what) + " is null");
 }
+
+/// Throws SUNDER_ERROR_VALUE about element `at` of an array, or about a number alone (-1).
+[[noreturn]] void not_finite(double value, std::ptrdiff_t at, const char* what);
 
 /// Throws SUNDER_ERROR_SIZE unless an array has the size that it must have.
 inline void require_size(std::size_t size, std::size_t wanted, const char* what) {
@@ -65,6 +61,17 @@ inline void require_index(std::int64_t index, std::int64_t count, const char* wh
   if (index >= 0 && index < count) return;
   throw Failure(SUNDER_ERROR_VALUE, std::string(what) + " " + std::to_string(index) +
                                         " does not exist; there are " + std::to_string(count));
+}
+
+/// Throws SUNDER_ERROR_VALUE unless all numbers of an array that goes in are finite.
+inline void require_finite(const double* values, std::size_t count, const char* what) {
+  const double* const bad =
+      std::find_if(values, values + count, [](double v) { return !std::isfinite(v); });
+  if (bad != values + count) not_finite(*bad, bad - values, what);
+}
+
+inline void require_finite(double value, const char* what) {
+  if (!std::isfinite(value)) not_finite(value, -1, what);
 }
 
 /// An enumeration value out of 0 .. count - 1. Throws SUNDER_ERROR_VALUE.

@@ -13,8 +13,11 @@ class GripsObject final : public Object {
  public:
   static constexpr const char* kName = "grips";
 
-  GripsObject(const Problem& problem, std::shared_ptr<InstrumentForces> block)
-      : block_(std::move(block)), instruments_(problem.scene().instruments.size()) {
+  GripsObject(const Problem& problem, std::shared_ptr<InstrumentForces> block,
+              std::shared_ptr<const std::atomic<bool>> gone)
+      : block_(std::move(block)),
+        gone_(std::move(gone)),
+        instruments_(problem.scene().instruments.size()) {
     const auto gripped = problem.gripped_dofs();
     place_.resize(gripped.size());
     displacement_.resize(gripped.size());
@@ -35,17 +38,41 @@ class GripsObject final : public Object {
 
   [[nodiscard]] std::size_t size() const { return 3 * instruments_; }
 
-  /// False: there was no frame yet, or the displacements are not finite.
-  [[nodiscard]] bool forces(const double* displacements, double* forces) {
+  /// Throws, with forces of 0, when there are none.
+  void forces(const double* displacements, double* forces) {
     for (std::size_t g = 0; g < place_.size(); ++g) displacement_[g] = displacements[place_[g]];
-    const bool known = block_->forces(displacement_, force_);
-    std::fill_n(forces, size(), 0.0);
+    std::fill_n(forces, size(), 0.0);  // may be the array of the displacements
+    if (gone_->load()) {
+      throw Failure(SUNDER_ERROR_HANDLE, "the simulation of these grips was destroyed");
+    }
+    for (std::size_t g = 0; g < place_.size(); ++g) {
+      if (std::isfinite(displacement_[g])) continue;
+      not_finite(displacement_[g], static_cast<std::ptrdiff_t>(place_[g]), "displacements");
+    }
+    if (!block_->forces(displacement_, force_)) explain();
     for (std::size_t g = 0; g < place_.size(); ++g) forces[place_[g]] += force_[g];
-    return known;
+    const bool finite =
+        std::all_of(forces, forces + size(), [](double f) { return std::isfinite(f); });
+    if (finite) return;
+    std::fill_n(forces, size(), 0.0);  // each node's was finite, their sum is not
+    overflow();
   }
 
  private:
+  [[noreturn]] static void overflow() {
+    throw Failure(SUNDER_ERROR_VALUE, "the displacements are so large that their forces overflow");
+  }
+
+  /// Returns when the first frame came in between, with the forces that it gives.
+  void explain() {
+    if (!block_->forces(std::vector<double>(place_.size()), force_)) {
+      throw Failure(SUNDER_ERROR_ORDER, "there are no forces before the first step");
+    }
+    if (!block_->forces(displacement_, force_)) overflow();
+  }
+
   std::shared_ptr<InstrumentForces> block_;
+  std::shared_ptr<const std::atomic<bool>> gone_;
   std::size_t instruments_;
   std::vector<std::size_t> place_;  // of each gripped unknown: 3 * instrument + axis
   std::vector<double> displacement_, force_;
@@ -75,7 +102,7 @@ sunder_status sunder_grips_create(sunder_simulation simulation, sunder_grips* gr
     if (!object.grips.expired()) {
       throw Failure(SUNDER_ERROR_ORDER, "the simulation's grips have a handle already");
     }
-    auto made = std::make_shared<GripsObject>(object.problem(), std::move(block));
+    auto made = std::make_shared<GripsObject>(object.problem(), std::move(block), object.gone);
     object.grips = made;
     *grips = new_handle<sunder_grips>(std::move(made));
   });
@@ -89,12 +116,7 @@ sunder_status sunder_grips_forces(sunder_grips grips, const double* displacement
     require_size(size, object.size(), "forces");
     require(displacements, "displacements");
     require(forces, "forces");
-    if (object.forces(displacements, forces)) return;
-    if (!std::all_of(displacements, displacements + size,
-                     [](double d) { return std::isfinite(d); })) {
-      throw Failure(SUNDER_ERROR_VALUE, "a displacement is not finite");
-    }
-    throw Failure(SUNDER_ERROR_ORDER, "there are no forces before the first step");
+    object.forces(displacements, forces);
   });
 }
 

@@ -95,10 +95,14 @@ template <class T, class Body>
   });
 }
 
+/// No call finds the object from now on.
+inline void forget(const void* handle) {
+  Registry::instance().remove(reinterpret_cast<std::uintptr_t>(handle));
+}
+
 template <class T>
 [[nodiscard]] sunder_status destroy(const void* handle) noexcept {
-  return call<T>(
-      handle, [&](T&) { Registry::instance().remove(reinterpret_cast<std::uintptr_t>(handle)); });
+  return call<T>(handle, [&](T&) { forget(handle); });
 }
 
 /// A new handle for an object.

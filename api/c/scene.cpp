@@ -15,7 +15,17 @@ std::vector<Index> to_ids(const sunder_selection& selection, const char* what) {
   return {selection.ids, selection.ids + selection.id_count};
 }
 
-Box to_box(const sunder_selection& s) { return {Vec3(s.min), Vec3(s.max)}; }
+Box to_box(const sunder_selection& s, const char* what) {
+  require_finite(s.min, 3, (std::string(what) + ": min").c_str());
+  require_finite(s.max, 3, (std::string(what) + ": max").c_str());
+  return {Vec3(s.min), Vec3(s.max)};
+}
+
+Ball to_ball(const sunder_selection& s, const char* what) {
+  require_finite(s.min, 3, (std::string(what) + ": min").c_str());
+  require_finite(s.radius, (std::string(what) + ": radius").c_str());
+  return {Vec3(s.min), s.radius};
+}
 
 }  // namespace
 
@@ -32,9 +42,9 @@ NodeSelection to_nodes(const sunder_selection& selection, const char* what) {
     case SUNDER_SELECT_IDS:
       return to_ids(selection, what);
     case SUNDER_SELECT_BOX:
-      return to_box(selection);
+      return to_box(selection, what);
     default:
-      return Ball{Vec3(selection.min), selection.radius};
+      return to_ball(selection, what);
   }
 }
 
@@ -42,7 +52,7 @@ ElementSelection to_elements(const sunder_selection& selection, const char* what
   if (choice<int>(selection.kind, 2, "selection kind of elements") == SUNDER_SELECT_IDS) {
     return to_ids(selection, what);
   }
-  return to_box(selection);
+  return to_box(selection, what);
 }
 
 }  // namespace sunder::c

@@ -34,6 +34,7 @@ sunder_status sunder_scene_set_mesh(sunder_scene scene, const double* nodes, siz
     } else {
       require_size(material_of_size, 0, "material_of (null)");
     }
+    require_finite(nodes, nodes_size, "nodes");
     sunder::Mesh mesh;
     mesh.volumes = object.scene.mesh.volumes;
     mesh.nodes.resize(nodes_size / 3);
@@ -54,6 +55,9 @@ sunder_status sunder_scene_add_material(sunder_scene scene, const sunder_materia
                                         int32_t* index) {
   return call<SceneObject>(scene, [&](SceneObject& object) {
     const auto given = read_struct(material, sized<sunder_material>(), "material");
+    require_finite(given.young, "young");
+    require_finite(given.poisson, "poisson");
+    require_finite(given.yield, "yield");
     const std::size_t number = object.materials.size();
     sunder::Material m{given.young, given.poisson, {}};
     if (given.yield != 0) m.yield = given.yield;

@@ -26,6 +26,7 @@ sunder_solver_options solver_defaults() {
 sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   sunder::FractureOptions f;
   f.model = choice<sunder::FractureModel>(given.model, 3, "fracture model");
+  require_finite(given.alpha, "alpha");
   f.alpha = given.alpha;
   f.yield_measure = choice<sunder::YieldMeasure>(given.yield_measure, 2, "yield_measure");
   f.sigma0 = choice<sunder::RemoteStress>(given.sigma0, 2, "sigma0");
@@ -33,7 +34,10 @@ sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   f.birth = choice<sunder::CrackBirth>(given.birth, 2, "birth");
   f.sif = choice<sunder::SifSource>(given.sif, 2, "sif");
   f.max_events = given.max_events;
-  if (given.has_plane_normal) f.plane_normal = sunder::Vec3(given.plane_normal);
+  if (given.has_plane_normal) {
+    require_finite(given.plane_normal, 3, "plane_normal");
+    f.plane_normal = sunder::Vec3(given.plane_normal);
+  }
   return f;
 }
 
@@ -48,6 +52,7 @@ sunder::SolverOptions to_solver(const sunder_solver_options& given) {
   s.route = choice<sunder::Route>(given.route, 5, "route");
   s.update = choice<sunder::Update>(given.update, 3, "update");
   s.precision = choice<sunder::Precision>(given.precision, 3, "precision");
+  require_finite(given.tolerance, "tolerance");
   s.tolerance = given.tolerance;
   s.prepare = given.no_preparation == 0;
   return s;

@@ -18,6 +18,7 @@ sunder::Axes to_axes(std::uint32_t axes) {
 
 sunder::Instrument to_instrument(const sunder_instrument& given) {
   sunder::Instrument tool;
+  require_finite(given.value, 3, "value");
   const Vec3 value(given.value);
   switch (choice<int>(given.kind, 3, "instrument kind")) {
     case SUNDER_FORCE:
@@ -27,11 +28,15 @@ sunder::Instrument to_instrument(const sunder_instrument& given) {
       tool.action = sunder::Grip{to_nodes(given.nodes, "instrument"), value, to_axes(given.axes)};
       break;
     default:
+      require_finite(given.at, 3, "at");
       tool.action =
           sunder::Press{Vec3(given.at), choice<sunder::CrackSide>(given.side, 2, "instrument side"),
                         given.crack, value};
   }
-  if (given.has_ramp) tool.ramp = sunder::Ramp{given.ramp[0], given.ramp[1]};
+  if (given.has_ramp) {
+    require_finite(given.ramp, 2, "ramp");
+    tool.ramp = sunder::Ramp{given.ramp[0], given.ramp[1]};
+  }
   return tool;
 }
 
@@ -78,6 +83,9 @@ sunder_status sunder_scene_add_crack(sunder_scene scene, const sunder_preset_cra
   return call<SceneObject>(scene, [&](SceneObject& object) {
     const auto given = read_struct(crack, sized<sunder_preset_crack>(), "crack");
     sunder::PresetCrack preset{to_elements(given.elements, "crack"), {}, {Vec3(given.tips[0])}};
+    require_finite(given.tips[0], 3, "tips[0]");
+    require_finite(given.has_mouth ? given.mouth : given.tips[1], 3,
+                   given.has_mouth ? "mouth" : "tips[1]");
     if (given.has_mouth) {
       preset.mouth = Vec3(given.mouth);
     } else {

@@ -34,16 +34,13 @@ sunder_step to_step(const sunder::StepReport& report) {
 
 namespace sunder::c {
 
-sunder_status create_simulation(sunder_scene scene, const sunder_callbacks* callbacks,
-                                const SimulationObject::Create& create,
-                                sunder_simulation* simulation) {
-  return call<SceneObject>(scene, [&](SceneObject& object) {
-    require(simulation, "simulation");
-    auto given = sized<sunder_callbacks>();
-    if (callbacks) given = read_struct(callbacks, given, "callbacks");
-    *simulation =
-        new_handle<sunder_simulation>(std::make_shared<SimulationObject>(object, given, create));
-  });
+void create_simulation(const SceneObject& scene, const sunder_callbacks* callbacks,
+                       const SimulationObject::Create& create, sunder_simulation* simulation) {
+  require(simulation, "simulation");
+  auto given = sized<sunder_callbacks>();
+  if (callbacks) given = read_struct(callbacks, given, "callbacks");
+  *simulation =
+      new_handle<sunder_simulation>(std::make_shared<SimulationObject>(scene, given, create));
 }
 
 }  // namespace sunder::c
@@ -52,11 +49,16 @@ extern "C" {
 
 sunder_status sunder_simulation_create(sunder_scene scene, const sunder_callbacks* callbacks,
                                        sunder_simulation* simulation) {
-  return create_simulation(scene, callbacks, sunder::create_backend, simulation);
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    create_simulation(object, callbacks, sunder::create_backend, simulation);
+  });
 }
 
 sunder_status sunder_simulation_destroy(sunder_simulation simulation) {
-  return destroy<SimulationObject>(simulation);
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    object.gone->store(true);
+    forget(simulation);
+  });
 }
 
 sunder_status sunder_simulation_engine(sunder_simulation simulation, sunder_engine* engine) {
@@ -89,6 +91,7 @@ sunder_status sunder_simulation_drive(sunder_simulation simulation, int32_t inst
     require(value, "value");
     const auto& instruments = object.problem().scene().instruments;
     require_index(instrument, static_cast<std::int64_t>(instruments.size()), "instrument");
+    require_finite(value, 3, "value");
     object.simulation().drive(static_cast<std::size_t>(instrument), sunder::Vec3(value));
   });
 }

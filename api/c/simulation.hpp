@@ -33,6 +33,8 @@ class SimulationObject final : public Object {
   [[nodiscard]] std::vector<std::string> warnings() const;
 
   std::weak_ptr<Object> grips;  ///< the handle for forces between frames: one thread may ask
+  /// Destroyed by the host, though a call of another thread may hold this object a little longer.
+  const std::shared_ptr<std::atomic<bool>> gone = std::make_shared<std::atomic<bool>>(false);
 
  private:
   void log(std::int32_t level, const std::string& text) const;

@@ -6,9 +6,8 @@
 
 namespace sunder::c {
 
-/// A simulation of a scene on the backend that `create` makes.
-[[nodiscard]] sunder_status create_simulation(sunder_scene scene, const sunder_callbacks* callbacks,
-                                              const SimulationObject::Create& create,
-                                              sunder_simulation* simulation);
+/// A simulation of a scene on the backend that `create` makes, to be called within call().
+void create_simulation(const SceneObject& scene, const sunder_callbacks* callbacks,
+                       const SimulationObject::Create& create, sunder_simulation* simulation);
 
 }  // namespace sunder::c

@@ -110,6 +110,9 @@ sunder_status sunder_simulation_support_reaction(sunder_simulation simulation, d
   return read(
       simulation, values, size, [](auto&) { return std::size_t{3}; },
       [&](SimulationObject& object) {
+        if (!object.solved()) {
+          throw Failure(SUNDER_ERROR_ORDER, "there is no support reaction before the first step");
+        }
         const Vec3 force = object.simulation().support_reaction();
         std::copy_n(force.data(), 3, values);
       });

@@ -29,7 +29,7 @@ const char* sunder_status_text(sunder_status status) {
     case SUNDER_ERROR_STRUCT_SIZE:
       return "a struct has a wrong struct_size";
     case SUNDER_ERROR_VALUE:
-      return "an index or enumeration value is outside what is allowed";
+      return "an index or a value is outside what is allowed, or not finite";
     case SUNDER_ERROR_BUSY:
       return "the handle is in use";
     case SUNDER_ERROR_MEMORY:

@@ -35,14 +35,62 @@ sunder::vulkan::LentDevice to_lent(const sunder_vulkan_host& host) {
   lent.float64 = host.features & SUNDER_VULKAN_SHADER_FLOAT64;
   lent.int64 = host.features & SUNDER_VULKAN_SHADER_INT64;
   lent.timeline_semaphore = host.features & SUNDER_VULKAN_TIMELINE_SEMAPHORE;
-  if (!host.lock != !host.unlock) {
-    throw Failure(SUNDER_ERROR_NULL, "lock and unlock come in pairs; one of them is null");
-  }
   if (host.lock) {
     lent.lock.lock = [lock = host.lock, user = host.lock_user] { lock(user); };
     lent.lock.unlock = [unlock = host.unlock, user = host.lock_user] { unlock(user); };
   }
   return lent;
+}
+
+void check_handles(const sunder_vulkan_host& host) {
+  if (!host.get_instance_proc_addr) {
+    throw Failure(SUNDER_ERROR_NULL, "host: get_instance_proc_addr is null");
+  }
+  require(host.instance, "host: instance");
+  require(host.physical_device, "host: physical_device");
+  require(host.device, "host: device");
+  require(host.queue, "host: queue");
+  if (!host.lock != !host.unlock) {
+    throw Failure(SUNDER_ERROR_NULL, "host: lock and unlock come in pairs; one of them is null");
+  }
+  constexpr std::uint32_t known =
+      SUNDER_VULKAN_SHADER_FLOAT64 | SUNDER_VULKAN_SHADER_INT64 | SUNDER_VULKAN_TIMELINE_SEMAPHORE;
+  if (host.features & ~known) {
+    throw Failure(SUNDER_ERROR_VALUE, "host: features = " + std::to_string(host.features) +
+                                          " is no sum of SUNDER_VULKAN_SHADER_FLOAT64, " +
+                                          "_SHADER_INT64 and _TIMELINE_SEMAPHORE");
+  }
+}
+
+/// A buffer of the host's, if it lends one.
+void check_buffer(const sunder_vulkan_buffer& b, std::uint64_t bytes, const char* what) {
+  if (!b.buffer) return;
+  if (b.offset % sunder::gpu::kDisplayAlignment != 0) {
+    throw Failure(SUNDER_ERROR_VALUE, std::string("host: the buffer for ") + what +
+                                          " begins at byte " + std::to_string(b.offset) +
+                                          "; it must begin at a multiple of " +
+                                          std::to_string(sunder::gpu::kDisplayAlignment));
+  }
+  if (b.size < bytes) {
+    throw Failure(SUNDER_ERROR_SIZE, std::string("host: the buffer for ") + what + " has " +
+                                         std::to_string(b.size) + " bytes; it must have " +
+                                         std::to_string(bytes));
+  }
+}
+
+/// All that can be said before anything is prepared, but for buffers.
+void check_host(const sunder_vulkan_host& host) {
+  check_handles(host);
+  const auto lent = to_lent(host);
+  require_index(host.queue_family, sunder::vulkan::queue_families(lent), "host: queue_family");
+  sunder::vulkan::check_device(lent);
+}
+
+void check_buffers(const sunder_vulkan_host& host, const sunder::Problem& problem) {
+  const auto bytes = sunder::gpu::display_bytes(problem);
+  check_buffer(host.displacement, bytes.displacement, "displacement");
+  check_buffer(host.stress, bytes.stress, "stress");
+  check_buffer(host.live, bytes.live, "live");
 }
 
 sunder::gpu::VulkanOptions to_options(const sunder_vulkan_host& host) {
@@ -74,29 +122,28 @@ extern "C" {
 sunder_status sunder_vulkan_create(sunder_scene scene, const sunder_vulkan_host* host,
                                    const sunder_callbacks* callbacks,
                                    sunder_simulation* simulation) {
+  return call<SceneObject>(scene, [&]([[maybe_unused]] SceneObject& object) {
+    const auto given = read_struct(host, sized<sunder_vulkan_host>(), "host");
 #ifdef SUNDER_GPU
-  return guarded_status([&] {
-    const auto options = to_options(read_struct(host, sized<sunder_vulkan_host>(), "host"));
-    return create_simulation(
-        scene, callbacks,
+    if (object.scene.solver.backend == "cpu") {
+      throw Failure(SUNDER_ERROR_VALUE, "the scene asks for backend cpu on a Vulkan device");
+    }
+    check_host(given);
+    create_simulation(
+        object, callbacks,
         [&](std::shared_ptr<const sunder::Problem> problem, sunder::Needs needs) {
-          if (problem->scene().solver.backend == "cpu") {
-            throw Failure(SUNDER_ERROR_VALUE, "the scene asks for backend cpu on a Vulkan device");
-          }
+          check_buffers(given, *problem);
           return sunder::CreatedBackend{
-              sunder::gpu::create(std::move(problem), std::move(needs), options), {}};
+              sunder::gpu::create(std::move(problem), std::move(needs), to_options(given)), {}};
         },
         simulation);
-  });
 #else
-  static_cast<void>(host);
-  return create_simulation(
-      scene, callbacks,
-      [](std::shared_ptr<const sunder::Problem>, sunder::Needs) -> sunder::CreatedBackend {
-        without_vulkan();
-      },
-      simulation);
+    static_cast<void>(given);
+    static_cast<void>(callbacks);
+    static_cast<void>(simulation);
+    without_vulkan();
 #endif
+  });
 }
 
 sunder_status sunder_vulkan_get_display(sunder_simulation simulation,
@@ -108,9 +155,10 @@ sunder_status sunder_vulkan_get_display(sunder_simulation simulation,
     auto out = sized<sunder_vulkan_display>();
     out.nodes = from.nodes();
     out.tets = from.elements();
-    out.displacement = to_part(from.displacement(), std::uint64_t{16} * out.nodes);
-    out.stress = to_part(from.stress(), std::uint64_t{8} * out.tets);
-    out.live = to_part(from.live(), std::uint64_t{4} * out.tets);
+    const auto bytes = sunder::gpu::display_bytes(object.problem());
+    out.displacement = to_part(from.displacement(), bytes.displacement);
+    out.stress = to_part(from.stress(), bytes.stress);
+    out.live = to_part(from.live(), bytes.live);
     write_struct(display, out, "display");
 #else
     without_vulkan();

@@ -13,10 +13,19 @@
 // - Text goes out as UTF-8 into a buffer of the caller's: at most `capacity` bytes with the closing
 //   zero are written, `length` (may be null) receives the length without it. A null buffer with
 //   capacity 0 asks for the length alone.
-// - Option and result structs begin with `struct_size`, which the caller sets to sizeof(the
-//   struct) as it was compiled. Later versions append members: what an older caller leaves out
-//   has its default, what a newer caller adds must be zero. The *_init functions set struct_size
-//   and all defaults.
+// - A number that goes in must be finite, where it is read: else SUNDER_ERROR_VALUE from the very
+//   call that hands it over. Whether finite numbers make sense together is checked when a plan or a
+//   simulation is made (SUNDER_ERROR_INPUT).
+// - Option and result structs begin with `struct_size`: sizeof(the struct) as the caller was
+//   compiled. `sunder_step step = SUNDER_STEP_INIT;` sets it and all defaults; each struct that a
+//   caller makes has such a macro. Later versions append members, and a struct may be shorter or
+//   longer than the library's. Of a result, what both know is written, and not a byte beyond: a
+//   newer caller's further members keep what they held. Of options, what an older caller leaves
+//   out has its default, and what a newer caller adds must be zero. A size below the struct's
+//   first version is an error, and so is one that no version comes near (over 65536 bytes, of
+//   options over 1024): it was never set.
+// - The *_init functions do what the macros do, for languages without macros. They write the struct
+//   as this library has it, so the caller's must be that of the same version.
 //
 // Threads: different handles may be used by different threads at once. One handle serves one
 // call at a time: a second one returns SUNDER_ERROR_BUSY at once and does nothing. Only
@@ -56,7 +65,7 @@ enum {
   SUNDER_ERROR_HANDLE = 7,       ///< no such handle (any more), or one of another kind
   SUNDER_ERROR_SIZE = 8,         ///< an array of another size
   SUNDER_ERROR_STRUCT_SIZE = 9,  ///< a struct_size that no version has, or unknown members set
-  SUNDER_ERROR_VALUE = 10,       ///< an index or an enumeration value outside what is allowed
+  SUNDER_ERROR_VALUE = 10,       ///< an index or a value outside what is allowed, or not finite
   SUNDER_ERROR_BUSY = 11,        ///< the handle is in use by another call
   SUNDER_ERROR_MEMORY = 12,      ///< out of memory
   SUNDER_ERROR_CANCELLED = 13    ///< a callback or sunder_simulation_cancel asked for it
@@ -90,6 +99,9 @@ typedef struct sunder_device {
   char why[256];        ///< why it is chosen, or why not
 } sunder_device;
 
+#define SUNDER_DEVICE_INIT \
+  { sizeof(sunder_device), SUNDER_BACKEND_AUTO, 0, 0, "", "", "", "" }
+
 SUNDER_API sunder_status sunder_device_count(int32_t* count);
 SUNDER_API sunder_status sunder_device_at(int32_t index, sunder_device* device);
 
@@ -114,9 +126,12 @@ typedef struct sunder_material {
   uint32_t reserved;
   double young;      ///< E [MPa], above 0
   double poisson;    ///< nu, above -1 and below 0.5
-  double yield;      ///< [MPa]; 0: unbreakable
+  double yield;      ///< [MPa]; 0: unbreakable (a keyword of Python: yield_stress in board.py)
   const char* name;  ///< for messages; null: its index
 } sunder_material;
+
+#define SUNDER_MATERIAL_INIT \
+  { sizeof(sunder_material), 0, 0, 0, 0, NULL }
 
 SUNDER_API void sunder_material_init(sunder_material* material);
 /// `index` (may be null) receives 0, 1, ... in the order of calls.
@@ -140,6 +155,9 @@ typedef struct sunder_selection {
   double radius;
 } sunder_selection;
 
+#define SUNDER_SELECTION_INIT \
+  { SUNDER_SELECT_IDS, 0, NULL, 0, {0, 0, 0}, {0, 0, 0}, 0 }
+
 enum { SUNDER_AXIS_X = 1, SUNDER_AXIS_Y = 2, SUNDER_AXIS_Z = 4, SUNDER_AXES_ALL = 7 };
 
 typedef struct sunder_support {
@@ -147,6 +165,9 @@ typedef struct sunder_support {
   uint32_t axes;  ///< held axes, a sum of SUNDER_AXIS_*
   sunder_selection nodes;
 } sunder_support;
+
+#define SUNDER_SUPPORT_INIT \
+  { sizeof(sunder_support), SUNDER_AXES_ALL, SUNDER_SELECTION_INIT }
 
 SUNDER_API void sunder_support_init(sunder_support* support);
 SUNDER_API sunder_status sunder_scene_add_support(sunder_scene scene,
@@ -174,6 +195,14 @@ typedef struct sunder_instrument {
   double ramp[2];          ///< scene times of no and full action; time of step i of N is (i + 1)/N
 } sunder_instrument;
 
+#define SUNDER_INSTRUMENT_INIT                                                       \
+  {                                                                                  \
+    sizeof(sunder_instrument), SUNDER_FORCE, NULL, SUNDER_SELECTION_INIT, {0, 0, 0}, \
+        SUNDER_AXES_ALL, SUNDER_SIDE_UPPER, 0, 0, {0, 0, 0}, {                       \
+      0, 0                                                                           \
+    }                                                                                \
+  }
+
 SUNDER_API void sunder_instrument_init(sunder_instrument* instrument);
 /// `index` (may be null) receives 0, 1, ...
 SUNDER_API sunder_status sunder_scene_add_instrument(sunder_scene scene,
@@ -188,6 +217,13 @@ typedef struct sunder_preset_crack {
   double mouth[3];
   double tips[2][3];  ///< the second only without mouth
 } sunder_preset_crack;
+
+#define SUNDER_PRESET_CRACK_INIT                                        \
+  {                                                                     \
+    sizeof(sunder_preset_crack), 0, SUNDER_SELECTION_INIT, {0, 0, 0}, { \
+      {0, 0, 0}, { 0, 0, 0 }                                            \
+    }                                                                   \
+  }
 
 SUNDER_API void sunder_preset_crack_init(sunder_preset_crack* crack);
 SUNDER_API sunder_status sunder_scene_add_crack(sunder_scene scene,
@@ -219,6 +255,15 @@ typedef struct sunder_fracture_options {
   double plane_normal[3];
 } sunder_fracture_options;
 
+#define SUNDER_FRACTURE_OPTIONS_INIT                                                             \
+  {                                                                                              \
+    sizeof(sunder_fracture_options), SUNDER_FRACTURE_NONE, 1e-6, SUNDER_YIELD_MAX_SHEAR,         \
+        SUNDER_SIGMA0_LINE, SUNDER_LENGTH_PATH, SUNDER_BIRTH_ELEMENT, SUNDER_SIF_FORMULA, 10000, \
+        0, 0, {                                                                                  \
+      0, 0, 0                                                                                    \
+    }                                                                                            \
+  }
+
 SUNDER_API void sunder_fracture_options_init(sunder_fracture_options* options);
 SUNDER_API sunder_status sunder_scene_set_fracture(sunder_scene scene,
                                                    const sunder_fracture_options* options);
@@ -244,6 +289,12 @@ typedef struct sunder_solver_options {
   int32_t no_preparation;  ///< 1: prepare no fracture after a quiet step; no result depends on it
   int32_t reserved;
 } sunder_solver_options;
+
+#define SUNDER_SOLVER_OPTIONS_INIT                                                                 \
+  {                                                                                                \
+    sizeof(sunder_solver_options), SUNDER_BACKEND_AUTO, -1, SUNDER_ROUTE_AUTO, SUNDER_UPDATE_AUTO, \
+        SUNDER_PRECISION_AUTO, 1e-4, 0, 0                                                          \
+  }
 
 SUNDER_API void sunder_solver_options_init(sunder_solver_options* options);
 SUNDER_API sunder_status sunder_scene_set_solver(sunder_scene scene,
@@ -271,6 +322,9 @@ typedef struct sunder_engine {
   char why[512];  ///< why this route
 } sunder_engine;
 
+#define SUNDER_ENGINE_INIT \
+  { sizeof(sunder_engine), SUNDER_BACKEND_AUTO, 0, 0, 0, 0, "", "", "", "", "", "" }
+
 /// Checks the scene and sets up its solver to tell what it takes; nothing of it stays.
 SUNDER_API sunder_status sunder_plan_create(sunder_scene scene, sunder_plan* plan);
 SUNDER_API sunder_status sunder_plan_destroy(sunder_plan plan);
@@ -290,6 +344,7 @@ enum { SUNDER_LOG_INFO = 0, SUNDER_LOG_WARNING = 1, SUNDER_LOG_ERROR = 2 };
 typedef void (*sunder_log_function)(void* user, int32_t level, const char* text);
 
 enum { SUNDER_PHASE_CHECK = 0, SUNDER_PHASE_PREPARE = 1, SUNDER_PHASE_STEP = 2 };
+/// Filled by the library, whose struct_size it has.
 typedef struct sunder_progress {
   uint32_t struct_size;
   int32_t phase;  ///< of creation: check the scene, prepare the solver; then steps
@@ -309,6 +364,9 @@ typedef struct sunder_callbacks {
   sunder_progress_function progress;  ///< null: none
   void* progress_user;
 } sunder_callbacks;
+
+#define SUNDER_CALLBACKS_INIT \
+  { sizeof(sunder_callbacks), 0, NULL, NULL, NULL, NULL }
 
 /// Checks the scene and prepares its solver. The scene may be destroyed or changed afterwards.
 /// `callbacks` may be null; the struct is copied.
@@ -333,6 +391,9 @@ typedef struct sunder_step {
   double max_yield_ratio;
   double ms_load, ms_solve, ms_stress, ms_decide, ms_update, ms_total;
 } sunder_step;
+
+#define SUNDER_STEP_INIT \
+  { sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
 /// `step` may be null. SUNDER_ERROR_ORDER when all steps are done. SUNDER_ERROR_CANCELLED: the step
@@ -375,7 +436,7 @@ SUNDER_API sunder_status sunder_simulation_support_reaction(sunder_simulation si
 /* Forces of the grips between frames, for a haptic device. */
 
 /// For a thread of its own: a call neither waits for a step nor makes one wait. Belongs to no other
-/// call's handle, so a step does not make it busy; outlives the simulation.
+/// call's handle, so a step does not make it busy. Outlives the simulation, to say that it is gone.
 typedef struct sunder_grips_handle* sunder_grips;
 
 /// One handle a simulation at a time. SUNDER_ERROR_ORDER: the scene has no grip, or there is a
@@ -385,8 +446,9 @@ SUNDER_API sunder_status sunder_grips_destroy(sunder_grips grips);
 /// Force of each grip on the body [N] if it were at a displacement [mm], by the body as the last
 /// solve left it. Both (instruments x 3), size 3 * instruments; what is no grip, or an axis that it
 /// leaves free, is not read and has force 0. With the displacements of that solve: its reactions.
-/// Never other than finite. SUNDER_ERROR_ORDER before the first solve, SUNDER_ERROR_VALUE for a
-/// displacement that is not finite; the forces are 0 then.
+/// Never other than finite. The forces are 0 with SUNDER_ERROR_ORDER: before the first solve;
+/// SUNDER_ERROR_VALUE: a displacement is not finite, or so large that a force would not be;
+/// SUNDER_ERROR_HANDLE: the simulation was destroyed, and this handle is there to be destroyed too.
 SUNDER_API sunder_status sunder_grips_forces(sunder_grips grips, const double* displacements,
                                              double* forces, size_t size);
 
@@ -421,6 +483,9 @@ typedef struct sunder_event {
   double k_1, k_2;            ///< from the field; 0 with SUNDER_SIF_FORMULA
 } sunder_event;
 
+#define SUNDER_EVENT_INIT \
+  { sizeof(sunder_event), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
 SUNDER_API sunder_status sunder_simulation_event_count(sunder_simulation simulation,
                                                        int32_t* count);
 SUNDER_API sunder_status sunder_simulation_event_at(sunder_simulation simulation, int32_t index,
@@ -442,6 +507,12 @@ typedef struct sunder_crack {
   double directions[2][3];  ///< unit, forward
   double length;            ///< of the path
 } sunder_crack;
+
+#define SUNDER_CRACK_INIT                                                           \
+  {                                                                                 \
+    sizeof(sunder_crack), 0, 0, 0, 0, 0, {0, 0}, {0, 0, 0}, {{0, 0, 0}, {0, 0, 0}}, \
+        {{0, 0, 0}, {0, 0, 0}}, 0                                                   \
+  }
 
 SUNDER_API sunder_status sunder_simulation_crack_count(sunder_simulation simulation,
                                                        int32_t* count);

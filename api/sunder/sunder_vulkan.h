@@ -35,6 +35,9 @@ typedef struct sunder_vulkan_buffer {
   uint64_t size;    ///< [bytes]
 } sunder_vulkan_buffer;
 
+#define SUNDER_VULKAN_BUFFER_INIT \
+  { 0, 0, 0 }
+
 typedef void (*sunder_vulkan_function)(void);
 /// PFN_vkGetInstanceProcAddr.
 typedef sunder_vulkan_function (*sunder_vulkan_get_function)(void* instance, const char* name);
@@ -59,8 +62,17 @@ typedef struct sunder_vulkan_host {
   sunder_vulkan_buffer displacement, stress, live;
 } sunder_vulkan_host;
 
+#define SUNDER_VULKAN_HOST_INIT                                                          \
+  {                                                                                      \
+    sizeof(sunder_vulkan_host), 0, NULL, NULL, NULL, NULL, NULL, 0, 0, NULL, NULL, NULL, \
+        SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_BUFFER_INIT  \
+  }
+
 /// A simulation on the host's device. The scene's backend must be auto or vulkan.
-/// SUNDER_ERROR_DEVICE names a feature that is missing.
+/// What the host hands over is checked before anything is prepared: SUNDER_ERROR_NULL for a handle
+/// or function, SUNDER_ERROR_VALUE for a queue family that the device does not have, a bit of
+/// `features` that has no name here or an offset, SUNDER_ERROR_SIZE for a buffer that is too small;
+/// SUNDER_ERROR_DEVICE names a version, feature or function that is missing.
 SUNDER_API sunder_status sunder_vulkan_create(sunder_scene scene, const sunder_vulkan_host* host,
                                               const sunder_callbacks* callbacks,
                                               sunder_simulation* simulation);
@@ -73,6 +85,12 @@ typedef struct sunder_vulkan_display {
   sunder_vulkan_buffer stress;  ///< per element, stride 8: yield measure [MPa], its ratio to yield
   sunder_vulkan_buffer live;    ///< per element, stride 4: uint32, 1, or 0 where destroyed
 } sunder_vulkan_display;
+
+#define SUNDER_VULKAN_DISPLAY_INIT                                                                \
+  {                                                                                               \
+    sizeof(sunder_vulkan_display), 0, 0, 0, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_BUFFER_INIT, \
+        SUNDER_VULKAN_BUFFER_INIT                                                                 \
+  }
 
 /// Where the fields are. Stress is 0 when it was left out of the scene.
 SUNDER_API sunder_status sunder_vulkan_get_display(sunder_simulation simulation,
@@ -93,6 +111,9 @@ typedef struct sunder_vulkan_signals {
   uint64_t signal_semaphore;
   uint64_t signal_value;  ///< reached when the buffers hold the fields
 } sunder_vulkan_signals;
+
+#define SUNDER_VULKAN_SIGNALS_INIT \
+  { sizeof(sunder_vulkan_signals), 0, 0, 0, 0, 0 }
 
 /// The same in a submit of its own: waits, writes the buffers, signals, and returns at once. The
 /// next step waits for it, so what it waits for must be under way.

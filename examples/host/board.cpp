@@ -11,8 +11,7 @@ constexpr double kPull = -24;                              // mm
 enum Material { kUpper, kLower, kStiff };
 
 void add_material(sunder_scene scene, double young, double yield) {
-  sunder_material material;
-  sunder_material_init(&material);
+  sunder_material material = SUNDER_MATERIAL_INIT;
   material.young = young;
   material.poisson = 0.4;
   material.yield = yield;  // 0: unbreakable
@@ -20,7 +19,7 @@ void add_material(sunder_scene scene, double young, double yield) {
 }
 
 sunder_selection box(double x0, double y0, double x1, double y1) {
-  sunder_selection s{};
+  sunder_selection s = SUNDER_SELECTION_INIT;
   s.kind = SUNDER_SELECT_BOX;
   s.min[0] = x0, s.min[1] = y0, s.min[2] = 0;
   s.max[0] = x1, s.max[1] = y1, s.max[2] = kThickness;
@@ -28,12 +27,10 @@ sunder_selection box(double x0, double y0, double x1, double y1) {
 }
 
 void add_tools(sunder_scene scene) {
-  sunder_support top;
-  sunder_support_init(&top);
+  sunder_support top = SUNDER_SUPPORT_INIT;
   top.nodes = box(0, kWidth, kWidth, kWidth);
   check(sunder_scene_add_support(scene, &top));
-  sunder_instrument forceps;
-  sunder_instrument_init(&forceps);
+  sunder_instrument forceps = SUNDER_INSTRUMENT_INIT;
   forceps.name = "right forceps";
   forceps.nodes = box(kWidth, 0, kWidth, 0);
   forceps.kind = SUNDER_DISPLACEMENT;
@@ -78,8 +75,7 @@ sunder_scene make_scene(const Board& board, std::int32_t steps) {
   add_material(scene, 8, 4);
   add_material(scene, 500, 0);
   add_tools(scene);
-  sunder_fracture_options fracture;
-  sunder_fracture_options_init(&fracture);
+  sunder_fracture_options fracture = SUNDER_FRACTURE_OPTIONS_INIT;
   fracture.model = SUNDER_FRACTURE_B;
   fracture.birth = SUNDER_BIRTH_THROUGH;
   fracture.max_events = 1;  // so that the tear can be watched

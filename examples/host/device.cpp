@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -12,6 +13,19 @@ VKAPI_ATTR VkBool32 VKAPI_CALL take_message(VkDebugUtilsMessageSeverityFlagBitsE
                                             void* user) {
   static_cast<std::vector<std::string>*>(user)->emplace_back(data->pMessage);
   return VK_FALSE;
+}
+
+constexpr const char* kValidation = "VK_LAYER_KHRONOS_validation";
+
+bool is_installed(const char* layer) {
+  std::uint32_t count = 0;
+  check(vkEnumerateInstanceLayerProperties(&count, nullptr), "vkEnumerateInstanceLayerProperties");
+  std::vector<VkLayerProperties> layers(count);
+  check(vkEnumerateInstanceLayerProperties(&count, layers.data()),
+        "vkEnumerateInstanceLayerProperties");
+  return std::any_of(layers.begin(), layers.end(), [&](const VkLayerProperties& l) {
+    return std::strcmp(l.layerName, layer) == 0;
+  });
 }
 
 template <class Function>
@@ -27,20 +41,27 @@ void check(VkResult result, const char* what) {
   }
 }
 
-Device::Device() {
-  create_instance();
+Device::Device(bool validation) {
+  create_instance(validation);
   choose_physical();
   create_device();
 }
 
 Device::~Device() {
   vkDestroyDevice(handle, nullptr);
-  extension<PFN_vkDestroyDebugUtilsMessengerEXT>(instance, "vkDestroyDebugUtilsMessengerEXT")(
-      instance, messenger_, nullptr);
+  if (messenger_) {
+    extension<PFN_vkDestroyDebugUtilsMessengerEXT>(instance, "vkDestroyDebugUtilsMessengerEXT")(
+        instance, messenger_, nullptr);
+  }
   vkDestroyInstance(instance, nullptr);
 }
 
-void Device::create_instance() {
+void Device::create_instance(bool validation) {
+  validated = is_installed(kValidation);
+  if (validation && !validated) {
+    throw std::runtime_error(std::string("--validation: the layer ") + kValidation +
+                             " is not installed (Debian: vulkan-validationlayers)");
+  }
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.apiVersion = VK_API_VERSION_1_2;
   const VkValidationFeatureEnableEXT enable =
@@ -55,15 +76,17 @@ void Device::create_instance() {
   debug.pfnUserCallback = take_message;
   debug.pUserData = &messages;
   features.pNext = &debug;
-  const char* layer = "VK_LAYER_KHRONOS_validation";
   const char* name = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
   VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
-  info.pNext = &features;
   info.pApplicationInfo = &application;
-  info.enabledLayerCount = info.enabledExtensionCount = 1;
-  info.ppEnabledLayerNames = &layer;
-  info.ppEnabledExtensionNames = &name;
+  if (validated) {  // the layer has both extensions
+    info.pNext = &features;
+    info.enabledLayerCount = info.enabledExtensionCount = 1;
+    info.ppEnabledLayerNames = &kValidation;
+    info.ppEnabledExtensionNames = &name;
+  }
   check(vkCreateInstance(&info, nullptr, &instance), "vkCreateInstance");
+  if (!validated) return;
   check(extension<PFN_vkCreateDebugUtilsMessengerEXT>(instance, "vkCreateDebugUtilsMessengerEXT")(
             instance, &debug, nullptr, &messenger_),
         "vkCreateDebugUtilsMessengerEXT");

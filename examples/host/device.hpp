@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's Vulkan: instance with validation, device, one queue for drawing and computing.
+// The host's Vulkan: instance, with validation where it is installed, device, one queue for drawing
+// and computing.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -18,7 +19,8 @@ struct Buffer {
 
 class Device {
  public:
-  Device();
+  /// `validation`: demands the validation layer; else it is used if it is there.
+  explicit Device(bool validation);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -33,12 +35,13 @@ class Device {
   VkDevice handle = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t family = 0;
+  bool validated = false;             ///< the validation layer watches
   VkBool32 float64 = VK_FALSE;        ///< shaderFloat64 was enabled
   VkBool32 int64 = VK_FALSE;          ///< shaderInt64 was enabled
   std::vector<std::string> messages;  ///< of the validation layers
 
  private:
-  void create_instance();
+  void create_instance(bool validation);
   void choose_physical();
   void create_device();
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A trainer in small: its own Vulkan device and renderer, and a board that tears on that device.
-//   host PICTURE.png
+//   host PICTURE.png [--validation]    demands the validation layer; else it is used if installed
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <iterator>
 
@@ -15,8 +16,7 @@ constexpr int kSteps = 40;
 constexpr int kPanelEnds[] = {24, 29, kSteps};  // steps that each part of the picture shows last
 
 sunder_simulation lend(const Device& device, sunder_scene scene) {
-  sunder_vulkan_host host{};
-  host.struct_size = sizeof host;
+  sunder_vulkan_host host = SUNDER_VULKAN_HOST_INIT;
   host.api_version = VK_API_VERSION_1_2;
   host.get_instance_proc_addr = reinterpret_cast<sunder_vulkan_get_function>(vkGetInstanceProcAddr);
   host.instance = device.instance;
@@ -36,13 +36,11 @@ void run(Device& device, const char* path) {
   const sunder_scene scene = make_scene(board, kSteps);
   const sunder_simulation simulation = lend(device, scene);
   check(sunder_scene_destroy(scene));
-  sunder_vulkan_display display{};
-  display.struct_size = sizeof display;
+  sunder_vulkan_display display = SUNDER_VULKAN_DISPLAY_INIT;
   check(sunder_vulkan_get_display(simulation, &display));
   {
     Renderer renderer(device, board, display, std::size(kPanelEnds));
-    sunder_step step{};
-    step.struct_size = sizeof step;
+    sunder_step step = SUNDER_STEP_INIT;
     std::uint32_t panel = 0;
     for (int i = 0; i < kSteps; ++i) {
       check(sunder_simulation_step(simulation, &step));
@@ -59,8 +57,12 @@ void run(Device& device, const char* path) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 2) return std::fprintf(stderr, "usage: host PICTURE.png\n"), 2;
-  Device device;
+  const bool validation = argc == 3 && std::strcmp(argv[2], "--validation") == 0;
+  if (argc != 2 && !validation) {
+    return std::fprintf(stderr, "usage: host PICTURE.png [--validation]\n"), 2;
+  }
+  Device device(validation);
+  std::printf("validation layer: %s\n", device.validated ? "on" : "not installed, runs without");
   run(device, argv[1]);
   for (const std::string& message : device.messages) std::fprintf(stderr, "%s\n", message.c_str());
   return device.messages.empty() ? 0 : 1;

@@ -7,12 +7,12 @@
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
-namespace {
 
-// Largest value that Vulkan allows for minStorageBufferOffsetAlignment.
-constexpr VkDeviceSize kAlignment = 256;
-
-}  // namespace
+DisplayBytes display_bytes(const Problem& problem) {
+  const auto nodes = static_cast<std::uint64_t>(problem.node_count());
+  const auto elements = static_cast<std::uint64_t>(problem.tet_count());
+  return {16 * nodes, 8 * elements, 4 * elements};
+}
 
 Display::Display(const KernelFactory& kernels, const Problem& problem, const Fields& fields,
                  bool has_stress, const DisplayTargets& targets, bool timeline)
@@ -20,9 +20,10 @@ Display::Display(const KernelFactory& kernels, const Problem& problem, const Fie
       push_{static_cast<std::uint32_t>(problem.node_count()),
             static_cast<std::uint32_t>(problem.tet_count()), has_stress ? 1u : 0u},
       timeline_(timeline),
-      displacement_(target(targets.displacement, std::size_t{16} * push_.nodes, "displacement")),
-      stress_(target(targets.stress, std::size_t{8} * push_.elements, "stress")),
-      live_(target(targets.live, std::size_t{4} * push_.elements, "liveness")),
+      displacement_(
+          target(targets.displacement, display_bytes(problem).displacement, "displacement")),
+      stress_(target(targets.stress, display_bytes(problem).stress, "stress")),
+      live_(target(targets.live, display_bytes(problem).live, "liveness")),
       kernel_(kernels.make("display")) {
   const vulkan::Buffer* buffers[] = {&fields.nodal(Field::displacement),
                                      &fields.stress(),
@@ -48,10 +49,10 @@ vulkan::Buffer Display::target(const DisplayTarget& given, std::size_t bytes,
                       std::to_string(given.bytes) + " bytes; " + std::to_string(bytes) +
                       " are needed");
   }
-  if (given.offset % kAlignment != 0) {
+  if (given.offset % kDisplayAlignment != 0) {
     throw DeviceError(std::string("the host's buffer for ") + what + " begins at byte " +
                       std::to_string(given.offset) + "; it must begin at a multiple of " +
-                      std::to_string(kAlignment));
+                      std::to_string(kDisplayAlignment));
   }
   return vulkan::Buffer::lent(given.buffer, given.offset, bytes);
 }

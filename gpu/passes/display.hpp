@@ -19,6 +19,16 @@ struct DisplayTargets {
   DisplayTarget live;          ///< uint32 an element: 1, or 0 where destroyed
 };
 
+/// At whose multiples a target begins: the largest value that Vulkan allows for
+/// minStorageBufferOffsetAlignment.
+inline constexpr VkDeviceSize kDisplayAlignment = 256;
+
+struct DisplayBytes {
+  std::uint64_t displacement = 0, stress = 0, live = 0;
+};
+/// What each target must hold.
+[[nodiscard]] DisplayBytes display_bytes(const Problem& problem);
+
 /// Timeline semaphores of one submit; without handle there is nothing to wait for or to signal.
 struct DisplaySignals {
   VkSemaphore wait = VK_NULL_HANDLE, signal = VK_NULL_HANDLE;

@@ -18,12 +18,18 @@ void check_handles(const LentDevice& lent) {
   require(lent.queue != VK_NULL_HANDLE, "the queue is null");
 }
 
-void check_family(const InstanceFunctions& vk, const LentDevice& lent, PhysicalDevice& physical) {
+std::vector<VkQueueFamilyProperties> families_of(const InstanceFunctions& vk,
+                                                 VkPhysicalDevice physical) {
   std::uint32_t count = 0;
-  vk.GetPhysicalDeviceQueueFamilyProperties(lent.physical, &count, nullptr);
+  vk.GetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
-  vk.GetPhysicalDeviceQueueFamilyProperties(lent.physical, &count, families.data());
-  require(lent.family < count, "it has no queue family " + std::to_string(lent.family));
+  vk.GetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  return families;
+}
+
+void check_family(const InstanceFunctions& vk, const LentDevice& lent, PhysicalDevice& physical) {
+  const auto families = families_of(vk, lent.physical);
+  require(lent.family < families.size(), "it has no queue family " + std::to_string(lent.family));
   require(families[lent.family].queueFlags & VK_QUEUE_COMPUTE_BIT,
           "queue family " + std::to_string(lent.family) + " cannot compute");
   physical.compute_family = static_cast<int>(lent.family);
@@ -39,14 +45,32 @@ void check_features(const LentDevice& lent, const PhysicalDevice& physical) {
   require(shortcoming.empty(), shortcoming);
 }
 
+PhysicalDevice checked(const InstanceFunctions& vk, const LentDevice& lent) {
+  PhysicalDevice physical = describe_device(vk, lent.physical);
+  check_family(vk, lent, physical);
+  check_features(lent, physical);
+  return physical;
+}
+
 }  // namespace
+
+std::uint32_t queue_families(const LentDevice& lent) {
+  check_handles(lent);
+  const InstanceFunctions vk = load_functions(lent.get, lent.instance);
+  return static_cast<std::uint32_t>(families_of(vk, lent.physical).size());
+}
+
+void check_device(const LentDevice& lent) {
+  check_handles(lent);
+  const InstanceFunctions vk = load_functions(lent.get, lent.instance);
+  static_cast<void>(checked(vk, lent));
+  static_cast<void>(load_functions(vk.GetDeviceProcAddr, lent.device));
+}
 
 std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe) {
   check_handles(lent);
   const InstanceFunctions vk = load_functions(lent.get, lent.instance);
-  PhysicalDevice physical = describe_device(vk, lent.physical);
-  check_family(vk, lent, physical);
-  check_features(lent, physical);
+  PhysicalDevice physical = checked(vk, lent);
   DeviceHandles handles;
   handles.device = lent.device;
   handles.queue = lent.queue;

@@ -20,8 +20,14 @@ struct LentDevice {
   QueueLock lock;
 };
 
-/// Throws DeviceError naming what is missing: a handle, Vulkan 1.2, compute on the queue. What the
-/// host did not enable the device counts as lacking.
+/// Queue families of a device whose handles are there. Throws DeviceError for a missing function.
+[[nodiscard]] std::uint32_t queue_families(const LentDevice& lent);
+
+/// Throws DeviceError naming what is missing: a handle, a function, Vulkan 1.2, compute on the
+/// queue. Takes microseconds: nothing is created.
+void check_device(const LentDevice& lent);
+
+/// Throws what check_device throws. What the host did not enable the device counts as lacking.
 [[nodiscard]] std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe = {});
 
 }  // namespace sunder::vulkan

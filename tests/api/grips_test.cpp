@@ -49,8 +49,37 @@ TEST(CGrips, GiveTheReactionsOfTheStep) {
   ASSERT_OK(sunder_simulation_event_count(simulation, &torn));
   EXPECT_GT(torn, 0);
   EXPECT_OK(sunder_simulation_destroy(simulation));
-  EXPECT_OK(sunder_grips_forces(grips, held.data(), forces.data(), 6)) << "outlives it";
   EXPECT_OK(sunder_grips_destroy(grips));
+}
+
+TEST(CGrips, SayThatTheirSimulationIsGone) {
+  const std::vector<double> held{0, 0, 0, 0, -0.1, 0};
+  for (const int steps : {0, 1}) {
+    const sunder_simulation simulation = gripped_board();
+    sunder_grips grips = nullptr;
+    ASSERT_OK(sunder_grips_create(simulation, &grips));
+    for (int i = 0; i < steps; ++i) ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+    ASSERT_OK(sunder_simulation_destroy(simulation));
+    std::vector<double> forces(6, 1);
+    EXPECT_EQ(sunder_grips_forces(grips, held.data(), forces.data(), 6), SUNDER_ERROR_HANDLE);
+    EXPECT_STREQ(sunder_last_error(), "the simulation of these grips was destroyed");
+    EXPECT_EQ(forces, std::vector<double>(6, 0.0));
+    EXPECT_OK(sunder_grips_destroy(grips));
+    EXPECT_EQ(sunder_grips_destroy(grips), SUNDER_ERROR_HANDLE);
+  }
+}
+
+TEST(CGrips, MayFillTheArrayOfTheirDisplacements) {
+  const sunder_simulation simulation = gripped_board();
+  sunder_grips grips = nullptr;
+  ASSERT_OK(sunder_grips_create(simulation, &grips));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  std::vector<double> both{0, 0, 0, 0, -0.1, 0}, forces(6);
+  ASSERT_OK(sunder_grips_forces(grips, both.data(), forces.data(), 6));
+  ASSERT_OK(sunder_grips_forces(grips, both.data(), both.data(), 6));
+  EXPECT_EQ(both, forces);
+  EXPECT_OK(sunder_grips_destroy(grips));
+  EXPECT_OK(sunder_simulation_destroy(simulation));
 }
 
 TEST(CGrips, RefuseWhatDoesNotFit) {
@@ -66,14 +95,75 @@ TEST(CGrips, RefuseWhatDoesNotFit) {
   EXPECT_EQ(sunder_grips_forces(grips, values.data(), nullptr, 6), SUNDER_ERROR_NULL);
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
     values[3] = bad;
+    forces.assign(6, 1);
     EXPECT_EQ(sunder_grips_forces(grips, values.data(), forces.data(), 6), SUNDER_ERROR_VALUE);
     EXPECT_EQ(forces, std::vector<double>(6, 0.0));
   }
+  values[3] = 0.1;
+  for (const std::size_t not_read : {0u, 1u, 2u, 5u}) values[not_read] = HUGE_VAL;
+  EXPECT_OK(sunder_grips_forces(grips, values.data(), forces.data(), 6));
   EXPECT_OK(sunder_grips_destroy(grips));
   EXPECT_OK(sunder_grips_create(simulation, &second)) << "the first one is gone";
   EXPECT_OK(sunder_grips_destroy(second));
   EXPECT_OK(sunder_simulation_destroy(simulation));
   EXPECT_OK(sunder_simulation_destroy(without));
+}
+
+TEST(CGrips, KnowNoForceBeforeTheFirstStepWhateverTheDisplacement) {
+  const sunder_simulation simulation = gripped_board();
+  sunder_grips grips = nullptr;
+  ASSERT_OK(sunder_grips_create(simulation, &grips));
+  std::vector<double> values(6, 1e308), forces(6, 1);
+  EXPECT_EQ(sunder_grips_forces(grips, values.data(), forces.data(), 6), SUNDER_ERROR_ORDER);
+  values[0] = HUGE_VAL;  // not read
+  EXPECT_EQ(sunder_grips_forces(grips, values.data(), forces.data(), 6), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(forces, std::vector<double>(6, 0.0));
+  EXPECT_OK(sunder_grips_destroy(grips));
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+}
+
+TEST(CGrips, GiveNoForceThatOverflows) {
+  const sunder_simulation simulation = gripped_board(1000);
+  sunder_grips grips = nullptr;
+  ASSERT_OK(sunder_grips_create(simulation, &grips));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  const std::vector<double> values{0, 0, 0, kLargest, -kLargest, 0};
+  std::vector<double> forces(6, 1);
+  EXPECT_EQ(sunder_grips_forces(grips, values.data(), forces.data(), 6), SUNDER_ERROR_VALUE);
+  EXPECT_NE(std::string(sunder_last_error()).find("overflow"), std::string::npos);
+  EXPECT_EQ(forces, std::vector<double>(6, 0.0));
+  EXPECT_OK(sunder_grips_destroy(grips));
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+}
+
+// A haptic thread learns of the end from its own calls, whenever it comes.
+TEST(CGrips, AnswerAnotherThreadUntilTheSimulationIsGone) {
+  const sunder_simulation simulation = gripped_board();
+  sunder_grips grips = nullptr;
+  ASSERT_OK(sunder_grips_create(simulation, &grips));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  std::atomic<bool> destroyed{false}, answered{false};
+  bool late = false;
+  sunder_status last = SUNDER_OK;
+  std::thread haptics([&] {
+    const std::vector<double> held{0, 0, 0, 0, -0.1, 0};
+    std::vector<double> forces(6);
+    while (last == SUNDER_OK) {
+      const bool after = destroyed.load();
+      last = sunder_grips_forces(grips, held.data(), forces.data(), 6);
+      if (after && last == SUNDER_OK) late = true;
+      answered = true;
+      std::this_thread::yield();
+    }
+  });
+  while (!answered.load()) std::this_thread::yield();
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+  destroyed = true;
+  haptics.join();
+  EXPECT_EQ(last, SUNDER_ERROR_HANDLE);
+  EXPECT_FALSE(late) << "an answer that began after the simulation was gone";
+  EXPECT_OK(sunder_grips_destroy(grips));
 }
 
 TEST(CGrips, AnswerAnotherThreadWhileAStepRuns) {

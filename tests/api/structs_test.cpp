@@ -55,23 +55,6 @@ TEST_F(CStructs, LeaveThePreparationOutWhenAsked) {
   EXPECT_GT(memory_after_a_step(0), memory_after_a_step(1));
 }
 
-TEST_F(CStructs, FillResultsOfANewerCallerAndZeroTheRest) {
-  struct Newer {
-    sunder_engine known;
-    double unknown;
-  } newer{};
-  newer.known.struct_size = sizeof newer;
-  newer.unknown = 3;
-  sunder_simulation simulation = nullptr;
-  ASSERT_OK(sunder_simulation_create(scene, nullptr, &simulation));
-  ASSERT_OK(sunder_simulation_engine(simulation, &newer.known));
-  EXPECT_EQ(newer.known.struct_size, sizeof newer);
-  EXPECT_EQ(newer.known.nodes, 50);
-  EXPECT_STREQ(newer.known.precision, "fp64");
-  EXPECT_EQ(newer.unknown, 0);
-  EXPECT_OK(sunder_simulation_destroy(simulation));
-}
-
 TEST_F(CStructs, MayLieAnywhere) {
   const sunder_solver_options options = on(SUNDER_BACKEND_CPU);
   std::vector<char> bytes(sizeof options + 1);

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <string_view>
 
 #include "api/c_scene.hpp"
+#include "api/guarded_bytes.hpp"
 #include "api/vulkan_host.hpp"
 #include "c/simulation.hpp"
 #include "gpu/vulkan_backend.hpp"
@@ -265,28 +267,98 @@ struct Refusal {
   void (*change)(sunder_vulkan_host&);
 };
 
-TEST_F(CVulkan, RefusesByName) {
+/// Functions of a driver that lacks one, as vkGetInstanceProcAddr gives them.
+sunder_vulkan_function no_functions(void*, const char*) { return nullptr; }
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL no_dispatch(VkDevice device, const char* name) {
+  return std::string_view(name) == "vkCmdDispatch" ? nullptr : vkGetDeviceProcAddr(device, name);
+}
+sunder_vulkan_function without_dispatch(void* instance, const char* name) {
+  if (std::string_view(name) == "vkGetDeviceProcAddr") {
+    return reinterpret_cast<sunder_vulkan_function>(&no_dispatch);
+  }
+  return vkGetInstanceProcAddr(static_cast<VkInstance>(instance), name);
+}
+
+/// How far a creation came.
+struct Phases {
+  int checked = 0, prepared = 0;
+  static std::int32_t count(void* user, const sunder_progress* p) {
+    auto& phases = *static_cast<Phases*>(user);
+    ++(p->phase == SUNDER_PHASE_CHECK ? phases.checked : phases.prepared);
+    return 0;
+  }
+  [[nodiscard]] sunder_callbacks callbacks() {
+    sunder_callbacks c = SUNDER_CALLBACKS_INIT;
+    c.progress = count;
+    c.progress_user = this;
+    return c;
+  }
+};
+
+// Before the scene is looked at, let alone its solver prepared.
+TEST_F(CVulkan, RefusesByNameAtOnce) {
   const Refusal refusals[] = {
       {"version", SUNDER_ERROR_DEVICE, "Vulkan 1.1",
        [](auto& h) { h.api_version = VK_API_VERSION_1_1; }},
-      {"get", SUNDER_ERROR_DEVICE, "vkGetInstanceProcAddr",
+      {"get", SUNDER_ERROR_NULL, "get_instance_proc_addr is null",
        [](auto& h) { h.get_instance_proc_addr = nullptr; }},
-      {"instance", SUNDER_ERROR_DEVICE, "the instance", [](auto& h) { h.instance = nullptr; }},
-      {"physical", SUNDER_ERROR_DEVICE, "physical device",
+      {"instance", SUNDER_ERROR_NULL, "instance is null", [](auto& h) { h.instance = nullptr; }},
+      {"physical", SUNDER_ERROR_NULL, "physical_device is null",
        [](auto& h) { h.physical_device = nullptr; }},
-      {"device", SUNDER_ERROR_DEVICE, "the device", [](auto& h) { h.device = nullptr; }},
-      {"queue", SUNDER_ERROR_DEVICE, "the queue", [](auto& h) { h.queue = nullptr; }},
-      {"family", SUNDER_ERROR_DEVICE, "queue family 77", [](auto& h) { h.queue_family = 77; }},
+      {"device", SUNDER_ERROR_NULL, "host: device is null", [](auto& h) { h.device = nullptr; }},
+      {"queue", SUNDER_ERROR_NULL, "queue is null", [](auto& h) { h.queue = nullptr; }},
+      {"family", SUNDER_ERROR_VALUE, "queue_family 77 does not exist",
+       [](auto& h) { h.queue_family = 77; }},
+      {"family_of_none", SUNDER_ERROR_VALUE, "queue_family 4294967295",
+       [](auto& h) { h.queue_family = VK_QUEUE_FAMILY_IGNORED; }},
+      {"feature", SUNDER_ERROR_VALUE, "features = 15", [](auto& h) { h.features |= 8; }},
+      {"features", SUNDER_ERROR_VALUE, "features = 4294967295", [](auto& h) { h.features = ~0u; }},
+      {"functions", SUNDER_ERROR_DEVICE, "lacks the function vk",
+       [](auto& h) { h.get_instance_proc_addr = no_functions; }},
+      {"dispatch", SUNDER_ERROR_DEVICE, "lacks the function vkCmdDispatch",
+       [](auto& h) { h.get_instance_proc_addr = without_dispatch; }},
       {"lock", SUNDER_ERROR_NULL, "pairs", [](auto& h) { h.unlock = nullptr; }},
-      {"size", SUNDER_ERROR_DEVICE, "800",
+      {"unlock", SUNDER_ERROR_NULL, "pairs", [](auto& h) { h.lock = nullptr; }},
+      {"struct", SUNDER_ERROR_STRUCT_SIZE, "host", [](auto& h) { h.struct_size = 1; }},
+      {"struct_unset", SUNDER_ERROR_STRUCT_SIZE, "host",
+       [](auto& h) { h.struct_size = 0xcdcdcdcd; }},
+  };
+  Phases phases;
+  const sunder_callbacks callbacks = phases.callbacks();
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(refusal.name);
+    auto lent = host->lend();
+    refusal.change(lent);
+    EXPECT_EQ(sunder_vulkan_create(scene, &lent, &callbacks, &simulation), refusal.status);
+    EXPECT_NE(std::string(sunder_last_error()).find(refusal.says), std::string::npos)
+        << sunder_last_error();
+    char text[200];
+    EXPECT_OK(sunder_error_of(scene, text, sizeof text, nullptr));
+    EXPECT_STREQ(text, sunder_last_error());
+    ASSERT_EQ(simulation, nullptr);
+  }
+  EXPECT_EQ(sunder_vulkan_create(scene, nullptr, &callbacks, &simulation), SUNDER_ERROR_NULL);
+  EXPECT_EQ(phases.checked, 0);
+  create();  // and the device works all the same
+  steps(1);
+}
+
+// Of the sizes that a display needs the scene must tell; the solver is not prepared.
+TEST_F(CVulkan, RefusesBuffersBeforeItPrepares) {
+  const Refusal refusals[] = {
+      {"displacement", SUNDER_ERROR_SIZE, "displacement has 16 bytes; it must have 800",
        [](auto& h) {
          h.displacement = {1, 0, 16};
        }},
-      {"offset", SUNDER_ERROR_DEVICE, "multiple of 256",
+      {"stress", SUNDER_ERROR_SIZE, "stress has 767 bytes; it must have 768",
+       [](auto& h) {
+         h.stress = {1, 256, 767};
+       }},
+      {"live", SUNDER_ERROR_SIZE, "live has 0 bytes", [](auto& h) { h.live.buffer = 1; }},
+      {"offset", SUNDER_ERROR_VALUE, "multiple of 256",
        [](auto& h) {
          h.live = {1, 4, 4096};
        }},
-      {"struct", SUNDER_ERROR_STRUCT_SIZE, "host", [](auto& h) { h.struct_size = 1; }},
   };
   for (const Refusal& refusal : refusals) {
     SCOPED_TRACE(refusal.name);
@@ -297,9 +369,29 @@ TEST_F(CVulkan, RefusesByName) {
         << sunder_last_error();
     ASSERT_EQ(simulation, nullptr);
   }
-  EXPECT_EQ(sunder_vulkan_create(scene, nullptr, nullptr, &simulation), SUNDER_ERROR_NULL);
-  create();  // and the device works all the same
+  create();
   steps(1);
+}
+
+TEST_F(CVulkan, FillsADisplayOfAnySizeAndNothingBeside) {
+  create();
+  for (const std::uint32_t stated : {88u, 96u, 65536u}) {
+    GuardedBytes exact(88, stated), longer(160, stated);
+    for (GuardedBytes* bytes : {&exact, &longer}) {
+      auto* to = reinterpret_cast<sunder_vulkan_display*>(bytes->data());
+      ASSERT_OK(sunder_vulkan_get_display(simulation, to));
+      EXPECT_EQ(to->struct_size, stated);
+      EXPECT_EQ(to->nodes, static_cast<std::uint32_t>(kNodes));
+    }
+    EXPECT_TRUE(longer.untouched_from(88));
+  }
+  for (const std::uint32_t stated : {0u, 87u, 65537u, 0xcdcdcdcdu}) {
+    GuardedBytes bytes(88, stated);
+    EXPECT_EQ(sunder_vulkan_get_display(simulation,
+                                        reinterpret_cast<sunder_vulkan_display*>(bytes.data())),
+              SUNDER_ERROR_STRUCT_SIZE);
+    EXPECT_TRUE(bytes.untouched_from(4));
+  }
 }
 
 TEST_F(CVulkan, MisuseGivesStatuses) {

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* One of each struct that a caller makes, by its initialiser. */
+#ifndef SUNDER_TESTS_API_INITIALISERS_H
+#define SUNDER_TESTS_API_INITIALISERS_H
+
+#include "sunder/sunder_vulkan.h"
+
+struct initialised {
+  sunder_device device;
+  sunder_material material;
+  sunder_selection selection;
+  sunder_support support;
+  sunder_instrument instrument;
+  sunder_preset_crack crack;
+  sunder_fracture_options fracture;
+  sunder_solver_options solver;
+  sunder_engine engine;
+  sunder_callbacks callbacks;
+  sunder_step step;
+  sunder_event event;
+  sunder_crack grown;
+  sunder_vulkan_buffer buffer;
+  sunder_vulkan_host host;
+  sunder_vulkan_display display;
+  sunder_vulkan_signals signals;
+};
+
+#define INITIALISED                                                                               \
+  {                                                                                               \
+    SUNDER_DEVICE_INIT, SUNDER_MATERIAL_INIT, SUNDER_SELECTION_INIT, SUNDER_SUPPORT_INIT,         \
+        SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FRACTURE_OPTIONS_INIT,           \
+        SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT, SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT,  \
+        SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT, \
+        SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT                                    \
+  }
+
+#endif
