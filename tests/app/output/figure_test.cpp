@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/figure/inset.hpp"
 #include "app/figure/pose.hpp"
 #include "app/figure/shading.hpp"
 #include "app/figure/surface.hpp"
@@ -185,6 +186,21 @@ TEST(Visible, AnElementTurnedInsideOutLeavesNoHole) {
   const auto visible = visible_faces(scene.mesh, board_plane(scene.mesh, std::nullopt), pose,
                                      FaceTable(scene.mesh).surface(Destroyed{0, 1}));
   EXPECT_EQ(visible.size(), 2u);  // its floor, now its lid, and its lip; the others are edge-on
+}
+
+std::ptrdiff_t count(const std::string& text, char c) {
+  return std::count(text.begin(), text.end(), c);
+}
+
+TEST(Inset, ShowsWhatIsDestroyedOnTheOutlineOfTheUndeformedBody) {
+  const HoleyBoard board;
+  const std::string svg = destroyed_inset(board.mesh, board.plane, FaceTable(board.mesh),
+                                          board.destroyed, {0, 0}, {100, 100});
+  const std::size_t outline = svg.find("<path fill=\"none\""), black = svg.find("fill=\"#111111\"");
+  ASSERT_NE(outline, std::string::npos);
+  ASSERT_NE(black, std::string::npos);
+  EXPECT_EQ(count(svg.substr(outline, svg.find('\n', outline) - outline), 'M'), 4 * 4);
+  EXPECT_EQ(count(svg.substr(black, svg.find('\n', black) - black), 'M'), 2);  // one cell's front
 }
 
 TEST(Shading, RedsGetDarkerAndStayInRange) {

@@ -67,6 +67,8 @@ TEST(Figure, IntactBoardHasNoBlack) {
   EXPECT_GT(picture.share(grey), 0.03);
   const std::string svg = read_file(folder / "o" / "figure.svg");
   EXPECT_NE(svg.find("Displacement × 1: true scale"), std::string::npos);
+  for (const char* part : {"class=\"lip\"", "class=\"destroyed\"", "A tear is a gap"})
+    EXPECT_EQ(svg.find(part), std::string::npos) << part;
 }
 
 TEST(Figure, PngIsTheSvgAtAFixedZoom) {
