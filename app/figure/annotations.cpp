@@ -77,10 +77,10 @@ Vec2 drawn_point(const Mesh& mesh, const BoardPlane& plane, const Pose& pose, co
 }
 
 std::string sentence_of_scale(const Pose& pose) {
-  std::string text = pose.scale == 1 ? "Displacements at true scale"
-                     : pose.scale > 1
-                         ? "Displacements magnified " + rounded(pose.scale, 3) + " times"
-                         : "Displacements reduced to " + rounded(pose.scale, 3) + " of their size";
+  std::string text = "Displacement × " + rounded(pose.scale, 3) +
+                     (pose.scale == 1  ? ": true scale"
+                      : pose.scale > 1 ? ": magnified, to be seen"
+                                       : ": reduced, to fit the page");
   if (pose.loose_piece) text += "; what is cut off is drawn near its place";
   return text + ".";
 }
@@ -201,16 +201,26 @@ std::string caption(const Problem& problem, const Pose& pose, const State& state
                            rounded(state.load_factor, 4) + ": " +
                            counted(state.destroyed_count, "element") + " of " +
                            grouped(problem.tet_count()) + " destroyed.";
-  std::string legend = "Black: destroyed";
+  std::string legend = "Dashed: undeformed";
   if (shows_frame(problem)) legend += "; grey: unbreakable";
   if (!state.cracks.empty()) legend += "; blue line: crack path";
   if (!state.instruments.empty()) legend += "; yellow: instruments";
-  legend += "; dark line: held.";
-  const double top = canvas.corner().y() + canvas.size().y() + 34;
+  legend += "; thick line: held.";
   const double left = canvas.corner().x();
-  return svg::text({left, top}, what, "fill=\"#222\"") +
-         svg::text({left, top + 21}, sentence_of_scale(pose), "fill=\"#222\"") +
-         svg::text({left, top + 42}, legend, "fill=\"#666\"");
+  double y = canvas.corner().y() + canvas.size().y() + 34;
+  std::string out;
+  const auto add = [&](const std::string& text, const char* attributes) {
+    out += svg::text({left, y}, text, attributes);
+    y += 21;
+  };
+  add(what, "fill=\"#222\"");
+  add(sentence_of_scale(pose), "fill=\"#222\"");
+  if (state.destroyed_count > 0)
+    add("A tear is a gap, its lips outlined and shaded; the small picture shows the destroyed "
+        "elements.",
+        "fill=\"#666\"");
+  add(legend, "fill=\"#666\"");
+  return out;
 }
 
 }  // namespace sunder::app

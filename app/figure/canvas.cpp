@@ -9,8 +9,9 @@
 namespace sunder::app {
 namespace {
 
-constexpr double kMargin = 28, kTitle = 58, kCaption = 100, kBar = 118;
+constexpr double kMargin = 28, kTitle = 58, kBar = 118;
 constexpr double kWidth = 640, kLeastHeight = 150, kMostHeight = 680;
+constexpr double kInsetGap = 22, kInsetBelow = 10;
 
 /// A long title gets smaller letters; bold ones are about 0.66 of their size wide.
 double title_size(std::string_view title, double page_width) {
@@ -20,7 +21,8 @@ double title_size(std::string_view title, double page_width) {
 
 }  // namespace
 
-Canvas::Canvas(const Bounds& bounds) : bounds_(bounds), corner_(kMargin, kTitle) {
+Canvas::Canvas(const Bounds& bounds, double caption)
+    : bounds_(bounds), corner_(kMargin, kTitle), caption_(caption) {
   const Vec2 extent = (bounds.max - bounds.min).cwiseMax(1e-12);
   scale_ = std::min(kWidth / extent.x(), kMostHeight / extent.y());
   size_ = {kWidth, std::max(extent.y() * scale_, kLeastHeight)};
@@ -32,7 +34,12 @@ Vec2 Canvas::map(const Vec2& p) const {
 }
 
 double Canvas::page_width() const { return kMargin + kWidth + kBar + kMargin; }
-double Canvas::page_height() const { return kTitle + size_.y() + kCaption; }
+double Canvas::page_height() const { return kTitle + size_.y() + caption_; }
+
+Vec2 Canvas::inset_corner() const {
+  return {page_width() - kMargin - inset_size().x(), corner_.y() + size_.y() + kInsetGap};
+}
+Vec2 Canvas::inset_size() const { return {kBar, caption_ - kInsetGap - kInsetBelow}; }
 
 std::string Canvas::open(std::string_view title) const {
   return svg::open(page_width(), page_height(),

@@ -20,17 +20,27 @@ struct Bounds {
   }
 };
 
+/// Height of three lines of caption, and of four with the inset beside them [px].
+constexpr double kCaption = 100, kTornCaption = 140;
+
 class Canvas {
  public:
-  explicit Canvas(const Bounds& bounds);
+  /// `caption`: height of the room below the drawing, px.
+  explicit Canvas(const Bounds& bounds, double caption = kCaption);
 
   /// From the plane [mm, y up] to the page [px, y down].
   [[nodiscard]] Vec2 map(const Vec2& p) const;
+  /// A length of the plane [mm] on the page [px].
+  [[nodiscard]] double length(double mm) const { return mm * scale_; }
   /// Drawing area on the page.
   [[nodiscard]] Vec2 corner() const { return corner_; }
   [[nodiscard]] Vec2 size() const { return size_; }
   [[nodiscard]] double page_width() const;
   [[nodiscard]] double page_height() const;
+
+  /// A picture beside the caption, right-aligned with the page.
+  [[nodiscard]] Vec2 inset_corner() const;
+  [[nodiscard]] Vec2 inset_size() const;
 
   /// Opening tag, white page, title.
   [[nodiscard]] std::string open(std::string_view title) const;
@@ -39,6 +49,7 @@ class Canvas {
   Bounds bounds_;
   Vec2 corner_, size_;
   double scale_ = 1;  ///< px per mm
+  double caption_;
 };
 
 }  // namespace sunder::app

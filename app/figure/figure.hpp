@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures in the style of the paper's figures: front view of the deformed board, shades of red
-// for stress, black for destroyed, grey for the frame, yellow instruments, the crack path.
+// for stress, grey for the frame, yellow instruments, the crack path. A tear is a gap with outlined
+// lips: destroyed elements are left out, and shown black on the undeformed body in an inset.
 #pragma once
 
 #include <memory>

@@ -10,8 +10,9 @@ namespace sunder::app {
 namespace {
 
 // Shares of the body's longest side: below the first, displacements are magnified to the second;
-// above the third they are reduced to it; a cut-off piece is drawn at most the fourth away.
-constexpr double kInvisible = 0.004, kMagnified = 0.06, kAbsurd = 0.6, kLooseShift = 0.12;
+// above the third they are reduced to the fourth; a cut-off piece is drawn at most the last away.
+constexpr double kInvisible = 0.004, kMagnified = 0.06, kAbsurd = 1, kReduced = 0.6,
+                 kLooseShift = 0.12;
 constexpr int kSmoothing = 30;  // sweeps; isolated nodes lie a few elements deep at most
 
 /// Per node: held by the body, part of a cut-off piece, or held by destroyed elements only.
@@ -46,7 +47,7 @@ double scale_for(double largest, double side) {
   const double share = largest / side;
   if (!(share > 0) || !std::isfinite(share)) return 1;
   if (share < kInvisible) return round_125(kMagnified / share);
-  return share > kAbsurd ? round_125(kAbsurd / share) : 1;
+  return share > kAbsurd ? round_125(kReduced / share) : 1;
 }
 
 /// A cut-off piece moves as a whole: its mean displacement, shortened to what fits the picture.

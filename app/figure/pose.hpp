@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a picture draws each node: deformed, magnified or reduced where true scale would show
-// nothing, and with what no longer hangs on anything drawn near its place.
+// Where a picture draws each node: deformed at true scale, magnified or reduced where that would
+// show nothing, and with what no longer hangs on anything drawn near its place.
 #pragma once
 
 #include <string>

@@ -26,6 +26,30 @@ struct ReleaseHandle {
   void operator()(RsvgHandle* handle) const { g_object_unref(handle); }
 };
 
+void set_color(cairo_t* pen, Color color) {
+  cairo_set_source_rgb(pen, color.r / 255.0, color.g / 255.0, color.b / 255.0);
+}
+
+void fill(cairo_t* pen, const PaintedTriangle& triangle) {
+  // Neighbours must meet without a seam.
+  cairo_set_antialias(pen, CAIRO_ANTIALIAS_NONE);
+  set_color(pen, triangle.fill);
+  for (const Vec2& p : triangle.corners) cairo_line_to(pen, p.x(), p.y());
+  cairo_fill(pen);
+}
+
+void stroke_rim(cairo_t* pen, const PaintedTriangle& triangle) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!triangle.rim[i]) continue;
+    const Vec2 &from = triangle.corners[i], &to = triangle.corners[(i + 1) % 3];
+    cairo_set_antialias(pen, CAIRO_ANTIALIAS_DEFAULT);
+    set_color(pen, kRimColor);
+    cairo_move_to(pen, from.x(), from.y());
+    cairo_line_to(pen, to.x(), to.y());
+    cairo_stroke(pen);
+  }
+}
+
 Surface image(double width, double height) {
   return Surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, static_cast<int>(std::ceil(width)),
                                             static_cast<int>(std::ceil(height))));
@@ -67,19 +91,17 @@ std::string png_of_svg(std::string_view svg, double zoom) {
 }
 
 std::string png_of_triangles(const std::vector<PaintedTriangle>& triangles, const Vec2& corner,
-                             const Vec2& size, double zoom) {
+                             const Vec2& size, double zoom, double rim_width) {
   const Surface surface = image(size.x() * zoom, size.y() * zoom);
   const Context context(cairo_create(surface.get()));
   cairo_t* pen = context.get();
   cairo_scale(pen, zoom, zoom);
   cairo_translate(pen, -corner.x(), -corner.y());
-  // Neighbours must meet without a seam.
-  cairo_set_antialias(pen, CAIRO_ANTIALIAS_NONE);
+  cairo_set_line_width(pen, rim_width);
+  cairo_set_line_cap(pen, CAIRO_LINE_CAP_ROUND);
   for (const PaintedTriangle& triangle : triangles) {
-    cairo_set_source_rgb(pen, triangle.fill.r / 255.0, triangle.fill.g / 255.0,
-                         triangle.fill.b / 255.0);
-    for (const Vec2& p : triangle.corners) cairo_line_to(pen, p.x(), p.y());
-    cairo_fill(pen);
+    fill(pen, triangle);
+    stroke_rim(pen, triangle);
   }
   return png(surface.get());
 }

@@ -20,14 +20,18 @@ struct Color {
 struct PaintedTriangle {
   std::array<Vec2, 3> corners;
   Color fill;
+  std::array<bool, 3> rim{};  ///< edge from corner i to corner i + 1: drawn as the rim of a lip
 };
+
+constexpr Color kRimColor{17, 17, 17};
 
 /// Renders an SVG document at `zoom` pixels per unit. Throws OutputError when it cannot be drawn.
 [[nodiscard]] std::string png_of_svg(std::string_view svg, double zoom);
 
-/// Paints triangles in their order onto a transparent image that shows the rectangle from
-/// `corner` with `size`, at `zoom` pixels per unit.
+/// Paints triangles in their order, rims `rim_width` units wide, onto a transparent image that
+/// shows the rectangle from `corner` with `size`, at `zoom` pixels per unit.
 [[nodiscard]] std::string png_of_triangles(const std::vector<PaintedTriangle>& triangles,
-                                           const Vec2& corner, const Vec2& size, double zoom);
+                                           const Vec2& corner, const Vec2& size, double zoom,
+                                           double rim_width);
 
 }  // namespace sunder::app

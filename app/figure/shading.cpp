@@ -8,7 +8,8 @@
 namespace sunder::app {
 namespace {
 
-constexpr Color kBlack{17, 17, 17}, kFrame{176, 180, 184}, kPlain{246, 216, 205};
+constexpr Color kFrame{176, 180, 184}, kPlain{246, 216, 205};
+constexpr double kShade = 0.8;
 
 /// ColorBrewer "Reds", nine classes: even steps of lightness.
 constexpr std::array<Color, 9> kReds{{{255, 245, 240},
@@ -78,14 +79,19 @@ std::vector<Color> element_colors(const Problem& problem, const State& state,
   const bool frame = shows_frame(problem);
   std::vector<Color> colors(state.destroyed.size(), kPlain);
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (state.destroyed[e])
-      colors[e] = kBlack;
-    else if (frame && !problem.breakable(e))
+    if (frame && !problem.breakable(e))
       colors[e] = kFrame;
     else if (scale)
       colors[e] = red(scale->value[e] / scale->maximum);
   }
   return colors;
+}
+
+Color shaded(Color color) {
+  const auto dim = [](std::uint8_t channel) {
+    return static_cast<std::uint8_t>(std::lround(kShade * channel));
+  };
+  return {dim(color.r), dim(color.g), dim(color.b)};
 }
 
 std::string hex(Color color) {

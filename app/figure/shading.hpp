@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture colours elements by: stress in shades of red, frame grey, destroyed black.
+// What a picture colours elements by: stress in shades of red, frame grey.
 #pragma once
 
 #include <optional>
@@ -28,9 +28,12 @@ struct StressScale {
 /// Unbreakable elements are grey, unless the whole body is.
 [[nodiscard]] bool shows_frame(const Problem& problem);
 
-/// Colour of each element.
+/// Colour of each live element.
 [[nodiscard]] std::vector<Color> element_colors(const Problem& problem, const State& state,
                                                 const std::optional<StressScale>& scale);
+
+/// The same colour in the shade: for faces that a tear has laid open.
+[[nodiscard]] Color shaded(Color color);
 
 [[nodiscard]] std::string hex(Color color);
 

@@ -54,9 +54,9 @@ std::string legend(double top, bool cracks) {
                      "fill=\"" + hex(red((i + 0.5) / steps)) + "\"");
   out += svg::text({left + width + 6, top + 12}, "1", "fill=\"#333\"");
   return out + svg::text({kGap, top + 36},
-                         std::string("Black: destroyed; grey: unbreakable; yellow: instruments; ") +
-                             (cracks ? "blue line: crack path; " : "") +
-                             "dark line: held; dashed: undeformed.",
+                         std::string("Gap with outlined lips: destroyed; grey: unbreakable; ") +
+                             "yellow: instruments; " + (cracks ? "blue line: crack path; " : "") +
+                             "thick line: held; dashed: undeformed.",
                          "fill=\"#666\"");
 }
 

@@ -203,8 +203,8 @@ TEST_P(CProgram, GivesTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, CProgram,
-                         testing::Values("board-pull-a", "board-pull-b", "notch-b", "pressure-near",
-                                         "scripted-cut"),
+                         testing::Values("board-grip-b", "board-pull-a", "board-pull-b", "notch-b",
+                                         "pressure-near", "scripted-cut"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -49,7 +49,7 @@ bool yellow(int r, int g, int b) { return r > 240 && g > 200 && b < 60; }
 
 TEST(Figure, ShowsStressTearFrameAndInstrument) {
   const Picture picture(torn_board() / "figure.png");
-  EXPECT_GT(picture.share(black), 0.02);
+  EXPECT_LT(picture.share(black), 0.02);  // text, the held edge, lips, the inset
   EXPECT_GT(picture.share(reddish), 0.1);
   EXPECT_GT(picture.share(grey), 0.03);
   EXPECT_GT(picture.share(yellow), 0.0003);
@@ -66,7 +66,9 @@ TEST(Figure, IntactBoardHasNoBlack) {
   EXPECT_LT(picture.share(black), 0.01);  // text and the held edge
   EXPECT_GT(picture.share(grey), 0.03);
   const std::string svg = read_file(folder / "o" / "figure.svg");
-  EXPECT_NE(svg.find("Displacements at true scale"), std::string::npos);
+  EXPECT_NE(svg.find("Displacement × 1: true scale"), std::string::npos);
+  for (const char* part : {"class=\"lip\"", "class=\"destroyed\"", "A tear is a gap"})
+    EXPECT_EQ(svg.find(part), std::string::npos) << part;
 }
 
 TEST(Figure, PngIsTheSvgAtAFixedZoom) {
@@ -82,7 +84,8 @@ TEST(Figure, SaysWhatItShows) {
   EXPECT_EQ(parse_xml(svg).child("title").text, "Board <pulled> & torn");
   for (const std::string& part :
        {std::string("Step 5 of 5, load factor 1: "), std::to_string(destroyed) + " elements of 500",
-        std::string("max. shear / yield"), std::string("Black: destroyed")})
+        std::string("max. shear / yield"), std::string("A tear is a gap"),
+        std::string("<path class=\"lip\""), std::string("<svg class=\"destroyed\"")})
     EXPECT_NE(svg.find(part), std::string::npos) << part;
 }
 
