@@ -110,8 +110,24 @@ TEST(Summary, WarnsOfASnapshotThatNeverCame) {
       << warnings;
 }
 
+/// A processor's name may hold a number ("@ 2.50GHz").
+std::string without_strings(const std::string& json) {
+  std::string rest;
+  bool inside = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    if (inside && json[i] == '\\') {
+      ++i;
+    } else if (json[i] == '"') {
+      inside = !inside;
+    } else if (!inside) {
+      rest += json[i];
+    }
+  }
+  return rest;
+}
+
 TEST(Summary, NumbersAreShortestRoundTrip) {
-  const std::string text = read_file(torn_board() / "summary.json");
+  const std::string text = without_strings(read_file(torn_board() / "summary.json"));
   const std::regex decimal("-?[0-9]+(\\.[0-9]+)?(e[-+]?[0-9]+)?");
   const std::regex candidate("[\\[ ]-?[0-9][-+.0-9e]*");
   int checked = 0;
