@@ -53,6 +53,9 @@ void check_handles(const sunder_vulkan_host& host) {
   if (!host.lock != !host.unlock) {
     throw Failure(SUNDER_ERROR_NULL, "host: lock and unlock come in pairs; one of them is null");
   }
+}
+
+void check_features(const sunder_vulkan_host& host) {
   constexpr std::uint32_t known =
       SUNDER_VULKAN_SHADER_FLOAT64 | SUNDER_VULKAN_SHADER_INT64 | SUNDER_VULKAN_TIMELINE_SEMAPHORE;
   if (host.features & ~known) {
@@ -81,6 +84,7 @@ void check_buffer(const sunder_vulkan_buffer& b, std::uint64_t bytes, const char
 /// All that can be said before anything is prepared, but for buffers.
 void check_host(const sunder_vulkan_host& host) {
   check_handles(host);
+  check_features(host);
   const auto lent = to_lent(host);
   require_index(host.queue_family, sunder::vulkan::queue_families(lent), "host: queue_family");
   sunder::vulkan::check_device(lent);
