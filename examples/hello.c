@@ -50,6 +50,8 @@ int main(void) {
   CHECK(sunder_scene_add_instrument(scene, &forceps, NULL));
   sunder_fracture_options fracture;
   sunder_fracture_options_init(&fracture);
+  // Model B takes the body for a flat board of even thickness. This one is: 10 x 10 x 1 mm. For any
+  // other shape take SUNDER_FRACTURE_A (docs/limits.md).
   fracture.model = SUNDER_FRACTURE_B;
   CHECK(sunder_scene_set_fracture(scene, &fracture));
   CHECK(sunder_scene_set_steps(scene, 20));
