@@ -332,6 +332,10 @@ typedef struct sunder_step {
   double error;        ///< estimate of the relative stress error
   double max_yield_ratio;
   double ms_load, ms_solve, ms_stress, ms_decide, ms_update, ms_total;
+  double strain_max;        ///< principal strain of live tissue largest in magnitude, with its sign
+  double rotation_max_deg;  ///< largest rotation of live tissue [deg]
+  int32_t inverted;         ///< live elements turned inside out
+  int32_t measured;         ///< 1: these three are; 0: stress was left out
 } sunder_step;
 
 /// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
