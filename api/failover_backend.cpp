@@ -58,6 +58,15 @@ class FailoverBackend final : public Backend {
     stressed_ = true;
     return summary;
   }
+  Deformation do_deformation() override {
+    Deformation deformation;
+    attempt([&] { deformation = current_->deformation(); });
+    return deformation;
+  }
+  void do_cut_off(std::span<const Index> elements) override {
+    attempt([&] { current_->cut_off(elements); });
+    cut_off_.insert(cut_off_.end(), elements.begin(), elements.end());
+  }
   void do_destroy(std::span<const Index> elements) override {
     attempt([&] { current_->destroy(elements); });
     events_.insert(events_.end(), elements.begin(), elements.end());
@@ -110,6 +119,7 @@ class FailoverBackend final : public Backend {
     if (instruments_) current_->take_over_instrument_forces(instruments_);
     if (!events_.empty()) current_->destroy(events_);
     if (needs().yield) current_->exclude_candidates(excluded_);
+    if (!cut_off_.empty()) current_->cut_off(cut_off_);
     if (load_) current_->set_load(*load_);
     if (solved_) current_->solve();
     if (stressed_) current_->stress();
@@ -119,7 +129,7 @@ class FailoverBackend final : public Backend {
   std::function<std::unique_ptr<Backend>()> replacement_;
   mutable std::string lost_;                       // why the primary is gone; empty: it is not
   std::shared_ptr<InstrumentForces> instruments_;  // as handed out
-  std::vector<Index> events_, excluded_;
+  std::vector<Index> events_, excluded_, cut_off_;
   std::optional<Load> load_;
   bool solved_ = false, stressed_ = false;
 };

@@ -55,6 +55,19 @@ StressSummary Backend::stress() {
   return summary;
 }
 
+Deformation Backend::deformation() {
+  require(stage_ == Stage::stressed, "deformation() needs stress() first");
+  return do_deformation();
+}
+
+void Backend::cut_off(std::span<const Index> elements) {
+  require(needs_.damage, "damage was left out of this backend's needs");
+  for (Index e : elements) {
+    require(e >= 0 && e < problem_->tet_count(), "cut_off() names an element outside the mesh");
+  }
+  if (needs_.stress && !elements.empty()) do_cut_off(elements);
+}
+
 void Backend::destroy(std::span<const Index> elements) {
   require(needs_.damage, "damage was left out of this backend's needs");
   if (elements.empty()) return;

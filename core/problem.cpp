@@ -7,6 +7,7 @@
 
 #include "fem/element.hpp"
 #include "fem/supports.hpp"
+#include "fracture/board_check.hpp"
 #include "material/linear.hpp"
 #include "selection.hpp"
 #include "sunder/error.hpp"
@@ -76,6 +77,13 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
     resolve_supports();
     resolve_instruments();
     check_held_bodies();
+    if (scene_.fracture.model != FractureModel::b) return;
+    if (const auto why = fracture::why_no_board(mesh(), scene_.fracture.plane_normal)) {
+      warnings_.push_back("model \"B\" takes the body for a flat board of even thickness, but " +
+                          *why +
+                          ": its cracks and their stress intensity are not those of this body "
+                          "(docs/limits.md); model \"A\" assumes no shape");
+    }
   } catch (const InputError& error) {
     throw InputError(error.fault(), where + ": " + error.what());
   }

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "attribution.hpp"
 #include "fem/element.hpp"
@@ -71,6 +74,9 @@ Needs needs_of(const Problem& problem) {
     needs.left_out.push_back(
         "stress of each element: no fracture model and no output needs it; a frame's check "
         "takes the largest alone");
+    needs.left_out.push_back(
+        "largest strain and rotation, and the warnings that rest on them: measured with the "
+        "stress");
   }
   if (!needs.yield) needs.left_out.push_back("yield summary: nothing breakable or no stress");
   if (!needs.damage) needs.left_out.push_back("update of the inverse: nothing can be destroyed");
@@ -103,6 +109,10 @@ void Simulation::reserve() {
   if (backend_->needs().damage) destroyed_.reserve(std::min(elements, kDestroyed));
   if (backend_->needs().damage) event_.reserve(std::min(elements, kDestroyed));
   if (!problem_->scene().removals.empty()) taken_.reserve(elements);
+  if (backend_->needs().damage && backend_->needs().stress) {
+    cut_off_.reserve(elements);
+    newly_cut_off_.reserve(std::min(elements, kDestroyed));
+  }
   if (backend_->needs().pristine) pristine_.reserve(3 * problem_->mesh().nodes.size());
   findings_.reserve(kFindings);
   of_loads_.reserve(kFindings);
@@ -166,6 +176,10 @@ StepReport Simulation::step() {
       }
     }
     if (destroyed_.size() != destroyed_before) find_loose();
+    if (backend_->needs().stress) {
+      const Timer timer(times.stress);
+      measure_deformation(report);
+    }
   }
   report.events = events_this_step_;
   report.destroyed = static_cast<int>(destroyed_.size());
@@ -350,6 +364,35 @@ void Simulation::find_loose() {
   loose_elements_ = loose_->elements_cut_off();
   if (loose_nodes_ > 0 && loose_nodes_step_ == kNone) loose_nodes_step_ = next_step_;
   if (loose_pieces_ > 0 && loose_pieces_step_ == kNone) loose_pieces_step_ = next_step_;
+  leave_out_loose();
+}
+
+/// Elements of pieces that have come off in this step.
+void Simulation::leave_out_loose() {
+  if (loose_pieces_ == 0 || !backend_->needs().stress) return;
+  cut_off_.resize(problem_->mesh().tets.size(), 0);
+  newly_cut_off_.clear();
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    if (cut_off_[e] || loose_->piece_of(e) == kNone) continue;
+    cut_off_[e] = 1;
+    newly_cut_off_.push_back(e);
+  }
+  backend_->cut_off(newly_cut_off_);
+}
+
+void Simulation::measure_deformation(StepReport& report) {
+  const Deformation d = backend_->deformation();
+  report.deformation = d;
+  if (std::abs(d.strain) > kSmallStrain) strained_.add(next_step_, std::abs(d.strain));
+  if (d.rotation_deg > kSmallRotationDeg) turned_.add(next_step_, d.rotation_deg);
+  if (d.inverted > 0) inverted_.add(next_step_, d.inverted);
+}
+
+void Simulation::Beyond::add(int step, double value) {
+  steps.add(step);
+  if (!(value > most)) return;
+  most = value;
+  at = step;
 }
 
 void Simulation::Steps::add(int step) {
@@ -383,6 +426,7 @@ std::vector<std::string> Simulation::warnings() const {
   if (polished_.count > 0) {
     all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
   }
+  add_deformation_warnings(all);
   if (loose_nodes_ > 0) {
     all.push_back(std::to_string(loose_nodes_) +
                   " nodes are held by destroyed elements only (since step " +
@@ -395,6 +439,31 @@ std::vector<std::string> Simulation::warnings() const {
                   "); only destroyed elements hold them and their displacement has no meaning");
   }
   return all;
+}
+
+void Simulation::add_deformation_warnings(std::vector<std::string>& all) const {
+  const auto add = [&](const Beyond& beyond, const std::string& what, const std::string& most,
+                       const std::string& so) {
+    if (beyond.steps.count == 0) return;
+    const bool part = backend_->info().route == "condensed";
+    all.push_back(beyond.steps.sentence(
+        what + " (most in step " + std::to_string(beyond.at) + ": " + most +
+        (part ? ", in the region that a frame computes" : "") + "): " + so + " (docs/limits.md)"));
+  };
+  const auto three = [](double value) {
+    std::ostringstream out;
+    out << std::setprecision(3) << value;
+    return out.str();
+  };
+  const std::string verb = " live tissue by over ";
+  add(strained_, "strained" + verb + three(100 * kSmallStrain) + " %",
+      three(100 * strained_.most) + " %",
+      "the law is linear, for small strains, and the figures there are no longer those of tissue");
+  add(turned_, "turned" + verb + three(kSmallRotationDeg) + " deg", three(turned_.most) + " deg",
+      "the theory of small strains takes a rotation for strain");
+  add(inverted_, "turned live elements inside out",
+      three(inverted_.most) + (inverted_.most > 1 ? " elements" : " element"),
+      "with det(I + grad u) <= 0 no body has that shape");
 }
 
 const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }

@@ -214,6 +214,8 @@ class CpuBackend final : public Backend {
   }
 
   StressSummary do_stress() override { return fields_.publish_stress(); }
+  Deformation do_deformation() override { return fields_.deformation(); }
+  void do_cut_off(std::span<const Index> elements) override { fields_.cut_off(elements); }
 
   void do_destroy(std::span<const Index> elements) override {
     fields_.destroy(elements);

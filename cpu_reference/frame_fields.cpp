@@ -38,6 +38,7 @@ FrameFields::FrameFields(const DamagedBody& body, const Needs& needs,
   stress_.assign(kernel_->size(), Voigt::Zero());
   next_stress_ = stress_;
   if (needs.yield) kernel_->keep_bounds();
+  kernel_->keep_deformation();
 }
 
 void FrameFields::keep_forces() {
@@ -93,6 +94,14 @@ StressSummary FrameFields::publish_stress() {
   if (condensed_) condensed_->publish_stress();
   if (!kernel_ || excluded_.empty()) return {};
   return kernel_->summarize(excluded_, stress_);
+}
+
+Deformation FrameFields::deformation() const {
+  return kernel_ ? kernel_->deformation(nodal_) : Deformation{};
+}
+
+void FrameFields::cut_off(std::span<const Index> elements) {
+  if (kernel_) kernel_->cut_off(elements);
 }
 
 void FrameFields::exclude_candidates(std::span<const Index> elements) {

@@ -35,6 +35,10 @@ class FrameFields {
   void publish_everywhere(const Eigen::VectorXd& u);
   /// The stress of the published displacement is published as well.
   StressSummary publish_stress();
+  /// Of the published displacement, over what a frame computes the stress of.
+  [[nodiscard]] Deformation deformation() const;
+  /// Takes elements out of deformation().
+  void cut_off(std::span<const Index> elements);
   /// Takes elements out of the summary's candidates.
   void exclude_candidates(std::span<const Index> elements);
   /// Follows an event; the body has not destroyed the elements yet.

@@ -46,6 +46,8 @@ int main(void) {
   forceps.has_ramp = 1, forceps.ramp[1] = 1;
   CHECK(sunder_scene_add_instrument(scene, &forceps, NULL));
   sunder_fracture_options fracture = SUNDER_FRACTURE_OPTIONS_INIT;
+  // Model B takes the body for a flat board of even thickness. This one is: 10 x 10 x 1 mm. For any
+  // other shape take SUNDER_FRACTURE_A (docs/limits.md).
   fracture.model = SUNDER_FRACTURE_B;
   CHECK(sunder_scene_set_fracture(scene, &fracture));
   CHECK(sunder_scene_set_steps(scene, 20));

@@ -43,6 +43,8 @@ sunder::Scene make_scene() {
   scene.supports.push_back({sunder::Box{{0, 10, 0}, {10, 10, 1}}, {}});
   const sunder::Pull pull{sunder::Box{{10, 0, 0}, {10, 0, 1}}, {0, -2.4, 0}};  // N
   scene.instruments.push_back({"forceps", pull, sunder::Ramp{0, 1}});
+  // Model B takes the body for a flat board of even thickness. This one is: 10 x 10 x 1 mm. For any
+  // other shape take FractureModel::a (docs/limits.md).
   scene.fracture.model = sunder::FractureModel::b;
   scene.steps = 20;
   return scene;

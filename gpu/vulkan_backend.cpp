@@ -288,6 +288,20 @@ class VulkanBackend final : public Backend {
             static_cast<Index>(s.over)};
   }
 
+  /// A piece that came off was still in the sums of the frame that set it loose.
+  Deformation do_deformation() override {
+    if (renew_) body_->fields().renew_state();
+    renew_ = false;
+    return body_->fields().deformation();
+  }
+
+  void do_cut_off(std::span<const Index> elements) override {
+    finish_display();
+    cut_off_.insert(cut_off_.end(), elements.begin(), elements.end());
+    body_->fields().cut_off(body_->on_device(elements));
+    renew_ = true;
+  }
+
   void do_destroy(std::span<const Index> elements) override {
     finish_display();
     if (body_->region()) follow_outside(elements);
@@ -344,6 +358,7 @@ class VulkanBackend final : public Backend {
     number_anew(destroyed);
     body_->show(before.whole_displacement());
     body_->fields().exclude(body_->on_device(excluded_));
+    body_->fields().cut_off(body_->on_device(cut_off_));
     if (!destroyed_list_.empty()) {
       body_->fields().destroy(destroyed_list_);
       body_->route().destroy(destroyed_list_, destroyed_list_);
@@ -388,7 +403,8 @@ class VulkanBackend final : public Backend {
   Load load_;        // of body_->part()
   Load whole_load_;  // of a region's problem
   // Of a region's problem: what has been destroyed outside the region planned, and excluded.
-  std::vector<Index> beyond_, excluded_;
+  std::vector<Index> beyond_, excluded_, cut_off_;
+  bool renew_ = false;  // the summary was made before the last pieces were cut off
   std::optional<engine::InstrumentBlock> instruments_;  // once asked for
   std::vector<double> reactions_;
   bool solved_ = false;        // the load and the damage as they are

@@ -29,6 +29,7 @@ SUNDER_CONST kDestroyed = 1u;
 SUNDER_CONST kBreakable = 2u;
 SUNDER_CONST kExcluded = 4u;  // never a candidate
 SUNDER_CONST kAbsent = 8u;    // padding
+SUNDER_CONST kCutOff = 16u;   // of a piece that nothing holds: its deformation does not count
 
 // What the stress pass leaves behind beside its partial results.
 SUNDER_CONST kKeepStress = 1u;  // the stress of every element
@@ -167,11 +168,14 @@ struct CgState {
 #define SUNDER_WIDE_STRUCT(name) struct name
 #endif
 
-// Worst yield ratio and largest stress of the elements of one workgroup.
+// Worst yield ratio, largest stress and deformation of the elements of one workgroup.
 SUNDER_WIDE_STRUCT(StressPartial) {
   WIDE any_ratio, candidate_ratio;
   WIDE stress_squared;  // largest Frobenius norm of a live element, squared
   uint any_element, candidate_element;
+  uint strain;        // largest in magnitude: a float's bits, the lowest one its sign
+  uint half_tangent;  // tan(theta/2) of the largest rotation: a float's bits
+  uint inverted;      // how many
 };
 
 // Sums over the nodes of one workgroup.
@@ -182,7 +186,7 @@ SUNDER_WIDE_STRUCT(NodePartial) {
   WIDE unused;
 };
 
-// All that a frame sends back by itself: 64 bytes.
+// All that a frame sends back by itself: 72 bytes.
 SUNDER_WIDE_STRUCT(Summary) {
   WIDE any_ratio, candidate_ratio;
   WIDE stress_squared;    // infinite when a stress is no number
@@ -190,21 +194,21 @@ SUNDER_WIDE_STRUCT(Summary) {
   WIDE reaction_squared;
   WIDE energy_root;
   uint any_element, candidate_element;
-  uint over;  // live breakable elements at or over yield
-  uint unused;
+  uint over;                            // live breakable elements at or over yield
+  uint strain, half_tangent, inverted;  // as above
 };
 
 #ifdef __cplusplus
 using StressPartial = StressPartialOf<double>;
 using NodePartial = NodePartialOf<double>;
 using Summary = SummaryOf<double>;
-static_assert(sizeof(SummaryOf<float>) == 40);
+static_assert(sizeof(SummaryOf<float>) == 48);
 static_assert(sizeof(Entry) == 16);
 static_assert(sizeof(ElementPush) == 16);
-static_assert(sizeof(StressPartial) == 32);
+static_assert(sizeof(StressPartial) == 48);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
-static_assert(sizeof(Summary) == 64);
+static_assert(sizeof(Summary) == 72);
 static_assert(sizeof(CgPush) == 32);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);

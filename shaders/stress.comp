@@ -38,9 +38,14 @@ const int kNewton = 1;  // 3e-9
 // there cos(3 psi) = sqrt(1 - r^2) comes from a difference of squares; |Q| does not. The cubic
 // 4 w^3 - 3 w = cos(3 psi) for w = cos(psi) in [sqrt(3)/2, 1] is well conditioned throughout. No
 // arc cosine: the driver's is off by 1,300 ulp.
-REAL principal_range(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
+struct Principal {
+  REAL range;            // s1 - s3
+  float least, largest;  // s3, s1
+};
+Principal principal(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
   const REAL third = REAL(1) / REAL(3);
-  normal -= (normal.x + normal.y + normal.z) * third;
+  const REAL mean = (normal.x + normal.y + normal.z) * third;
+  normal -= mean;
   const REAL3 a = abs(normal), b = abs(shear);
   const REAL largest = max(max(a.x, max(a.y, a.z)), max(b.x, max(b.y, b.z)));
   const REAL scale = largest > REAL(0) ? REAL(1) / largest : REAL(0);
@@ -69,7 +74,12 @@ REAL principal_range(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
     const REAL w2 = w * w;
     w -= ((REAL(4) * w2 - REAL(3)) * w - cos_3psi) / (REAL(12) * w2 - REAL(3));
   }
-  return REAL(1.4142135623730951) * largest * size * w;
+  const REAL length_ = largest * size;
+  // sin(3 psi) = sqrt(6) tr s^3, and sin(psi) = sin(3 psi) / (4 cos(psi)^2 - 1).
+  const float c = float(w), sine = 2.4494897f * float(along) / (4.0f * c * c - 1.0f);
+  const float half_ = 0.8164966f * float(length_), m = float(mean) + 0.5f * half_ * sine;
+  return Principal(REAL(1.4142135623730951) * length_ * w, m - 0.8660254f * half_ * c,
+                   m + 0.8660254f * half_ * c);
 }
 
 void store(uint e, REAL4 a, REAL4 b) {
@@ -86,38 +96,70 @@ void store(uint e, REAL4 a, REAL4 b) {
 #ifndef SUNDER_LVP
 shared Worst shared_any[kGroup], shared_candidate[kGroup];
 shared REAL shared_norm[kGroup];
+shared uvec3 shared_deformation[kGroup];
 #endif
 
 // One partial result of the invocations that share a part.
-void leave(Worst any, Worst candidate, REAL norm) {
+void leave(Worst any, Worst candidate, REAL norm, uvec3 deformation) {
   any = subgroup_worst(any);
   candidate = subgroup_worst(candidate);
   norm = subgroupMax(norm);
+  deformation = uvec3(subgroupMax(deformation.x), subgroupMax(deformation.y),
+                      subgroupAdd(deformation.z));
 #ifndef SUNDER_LVP
   if (subgroupElect()) {
     shared_any[gl_SubgroupID] = any;
     shared_candidate[gl_SubgroupID] = candidate;
     shared_norm[gl_SubgroupID] = norm;
+    shared_deformation[gl_SubgroupID] = deformation;
   }
   barrier();
+  deformation = uvec3(0u);
   for (uint s = 0u; s < gl_NumSubgroups; ++s) {
     keep_worse(any, shared_any[s]);
     keep_worse(candidate, shared_candidate[s]);
     norm = max(norm, shared_norm[s]);
+    deformation = uvec3(max(deformation.xy, shared_deformation[s].xy),
+                        deformation.z + shared_deformation[s].z);
   }
 #endif
   if (leads_part()) {
     const WIDE norm_ = WIDE(norm);
     partials.data[part()] = StressPartial(WIDE(any.ratio), WIDE(candidate.ratio), norm_ * norm_,
-                                          any.element, candidate.element);
+                                          any.element, candidate.element, deformation.x, deformation.y,
+                                          deformation.z);
   }
 }
 
-// Strain, and the Lame constants.
+// Strain, curl, and the Lame constants.
 struct Deformation {
   REAL3 strain, twice_shear;  // (xx, yy, zz), twice (xy, yz, zx)
   REAL lambda, mu;
+  vec3 curl;
 };
+
+// Largest strain, rotation and inversion of a live element as StressPartial has them. The rotation's
+// axis is taken to be the curl's: true to second order in strain, exact in a plane. With it
+// tan(theta) = |curl|/2 / (1 + (tr E - n E n)/2) holds (core/fem/deformation.cpp).
+uvec3 deformation_of(Deformation d, Principal e) {
+  const vec3 normal = vec3(d.strain), twice = vec3(d.twice_shear), w = d.curl;
+  const bool shorter = -e.least > e.largest;
+  const uint strain =
+      (floatBitsToUint(shorter ? -e.least : max(e.largest, 0.0f)) & ~1u) | (shorter ? 1u : 0u);
+  const float squared = dot(w, w);
+  const float along = squared > 0.0f
+      ? (dot(w * w, normal) + w.x * w.y * twice.x + w.y * w.z * twice.y + w.z * w.x * twice.z) / squared
+      : 0.0f;
+  const float sine = 0.5f * sqrt(squared);
+  const float cosine = 1.0f + 0.5f * (normal.x + normal.y + normal.z - along);
+  const float sum = cosine + sqrt(0.25f * squared + cosine * cosine);
+  const float half_tangent = sine > 0.0f ? sine / max(sum, 1e-30f) : 0.0f;
+  const vec3 f = 1.0f + normal, up = 0.5f * (twice - w.zxy), low = 0.5f * (twice + w.zxy);
+  // F = (f.x, up.x, low.z; low.x, f.y, up.y; up.z, low.y, f.z)
+  const float det = f.x * (f.y * f.z - up.y * low.y) - up.x * (low.x * f.z - up.y * up.z) +
+                    low.z * (low.x * low.y - f.y * up.z);
+  return uvec3(strain, floatBitsToUint(half_tangent), det > 0.0f ? 0u : 1u);
+}
 
 #ifdef SUNDER_SINGLE
 #define LOAD_TWO3(name, i) two3(VEC4(name, 2u * (i)), VEC4(name, 2u * (i) + 1u))
@@ -139,7 +181,8 @@ Deformation deformation(uint e, uvec4 n) {
                                 Two3(vec3(hx.high.y, hy.high.z, hz.high.x),
                                      vec3(hx.low.y, hy.low.z, hz.low.x)));
   return Deformation(vec3(hx.high.x + hx.low.x, hy.high.y + hy.low.y, hz.high.z + hz.low.z),
-                     twice_shear.high + twice_shear.low, b1.z, b2.z);
+                     twice_shear.high + twice_shear.low, b1.z, b2.z,
+                     vec3(hy.high.z - hz.high.y, hz.high.x - hx.high.z, hx.high.y - hy.high.x));
 }
 #else
 Deformation deformation(uint e, uvec4 n) {
@@ -150,7 +193,8 @@ Deformation deformation(uint e, uvec4 n) {
   const dvec3 hx = d1 * s1.x + d2 * s2.x + d3 * s3.x, hy = d1 * s1.y + d2 * s2.y + d3 * s3.y,
               hz = d1 * s1.z + d2 * s2.z + d3 * s3.z;
   return Deformation(REAL3(hx.x, hy.y, hz.z),
-                     REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x), REAL(s1.w), REAL(s2.w));
+                     REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x), REAL(s1.w), REAL(s2.w),
+                     vec3(hy.z - hz.y, hz.x - hx.z, hx.y - hy.x));
 }
 #endif
 
@@ -165,7 +209,8 @@ void main() {
   const uint bits = fact.x;
   const bool live = (bits & (kDestroyed | kAbsent)) == 0u;
   // Of the strain: the pressure of a nearly incompressible body would hide it in rounding.
-  const REAL range = REAL(2) * mu * principal_range(strain, twice_shear / REAL(2));
+  const Principal of_strain = principal(strain, twice_shear / REAL(2));
+  const REAL range = REAL(2) * mu * of_strain.range;
   const REAL measure = p.tresca != 0u ? range : range / REAL(2);
   const bool counts = live && (bits & kBreakable) != 0u;
 #ifdef SUNDER_SINGLE
@@ -187,5 +232,6 @@ void main() {
   const bool some = ratio > REAL(0), candidate = some && (bits & kExcluded) == 0u;
   leave(Worst(some ? ratio : REAL(0), some ? e : kHeld),
         Worst(candidate ? ratio : REAL(0), candidate ? e : kHeld),
-        !live ? REAL(0) : (norm < infinity ? norm : infinity));  // NaN included
+        !live ? REAL(0) : (norm < infinity ? norm : infinity),  // NaN included
+        live && (bits & kCutOff) == 0u ? deformation_of(d, of_strain) : uvec3(0u));
 }

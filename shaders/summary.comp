@@ -18,6 +18,7 @@ struct Found {
   Worst any, candidate;
   REAL stress_squared;
   REAL3 sums;
+  uvec3 deformation;  // strain, half_tangent, inverted
 };
 shared Found found[kGroup];
 
@@ -26,15 +27,19 @@ void join(inout Found a, Found b) {
   keep_worse(a.candidate, b.candidate);
   a.stress_squared = max(a.stress_squared, b.stress_squared);
   a.sums += b.sums;
+  a.deformation =
+      uvec3(max(a.deformation.xy, b.deformation.xy), a.deformation.z + b.deformation.z);
 }
 
 void main() {
   const uint lane = gl_LocalInvocationID.x;
-  Found mine = Found(Worst(REAL(0), kHeld), Worst(REAL(0), kHeld), REAL(0), REAL3(0));
+  Found mine = Found(Worst(REAL(0), kHeld), Worst(REAL(0), kHeld), REAL(0), REAL3(0),
+                     uvec3(0u));
   for (uint g = lane; g < p.element_parts; g += kGroup) {
     const StressPartial b = partials.data[g];
     join(mine, Found(Worst(b.any_ratio, b.any_element), Worst(b.candidate_ratio, b.candidate_element),
-                     b.stress_squared, REAL3(0)));
+                     b.stress_squared, REAL3(0),
+                     uvec3(b.strain, b.half_tangent, b.inverted)));
   }
   for (uint g = lane; g < p.node_parts; g += kGroup) {
     const NodePartial b = node_partials.data[g];
@@ -44,6 +49,9 @@ void main() {
   mine.candidate = subgroup_worst(mine.candidate);
   mine.stress_squared = subgroupMax(mine.stress_squared);
   mine.sums = REAL3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupAdd(mine.sums.z));
+  mine.deformation =
+      uvec3(subgroupMax(mine.deformation.x), subgroupMax(mine.deformation.y),
+            subgroupAdd(mine.deformation.z));
   if (subgroupElect()) found[gl_SubgroupID] = mine;
   barrier();
   if (lane == 0u) {
@@ -51,7 +59,8 @@ void main() {
     for (uint s = 1u; s < gl_NumSubgroups; ++s) join(all, found[s]);
     summaries.data[p.slot] =
         Summary(all.any.ratio, all.candidate.ratio, all.stress_squared, all.sums.x, all.sums.y,
-                all.sums.z, all.any.element, all.candidate.element, over.count, 0u);
+                all.sums.z, all.any.element, all.candidate.element, over.count,
+                all.deformation.x, all.deformation.y, all.deformation.z);
     if (p.slot == 0u) over.count = 0u;  // the next frame's list begins anew
   }
 }

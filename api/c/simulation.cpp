@@ -27,6 +27,12 @@ sunder_step to_step(const sunder::StepReport& report) {
   step.ms_decide = report.times.decide;
   step.ms_update = report.times.update;
   step.ms_total = report.times.total;
+  if (report.deformation) {
+    step.measured = 1;
+    step.strain_max = report.deformation->strain;
+    step.rotation_max_deg = report.deformation->rotation_deg;
+    step.inverted = report.deformation->inverted;
+  }
   return step;
 }
 

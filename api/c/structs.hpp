@@ -17,6 +17,8 @@ inline constexpr std::size_t kFirstSize = sizeof(T);
 template <>
 inline constexpr std::size_t kFirstSize<sunder_solver_options> = offsetof(sunder_solver_options,
                                                                           no_preparation);
+template <>
+inline constexpr std::size_t kFirstSize<sunder_step> = offsetof(sunder_step, strain_max);
 
 /// No version of any struct comes near these: such a size was never set. What an option struct has
 /// beyond what is known here is read, so its limit is the lower one.

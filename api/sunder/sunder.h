@@ -390,10 +390,14 @@ typedef struct sunder_step {
   double error;        ///< estimate of the relative stress error
   double max_yield_ratio;
   double ms_load, ms_solve, ms_stress, ms_decide, ms_update, ms_total;
+  double strain_max;        ///< principal strain of live tissue largest in magnitude, with its sign
+  double rotation_max_deg;  ///< largest rotation of live tissue [deg]
+  int32_t inverted;         ///< live elements turned inside out
+  int32_t measured;         ///< 1: these three are; 0: stress was left out
 } sunder_step;
 
 #define SUNDER_STEP_INIT \
-  { sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
 /// `step` may be null. SUNDER_ERROR_ORDER when all steps are done. SUNDER_ERROR_CANCELLED: the step

@@ -61,6 +61,8 @@ class Run {
   std::unique_ptr<Simulation> make_simulation(const OpenedScene& scene, bool shown);
   void step();
   void take_snapshots();
+  void note_before_rupture();
+  void note_rupture(std::span<const DestroyedElement> event);
   void write_snapshots();
   void close();
 
@@ -72,6 +74,7 @@ class Run {
   Progress progress_;
   std::vector<int> wanted_;      ///< snapshots still to come, ascending
   std::vector<Snapshot> taken_;  ///< in this step
+  RuptureState now_;             ///< of the last frame before the first rupture
 };
 
 std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene, bool shown) {
@@ -90,6 +93,29 @@ void Run::take_snapshots() {
   while (!wanted_.empty() && wanted_.front() <= destroyed) {
     taken_.push_back({wanted_.front(), capture(*simulation_, simulation_->steps_done())});
     wanted_.erase(wanted_.begin());
+  }
+}
+
+/// Within a step, before the decision: what the first rupture would be told with.
+void Run::note_before_rupture() {
+  if (record_.at_first_rupture || problem_.scene().fracture.model == FractureModel::none) return;
+  now_ = {};
+  const Backend& backend = simulation_->backend();
+  if (backend.needs().stress) now_.deformation = simulation_->backend().deformation();
+  const std::vector<Vec3> u = simulation_->displacement();
+  const auto destroyed = backend.destroyed();
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (destroyed[e]) continue;
+    for (Index n : problem_.mesh().tets[e]) {
+      now_.displacement_max = std::max(now_.displacement_max, u[n].norm());
+    }
+  }
+}
+
+void Run::note_rupture(std::span<const DestroyedElement> event) {
+  if (record_.at_first_rupture || event.empty()) return;
+  if (event.front().cause == Cause::mss || event.front().cause == Cause::sif) {
+    record_.at_first_rupture = now_;
   }
 }
 
@@ -113,8 +139,12 @@ void Run::step() {
 }
 
 int Run::carry_out() {
-  simulation_->observe_frames([this] { take_snapshots(); });
-  simulation_->observe_events([this](std::span<const DestroyedElement>) {
+  simulation_->observe_frames([this] {
+    take_snapshots();
+    note_before_rupture();
+  });
+  simulation_->observe_events([this](std::span<const DestroyedElement> event) {
+    note_rupture(event);
     progress_.update(simulation_->steps_done(), static_cast<int>(simulation_->destroyed().size()));
     return !InterruptGuard::requested();
   });
@@ -151,6 +181,32 @@ void Run::close() {
   writer_.finish(record_);
 }
 
+void print_first_rupture(const RunRecord& run) {
+  const DestroyedElement* first = run.first_rupture();
+  if (!first) {
+    std::cout << "  no rupture\n";
+    return;
+  }
+  std::cout << "  first rupture: element " << first->element << " (" << to_string(first->cause)
+            << ") in step " << first->step << ", load factor " << rounded(first->load_factor, 4)
+            << "\n";
+  if (!run.at_first_rupture) return;
+  const Mesh& mesh = run.problem.mesh();
+  Vec3 low = mesh.nodes.front(), high = low;
+  for (const Vec3& x : mesh.nodes) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  std::cout << "  at the first rupture: largest displacement "
+            << rounded(run.at_first_rupture->displacement_max, 2) << " mm of a body "
+            << rounded((high - low).maxCoeff(), 3) << " mm long";
+  if (const auto& d = run.at_first_rupture->deformation) {
+    std::cout << ", strain " << rounded(d->strain, 2) << ", rotation "
+              << rounded(d->rotation_deg, 2) << " deg";
+  }
+  std::cout << "\n";
+}
+
 void print_summary(const RunRecord& run, const ResultWriter& writer, double seconds) {
   const Problem& problem = run.problem;
   std::cout << problem.scene().title << "\n  " << grouped(problem.tet_count()) << " tetrahedra, "
@@ -163,12 +219,7 @@ void print_summary(const RunRecord& run, const ResultWriter& writer, double seco
             << " s: " << counted(static_cast<long long>(run.destroyed.size()), "element")
             << " destroyed in " << counted(run.event_count(), "event") << ", "
             << counted(static_cast<long long>(run.cracks.size()), "crack") << "\n";
-  if (const DestroyedElement* first = run.first_rupture())
-    std::cout << "  first rupture: element " << first->element << " (" << to_string(first->cause)
-              << ") in step " << first->step << ", load factor " << rounded(first->load_factor, 4)
-              << "\n";
-  else
-    std::cout << "  no rupture\n";
+  print_first_rupture(run);
   const StepReport last = run.last_report();
   std::cout << "  largest yield ratio left " << rounded(last.max_yield_ratio, 4) << ", residual "
             << rounded(last.residual, 2) << ", error " << rounded(last.error, 2) << "\n";

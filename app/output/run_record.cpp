@@ -2,11 +2,35 @@
 #include "app/output/run_record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace sunder::app {
 
 int RunRecord::event_count() const { return destroyed.empty() ? 0 : destroyed.back().event + 1; }
+
+std::optional<Deformation> RunRecord::largest() const {
+  std::optional<Deformation> all;
+  const auto add = [&](const std::optional<Deformation>& one) {
+    if (!one) return;
+    if (!all) all.emplace();
+    if (std::abs(one->strain) > std::abs(all->strain)) all->strain = one->strain;
+    all->rotation_deg = std::max(all->rotation_deg, one->rotation_deg);
+    all->inverted = std::max(all->inverted, one->inverted);
+  };
+  for (const StepReport& step : steps) add(step.deformation);
+  if (unfinished) add(unfinished->deformation);
+  if (at_first_rupture) add(at_first_rupture->deformation);
+  return all;
+}
+
+double RunRecord::volume_lost() const {
+  double sum = 0;
+  for (const DestroyedElement& d : destroyed) {
+    if (d.cause != Cause::preset) sum += problem.shape(d.element).volume;
+  }
+  return sum;
+}
 
 StepReport RunRecord::last_report() const {
   if (unfinished) return *unfinished;

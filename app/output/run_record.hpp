@@ -10,6 +10,12 @@
 
 namespace sunder::app {
 
+/// The frame in which the first element ruptured by a criterion, before it did.
+struct RuptureState {
+  double displacement_max = 0;  ///< [mm], of nodes that a live element holds
+  std::optional<Deformation> deformation;
+};
+
 struct RunRecord {
   explicit RunRecord(const Problem& p) : problem(p), last(undeformed(p)) {}
 
@@ -26,7 +32,13 @@ struct RunRecord {
   bool interrupted = false;
   std::optional<std::string> failure;  ///< of a run that could not go on
 
+  std::optional<RuptureState> at_first_rupture;
+
   [[nodiscard]] int event_count() const;
+  /// The farthest of all steps and of the first rupture; nothing: stress was left out.
+  [[nodiscard]] std::optional<Deformation> largest() const;
+  /// Volume of the elements destroyed since the start, presets not counted [mm^3].
+  [[nodiscard]] double volume_lost() const;
   /// The report that belongs to `last`; zeros before the first.
   [[nodiscard]] StepReport last_report() const;
   /// First rupture by a criterion (mss or sif), or null.

@@ -34,11 +34,24 @@ Json destroyed_ids(const RunRecord& run) {
 Json first_rupture(const RunRecord& run) {
   const DestroyedElement* first = run.first_rupture();
   if (!first) return nullptr;
-  return {{"step", first->step},
-          {"event", first->event},
-          {"element", first->element},
-          {"criterion", to_string(first->cause)},
-          {"load_factor", first->load_factor}};
+  Json out = {{"step", first->step},
+              {"event", first->event},
+              {"element", first->element},
+              {"criterion", to_string(first->cause)},
+              {"load_factor", first->load_factor}};
+  if (const auto& state = run.at_first_rupture) {
+    out["displacement_max"] = state->displacement_max;
+    const auto& d = state->deformation;
+    out["strain"] = d ? Json(d->strain) : Json(nullptr);
+    out["rotation_deg"] = d ? Json(d->rotation_deg) : Json(nullptr);
+  }
+  return out;
+}
+
+Json largest(const RunRecord& run) {
+  const auto d = run.largest();
+  if (!d) return nullptr;
+  return {{"strain", d->strain}, {"rotation_deg", d->rotation_deg}, {"inverted", d->inverted}};
 }
 
 Json cracks(const RunRecord& run) {
@@ -112,6 +125,9 @@ Json tree(const RunRecord& run) {
                           {"saved_ms", run.preparation->saved_ms}};
   }
   out["failure"] = run.failure ? Json(*run.failure) : Json(nullptr);
+  out["largest"] = largest(run);
+  out["volume_lost"] = run.volume_lost();
+  out["law"] = "linear";
   return out;
 }
 

@@ -72,7 +72,7 @@ std::string frames_header() {
       "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
       "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations";
   for (const char* pass : kPasses) line += std::string(",ms_gpu_") + pass;
-  return line + "\n";
+  return line + ",strain_max,rotation_max_deg,inverted\n";
 }
 
 std::string frames_row(const StepReport& report) {
@@ -85,6 +85,10 @@ std::string frames_row(const StepReport& report) {
            std::to_string(report.iterations)});
   line.pop_back();
   for (const char* pass : kPasses) line += "," + gpu_time(report, pass);
+  const auto& d = report.deformation;
+  line += d ? "," + number(d->strain) + "," + number(d->rotation_deg) + "," +
+                  std::to_string(d->inverted)
+            : ",,,";
   return line + "\n";
 }
 

@@ -2,6 +2,7 @@
 #include "app/report/sections.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "app/report/chart.hpp"
 #include "app/report/table.hpp"
@@ -173,6 +174,28 @@ std::string key_figures(const RunRecord& run) {
          kTimingsEnd + key(rounded(last.error, 2), "error estimate, last frame") + "</div>\n";
 }
 
+namespace {
+
+/// Small strain left behind: for who looks at the picture before the warnings.
+std::string beyond_theory(const RunRecord& run) {
+  const auto d = run.largest();
+  if (!d || (std::abs(d->strain) <= kSmallStrain && d->rotation_deg <= kSmallRotationDeg &&
+             d->inverted == 0))
+    return {};
+  return section(
+      "Beyond small strain",
+      "<p>Live tissue is strained by up to " + rounded(100 * std::abs(d->strain), 3) +
+          " % and turned by up to " + rounded(d->rotation_deg, 3) + "°" +
+          (d->inverted > 0 ? ", and up to " + counted(d->inverted, "live element") +
+                                 " at once turned inside out"
+                           : "") +
+          ". The law is linear, for small strains and rotations: read forces, shapes and loads at "
+          "rupture as those of the model, not of tissue (docs/limits.md).</p>\n",
+      "bad-box");
+}
+
+}  // namespace
+
 std::string findings(const RunRecord& run) {
   std::string out;
   if (run.failure)
@@ -183,6 +206,7 @@ std::string findings(const RunRecord& run) {
                        std::string(run.unfinished ? "within a step" : "between two steps") +
                        "; what is shown is the state it had reached.</p>\n",
                    "bad-box");
+  out += beyond_theory(run);
   if (!run.warnings.empty()) out += section("Warnings", list(run.warnings), "warn");
   return out;
 }

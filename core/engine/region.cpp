@@ -64,7 +64,8 @@ std::vector<std::string> left_out_of(const Problem& problem, const Region& regio
           "stress of the other " +
               std::to_string(problem.mesh().tets.size() - region.elements.size()) +
               " elements and displacement of the other nodes in a frame: solved for when a file or "
-              "a picture asks"};
+              "a picture asks",
+          "largest strain and rotation of those elements: what is told of them is of the region"};
 }
 
 }  // namespace sunder::engine

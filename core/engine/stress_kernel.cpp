@@ -7,8 +7,9 @@
 #include <numeric>
 #include <optional>
 
-#include "parallel/vectorised.hpp"
+#include "engine/deformation_search.hpp"
 #include "fem/element.hpp"
+#include "parallel/vectorised.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::engine {
@@ -16,6 +17,8 @@ namespace {
 
 // Below this many elements a thread more costs as much as it saves (some 10 us to wake one).
 constexpr std::size_t kElementsPerThread = 8000;
+
+constexpr double kLive = 1.0 / 3;
 
 constexpr std::size_t kForces = 12 * StressKernel::kLanes;  // of a block's elements
 
@@ -71,7 +74,9 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
     for (int g = 0; g < 9; ++g) b.gradient[g][l] = problem_->shape(e).gradient(g % 3, g / 3 + 1);
     b.mu[l] = problem_->small_strain(e).mu;
     b.lambda[l] = problem_->small_strain(e).lambda;
-    b.scale[l] = b.live[l] = 1;
+    b.scale[l] = 1;
+    b.live[l] = kLive;
+    b.softness[l] = 1 / (2 * b.mu[l] * b.mu[l]);
     b.volume[l] = problem_->shape(e).volume;
     const double yield = problem_->yield(e);
     b.strength[l] = yield > 0 ? 1 / (yield * yield) : 0;
@@ -82,6 +87,11 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
 }
 
 void StressKernel::keep_bounds() { bounds_.assign(blocks_.size() * kLanes, 0.0); }
+
+void StressKernel::keep_deformation() {
+  groups_.assign((blocks_.size() + kGroup - 1) / kGroup, GroupBounds{});
+  cut_off_.assign(problem_->mesh().tets.size(), 0);
+}
 
 void StressKernel::keep_forces() {
   forces_.assign(blocks_.size() * kForces, 0.0);
@@ -112,7 +122,7 @@ void StressKernel::destroy(std::span<const Index> elements) {
     Block& b = blocks_[static_cast<std::size_t>(place_[e] / kLanes)];
     const int l = place_[e] % kLanes;
     b.scale[l] = problem_->scene().fracture.alpha;
-    b.live[l] = b.strength[l] = 0;
+    b.live[l] = b.strength[l] = b.softness[l] = 0;
   }
 }
 
@@ -120,6 +130,7 @@ SUNDER_VECTORISED
 void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                               Partial& partial) {
   double largest[kLanes] = {}, check[kLanes] = {};
+  double strained[kLanes] = {}, turned[kLanes] = {};
   for (std::size_t k = 0; k < count; ++k) {
     const Block& b = blocks[k];
     double d[9][kLanes];  // displacement of corners 1..3 against corner 0
@@ -154,6 +165,12 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
       const double j2 =
           ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 6 + shear;
       bound[l] = b.strength[l] != 0 ? j2 * b.strength[l] : 0.0;
+      const double trace = h[0][0] + (h[1][1] + h[2][2]);
+      const double strain = j2 * b.softness[l] + trace * (trace * b.live[l]);
+      strained[l] = strain > strained[l] ? strain : strained[l];
+      const double x = h[2][1] - h[1][2], y = h[0][2] - h[2][0], z = h[1][0] - h[0][1];
+      const double curl = (x * x + y * y + z * z) * b.live[l];
+      turned[l] = curl > turned[l] ? curl : turned[l];
       s[0][l] = scale * xx;
       s[1][l] = scale * yy;
       s[2][l] = scale * zz;
@@ -164,6 +181,14 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
     if (to.bounds) {
       double* at = to.bounds + k * kLanes;
       for (int l = 0; l < kLanes; ++l) at[l] = bound[l];
+    }
+    if (to.groups && (k % kGroup == kGroup - 1 || k + 1 == count)) {
+      GroupBounds& group = to.groups[k / kGroup];
+      for (int l = 0; l < kLanes; ++l) {
+        group.strain[l] = strained[l];
+        group.curl[l] = turned[l];
+        strained[l] = turned[l] = 0;
+      }
     }
     if (to.forces) {
       constexpr int kRow[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};  // Voigt places of a tensor
@@ -199,7 +224,7 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
 double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
   return run_storing(
       u, {stress.empty() ? nullptr : stress.data(), bounds_.empty() ? nullptr : bounds_.data(),
-          forces_.empty() ? nullptr : forces_.data()});
+          forces_.empty() ? nullptr : forces_.data(), groups_.empty() ? nullptr : groups_.data()});
 }
 
 double StressKernel::largest(std::span<const double> u) { return run_storing(u, Stores{}); }
@@ -207,8 +232,11 @@ double StressKernel::largest(std::span<const double> u) { return run_storing(u, 
 double StressKernel::run_storing(std::span<const double> u, Stores to) {
   workers_->run([&](int worker) {
     const auto w = static_cast<std::size_t>(worker), all = partials_.size();
-    const std::size_t begin = blocks_.size() * w / all, end = blocks_.size() * (w + 1) / all;
+    const std::size_t groups = (blocks_.size() + kGroup - 1) / kGroup;
+    const std::size_t begin = groups * w / all * kGroup;
+    const std::size_t end = std::min(groups * (w + 1) / all * kGroup, blocks_.size());
     Stores part = to;
+    if (part.groups) part.groups += begin / kGroup;
     if (part.bounds) part.bounds += begin * kLanes;
     if (part.forces) part.forces += begin * kForces;
     partials_[w] = {};
@@ -222,6 +250,66 @@ double StressKernel::run_storing(std::span<const double> u, Stores to) {
   }
   if (!(sum.check == 0)) return std::numeric_limits<double>::quiet_NaN();
   return std::sqrt(sum.largest);
+}
+
+void StressKernel::cut_off(std::span<const Index> elements) {
+  for (Index e : elements) cut_off_[static_cast<std::size_t>(e)] = 1;
+}
+
+Deformation StressKernel::deformation(std::span<const double> u) const {
+  DeformationSearch search;
+  // The elements with the largest bounds leave few others to look at.
+  double strain = 0, curl = 0;
+  std::size_t strained = 0, turned = 0;
+  const auto largest = [](const double(&lanes)[kLanes]) {
+    return *std::max_element(lanes, lanes + kLanes);
+  };
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const double s = largest(groups_[g].strain), c = largest(groups_[g].curl);
+    if (s > strain) strained = g;
+    if (c > curl) turned = g;
+    strain = std::max(strain, s);
+    curl = std::max(curl, c);
+  }
+  const auto preview = [&](const Mat3& h) { search.preview(h); };
+  const auto take = [&](const Mat3& h) { search.take(h); };
+  for (std::size_t l = 0; l < kLanes && !groups_.empty(); ++l) {
+    if (groups_[strained].strain[l] == strain && strain > 0) each_of(strained, l, u, preview);
+    if (groups_[turned].curl[l] == curl && curl > 0) each_of(turned, l, u, preview);
+  }
+  const DeformationSearch::Limits limits = search.limits();
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const GroupBounds& bounds = groups_[g];
+    int any = 0;  // without a branch: nearly all groups have none
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      any |= static_cast<int>(bounds.strain[l] > limits.strain_squared) |
+             static_cast<int>(bounds.curl[l] > limits.curl_squared * kLive);
+    }
+    for (std::size_t l = 0; any != 0 && l < kLanes; ++l) {
+      if (search.matters(bounds.strain[l], bounds.curl[l] / kLive)) each_of(g, l, u, take);
+    }
+  }
+  return search.found();
+}
+
+/// The displacement gradients of the elements in one lane of a group.
+template <class Visit>
+void StressKernel::each_of(std::size_t group, std::size_t lane, std::span<const double> u,
+                           Visit&& visit) const {
+  const std::size_t first = group * kGroup;
+  for (std::size_t k = first; k < std::min(first + kGroup, blocks_.size()); ++k) {
+    const Block& b = blocks_[k];
+    const Index e = b.element[lane];
+    if (e == kNone || b.live[lane] == 0 || cut_off_[static_cast<std::size_t>(e)]) continue;
+    const Vec3 u0(&u[static_cast<std::size_t>(b.corner[0][lane])]);
+    Mat3 h = Mat3::Zero();
+    for (int corner = 1; corner < 4; ++corner) {
+      const Vec3 d = Vec3(&u[static_cast<std::size_t>(b.corner[corner][lane])]) - u0;
+      for (int axis = 0; axis < 3; ++axis)
+        h.col(axis) += d * b.gradient[3 * (corner - 1) + axis][lane];
+    }
+    visit(h);
+  }
 }
 
 /// Node by node, in the order of elements: the same sums for any number of threads.
@@ -308,6 +396,7 @@ StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
 std::size_t StressKernel::bytes() const {
   return blocks_.size() * sizeof(Block) + bounds_.size() * sizeof(double) +
          (place_.size() + at_node_.size()) * sizeof(Index) + forces_.size() * sizeof(double) +
+         groups_.size() * sizeof(GroupBounds) + cut_off_.size() +
          node_begin_.size() * sizeof(std::size_t);
 }
 

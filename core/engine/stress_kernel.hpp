@@ -34,6 +34,12 @@ class StressKernel {
   [[nodiscard]] StressSummary summarize(std::span<const std::uint8_t> excluded,
                                         std::span<const Voigt> stress) const;
 
+  /// Of the displacement that the last run() got, over live elements that are not cut off; the
+  /// rotation to 0.1 %. Needs keep_deformation().
+  [[nodiscard]] Deformation deformation(std::span<const double> u) const;
+  /// Takes elements out of deformation().
+  void cut_off(std::span<const Index> elements);
+
   /// Where run() puts the stress of an element; kNone: it is not listed.
   [[nodiscard]] Index place(Index element) const { return place_[element]; }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -43,6 +49,8 @@ class StressKernel {
 
   /// Makes run() keep what summarize() reads.
   void keep_bounds();
+  /// Makes run() keep what deformation() reads.
+  void keep_deformation();
   /// Makes run() keep what nodal_forces() sums up; for a kernel over all elements.
   void keep_forces();
   [[nodiscard]] std::size_t bytes() const;
@@ -51,13 +59,19 @@ class StressKernel {
   struct alignas(64) Block {
     double gradient[9][kLanes];  // of corners 1..3: 3 * (corner - 1) + axis
     double mu[kLanes], lambda[kLanes];
-    double scale[kLanes];  // a_e
-    double live[kLanes];   // 1, or 0: does not count
+    double scale[kLanes];     // a_e
+    double live[kLanes];      // share of (tr E)^2 in |E|^2, 1/3; 0: destroyed, does not count
+    double softness[kLanes];  // 1 / (2 mu^2); 0 where destroyed
     double volume[kLanes];
     double strength[kLanes];  // 1 / yield^2 of live breakable elements, else 0
     Index corner[4][kLanes];  // 3 * node
     Index element[kLanes];    // kNone: filler
   };
+  /// Of the live elements in one lane of kGroup blocks: largest |sym grad u|^2 and |curl u|^2 / 3.
+  struct GroupBounds {
+    double strain[kLanes], curl[kLanes];
+  };
+  static constexpr std::size_t kGroup = 4;
   struct Partial {
     double largest = 0, check = 0;
   };
@@ -66,6 +80,7 @@ class StressKernel {
     Voigt* stress = nullptr;
     double* bounds = nullptr;
     double* forces = nullptr;
+    GroupBounds* groups = nullptr;
   };
   static void run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                          Partial& partial);
@@ -73,12 +88,16 @@ class StressKernel {
   [[nodiscard]] Worst worst(std::span<const std::uint8_t> excluded,
                             std::span<const Voigt> stress) const;
   [[nodiscard]] double least_bound() const;
+  template <class Visit>
+  void each_of(std::size_t group, std::size_t lane, std::span<const double> u, Visit&& visit) const;
 
   std::shared_ptr<const Problem> problem_;
   std::size_t size_ = 0;  // listed elements
   std::vector<Block> blocks_;
   std::vector<Index> place_;    // of each element, kNone: not in here
   std::vector<double> bounds_;  // J_2 / yield^2 per place
+  std::vector<GroupBounds> groups_;
+  std::vector<std::uint8_t> cut_off_;  // per element; empty: deformation() is not asked for
   // Forces on the corners of a block's elements: axis, corner, lane; of each node, where in there
   // its elements' forces on axis x begin.
   std::vector<double> forces_;

@@ -54,6 +54,13 @@ struct StressSummary {
   Index over = 0;   ///< how many of all are at or over yield
 };
 
+/// How far live elements are deformed: whether the theory of small strains still speaks of them.
+struct Deformation {
+  double strain = 0;        ///< principal value of sym grad u largest in magnitude, with its sign
+  double rotation_deg = 0;  ///< largest, of the polar decomposition of F = I + grad u
+  Index inverted = 0;       ///< how many have det F <= 0
+};
+
 struct BackendInfo {
   std::string backend;  ///< "cpu", "vulkan"
   std::string device;   ///< marketing name
@@ -152,6 +159,13 @@ class Backend {
   /// Stress a_e D B u of every element from the last solve, and the summary over yield.
   StressSummary stress();
 
+  /// Of the last stress(): over live elements that are not cut off, on route condensed those of its
+  /// region. The rotation to 0.1 %, on Vulkan by an estimate (docs/vulkan.md "Deformation").
+  [[nodiscard]] Deformation deformation();
+  /// Elements of pieces that nothing holds any more: where they are has no meaning, and they no
+  /// longer count in deformation().
+  void cut_off(std::span<const Index> elements);
+
   /// Destroys live elements (one event: one update of rank 6 k). Ids must be valid, distinct, live.
   void destroy(std::span<const Index> elements);
 
@@ -186,6 +200,8 @@ class Backend {
   virtual void do_set_load(const Load& load) = 0;
   virtual SolveReport do_solve() = 0;
   virtual StressSummary do_stress() = 0;
+  virtual Deformation do_deformation() = 0;
+  virtual void do_cut_off(std::span<const Index> elements) = 0;
   virtual void do_destroy(std::span<const Index> elements) = 0;  // destroyed() is updated after it
   virtual void do_prepare(std::span<const Index>) {}
   virtual void do_exclude_candidates(std::span<const Index> elements) = 0;

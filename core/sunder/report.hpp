@@ -52,6 +52,12 @@ struct StepReport {
   /// Device time per pass of all solves and updates of the step; empty without a device clock
   /// (Backend::time_passes).
   std::vector<PassTime> passes;
+  /// At the end of the step; nothing: stress was left out.
+  std::optional<Deformation> deformation;
 };
+
+/// Beyond these a run says that the theory of small strains no longer speaks of it
+/// (docs/limits.md).
+inline constexpr double kSmallStrain = 0.1, kSmallRotationDeg = 10;
 
 }  // namespace sunder

@@ -92,6 +92,9 @@ class Simulation {
   bool apply_event();  // of decision_; false: nothing broke
   void attribute_event();
   void find_loose();
+  void leave_out_loose();
+  void measure_deformation(StepReport& report);
+  void add_deformation_warnings(std::vector<std::string>& all) const;
   void note(const Finding& finding);
   [[nodiscard]] std::span<const double> pristine_displacement();
   [[nodiscard]] std::span<const NodalForce> instrument_forces();
@@ -111,6 +114,14 @@ class Simulation {
     int count = 0, first = kNone, last = kNone;
     void add(int step);
     [[nodiscard]] std::string sentence(const std::string& what) const;
+  };
+
+  /// Steps that go beyond the theory in one way, with the farthest.
+  struct Beyond {
+    Steps steps;
+    double most = 0;
+    int at = kNone;
+    void add(int step, double value);
   };
 
   std::shared_ptr<const Problem> problem_;
@@ -137,6 +148,9 @@ class Simulation {
   bool interrupted_ = false;
   bool attribute_ = false;
   Steps capped_, polished_;
+  Beyond strained_, turned_, inverted_;
+  std::vector<std::uint8_t> cut_off_;  // per element; empty: none yet
+  std::vector<Index> newly_cut_off_;
   bool solved_ = false;  // the backend holds fields
   std::size_t loose_nodes_ = 0, loose_pieces_ = 0, loose_elements_ = 0;
   int loose_nodes_step_ = kNone, loose_pieces_step_ = kNone;  // first seen

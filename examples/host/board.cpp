@@ -76,6 +76,8 @@ sunder_scene make_scene(const Board& board, std::int32_t steps) {
   add_material(scene, 500, 0);
   add_tools(scene);
   sunder_fracture_options fracture = SUNDER_FRACTURE_OPTIONS_INIT;
+  // Model B takes the body for a flat board of even thickness. This one is: 50 x 50 x 2 mm. For any
+  // other shape take SUNDER_FRACTURE_A (docs/limits.md).
   fracture.model = SUNDER_FRACTURE_B;
   fracture.birth = SUNDER_BIRTH_THROUGH;
   fracture.max_events = 1;  // so that the tear can be watched

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "fem/element.hpp"
 #include "sunder/stress_measures.hpp"
@@ -237,7 +238,18 @@ shaders::Summary Fields::summary(std::size_t slot) const {
   wide.any_element = s.any_element;
   wide.candidate_element = s.candidate_element;
   wide.over = s.over;
+  wide.strain = s.strain;
+  wide.half_tangent = s.half_tangent;
+  wide.inverted = s.inverted;
   return wide;
+}
+
+Deformation Fields::deformation() const {
+  const shaders::Summary s = summary(0);
+  const auto strain = static_cast<double>(std::bit_cast<float>(s.strain & ~1u));
+  const auto half_tangent = static_cast<double>(std::bit_cast<float>(s.half_tangent));
+  return {(s.strain & 1u) != 0 ? -strain : strain, 360 / std::numbers::pi * std::atan(half_tangent),
+          static_cast<Index>(s.inverted)};
 }
 
 shaders::Summary Fields::state() const {
@@ -339,6 +351,14 @@ void Fields::restore() {
   if (host_balance_) balance_on_host();
 }
 
+void Fields::renew_state() {
+  vulkan::Commands commands(kernels_.device());
+  commands.begin();
+  record_state(commands);
+  commands.end();
+  commands.submit();
+}
+
 void Fields::record_hold(vulkan::Commands& commands, Field field) const {
   const auto count = static_cast<std::uint32_t>(problem_.gripped_dofs().size());
   if (count == 0) return;
@@ -368,6 +388,10 @@ void Fields::destroy(std::span<const Index> elements) {
 
 void Fields::exclude(std::span<const Index> elements) {
   set_state_bits(elements, shaders::kExcluded);
+}
+
+void Fields::cut_off(std::span<const Index> elements) {
+  set_state_bits(elements, shaders::kCutOff);
 }
 
 void Fields::record_state(vulkan::Commands& commands, bool balance) const {

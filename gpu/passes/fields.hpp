@@ -51,6 +51,8 @@ class Fields {
   void set_roots(std::span<const double> roots);
   void destroy(std::span<const Index> elements);
   void exclude(std::span<const Index> elements);
+  /// Their deformation no longer counts, from the next record_state() on.
+  void cut_off(std::span<const Index> elements);
 
   /// The next record_keep() sets the displacement aside, for restore() when the solve fails.
   void keep_next() { keep_ = true; }
@@ -73,6 +75,10 @@ class Fields {
 
   /// After record_state() and record_correction() ran. Without norms() there is no stress in it.
   [[nodiscard]] shaders::Summary state() const;
+  /// Of the displacement; zeros without norms().
+  [[nodiscard]] Deformation deformation() const;
+  /// Stress and summary of the displacement anew.
+  void renew_state();
   /// Largest stress of a live element, Frobenius; without norms() the host computes it.
   [[nodiscard]] double largest_stress(Field field) const;
   /// Whether the solution is made of numbers.

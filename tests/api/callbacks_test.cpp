@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Log, progress and cancel; what a callback may do.
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -63,6 +65,32 @@ TEST_F(CCallbacks, TellPhasesEventsAndTheEngine) {
   EXPECT_EQ(host.progress.back().events, step.events);
   EXPECT_EQ(host.progress.back().destroyed, step.destroyed);
   EXPECT_EQ(host.progress.back().steps, 4);
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+}
+
+TEST_F(CCallbacks, TellOfStrainBeyondTheTheory) {
+  sunder_simulation simulation = nullptr;
+  ASSERT_OK(create(&simulation));
+  sunder_step step{};
+  step.struct_size = sizeof step;
+  ASSERT_OK(sunder_simulation_step(simulation, &step));
+  EXPECT_EQ(step.measured, 1);
+  EXPECT_GT(std::abs(step.strain_max), 0.1);
+  EXPECT_GT(step.rotation_max_deg, 10);
+  EXPECT_GE(step.inverted, 0);
+  const std::string said = "step 0 strained live tissue by over 10 %";
+  EXPECT_TRUE(std::any_of(host.log.begin(), host.log.end(),
+                          [&](const std::string& line) { return line.find(said) == 0; }));
+  std::int32_t count = 0;
+  ASSERT_OK(sunder_simulation_warning_count(simulation, &count));
+  bool found = false;
+  for (std::int32_t i = 0; i < count; ++i) {
+    char text[1024];
+    std::size_t length = 0;
+    ASSERT_OK(sunder_simulation_warning_at(simulation, i, text, sizeof text, &length));
+    found = found || std::string(text).find(said) == 0;
+  }
+  EXPECT_TRUE(found);
   EXPECT_OK(sunder_simulation_destroy(simulation));
 }
 

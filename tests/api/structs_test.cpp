@@ -55,6 +55,20 @@ TEST_F(CStructs, LeaveThePreparationOutWhenAsked) {
   EXPECT_GT(memory_after_a_step(0), memory_after_a_step(1));
 }
 
+TEST_F(CStructs, FillAStepOfACallerFromBeforeTheMeasures) {
+  sunder_simulation simulation = nullptr;
+  ASSERT_OK(sunder_simulation_create(scene, nullptr, &simulation));
+  sunder_step step{};
+  step.struct_size = offsetof(sunder_step, strain_max);
+  step.strain_max = 3;  // not the caller's memory any more
+  ASSERT_OK(sunder_simulation_step(simulation, &step));
+  EXPECT_GT(step.max_yield_ratio, 0);
+  EXPECT_EQ(step.strain_max, 3);
+  step.struct_size -= 8;
+  EXPECT_EQ(sunder_simulation_step(simulation, &step), SUNDER_ERROR_STRUCT_SIZE);
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+}
+
 TEST_F(CStructs, MayLieAnywhere) {
   const sunder_solver_options options = on(SUNDER_BACKEND_CPU);
   std::vector<char> bytes(sizeof options + 1);

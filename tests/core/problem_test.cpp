@@ -9,7 +9,9 @@
 #include <functional>
 #include <limits>
 
+#include "fracture/board_check.hpp"
 #include "sunder/error.hpp"
+#include "support/msh_reader.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder {
@@ -443,6 +445,53 @@ TEST(GoodScene, NumbersItsUnknowns) {
   EXPECT_TRUE(problem.breakable(0));
   EXPECT_FALSE(problem.breakable(23));
   EXPECT_DOUBLE_EQ(problem.shape(0).volume, 1.0 / 6);
+}
+
+/// What model "B" says of a body's shape.
+std::vector<std::string> said_of(const test::BoardShape& shape,
+                                 const std::function<Vec3(const Vec3&)>& bend,
+                                 FractureModel model) {
+  Scene scene;
+  scene.mesh = test::structured_board(shape);
+  for (Vec3& x : scene.mesh.nodes) x = bend(x);
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, -1, -9), Vec3(99, 1e-9, 99)}, Axes{7}});
+  scene.fracture.model = model;
+  return Problem(std::move(scene)).warnings();
+}
+
+TEST(ModelB, WarnsOfABodyThatIsNoBoard) {
+  const auto as_it_is = [](const Vec3& x) { return x; };
+  const auto wedge = [](const Vec3& x) { return Vec3(x.x(), x.y(), x.z() * (1 - x.x() / 100)); };
+  // Half of it half as thick.
+  const auto step = [](const Vec3& x) {
+    return Vec3(x.x(), x.y(), x.x() > 25 ? x.z() / 2 : x.z());
+  };
+  const auto tilted = [](const Vec3& x) { return Vec3(x.x(), x.y(), x.z() + x.x() / 2); };
+  const auto expect = [](const std::vector<std::string>& said, const std::string& part) {
+    ASSERT_EQ(said.size(), 1u) << part;
+    EXPECT_NE(said[0].find("flat board of even thickness"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find(part), std::string::npos) << said[0];
+  };
+  using enum FractureModel;
+  const test::BoardShape board{10, 10, 1, 50, 50, 2}, cube{5, 5, 5, 50, 50, 50},
+      slab{10, 10, 2, 50, 50, 12}, thin{10, 10, 2, 50, 50, 10};
+  EXPECT_TRUE(said_of(board, as_it_is, b).empty());
+  EXPECT_TRUE(said_of(thin, as_it_is, b).empty());
+  expect(said_of(cube, as_it_is, b), "it is 50 mm thick and 50 mm wide");
+  expect(said_of(slab, as_it_is, b), "it is 12 mm thick and 50 mm wide");
+  expect(said_of(board, wedge, b), "uneven, 1.5 mm in the mean and 2 mm");
+  expect(said_of(board, step, b), "uneven");
+  expect(said_of(board, tilted, b), "thick");
+  EXPECT_TRUE(said_of(cube, as_it_is, a).empty());
+  EXPECT_TRUE(said_of(cube, as_it_is, none).empty());
+}
+
+TEST(ModelB, TakesThePapersBoardsForBoards) {
+  for (const char* name : {"board1954", "board1954_notch"}) {
+    const std::string path = std::string(SUNDER_SCENES "/meshes/") + name + ".msh";
+    EXPECT_EQ(fracture::why_no_board(test::read_msh22(path), {}), std::nullopt) << name;
+  }
 }
 
 TEST(GoodScene, OverlappingSupportsAdd) {

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Single kernels against plain double precision on equal inputs, rounded to storage precision
 // first; sizes are no multiples of 64. Bounds are derived from the sums' lengths.
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <random>
 
+#include "fem/deformation.hpp"
 #include "fem/element.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "gpu/passes/exact_columns.hpp"
@@ -200,6 +205,61 @@ struct Balance {
     }
   }
 };
+
+/// Bodies turned by up to 40 deg and strained besides, with destroyed elements and some cut off,
+/// against the exact measures of each element.
+TEST_P(Kernels, DeformationFromGivenDisplacement) {
+  Scene scene;
+  scene.mesh = structured_board({5, 4, 3});
+  for (Vec3& x : scene.mesh.nodes) x += 0.1 * Vec3(random(), random(), random());
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, 9.5, -1), Vec3(11, 11, 2)}, Axes{7}});
+  const Problem problem(scene);
+  gpu::Fields fields(*factory_, problem, all_needs());
+  const Index gone = 7, loose = 11;
+  fields.destroy({&gone, 1});
+  fields.cut_off({&loose, 1});
+  int inverted = 0;
+  for (const double size : {1e-3, 0.01, 0.03, 0.3}) {  // mm, of edges of some 0.3 to 2.5 mm
+    for (const double degrees : {0.0, 8.0, 40.0}) {
+      const Mat3 r = Eigen::AngleAxisd(degrees * std::numbers::pi / 180,
+                                       Vec3(random(), random(), 1).normalized())
+                         .toRotationMatrix();
+      std::vector<double> u;
+      for (const Vec3& x : problem.mesh().nodes) {
+        const Vec3 moved = r * (x + size * Vec3(random(), random(), random())) - x;
+        u.insert(u.end(), moved.data(), moved.data() + 3);
+      }
+      for (Index node : problem.mesh().tets[gone]) u[3 * static_cast<std::size_t>(node)] += size;
+      fields.write_displacement(u);
+      compute_state(fields);
+      Deformation exact;
+      double stretch = 0;
+      for (Index e = 0; e < problem.tet_count(); ++e) {
+        if (e == gone || e == loose) continue;
+        const Mat3 h = fem::displacement_gradient(problem, e, u);
+        const double strain = fem::principal_strain(h);
+        if (std::abs(strain) > std::abs(exact.strain)) exact.strain = strain;
+        exact.rotation_deg = std::max(exact.rotation_deg, fem::rotation_deg(h));
+        const Mat3 f = Mat3::Identity() + h;
+        exact.inverted += f.determinant() <= 0;
+        const Vec3 squares = Eigen::SelfAdjointEigenSolver<Mat3>(f.transpose() * f).eigenvalues();
+        for (double s : squares)
+          stretch = std::max(stretch, std::abs(std::sqrt(std::max(s, 0.0)) - 1));
+      }
+      const Deformation found = fields.deformation();
+      // In fp32 from gradients of more digits; the rotation's axis is right to first order in the
+      // stretch (shaders/stress.comp).
+      EXPECT_NEAR(found.strain, exact.strain, 4e-6 * std::abs(exact.strain) + 1e-7) << size;
+      EXPECT_NEAR(found.rotation_deg, exact.rotation_deg,
+                  (0.7 * stretch * stretch + 1e-5) * exact.rotation_deg + 1e-5)
+          << size << " mm, " << degrees << " deg";
+      EXPECT_EQ(found.inverted, exact.inverted) << size << " mm, " << degrees << " deg";
+      inverted += exact.inverted;
+    }
+  }
+  EXPECT_GT(inverted, 0);
+}
 
 /// Random boards, rigid motions far larger than the strain, up to nu 0.499.
 TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {

@@ -36,6 +36,43 @@ TEST_F(Runs, SameFractureListsAsTheReferenceByEagerUpdates) {
   }
 }
 
+/// The measures of each step of a board that tears until a piece comes off.
+TEST_F(Runs, DeformationIsThatOfTheReferenceAndForgetsPiecesThatComeOff) {
+  Scene scene = pulled_board(Vec3(0, -6e-3, 0));
+  scene.instruments.front().ramp = Ramp{0, 1};
+  Instrument above;
+  above.name = "above the cut";
+  above.action = Pull{Box{Vec3(49.9, 35, -1), Vec3(51, 45, 3)}, Vec3(5, 0, 0)};
+  scene.instruments.push_back(above);
+  scene.removals.push_back({1, Box{Vec3(-1, 22, -1), Vec3(51, 28, 3)}});
+  scene.steps = 3;
+  const auto measured = [](const std::shared_ptr<const Problem>& problem,
+                           std::unique_ptr<Backend> backend) {
+    Simulation simulation(problem, std::move(backend));
+    std::vector<Deformation> all;
+    while (!simulation.done()) all.push_back(simulation.step().deformation.value());
+    return all;
+  };
+  scene.solver.backend = "cpu";
+  const auto on_cpu = std::make_shared<const Problem>(scene);
+  const auto expected = measured(on_cpu, cpu_reference::create(on_cpu, needs_of(*on_cpu)));
+  for (const Way& way : all_ways()) {
+    if (way.update == Update::eager) continue;
+    const WatchedBackend watched(scene, way);
+    const auto found = measured(watched.problem, watched.create());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const double allowed = way.precision == Precision::fp64 ? 1e-5 : 1e-3;
+      EXPECT_NEAR(found[i].strain, expected[i].strain, allowed * std::abs(expected[i].strain))
+          << name_of(way) << ", step " << i;
+      const double of_axis = expected[i].strain * expected[i].strain;
+      EXPECT_NEAR(found[i].rotation_deg, expected[i].rotation_deg,
+                  (allowed + 1e-3 + of_axis) * expected[i].rotation_deg)
+          << name_of(way) << ", step " << i;
+      EXPECT_EQ(found[i].inverted, expected[i].inverted) << name_of(way) << ", step " << i;
+    }
+  }
+}
+
 TEST_F(Runs, VulkanByNameGoesThroughTheListOfBackends) {
   Scene scene = torn_board(FractureModel::a);
   scene.solver.backend = "vulkan";

@@ -15,9 +15,9 @@ TEST(Report, StandsAlone) {
   EXPECT_EQ(html.find("<link"), std::string::npos);
   EXPECT_NE(html.find("Board &lt;pulled&gt; &amp; torn"), std::string::npos);
   EXPECT_EQ(html.find("<pulled>"), std::string::npos);
-  for (const char* part :
-       {"<svg", "data:image/png;base64,", "Fracture", "Cracks", "Events", "Time", "median",
-        "residual", "Left out", "Warnings", "Reactions", "right forceps", "Files", "summary.json"})
+  for (const char* part : {"<svg", "data:image/png;base64,", "Fracture", "Cracks", "Events", "Time",
+                           "median", "residual", "Left out", "Beyond small strain", "Warnings",
+                           "Reactions", "right forceps", "Files", "summary.json"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 

@@ -2,7 +2,9 @@
 // summary.json against docs/interface.md "Results".
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <regex>
 
 #include "app/output/program.hpp"
@@ -41,7 +43,8 @@ TEST(Summary, HasTheDocumentedKeysInOrder) {
   EXPECT_EQ(keys_of(summary()["device"]), (Keys{"name", "driver", "backend", "precision"}));
   EXPECT_EQ(keys_of(summary()["route"]), (Keys{"name", "update", "why", "left_out"}));
   EXPECT_EQ(keys_of(summary()["first_rupture"]),
-            (Keys{"step", "event", "element", "criterion", "load_factor"}));
+            (Keys{"step", "event", "element", "criterion", "load_factor", "displacement_max",
+                  "strain", "rotation_deg"}));
   EXPECT_EQ(keys_of(summary()["timings_ms"]),
             (Keys{"load", "solve", "stress", "decide", "update", "total"}));
   for (const auto& stage : summary()["timings_ms"])
@@ -58,6 +61,35 @@ TEST(Summary, DescribesTheBoard) {
   EXPECT_EQ(summary()["interrupted"], false);
   EXPECT_EQ(summary()["failure"], nullptr);
   EXPECT_EQ(summary()["steps_done"], 5);
+}
+
+TEST(Summary, SaysHowFarTheBodyIsDeformed) {
+  const Keys keys = keys_of(summary());
+  EXPECT_EQ(Keys(keys.end() - 3, keys.end()), (Keys{"largest", "volume_lost", "law"}));
+  EXPECT_EQ(summary()["law"], "linear");
+  EXPECT_EQ(keys_of(summary()["largest"]), (Keys{"strain", "rotation_deg", "inverted"}));
+  const auto frames = read_csv(torn_board() / "frames.csv");
+  const auto column =
+      std::find(frames[0].begin(), frames[0].end(), "strain_max") - frames[0].begin();
+  const Json& first = summary()["first_rupture"];
+  double strain = std::abs(first["strain"].get<double>()), rotation = first["rotation_deg"];
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const auto cell = [&](long k) { return std::stod(frames[i][static_cast<std::size_t>(k)]); };
+    strain = std::max(strain, std::abs(cell(column)));
+    rotation = std::max(rotation, cell(column + 1));
+  }
+  EXPECT_EQ(std::abs(summary()["largest"]["strain"].get<double>()), strain);
+  EXPECT_EQ(summary()["largest"]["rotation_deg"], rotation);
+  EXPECT_GT(first["displacement_max"].get<double>(), 0);
+  EXPECT_NE(summary()["warnings"].dump().find("strained live tissue by over 10 %"),
+            std::string::npos);
+  EXPECT_NE(torn_board_outcome().out.find("at the first rupture: largest displacement "),
+            std::string::npos);
+  // A cell of 5 x 5 x 2 mm has four elements of a sixth of it and one of a third.
+  const double lost = summary()["volume_lost"];
+  const auto destroyed = static_cast<double>(summary()["destroyed"].size());
+  EXPECT_GE(lost, destroyed * 50 / 6 * (1 - 1e-9));
+  EXPECT_LE(lost, destroyed * 50 / 3);
 }
 
 TEST(Summary, ListsWhatEventsListInOrder) {
