@@ -13,7 +13,7 @@ namespace {
 class Search {
  public:
   Search(const Mesh& mesh, FaceParts parts, std::span<const std::uint8_t> restrained)
-      : mesh_(mesh), parts_(std::move(parts)) {
+      : mesh_(mesh), parts_(std::move(parts)), restrained_(restrained) {
     find_joints();
     rest_.assign(static_cast<std::size_t>(parts_.count), 1);
     held_.assign(rest_.size(), 0);
@@ -36,7 +36,7 @@ class Search {
         if (hinge.empty()) continue;
         rest_[part] = 0;
         found = true;
-        HangingPart hangs = describe(part, hinge);
+        HangingPart hangs = describe(part, hinge, nodes);
         if (!hangs.latches.empty()) hanging.push_back(std::move(hangs));
       }
     }
@@ -78,7 +78,10 @@ class Search {
     return hinge;
   }
 
-  [[nodiscard]] HangingPart describe(Index part, const std::vector<Index>& hinge) const {
+  [[nodiscard]] HangingPart describe(Index part, std::vector<Index> hinge,
+                                     const std::vector<Index>& joints) const {
+    for (Index n : joints)  // those of parts that hang on this one may be supports as well
+      if (restrained_[n]) hinge.push_back(n);
     const std::vector<Index>& elements = elements_[part];
     HangingPart hangs{static_cast<Index>(elements.size()), elements.front(), {}};
     std::set<Index> nodes;  // a latch on a joint would hold another part as well
@@ -97,6 +100,7 @@ class Search {
 
   const Mesh& mesh_;
   FaceParts parts_;
+  std::span<const std::uint8_t> restrained_;
   std::map<Index, std::set<Index>> joints_;
   std::map<Index, std::vector<Index>> nodes_of_;  // joints of a part
   std::vector<std::vector<Index>> elements_;      // of a part
