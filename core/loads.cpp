@@ -98,6 +98,21 @@ void Loads::add(std::size_t instrument) {
   }
 }
 
+Vec3 Loads::force_on_supports() const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    if (forces_[i].isZero(0)) continue;
+    const auto on = nodes(i);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto held = std::count_if(on.begin(), on.end(),
+                                      [&](Index n) { return problem_.dof(n, axis) == kNone; });
+      if (held > 0)
+        sum[axis] += forces_[i][axis] * static_cast<double>(held) / static_cast<double>(on.size());
+    }
+  }
+  return sum;
+}
+
 void Loads::sum_into(Load& load) {
   sorted_ = shares_;
   std::sort(sorted_.begin(), sorted_.end(), [](const Share& a, const Share& b) {

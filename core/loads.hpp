@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "fracture/criterion.hpp"
 #include "fem/node_elements.hpp"
+#include "fracture/criterion.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder {
@@ -35,6 +35,8 @@ class Loads {
   [[nodiscard]] std::span<const Index> nodes(std::size_t instrument) const;
   /// Total force of instrument i now; zero for grips.
   [[nodiscard]] const Vec3& force(std::size_t instrument) const { return forces_[instrument]; }
+  /// Of these, what acts on axes that supports hold.
+  [[nodiscard]] Vec3 force_on_supports() const;
   /// Per gripped dof: the instrument that grips it, and the axis.
   struct Gripped {
     std::size_t instrument;

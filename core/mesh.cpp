@@ -9,6 +9,7 @@
 
 #include "sunder/error.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder {
 namespace {
@@ -56,6 +57,12 @@ void validate_nodes(const Mesh& mesh, const std::string& where) {
   }
 }
 
+/// (x1-x0) x (x2-x0) . (x3-x0)
+double six_volumes(const Mesh& mesh, const std::array<Index, 4>& tet) {
+  const Vec3& x0 = mesh.nodes[tet[0]];
+  return (mesh.nodes[tet[1]] - x0).cross(mesh.nodes[tet[2]] - x0).dot(mesh.nodes[tet[3]] - x0);
+}
+
 void validate_tet(const Mesh& mesh, Index t, const std::string& where) {
   const auto& tet = mesh.tets[t];
   const std::string name = "element " + std::to_string(t);
@@ -66,15 +73,13 @@ void validate_tet(const Mesh& mesh, Index t, const std::string& where) {
                std::to_string(mesh.node_count() - 1));
     }
   }
-  const Vec3& x0 = mesh.nodes[tet[0]];
   double longest = 0;
   for (int i = 0; i < 4; ++i) {
     for (int j = i + 1; j < 4; ++j) {
       longest = std::max(longest, (mesh.nodes[tet[i]] - mesh.nodes[tet[j]]).norm());
     }
   }
-  const double six_v =
-      (mesh.nodes[tet[1]] - x0).cross(mesh.nodes[tet[2]] - x0).dot(mesh.nodes[tet[3]] - x0);
+  const double six_v = six_volumes(mesh, tet);
   if (!(std::abs(six_v) > kZeroVolume * longest * longest * longest)) {
     fail(InputFault::degenerate_element, where,
          name + " has zero volume; remove it or mend the mesh");
@@ -154,14 +159,41 @@ void validate(const Mesh& mesh, const std::string& where) {
   validate_surfaces(mesh, where);
 }
 
-Index drop_unused_nodes(Mesh& mesh) {
-  std::vector<Index> id(mesh.nodes.size(), kNone);
-  for (const auto& tet : mesh.tets) {
-    for (Index n : tet) id[n] = 0;
+Turned turn_inverted(Mesh& mesh) {
+  Turned turned;
+  for (Index t = 0; t < mesh.tet_count(); ++t) {
+    auto& tet = mesh.tets[t];
+    if (!std::all_of(tet.begin(), tet.end(),
+                     [&](Index n) { return n >= 0 && n < mesh.node_count(); })) {
+      continue;
+    }
+    if (!(six_volumes(mesh, tet) < 0)) continue;
+    std::swap(tet[2], tet[3]);
+    if (turned.count++ == 0) turned.first = t;
   }
+  return turned;
+}
+
+std::string sentence(const Turned& turned) {
+  return count_of(turned.count, "element of negative volume was",
+                  "elements of negative volume were") +
+         " turned: two corners swapped (first: element " + std::to_string(turned.first) + ")";
+}
+
+std::vector<std::uint8_t> used_nodes(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.nodes.size(), 0);
+  for (const auto& tet : mesh.tets) {
+    for (Index n : tet) used[n] = 1;
+  }
+  return used;
+}
+
+Index drop_unused_nodes(Mesh& mesh) {
+  const std::vector<std::uint8_t> used = used_nodes(mesh);
+  std::vector<Index> id(mesh.nodes.size(), kNone);
   Index kept = 0;
   for (std::size_t n = 0; n < id.size(); ++n) {
-    if (id[n] == kNone) continue;
+    if (!used[n]) continue;
     mesh.nodes[kept] = mesh.nodes[n];
     id[n] = kept++;
   }

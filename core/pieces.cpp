@@ -5,9 +5,12 @@
 
 namespace sunder {
 
-LooseSearch::LooseSearch(const Problem& problem) : problem_(problem) {
+LooseSearch::LooseSearch(const Problem& problem)
+    : problem_(problem), used_(used_nodes(problem.mesh())) {
+  unused_ = static_cast<std::size_t>(std::ranges::count(used_, std::uint8_t{0}));
   const auto gripped = problem.gripped_dofs();
   for (Index n = 0; n < problem.node_count(); ++n) {
+    if (!used_[static_cast<std::size_t>(n)]) continue;
     for (int axis = 0; axis < 3; ++axis) {
       const Index d = problem.dof(n, axis);
       if (d == kNone || std::binary_search(gripped.begin(), gripped.end(), d)) {
@@ -38,7 +41,7 @@ void LooseSearch::sort_held() {
 void LooseSearch::look(std::span<const std::uint8_t> destroyed) {
   const Mesh& mesh = problem_.mesh();
   fem::find_bodies(mesh, destroyed, bodies_, room_);
-  isolated_ = static_cast<std::size_t>(std::ranges::count(bodies_.body_of_node, kNone));
+  isolated_ = static_cast<std::size_t>(std::ranges::count(bodies_.body_of_node, kNone)) - unused_;
   sort_held();
   pieces_ = cut_off_ = 0;
   piece_of_body_.assign(static_cast<std::size_t>(bodies_.count), kNone);

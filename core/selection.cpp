@@ -6,6 +6,7 @@
 
 #include "sunder/error.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder {
 namespace {
@@ -62,20 +63,31 @@ std::vector<Index> ids_where(Index count, Predicate&& predicate) {
   return ids;
 }
 
+/// A place selects no node that belongs to no element.
+template <class Predicate>
+std::vector<Index> used_where(const Mesh& mesh, Predicate&& predicate) {
+  std::vector<Index> ids = ids_where(mesh.node_count(), predicate);
+  const std::vector<std::uint8_t> used = used_nodes(mesh);
+  std::erase_if(ids, [&](Index n) { return !used[n]; });
+  return ids;
+}
+
 std::vector<Index> nodes_of_surface(const Mesh& mesh, const std::string& name,
                                     const std::string& what) {
   const auto it = std::find_if(mesh.surfaces.begin(), mesh.surfaces.end(),
                                [&](const NamedSurface& s) { return s.name == name; });
   if (it == mesh.surfaces.end()) {
-    std::string known;
-    for (const NamedSurface& s : mesh.surfaces) known.append(" ").append(in_quotes(s.name));
+    std::vector<std::string> known;
+    for (const NamedSurface& s : mesh.surfaces) known.push_back(s.name);
     throw InputError(InputFault::unknown_name,
                      what + " names surface " + in_quotes(name) + ", but the mesh has " +
-                         (known.empty() ? "no named surfaces" : "only" + known));
+                         (known.empty() ? "no named surfaces" : "only " + name_list(known)));
   }
   std::vector<Index> ids;
   for (const auto& t : it->triangles) ids.insert(ids.end(), t.begin(), t.end());
   sort_unique(ids);
+  const std::vector<std::uint8_t> used = used_nodes(mesh);
+  std::erase_if(ids, [&](Index n) { return !used[n]; });
   return ids;
 }
 
@@ -84,10 +96,10 @@ std::vector<Index> elements_of_volume(const Mesh& mesh, const std::string& name,
   const auto it = std::find_if(mesh.volumes.begin(), mesh.volumes.end(),
                                [&](const NamedVolume& v) { return v.name == name; });
   if (it == mesh.volumes.end()) {
-    std::string known;
-    for (const NamedVolume& v : mesh.volumes) known.append(" ").append(in_quotes(v.name));
-    throw InputError(InputFault::unknown_name,
-                     what + " names volume " + in_quotes(name) + ", but the mesh has only" + known);
+    std::vector<std::string> known;
+    for (const NamedVolume& v : mesh.volumes) known.push_back(v.name);
+    throw InputError(InputFault::unknown_name, what + " names volume " + in_quotes(name) +
+                                                   ", but the mesh has only " + name_list(known));
   }
   const Index volume = static_cast<Index>(it - mesh.volumes.begin());
   return ids_where(mesh.tet_count(), [&](Index t) { return mesh.volume_of[t] == volume; });
@@ -111,25 +123,23 @@ std::vector<Index> not_empty(std::vector<Index> ids, const char* kind, const std
 
 std::vector<Index> select_nodes(const Mesh& mesh, const NodeSelection& selection,
                                 const std::string& what) {
-  std::vector<Index> ids =
-      std::visit(Overloaded{
-                     [&](const std::vector<Index>& list) {
-                       return checked_ids(list, mesh.node_count(), "node", what);
-                     },
-                     [&](const Box& box) {
-                       check_box(box, what);
-                       return ids_where(mesh.node_count(),
-                                        [&](Index n) { return inside(box, mesh.nodes[n]); });
-                     },
-                     [&](const Ball& ball) {
-                       check_ball(ball, what);
-                       return ids_where(mesh.node_count(), [&](Index n) {
-                         return (mesh.nodes[n] - ball.center).norm() <= ball.radius;
-                       });
-                     },
-                     [&](const SurfaceName& s) { return nodes_of_surface(mesh, s.name, what); },
-                 },
-                 selection);
+  std::vector<Index> ids = std::visit(
+      Overloaded{
+          [&](const std::vector<Index>& list) {
+            return checked_ids(list, mesh.node_count(), "node", what);
+          },
+          [&](const Box& box) {
+            check_box(box, what);
+            return used_where(mesh, [&](Index n) { return inside(box, mesh.nodes[n]); });
+          },
+          [&](const Ball& ball) {
+            check_ball(ball, what);
+            return used_where(
+                mesh, [&](Index n) { return (mesh.nodes[n] - ball.center).norm() <= ball.radius; });
+          },
+          [&](const SurfaceName& s) { return nodes_of_surface(mesh, s.name, what); },
+      },
+      selection);
   return not_empty(std::move(ids), "node", what);
 }
 

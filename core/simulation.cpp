@@ -9,12 +9,13 @@
 
 #include "attribution.hpp"
 #include "fem/element.hpp"
-#include "fracture/finding.hpp"
 #include "fracture/criterion.hpp"
+#include "fracture/finding.hpp"
 #include "loads.hpp"
 #include "pieces.hpp"
 #include "sunder/error.hpp"
 #include "sunder/stress_measures.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder {
 namespace {
@@ -249,8 +250,13 @@ std::span<const NodalForce> Simulation::instrument_forces() {
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     if (std::holds_alternative<Grip>(instruments[i].action)) continue;
     const auto nodes = loads_->nodes(i);
-    for (Index n : nodes)
-      instrument_forces_.push_back({n, loads_->force(i) / static_cast<double>(nodes.size())});
+    for (Index n : nodes) {
+      // What acts on a held axis is taken by the support there and does not reach the body.
+      NodalForce at{n, loads_->force(i) / static_cast<double>(nodes.size())};
+      for (int axis = 0; axis < 3; ++axis)
+        if (problem_->dof(n, axis) == kNone) at.force[axis] = 0;
+      instrument_forces_.push_back(at);
+    }
   }
   add_grip_forces();
   return instrument_forces_;
@@ -419,24 +425,27 @@ std::vector<std::string> Simulation::warnings() const {
     if (std::ranges::find(all, words) == all.end()) all.push_back(std::move(words));
   }
   if (capped_.count > 0) {
-    all.push_back(capped_.sentence(
-        "ended at fracture.max_events = " + std::to_string(problem_->scene().fracture.max_events) +
-        " events; more may have been ready to break"));
+    all.push_back(capped_.sentence("ended at fracture.max_events = " +
+                                   count_of(problem_->scene().fracture.max_events, "event") +
+                                   "; more may have been ready to break"));
   }
   if (polished_.count > 0) {
     all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
   }
   add_deformation_warnings(all);
   if (loose_nodes_ > 0) {
-    all.push_back(std::to_string(loose_nodes_) +
-                  " nodes are held by destroyed elements only (since step " +
-                  std::to_string(loose_nodes_step_) + "); their displacement has no meaning");
+    all.push_back(count_of(static_cast<long long>(loose_nodes_), "node is", "nodes are") +
+                  " held by destroyed elements only (since step " +
+                  std::to_string(loose_nodes_step_) + "); " +
+                  (loose_nodes_ == 1 ? "its" : "their") + " displacement has no meaning");
   }
   if (loose_pieces_ > 0) {
-    all.push_back(std::to_string(loose_pieces_) + " pieces with " +
-                  std::to_string(loose_elements_) + " elements are cut off (since step " +
-                  std::to_string(loose_pieces_step_) +
-                  "); only destroyed elements hold them and their displacement has no meaning");
+    const bool one = loose_pieces_ == 1;
+    all.push_back(count_of(static_cast<long long>(loose_pieces_), "piece") + " with " +
+                  count_of(static_cast<long long>(loose_elements_), "element") +
+                  (one ? " is" : " are") + " cut off (since step " +
+                  std::to_string(loose_pieces_step_) + "); only destroyed elements hold " +
+                  (one ? "it and its" : "them and their") + " displacement has no meaning");
   }
   return all;
 }
@@ -492,7 +501,7 @@ Vec3 Simulation::support_reaction() const {
   std::vector<double> u(3 * problem_->mesh().nodes.size());
   backend_->read_displacement(u);
   const auto destroyed = backend_->destroyed();
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum = -loads_->force_on_supports();
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     const auto& tet = problem_->mesh().tets[e];
     for (int a = 0; a < 4; ++a) {

@@ -112,10 +112,12 @@ typedef struct sunder_scene_handle* sunder_scene;
 SUNDER_API sunder_status sunder_scene_create(sunder_scene* scene);
 SUNDER_API sunder_status sunder_scene_destroy(sunder_scene scene);
 
-/// The body. `nodes`: (nodes x 3) coordinates [mm]. `tets`: (tets x 4) node ids, positive volume:
-/// (x1-x0) x (x2-x0) . (x3-x0) > 0. `material_of`: one index of sunder_scene_add_material per
-/// tetrahedron, or null with size 0: all 0. Sizes in values: 3 * nodes, 4 * tets, tets. Replaces
-/// the mesh that was there. Shape and ids are checked when a plan or a simulation is made.
+/// The body. `nodes`: (nodes x 3) coordinates [mm]; those that no tetrahedron uses keep their ids
+/// and stay in place. `tets`: (tets x 4) node ids in either orientation: those of negative volume
+/// (x1-x0) x (x2-x0) . (x3-x0) < 0 are turned, with a warning. `material_of`: one index of
+/// sunder_scene_add_material per tetrahedron, or null with size 0: all 0. Sizes in values: 3 *
+/// nodes, 4 * tets, tets. Replaces the mesh that was there. Shape and ids are checked when a plan
+/// or a simulation is made.
 SUNDER_API sunder_status sunder_scene_set_mesh(sunder_scene scene, const double* nodes,
                                                size_t nodes_size, const int32_t* tets,
                                                size_t tets_size, const int32_t* material_of,

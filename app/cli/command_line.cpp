@@ -54,11 +54,11 @@ std::string unexpected_argument(const CLI::App& command, const std::string& argu
   const bool option = argument.starts_with("-");
   const std::vector<std::string> commands = command_names(command);
   if (!commands.empty() && !option)
-    return path_of(command) + " has no command \"" + argument + "\"; allowed is " +
+    return path_of(command) + " has no command " + in_quotes(argument) + "; allowed is " +
            quoted_list(commands);
   const std::string close = option ? nearest(argument, option_names(command)) : "";
-  return path_of(command) + (option ? " has no option \"" : " takes no further argument \"") +
-         argument + "\"" + (close.empty() ? "" : ", perhaps " + close + " was meant") +
+  return path_of(command) + (option ? " has no option " : " takes no further argument ") +
+         in_quotes(argument) + (close.empty() ? "" : ", perhaps " + close + " was meant") +
          see(command);
 }
 

@@ -5,6 +5,7 @@
 #include "app/commands/commands.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::app {
 namespace {
@@ -81,7 +82,7 @@ SceneArguments scene_arguments(const Options& o) {
   if (o.steps) arguments.steps = whole_number("--steps", *o.steps, 1);
   for (const std::string& text : o.set)
     if (text.find('=') == std::string::npos || text.front() == '=')
-      throw UsageError("--set is \"" + text +
+      throw UsageError("--set is \"" + shortened(text, 120) +
                        "\"; allowed is KEY.PATH=VALUE such as instrument.0.force=[0,-50,0]");
   arguments.set = o.set;
   return arguments;

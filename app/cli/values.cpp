@@ -13,7 +13,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& option, const std::string& value,
                          const std::string& allowed) {
-  throw UsageError(option + " is \"" + value + "\"; allowed is " + allowed);
+  throw UsageError(option + " is " + in_quotes(value) + "; allowed is " + allowed);
 }
 
 template <class T>

@@ -19,6 +19,14 @@ namespace {
 }  // namespace
 
 std::string read_file(const std::filesystem::path& path, std::size_t largest) {
+  constexpr std::size_t kLongestName = 255;  // bytes, of Linux's file systems
+  for (const std::filesystem::path& part : path) {
+    const std::string name = part.string();
+    if (name.size() <= kLongestName) continue;
+    throw InputError(InputFault::unreadable_file,
+                     in_quotes(name) + ": the name has " + std::to_string(name.size()) +
+                         " bytes; allowed: up to " + std::to_string(kLongestName));
+  }
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (status.type() == std::filesystem::file_type::not_found) fail(path, "no such file");

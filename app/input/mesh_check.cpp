@@ -16,7 +16,7 @@ int read_format(MshCursor& cursor) {
   const std::string version(cursor.word());
   if (version != "2.2" && version != "2.1" && version != "2" && version != "2.0" &&
       version != "4.1")
-    cursor.fail("the version is " + in_quotes(version, 20) + "; allowed: 2.2 and 4.1");
+    cursor.fail("the version is " + in_quotes(version, 20) + "; allowed: 1, 2.2 and 4.1");
   const std::int64_t type = cursor.text_integer("the file type");
   if (type != 0 && type != 1)
     cursor.fail("the file type is " + std::to_string(type) + "; allowed: 0 (ascii), 1 (binary)");
@@ -73,9 +73,9 @@ class MshReader {
     read_first_section();
     while (next_section()) read_section();
     cursor_.set_section("");
-    for (const char* needed : {"$Nodes", "$Elements"}) {
+    for (const std::string& needed : {nodes_name(), elements_name()}) {
       if (!seen_.contains(needed))
-        cursor_.fail(std::string("the section ") + needed +
+        cursor_.fail("the section " + needed +
                      " is missing: the file is truncated or holds no mesh");
     }
     return std::move(contents_);
@@ -88,10 +88,15 @@ class MshReader {
       skip_section();
       more = next_section();
     }
+    if (section_ == "$NOD") {
+      version_ = 1;
+      read_section();
+      return;
+    }
     if (section_ != "$MeshFormat")
       cursor_.fail(
-          "the file does not begin with $MeshFormat: it is no .msh file of version 2.2 "
-          "or 4.1");
+          "the file begins neither with $MeshFormat nor with $NOD: it is no .msh file of version "
+          "1, 2.2 or 4.1");
     version_ = read_format(cursor_);
     close_section();
   }
@@ -101,24 +106,34 @@ class MshReader {
     cursor_.set_section("");
     section_ = std::string(cursor_.word().substr(0, 60));
     if (section_.empty()) return false;
-    if (section_[0] != '$' || section_.starts_with("$End"))
+    if (section_[0] != '$' || section_.starts_with("$End") || section_.starts_with("$END"))
       cursor_.fail("expected the begin of a section ($...)");
     cursor_.set_section(section_);
-    static const std::set<std::string> once = {"$MeshFormat", "$PhysicalNames", "$Entities",
-                                               "$Nodes", "$Elements"};
+    static const std::set<std::string> once = {
+        "$MeshFormat", "$PhysicalNames", "$Entities", "$Nodes", "$Elements", "$NOD", "$ELM"};
     if (once.contains(section_) && !seen_.insert(section_).second)
       cursor_.fail("the section occurs twice");
     return true;
   }
 
+  [[nodiscard]] std::string nodes_name() const { return version_ == 1 ? "$NOD" : "$Nodes"; }
+  [[nodiscard]] std::string elements_name() const { return version_ == 1 ? "$ELM" : "$Elements"; }
+  [[nodiscard]] std::string end_name() const {
+    return (version_ == 1 ? "$END" : "$End") + section_.substr(1);
+  }
+
   void read_section() {
-    if (section_ == "$PhysicalNames") {
+    if (version_ == 1 && section_ == "$NOD") {
+      read_nodes_1(cursor_, contents_);
+    } else if (version_ == 1 && section_ == "$ELM") {
+      read_elements_1(cursor_, contents_);
+    } else if (section_ == "$PhysicalNames") {
       read_physical_names(cursor_);
     } else if (section_ == "$Entities" && version_ == 4) {
       skip_entities_4(cursor_);
-    } else if (section_ == "$Nodes") {
+    } else if (version_ != 1 && section_ == "$Nodes") {
       version_ == 4 ? read_nodes_4(cursor_, contents_) : read_nodes_2(cursor_, contents_);
-    } else if (section_ == "$Elements") {
+    } else if (version_ != 1 && section_ == "$Elements") {
       if (!seen_.contains("$Nodes")) cursor_.fail("stands before $Nodes");
       version_ == 4 ? read_elements_4(cursor_, contents_) : read_elements_2(cursor_, contents_);
     } else {
@@ -129,14 +144,14 @@ class MshReader {
   }
 
   void close_section() {
-    const std::string end = "$End" + section_.substr(1);
+    const std::string end = end_name();
     if (cursor_.word() != end)
       cursor_.fail("it is not closed by " + end +
                    " where it should end: a count is wrong or the file is truncated");
   }
 
   void skip_section() {
-    const std::string end = "$End" + section_.substr(1);
+    const std::string end = end_name();
     if (!cursor_.skip_past_line(end))
       cursor_.fail("it is not closed by " + end + ": the file is truncated");
   }

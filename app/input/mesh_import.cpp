@@ -7,9 +7,11 @@
 #include "app/input/child_process.hpp"
 #include "app/input/end_check.hpp"
 #include "app/input/file_bytes.hpp"
-#include "app/input/gmsh_reader.hpp"
+#include "app/input/gmsh_tasks.hpp"
 #include "app/input/nearest.hpp"
+#include "app/input/raw_mesh.hpp"
 #include "app/input/vtk_check.hpp"
+#include "app/input/vtu_reader.hpp"
 #include "sunder/error.hpp"
 #include "sunder/in_quotes.hpp"
 
@@ -20,7 +22,7 @@ constexpr std::size_t kLargestMesh = std::size_t{8} << 30U;  // bytes
 
 // gmsh takes any other file for a script of its own language and would run it.
 const std::vector<std::string>& readable_extensions() {
-  static const std::vector<std::string> extensions = {".msh", ".vtk", ".mesh",
+  static const std::vector<std::string> extensions = {".msh", ".vtk", ".vtu", ".mesh",
                                                       ".unv", ".bdf", ".nas"};
   return extensions;
 }
@@ -39,7 +41,10 @@ std::string checked_extension(const std::filesystem::path& path) {
   if (std::find(known.begin(), known.end(), extension) == known.end()) {
     throw InputError(InputFault::unreadable_file,
                      path.string() + ": the extension " + in_quotes(extension) +
-                         " is not that of a mesh file; allowed: " + quoted_list(known));
+                         " is not that of a mesh file; allowed: " + quoted_list(known) +
+                         (extension == ".inp" ? " (gmsh writes .inp but does not read it: convert "
+                                                "it, say by `meshio convert mesh.inp mesh.vtu`)"
+                                              : ""));
   }
   return extension;
 }
@@ -77,17 +82,9 @@ ChildLimits child_limits(const ImportLimits& limits, std::size_t file_bytes) {
   return result;
 }
 
-// First byte: 'M' and the mesh, or 'E' and why gmsh refused.
-std::string read_to_bytes(const std::string& path) {
-  try {
-    return "M" + to_bytes(read_with_gmsh(path));
-  } catch (const InputError& error) {
-    return std::string("E") + error.what();
-  }
-}
-
 RawMesh read_in_child(const std::filesystem::path& path, const ChildLimits& limits) {
-  const ChildOutcome outcome = run_in_child([&] { return read_to_bytes(path.string()); }, limits);
+  const ChildOutcome outcome =
+      run_in_child([&] { return gmsh_task("read", {path.string()}); }, limits);
   const std::string error = last_gmsh_error(outcome.error_text);
   switch (outcome.end) {
     case ChildOutcome::End::timed_out:
@@ -118,19 +115,36 @@ RawMesh read_in_child(const std::filesystem::path& path, const ChildLimits& limi
 // What the checks before gmsh found.
 struct Checked {
   std::size_t bytes = 0;
+  std::optional<RawMesh> vtu;  // read here, without gmsh
   std::optional<MshContents> msh;
   std::optional<VtkContents> vtk;
 };
+
+VtkContents check_vtk_orders(std::string_view bytes, const std::string& name) {
+  VtkContents contents = check_vtk(bytes, name);
+  const bool mixed = contents.first_order > 0 && contents.first_order < contents.tetrahedra;
+  if (contents.unread == 0 && !mixed) return contents;
+  throw InputError(
+      InputFault::unreadable_file,
+      name + ": has tetrahedra of " +
+          (mixed ? "first and of second order, of which gmsh reads one kind only from "
+                   ".vtk"
+                 : "VTK's type 71 or 78 (Lagrange, Bezier), which gmsh does not read") +
+          "; save it as .vtu or .msh, whose corner nodes are used, or all of it as "
+          "linear tetrahedra (type 10)");
+}
 
 Checked check_file(const std::filesystem::path& path) {
   const std::string extension = checked_extension(path);
   const std::string bytes = read_file(path, kLargestMesh);
   const std::string name = path.string();
-  Checked checked{bytes.size(), std::nullopt, std::nullopt};
+  Checked checked{bytes.size(), std::nullopt, std::nullopt, std::nullopt};
   if (extension == ".msh")
     checked.msh = check_msh(bytes, name);
   else if (extension == ".vtk")
-    checked.vtk = check_vtk(bytes, name);
+    checked.vtk = check_vtk_orders(bytes, name);
+  else if (extension == ".vtu")
+    checked.vtu = read_vtu(bytes, name);
   else
     check_end(bytes, extension, name);
   const bool none = (checked.msh && checked.msh->tetrahedra == 0) ||
@@ -144,6 +158,7 @@ Checked check_file(const std::filesystem::path& path) {
 Mesh import_mesh(const std::filesystem::path& path, std::vector<std::string>* warnings,
                  const ImportLimits& limits) {
   const Checked checked = check_file(path);
+  if (checked.vtu) return to_mesh(*checked.vtu, nullptr, path.string(), warnings);
   RawMesh raw = read_in_child(path, child_limits(limits, checked.bytes));
   if (checked.vtk) set_groups_in_order(raw, checked.vtk->tet_tags);
   return to_mesh(raw, checked.msh ? &*checked.msh : nullptr, path.string(), warnings);

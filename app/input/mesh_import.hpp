@@ -18,15 +18,16 @@ struct ImportLimits {
   std::size_t memory_bytes = 0;          ///< of gmsh; 0: 2 GiB and 64 times the file's size
 };
 
-/// Reads the tetrahedra of .msh (2.2 and 4.1, ascii and binary), .vtk (legacy), .mesh, .unv, .bdf
-/// and .nas files, corner nodes only; nodes and elements in the order of the file.
+/// Reads the tetrahedra of .msh (1, 2.2 and 4.1, ascii and binary), .vtk (legacy), .vtu, .mesh,
+/// .unv, .bdf and .nas files, corner nodes only; nodes and elements in the order of the file.
 ///
 /// Volumes are the physical groups of dimension 3, ordered by tag; a group without name is
 /// "volume-<tag>", tetrahedra of no group form the volume "volume" (tag 0). In a file without such
 /// groups but several entities (.mesh references, .bdf properties) these are the volumes, as
 /// "volume-<entity>". Surfaces are the
 /// physical groups of dimension 2. A .vtk file's volumes are "volume-<tag>" by its cell data
-/// (vtk_check.hpp). Nodes that no tetrahedron uses are dropped with a warning.
+/// (vtk_check.hpp), a .vtu file's the same with the names of its field data (vtu_reader.hpp). Nodes
+/// that no tetrahedron uses are dropped with a warning, inverted elements turned with one.
 /// Throws InputError.
 [[nodiscard]] Mesh import_mesh(const std::filesystem::path& path,
                                std::vector<std::string>* warnings = nullptr,

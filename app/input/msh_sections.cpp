@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "app/input/tag_index.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::app {
 namespace {
@@ -20,12 +21,12 @@ std::uint64_t read_tag(MshCursor& cursor, const char* what) {
 
 // Node numbers of one element; all must have been declared.
 void read_element_nodes_2(MshCursor& cursor, const TagIndex& nodes, std::uint64_t element,
-                          int count) {
+                          int count, const char* section) {
   for (int i = 0; i < count; ++i) {
     const int node = cursor.int32("a node of an element");
     if (node < 1 || !nodes.find(static_cast<std::uint64_t>(node)))
       cursor.fail("element " + std::to_string(element) + " uses node " + std::to_string(node) +
-                      ", which $Nodes does not have",
+                      ", which " + section + " does not have",
                   InputFault::bad_id);
   }
 }
@@ -47,16 +48,14 @@ void read_element_2(MshCursor& cursor, const TagIndex& nodes, MshContents& conte
     const int tag = cursor.int32("a tag of an element");
     if (i == 0) physical = tag;
   }
-  read_element_nodes_2(cursor, nodes, element, nodes_of_type(cursor, header.type));
+  read_element_nodes_2(cursor, nodes, element, nodes_of_type(cursor, header.type), "$Nodes");
   contents.element_tags.push_back(element);
   contents.element_physical.push_back(physical);
   if (is_tetrahedron(header.type)) ++contents.tetrahedra;
 }
 
 std::uint64_t element_number_2(MshCursor& cursor) {
-  const int number = cursor.int32("an element number");
-  return checked_tag(cursor, number < 0 ? 0 : static_cast<std::uint64_t>(number),
-                     "an element number");
+  return checked_tag(cursor, std::int64_t{cursor.int32("an element number")}, "an element number");
 }
 
 // Binary elements come in runs of one type.
@@ -69,7 +68,7 @@ void read_runs_2(MshCursor& cursor, const TagIndex& nodes, MshContents& contents
     header.tags = cursor.int32("a number of tags");
     check_header_2(cursor, header);
     if (run < 1 || static_cast<std::uint64_t>(run) > count - contents.element_tags.size())
-      cursor.fail("a run of " + std::to_string(run) + " elements does not fit the " +
+      cursor.fail("a run of " + count_of(run, "element") + " does not fit the " +
                   std::to_string(count) + " declared");
     for (int i = 0; i < run; ++i)
       read_element_2(cursor, nodes, contents, element_number_2(cursor), header);
@@ -79,7 +78,8 @@ void read_runs_2(MshCursor& cursor, const TagIndex& nodes, MshContents& contents
 void skip_tags_4(MshCursor& cursor, const char* what) {
   const std::uint64_t count = cursor.size("a number of tags");
   if (count > cursor.remaining())
-    cursor.fail("an entity has " + std::to_string(count) + " tags, more than the file can hold");
+    cursor.fail("an entity has " + count_of(static_cast<long long>(count), "tag") +
+                ", more than the file can hold");
   for (std::uint64_t i = 0; i < count; ++i) static_cast<void>(cursor.int32(what));
 }
 
@@ -159,11 +159,44 @@ std::uint64_t checked_tag(const MshCursor& cursor, std::uint64_t tag, const char
   return tag;
 }
 
+std::uint64_t checked_tag(const MshCursor& cursor, std::int64_t tag, const char* what) {
+  if (tag < 0)
+    cursor.fail(std::string(what) + " is " + std::to_string(tag) + "; allowed: 1 to " +
+                    std::to_string(std::numeric_limits<std::int32_t>::max()),
+                InputFault::bad_id);
+  return checked_tag(cursor, static_cast<std::uint64_t>(tag), what);
+}
+
 void check_unique(const MshCursor& cursor, const std::vector<std::uint64_t>& tags,
                   const char* what) {
   if (const auto twice = TagIndex(tags).duplicate())
     cursor.fail(std::string(what) + " " + std::to_string(*twice) + " occurs twice",
                 InputFault::bad_id);
+}
+
+void read_nodes_1(MshCursor& cursor, MshContents& contents) { read_nodes_2(cursor, contents); }
+
+// number type physical-group entity node-count nodes...
+void read_elements_1(MshCursor& cursor, MshContents& contents) {
+  const std::uint64_t count =
+      cursor.check_count(cursor.text_integer("the number of elements"), 8, "elements");
+  const TagIndex nodes(contents.node_tags);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t element = element_number_2(cursor);
+    const int type = cursor.int32("an element type");
+    const int physical = cursor.int32("a physical group");
+    static_cast<void>(cursor.int32("an entity"));
+    const int corners = cursor.int32("a number of nodes");
+    if (corners != nodes_of_type(cursor, type))
+      cursor.fail("element " + std::to_string(element) + " of type " + std::to_string(type) +
+                  " has " + count_of(corners, "node") +
+                  "; allowed: " + std::to_string(nodes_of_type(cursor, type)));
+    read_element_nodes_2(cursor, nodes, element, corners, "$NOD");
+    contents.element_tags.push_back(element);
+    contents.element_physical.push_back(physical);
+    if (is_tetrahedron(type)) ++contents.tetrahedra;
+  }
+  check_unique(cursor, contents.element_tags, "element");
 }
 
 void read_nodes_2(MshCursor& cursor, MshContents& contents) {
@@ -172,9 +205,8 @@ void read_nodes_2(MshCursor& cursor, MshContents& contents) {
   cursor.begin_binary_body();
   contents.node_tags.reserve(count);
   for (std::uint64_t i = 0; i < count; ++i) {
-    const int number = cursor.int32("a node number");
     contents.node_tags.push_back(
-        checked_tag(cursor, number < 0 ? 0 : static_cast<std::uint64_t>(number), "a node number"));
+        checked_tag(cursor, std::int64_t{cursor.int32("a node number")}, "a node number"));
     for (int axis = 0; axis < 3; ++axis) static_cast<void>(cursor.real("a node's coordinate"));
   }
   check_unique(cursor, contents.node_tags, "node");

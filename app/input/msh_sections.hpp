@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of $Nodes, $Elements and $Entities in the two versions of .msh.
+// The bodies of $Nodes, $Elements and $Entities in the versions of .msh; version 1 calls them
+// $NOD and $ELM.
 #pragma once
 
 #include "app/input/mesh_check.hpp"
 #include "app/input/msh_cursor.hpp"
 
 namespace sunder::app {
+
+void read_nodes_1(MshCursor& cursor, MshContents& contents);
+void read_elements_1(MshCursor& cursor, MshContents& contents);
 
 void read_nodes_2(MshCursor& cursor, MshContents& contents);
 void read_elements_2(MshCursor& cursor, MshContents& contents);
@@ -19,6 +23,8 @@ void read_elements_4(MshCursor& cursor, MshContents& contents);
 [[nodiscard]] bool is_tetrahedron(int type);
 
 /// A node or element tag; fails outside 1 ... 2^31 - 1.
+[[nodiscard]] std::uint64_t checked_tag(const MshCursor& cursor, std::int64_t tag,
+                                        const char* what);
 [[nodiscard]] std::uint64_t checked_tag(const MshCursor& cursor, std::uint64_t tag,
                                         const char* what);
 

@@ -7,6 +7,7 @@
 #include "app/input/toml_guard.hpp"
 #include "sunder/error.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::app {
 namespace {
@@ -18,7 +19,7 @@ struct Segment {
 
 [[noreturn]] void fail(InputFault fault, const std::string& override_text,
                        const std::string& rest) {
-  throw InputError(fault, "--set " + one_line(override_text) + ": " + rest);
+  throw InputError(fault, "--set " + shortened(override_text, 120) + ": " + rest);
 }
 
 // Splits `a.0."b.c"=value`; returns the position after '='.

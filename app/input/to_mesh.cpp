@@ -7,6 +7,7 @@
 #include "app/input/raw_mesh.hpp"
 #include "app/input/tag_index.hpp"
 #include "sunder/error.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::app {
 namespace {
@@ -29,7 +30,6 @@ class Converter {
     place_nodes();
     place_volumes();
     place_tets();
-    check_distinct();
     place_surfaces();
     return std::move(mesh_);
   }
@@ -39,17 +39,23 @@ class Converter {
     throw InputError(fault, name_ + ": " + message);
   }
 
+  static std::string solids(std::uint64_t count) {
+    return count_of(static_cast<long long>(count), "solid element that is no tetrahedron",
+                    "solid elements that are no tetrahedra");
+  }
+
   void check_solids() const {
     if (raw_.other_solids > 0) {
       fail(raw_.tet_tags.empty() ? InputFault::no_tetrahedra : InputFault::unreadable_file,
-           "has " + std::to_string(raw_.other_solids) + " solid elements that are no tetrahedra (" +
-               raw_.other_name + "); allowed: tetrahedra");
+           "has " + solids(raw_.other_solids) + " (" + raw_.other_name + "); allowed: tetrahedra");
     }
     if (raw_.tet_tags.empty()) fail(InputFault::no_tetrahedra, "has no tetrahedra");
     if (contents_ && contents_->tetrahedra != raw_.tet_tags.size()) {
-      fail(InputFault::unreadable_file, "holds " + std::to_string(contents_->tetrahedra) +
-                                            " tetrahedra, of which gmsh read " +
-                                            std::to_string(raw_.tet_tags.size()));
+      fail(
+          InputFault::unreadable_file,
+          "holds " +
+              count_of(static_cast<long long>(contents_->tetrahedra), "tetrahedron", "tetrahedra") +
+              ", of which gmsh read " + std::to_string(raw_.tet_tags.size()));
     }
     constexpr std::size_t kMost = std::numeric_limits<Index>::max() / 4;
     if (raw_.tet_tags.size() > kMost || raw_.node_tags.size() > kMost)
@@ -128,25 +134,6 @@ class Converter {
     }
   }
 
-  // Two elements in one place would count their stiffness twice.
-  void check_distinct() const {
-    std::vector<std::pair<std::array<Index, 4>, Index>> corners;
-    corners.reserve(mesh_.tets.size());
-    for (Index e = 0; e < mesh_.tet_count(); ++e) {
-      corners.emplace_back(mesh_.tets[static_cast<std::size_t>(e)], e);
-      std::sort(corners.back().first.begin(), corners.back().first.end());
-    }
-    std::sort(corners.begin(), corners.end());
-    const auto twice =
-        std::adjacent_find(corners.begin(), corners.end(),
-                           [](const auto& a, const auto& b) { return a.first == b.first; });
-    if (twice == corners.end()) return;
-    fail(InputFault::degenerate_element,
-         "the elements " + std::to_string(twice->second) + " and " +
-             std::to_string(std::next(twice)->second) +
-             " have the same four nodes; allowed: each place once, in one volume");
-  }
-
   void place_surfaces() {
     std::vector<std::size_t> order(raw_.triangle_tags.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -183,16 +170,22 @@ class Converter {
 Mesh to_mesh(const RawMesh& raw, const MshContents* contents, const std::string& name,
              std::vector<std::string>* warnings) {
   Mesh mesh = Converter(raw, contents, name).convert();
+  const Turned turned = turn_inverted(mesh);
   validate(mesh, name);
+  if (warnings && turned.count > 0) warnings->push_back(name + ": " + sentence(turned));
   drop_unused_nodes(mesh);
   const std::size_t declared = contents ? contents->node_tags.size() : raw.node_tags.size();
   if (warnings && declared > mesh.nodes.size()) {
-    warnings->push_back(name + ": dropped " + std::to_string(declared - mesh.nodes.size()) +
-                        " nodes that no tetrahedron uses");
+    const auto dropped = static_cast<long long>(declared - mesh.nodes.size());
+    warnings->push_back(name + ": dropped " + count_of(dropped, "node") +
+                        " that no tetrahedron uses");
   }
   if (warnings && raw.curved > 0) {
-    warnings->push_back(name + ": " + std::to_string(raw.curved) +
-                        " tetrahedra of higher order are used with their four corner nodes only");
+    warnings->push_back(name + ": " +
+                        count_of(static_cast<long long>(raw.curved),
+                                 "tetrahedron of higher order is used with its",
+                                 "tetrahedra of higher order are used with their") +
+                        " four corner nodes only");
   }
   return mesh;
 }

@@ -7,6 +7,7 @@
 
 #include "app/input/nearest.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::app {
 namespace {
@@ -14,14 +15,22 @@ namespace {
 std::string printed(const toml::node& node) {
   std::ostringstream out;
   if (node.is_integer()) out << *node.as_integer();
-  if (node.is_floating_point()) out << *node.as_floating_point();
+  if (node.is_floating_point()) out << in_digits(node.as_floating_point()->get());
   return out.str();
+}
+
+constexpr std::size_t kLongestOverride = 120;  // bytes shown
+
+/// A key path in quotes, unless it has them already.
+std::string quoted_path(const std::string& path) {
+  return path.find('"') == std::string::npos ? in_quotes(path, 200) : path;
 }
 
 }  // namespace
 
 std::string location(const toml::source_region& region, const std::string& file) {
-  if (region.path && region.path->starts_with("--set ")) return *region.path;
+  if (region.path && region.path->starts_with("--set "))
+    return shortened(*region.path, kLongestOverride);
   if (region.begin.line == 0) return file;
   return file + ":" + std::to_string(region.begin.line) + ":" + std::to_string(region.begin.column);
 }
@@ -80,7 +89,7 @@ void TomlTable::fail(InputFault fault, std::string_view key, const std::string& 
 }
 
 void TomlTable::fail_missing(std::string_view key) const {
-  throw InputError(InputFault::missing_key, where() + ": the key " + in_quotes(full(key)) +
+  throw InputError(InputFault::missing_key, where() + ": the key " + quoted_path(full(key)) +
                                                 " is missing" +
                                                 (path_.empty() ? "" : " in " + path_));
 }
@@ -95,7 +104,7 @@ void TomlTable::fail_unknown_key(const toml::key& key) const {
   const std::string name(key.str());
   const std::string close = nearest(name, allowed_);
   throw InputError(InputFault::unknown_key,
-                   at(key.source()) + ": unknown key " + in_quotes(key_path(path_, name)) +
+                   at(key.source()) + ": unknown key " + quoted_path(key_path(path_, name)) +
                        (close.empty() ? "" : ", did you mean " + in_quotes(close) + "?") +
                        (close.empty() ? "; allowed" : " Allowed") +
                        (path_.empty() ? "" : " in " + path_) + ": " + quoted_list(allowed_, "and"));

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/input/vtk_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
 
 #include "app/input/msh_cursor.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::app {
 namespace {
 
 constexpr int kTetrahedron = 10, kQuadraticTetrahedron = 24;  // VTK's cell types
+constexpr int kLagrangeTetrahedron = 71, kBezierTetrahedron = 78;
 
 struct NumberType {
   std::string_view name;
@@ -30,15 +33,6 @@ constexpr std::array<NumberType, 11> kNumberTypes = {{{"float", 4, false},
                                                       {"long", 8, true},
                                                       {"unsigned_long", 8, true},
                                                       {"vtktypeint64", 8, true}}};
-
-bool names_volumes(std::string_view name) {
-  constexpr std::array<std::string_view, 7> names = {
-      "CellEntityIds", "gmsh:physical", "volume", "region", "material", "cell_tags", "medit:ref"};
-  for (const std::string_view known : names) {
-    if (name == known) return true;
-  }
-  return false;
-}
 
 class VtkReader {
  public:
@@ -94,10 +88,9 @@ class VtkReader {
     } else if (section == "CELL_TYPES") {
       read_types();
     } else if (section == "CELL_DATA") {
-      const std::uint64_t count = count_of("cells");
+      const std::uint64_t count = read_count("cells");
       if (count != cell_count_)
-        cursor_.fail("is for " + std::to_string(count) + " cells; the file has " +
-                     std::to_string(cell_count_));
+        cursor_.fail("is for " + cells(count) + "; the file has " + std::to_string(cell_count_));
       in_cell_data_ = true;
     } else if (in_cell_data_ && section == "SCALARS") {
       read_scalars();
@@ -109,7 +102,11 @@ class VtkReader {
     return true;
   }
 
-  std::uint64_t count_of(const char* what) {
+  static std::string cells(std::uint64_t count) {
+    return sunder::count_of(static_cast<long long>(count), "cell");
+  }
+
+  std::uint64_t read_count(const char* what) {
     return cursor_.check_count(cursor_.text_integer("a count"), 1, what);
   }
 
@@ -159,7 +156,7 @@ class VtkReader {
 
   void read_points() {
     once(has_points_);
-    contents_.points = count_of("points");
+    contents_.points = read_count("points");
     const NumberType type = number_type();
     if (type.integer) cursor_.fail("points must be float or double");
     begin_body();
@@ -171,19 +168,21 @@ class VtkReader {
   void read_cells() {
     if (!has_points_) cursor_.fail("stands before POINTS");
     once(has_cells_);
-    cell_count_ = count_of("cells");
-    std::uint64_t left = count_of("cell entries");
+    cell_count_ = read_count("cells");
+    std::uint64_t left = read_count("cell entries");
     begin_body();
     for (std::uint64_t i = 0; i < cell_count_; ++i) {
       const int nodes = cursor_.int32("a number of points");
       if (nodes < 1 || static_cast<std::uint64_t>(nodes) + 1 > left)
-        cursor_.fail("cell " + std::to_string(i) + " with " + std::to_string(nodes) +
-                     " points does not fit the number of entries declared");
+        cursor_.fail("cell " + std::to_string(i) + " with " + count_of(nodes, "point") +
+                     " does not fit the number of entries declared");
       left -= static_cast<std::uint64_t>(nodes) + 1;
       for (int n = 0; n < nodes; ++n) check_point(i, cursor_.int32("a point of a cell"));
     }
     if (left != 0)
-      cursor_.fail("declares " + std::to_string(left) + " entries more than its cells have");
+      cursor_.fail("declares " +
+                   sunder::count_of(static_cast<long long>(left), "entry", "entries") +
+                   " more than its cells have");
     end_body();
   }
 
@@ -196,14 +195,16 @@ class VtkReader {
 
   void read_types() {
     once(has_types_);
-    const std::uint64_t count = count_of("cell types");
+    const std::uint64_t count = read_count("cell types");
     if (!has_cells_ || count != cell_count_)
-      cursor_.fail("has " + std::to_string(count) + " types for " + std::to_string(cell_count_) +
-                   " cells");
+      cursor_.fail("has " + sunder::count_of(static_cast<long long>(count), "type") + " for " +
+                   cells(cell_count_));
     begin_body();
     for (std::uint64_t i = 0; i < count; ++i) {
       const int type = cursor_.int32("a cell type");
       is_tet_.push_back(type == kTetrahedron || type == kQuadraticTetrahedron);
+      if (type == kTetrahedron) ++contents_.first_order;
+      if (type == kLagrangeTetrahedron || type == kBezierTetrahedron) ++contents_.unread;
       if (is_tet_.back()) ++contents_.tetrahedra;
     }
     end_body();
@@ -222,7 +223,7 @@ class VtkReader {
       const std::int64_t value = integer(type, "a cell's value");
       if (!wanted) continue;
       if (value < 0 || value > std::numeric_limits<int>::max())
-        cursor_.fail(name + " has the value " + std::to_string(value) +
+        cursor_.fail(in_quotes(name) + " has the value " + std::to_string(value) +
                          "; allowed as a volume's tag: 0 to 2147483647",
                      InputFault::bad_id);
       cell_tags_.push_back(static_cast<int>(value));
@@ -252,11 +253,11 @@ class VtkReader {
   // FIELD name arrays, each: name components tuples type, values
   void read_field() {
     static_cast<void>(cursor_.word());
-    const std::uint64_t arrays = count_of("arrays");
+    const std::uint64_t arrays = read_count("arrays");
     for (std::uint64_t i = 0; i < arrays; ++i) {
       const std::string name(cursor_.word().substr(0, 100));
-      const std::uint64_t components = count_of("components");
-      const std::uint64_t tuples = count_of("tuples");
+      const std::uint64_t components = read_count("components");
+      const std::uint64_t tuples = read_count("tuples");
       const NumberType type = number_type();
       if (components > 1000) cursor_.fail("more than 1000 components");
       static_cast<void>(
@@ -281,6 +282,12 @@ class VtkReader {
 };
 
 }  // namespace
+
+bool names_volumes(std::string_view name) {
+  constexpr std::array<std::string_view, 7> names = {
+      "CellEntityIds", "gmsh:physical", "volume", "region", "material", "cell_tags", "medit:ref"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 VtkContents check_vtk(std::string_view bytes, const std::string& name) {
   return VtkReader(bytes, name).read();

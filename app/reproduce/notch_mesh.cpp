@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/reproduce/notch_mesh.hpp"
 
-#include <gmsh.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>
 
 #include "app/input/child_process.hpp"
-#include "app/input/gmsh_reader.hpp"
+#include "app/input/gmsh_tasks.hpp"
 #include "app/input/mesh_import.hpp"
+#include "app/input/raw_mesh.hpp"
 #include "app/output/result_file.hpp"
 #include "app/output/text.hpp"
 #include "app/reproduce/paper_files.hpp"
@@ -38,18 +38,6 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-std::string mesh_to_bytes(const std::string& geometry) {
-  try {
-    gmsh::initialize(0, nullptr, false);
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::open(geometry);
-    gmsh::model::mesh::generate(3);
-    return "M" + to_bytes(read_model());
-  } catch (const std::string& message) {
-    return "E" + message;
-  }
-}
-
 void replace_once(std::string& text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos || text.find(from, at + 1) != std::string::npos)
@@ -73,7 +61,7 @@ std::shared_ptr<const Mesh> mesh_notch(const NotchMesh& wanted) {
   ChildLimits limits;
   limits.timeout = std::chrono::minutes(2);
   const ChildOutcome outcome =
-      run_in_child([&] { return mesh_to_bytes(geometry.path().string()); }, limits);
+      run_in_child([&] { return gmsh_task("mesh", {geometry.path().string()}); }, limits);
   const bool done = outcome.end == ChildOutcome::End::done && outcome.result.starts_with('M');
   const auto raw =
       done ? from_bytes(std::string_view(outcome.result).substr(1)) : std::optional<RawMesh>();

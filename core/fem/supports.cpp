@@ -41,6 +41,44 @@ int rigid_modes_left(const Mesh& mesh, std::span<const HeldDof> held) {
   return static_cast<int>((values.array() <= kRigidTolerance * values[5]).count());
 }
 
+std::vector<HeldDof> missing_supports(const Mesh& mesh, std::span<const HeldDof> held,
+                                      std::span<const Index> nodes) {
+  Vec3 center = Vec3::Zero();
+  for (Index n : nodes) center += mesh.nodes[n] / static_cast<double>(nodes.size());
+  double size = 0;
+  for (Index n : nodes) size = std::max(size, (mesh.nodes[n] - center).norm());
+  for (const HeldDof& h : held) size = std::max(size, (mesh.nodes[h.node] - center).norm());
+  const auto row = [&](const HeldDof& d) {
+    const Vec3 x = (mesh.nodes[d.node] - center) / size;
+    Eigen::Matrix<double, 6, 1> motion;
+    motion << Vec3::Unit(d.axis), x.cross(Vec3::Unit(d.axis));
+    return motion;
+  };
+  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
+  for (const HeldDof& h : held) gram += row(h) * row(h).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(gram);
+  const auto& values = solver.eigenvalues();
+  const auto left = (values.array() <= kRigidTolerance * values[5]).count();
+  Eigen::MatrixXd modes = solver.eigenvectors().leftCols(left);
+  std::vector<HeldDof> missing;
+  for (Eigen::Index m = 0; m < left; ++m) {
+    HeldDof best{kNone, 0};
+    Eigen::VectorXd moves = Eigen::VectorXd::Zero(left);
+    for (Index n : nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::VectorXd of = modes.transpose() * row({n, axis});
+        if (!(of.squaredNorm() > moves.squaredNorm() * (1 + 1e-9))) continue;  // ties: the first
+        moves = of;
+        best = {n, axis};
+      }
+    }
+    if (best.node == kNone) break;
+    missing.push_back(best);
+    modes -= (modes * moves) * moves.transpose() / moves.squaredNorm();
+  }
+  return missing;
+}
+
 void find_bodies(const Mesh& mesh, std::span<const std::uint8_t> exclude, Bodies& bodies,
                  BodyRoom& room) {
   std::vector<Index>& parent = room.parent;

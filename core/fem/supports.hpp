@@ -17,6 +17,11 @@ struct HeldDof {
 /// How many of the six rigid modes the held dofs leave free (0: held).
 [[nodiscard]] int rigid_modes_left(const Mesh& mesh, std::span<const HeldDof> held);
 
+/// As few dofs of `nodes` as take away the rigid modes that `held` leaves to a body of the nodes of
+/// both; those that a mode moves most.
+[[nodiscard]] std::vector<HeldDof> missing_supports(const Mesh& mesh, std::span<const HeldDof> held,
+                                                    std::span<const Index> nodes);
+
 /// Connected bodies: per element the index of its body (elements connect through shared nodes),
 /// numbered by first element; kNone where `exclude` is set. Empty `exclude`: all elements.
 struct Bodies {

@@ -16,9 +16,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vec3 bounding_box_extent(const Mesh& mesh) {
   Vec3 lo = Vec3::Constant(kInfinity), hi = Vec3::Constant(-kInfinity);
-  for (const Vec3& x : mesh.nodes) {
-    lo = lo.cwiseMin(x);
-    hi = hi.cwiseMax(x);
+  const std::vector<std::uint8_t> used = used_nodes(mesh);
+  for (std::size_t n = 0; n < used.size(); ++n) {
+    if (!used[n]) continue;
+    lo = lo.cwiseMin(mesh.nodes[n]);
+    hi = hi.cwiseMax(mesh.nodes[n]);
   }
   return hi - lo;
 }
@@ -59,7 +61,10 @@ void measure_outline(BoardPlane& plane, const Mesh& mesh) {
   plane.outline_max = Vec2::Constant(-kInfinity);
   plane.bottom = kInfinity;
   plane.top = -kInfinity;
-  for (const Vec3& x : mesh.nodes) {
+  const std::vector<std::uint8_t> used = used_nodes(mesh);
+  for (std::size_t n = 0; n < used.size(); ++n) {
+    if (!used[n]) continue;
+    const Vec3& x = mesh.nodes[n];
     const Vec2 p = plane.project(x);
     plane.outline_min = plane.outline_min.cwiseMin(p);
     plane.outline_max = plane.outline_max.cwiseMax(p);

@@ -15,7 +15,8 @@ std::string closing_push(const Instrument& instrument, int crack) {
 
 std::string removed_before(const Finding& f) {
   return "destroy " + std::to_string(f.subject) + " in step " + std::to_string(f.detail) + ": " +
-         std::to_string(f.count) + " of its elements were destroyed already";
+         std::to_string(f.count) + " of its elements " + (f.count == 1 ? "was" : "were") +
+         " destroyed already";
 }
 
 std::string field_of(const Finding& f) {

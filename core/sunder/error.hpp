@@ -41,11 +41,11 @@ enum class InputFault {
   empty_selection,       ///< a selection that selects nothing
   bad_id,                ///< a node or element id outside the mesh
   no_tetrahedra,         ///< a mesh without a single tetrahedron
-  inverted_element,      ///< negative volume
+  inverted_element,      ///< negative volume (of validate(); Problem turns it)
   degenerate_element,    ///< zero volume or a repeated node
   no_material,           ///< a volume without material
-  unsupported_body,      ///< rigid modes left
-  load_on_held_node,     ///< an instrument drives a dof that a support holds
+  unsupported_body,      ///< rigid modes left in a body that is held or driven
+  load_on_held_node,     ///< a force on a dof that a grip holds
   conflicting_supports,  ///< two grips prescribe the same dof
   too_large,             ///< sizes beyond what the index type or the memory at hand can hold
 };

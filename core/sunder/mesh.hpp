@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,19 @@ struct FreeFace {
 /// finite, a repeated node, an inverted or a zero-volume element (named by its id), or two volumes
 /// of one name. `where` (a file name, say) begins the message.
 void validate(const Mesh& mesh, const std::string& where);
+
+/// Swaps two corners of every element of negative volume; its id, place and nodes stay. Returns how
+/// many there were, and the first. Elements that validate() refuses otherwise stay as they are.
+struct Turned {
+  Index count = 0;
+  Index first = kNone;
+};
+Turned turn_inverted(Mesh& mesh);
+/// The warning.
+[[nodiscard]] std::string sentence(const Turned& turned);
+
+/// Per node: 1 where a tetrahedron uses it.
+[[nodiscard]] std::vector<std::uint8_t> used_nodes(const Mesh& mesh);
 
 /// Removes nodes that no tetrahedron uses (ids close up, order kept; surface triangles that use
 /// one are dropped) and returns how many there were.

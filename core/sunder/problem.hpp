@@ -14,6 +14,10 @@
 
 namespace sunder {
 
+namespace fem {
+struct Bodies;
+}
+
 /// Constant-strain tetrahedron: gradients of the four shape functions [1/mm] and volume [mm^3].
 struct TetShape {
   Eigen::Matrix<double, 3, 4> gradient;
@@ -39,7 +43,8 @@ struct PartOfBody {
 
 class Problem {
  public:
-  /// Checks the scene strictly and resolves all names and selections. Throws InputError.
+  /// Checks the scene strictly and resolves all names and selections; turns elements of negative
+  /// volume (mesh()). Throws InputError.
   explicit Problem(Scene scene);
   /// A part of a body, with unknowns, grips and anchors of its own numbering; `around` in that too.
   /// Its last node belongs to no element and is held: the ground that the surroundings stand on.
@@ -66,9 +71,10 @@ class Problem {
   [[nodiscard]] double yield(Index e) const { return material(e).yield.value_or(0.0); }
   [[nodiscard]] bool breakable(Index e) const { return material(e).yield.has_value(); }
 
-  /// Number of unknowns n: dofs not held by a support. Gripped dofs are unknowns.
+  /// Number of unknowns n: dofs not held by a support. Gripped dofs are unknowns. Nodes that no
+  /// element uses, and those of a body that nothing holds or drives, have none and stay in place.
   [[nodiscard]] Index dof_count() const { return dof_count_; }
-  /// Unknown of (node, axis), or kNone where a support holds it.
+  /// Unknown of (node, axis), or kNone where a support holds it or the node is left out.
   [[nodiscard]] Index dof(Index node, int axis) const { return dof_[3 * node + axis]; }
   /// Same, flat: index 3 * node + axis.
   [[nodiscard]] std::span<const Index> dofs() const { return dof_; }
@@ -100,11 +106,19 @@ class Problem {
  private:
   void resolve_materials();
   void build_shapes();
-  void resolve_supports();
-  void resolve_instruments();
+  [[nodiscard]] std::vector<std::uint8_t> held_axes() const;
+  void select_instrument_nodes();
+  void leave_out_what_nothing_holds(const fem::Bodies& bodies, std::vector<std::uint8_t>& held);
+  void latch_what_hangs(const fem::Bodies& bodies, std::vector<std::uint8_t>& held);
+  void number_unknowns(std::span<const std::uint8_t> held);
+  void resolve_grips();
+  void resolve_pulls();
+  void resolve_presses();
   void resolve_elements();
   void check_options() const;
-  void check_held_bodies();
+  void check_held_bodies(const fem::Bodies& bodies);
+  void note_odd_mesh();
+  void note_no_board();
 
   Scene scene_;
   std::vector<TetShape> shapes_;

@@ -467,6 +467,70 @@ TEST(Deformation, OfAPieceCutOffDoesNotCount) {
   EXPECT_LT(measured(true).rotation_deg, 1.1 * measured(false).rotation_deg + 1e-6);
 }
 
+// Pressure on a surface up to a plane of symmetry: what acts on the held axis goes into the
+// reaction, and the body moves as if that part were not there.
+TEST(Frame, ForcesOnHeldAxesGoIntoTheReaction) {
+  const auto scene = [](bool held_part) {
+    Scene s = strip(1e9, 0, 1);
+    s.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(0.1, 9, 9)}, Axes{1}});  // symmetry: x = 0
+    Instrument& forceps = s.instruments[0];
+    // Ten nodes at y = 0, two of which are held along x.
+    forceps.action = Pull{band(-1, 0.1), Vec3(held_part ? 10 : 0, -20, 0)};
+    forceps.ramp.reset();
+    if (!held_part) {
+      Instrument free = forceps;
+      free.name = "free";
+      free.action = Pull{Box{Vec3(0.9, -1, -1), Vec3(9, 0.1, 9)}, Vec3(8, 0, 0)};
+      s.instruments.push_back(free);
+    }
+    return s;
+  };
+  SceneRun with(scene(true)), without(scene(false));
+  with.simulation.step();
+  without.simulation.step();
+  EXPECT_TRUE(mentions(with.simulation.warnings(), "x of 2 nodes out of 10"));
+  const auto u = with.simulation.displacement(), expected = without.simulation.displacement();
+  double largest = 0;
+  for (const Vec3& v : expected) largest = std::max(largest, v.norm());
+  for (std::size_t n = 0; n < u.size(); ++n)
+    EXPECT_LE((u[n] - expected[n]).norm(), 1e-10 * largest) << n;
+  const Vec3 sum = with.simulation.support_reaction() + Vec3(10, -20, 0);
+  EXPECT_LE(sum.norm(), 1e-9 * 20);
+  EXPECT_LE(std::abs(with.simulation.support_reaction().x() -
+                     (without.simulation.support_reaction().x() - 2)),
+            1e-9 * 20);
+}
+
+// What nothing holds stays where it is; what hangs by a node turns freely; neither disturbs the
+// rest, on any route.
+TEST(Frame, UnusedNodesAndLooseBodiesDisturbNothing) {
+  const Scene plain = strip(1e9, 2, 1);
+  SceneRun alone(plain);
+  alone.simulation.step();
+  const auto expected = alone.simulation.displacement();
+  for (const Route route : {Route::inverse, Route::factor, Route::cg}) {
+    Scene scene = plain;
+    scene.solver.route = route;
+    const Index own = scene.mesh.node_count();
+    for (const Vec3& x : {Vec3(90, 90, 90), Vec3(20, 30, 0), Vec3(21, 30, 0), Vec3(20, 31, 0),
+                          Vec3(20, 30, 1), Vec3(5, 4, 0), Vec3(5, 3, 0), Vec3(5, 4, 1)})
+      scene.mesh.nodes.push_back(x);
+    const Index corner = 4 + 5 * 4;
+    ASSERT_EQ(scene.mesh.nodes[corner], Vec3(4, 4, 0));
+    scene.mesh.tets.push_back({own + 1, own + 2, own + 3, own + 4});
+    scene.mesh.tets.push_back({corner, own + 5, own + 6, own + 7});
+    scene.mesh.volume_of.insert(scene.mesh.volume_of.end(), 2, 0);
+    SceneRun run(std::move(scene));
+    run.simulation.step();
+    EXPECT_EQ(run.simulation.warnings().size(), 3U);  // loose, hanging, one of them turned
+    const auto u = run.simulation.displacement();
+    for (Index n = 0; n < own; ++n)
+      EXPECT_LE((u[n] - expected[n]).norm(), 1e-9 * expected[0].norm()) << n;
+    for (Index n = own; n < own + 5; ++n) EXPECT_EQ(u[n], Vec3(0, 0, 0));
+    for (const Vec3& v : u) EXPECT_LE(v.norm(), 100 * expected[0].norm());
+  }
+}
+
 // A strip cut through: reported once, with what is cut off; the rest stays finite and right.
 TEST(LooseParts, AreReported) {
   Scene scene = strip(1e9, 0.001, 2);
@@ -478,7 +542,7 @@ TEST(LooseParts, AreReported) {
   EXPECT_TRUE(run.simulation.warnings().empty());
   run.simulation.step();
   EXPECT_TRUE(
-      mentions(run.simulation.warnings(), "1 pieces with 96 elements are cut off (since step 1)"));
+      mentions(run.simulation.warnings(), "1 piece with 96 elements is cut off (since step 1)"));
   for (const Vec3& u : run.simulation.displacement()) EXPECT_TRUE(u.allFinite());
 }
 

@@ -16,6 +16,8 @@ const char* extension(std::uint8_t choice) {
   switch (choice) {
     case 'v':
       return ".vtk";
+    case 'x':
+      return ".vtu";
     case 'u':
       return ".unv";
     case 'b':

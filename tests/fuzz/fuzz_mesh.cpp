@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh checks and the conversion in this process: .msh, .vtk, the end marks, and what comes out
-// of the pipe. The first byte chooses the reader.
+// The mesh checks and the conversion in this process: .msh, .vtk, .vtu, the end marks, and what
+// comes out of the pipe. The first byte chooses the reader.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -10,6 +10,7 @@
 #include "app/input/mesh_check.hpp"
 #include "app/input/raw_mesh.hpp"
 #include "app/input/vtk_check.hpp"
+#include "app/input/vtu_reader.hpp"
 #include "sunder/error.hpp"
 
 namespace {
@@ -28,6 +29,12 @@ void read_msh(std::string_view bytes) {
 void read_vtk(std::string_view bytes) {
   const VtkContents contents = check_vtk(bytes, "fuzz.vtk");
   if (!contents.tet_tags.empty() && contents.tet_tags.size() != contents.tetrahedra) std::abort();
+}
+
+void read_xml(std::string_view bytes) {
+  const RawMesh raw = read_vtu(bytes, "fuzz.vtu");
+  if (!from_bytes(to_bytes(raw))) std::abort();
+  static_cast<void>(to_mesh(raw, nullptr, "fuzz", nullptr));
 }
 
 void read_pipe(std::string_view bytes) {
@@ -51,6 +58,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 'v':
         read_vtk(text);
+        break;
+      case 'x':
+        read_xml(text);
         break;
       case 'p':
         read_pipe(text);

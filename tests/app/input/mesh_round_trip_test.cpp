@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same mesh through every format, written by gmsh and by ourselves.
 #include <gmsh.h>
+#include <zlib.h>
 
 #include <cmath>
 
@@ -11,6 +12,8 @@
 #include "app/input/same_mesh.hpp"
 #include "app/mesh_board/msh_writer.hpp"
 #include "app/mesh_board/structured_board.hpp"
+#include "app/output/vtu.hpp"
+#include "sunder/problem.hpp"
 
 namespace sunder::test {
 namespace {
@@ -113,6 +116,77 @@ TEST(MeshRoundTrip, SwappedBytes) {
   swap_words(at, 3 + board.tets.size() * 7, 4);
   const TemporaryFolder folder;
   expect_same_mesh(app::import_mesh(folder.write("swapped.msh", bytes)), board);
+}
+
+// result.vtu, as `sunder run` writes it, is a mesh file too: names, tags, ids, every bit.
+TEST(MeshRoundTrip, ResultFilesOfSunder) {
+  Scene scene;
+  scene.mesh = app::structured_board({2, 4, 1}, 2.0);
+  for (const NamedVolume& volume : scene.mesh.volumes) scene.materials[volume.name] = {5, 0.3, {}};
+  scene.supports.push_back({Box{Vec3(-1, 49, -1), Vec3(51, 51, 3)}, Axes{7}});
+  const Problem problem(std::move(scene));
+  app::State state;
+  state.displacement.assign(problem.mesh().nodes.size(), Vec3(1, 2, 3));
+  state.destroyed.assign(problem.mesh().tets.size(), 0);
+  const TemporaryFolder folder;
+  app::write_vtu(folder.file("result.vtu"), problem, state);
+  expect_same_mesh(app::import_mesh(folder.file("result.vtu")), problem.mesh());
+}
+
+// As VTK's own writer does it (vtkXMLUnstructuredGridWriter, appended raw, zlib, UInt32): one
+// tetrahedron of float coordinates, big-endian and little-endian.
+TEST(MeshRoundTrip, CompressedRawAppendedVtu) {
+  for (const bool big : {false, true}) {
+    const auto word = [&](auto value) {
+      std::string bytes;
+      append_raw(bytes, value);
+      if (big) std::reverse(bytes.begin(), bytes.end());
+      return bytes;
+    };
+    std::string appended;
+    const auto append = [&](const std::string& bytes) {
+      const std::size_t at = appended.size();
+      std::string packed(bytes.size() + 100, '\0');
+      uLongf size = static_cast<uLongf>(packed.size());
+      ::compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+                 reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()));
+      for (const std::size_t n :
+           {std::size_t{1}, std::size_t{32768}, bytes.size(), std::size_t{size}})
+        appended += word(static_cast<std::uint32_t>(n));
+      appended += packed.substr(0, size);
+      return std::to_string(at);
+    };
+    std::string points, nodes;
+    for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f})
+      points += word(x);
+    for (const std::int64_t n : {0, 1, 2, 3}) nodes += word(n);
+    const std::string at_points = append(points), at_nodes = append(nodes);
+    const std::string at_offsets = append(word(std::int64_t{4}));
+    const std::string at_types = append(std::string(1, '\x0a'));
+    const std::string head =
+        std::string("<VTKFile type=\"UnstructuredGrid\" byte_order=\"") +
+        (big ? "BigEndian" : "LittleEndian") +
+        "\" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><Piece "
+        "NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points><DataArray type=\"Float32\" "
+        "NumberOfComponents=\"3\" format=\"appended\" offset=\"" +
+        at_points +
+        "\"/></Points><Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"appended\" "
+        "offset=\"" +
+        at_nodes + "\"/><DataArray type=\"Int64\" Name=\"offsets\" format=\"appended\" offset=\"" +
+        at_offsets + "\"/><DataArray type=\"UInt8\" Name=\"types\" format=\"appended\" offset=\"" +
+        at_types + "\"/></Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_";
+    const TemporaryFolder folder;
+    const std::string tail = "</AppendedData></VTKFile>";
+    const Mesh mesh = app::import_mesh(folder.write("vtk.vtu", head + appended + tail));
+    EXPECT_EQ(mesh.nodes.at(3), Vec3(0, 0, 1));
+    EXPECT_EQ(mesh.tets, (std::vector<std::array<Index, 4>>{{0, 1, 2, 3}}));
+    appended[appended.size() - 6] = static_cast<char>(appended[appended.size() - 6] ^ 0x55);
+    expect_input_error(
+        [&] {
+          static_cast<void>(app::import_mesh(folder.write("bad.vtu", head + appended + tail)));
+        },
+        InputFault::unreadable_file, {"bad.vtu", "types", "compressed block"});
+  }
 }
 
 TEST(MeshRoundTrip, SurfacesCurvedTetsAndUnusedNodes) {

@@ -56,6 +56,16 @@ TEST(MeshTruncated, AtEverySectionThroughTheWholeImport) {
   }
 }
 
+TEST(MeshTruncated, Version1AtEveryByte) {
+  const std::string whole =
+      "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n1\n1 4 7 1 4 1 2 3 4\n$ENDELM";
+  EXPECT_NO_THROW(static_cast<void>(app::check_msh(whole, "whole.msh")));
+  for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+    SCOPED_TRACE(cut);
+    EXPECT_THROW(static_cast<void>(app::check_msh(whole.substr(0, cut), "cut.msh")), InputError);
+  }
+}
+
 TEST(MeshTruncated, AtEveryByte) {
   const Mesh mesh = app::structured_board({1, 4, 1}, 2.0);
   for (const Format& format : formats(mesh)) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/input/gmsh_reader.hpp"
+#include "app/gmsh/model.hpp"
 
 #include <gmsh.h>
 
 #include <map>
-
-#include "sunder/error.hpp"
 
 namespace sunder::app {
 namespace {
@@ -113,17 +111,6 @@ RawMesh read_model() {
     }
   }
   return mesh;
-}
-
-RawMesh read_with_gmsh(const std::string& path) {
-  try {
-    gmsh::initialize(0, nullptr, false);
-    gmsh::option::setNumber("General.Terminal", 1);  // errors to stderr: they outlive a crash
-    gmsh::open(path);
-    return read_model();
-  } catch (const std::string& message) {  // gmsh 4.8 throws strings
-    throw InputError(InputFault::unreadable_file, message);
-  }
 }
 
 }  // namespace sunder::app
