@@ -21,6 +21,7 @@ set(rooms
   "api:core core/sunder api/sunder cpu_reference gpu"
   "app/input:core/sunder"
   "app/mesh_board:core/sunder app/input app/output"
+  "app/gmsh:core/sunder app/input app/mesh_board"
   "app/output:core core/sunder"
   "app/figure:core core/sunder app/output"
   "app/report:core/sunder app/output app/figure"
