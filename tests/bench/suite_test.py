@@ -497,10 +497,10 @@ class Page(unittest.TestCase):
         self.assertIn("at most", self.text)
 
 
-class Readme(unittest.TestCase):
+class Figures(unittest.TestCase):
     def test_its_figures_are_those_of_the_folder_it_names_and_stand_on_its_page(self):
         root = BENCH.parent
-        text = (root / "README.md").read_text(encoding="utf-8")
+        text = (root / "docs/figures.md").read_text(encoding="utf-8")
         folder = text.split(headline.BEGIN)[1].split(" -->")[0]
         made = results.read(root / folder)
         self.assertIn(headline.markdown(made, folder), text)
