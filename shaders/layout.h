@@ -33,6 +33,7 @@ SUNDER_CONST kAbsent = 8u;    // padding
 // What the stress pass leaves behind beside its partial results.
 SUNDER_CONST kKeepStress = 1u;  // the stress of every element
 SUNDER_CONST kListOver = 2u;    // the list of elements at or over yield
+SUNDER_CONST kShown = 4u;       // none: displacement and stress are shown in fp32, which counts
 
 // What an element is and does, beside its shape.
 struct ElementFacts {
@@ -172,6 +173,8 @@ SUNDER_WIDE_STRUCT(StressPartial) {
   WIDE any_ratio, candidate_ratio;
   WIDE stress_squared;  // largest Frobenius norm of a live element, squared
   uint any_element, candidate_element;
+  float handed_out;  // largest bound of what rounding costs a live element's stress, by 2^-24 [MPa]
+  uint unused;
 };
 
 // Sums over the nodes of one workgroup.
@@ -191,7 +194,7 @@ SUNDER_WIDE_STRUCT(Summary) {
   WIDE energy_root;
   uint any_element, candidate_element;
   uint over;  // live breakable elements at or over yield
-  uint unused;
+  float handed_out;
 };
 
 #ifdef __cplusplus
@@ -201,7 +204,7 @@ using Summary = SummaryOf<double>;
 static_assert(sizeof(SummaryOf<float>) == 40);
 static_assert(sizeof(Entry) == 16);
 static_assert(sizeof(ElementPush) == 16);
-static_assert(sizeof(StressPartial) == 32);
+static_assert(sizeof(StressPartial) == 40);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 64);

@@ -86,38 +86,90 @@ void store(uint e, REAL4 a, REAL4 b) {
 #ifndef SUNDER_LVP
 shared Worst shared_any[kGroup], shared_candidate[kGroup];
 shared REAL shared_norm[kGroup];
+shared float shared_handed_out[kGroup];
 #endif
 
 // One partial result of the invocations that share a part.
-void leave(Worst any, Worst candidate, REAL norm) {
+void leave(Worst any, Worst candidate, REAL norm, float handed_out) {
   any = subgroup_worst(any);
   candidate = subgroup_worst(candidate);
   norm = subgroupMax(norm);
+  handed_out = subgroupMax(handed_out);
 #ifndef SUNDER_LVP
   if (subgroupElect()) {
     shared_any[gl_SubgroupID] = any;
     shared_candidate[gl_SubgroupID] = candidate;
     shared_norm[gl_SubgroupID] = norm;
+    shared_handed_out[gl_SubgroupID] = handed_out;
   }
   barrier();
   for (uint s = 0u; s < gl_NumSubgroups; ++s) {
     keep_worse(any, shared_any[s]);
     keep_worse(candidate, shared_candidate[s]);
     norm = max(norm, shared_norm[s]);
+    handed_out = max(handed_out, shared_handed_out[s]);
   }
 #endif
   if (leads_part()) {
     const WIDE norm_ = WIDE(norm);
     partials.data[part()] = StressPartial(WIDE(any.ratio), WIDE(candidate.ratio), norm_ * norm_,
-                                          any.element, candidate.element);
+                                          any.element, candidate.element, handed_out, 0u);
   }
 }
 
-// Strain, and the Lame constants.
+// Strain, and the Lame constants. Of the displacement's gradient, Frobenius: `made`: what it may be
+// off by as it is made of differences, by five of their roundings; `shown`: what rounding the
+// corners' displacement to fp32 may change, by 2^-24.
 struct Deformation {
   REAL3 strain, twice_shear;  // (xx, yy, zz), twice (xy, yz, zx)
   REAL lambda, mu;
+  float made, shown;
 };
+
+// sum |u_a - u_0| |grad N_a| <= |D| |G|, each difference rounded once, its product once, their sum
+// and the two halves of a shear three times.
+float made_change(vec3 d1, vec3 d2, vec3 d3, vec3 g1, vec3 g2, vec3 g3) {
+  return sqrt((dot(d1, d1) + dot(d2, d2) + dot(d3, d3)) *
+              (dot(g1, g1) + dot(g2, g2) + dot(g3, g3)));
+}
+
+// sum |u_a| |grad N_a| <= |U| |G|, from u of corner 0, the differences to it and the gradients of
+// the other shape functions; that of corner 0 is minus their sum.
+float shown_change(vec3 u0, vec3 d1, vec3 d2, vec3 d3, vec3 g1, vec3 g2, vec3 g3) {
+  const vec3 u1 = u0 + d1, u2 = u0 + d2, u3 = u0 + d3, g0 = g1 + g2 + g3;
+  return sqrt((dot(u0, u0) + dot(u1, u1) + dot(u2, u2) + dot(u3, u3)) *
+              (dot(g0, g0) + dot(g1, g1) + dot(g2, g2) + dot(g3, g3)));
+}
+
+// Bound of what an element's stress, as it is read, may be off by, Frobenius, by 2^-24 [MPa]. Strain is
+// rounded once; each further operation of `main` once. With e the diagonal of strain and p the
+// pressure: lambda (|e_x| + |e_y| + |e_z| + |e_x + e_y|) from the rounding of strain and of its
+// first sum, 3 |p| from the second sum, lambda and their product, all three times in the norm; 3 of
+// 2 mu |strain| from strain, mu and their product; 1 of |stress| from the last sum.
+float rounding_of_stress(Deformation d, REAL pressure, REAL norm) {
+  const vec3 e = vec3(abs(d.strain));
+  const float lambda = abs(float(d.lambda)), mu = float(d.mu);
+  const float of_pressure =
+      lambda * (e.x + e.y + e.z + abs(float(d.strain.x + d.strain.y))) + 3.0 * abs(float(pressure));
+  const vec3 g = vec3(d.twice_shear);
+  const float of_strain = 2.0 * mu * sqrt(dot(e, e) + 0.5 * dot(g, g));
+  float sum = 1.7320509 * of_pressure + 3.0 * of_strain + float(norm);
+  const float stiffest = 3.0 * lambda + 2.0 * mu;
+  const float wide = 1.862645149e-9;  // 2^-53 / 2^-24
+#ifdef SUNDER_FP64
+  sum *= wide;
+#endif
+#ifdef SUNDER_SINGLE
+  sum += 5.0 * 512.0 * wide * stiffest * d.made;  // two floats hold 44 bits of a product
+#else
+  sum += 5.0 * wide * stiffest * d.made;
+#endif
+  // Shown in fp32: the stress that a host takes from the displacement, or that it is handed.
+  if ((p.keep & kShown) != 0u) {
+    sum += stiffest * d.shown + float(norm);
+  }
+  return sum;
+}
 
 #ifdef SUNDER_SINGLE
 #define LOAD_TWO3(name, i) two3(VEC4(name, 2u * (i)), VEC4(name, 2u * (i) + 1u))
@@ -139,7 +191,11 @@ Deformation deformation(uint e, uvec4 n) {
                                 Two3(vec3(hx.high.y, hy.high.z, hz.high.x),
                                      vec3(hx.low.y, hy.low.z, hz.low.x)));
   return Deformation(vec3(hx.high.x + hx.low.x, hy.high.y + hy.low.y, hz.high.z + hz.low.z),
-                     twice_shear.high + twice_shear.low, b1.z, b2.z);
+                     twice_shear.high + twice_shear.low, b1.z, b2.z,
+                     made_change(d1.high, d2.high, d3.high, vec3(a1.xz, b1.x), vec3(a2.xz, b2.x),
+                                 vec3(a3.xz, b3.x)),
+                     shown_change(u0.high, d1.high, d2.high, d3.high, vec3(a1.xz, b1.x),
+                                  vec3(a2.xz, b2.x), vec3(a3.xz, b3.x)));
 }
 #else
 Deformation deformation(uint e, uvec4 n) {
@@ -150,7 +206,11 @@ Deformation deformation(uint e, uvec4 n) {
   const dvec3 hx = d1 * s1.x + d2 * s2.x + d3 * s3.x, hy = d1 * s1.y + d2 * s2.y + d3 * s3.y,
               hz = d1 * s1.z + d2 * s2.z + d3 * s3.z;
   return Deformation(REAL3(hx.x, hy.y, hz.z),
-                     REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x), REAL(s1.w), REAL(s2.w));
+                     REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x), REAL(s1.w), REAL(s2.w),
+                     made_change(vec3(d1), vec3(d2), vec3(d3), vec3(s1.xyz), vec3(s2.xyz),
+                                 vec3(s3.xyz)),
+                     shown_change(vec3(u0), vec3(d1), vec3(d2), vec3(d3), vec3(s1.xyz),
+                                  vec3(s2.xyz), vec3(s3.xyz)));
 }
 #endif
 
@@ -187,5 +247,6 @@ void main() {
   const bool some = ratio > REAL(0), candidate = some && (bits & kExcluded) == 0u;
   leave(Worst(some ? ratio : REAL(0), some ? e : kHeld),
         Worst(candidate ? ratio : REAL(0), candidate ? e : kHeld),
-        !live ? REAL(0) : (norm < infinity ? norm : infinity));  // NaN included
+        !live ? REAL(0) : (norm < infinity ? norm : infinity),  // NaN included
+        live ? rounding_of_stress(d, pressure, norm) : 0.0);
 }

@@ -18,6 +18,7 @@ struct Found {
   Worst any, candidate;
   REAL stress_squared;
   REAL3 sums;
+  float handed_out;
 };
 shared Found found[kGroup];
 
@@ -26,15 +27,16 @@ void join(inout Found a, Found b) {
   keep_worse(a.candidate, b.candidate);
   a.stress_squared = max(a.stress_squared, b.stress_squared);
   a.sums += b.sums;
+  a.handed_out = max(a.handed_out, b.handed_out);
 }
 
 void main() {
   const uint lane = gl_LocalInvocationID.x;
-  Found mine = Found(Worst(REAL(0), kHeld), Worst(REAL(0), kHeld), REAL(0), REAL3(0));
+  Found mine = Found(Worst(REAL(0), kHeld), Worst(REAL(0), kHeld), REAL(0), REAL3(0), 0.0);
   for (uint g = lane; g < p.element_parts; g += kGroup) {
     const StressPartial b = partials.data[g];
     join(mine, Found(Worst(b.any_ratio, b.any_element), Worst(b.candidate_ratio, b.candidate_element),
-                     b.stress_squared, REAL3(0)));
+                     b.stress_squared, REAL3(0), b.handed_out));
   }
   for (uint g = lane; g < p.node_parts; g += kGroup) {
     const NodePartial b = node_partials.data[g];
@@ -43,6 +45,7 @@ void main() {
   mine.any = subgroup_worst(mine.any);
   mine.candidate = subgroup_worst(mine.candidate);
   mine.stress_squared = subgroupMax(mine.stress_squared);
+  mine.handed_out = subgroupMax(mine.handed_out);
   mine.sums = REAL3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupAdd(mine.sums.z));
   if (subgroupElect()) found[gl_SubgroupID] = mine;
   barrier();
@@ -51,7 +54,7 @@ void main() {
     for (uint s = 1u; s < gl_NumSubgroups; ++s) join(all, found[s]);
     summaries.data[p.slot] =
         Summary(all.any.ratio, all.candidate.ratio, all.stress_squared, all.sums.x, all.sums.y,
-                all.sums.z, all.any.element, all.candidate.element, over.count, 0u);
+                all.sums.z, all.any.element, all.candidate.element, over.count, all.handed_out);
     if (p.slot == 0u) over.count = 0u;  // the next frame's list begins anew
   }
 }

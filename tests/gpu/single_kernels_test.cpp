@@ -227,13 +227,13 @@ TEST_P(SingleKernels, SummaryOfPartialResults) {
   std::vector<shaders::NodePartial> nodes(kNodeParts + 1);
   for (std::uint32_t i = 0; i < kElementParts; ++i) {
     const double ratio = std::abs(random());
-    elements[i] = {ratio, ratio / 2, std::abs(random()), 1000 - i, 2000 + i};
+    elements[i] = {ratio, ratio / 2, std::abs(random()), 1000 - i, 2000 + i, 0.5f, 0};
   }
   // The same ratio twice: the lower element; and a part that has none.
-  elements[77] = {3, 0, 5, 600, shaders::kHeld};
-  elements[140] = {3, 2, 0, 555, 900};
-  elements[141] = {0, 2, 0, shaders::kHeld, 800};
-  elements[kElementParts] = {9, 9, 9, 1, 1};  // behind the last
+  elements[77] = {3, 0, 5, 600, shaders::kHeld, 2.5f, 0};
+  elements[140] = {3, 2, 0, 555, 900, 1.5f, 0};
+  elements[141] = {0, 2, 0, shaders::kHeld, 800, 0, 0};
+  elements[kElementParts] = {9, 9, 9, 1, 1, 9, 0};  // behind the last
   for (auto& n : nodes) n = {std::abs(random()), std::abs(random()), std::abs(random()), 0};
   nodes[kNodeParts] = {1e9, 1e9, 1e9, 0};
   const auto of_elements = buffer(elements);
@@ -253,6 +253,7 @@ TEST_P(SingleKernels, SummaryOfPartialResults) {
     EXPECT_EQ(s.candidate_ratio, 2);
     EXPECT_EQ(s.candidate_element, 800u);
     EXPECT_EQ(s.stress_squared, 5);
+    EXPECT_EQ(s.handed_out, 2.5f);
   };
   const shaders::Summary second = summary(0, 1);
   expect_worst(second);
