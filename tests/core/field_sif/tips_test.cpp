@@ -37,7 +37,7 @@ TEST_P(Tips, BeforeADecisionAreWhatItsRowsSay) {
     before.resize(static_cast<std::size_t>(event) + 1);
     before.back() = simulation.tips();
   });
-  for (int step = 0; step < 8; ++step) simulation.step();
+  for (int step = 0; step < 16; ++step) simulation.step();
   int compared = 0;
   for (const DestroyedElement& row : simulation.destroyed()) {
     if (!row.sif) continue;
@@ -90,9 +90,8 @@ TEST_P(Tips, RestingOnesHaveTheirK) {
 TEST_P(Tips, EndedOnesKeepTheirRowWithoutK) {
   Tearing run(scene({0, 30, 0}));
   Simulation& simulation = run.simulation;
-  while (!simulation.done() && !simulation.cracks().empty() &&
-         !(simulation.steps_done() > 0 && simulation.cracks()[0].tips[0].ended))
-    simulation.step();
+  simulation.step();
+  while (!simulation.done() && !simulation.cracks().at(0).tips[0].ended) simulation.step();
   ASSERT_TRUE(simulation.cracks()[0].tips[0].ended);
   const TipState tip = simulation.tips().at(0);
   EXPECT_TRUE(tip.ended);
