@@ -14,6 +14,8 @@ namespace {
 
 // The bound adds moduli of roundings that partly cancel.
 constexpr double kLoose = 10;
+// The estimate of what the solution owes is right within this factor.
+constexpr double kEstimate = 1.5;
 
 class HandedOutStress : public Kernels {
  protected:
@@ -104,9 +106,10 @@ struct Body {
 
 class ReportedError : public WithVulkan<testing::TestWithParam<Body>> {
  protected:
+  int recorded_ = 0;
   [[nodiscard]] static Scene scene() {
     Scene scene;
-    scene.mesh = structured_board({8, 12, 1, 50, 50, 2.5}, [](const Vec3& x) {
+    scene.mesh = structured_board({6, 12, 1, 50, 50, 2.5}, [](const Vec3& x) {
       return x.y() < 4.1    ? "bottom-frame"
              : x.y() < 25   ? "lower"
              : x.y() < 45.9 ? "upper"
@@ -124,35 +127,43 @@ TEST_P(ReportedError, IsWhatAReaderOfTheStressGets) {
   const Problem problem(scene());
   const auto force = corner_force(problem.mesh());
   const auto sequence = crack_sequence(problem, 10, 10);
+  std::vector<double> scale(problem.mesh().tets.size(), 1.0);
+  const DirectSolution whole(problem, scale);
+  std::vector<std::uint8_t> destroyed(scale.size(), 0);
+  for (Index e : sequence) {
+    scale[static_cast<std::size_t>(e)] = problem.scene().fracture.alpha;
+    destroyed[static_cast<std::size_t>(e)] = 1;
+  }
+  const DirectSolution torn(problem, scale);
+  const auto of_whole = whole.stress(whole.solve(force)), of_torn = torn.stress(torn.solve(force));
   for (const Way& way : ways_of_every_route()) {
     SCOPED_TRACE(name_of(way));
     const WatchedBackend watched(scene(), way);
     const auto backend = watched.create(all_needs());
     backend->set_load(load_of(problem, force, {}));
-    std::vector<double> scale(problem.mesh().tets.size(), 1.0);
-    std::vector<std::uint8_t> destroyed(scale.size(), 0);
-    for (const std::size_t fractures : {std::size_t{0}, sequence.size()}) {
-      if (fractures > 0) {
-        backend->destroy(sequence);
-        for (Index e : sequence) {
-          scale[static_cast<std::size_t>(e)] = problem.scene().fracture.alpha;
-          destroyed[static_cast<std::size_t>(e)] = 1;
-        }
-      }
+    // What the solution itself owes is estimated, not bounded: it counts where the inverse is off
+    // by more than rounding on the way out, which the eager update in fp32 lets it be.
+    const bool rough = way.precision == Precision::fp32 && backend->info().update == "eager";
+    const double least = rough ? 1 / kEstimate : 1;
+    const auto compare = [&](std::span<const std::uint8_t> ignored,
+                             std::span<const Voigt> expected) {
       const SolveReport report = backend->solve();
       backend->stress();
-      const DirectSolution direct(problem, scale);
-      const double off =
-          stress_error(destroyed, Pair::stress(*backend), direct.stress(direct.solve(force)));
-      RecordProperty(name_of(way) + "_" + std::to_string(fractures),
+      const double off = stress_error(ignored, Pair::stress(*backend), expected);
+      RecordProperty(name_of(way) + "_" + std::to_string(recorded_++),
                      (std::ostringstream() << report.error << " " << off).str());
-      EXPECT_GE(report.error, off) << fractures << " fractures";
-      EXPECT_LE(report.error, way.tolerance) << fractures << " fractures";
-      // With damage a bound stands in for the estimate (docs/vulkan.md), in fp64 rounding does.
-      if (way.precision == Precision::fp32 && fractures == 0) {
-        EXPECT_LE(report.error, kLoose * off);
-      }
+      EXPECT_GE(report.error, least * off);
+      EXPECT_LE(report.error, way.tolerance);
+      return std::pair(report.error, off);
+    };
+    const std::vector<std::uint8_t> none(scale.size(), 0);
+    const auto [reported, off] = compare(none, of_whole);
+    // In fp64 the sum of rounding in the solution is there; with damage a bound of it (vulkan.md).
+    if (way.precision == Precision::fp32 && !rough) {
+      EXPECT_LE(reported, kLoose * off);
     }
+    backend->destroy(sequence);
+    compare(destroyed, of_torn);
   }
 }
 
@@ -167,7 +178,7 @@ TEST_F(OverTolerance, ByHandingOutRefinesNothingAndWarnsOnce) {
   Scene scene = pulled_board();
   scene.output.stress = true;
   for (gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
-    const Way way{.variant = variant, .precision = Precision::fp32, .tolerance = 1e-6};
+    const Way way{.variant = variant, .precision = Precision::fp32, .tolerance = 3e-7};
     const WatchedBackend watched(scene, way);
     const auto backend = watched.create(all_needs());
     backend->set_load(load_of(*watched.problem, corner_force(watched.problem->mesh()), {}));
