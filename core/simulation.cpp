@@ -477,6 +477,15 @@ void Simulation::add_deformation_warnings(std::vector<std::string>& all) const {
 
 const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
 
+std::vector<TipState> Simulation::tips() {
+  std::vector<TipState> tips;
+  if (!solved_) return tips;
+  std::vector<Finding> found;
+  criterion_->tips(fracture_state({}), tips, found);
+  for (const Finding& finding : found) note(finding);
+  return tips;
+}
+
 std::vector<Vec3> Simulation::reactions() const {
   Reactions r;
   read(r);

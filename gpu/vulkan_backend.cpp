@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <iomanip>
+#include <sstream>
 
 #include "engine/instrument_block.hpp"
 #include "engine/stress_bounds.hpp"
@@ -49,6 +51,7 @@ class VulkanBackend final : public Backend {
     force_.assign(body_->fields().rows(), 0.0);
     if (body_->region()) leave_out_the_rest();
     if (options.lent) {
+      body_->fields().show();
       display_ = std::make_unique<Display>(kernels_, this->problem(), body_->fields(),
                                            this->needs().stress, options.display,
                                            options.lent->timeline_semaphore);
@@ -84,6 +87,18 @@ class VulkanBackend final : public Backend {
   }
   void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override {
     if (instrument_forces()) instruments_->take_over(std::move(forces));
+  }
+
+  std::vector<std::string> warnings() const override {
+    if (!loosest_) return {};
+    std::ostringstream text;
+    text
+        << std::setprecision(2)
+        << "stress is right to solver.tolerance as it is computed; handing it out in fp32 may cost "
+           "more: error is up to "
+        << *loosest_ << "; use precision fp64";
+    if (display_) text << " and read the fields instead of the buffers that are drawn";
+    return {text.str()};
   }
 
   void time_passes(bool on) override { device_->set_timing(on); }
@@ -163,10 +178,13 @@ class VulkanBackend final : public Backend {
 
   SolveReport do_solve() override {
     finish_display();
-    if (!check_.known(load_)) body_->fields().keep_next();
+    const bool known = check_.known(load_).has_value();
+    if (!known) body_->fields().keep_next();
     try {
       SolveReport report = solve_within_tolerance();
       report.error += plan_.condensing_error;
+      if (!known) handed_out_ = handed_out();  // linear in the load, as the rest of the error
+      add_handed_out(report);
       body_->solved(whole_load_);
       solved_ = true;
       if (instruments_) publish_instruments();
@@ -176,6 +194,18 @@ class VulkanBackend final : public Backend {
       body_->fields().restore();  // results so far stay readable
       throw;
     }
+  }
+
+  /// What rounding on the way out may cost, by the largest stress. No refinement helps against it.
+  double handed_out() const {
+    const double bound = body_->fields().handed_out();
+    return bound > 0 ? bound / body_->fields().largest_stress(Field::displacement) : 0.0;
+  }
+
+  void add_handed_out(SolveReport& report) {
+    report.error += handed_out_;
+    if (!(report.error > tolerance())) return;
+    if (report.error > loosest_.value_or(0)) loosest_ = report.error;
   }
 
   /// Only once somebody has asked for them: the reactions are read back from the device.
@@ -407,8 +437,10 @@ class VulkanBackend final : public Backend {
   bool renew_ = false;  // the summary was made before the last pieces were cut off
   std::optional<engine::InstrumentBlock> instruments_;  // once asked for
   std::vector<double> reactions_;
-  bool solved_ = false;        // the load and the damage as they are
-  std::vector<double> force_;  // over the padded unknowns
+  bool solved_ = false;            // the load and the damage as they are
+  double handed_out_ = 0;          // of the last solution whose error was estimated
+  std::optional<double> loosest_;  // error over the tolerance for what handing out costs
+  std::vector<double> force_;      // over the padded unknowns
   double force_squared_ = 0;
   std::vector<Index> destroyed_list_;
 };

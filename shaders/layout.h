@@ -34,6 +34,7 @@ SUNDER_CONST kCutOff = 16u;   // of a piece that nothing holds: its deformation 
 // What the stress pass leaves behind beside its partial results.
 SUNDER_CONST kKeepStress = 1u;  // the stress of every element
 SUNDER_CONST kListOver = 2u;    // the list of elements at or over yield
+SUNDER_CONST kShown = 4u;       // none: displacement and stress are shown in fp32, which counts
 
 // What an element is and does, beside its shape.
 struct ElementFacts {
@@ -176,6 +177,7 @@ SUNDER_WIDE_STRUCT(StressPartial) {
   uint strain;        // largest in magnitude: a float's bits, the lowest one its sign
   uint half_tangent;  // tan(theta/2) of the largest rotation: a float's bits
   uint inverted;      // how many
+  float handed_out;  // largest bound of what rounding costs a live element's stress, by 2^-24 [MPa]
 };
 
 // Sums over the nodes of one workgroup.
@@ -186,7 +188,7 @@ SUNDER_WIDE_STRUCT(NodePartial) {
   WIDE unused;
 };
 
-// All that a frame sends back by itself: 72 bytes.
+// All that a frame sends back by itself: 80 bytes.
 SUNDER_WIDE_STRUCT(Summary) {
   WIDE any_ratio, candidate_ratio;
   WIDE stress_squared;    // infinite when a stress is no number
@@ -196,19 +198,20 @@ SUNDER_WIDE_STRUCT(Summary) {
   uint any_element, candidate_element;
   uint over;                            // live breakable elements at or over yield
   uint strain, half_tangent, inverted;  // as above
+  float handed_out;
 };
 
 #ifdef __cplusplus
 using StressPartial = StressPartialOf<double>;
 using NodePartial = NodePartialOf<double>;
 using Summary = SummaryOf<double>;
-static_assert(sizeof(SummaryOf<float>) == 48);
+static_assert(sizeof(SummaryOf<float>) == 52);
 static_assert(sizeof(Entry) == 16);
 static_assert(sizeof(ElementPush) == 16);
 static_assert(sizeof(StressPartial) == 48);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
-static_assert(sizeof(Summary) == 72);
+static_assert(sizeof(Summary) == 80);
 static_assert(sizeof(CgPush) == 32);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);

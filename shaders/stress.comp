@@ -97,21 +97,24 @@ void store(uint e, REAL4 a, REAL4 b) {
 shared Worst shared_any[kGroup], shared_candidate[kGroup];
 shared REAL shared_norm[kGroup];
 shared uvec3 shared_deformation[kGroup];
+shared float shared_handed_out[kGroup];
 #endif
 
 // One partial result of the invocations that share a part.
-void leave(Worst any, Worst candidate, REAL norm, uvec3 deformation) {
+void leave(Worst any, Worst candidate, REAL norm, uvec3 deformation, float handed_out) {
   any = subgroup_worst(any);
   candidate = subgroup_worst(candidate);
   norm = subgroupMax(norm);
   deformation = uvec3(subgroupMax(deformation.x), subgroupMax(deformation.y),
                       subgroupAdd(deformation.z));
+  handed_out = subgroupMax(handed_out);
 #ifndef SUNDER_LVP
   if (subgroupElect()) {
     shared_any[gl_SubgroupID] = any;
     shared_candidate[gl_SubgroupID] = candidate;
     shared_norm[gl_SubgroupID] = norm;
     shared_deformation[gl_SubgroupID] = deformation;
+    shared_handed_out[gl_SubgroupID] = handed_out;
   }
   barrier();
   deformation = uvec3(0u);
@@ -121,21 +124,25 @@ void leave(Worst any, Worst candidate, REAL norm, uvec3 deformation) {
     norm = max(norm, shared_norm[s]);
     deformation = uvec3(max(deformation.xy, shared_deformation[s].xy),
                         deformation.z + shared_deformation[s].z);
+    handed_out = max(handed_out, shared_handed_out[s]);
   }
 #endif
   if (leads_part()) {
     const WIDE norm_ = WIDE(norm);
     partials.data[part()] = StressPartial(WIDE(any.ratio), WIDE(candidate.ratio), norm_ * norm_,
                                           any.element, candidate.element, deformation.x, deformation.y,
-                                          deformation.z);
+                                          deformation.z, handed_out);
   }
 }
 
-// Strain, curl, and the Lame constants.
+// Strain, curl, and the Lame constants. Of the displacement's gradient, Frobenius: `made`: what it may
+// be off by as it is made of differences, by five of their roundings; `shown`: what rounding the
+// corners' displacement to fp32 may change, by 2^-24.
 struct Deformation {
   REAL3 strain, twice_shear;  // (xx, yy, zz), twice (xy, yz, zx)
   REAL lambda, mu;
   vec3 curl;
+  float made, shown;
 };
 
 // Largest strain, rotation and inversion of a live element as StressPartial has them. The rotation's
@@ -161,6 +168,51 @@ uvec3 deformation_of(Deformation d, Principal e) {
   return uvec3(strain, floatBitsToUint(half_tangent), det > 0.0f ? 0u : 1u);
 }
 
+// sum |u_a - u_0| |grad N_a| <= |D| |G|, each difference rounded once, its product once, their sum
+// and the two halves of a shear three times.
+float made_change(vec3 d1, vec3 d2, vec3 d3, vec3 g1, vec3 g2, vec3 g3) {
+  return sqrt((dot(d1, d1) + dot(d2, d2) + dot(d3, d3)) *
+              (dot(g1, g1) + dot(g2, g2) + dot(g3, g3)));
+}
+
+// sum |u_a| |grad N_a| <= |U| |G|, from u of corner 0, the differences to it and the gradients of
+// the other shape functions; that of corner 0 is minus their sum.
+float shown_change(vec3 u0, vec3 d1, vec3 d2, vec3 d3, vec3 g1, vec3 g2, vec3 g3) {
+  const vec3 u1 = u0 + d1, u2 = u0 + d2, u3 = u0 + d3, g0 = g1 + g2 + g3;
+  return sqrt((dot(u0, u0) + dot(u1, u1) + dot(u2, u2) + dot(u3, u3)) *
+              (dot(g0, g0) + dot(g1, g1) + dot(g2, g2) + dot(g3, g3)));
+}
+
+// Bound of what an element's stress, as it is read, may be off by, Frobenius, by 2^-24 [MPa]. Strain is
+// rounded once; each further operation of `main` once. With e the diagonal of strain and p the
+// pressure: lambda (|e_x| + |e_y| + |e_z| + |e_x + e_y|) from the rounding of strain and of its
+// first sum, 3 |p| from the second sum, lambda and their product, all three times in the norm; 3 of
+// 2 mu |strain| from strain, mu and their product; 1 of |stress| from the last sum.
+float rounding_of_stress(Deformation d, REAL pressure, REAL norm) {
+  const vec3 e = vec3(abs(d.strain));
+  const float lambda = abs(float(d.lambda)), mu = float(d.mu);
+  const float of_pressure =
+      lambda * (e.x + e.y + e.z + abs(float(d.strain.x + d.strain.y))) + 3.0 * abs(float(pressure));
+  const vec3 g = vec3(d.twice_shear);
+  const float of_strain = 2.0 * mu * sqrt(dot(e, e) + 0.5 * dot(g, g));
+  float sum = 1.7320509 * of_pressure + 3.0 * of_strain + float(norm);
+  const float stiffest = 3.0 * lambda + 2.0 * mu;
+  const float wide = 1.862645149e-9;  // 2^-53 / 2^-24
+#ifdef SUNDER_FP64
+  sum *= wide;
+#endif
+#ifdef SUNDER_SINGLE
+  sum += 5.0 * 512.0 * wide * stiffest * d.made;  // two floats hold 44 bits of a product
+#else
+  sum += 5.0 * wide * stiffest * d.made;
+#endif
+  // Shown in fp32: the stress that a host takes from the displacement, or that it is handed.
+  if ((p.keep & kShown) != 0u) {
+    sum += stiffest * d.shown + float(norm);
+  }
+  return sum;
+}
+
 #ifdef SUNDER_SINGLE
 #define LOAD_TWO3(name, i) two3(VEC4(name, 2u * (i)), VEC4(name, 2u * (i) + 1u))
 Two3 derivative(Two3 d1, vec2 s1, Two3 d2, vec2 s2, Two3 d3, vec2 s3) {
@@ -182,7 +234,11 @@ Deformation deformation(uint e, uvec4 n) {
                                      vec3(hx.low.y, hy.low.z, hz.low.x)));
   return Deformation(vec3(hx.high.x + hx.low.x, hy.high.y + hy.low.y, hz.high.z + hz.low.z),
                      twice_shear.high + twice_shear.low, b1.z, b2.z,
-                     vec3(hy.high.z - hz.high.y, hz.high.x - hx.high.z, hx.high.y - hy.high.x));
+                     vec3(hy.high.z - hz.high.y, hz.high.x - hx.high.z, hx.high.y - hy.high.x),
+                     made_change(d1.high, d2.high, d3.high, vec3(a1.xz, b1.x), vec3(a2.xz, b2.x),
+                                 vec3(a3.xz, b3.x)),
+                     shown_change(u0.high, d1.high, d2.high, d3.high, vec3(a1.xz, b1.x),
+                                  vec3(a2.xz, b2.x), vec3(a3.xz, b3.x)));
 }
 #else
 Deformation deformation(uint e, uvec4 n) {
@@ -194,7 +250,11 @@ Deformation deformation(uint e, uvec4 n) {
               hz = d1 * s1.z + d2 * s2.z + d3 * s3.z;
   return Deformation(REAL3(hx.x, hy.y, hz.z),
                      REAL3(hy.x + hx.y, hz.y + hy.z, hx.z + hz.x), REAL(s1.w), REAL(s2.w),
-                     vec3(hy.z - hz.y, hz.x - hx.z, hx.y - hy.x));
+                     vec3(hy.z - hz.y, hz.x - hx.z, hx.y - hy.x),
+                     made_change(vec3(d1), vec3(d2), vec3(d3), vec3(s1.xyz), vec3(s2.xyz),
+                                 vec3(s3.xyz)),
+                     shown_change(vec3(u0), vec3(d1), vec3(d2), vec3(d3), vec3(s1.xyz),
+                                  vec3(s2.xyz), vec3(s3.xyz)));
 }
 #endif
 
@@ -233,5 +293,6 @@ void main() {
   leave(Worst(some ? ratio : REAL(0), some ? e : kHeld),
         Worst(candidate ? ratio : REAL(0), candidate ? e : kHeld),
         !live ? REAL(0) : (norm < infinity ? norm : infinity),  // NaN included
-        live && (bits & kCutOff) == 0u ? deformation_of(d, of_strain) : uvec3(0u));
+        live && (bits & kCutOff) == 0u ? deformation_of(d, of_strain) : uvec3(0u),
+        live ? rounding_of_stress(d, pressure, norm) : 0.0);
 }

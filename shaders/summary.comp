@@ -19,6 +19,7 @@ struct Found {
   REAL stress_squared;
   REAL3 sums;
   uvec3 deformation;  // strain, half_tangent, inverted
+  float handed_out;
 };
 shared Found found[kGroup];
 
@@ -29,17 +30,18 @@ void join(inout Found a, Found b) {
   a.sums += b.sums;
   a.deformation =
       uvec3(max(a.deformation.xy, b.deformation.xy), a.deformation.z + b.deformation.z);
+  a.handed_out = max(a.handed_out, b.handed_out);
 }
 
 void main() {
   const uint lane = gl_LocalInvocationID.x;
   Found mine = Found(Worst(REAL(0), kHeld), Worst(REAL(0), kHeld), REAL(0), REAL3(0),
-                     uvec3(0u));
+                     uvec3(0u), 0.0);
   for (uint g = lane; g < p.element_parts; g += kGroup) {
     const StressPartial b = partials.data[g];
     join(mine, Found(Worst(b.any_ratio, b.any_element), Worst(b.candidate_ratio, b.candidate_element),
                      b.stress_squared, REAL3(0),
-                     uvec3(b.strain, b.half_tangent, b.inverted)));
+                     uvec3(b.strain, b.half_tangent, b.inverted), b.handed_out));
   }
   for (uint g = lane; g < p.node_parts; g += kGroup) {
     const NodePartial b = node_partials.data[g];
@@ -48,6 +50,7 @@ void main() {
   mine.any = subgroup_worst(mine.any);
   mine.candidate = subgroup_worst(mine.candidate);
   mine.stress_squared = subgroupMax(mine.stress_squared);
+  mine.handed_out = subgroupMax(mine.handed_out);
   mine.sums = REAL3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupAdd(mine.sums.z));
   mine.deformation =
       uvec3(subgroupMax(mine.deformation.x), subgroupMax(mine.deformation.y),
@@ -60,7 +63,7 @@ void main() {
     summaries.data[p.slot] =
         Summary(all.any.ratio, all.candidate.ratio, all.stress_squared, all.sums.x, all.sums.y,
                 all.sums.z, all.any.element, all.candidate.element, over.count,
-                all.deformation.x, all.deformation.y, all.deformation.z);
+                all.deformation.x, all.deformation.y, all.deformation.z, all.handed_out);
     if (p.slot == 0u) over.count = 0u;  // the next frame's list begins anew
   }
 }

@@ -28,8 +28,10 @@ ResultWriter::ResultWriter(std::filesystem::path folder, const Problem& problem,
       problem_(problem),
       series_(series),
       painter_(problem),
-      frames_(folder_ / "frames.csv") {
+      frames_(folder_ / "frames.csv"),
+      tips_(folder_ / "tips.csv") {
   frames_.write(frames_header());
+  tips_.write(tips_header());
 }
 
 void ResultWriter::write(const std::string& name, std::string_view text) {
@@ -42,9 +44,12 @@ void ResultWriter::write_state(const std::string& name, const State& state) {
   files_.push_back(name);
 }
 
-void ResultWriter::step_done(const StepReport& report, const State& state) {
+void ResultWriter::step_done(const StepReport& report, const State& state,
+                             const std::vector<TipState>& tips) {
   frames_.write(frames_row(report));
   frames_.flush();
+  for (const TipState& tip : tips) tips_.write(tips_row(report.step, tip));
+  tips_.flush();
   if (!series_) return;
   const std::string name = "result_" + padded(report.step, 4) + ".vtu";
   write_state(name, state);
@@ -67,6 +72,8 @@ void ResultWriter::finish(const RunRecord& run) {
   write("events.csv", events);
   frames_.commit();
   files_.push_back("frames.csv");
+  tips_.commit();
+  files_.push_back("tips.csv");
   write_state("result.vtu", run.last);
   if (series_) write("series.pvd", pvd(series_entries_));
   const std::string svg = painter_.svg(run.last);

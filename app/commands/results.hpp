@@ -16,10 +16,11 @@ namespace sunder::app {
 
 class ResultWriter {
  public:
-  /// Makes the folder, removes an earlier run's results from it and opens frames.csv.
+  /// Makes the folder, removes an earlier run's results from it and opens frames.csv and
+  /// tips.csv.
   ResultWriter(std::filesystem::path folder, const Problem& problem, bool series);
 
-  void step_done(const StepReport& report, const State& state);
+  void step_done(const StepReport& report, const State& state, const std::vector<TipState>& tips);
   void snapshot(int wanted, const State& state);
   /// Writes what is left; summary.json last, so that its presence says that all is there.
   void finish(const RunRecord& run);
@@ -36,7 +37,7 @@ class ResultWriter {
   const Problem& problem_;
   bool series_;
   FigurePainter painter_;
-  ResultFile frames_;
+  ResultFile frames_, tips_;
   std::vector<SeriesEntry> series_entries_;
   std::vector<SnapshotPicture> snapshots_;
   std::vector<std::string> files_;

@@ -134,7 +134,7 @@ void Run::step() {
     return;
   }
   record_.steps.push_back(report);
-  writer_.step_done(report, record_.last);
+  writer_.step_done(report, record_.last, simulation_->tips());
   progress_.update(simulation_->steps_done(), report.destroyed);
 }
 

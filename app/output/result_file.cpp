@@ -89,7 +89,8 @@ void make_result_folder(const std::filesystem::path& folder) {
 
 void remove_old_results(const std::filesystem::path& folder) {
   static const std::regex ours(
-      "(summary\\.json|events\\.csv|frames\\.csv|series\\.pvd|figure\\.(svg|png)|index\\.html|"
+      "(summary\\.json|events\\.csv|frames\\.csv|tips\\.csv|series\\.pvd|figure\\.(svg|png)|"
+      "index\\.html|"
       "result(_[0-9]+)?\\.vtu|snapshot_[0-9]+\\.(svg|png|vtu))(\\.partial)?");
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (!entry.is_regular_file() && !entry.is_symlink()) continue;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "app/output/text.hpp"
+#include "sunder/board_plane.hpp"
 
 namespace sunder::app {
 namespace {
@@ -22,6 +23,13 @@ Json array(const Vector& v) {
 Json points(std::span<const Vec2> path) {
   Json out = Json::array();
   for (const Vec2& p : path) out.push_back(array(p));
+  return out;
+}
+
+/// As points of space at mid-thickness.
+Json lifted(const BoardPlane& plane, std::span<const Vec2> path) {
+  Json out = Json::array();
+  for (const Vec2& p : path) out.push_back(array(plane.lift(p)));
   return out;
 }
 
@@ -56,15 +64,21 @@ Json largest(const RunRecord& run) {
 
 Json cracks(const RunRecord& run) {
   Json out = Json::array();
+  if (run.cracks.empty()) return out;
+  const Problem& problem = run.problem;
+  const BoardPlane plane = board_plane(problem.mesh(), problem.scene().fracture.plane_normal);
   for (const Crack& crack : run.cracks) {
-    Json tips = Json::array();
-    for (const CrackTip& tip : crack.tips) tips.push_back(array(tip.position));
+    std::vector<Vec2> tips;
+    for (const CrackTip& tip : crack.tips) tips.push_back(tip.position);
     out.push_back({{"id", crack.id},
                    {"kind", name_of(crack.kind)},
                    {"mouth", crack.mouth ? array(*crack.mouth) : Json(nullptr)},
-                   {"tips", std::move(tips)},
+                   {"tips", points(tips)},
                    {"length", crack.length},
-                   {"path", points(crack.path)}});
+                   {"path", points(crack.path)},
+                   {"mouth_xyz", crack.mouth ? array(plane.lift(*crack.mouth)) : Json(nullptr)},
+                   {"tips_xyz", lifted(plane, tips)},
+                   {"path_xyz", lifted(plane, crack.path)}});
   }
   return out;
 }

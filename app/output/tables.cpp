@@ -15,6 +15,10 @@ std::string row(std::initializer_list<std::string> cells) {
   return line;
 }
 
+std::string known(const std::optional<double>& value) {
+  return value ? number(*value) : std::string();
+}
+
 /// Empty without a device clock.
 std::string gpu_time(const StepReport& report, const std::string& pass) {
   if (report.passes.empty()) return {};
@@ -35,9 +39,6 @@ std::string events_header() {
 
 std::string events_row(const DestroyedElement& record) {
   const auto sif = [&](double value) { return record.sif ? number(value) : std::string(); };
-  const auto known = [](const std::optional<double>& value) {
-    return value ? number(*value) : std::string();
-  };
   const SifTerms k = record.sif.value_or(SifTerms{});
   return row({std::to_string(record.step),
               std::to_string(record.event),
@@ -90,6 +91,17 @@ std::string frames_row(const StepReport& report) {
                   std::to_string(d->inverted)
             : ",,,";
   return line + "\n";
+}
+
+std::string tips_header() {
+  return "step,crack,tip,x,y,z,K,theta_deg,K_I,K_II,K_III,J,toughness,field_note\n";
+}
+
+std::string tips_row(int step, const TipState& tip) {
+  return row({std::to_string(step), std::to_string(tip.crack), std::to_string(tip.tip),
+              number(tip.position.x()), number(tip.position.y()), number(tip.position.z()),
+              known(tip.k), known(tip.theta), known(tip.k_1), known(tip.k_2), known(tip.k_3), "",
+              "", std::string(tip.field_note)});
 }
 
 }  // namespace sunder::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// events.csv and frames.csv.
+// events.csv, frames.csv and tips.csv.
 #pragma once
 
 #include <string>
@@ -13,5 +13,7 @@ namespace sunder::app {
 [[nodiscard]] std::string events_row(const DestroyedElement& record);
 [[nodiscard]] std::string frames_header();
 [[nodiscard]] std::string frames_row(const StepReport& report);
+[[nodiscard]] std::string tips_header();
+[[nodiscard]] std::string tips_row(int step, const TipState& tip);
 
 }  // namespace sunder::app

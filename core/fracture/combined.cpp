@@ -160,11 +160,54 @@ void Combined::drive_tips(const FractureState& state, std::vector<Finding>& find
     face_pressure(board_, crack, state, findings, faces_);
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
+      if (!by_field() && !formula_holds(crack, findings)) continue;
       const auto growth = by_field() ? field_growth(meter_, crack, tip, view, findings)
                                      : tip_growth(board_, remote_, crack, tip, faces_, state);
       if (growth) driven_.push_back({crack.id, *growth});
     }
   }
+}
+
+/// The remote stress is that of the mesh without what the crack has destroyed: of a crack that is
+/// part of the mesh it is what the crack itself leaves beside its faces and heaps up at its tip.
+bool Combined::formula_holds(const Crack& crack, std::vector<Finding>& findings) const {
+  const Notch* notch = nullptr;
+  for (std::size_t tip = 0; tip < crack.tips.size() && !notch; ++tip)
+    notch = meter_.notch_of(crack, tip);
+  if (!notch) return true;
+  findings.push_back(
+      {notch->closed ? Finding::Kind::formula_split : Finding::Kind::formula_notch, crack.id});
+  return notch->closed;
+}
+
+void Combined::tips(const FractureState& state, std::vector<TipState>& tips,
+                    std::vector<Finding>& findings) {
+  if (!by_field() && anything_breakable_ && any_tip_left(cracks_))
+    remote_.take(state.pristine_displacement());
+  const FieldView view = by_field() ? field_view(state) : FieldView{};
+  for (const Crack& crack : cracks_) {
+    for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
+      tips.push_back(tip_state(board_, crack, tip));
+      if (crack.tips[tip].ended) continue;
+      if (by_field())
+        add_field_state(meter_, crack, tip, view, tips.back(), findings);
+      else if (anything_breakable_)  // else there is no remote stress
+        add_formula_state(crack, state, tips.back(), findings);
+    }
+  }
+}
+
+void Combined::add_formula_state(const Crack& crack, const FractureState& state, TipState& tip,
+                                 std::vector<Finding>& findings) {
+  if (!formula_holds(crack, findings)) {
+    tip.field_note = "notch";
+    return;
+  }
+  const auto at = static_cast<std::size_t>(tip.tip);
+  face_pressure(board_, crack, state, findings, faces_);
+  const auto growth = tip_growth(board_, remote_, crack, at, faces_, state);
+  tip.k = growth ? growth->terms.k : 0.0;
+  if (growth) tip.theta = growth->terms.theta;
 }
 
 void Combined::add_other_terms(const FractureState& state) {
@@ -181,6 +224,7 @@ void Combined::add_other_terms(const FractureState& state) {
   for (auto& [id, growth] : driven_) {
     const Crack& crack = cracks_[id];
     const auto tip = static_cast<std::size_t>(growth.terms.tip);
+    if (!formula_holds(crack, untold_)) continue;
     face_pressure(board_, crack, state, untold_, faces_);
     const auto formula = tip_growth(board_, remote_, crack, tip, faces_, state);
     growth.terms = with_formula(

@@ -22,6 +22,8 @@ class Combined final : public FractureCriterion {
 
   void decide(const FractureState& state, Decision& decision) override;
   void next_in_line(const FractureState& state, std::vector<Index>& next) override;
+  void tips(const FractureState& state, std::vector<TipState>& tips,
+            std::vector<Finding>& findings) override;
   [[nodiscard]] Decision preset() override;
   [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
                                            std::span<const std::uint8_t> destroyed) const override;
@@ -37,6 +39,10 @@ class Combined final : public FractureCriterion {
   /// Fills driven_: K and direction of all tips that have not ended, from one state.
   void drive_tips(const FractureState& state, std::vector<Finding>& findings);
   [[nodiscard]] bool by_field() const { return problem_.scene().fracture.sif == SifSource::field; }
+  /// Whether the formula has a remote stress for the crack; says why not, and where it is poor.
+  [[nodiscard]] bool formula_holds(const Crack& crack, std::vector<Finding>& findings) const;
+  void add_formula_state(const Crack& crack, const FractureState& state, TipState& tip,
+                         std::vector<Finding>& findings);
   /// What the other criterion says of the same tips, for the rows that will tell.
   void add_other_terms(const FractureState& state);
   /// Moves one tip as far as it goes; its elements are added to the decision.

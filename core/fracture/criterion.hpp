@@ -80,6 +80,9 @@ class FractureCriterion {
   /// Elements that will break next if anything does, as far as can be told from a state in which
   /// nothing breaks; the likeliest of each crack tip first.
   virtual void next_in_line(const FractureState&, std::vector<Index>& next) { next.clear(); }
+  /// All tips by crack and tip, with K as decide() would find it in this state; appended, as are
+  /// the findings. Nothing changes.
+  virtual void tips(const FractureState&, std::vector<TipState>&, std::vector<Finding>&) {}
   /// Preset cracks; called once, before anything else, when the problem has any. Elements come in
   /// crack order; returns what must be excluded as candidates.
   [[nodiscard]] virtual Decision preset() = 0;

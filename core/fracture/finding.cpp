@@ -24,6 +24,10 @@ std::string field_of(const Finding& f) {
          std::to_string(f.detail);
 }
 
+std::string formula_of(const Finding& f) {
+  return "the formula's K of crack " + std::to_string(f.subject);
+}
+
 }  // namespace
 
 std::string sentence(const Finding& f, const Scene& scene) {
@@ -45,6 +49,25 @@ std::string sentence(const Finding& f, const Scene& scene) {
     case Finding::Kind::field_damage:
       return field_of(f) +
              " reaches elements destroyed by something else: it is not separated from their field";
+    case Finding::Kind::field_notch:
+      return field_of(f) +
+             " is not measured: the notch of the mesh's shape is too wide there for a sharp "
+             "crack's "
+             "K within 3 %; give it under a fifteenth of its length or the shape of a V of at most "
+             "60 "
+             "degrees, split the mesh's nodes, or let the crack take elements (docs/method.md)";
+    case Finding::Kind::formula_notch:
+      return formula_of(f) +
+             " is left out: its remote stress is that of the mesh without the crack's elements, "
+             "and crack " +
+             std::to_string(f.subject) +
+             " is a notch of the mesh's shape; take fracture.sif = \"field\", or let the crack "
+             "take elements";
+    case Finding::Kind::formula_split:
+      return formula_of(f) +
+             " takes its remote stress from a mesh whose nodes are split along the crack, beside "
+             "which there is hardly any; take fracture.sif = \"field\", or let the crack take "
+             "elements";
   }
   return {};
 }

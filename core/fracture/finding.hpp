@@ -17,6 +17,9 @@ struct Finding {
     field_fixed,       ///< crack, tip
     field_material,    ///< crack, tip
     field_damage,      ///< crack, tip
+    field_notch,       ///< crack, tip
+    formula_notch,     ///< crack
+    formula_split,     ///< crack
   };
   Kind kind;
   int subject = 0;            ///< the first of what the kind names

@@ -18,6 +18,21 @@ Decision FixedCracks::preset() {
   return decision;
 }
 
+void FixedCracks::tips(const FractureState& state, std::vector<TipState>& tips,
+                       std::vector<Finding>& findings) {
+  if (cracks_.empty()) return;
+  const bool by_field = problem_.scene().fracture.sif == SifSource::field;
+  if (by_field && !meter_) meter_.emplace(problem_, *board_);
+  const FieldView view{state.destroyed, state.displacement, state.forces()};
+  for (const Crack& crack : cracks_) {
+    for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
+      tips.push_back(tip_state(*board_, crack, tip));
+      if (by_field && !crack.tips[tip].ended)
+        add_field_state(*meter_, crack, tip, view, tips.back(), findings);
+    }
+  }
+}
+
 PressedNodes FixedCracks::pressed_nodes(const Press& press,
                                         std::span<const std::uint8_t> destroyed) const {
   if (press.crack < 0 || static_cast<std::size_t>(press.crack) >= cracks_.size()) return {};

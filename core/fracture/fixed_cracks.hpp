@@ -6,6 +6,7 @@
 
 #include "fracture/board.hpp"
 #include "fracture/criterion.hpp"
+#include "fracture/field_sif/field_growth.hpp"
 
 namespace sunder::fracture {
 
@@ -14,6 +15,8 @@ class FixedCracks final : public FractureCriterion {
   explicit FixedCracks(const Problem& problem) : problem_(problem) {}
 
   void decide(const FractureState&, Decision& decision) override { decision.clear(); }
+  void tips(const FractureState& state, std::vector<TipState>& tips,
+            std::vector<Finding>& findings) override;
   [[nodiscard]] Decision preset() override;
   [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
                                            std::span<const std::uint8_t> destroyed) const override;
@@ -21,7 +24,8 @@ class FixedCracks final : public FractureCriterion {
 
  private:
   const Problem& problem_;
-  std::optional<Board> board_;  // built only when there are cracks
+  std::optional<Board> board_;                // built only when there are cracks
+  std::optional<FieldIntensityMeter> meter_;  // only when somebody asks for K
   std::vector<Crack> cracks_;
 };
 

@@ -88,6 +88,15 @@ Vec2 one_sided_direction(const FacePressure& pressure) {  // e_c
 
 }  // namespace
 
+TipState tip_state(const Board& board, const Crack& crack, std::size_t tip) {
+  TipState state;
+  state.crack = crack.id;
+  state.tip = static_cast<int>(tip);
+  state.ended = crack.tips[tip].ended;
+  state.position = board.plane().lift(crack.tips[tip].position);
+  return state;
+}
+
 SifTerms formula_terms(const Board& board, const PristineField& field, const Crack& crack,
                        std::size_t tip, const FacePressure& pressure, const FractureState& state) {
   const FractureOptions& options = state.problem.scene().fracture;

@@ -38,6 +38,9 @@ struct TipGrowth {
   Vec2 direction;    ///< g, unit
 };
 
+/// The tip as it stands, without K.
+[[nodiscard]] TipState tip_state(const Board& board, const Crack& crack, std::size_t tip);
+
 /// What Eq. 2 to 4 say of one tip; theta is left at 0.
 [[nodiscard]] SifTerms formula_terms(const Board& board, const PristineField& field,
                                      const Crack& crack, std::size_t tip,

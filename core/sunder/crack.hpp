@@ -57,9 +57,23 @@ struct SifTerms {
   /// none where nothing drives it by that one.
   std::optional<double> k_formula = std::nullopt, theta_formula = std::nullopt;
   std::optional<double> k_field = std::nullopt, theta_field = std::nullopt;
-  /// What disturbs the field's K, words joined by +: "fixed", "material", "damage"; empty: nothing.
-  /// The text is static.
+  /// What disturbs the field's K, words joined by +: "fixed", "material", "damage"; "notch": it
+  /// was not measured at a notch of the mesh's shape; empty: nothing. The text is static.
   std::string_view field_note = {};
+};
+
+/// A tip as it stands, whether it grows or rests (Simulation::tips): a row of tips.csv.
+struct TipState {
+  int crack = 0, tip = 0;
+  bool ended = false;  ///< nothing drives it any more: no K
+  Vec3 position;       ///< in space, at mid-thickness [mm]
+  /// K >= 0 [MPa sqrt(mm)] by what drives the tips (fracture.sif), and theta [deg] of growth from
+  /// the tip's direction, counter-clockwise; no theta where K is 0. None: that one has nothing to
+  /// say here (field_note says why, if it is the field).
+  std::optional<double> k = std::nullopt, theta = std::nullopt;
+  /// With sif = "field".
+  std::optional<double> k_1 = std::nullopt, k_2 = std::nullopt, k_3 = std::nullopt;
+  std::string_view field_note = {};  ///< as in SifTerms
 };
 
 }  // namespace sunder

@@ -65,6 +65,12 @@ class Simulation {
   [[nodiscard]] Backend& backend() { return *backend_; }
   [[nodiscard]] const std::vector<DestroyedElement>& destroyed() const { return destroyed_; }
   [[nodiscard]] const std::vector<Crack>& cracks() const;
+  /// All tips of all cracks as the last solve leaves them, by crack and tip, each with its K:
+  /// between steps what the last decision saw and found too small. In a frame observer K is what
+  /// the decision that follows will see. Computed anew at each call, and by nobody who does not
+  /// ask; no later result depends on it. Empty before the first step and under model A, which
+  /// keeps no cracks; under model "none" K is there with sif = "field".
+  [[nodiscard]] std::vector<TipState> tips();
   /// Problem's warnings, then the backend's, then what happened during the run, each once.
   [[nodiscard]] std::vector<std::string> warnings() const;
 

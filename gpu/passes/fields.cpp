@@ -241,6 +241,7 @@ shaders::Summary Fields::summary(std::size_t slot) const {
   wide.strain = s.strain;
   wide.half_tangent = s.half_tangent;
   wide.inverted = s.inverted;
+  wide.handed_out = s.handed_out;
   return wide;
 }
 
@@ -275,6 +276,11 @@ double Fields::largest_stress(Field field) const {
     largest = std::max(largest, norm);
   }
   return largest;
+}
+
+double Fields::handed_out() const {
+  constexpr double kUnit = 0x1p-24;  // roundoff of fp32, by which the kernel counts
+  return norms_ ? kUnit * static_cast<double>(summary(0).handed_out) : 0.0;
 }
 
 bool Fields::finite() const {
@@ -400,10 +406,11 @@ void Fields::record_state(vulkan::Commands& commands, bool balance) const {
   const std::uint32_t node_groups = nodes_ / shaders::kGroup;
   if (norms_) {
     commands.pass("stress");
-    commands.dispatch(*stress_pass_.binding,
-                      element_push((keep_stress_ ? shaders::kKeepStress : 0) |
-                                   (list_over_ ? shaders::kListOver : 0)),
-                      element_groups);
+    commands.dispatch(
+        *stress_pass_.binding,
+        element_push((keep_stress_ ? shaders::kKeepStress : 0) |
+                     (list_over_ ? shaders::kListOver : 0) | (shown_ ? shaders::kShown : 0)),
+        element_groups);
   }
   if (balance) {
     commands.pass("residual");

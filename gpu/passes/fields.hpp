@@ -81,6 +81,12 @@ class Fields {
   void renew_state();
   /// Largest stress of a live element, Frobenius; without norms() the host computes it.
   [[nodiscard]] double largest_stress(Field field) const;
+  /// Bound of what rounding on the way out costs the stress of a live element, Frobenius [MPa]:
+  /// stress in the precision it is stored in; displacement and stress in fp32 where they are shown
+  /// so. After record_state() ran; 0 without norms().
+  [[nodiscard]] double handed_out() const;
+  /// A host shows displacement and stress in fp32.
+  void show() { shown_ = true; }
   /// Whether the solution is made of numbers.
   [[nodiscard]] bool finite() const;
   /// Live breakable elements at or over yield, ascending.
@@ -138,7 +144,7 @@ class Fields {
 
   const KernelFactory& kernels_;
   const Problem& problem_;
-  bool keep_stress_, list_over_, norms_;
+  bool keep_stress_, list_over_, norms_, shown_ = false;
   std::uint32_t rows_, elements_, nodes_;          // padded
   std::uint32_t element_parts_, node_parts_;       // partial results
   std::vector<shaders::ElementFacts> facts_host_;  // copy of facts_

@@ -221,19 +221,20 @@ TEST_P(SingleKernels, SummaryOfPartialResults) {
   std::vector<shaders::NodePartial> nodes(kNodeParts + 1);
   for (std::uint32_t i = 0; i < kElementParts; ++i) {
     const double ratio = std::abs(random());
-    elements[i] = {ratio, ratio / 2, std::abs(random()), 1000 - i, 2000 + i, i, 1000 - i, i % 2};
+    elements[i] = {ratio, ratio / 2, std::abs(random()), 1000 - i, 2000 + i, i, 1000 - i,
+                   i % 2, 0.5f};
   }
   // The same ratio twice: the lower element; and a part that has none.
-  elements[77] = {3, 0, 5, 600, shaders::kHeld, 7000, 0, 1};
-  elements[140] = {3, 2, 0, 555, 900, 0, 8000, 0};
-  elements[141] = {0, 2, 0, shaders::kHeld, 800, 0, 0, 1};
-  elements[kElementParts] = {9, 9, 9, 1, 1, 9000, 9000, 9};  // behind the last
+  elements[77] = {3, 0, 5, 600, shaders::kHeld, 7000, 0, 1, 2.5f};
+  elements[140] = {3, 2, 0, 555, 900, 0, 8000, 0, 1.5f};
+  elements[141] = {0, 2, 0, shaders::kHeld, 800, 0, 0, 1, 0};
+  elements[kElementParts] = {9, 9, 9, 1, 1, 9000, 9000, 9, 9};  // behind the last
   for (auto& n : nodes) n = {std::abs(random()), std::abs(random()), std::abs(random()), 0};
   nodes[kNodeParts] = {1e9, 1e9, 1e9, 0};
   const auto of_elements = buffer(elements);
   const auto of_nodes = buffer(nodes);
   const auto over = buffer(Words(8, 5));
-  const auto summaries = empty(18);
+  const auto summaries = empty(20);
   const auto kernel = factory_->make_fp64("summary");
   const auto summary = [&](std::uint32_t node_parts, std::uint32_t slot) {
     run(*kernel, {&of_elements, &of_nodes, &summaries, &over},
@@ -249,6 +250,7 @@ TEST_P(SingleKernels, SummaryOfPartialResults) {
     EXPECT_EQ(s.strain, 7000u);
     EXPECT_EQ(s.half_tangent, 8000u);
     EXPECT_EQ(s.inverted, kElementParts / 2);
+    EXPECT_EQ(s.handed_out, 2.5f);
   };
   const shaders::Summary second = summary(0, 1);
   expect_worst(second);

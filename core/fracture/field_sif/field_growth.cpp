@@ -18,6 +18,7 @@ void add_findings(const Disturbances& disturbed, const Crack& crack, std::size_t
   add(disturbed.fixed, Finding::Kind::field_fixed);
   add(disturbed.material, Finding::Kind::field_material);
   add(disturbed.damage, Finding::Kind::field_damage);
+  add(disturbed.notch, Finding::Kind::field_notch);
 }
 
 }  // namespace
@@ -27,6 +28,10 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
                                       std::vector<Finding>& findings) {
   const FieldIntensity measured = meter.at(crack, tip, view);
   add_findings(measured.disturbed, crack, tip, findings);
+  if (measured.disturbed.notch) {
+    terms.field_note = measured.note();
+    return std::nullopt;
+  }
   const auto [k_1, k_2, k_3] = measured.factors;
   // A piece that only destroyed elements hold may move as far as numbers go.
   if (!std::isfinite(k_1) || !std::isfinite(k_2) || !std::isfinite(k_3)) return std::nullopt;
@@ -56,6 +61,19 @@ std::optional<TipGrowth> field_growth(FieldIntensityMeter& meter, const Crack& c
   growth.terms.k = *growth.terms.k_field;
   growth.terms.theta = *growth.terms.theta_field;
   return growth;
+}
+
+void add_field_state(FieldIntensityMeter& meter, const Crack& crack, std::size_t tip,
+                     const FieldView& view, TipState& state, std::vector<Finding>& findings) {
+  SifTerms terms;
+  add_field_terms(meter, crack, tip, view, terms, findings);
+  state.field_note = terms.field_note;
+  if (!terms.k_1) return;
+  state.k = terms.k_field.value_or(0.0);
+  state.theta = terms.theta_field;
+  state.k_1 = terms.k_1;
+  state.k_2 = terms.k_2;
+  state.k_3 = terms.k_3;
 }
 
 }  // namespace sunder::fracture

@@ -23,4 +23,8 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
                                                     std::size_t tip, const FieldView& view,
                                                     std::vector<Finding>& findings);
 
+/// What the field says of a tip, as tips.csv has it.
+void add_field_state(FieldIntensityMeter& meter, const Crack& crack, std::size_t tip,
+                     const FieldView& view, TipState& state, std::vector<Finding>& findings);
+
 }  // namespace sunder::fracture

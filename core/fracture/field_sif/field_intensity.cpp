@@ -73,11 +73,13 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
     : problem_(problem),
       board_(board),
       surface_(board),
+      notches_(find_notches(problem, board, surface_)),
       builder_(board, surface_),
       own_(problem.mesh().tets.size(), 0) {
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
   if (problem.scene().fracture.model != FractureModel::b) return;
-  const double radius = kDomainRadius * board.h();
+  double radius = kDomainRadius * board.h();
+  for (const Notch& notch : notches_) radius = std::max(radius, kDomainOfWidths * notch.width);
   near_.reserve(board.most_within(radius));
   builder_.reserve(radius, domain_);
   displacement_.reserve(domain_.nodes.capacity());
@@ -86,6 +88,7 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
 }
 
 std::string_view FieldIntensity::note() const {
+  if (disturbed.notch) return "notch";
   constexpr std::array<std::string_view, 8> kNotes{
       "",       "fixed",        "material",        "fixed+material",
       "damage", "fixed+damage", "material+damage", "fixed+material+damage"};
@@ -167,16 +170,50 @@ FieldIntensityMeter::Surroundings FieldIntensityMeter::look_around(const Crack& 
   return found;
 }
 
+const Notch* FieldIntensityMeter::notch_of(const Crack& crack, std::size_t tip) const {
+  const auto found = std::ranges::find_if(notches_, [&](const Notch& notch) {
+    return notch.crack == crack.id && notch.tip == static_cast<int>(tip);
+  });
+  return found == notches_.end() ? nullptr : &*found;
+}
+
+/// Radius that a domain needs to see the open notch at this tip as a crack. 0: there is none, or
+/// the crack has left it a domain behind.
+double FieldIntensityMeter::clear_of_notch(const Crack& crack, std::size_t tip) const {
+  const Notch* notch = notch_of(crack, tip);
+  if (!notch || notch->closed) return 0;
+  const double clear = std::max(kDomainOfWidths * notch->width, board_.h());
+  const double left = (crack.tips[tip].position - notch->root).norm();
+  return left < std::max(kDomainRadius * board_.h(), clear) ? clear : 0;
+}
+
+/// Of a notch of the mesh's shape that is no crack: K is not measured.
+FieldIntensity FieldIntensityMeter::too_blunt(const Crack& crack, std::size_t tip) const {
+  FieldIntensity nothing;
+  nothing.frame = {crack.tips[tip].position, crack.tips[tip].direction};
+  nothing.disturbed.notch = true;
+  return nothing;
+}
+
 FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, const FieldView& view,
                                        std::optional<double> radius) {
   if (radius) return measure(crack, tip, view, *radius, {});
   const double h = board_.h();
   // The other tip of an internal crack stays outside: its field is not this tip's.
   const double most = crack.kind == CrackKind::internal ? crack_length(crack) : kDomainRadius * h;
-  const double wanted = std::clamp(most, kSmallestDomainRadius * h, kDomainRadius * h);
+  double wanted = std::clamp(most, kSmallestDomainRadius * h, kDomainRadius * h);
+  const double clear = clear_of_notch(crack, tip);
+  if (clear > 0) {
+    const CrackTip& at = crack.tips[tip];
+    const double b = board_.plane().chord(at.position, at.direction);
+    if (!sharp_enough(*notch_of(crack, tip), crack_length(crack), b, crack.kind == CrackKind::edge))
+      return too_blunt(crack, tip);
+    wanted = std::max(wanted, clear);
+  }
   const Surroundings around = look_around(crack, crack.tips[tip].position, wanted, view);
   const double free = std::min(around.other_material, around.other_damage);
   const double chosen = std::clamp(free, kSmallestDomainRadius * h, wanted);
+  if (chosen < clear) return too_blunt(crack, tip);
   FieldIntensity result = measure(crack, tip, view, chosen, {});
   result.disturbed.material = around.other_material < chosen;
   result.disturbed.damage = around.other_damage < chosen;
@@ -209,8 +246,8 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   result.material = tip_material(domain);
   displacement_.resize(domain.nodes.size());
   view.displacement(domain.nodes, displacement_);
-  IntegralInput input{problem_, board_,        surface_,    result.frame,
-                      domain,   displacement_, view.forces, {}};
+  IntegralInput input{problem_,      board_,      surface_, result.frame, domain,
+                      displacement_, view.forces, {},       crack.id};
   const auto tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;
   result.factors = interaction_integral(input, result.material);

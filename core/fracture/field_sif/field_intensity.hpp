@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fracture/field_sif/interaction_integral.hpp"
+#include "fracture/field_sif/notch.hpp"
 #include "sunder/crack.hpp"
 
 namespace sunder::fracture {
@@ -30,6 +31,7 @@ struct Disturbances {
   bool fixed = false;     ///< the domain reaches fixed nodes, whose reactions are left out
   bool material = false;  ///< it reaches another material
   bool damage = false;    ///< it reaches elements destroyed by something else
+  bool notch = false;     ///< the crack is a notch too blunt for K, which was not measured
 };
 
 struct FieldIntensity {
@@ -55,6 +57,9 @@ class FieldIntensityMeter {
   [[nodiscard]] std::vector<FieldIntensity> along_front(const Crack& crack, std::size_t tip,
                                                         const FieldView& view, int stations);
 
+  /// The mesh's own crack that ends at this tip; null: elements were destroyed there.
+  [[nodiscard]] const Notch* notch_of(const Crack& crack, std::size_t tip) const;
+
  private:
   struct Surroundings;
   [[nodiscard]] Surroundings look_around(const Crack& crack, const Vec2& tip, double radius,
@@ -68,6 +73,8 @@ class FieldIntensityMeter {
   [[nodiscard]] Vec2 mean_direction(const Crack& crack, std::size_t tip, double length);
   [[nodiscard]] std::optional<Vec2> fitted_direction(const Crack& crack, std::size_t tip,
                                                      double radius);
+  [[nodiscard]] double clear_of_notch(const Crack& crack, std::size_t tip) const;
+  [[nodiscard]] FieldIntensity too_blunt(const Crack& crack, std::size_t tip) const;
   [[nodiscard]] FieldIntensity measure(const Crack& crack, std::size_t tip, const FieldView& view,
                                        double radius, const std::optional<FrontStretch>& stretch);
 
@@ -75,6 +82,7 @@ class FieldIntensityMeter {
   const Board& board_;
   int normal_axis_ = 2;  // coordinate axis nearest to the board's normal
   FreeSurface surface_;
+  std::vector<Notch> notches_;  // presets whose faces are the mesh's own
   DomainBuilder builder_;
   std::vector<std::uint8_t> own_;  // shape (elements): of the crack being looked at
   // Of the tip in work, with room from the start: a frame allocates nothing.

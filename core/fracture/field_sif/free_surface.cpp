@@ -14,7 +14,7 @@ FreeSurface::FreeSurface(const Board& board) : begin_(board.mesh().tets.size() +
     const auto& x = mesh.nodes;
     const Vec3 area = (x[b] - x[a]).cross(x[c] - x[a]) / 2;
     const double slope = std::abs(area.dot(board.plane().e3)) / area.norm();
-    faces_.push_back({face.nodes, area, slope < kLateralNormal});
+    faces_.push_back({face.nodes, area, slope < kLateralNormal, kNone});
     ++begin_[face.tet + 1];
   }
   for (std::size_t e = 1; e < begin_.size(); ++e) begin_[e] += begin_[e - 1];

@@ -14,8 +14,9 @@ class FreeSurface {
  public:
   struct Face {
     std::array<Index, 3> nodes;
-    Vec3 area;     ///< outward normal times area [mm^2]
-    bool lateral;  ///< of the outline or a hole, not of the top or bottom surface
+    Vec3 area;          ///< outward normal times area [mm^2]
+    bool lateral;       ///< of the outline or a hole, not of the top or bottom surface
+    int notch = kNone;  ///< crack whose face it is
   };
 
   enum class Part { outline, all };
@@ -24,6 +25,9 @@ class FreeSurface {
   [[nodiscard]] std::span<const Face> of(Index element) const {
     return {faces_.data() + begin_[element], begin_[element + 1] - begin_[element]};
   }
+  [[nodiscard]] std::span<const Face> all() const { return faces_; }
+  /// From now on a face of this crack, not of the outline.
+  void mark(std::size_t face, int crack) { faces_[face].notch = crack; }
   [[nodiscard]] bool touches(Index element, Part part) const;
 
  private:

@@ -56,6 +56,7 @@ void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField
   const auto& tet = in.board.mesh().tets[e];
   for (const FreeSurface::Face& face : in.surface.of(e)) {
     if (!face.lateral && material.constraint == 0) continue;
+    if (face.notch != kNone && face.notch == in.crack) continue;
     double weight = 0;
     Vec2 centre = Vec2::Zero();
     for (Index n : face.nodes) {

@@ -9,7 +9,8 @@
 // with the auxiliary state * of one unit stress intensity: K_I = E'/2 I_I, K_II = E'/2 I_II,
 // K_III = mu I_III. t is the front's length, so K is its mean over the front. The faces of the
 // crack itself carry no term: the auxiliary state leaves them free, and what the width of a crack
-// of destroyed elements changes is of the order of (width / distance)^2.
+// of destroyed elements changes is of the order of (width / distance)^2. So it is with a notch of
+// the body's shape: its walls and its root are faces of the crack.
 #pragma once
 
 #include <span>
@@ -39,6 +40,7 @@ struct IntegralInput {
   std::span<const NodalForce> forces;  ///< those beyond the domain count nothing
   /// The crack behind the tip, the tip last; empty: it is straight there.
   std::span<const Vec2> bent_path;
+  int crack = kNone;  ///< of the tip: the faces of its notch carry no term
 };
 
 [[nodiscard]] IntensityFactors interaction_integral(const IntegralInput& input,

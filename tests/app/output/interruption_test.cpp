@@ -99,7 +99,7 @@ TEST(FullDisk, LeavesNoHalfWrittenFileAndSaysSo) {
                          (out / "result.vtu").string() + ": File too large"),
             std::string::npos)
       << run.err;
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"events.csv", "frames.csv"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"events.csv", "frames.csv", "tips.csv"}));
   EXPECT_EQ(read_csv(out / "frames.csv").size(), 6u);
 }
 
@@ -136,9 +136,9 @@ TEST(Rerun, ReplacesTheResultsOfTheRunBefore) {
   ASSERT_EQ(
       run_program({"run", board.scene.string(), "--out", out.string(), "--steps", "2"}).exit_code,
       0);
-  EXPECT_EQ(names_in(out),
-            (std::vector<std::string>{"events.csv", "figure.png", "figure.svg", "frames.csv",
-                                      "index.html", "notes.txt", "result.vtu", "summary.json"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"events.csv", "figure.png", "figure.svg",
+                                                     "frames.csv", "index.html", "notes.txt",
+                                                     "result.vtu", "summary.json", "tips.csv"}));
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ TEST(ResultFile, CannotReplaceAFolder) {
 
 TEST(ResultFolder, OldResultsGoAndOtherFilesStay) {
   const TempFolder folder;
-  for (const char* name :
-       {"summary.json", "events.csv", "frames.csv.partial", "result_0007.vtu", "snapshot_40.png",
-        "index.html", "notes.txt", "result_x.vtu", "my_summary.json"})
+  for (const char* name : {"summary.json", "events.csv", "frames.csv.partial", "result_0007.vtu",
+                           "snapshot_40.png", "index.html", "notes.txt", "result_x.vtu",
+                           "my_summary.json", "tips.csv", "tips.csv.partial"})
     test::write_text(folder / name, "x");
   remove_old_results(folder.path());
   EXPECT_EQ(names_in(folder.path()),

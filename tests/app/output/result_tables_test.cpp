@@ -16,12 +16,12 @@ using Row = std::vector<std::string>;
 double value(const std::string& cell) { return std::strtod(cell.c_str(), nullptr); }
 
 TEST(ResultFolder, HoldsExactlyTheDocumentedFiles) {
-  EXPECT_EQ(
-      names_in(torn_board()),
-      (Row{"events.csv", "figure.png", "figure.svg", "frames.csv", "index.html", "result.vtu",
-           "result_0000.vtu", "result_0001.vtu", "result_0002.vtu", "result_0003.vtu",
-           "result_0004.vtu", "series.pvd", "snapshot_10.png", "snapshot_10.svg", "snapshot_10.vtu",
-           "snapshot_3.png", "snapshot_3.svg", "snapshot_3.vtu", "summary.json"}));
+  EXPECT_EQ(names_in(torn_board()),
+            (Row{"events.csv",      "figure.png",      "figure.svg",      "frames.csv",
+                 "index.html",      "result.vtu",      "result_0000.vtu", "result_0001.vtu",
+                 "result_0002.vtu", "result_0003.vtu", "result_0004.vtu", "series.pvd",
+                 "snapshot_10.png", "snapshot_10.svg", "snapshot_10.vtu", "snapshot_3.png",
+                 "snapshot_3.svg",  "snapshot_3.vtu",  "summary.json",    "tips.csv"}));
 }
 
 TEST(EventsTable, HasTheDocumentedColumns) {
@@ -64,6 +64,38 @@ TEST(EventsTable, CellsFitTheCriterion) {
     EXPECT_GE(value(row[8]), 0);  // K
   }
   EXPECT_EQ(seen, (std::set<std::string>{"mss", "script", "sif"}));
+}
+
+TEST(TipsTable, HasARowPerStepAndTip) {
+  const auto tips = read_csv(torn_board() / "tips.csv");
+  EXPECT_EQ(tips.front(), (Row{"step", "crack", "tip", "x", "y", "z", "K", "theta_deg", "K_I",
+                               "K_II", "K_III", "J", "toughness", "field_note"}));
+  const auto summary = read_json(torn_board() / "summary.json");
+  std::size_t last = 0;
+  for (const auto& crack : summary["cracks"]) last += crack["tips"].size();
+  ASSERT_GT(last, 0u);
+  ASSERT_GT(tips.size(), last);
+  int step = 0;
+  for (std::size_t i = 1; i < tips.size(); ++i) {
+    const Row& row = tips[i];
+    ASSERT_EQ(row.size(), tips.front().size());
+    EXPECT_GE(std::atoi(row[0].c_str()), step);
+    step = std::atoi(row[0].c_str());
+    EXPECT_TRUE(row[6].empty() || value(row[6]) >= 0) << i;
+    for (std::size_t later : {8u, 9u, 10u, 11u, 12u}) EXPECT_EQ(row[later], "");  // the formula
+  }
+  EXPECT_EQ(step, 4);
+  // The last step's are where the summary has them.
+  std::size_t at = tips.size() - last;
+  for (const auto& crack : summary["cracks"]) {
+    for (const auto& tip : crack["tips_xyz"]) {
+      EXPECT_EQ(tips[at][0], "4");
+      EXPECT_EQ(tips[at][1], std::to_string(crack["id"].get<int>()));
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(tip[axis].get<double>(), value(tips[at][3 + axis]));
+      ++at;
+    }
+  }
 }
 
 TEST(FramesTable, HasARowPerStepThatAgreesWithTheEvents) {

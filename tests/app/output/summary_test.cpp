@@ -50,7 +50,8 @@ TEST(Summary, HasTheDocumentedKeysInOrder) {
   for (const auto& stage : summary()["timings_ms"])
     EXPECT_EQ(keys_of(stage), (Keys{"min", "median", "p99", "max", "sum"}));
   for (const auto& crack : summary()["cracks"])
-    EXPECT_EQ(keys_of(crack), (Keys{"id", "kind", "mouth", "tips", "length", "path"}));
+    EXPECT_EQ(keys_of(crack), (Keys{"id", "kind", "mouth", "tips", "length", "path", "mouth_xyz",
+                                    "tips_xyz", "path_xyz"}));
 }
 
 TEST(Summary, DescribesTheBoard) {

@@ -175,6 +175,12 @@ TEST(WorkedExample, AsTheFrameDoesIt) {
   while (simulation.steps_done() < step) simulation.step();
   const std::size_t presets = problem->crack_elements()[0].size();
   EXPECT_EQ(simulation.destroyed().size(), presets) << "nothing grows before step " << step;
+  const auto resting = simulation.tips();
+  ASSERT_EQ(resting.size(), 1u);
+  expect_printed(resting[0].k.value(),
+                 page.number("K_a") * step / (step + 1));  // linear in the load
+  expect_printed(resting[0].theta.value(), page.number("theta"));
+  EXPECT_NEAR(resting[0].position.x(), 45.96, 1e-12);
   simulation.step();
   std::vector<Index> first;
   for (const DestroyedElement& row : simulation.destroyed()) {
