@@ -99,7 +99,9 @@ TEST(Deformation, BoundsAreNeverUnderTheExactValues) {
     const DeformationBounds bounds = deformation_bounds(h);
     EXPECT_GE(bounds.strain * (1 + 1e-8), std::abs(principal_strain(h))) << h;
     EXPECT_GE(bounds.rotation_deg() * (1 + 1e-9) + 1e-9, rotation_deg(h)) << h;
-    if (bounds.compression < 1) EXPECT_GT((Mat3::Identity() + h).determinant(), 0) << h;
+    if (bounds.compression < 1) {
+      EXPECT_GT((Mat3::Identity() + h).determinant(), 0) << h;
+    }
   }
 }
 
