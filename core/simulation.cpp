@@ -34,6 +34,18 @@ class Timer {
   Clock::time_point start_ = Clock::now();
 };
 
+/// The report of a step while the step lasts.
+class Shown {
+ public:
+  Shown(const StepReport*& place, const StepReport& report) : place_(place) { place_ = &report; }
+  ~Shown() { place_ = nullptr; }
+  Shown(const Shown&) = delete;
+  Shown& operator=(const Shown&) = delete;
+
+ private:
+  const StepReport*& place_;
+};
+
 bool any_breakable(const Problem& problem) {
   const auto& volumes = problem.mesh().volume_of;
   std::vector<std::uint8_t> seen(problem.mesh().volumes.size(), 0);
@@ -132,6 +144,7 @@ Simulation::~Simulation() = default;
 StepReport Simulation::step() {
   if (done()) throw UsageError("all steps of the scene are done");
   StepReport report;
+  const Shown shown(in_work_, report);
   report.step = next_step_;
   report.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
   interrupted_ = false;
@@ -188,6 +201,15 @@ StepReport Simulation::step() {
   report.passes = backend_->take_pass_times();
   ++next_step_;
   prepare_next(summary);
+  return report;
+}
+
+StepReport Simulation::so_far() {
+  if (!in_work_) return {};
+  StepReport report = *in_work_;
+  report.events = events_this_step_;
+  report.destroyed = static_cast<int>(destroyed_.size());
+  report.compliance = compliance();
   return report;
 }
 

@@ -93,7 +93,7 @@ int help(CLI::App& app, const std::vector<std::string>& path) {
   return 0;
 }
 
-int dispatch(int argc, const char* const* argv) {
+int dispatch(int argc, const char* const* argv, Interruption& interruption) {
   CLI::App app("Soft tissue that tears: deformation, rupture and crack growth under instruments.",
                "sunder");
   app.set_help_flag("-h,--help", "Show this help");
@@ -113,14 +113,14 @@ int dispatch(int argc, const char* const* argv) {
     return report(usage_message(app, error), 2);
   }
   if (app.got_subcommand("help")) return help(app, options.help_path);
-  return carry_out(app, options);
+  return carry_out(app, options, interruption);
 }
 
 }  // namespace
 
-int command_line(int argc, const char* const* argv) {
+int command_line(int argc, const char* const* argv, Interruption& interruption) {
   try {
-    const int exit_code = dispatch(argc, argv);
+    const int exit_code = dispatch(argc, argv, interruption);
     std::cout.flush();
     if (!std::cout) return report("cannot write to standard output", 1);
     return exit_code;

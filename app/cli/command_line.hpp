@@ -4,8 +4,10 @@
 
 namespace sunder::app {
 
+class Interruption;
+
 /// Runs the program and returns its exit code. Nothing escapes: every error becomes one sentence
 /// on stderr.
-int command_line(int argc, const char* const* argv);
+int command_line(int argc, const char* const* argv, Interruption& interruption);
 
 }  // namespace sunder::app

@@ -145,11 +145,12 @@ void add_commands(CLI::App& app, Options& options) {
       ->type_name("COMMAND");
 }
 
-int carry_out(const CLI::App& app, const Options& options) {
-  if (app.got_subcommand("run")) return run(run_arguments(options));
+int carry_out(const CLI::App& app, const Options& options, Interruption& interruption) {
+  if (app.got_subcommand("run")) return run(run_arguments(options), interruption);
   if (app.got_subcommand("plan")) return plan(run_arguments(options).scene, options.measure);
-  if (app.got_subcommand("reproduce")) return reproduce_paper(reproduce_arguments(options));
-  if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options));
+  if (app.got_subcommand("reproduce"))
+    return reproduce_paper(reproduce_arguments(options), interruption);
+  if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options), interruption);
   return list_devices();
 }
 

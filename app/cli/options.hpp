@@ -9,6 +9,8 @@
 
 namespace sunder::app {
 
+class Interruption;
+
 struct Options {
   using Text = std::optional<std::string>;
   // run and plan
@@ -30,6 +32,6 @@ void add_commands(CLI::App& app, Options& options);
 
 /// Carries out the command that was parsed, other than help. Throws UsageError for values that are
 /// not allowed.
-int carry_out(const CLI::App& app, const Options& options);
+int carry_out(const CLI::App& app, const Options& options, Interruption& interruption);
 
 }  // namespace sunder::app

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The commands of the program, one function each. They print results on stdout, progress and
-// warnings on stderr, return the exit code and throw sunder::Error.
+// warnings on stderr, return the exit code and throw sunder::Error. Those that write files say what
+// a signal is to do about them.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "app/commands/interruption.hpp"
 #include "app/commands/scene_arguments.hpp"
 #include "app/mesh_board/board.hpp"
 
 namespace sunder::app {
-
-constexpr int kInterruptedExit = 130;  // 128 + SIGINT, as shells have it
 
 struct RunArguments {
   SceneArguments scene;
@@ -35,11 +35,11 @@ struct ReproduceArguments {
   bool quiet = false;
 };
 
-int run(const RunArguments& arguments);
+int run(const RunArguments& arguments, Interruption& interruption);
 /// `measure`: run the first steps and print the time of each stage and pass.
 int plan(const SceneArguments& arguments, bool measure);
 int list_devices();
-int reproduce_paper(const ReproduceArguments& arguments);
-int mesh_board(const BoardArguments& arguments);
+int reproduce_paper(const ReproduceArguments& arguments, Interruption& interruption);
+int mesh_board(const BoardArguments& arguments, Interruption& interruption);
 
 }  // namespace sunder::app

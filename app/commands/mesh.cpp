@@ -6,8 +6,13 @@
 
 namespace sunder::app {
 
-int mesh_board(const BoardArguments& arguments) {
+int mesh_board(const BoardArguments& arguments, Interruption& interruption) {
+  interruption.expect({arguments.file.string() + " was not written",
+                       [file = arguments.file] { remove_half_written(file); },
+                       {},
+                       {}});
   const BoardReport report = write_board(arguments.options, arguments.file);
+  interruption.over(0);
   std::cout << arguments.file.string() << ": " << grouped(report.tets) << " tetrahedra"
             << ", " << counted(report.nodes, "node");
   if (report.nx > 0)

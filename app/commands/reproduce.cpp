@@ -7,9 +7,9 @@
 #include <iostream>
 
 #include "app/commands/commands.hpp"
-#include "app/commands/interrupt.hpp"
-#include "app/output/result_file.hpp"
+#include "app/output/result_folder.hpp"
 #include "app/output/text.hpp"
+#include "app/reproduce/notch_mesh.hpp"
 
 namespace sunder::app {
 namespace {
@@ -43,28 +43,31 @@ void print_verdicts(const reproduce::Study& study) {
 
 }  // namespace
 
-int reproduce_paper(const ReproduceArguments& arguments) {
-  const InterruptGuard guard;
-  make_result_folder(arguments.out);
+int reproduce_paper(const ReproduceArguments& arguments, Interruption& interruption) {
+  ResultFolder folder(arguments.out);
+  const Expecting working(interruption, {"nothing was written to " + arguments.out.string(),
+                                         [&folder] {
+                                           reproduce::remove_temporary_files();
+                                           folder.drop();
+                                         },
+                                         {},
+                                         {}});
+  if (folder.warning()) std::cerr << "sunder: warning: " << *folder.warning() << "\n";
   const TaskLine line(!arguments.quiet);
-  try {
-    const reproduce::Study study =
-        reproduce::carry_out_study({arguments.quick}, arguments.backend, InterruptGuard::requested,
-                                   [&](const std::string& what, std::size_t done, std::size_t all) {
-                                     line.show(what, done, all);
-                                   });
-    line.finish();
-    const auto files = reproduce::write_study(study, arguments.out);
-    print_verdicts(study);
-    std::cout << counted(static_cast<long long>(files.size()), "file") << " in "
-              << arguments.out.string() << " after " << rounded(study.seconds, 3) << " s: open "
-              << (arguments.out / "index.html").string() << std::endl;
-    return 0;
-  } catch (const reproduce::Interrupted&) {
-    line.finish();
-    std::cerr << "sunder: interrupted: nothing was written to " << arguments.out.string() << "\n";
-    return kInterruptedExit;
-  }
+  const reproduce::Study study = reproduce::carry_out_study(
+      {arguments.quick}, arguments.backend, [] { return false; },  // a signal does not ask
+      [&](const std::string& what, std::size_t done, std::size_t all) {
+        line.show(what, done, all);
+      });
+  line.finish();
+  interruption.claim();
+  const auto files = reproduce::write_study(study, folder);
+  interruption.over(0);
+  print_verdicts(study);
+  std::cout << counted(static_cast<long long>(files.size()), "file") << " in "
+            << arguments.out.string() << " after " << rounded(study.seconds, 3) << " s: open "
+            << (arguments.out / "index.html").string() << std::endl;
+  return 0;
 }
 
 }  // namespace sunder::app

@@ -10,9 +10,8 @@
 namespace sunder::app {
 namespace {
 
-std::filesystem::path prepared(std::filesystem::path folder) {
-  make_result_folder(folder);
-  remove_old_results(folder);
+ResultFolder& cleared(ResultFolder& folder) {
+  folder.clear();
   return folder;
 }
 
@@ -23,24 +22,26 @@ std::string padded(int value, std::size_t width) {
 
 }  // namespace
 
-ResultWriter::ResultWriter(std::filesystem::path folder, const Problem& problem, bool series)
-    : folder_(prepared(std::move(folder))),
+ResultWriter::ResultWriter(ResultFolder& folder, const Problem& problem, bool series)
+    : folder_(cleared(folder)),
       problem_(problem),
       series_(series),
       painter_(problem),
-      frames_(folder_ / "frames.csv"),
-      tips_(folder_ / "tips.csv") {
+      frames_(folder_, "frames.csv"),
+      tips_(folder_, "tips.csv") {
   frames_.write(frames_header());
   tips_.write(tips_header());
 }
 
 void ResultWriter::write(const std::string& name, std::string_view text) {
-  write_file(folder_ / name, text);
+  folder_.write(name, text);
   files_.push_back(name);
 }
 
 void ResultWriter::write_state(const std::string& name, const State& state) {
-  write_vtu(folder_ / name, problem_, state);
+  ResultFile file(folder_, name);
+  write_vtu(file, problem_, state);
+  file.commit();
   files_.push_back(name);
 }
 
@@ -82,7 +83,7 @@ void ResultWriter::finish(const RunRecord& run) {
   write("figure.png", png);
   files_.push_back("summary.json");
   write("index.html", report_html(run, {svg, png, snapshots_, files_}));
-  write_file(folder_ / "summary.json", summary_json(run));
+  folder_.write("summary.json", summary_json(run));
 }
 
 }  // namespace sunder::app

@@ -2,12 +2,11 @@
 // The result folder of one run: what is written while it goes on and what is written at its end.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "app/figure/figure.hpp"
-#include "app/output/result_file.hpp"
+#include "app/output/result_folder.hpp"
 #include "app/output/run_record.hpp"
 #include "app/output/vtu.hpp"
 #include "app/report/html.hpp"
@@ -16,16 +15,15 @@ namespace sunder::app {
 
 class ResultWriter {
  public:
-  /// Makes the folder, removes an earlier run's results from it and opens frames.csv and
-  /// tips.csv.
-  ResultWriter(std::filesystem::path folder, const Problem& problem, bool series);
+  /// Removes an earlier run's results from the folder and opens frames.csv and tips.csv.
+  ResultWriter(ResultFolder& folder, const Problem& problem, bool series);
 
   void step_done(const StepReport& report, const State& state, const std::vector<TipState>& tips);
   void snapshot(int wanted, const State& state);
   /// Writes what is left; summary.json last, so that its presence says that all is there.
   void finish(const RunRecord& run);
 
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] ResultFolder& folder() const { return folder_; }
   /// Names of the files written, in order.
   [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
 
@@ -33,7 +31,7 @@ class ResultWriter {
   void write(const std::string& name, std::string_view text);
   void write_state(const std::string& name, const State& state);
 
-  std::filesystem::path folder_;
+  ResultFolder& folder_;
   const Problem& problem_;
   bool series_;
   FigurePainter painter_;

@@ -3,10 +3,11 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "app/commands/commands.hpp"
-#include "app/commands/interrupt.hpp"
 #include "app/commands/progress.hpp"
 #include "app/commands/results.hpp"
 #include "app/commands/waiting.hpp"
@@ -38,48 +39,82 @@ struct Snapshot {
   State state;
 };
 
-/// One run: the simulation, what it has told so far, and where that is written.
+// A signal waits so long for an event to be over; then the run is ended without it.
+constexpr std::chrono::milliseconds kGrace{500};
+// Slow events are put aside within their step: not more often than that, and at a tenth of the
+// time.
+constexpr double kAsideSeconds = 0.3, kAsideShare = 10;
+
+/// What a run of slow events would write if it were ended now, within a step.
+struct Aside {
+  StepReport report;
+  State state;
+  std::vector<DestroyedElement> destroyed;
+  std::vector<std::string> warnings;
+};
+
+/// One run: the simulation, what it has told so far, and where that is written. Two threads: one
+/// computes, and where a signal comes and that does not end by itself, another writes what is in
+/// the record. `turn_` is held by the one that is not computing: it guards all but the simulation.
 class Run {
  public:
-  Run(const RunArguments& arguments, const OpenedScene& scene, std::filesystem::path folder)
-      : problem_(*scene.problem),
+  Run(const RunArguments& arguments, const OpenedScene& scene, ResultFolder& folder,
+      Interruption& interruption, Clock::time_point start)
+      : interruption_(interruption),
+        quiet_(arguments.quiet),
+        start_(start),
+        problem_(*scene.problem),
         record_(problem_),
-        simulation_(make_simulation(scene, !arguments.quiet)),
-        writer_(std::move(folder), problem_, arguments.series),
-        progress_(problem_.scene().steps, !arguments.quiet),
+        simulation_(make_simulation(scene)),
+        writer_(folder, problem_, arguments.series),
+        progress_(problem_.scene().steps, !quiet_),
         wanted_(arguments.snapshots) {
+    if (folder.warning()) record_.warnings.push_back(*folder.warning());
+    of_setup_ = record_.warnings;
     std::sort(wanted_.begin(), wanted_.end());
     wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
+    note();
   }
 
   /// Steps until done, interrupted or failed; then the result files. Returns the exit code.
   int carry_out();
-  [[nodiscard]] const RunRecord& record() const { return record_; }
-  [[nodiscard]] const ResultWriter& writer() const { return writer_; }
 
  private:
-  std::unique_ptr<Simulation> make_simulation(const OpenedScene& scene, bool shown);
+  std::unique_ptr<Simulation> make_simulation(const OpenedScene& scene);
+  void observe();
+  void compute();
   void step();
+  void note();
   void take_snapshots();
   void note_before_rupture();
   void note_rupture(std::span<const DestroyedElement> event);
+  void put_aside();
   void write_snapshots();
-  void close();
+  int end();
+  int end_without_computing();
+  void print_summary() const;
 
-  const InterruptGuard guard_;  // before any file appears
+  Interruption& interruption_;
+  const bool quiet_;
+  const Clock::time_point start_;
   const Problem& problem_;
   RunRecord record_;
   std::unique_ptr<Simulation> simulation_;
+  std::mutex turn_;
   ResultWriter writer_;
   Progress progress_;
-  std::vector<int> wanted_;      ///< snapshots still to come, ascending
-  std::vector<Snapshot> taken_;  ///< in this step
-  RuptureState now_;             ///< of the last frame before the first rupture
+  std::vector<std::string> of_setup_;  ///< warnings
+  std::vector<int> wanted_;            ///< snapshots still to come, ascending
+  std::vector<Snapshot> taken_;        ///< in this step
+  std::optional<Aside> aside_;         ///< in this step
+  RuptureState now_;                   ///< of the last frame before the first rupture
+  Clock::time_point put_aside_ = Clock::now();
+  double aside_seconds_ = 0;  ///< that putting aside took
 };
 
-std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene, bool shown) {
+std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene) {
   record_.warnings = scene.warnings;
-  const Waiting waiting("preparing " + grouped(problem_.dof_count()) + " unknowns", shown);
+  const Waiting waiting("preparing " + grouped(problem_.dof_count()) + " unknowns", !quiet_);
   CreatedBackend created = create_backend(scene.problem, needs_of(problem_));
   record_.left_out = created.backend->needs().left_out;
   add_new(record_.warnings, created.warnings);
@@ -87,11 +122,29 @@ std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene, bool 
   return std::make_unique<Simulation>(scene.problem, std::move(created.backend));
 }
 
+/// Into the record: all that the simulation tells but its fields.
+void Run::note() {
+  const Backend& backend = simulation_->backend();
+  record_.backend = backend.info();
+  if (backend.prepares() && problem_.scene().solver.prepare) {
+    record_.preparation = backend.preparation();
+  }
+  const auto& destroyed = simulation_->destroyed();
+  record_.destroyed.insert(
+      record_.destroyed.end(),
+      destroyed.begin() + static_cast<std::ptrdiff_t>(record_.destroyed.size()), destroyed.end());
+  record_.cracks = simulation_->cracks();
+  record_.warnings = of_setup_;
+  add_new(record_.warnings, simulation_->warnings());
+}
+
 /// Within a step, whenever the fields fit what is destroyed.
 void Run::take_snapshots() {
   const auto destroyed = static_cast<int>(simulation_->destroyed().size());
   while (!wanted_.empty() && wanted_.front() <= destroyed) {
-    taken_.push_back({wanted_.front(), capture(*simulation_, simulation_->steps_done())});
+    Snapshot snapshot{wanted_.front(), capture(*simulation_, simulation_->steps_done())};
+    const std::lock_guard turn(turn_);
+    taken_.push_back(std::move(snapshot));
     wanted_.erase(wanted_.begin());
   }
 }
@@ -119,66 +172,119 @@ void Run::note_rupture(std::span<const DestroyedElement> event) {
   }
 }
 
+/// Where snapshots are taken. What a step of quick events has come to is not worth it.
+void Run::put_aside() {
+  const double since = seconds_since(put_aside_);
+  if (!(since > std::max(kAsideSeconds, kAsideShare * aside_seconds_))) return;
+  const auto start = Clock::now();
+  Aside aside{simulation_->so_far(), capture(*simulation_, simulation_->steps_done()),
+              simulation_->destroyed(), simulation_->warnings()};
+  const std::lock_guard turn(turn_);
+  aside_ = std::move(aside);
+  put_aside_ = Clock::now();
+  aside_seconds_ = seconds_since(start);
+}
+
 void Run::write_snapshots() {
   for (const Snapshot& snapshot : taken_) writer_.snapshot(snapshot.wanted, snapshot.state);
   taken_.clear();
 }
 
+void Run::observe() {
+  simulation_->observe_frames([this] {
+    take_snapshots();
+    note_before_rupture();
+    put_aside();
+  });
+  simulation_->observe_events([this](std::span<const DestroyedElement> event) {
+    const std::lock_guard turn(turn_);
+    note_rupture(event);
+    progress_.update(simulation_->steps_done(), static_cast<int>(simulation_->destroyed().size()));
+    return !interruption_.requested();
+  });
+}
+
 void Run::step() {
   const int number = simulation_->steps_done();
   const StepReport report = simulation_->step();
-  record_.last = capture(*simulation_, number);
+  State state = capture(*simulation_, number);
+  std::vector<TipState> tips;
+  if (!simulation_->interrupted()) tips = simulation_->tips();
+  const std::lock_guard turn(turn_);
+  aside_.reset();
+  put_aside_ = Clock::now();
+  record_.last = std::move(state);
+  note();
   write_snapshots();
   if (simulation_->interrupted()) {
     record_.unfinished = report;
     return;
   }
   record_.steps.push_back(report);
-  writer_.step_done(report, record_.last, simulation_->tips());
+  writer_.step_done(report, record_.last, tips);
   progress_.update(simulation_->steps_done(), report.destroyed);
 }
 
-int Run::carry_out() {
-  simulation_->observe_frames([this] {
-    take_snapshots();
-    note_before_rupture();
-  });
-  simulation_->observe_events([this](std::span<const DestroyedElement> event) {
-    note_rupture(event);
-    progress_.update(simulation_->steps_done(), static_cast<int>(simulation_->destroyed().size()));
-    return !InterruptGuard::requested();
-  });
+void Run::compute() {
   try {
-    while (!simulation_->done() && !InterruptGuard::requested()) step();
+    while (!simulation_->done() && !interruption_.requested()) step();
   } catch (const NumericalError& error) {
+    const std::lock_guard turn(turn_);
     record_.failure = error.what();
+    note();
   }
-  record_.interrupted = simulation_->interrupted() || (!simulation_->done() && !record_.failure);
-  progress_.finish();
-  close();
-  const std::string so_far = ": results so far are in " + writer_.folder().string();
-  if (record_.failure)
-    throw NumericalError(*record_.failure + " (in step " +
-                         of_steps(simulation_->steps_done() + 1, problem_) + ")" + so_far);
-  if (!record_.interrupted) return 0;
-  std::cerr << "sunder: interrupted " << (simulation_->interrupted() ? "in step " : "after step ")
-            << of_steps(simulation_->steps_done(), problem_) << so_far << "\n";
-  return kInterruptedExit;
 }
 
-void Run::close() {
-  write_snapshots();
-  record_.backend = simulation_->backend().info();
-  if (simulation_->backend().prepares() && problem_.scene().solver.prepare) {
-    record_.preparation = simulation_->backend().preparation();
+int Run::carry_out() {
+  observe();
+  const Expecting computing(interruption_, {"", [this] { writer_.folder().drop(); },
+                                            [this] { return end_without_computing(); }, kGrace});
+  compute();
+  interruption_.claim();
+  record_.interrupted = simulation_->interrupted() || (!simulation_->done() && !record_.failure);
+  return end();
+}
+
+/// On another thread than the computing, which is left behind.
+int Run::end_without_computing() {
+  turn_.lock();  // for good
+  if (aside_) {
+    record_.unfinished = aside_->report;
+    record_.cracks = aside_->state.cracks;
+    record_.last = std::move(aside_->state);
+    record_.destroyed = std::move(aside_->destroyed);
+    record_.warnings = of_setup_;
+    add_new(record_.warnings, aside_->warnings);
   }
-  record_.destroyed = simulation_->destroyed();
-  record_.cracks = simulation_->cracks();
-  add_new(record_.warnings, simulation_->warnings());
+  std::erase_if(taken_, [this](const Snapshot& snapshot) {
+    return snapshot.state.destroyed_count > record_.last.destroyed_count;
+  });
+  record_.interrupted = !record_.failure;
+  return end();
+}
+
+/// The result files and what is to be said; reads the record alone.
+int Run::end() {
+  progress_.finish();
+  write_snapshots();
   for (const int count : wanted_)
     add_new(record_.warnings, {"no snapshot at " + counted(count, "destroyed element") + ": only " +
                                std::to_string(record_.destroyed.size()) + " were destroyed"});
   writer_.finish(record_);
+  writer_.folder().release();
+  const int steps = static_cast<int>(record_.steps.size());
+  const std::string so_far = ": results so far are in " + writer_.folder().path().string();
+  if (record_.failure)
+    throw NumericalError(*record_.failure + " (in step " + of_steps(steps + 1, problem_) + ")" +
+                         so_far);
+  if (record_.interrupted)
+    std::cerr << "sunder: interrupted " << (record_.unfinished ? "in step " : "after step ")
+              << of_steps(record_.unfinished ? steps + 1 : steps, problem_) << so_far << "\n";
+  if (!quiet_)
+    for (const std::string& warning : record_.warnings)
+      std::cerr << "sunder: warning: " << warning << "\n";
+  print_summary();
+  return record_.interrupted ? kInterruptedExit : 0;
 }
 
 void print_first_rupture(const RunRecord& run) {
@@ -207,15 +313,16 @@ void print_first_rupture(const RunRecord& run) {
   std::cout << "\n";
 }
 
-void print_summary(const RunRecord& run, const ResultWriter& writer, double seconds) {
-  const Problem& problem = run.problem;
+void Run::print_summary() const {
+  const RunRecord& run = record_;
+  const Problem& problem = problem_;
   std::cout << problem.scene().title << "\n  " << grouped(problem.tet_count()) << " tetrahedra, "
             << grouped(problem.dof_count()) << " unknowns, model "
             << name_of(problem.scene().fracture.model) << ", " << run.backend.backend << " "
             << run.backend.precision << ", route " << run.backend.route << " ("
             << run.backend.update << ")\n  "
             << counted(static_cast<long long>(run.steps.size()), "step") << " in "
-            << rounded(seconds, 3)
+            << rounded(seconds_since(start_), 3)
             << " s: " << counted(static_cast<long long>(run.destroyed.size()), "element")
             << " destroyed in " << counted(run.event_count(), "event") << ", "
             << counted(static_cast<long long>(run.cracks.size()), "crack") << "\n";
@@ -223,24 +330,28 @@ void print_summary(const RunRecord& run, const ResultWriter& writer, double seco
   const StepReport last = run.last_report();
   std::cout << "  largest yield ratio left " << rounded(last.max_yield_ratio, 4) << ", residual "
             << rounded(last.residual, 2) << ", error " << rounded(last.error, 2) << "\n";
-  std::cout << "  results in " << writer.folder().string() << ":";
-  for (const std::string& file : writer.files()) std::cout << " " << file;
+  std::cout << "  results in " << writer_.folder().path().string() << ":";
+  for (const std::string& file : writer_.files()) std::cout << " " << file;
   std::cout << std::endl;
 }
 
 }  // namespace
 
-int run(const RunArguments& arguments) {
-  const auto start = Clock::now();
+int run(const RunArguments& arguments, Interruption& interruption) {
+  const Clock::time_point start = Clock::now();
   const OpenedScene scene = open_scene(arguments.scene);
-  const std::filesystem::path folder =
-      arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem());
-  Run run(arguments, scene, folder);
+  ResultFolder folder(
+      arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem()));
+  const Expecting preparing(
+      interruption, {"nothing was computed, and nothing written to " + folder.path().string(),
+                     [&folder] { folder.drop(); },
+                     {},
+                     {}});
+  Run run(arguments, scene, folder, interruption, start);
   const int exit_code = run.carry_out();
-  if (!arguments.quiet)
-    for (const std::string& warning : run.record().warnings)
-      std::cerr << "sunder: warning: " << warning << "\n";
-  print_summary(run.record(), run.writer(), seconds_since(start));
+  // Destructors wait for threads that make what nobody wants any more.
+  if (exit_code == kInterruptedExit) interruption.leave(exit_code);
+  interruption.over(exit_code);
   return exit_code;
 }
 

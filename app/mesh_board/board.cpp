@@ -89,12 +89,14 @@ struct Temporary {
   }
 };
 
-// Through .msh files beside the target, so that the last step is a rename in one folder.
+// Beside the target, so that the last step is a rename in one folder.
+std::filesystem::path beside(const std::filesystem::path& file, const std::string& extension) {
+  return file.parent_path() / (".sunder-" + std::to_string(::getpid()) + extension);
+}
+
 void write_through_gmsh(const std::string& msh, const std::filesystem::path& file) {
-  const std::string stem =
-      (file.parent_path() / (".sunder-" + std::to_string(::getpid()))).string();
-  const Temporary from{stem + ".msh"};
-  const Temporary to{stem + file.extension().string()};
+  const Temporary from{beside(file, ".msh")};
+  const Temporary to{beside(file, file.extension().string())};
   write_file(from.path, msh);
   convert_with_gmsh(from.path, to.path);
   std::error_code code;
@@ -133,6 +135,15 @@ BoardReport write_board(const BoardOptions& options, const std::filesystem::path
   else
     write_through_gmsh(msh, file);
   return report;
+}
+
+void remove_half_written(const std::filesystem::path& file) {
+  std::error_code ignored;
+  for (const std::filesystem::path& path :
+       {std::filesystem::path(temporary_name(file.string())), beside(file, ".msh"),
+        std::filesystem::path(temporary_name(beside(file, ".msh").string())),
+        beside(file, file.extension().string())})
+    std::filesystem::remove(path, ignored);
 }
 
 }  // namespace sunder::app

@@ -32,4 +32,7 @@ struct BoardReport {
 /// all. Throws UsageError for another extension.
 BoardReport write_board(const BoardOptions& options, const std::filesystem::path& file);
 
+/// Removes what a write_board() of this process that does not go on has left beside the file.
+void remove_half_written(const std::filesystem::path& file);
+
 }  // namespace sunder::app

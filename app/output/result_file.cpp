@@ -5,21 +5,37 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <regex>
 #include <utility>
+
+#include "app/output/result_folder.hpp"
 
 namespace sunder::app {
 namespace {
 
 constexpr std::size_t kBufferBytes = 1 << 16;
-constexpr const char* kTemporarySuffix = ".partial";
 
 }  // namespace
 
+std::string temporary_name(const std::string& name) {
+  return name + "." + std::to_string(::getpid()) + ".partial";
+}
+
 ResultFile::ResultFile(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(path_.string() + kTemporarySuffix) {
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    : path_(std::move(path)), name_(path_.string()), temporary_(temporary_name(name_)) {
+  open();
+}
+
+ResultFile::ResultFile(ResultFolder& folder, const std::string& name)
+    : path_(folder.path() / name), folder_(&folder), name_(name), temporary_(temporary_name(name)) {
+  open();
+}
+
+void ResultFile::open() {
+  descriptor_ = folder_
+                    ? folder_->open(temporary_)
+                    : ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("create");
   buffer_.reserve(kBufferBytes);
 }
@@ -27,7 +43,11 @@ ResultFile::ResultFile(std::filesystem::path path)
 ResultFile::~ResultFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  ::unlink(temporary_.c_str());
+  remove();
+}
+
+void ResultFile::remove() const {
+  folder_ ? folder_->remove(temporary_) : static_cast<void>(::unlink(temporary_.c_str()));
 }
 
 void ResultFile::write(std::string_view text) {
@@ -49,18 +69,15 @@ void ResultFile::flush() {
 void ResultFile::commit() {
   flush();
   // close() may report what write() could only queue (NFS, quotas).
-  if (::close(std::exchange(descriptor_, -1)) != 0) {
-    const int cause = errno;
-    ::unlink(temporary_.c_str());
-    errno = cause;
-    fail("write");
-  }
-  std::error_code renamed;
-  std::filesystem::rename(temporary_, path_, renamed);
-  if (!renamed) return;
-  ::unlink(temporary_.c_str());
-  errno = renamed.value();
-  fail("name");
+  const bool closed = ::close(std::exchange(descriptor_, -1)) == 0;
+  const int renamed = !closed   ? -1
+                      : folder_ ? folder_->commit(temporary_, name_)
+                                : std::rename(temporary_.c_str(), name_.c_str());
+  if (renamed == 0) return;
+  const int cause = errno;
+  remove();
+  errno = cause;
+  fail(closed ? "name" : "write");
 }
 
 void ResultFile::fail(const char* doing) {
@@ -72,34 +89,6 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
   ResultFile file(path);
   file.write(text);
   file.commit();
-}
-
-void make_result_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  const auto refuse = [&](const std::string& why) {
-    throw UsageError("--out: results cannot go to " + folder.string() + ": " + why +
-                     "; allowed is a folder that can be written to or created");
-  };
-  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
-    refuse("it is a file");
-  if (error) refuse(error.message());
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));
-}
-
-void remove_old_results(const std::filesystem::path& folder) {
-  static const std::regex ours(
-      "(summary\\.json|events\\.csv|frames\\.csv|tips\\.csv|series\\.pvd|figure\\.(svg|png)|"
-      "index\\.html|"
-      "result(_[0-9]+)?\\.vtu|snapshot_[0-9]+\\.(svg|png|vtu))(\\.partial)?");
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!entry.is_regular_file() && !entry.is_symlink()) continue;
-    if (!std::regex_match(entry.path().filename().string(), ours)) continue;
-    std::error_code error;
-    if (!std::filesystem::remove(entry.path(), error))
-      throw OutputError("cannot remove " + entry.path().string() +
-                        " of an earlier run: " + error.message());
-  }
 }
 
 }  // namespace sunder::app

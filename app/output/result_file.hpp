@@ -10,17 +10,25 @@
 
 namespace sunder::app {
 
+class ResultFolder;
+
 /// A result file could not be written (disk full, no permission): exit code 1.
 class OutputError : public Error {
  public:
   explicit OutputError(const std::string& message) : Error(1, message) {}
 };
 
+/// The name, of this process alone, under which a file is written before it gets its own.
+[[nodiscard]] std::string temporary_name(const std::string& name);
+
 /// Writes to a temporary name in the same folder; commit() gives the file its name, a file that
 /// was not committed is removed. Throws OutputError, which names the file and the cause.
 class ResultFile {
  public:
+  /// A file by itself.
   explicit ResultFile(std::filesystem::path path);
+  /// One of a run's.
+  ResultFile(ResultFolder& folder, const std::string& name);
   ~ResultFile();
   ResultFile(const ResultFile&) = delete;
   ResultFile& operator=(const ResultFile&) = delete;
@@ -31,22 +39,18 @@ class ResultFile {
   void commit();
 
  private:
+  void open();
+  void remove() const;
   [[noreturn]] void fail(const char* doing);
 
-  std::filesystem::path path_, temporary_;
+  std::filesystem::path path_;
+  ResultFolder* folder_ = nullptr;
+  std::string name_, temporary_;  // in folder_, or paths
   std::string buffer_;
   int descriptor_ = -1;
 };
 
 /// Writes a whole file.
 void write_file(const std::filesystem::path& path, std::string_view text);
-
-/// Makes the folder for results and checks that files can be created in it. Throws UsageError,
-/// since the folder is what the user asked for with --out.
-void make_result_folder(const std::filesystem::path& folder);
-
-/// Removes what an earlier run left in the folder under the names of result files, so that results
-/// of two runs never lie side by side. Other files stay.
-void remove_old_results(const std::filesystem::path& folder);
 
 }  // namespace sunder::app

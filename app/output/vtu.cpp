@@ -108,9 +108,8 @@ void write_cell_data(ResultFile& file, const Problem& problem, const State& stat
 
 }  // namespace
 
-void write_vtu(const std::filesystem::path& path, const Problem& problem, const State& state) {
+void write_vtu(ResultFile& file, const Problem& problem, const State& state) {
   const Mesh& mesh = problem.mesh();
-  ResultFile file(path);
   file.write(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -127,7 +126,6 @@ void write_vtu(const std::filesystem::path& path, const Problem& problem, const 
   file.write("      </Points>\n");
   write_cells(file, mesh);
   file.write("    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
-  file.commit();
 }
 
 std::string pvd(const std::vector<SeriesEntry>& entries) {

@@ -2,16 +2,16 @@
 // VTK XML files: unstructured grids (.vtu) and their series over the steps (.pvd).
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "app/output/result_file.hpp"
 #include "app/output/state.hpp"
 
 namespace sunder::app {
 
-/// Writes one state: binary inline arrays (base64, little endian, 64-bit headers), fp64.
-void write_vtu(const std::filesystem::path& path, const Problem& problem, const State& state);
+/// One state: binary inline arrays (base64, little endian, 64-bit headers), fp64.
+void write_vtu(ResultFile& file, const Problem& problem, const State& state);
 
 struct SeriesEntry {
   double load_factor = 0;

@@ -18,12 +18,16 @@
 namespace sunder::app::reproduce {
 namespace {
 
+std::filesystem::path temporary_file(const std::string& extension) {
+  return std::filesystem::temp_directory_path() /
+         ("sunder-reproduce-" + std::to_string(::getpid()) + extension);
+}
+
 /// A file that gmsh can open; gone with the object.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& extension, std::string_view text)
-      : path_(std::filesystem::temp_directory_path() /
-              ("sunder-reproduce-" + std::to_string(::getpid()) + extension)) {
+      : path_(temporary_file(extension)) {
     write_file(path_, text);
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -69,6 +73,15 @@ std::shared_ptr<const Mesh> mesh_notch(const NotchMesh& wanted) {
     throw Error(1, "gmsh failed to mesh the notched board: " +
                        (outcome.result.empty() ? outcome.error_text : outcome.result.substr(1)));
   return std::make_shared<const Mesh>(to_mesh(*raw, nullptr, "notched board", nullptr));
+}
+
+void remove_temporary_files() {
+  std::error_code ignored;
+  for (const char* extension : {".geo", ".msh"}) {
+    const std::string path = temporary_file(extension).string();
+    std::filesystem::remove(path, ignored);
+    std::filesystem::remove(temporary_name(path), ignored);
+  }
 }
 
 Mesh read_embedded_mesh(const std::string& file) {

@@ -26,4 +26,7 @@ struct NotchMesh {
 /// An embedded .msh file.
 [[nodiscard]] Mesh read_embedded_mesh(const std::string& file);
 
+/// Removes what the functions above have on the disk while they run, where they do not go on.
+void remove_temporary_files();
+
 }  // namespace sunder::app::reproduce

@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "app/figure/figure.hpp"
-#include "app/output/result_file.hpp"
 #include "app/reproduce/study_files.hpp"
 
 namespace sunder::app::reproduce {
@@ -58,24 +57,33 @@ Study carry_out_study(
   return study;
 }
 
-std::vector<std::string> write_study(const Study& study, const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  const auto write = [&](const std::string& name, std::string_view text) {
-    write_file(folder / name, text);
-    names.push_back(name);
-  };
+std::vector<std::string> write_study(const Study& study, ResultFolder& folder) {
+  std::vector<std::pair<std::string, std::string>> files;
   std::map<std::string, std::string> pngs;
   for (const Chapter& chapter : study.chapters) {
     for (const Drawing& drawing : chapter.drawings) {
-      write(drawing.name + ".svg", standalone(drawing));
+      files.emplace_back(drawing.name + ".svg", standalone(drawing));
       if (!drawing.chart) pngs[drawing.name] = FigurePainter::png(drawing.svg);
     }
-    for (const DataTable& table : chapter.tables) write(table.name + ".csv", csv(table));
+    for (const DataTable& table : chapter.tables)
+      files.emplace_back(table.name + ".csv", csv(table));
   }
-  for (const auto& [name, png] : pngs) write(name + ".png", png);
-  write("reproduction.md", study_markdown(study));
-  write("index.html", study_page(study, pngs));
-  write("reproduce.json", study_json(study));
+  for (const auto& [name, png] : pngs) files.emplace_back(name + ".png", png);
+  files.emplace_back("reproduction.md", study_markdown(study));
+  files.emplace_back("index.html", study_page(study, pngs));
+  files.emplace_back("reproduce.json", study_json(study));
+
+  std::vector<std::string> names;
+  for (const auto& file : files) names.push_back(file.first);
+  folder.clear();
+  folder.announce(names);
+  try {
+    for (const auto& [name, text] : files) folder.write(name, text);
+    folder.release();
+  } catch (const OutputError&) {
+    folder.drop();
+    throw;
+  }
   return names;
 }
 

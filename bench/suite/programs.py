@@ -100,6 +100,16 @@ def split_present(build, mode):
     return there, sorted({p.name for p, _ in planned(mode)} - set(names))
 
 
+def expect_all(build, mode):
+    """Raises results.BadResults where a program of the mode is not built: what it measures would be
+    missing in the end."""
+    _, missing = split_present(build, mode)
+    if missing:
+        raise results.BadResults(f"{', '.join(missing)}: not built in {build}, so nothing is "
+                                 "measured; a build folder without the program or Vulkan "
+                                 "(SUNDER_APP, SUNDER_GPU) does not do")
+
+
 class Progress:
     """A line per program: what runs, how much is done, time left."""
 

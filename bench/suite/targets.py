@@ -56,7 +56,7 @@ def _refactor(rows):
             worst[body] = max(share, worst.get(body, 0))
     bodies = sorted(worst, key=lambda b: (b.split()[0] != "board", plots.tets_of(b)))
     return _judged(f"update, solution and stress after up to 100 elements ({', '.join(bodies)}), "
-                   "the slower deferred route: share of CHOLMOD's refactorisation",
+                   "the slower deferred route: share of the best library's refactorisation",
                    [(b, worst[b], 1) for b in bodies],
                    "bench_reconstruction --benchmark_filter='/k1.*/c'")
 

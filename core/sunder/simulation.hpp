@@ -56,6 +56,10 @@ class Simulation {
   /// when all steps are done.
   StepReport step();
 
+  /// Within a step, for its observers: what its report would say by now, the device's times and
+  /// the total left out. Otherwise zeros.
+  [[nodiscard]] StepReport so_far();
+
   [[nodiscard]] int steps_done() const { return next_step_; }
   [[nodiscard]] bool done() const { return next_step_ >= problem_->scene().steps; }
   [[nodiscard]] bool interrupted() const { return interrupted_; }
@@ -151,6 +155,7 @@ class Simulation {
   int next_event_ = 0;
   int events_this_step_ = 0;
   int decisions_this_step_ = 0;
+  const StepReport* in_work_ = nullptr;  // of step()
   bool interrupted_ = false;
   bool attribute_ = false;
   Steps capped_, polished_;

@@ -3,8 +3,10 @@
 import copy
 import html
 import json
+import os
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -359,6 +361,120 @@ class Checks(unittest.TestCase):
             (found,) = self.bad(**parts)
             self.assertIn(text, found)
         self.assertEqual(self.bad(rows=[peer, told]), [])
+
+
+class FreshMachine(unittest.TestCase):
+    """A machine without the peers' packages: programs that stand for its own come first in PATH and
+    write down how they were called."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="sunder-fresh-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.calls = self.folder / "calls"
+        self.stand_in("dpkg-query", "case \"$*\" in *suitesparse* | *openblas-dev*) exit 1 ;; esac\n"
+                                    "echo install ok installed")
+        self.stand_in("sudo", '"$@"')
+        self.stand_in("apt-get", "exit 0")
+
+    def stand_in(self, name, body):
+        path = self.folder / "bin" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(f'#!/bin/bash\necho "{name} $*" >> {self.calls}\n{body}\n')
+        path.chmod(0o755)
+
+    def bench_run(self, *words):
+        path = f"{self.folder / 'bin'}:{os.environ['PATH']}"
+        done = subprocess.run([BENCH / "run", "--build", self.folder / "build", "--out",
+                               self.folder / "out", *words], env=dict(os.environ, PATH=path),
+                              capture_output=True, text=True, timeout=60)
+        calls = self.calls.read_text().splitlines() if self.calls.exists() else []
+        return done, [c for c in calls if not c.startswith(("dpkg-query", "sudo"))]
+
+    def test_what_is_missing_is_installed_before_anything_is_built(self):
+        self.stand_in("cmake", "echo 'CHOLMOD is missing' >&2; exit 1")
+        done, calls = self.bench_run()
+        self.assertEqual(done.returncode, 3)
+        self.assertEqual(calls[0], "apt-get update -qq")
+        self.assertEqual(calls[1].split()[-2:], ["libsuitesparse-dev", "libopenblas-dev"])
+        self.assertTrue(calls[2].startswith("cmake -S"), calls)
+        self.assertIn("-DSUNDER_BENCH_PEERS=ON", calls[2])
+        # The configuration said no: nothing is built, nothing measured.
+        self.assertEqual(len(calls), 3)
+        self.assertIn("CHOLMOD is missing", done.stderr)
+        self.assertFalse((self.folder / "out" / "index.html").exists())
+
+    def test_what_cannot_be_installed_ends_it_at_the_start(self):
+        self.stand_in("apt-get", "exit 100")
+        self.stand_in("cmake", "exit 0")
+        done, calls = self.bench_run()
+        self.assertEqual((done.returncode, calls), (3, ["apt-get update -qq"]))
+        self.assertIn("the peers cannot be measured", done.stderr)
+
+    def test_a_program_that_is_not_built_ends_it_before_the_first_measurement(self):
+        self.stand_in("cmake", "exit 0")  # builds nothing
+        done, _ = self.bench_run()
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("bench_reconstruction", done.stderr)
+        self.assertIn("nothing is measured", done.stderr)
+        self.assertEqual(list((self.folder / "out").iterdir()), [])
+
+    def test_the_plan_and_a_page_drawn_again_install_nothing(self):
+        done, calls = self.bench_run("--plan")
+        self.assertEqual((done.returncode, calls), (0, []))
+        done, calls = self.bench_run("--draw", str(self.folder / "nothing"))
+        self.assertEqual((done.returncode, calls), (3, []))
+
+    def configured(self, *words):
+        done = subprocess.run(["cmake", "-DCMAKE_SYSTEM_PREFIX_PATH=/nowhere",
+                               "-DCMAKE_DISABLE_FIND_PACKAGE_benchmark=ON", *words, "-P",
+                               BENCH / "peers.cmake"], capture_output=True, text=True, timeout=60)
+        return done.returncode, " ".join(done.stderr.split())
+
+    def test_the_configuration_names_what_is_missing_and_what_to_do(self):
+        code, said = self.configured("-DSUNDER_BENCH_PEERS=ON")
+        self.assertNotEqual(code, 0)
+        for words in ("CHOLMOD (libsuitesparse-dev), OpenBLAS (libopenblas-dev)",
+                      "Google Benchmark (libbenchmark-dev)", "scripts/install-packages bench",
+                      "-DSUNDER_BENCH_PEERS=OFF"):
+            self.assertIn(words, said)
+        code, said = self.configured("-DSUNDER_BENCH_PEERS=OFF")
+        self.assertNotEqual(code, 0)
+        self.assertIn("missing here: Google Benchmark (libbenchmark-dev).", said)
+
+    def test_every_library_that_a_bench_program_links_is_installed(self):
+        done = subprocess.run(["bash", "-c", f"dpkg-query() {{ false; }}; apt-get() {{ :; }}; "
+                               f"sudo() {{ :; }}; env() {{ :; }}; . {BENCH.parent}/scripts/install-packages"
+                               " bench"], capture_output=True, text=True, timeout=60)
+        names = done.stdout.removeprefix("installing: ").split()
+        for name in ("g++", "cmake", "ninja-build", "libbenchmark-dev", "libsuitesparse-dev",
+                     "libopenblas-dev", "python3-numpy", "python3-matplotlib"):
+            self.assertIn(name, names)
+
+
+class BestPeer(unittest.TestCase):
+    def figure(self, rows):
+        (found,) = [f for f in headline.figures(outcome(rows)) if f[0].startswith("frame after")]
+        return found
+
+    def test_the_table_names_the_best_peer_of_each_event_whichever_it_is(self):
+        own = [("cpu factor deferred fp64", 1.0, 2.0, 6.2), ("cpu inverse deferred fp64", 2, 1, 9)]
+        peers = [("cholmod updown_solve", 4.0, 2.5, 10.7), ("cholmod updown", 5.0, 2.0, 11.0),
+                 ("eigen SimplicialLDLT refactor", 4.1, 4.2, 4.3)]
+        rows = [torn(method, event, ms) for method, *times in own + peers
+                for event, ms in zip(("k1", "k10", "k100"), times)]
+        what, figure, _ = self.figure(rows)
+        self.assertIn("share of the best peer", what)
+        self.assertEqual([part.split(" of ")[1] for part in figure.split(" / ")],
+                         ["cholmod updown_solve", "cholmod updown",
+                          "eigen SimplicialLDLT refactor"])
+        # Against CHOLMOD's update alone the last would read as a win: 6.2 / 10.7 = .58.
+        for part, expected in zip(figure.split(" / "), (0.25, 0.5, 1.44)):
+            self.assertAlmostEqual(float(part.split(" of ")[0]), expected, delta=0.05)
+
+    def test_without_a_peer_after_an_event_there_is_no_figure(self):
+        rows = [torn("cpu factor deferred fp64"), torn("cholmod updown_solve")]
+        self.assertEqual([f for f in headline.figures(outcome(rows))
+                          if f[0].startswith("frame after")], [])
 
 
 class Modes(unittest.TestCase):

@@ -367,6 +367,21 @@ TEST(Observer, TheNextStepGoesOnAfterAnInterruption) {
   EXPECT_FALSE(run.simulation.interrupted());
 }
 
+TEST(Observer, HearsHowFarTheStepHasCome) {
+  SceneRun run(strip(0.35, 2, 2));
+  std::vector<StepReport> heard;
+  run.simulation.observe_frames([&] { heard.push_back(run.simulation.so_far()); });
+  const StepReport report = run.simulation.step();
+  // A frame for each event, and one in which nothing breaks: that is the report's.
+  ASSERT_EQ(heard.size(), static_cast<std::size_t>(report.events) + 1);
+  for (std::size_t i = 0; i < heard.size(); ++i) EXPECT_EQ(heard[i].events, static_cast<int>(i));
+  EXPECT_EQ(heard.back().destroyed, report.destroyed);
+  EXPECT_EQ(heard.back().compliance, report.compliance);
+  EXPECT_EQ(heard.back().residual, report.residual);
+  EXPECT_EQ(heard.back().load_factor, report.load_factor);
+  EXPECT_EQ(run.simulation.so_far().compliance, 0);
+}
+
 TEST(Grips, RampAndReactions) {
   Scene scene = strip(1e9, 0, 4);
   scene.instruments[0].action = Grip{band(-1, 0.1), Vec3(0, -0.4, 0), Axes{2}};

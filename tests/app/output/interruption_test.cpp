@@ -3,38 +3,11 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <chrono>
-#include <thread>
-
 #include "app/output/program.hpp"
-#include "app/output/xml_file.hpp"
+#include "app/output/whole_results.hpp"
 
 namespace sunder::test {
 namespace {
-
-using namespace std::chrono_literals;
-
-/// Waits until a file is there and, with `bytes`, has grown to that size.
-bool wait_for(const std::filesystem::path& path, std::uintmax_t bytes = 0) {
-  for (int i = 0; i < 20000; ++i) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    if (!error && size >= bytes) return true;
-    std::this_thread::sleep_for(1ms);
-  }
-  return false;
-}
-
-void expect_whole_results(const std::filesystem::path& folder) {
-  for (const std::string& name : names_in(folder))
-    EXPECT_EQ(name.find(".partial"), std::string::npos) << name;
-  for (const char* name : {"summary.json", "events.csv", "frames.csv", "result.vtu", "figure.svg",
-                           "figure.png", "index.html"})
-    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
-  EXPECT_TRUE(read_json(folder / "summary.json").is_object());
-  EXPECT_EQ(parse_xml(read_file(folder / "result.vtu")).name, "VTKFile");
-  EXPECT_EQ(parse_xml(read_file(folder / "figure.svg")).name, "svg");
-}
 
 class Interruption : public ::testing::TestWithParam<int> {};
 
@@ -44,7 +17,7 @@ TEST_P(Interruption, BetweenStepsWritesTheResultsSoFar) {
   const auto out = folder / "out";
   RunControl control;
   control.meanwhile = [&](pid_t program) {
-    EXPECT_TRUE(wait_for(out / "frames.csv.partial", 400));
+    EXPECT_TRUE(wait_for(half_written(out, "frames.csv", program), 400));
     kill(program, GetParam());
   };
   const Outcome run = run_program({"run", board.scene.string(), "--out", out.string(), "--steps",
@@ -72,7 +45,7 @@ TEST(InterruptionWithinAStep, StopsAfterTheCurrentEvent) {
   RunControl control;
   // The first step holds a script and a long cascade; frames.csv appears before it begins.
   control.meanwhile = [&](pid_t program) {
-    EXPECT_TRUE(wait_for(out / "frames.csv.partial"));
+    EXPECT_TRUE(wait_for(half_written(out, "frames.csv", program)));
     kill(program, SIGINT);
   };
   const Outcome run =

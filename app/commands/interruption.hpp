@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// SIGINT and SIGTERM. A thread of its own waits for them, so that a signal ends the program within
+// a second whatever the computing is at: a factorisation, a mesh in gmsh, a shader in the driver.
+// The computing is asked to end by itself first; where it does not, it is left behind and what it
+// had put aside is written without it. So no loop of the library asks whether it is to stop.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace sunder::app {
+
+constexpr int kInterruptedExit = 130;  // 128 + SIGINT, as shells have it
+
+/// Holds SIGINT and SIGTERM back from this thread and from all that it starts: those that come
+/// wait until somebody looks for them.
+void hold_signals() noexcept;
+
+class Interruption {
+ public:
+  /// What a signal finds.
+  struct Duty {
+    std::string nothing;  ///< said where there are no results: "nothing was written"
+    /// Takes back what lies on the disk: of a first signal where there are no results, of a second
+    /// one in any case. Called from another thread than the computing, which goes on.
+    std::function<void()> drop;
+    /// Writes the results so far and returns the exit code; empty: there are none. Called once,
+    /// from another thread than the computing, if that has not ended by itself after `grace`.
+    std::function<int()> results;
+    std::chrono::milliseconds grace{0};
+  };
+
+  /// Starts to wait. One at a time, since signals belong to the process.
+  Interruption();
+  /// A signal that comes from here on is nobody's.
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  /// A signal has come.
+  [[nodiscard]] bool requested() const noexcept { return requested_.load(); }
+
+  /// Replaces what a signal finds and returns what it would have found. Does not return where
+  /// that is under way.
+  Duty expect(Duty duty);
+  /// The computing ends by itself and writes its results: nobody else will. Does not return where
+  /// somebody else does already.
+  void claim();
+  /// All is done: a signal from here on ends the program with this exit code and takes nothing
+  /// back. Does not return where somebody else ends the program.
+  void over(int exit_code);
+  /// Ends the program at once, with what stands in stdout and without destructors: they would wait
+  /// for threads that compute what nobody wants.
+  [[noreturn]] void leave(int exit_code);
+
+ private:
+  void watch();
+  [[nodiscard]] bool await(std::chrono::milliseconds limit) const;
+  void first();
+  void write_without_it();
+  void drop(const std::string& what);
+  /// Does not return where others end the program; then the lock is free.
+  void stay_unless_free(std::unique_lock<std::mutex>& lock) const;
+
+  std::atomic<bool> requested_{false}, ended_{false};
+  std::mutex mutex_;
+  Duty duty_;
+  bool claimed_ = false;  // the computing writes its results itself
+  bool forced_ = false;   // duty_.results is under way
+  std::optional<int> over_;
+  std::thread thread_;  // last: it uses all above
+};
+
+/// What a signal finds while this lives; before and after, what it found before.
+class Expecting {
+ public:
+  Expecting(Interruption& interruption, Interruption::Duty duty)
+      : interruption_(interruption), before_(interruption.expect(std::move(duty))) {}
+  ~Expecting() { static_cast<void>(interruption_.expect(std::move(before_))); }
+  Expecting(const Expecting&) = delete;
+  Expecting& operator=(const Expecting&) = delete;
+
+ private:
+  Interruption& interruption_;
+  Interruption::Duty before_;
+};
+
+}  // namespace sunder::app

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// SIGINT and SIGTERM at any moment: while libraries load, a mesh is read, a body is prepared, a
+// step is computed or a file is written.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "app/commands/interruption.hpp"
+#include "app/output/program.hpp"
+#include "app/output/whole_results.hpp"
+
+namespace sunder::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+// A second is what is promised on an idle machine (measured apart); tests share theirs.
+constexpr std::chrono::seconds kLimit{10};
+
+/// Waits until a started process is no longer this program's copy.
+void wait_for_start(pid_t program) {
+  const std::string exe = "/proc/" + std::to_string(program) + "/exe";
+  for (int i = 0; i < 60000; ++i) {
+    std::error_code error;
+    if (std::filesystem::read_symlink(exe, error).filename() == "sunder-program") return;
+    std::this_thread::sleep_for(200us);
+  }
+  FAIL() << "it has not started";
+}
+
+struct Stopped {
+  Outcome run;
+  Clock::duration took{};
+};
+
+/// Runs the program and sends it a signal so long after its start.
+Stopped stop(const std::vector<std::string>& arguments, std::chrono::microseconds after,
+             int signal) {
+  Stopped stopped;
+  Clock::time_point sent;
+  RunControl control;
+  control.meanwhile = [&](pid_t program) {
+    wait_for_start(program);
+    std::this_thread::sleep_for(after);
+    kill(program, signal);
+    sent = Clock::now();
+  };
+  stopped.run = run_program(arguments, control);
+  stopped.took = Clock::now() - sent;
+  return stopped;
+}
+
+/// None of a run's files, or all of them.
+void expect_one_run_or_none(const std::filesystem::path& out, bool interrupted) {
+  if (!std::filesystem::exists(out)) return;
+  expect_whole_results(out);
+  EXPECT_EQ(read_json(out / "summary.json")["interrupted"], interrupted);
+}
+
+TEST(Signals, AtRandomMomentsOfARun) {
+  const TempFolder folder;
+  const TearingBoard board(folder);
+  std::mt19937 random(18);
+  for (int i = 0; i < 24; ++i) {
+    const auto out = folder / ("out" + std::to_string(i));
+    const std::chrono::microseconds after(random() % (i % 2 ? 400'000 : 40'000));
+    const int signal = random() % 2 ? SIGINT : SIGTERM;
+    SCOPED_TRACE("signal " + std::to_string(signal) + " after " + std::to_string(after.count()) +
+                 " us");
+    const Stopped stopped = stop({"run", board.scene.string(), "--out", out.string(), "--steps",
+                                  "100000", "--set", "instrument.0.ramp=[0, 1e3]", "--quiet"},
+                                 after, signal);
+    EXPECT_EQ(stopped.run.exit_code, 130) << stopped.run.err;
+    EXPECT_LT(stopped.took, kLimit);
+    EXPECT_NE(stopped.run.err.find("sunder: interrupted"), std::string::npos) << stopped.run.err;
+    expect_one_run_or_none(out, true);
+  }
+}
+
+TEST(Signals, WhileABodyIsPrepared) {
+  const TempFolder folder;
+  const TearingBoard board(folder);
+  ASSERT_EQ(run_program({"mesh", "board", "--tets", "16000", "-o", (folder / "board.msh").string()})
+                .exit_code,
+            0);
+  // The dense inverse takes many seconds; an earlier run's results stay.
+  const auto out = folder / "out";
+  std::filesystem::create_directory(out);
+  write_text(out / "summary.json", "{}");
+  std::mt19937 random(3);
+  for (int i = 0; i < 3; ++i) {
+    const std::chrono::microseconds after(300'000 + random() % 700'000);
+    const Stopped stopped = stop({"run", board.scene.string(), "--out", out.string(), "--route",
+                                  "inverse", "--backend", "cpu", "--quiet"},
+                                 after, SIGINT);
+    EXPECT_EQ(stopped.run.exit_code, 130) << stopped.run.err;
+    EXPECT_LT(stopped.took, kLimit);
+    EXPECT_NE(stopped.run.err.find("nothing was"), std::string::npos) << stopped.run.err;
+    EXPECT_EQ(names_in(out), std::vector<std::string>{"summary.json"});
+  }
+}
+
+TEST(Signals, WhileGmshMeshesLeavesNothing) {
+  const TempFolder folder;
+  for (const char* name : {"board.msh", "board.vtk"}) {
+    const Stopped stopped = stop(
+        {"mesh", "board", "--unstructured", "--tets", "400000", "-o", (folder / name).string()},
+        700ms, SIGTERM);
+    EXPECT_EQ(stopped.run.exit_code, 130) << stopped.run.err;
+    EXPECT_LT(stopped.took, kLimit);
+    EXPECT_NE(stopped.run.err.find("interrupted"), std::string::npos) << stopped.run.err;
+    EXPECT_TRUE(names_in(folder.path()).empty());
+  }
+}
+
+TEST(Signals, ASecondOneDropsTheResults) {
+  const TempFolder folder;
+  const TearingBoard board(folder);
+  const auto out = folder / "out";
+  RunControl control;
+  control.meanwhile = [&](pid_t program) {
+    EXPECT_TRUE(wait_for(half_written(out, "frames.csv", program), 400));
+    kill(program, SIGINT);
+    kill(program, SIGTERM);
+  };
+  const Outcome run = run_program({"run", board.scene.string(), "--out", out.string(), "--steps",
+                                   "1000000", "--set", "instrument.0.ramp=[0, 1e4]", "--series"},
+                                  control);
+  EXPECT_EQ(run.exit_code, 130) << run.err;
+  EXPECT_NE(run.err.find("sunder: interrupted again: the results so far are dropped\n"),
+            std::string::npos)
+      << run.err;
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+/// What the computing of these does: it never comes back.
+[[noreturn]] void compute() {
+  for (;;) std::this_thread::sleep_for(1h);
+}
+
+class InterruptionDeath : public ::testing::Test {
+ protected:
+  InterruptionDeath() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+};
+
+TEST_F(InterruptionDeath, WritesWithoutAComputingThatDoesNotEnd) {
+  EXPECT_EXIT(
+      {
+        app::Interruption interruption;
+        const app::Expecting expecting(interruption, {"",
+                                                      {},
+                                                      [] {
+                                                        fputs("results", stderr);
+                                                        return 130;
+                                                      },
+                                                      50ms});
+        kill(getpid(), SIGTERM);
+        compute();
+      },
+      ::testing::ExitedWithCode(130), "^results$");
+}
+
+TEST_F(InterruptionDeath, LeavesAComputingThatEndsItsTurn) {
+  EXPECT_EXIT(
+      {
+        app::Interruption interruption;
+        const app::Expecting expecting(interruption, {"",
+                                                      {},
+                                                      [] {
+                                                        fputs("of another thread", stderr);
+                                                        return 1;
+                                                      },
+                                                      60s});
+        kill(getpid(), SIGINT);
+        while (!interruption.requested()) std::this_thread::sleep_for(1ms);
+        interruption.claim();
+        fputs("its own", stderr);
+        interruption.leave(130);
+      },
+      ::testing::ExitedWithCode(130), "^its own$");
+}
+
+TEST_F(InterruptionDeath, OnlyOneOfThemWrites) {
+  EXPECT_EXIT(
+      {
+        app::Interruption interruption;
+        const app::Expecting expecting(interruption, {"",
+                                                      {},
+                                                      [] {
+                                                        std::this_thread::sleep_for(200ms);
+                                                        fputs("results", stderr);
+                                                        return 130;
+                                                      },
+                                                      1ms});
+        kill(getpid(), SIGINT);
+        std::this_thread::sleep_for(100ms);
+        interruption.claim();  // too late
+        fputs("twice", stderr);
+      },
+      ::testing::ExitedWithCode(130), "^results$");
+}
+
+TEST_F(InterruptionDeath, ASecondSignalEndsASlowWriter) {
+  EXPECT_EXIT(
+      {
+        app::Interruption interruption;
+        const app::Expecting expecting(
+            interruption, {"", [] { fputs("dropped ", stderr); }, []() -> int { compute(); }, 1ms});
+        kill(getpid(), SIGINT);
+        std::this_thread::sleep_for(100ms);
+        kill(getpid(), SIGINT);
+        compute();
+      },
+      ::testing::ExitedWithCode(130), "^dropped sunder: interrupted again");
+}
+
+TEST_F(InterruptionDeath, AfterAllIsDoneASignalTakesNothingBack) {
+  EXPECT_EXIT(
+      {
+        app::Interruption interruption;
+        const app::Expecting expecting(interruption,
+                                       {"", [] { fputs("dropped ", stderr); }, {}, {}});
+        interruption.over(5);
+        kill(getpid(), SIGINT);
+        compute();  // destructors that wait for threads
+      },
+      ::testing::ExitedWithCode(5), "^$");
+}
+
+}  // namespace
+}  // namespace sunder::test
