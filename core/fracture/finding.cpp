@@ -53,9 +53,9 @@ std::string sentence(const Finding& f, const Scene& scene) {
       return field_of(f) +
              " is not measured: the notch of the mesh's shape is too wide there for a sharp "
              "crack's "
-             "K within 3 %; give it under a fifteenth of its length or the shape of a V of at most "
-             "60 "
-             "degrees, split the mesh's nodes, or let the crack take elements (docs/method.md)";
+             "K within 3 %; make it narrower (a slot under a fifteenth of its length, a V of at "
+             "most 60 degrees), split the mesh's nodes, or let the crack take elements "
+             "(docs/method.md)";
     case Finding::Kind::formula_notch:
       return formula_of(f) +
              " is left out: its remote stress is that of the mesh without the crack's elements, "

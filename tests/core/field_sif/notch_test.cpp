@@ -42,6 +42,18 @@ TEST(Notch, SlotIsACrackOfItsLength) {
   }
 }
 
+TEST(Notch, RoundEndIsSharperThanAFlatOne) {
+  const double width = 2;  // .5 mm where W is 20 mm
+  CrackedBody round = opened_strip(80, 28, [&](double behind) {
+    return behind >= width / 2 ? width / 2 : std::sqrt(behind * (width - behind));
+  });
+  const auto measured = round.chosen_intensity(0);
+  EXPECT_FALSE(measured.disturbed.notch);
+  EXPECT_NEAR(measured.factors.k_1 / published(80, 28), 1, kPromise);
+  CrackedBody flat = slotted_strip(80, 28, 2);
+  EXPECT_LT(measured.factors.k_1, flat.chosen_intensity(0).factors.k_1);
+}
+
 TEST(Notch, NarrowSlotIsTheSplitCrack) {
   // .1 mm in a strip 20 mm wide, its end drawn in over a cell of .5 mm: the mesh owes what it owes
   // the same crack of split nodes.
