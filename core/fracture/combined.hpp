@@ -12,6 +12,8 @@
 #include "fracture/board.hpp"
 #include "fracture/criterion.hpp"
 #include "fracture/field_sif/field_growth.hpp"
+#include "fracture/present_field.hpp"
+#include "fracture/pristine_field.hpp"
 #include "fracture/tip_growth.hpp"
 
 namespace sunder::fracture {
@@ -37,6 +39,8 @@ class Combined final : public FractureCriterion {
   /// Fills driven_: K and direction of all tips that have not ended, from one state.
   void drive_tips(const FractureState& state, std::vector<Finding>& findings);
   [[nodiscard]] bool by_field() const { return problem_.scene().fracture.sif == SifSource::field; }
+  /// The field that rules 5 and 8 ask for, as it is in this state.
+  [[nodiscard]] const RemoteField& remote_field(const FractureState& state);
   /// What the other criterion says of the same tips, for the rows that will tell.
   void add_other_terms(const FractureState& state);
   /// Moves one tip as far as it goes; its elements are added to the decision.
@@ -58,7 +62,8 @@ class Combined final : public FractureCriterion {
   std::vector<std::uint8_t> excluded_;  // shape (elements)
   std::vector<DrivenTip> driven_;       // of the last decision
   // Of the decision in work, with room from the start: a frame allocates nothing.
-  PristineField remote_;
+  PristineField pristine_;
+  PresentField present_;
   BandSearch bands_;
   Walk walk_;
   FacePressure faces_;
