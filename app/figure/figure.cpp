@@ -11,6 +11,7 @@
 #include "app/figure/shading.hpp"
 #include "app/figure/surface.hpp"
 #include "app/figure/svg.hpp"
+#include "app/figure/tip_vectors.hpp"
 #include "app/output/text.hpp"
 
 namespace sunder::app {
@@ -144,7 +145,8 @@ std::string FigurePainter::draw_body(const State& state, const Scenery& scene,
   out += surface(scene.visible, element_colors(problem_, state, scene.scale), canvas);
   out += held_edges(problem_, plane_, scene.pose, scene.faces, canvas);
   out += crack_paths(problem_.mesh(), plane_, scene.pose, state, canvas);
-  return out + draw(scene.arrows, canvas);
+  out += draw(scene.arrows, canvas);
+  return out + draw_tip_vectors(problem_, plane_, scene.pose, state, canvas);
 }
 
 Bounds FigurePainter::bounds(const State& state) const { return scenery(state).bounds; }
@@ -164,6 +166,8 @@ std::string FigurePainter::svg(const State& state) const {
   out += draw_body(state, scene, canvas);
   if (scene.scale) out += color_bar(*scene.scale, canvas);
   out += caption(problem_, scene.pose, state, canvas);
+  out += tip_vector_key(canvas.corner() - Vec2(0, 8), problem_.scene().fracture.sif,
+                        !state.growths.empty());
   return out + "</svg>\n";
 }
 
