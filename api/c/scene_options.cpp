@@ -29,7 +29,7 @@ sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   require_finite(given.alpha, "alpha");
   f.alpha = given.alpha;
   f.yield_measure = choice<sunder::YieldMeasure>(given.yield_measure, 2, "yield_measure");
-  f.sigma0 = choice<sunder::RemoteStress>(given.sigma0, 2, "sigma0");
+  f.sigma0 = choice<sunder::RemoteStress>(given.sigma0, 3, "sigma0");
   f.crack_length = choice<sunder::CrackLength>(given.crack_length, 2, "crack_length");
   f.birth = choice<sunder::CrackBirth>(given.birth, 2, "birth");
   f.sif = choice<sunder::SifSource>(given.sif, 2, "sif");

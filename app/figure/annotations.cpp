@@ -50,8 +50,8 @@ std::string ring(const Vec2& at) {
          svg::circle(at, 9, "fill=\"none\" stroke=\"#ffd60a\" stroke-width=\"2\"");
 }
 
-/// Crack records are undeformed. A point moves with the crack's elements around it, weighted by a
-/// bell of width h: an opened crack's path runs in the middle of its opening.
+}  // namespace
+
 Vec2 drawn_point(const Mesh& mesh, const BoardPlane& plane, const Pose& pose, const Crack& crack,
                  const Vec2& point) {
   double nearest = std::numeric_limits<double>::infinity(), weights = 0;
@@ -75,6 +75,8 @@ Vec2 drawn_point(const Mesh& mesh, const BoardPlane& plane, const Pose& pose, co
   }
   return shifts.empty() ? point : Vec2(point + sum / weights);
 }
+
+namespace {
 
 std::string sentence_of_scale(const Pose& pose) {
   std::string text = "Displacement × " + rounded(pose.scale, 3) +

@@ -9,6 +9,7 @@
 #include "app/figure/raster.hpp"
 #include "app/figure/shading.hpp"
 #include "app/figure/surface.hpp"
+#include "app/figure/tip_vectors.hpp"
 #include "app/figure/visible.hpp"
 
 namespace sunder::app {
@@ -72,7 +73,8 @@ std::string FigurePainter::draw_body(const State& state, const Scenery& scene,
                  plane_.edge_length);
   out += held_edges(problem_, plane_, scene.pose, scene.faces, canvas);
   out += crack_paths(problem_.mesh(), plane_, scene.pose, state, canvas);
-  return out + draw(scene.arrows, canvas);
+  out += draw(scene.arrows, canvas);
+  return out + draw_tip_vectors(problem_, plane_, scene.pose, state, canvas);
 }
 
 Bounds FigurePainter::bounds(const State& state) const { return scenery(state).bounds; }
@@ -96,6 +98,8 @@ std::string FigurePainter::svg(const State& state) const {
   if (torn)
     out += destroyed_inset(problem_.mesh(), plane_, *faces_, state.destroyed, canvas.inset_corner(),
                            canvas.inset_size());
+  out += tip_vector_key(canvas.corner() - Vec2(0, 8), problem_.scene().fracture.sif,
+                        !state.growths.empty());
   return out + "</svg>\n";
 }
 

@@ -174,8 +174,9 @@ FractureOptions read_fracture(const TomlTable& root, const std::string& file) {
                                                   {"tresca", YieldMeasure::tresca}})
           .value_or(options.yield_measure);
   options.sigma0 = table
-                       .choice<RemoteStress>(
-                           "sigma0", {{"line", RemoteStress::line}, {"tip", RemoteStress::tip}})
+                       .choice<RemoteStress>("sigma0", {{"line", RemoteStress::line},
+                                                        {"tip", RemoteStress::tip},
+                                                        {"present", RemoteStress::present}})
                        .value_or(options.sigma0);
   options.crack_length = table
                              .choice<CrackLength>("crack_length", {{"path", CrackLength::path},

@@ -7,6 +7,25 @@
 
 namespace sunder::app {
 
+namespace {
+
+std::vector<LastGrowth> last_growths(const std::vector<DestroyedElement>& rows) {
+  std::vector<LastGrowth> growths;
+  for (const DestroyedElement& row : rows) {
+    if (!row.sif) continue;
+    const auto same = std::find_if(growths.begin(), growths.end(), [&](const LastGrowth& g) {
+      return g.crack == row.crack && g.terms.tip == row.sif->tip;
+    });
+    if (same == growths.end())
+      growths.push_back({row.crack, *row.sif});
+    else
+      same->terms = *row.sif;
+  }
+  return growths;
+}
+
+}  // namespace
+
 State capture(const Simulation& simulation, int step) {
   const Scene& scene = simulation.problem().scene();
   State state;
@@ -18,6 +37,7 @@ State capture(const Simulation& simulation, int step) {
   state.destroyed.assign(destroyed.begin(), destroyed.end());
   state.destroyed_count = static_cast<int>(simulation.destroyed().size());
   state.cracks = simulation.cracks();
+  state.growths = last_growths(simulation.destroyed());
   const std::vector<Vec3> forces = simulation.reactions();
   for (std::size_t i = 0; i < scene.instruments.size(); ++i)
     state.instruments.push_back({scene.instruments[i].name, simulation.acting_nodes(i), forces[i],

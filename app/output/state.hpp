@@ -17,6 +17,12 @@ struct InstrumentState {
   bool pressure = false;
 };
 
+/// What drove the last growth of a tip, from the state before it.
+struct LastGrowth {
+  int crack = 0;
+  SifTerms terms;
+};
+
 struct State {
   int step = 0;                         ///< the step in which it was taken
   double load_factor = 0;               ///< its scene time
@@ -25,6 +31,7 @@ struct State {
   std::vector<std::uint8_t> destroyed;  ///< per element
   int destroyed_count = 0;
   std::vector<Crack> cracks;
+  std::vector<LastGrowth> growths;  ///< of every tip that has grown, in order of its first growth
   std::vector<InstrumentState> instruments;
   Vec3 support_reaction = Vec3::Zero();  ///< N
 };

@@ -18,11 +18,14 @@ struct KChoice {
 };
 [[nodiscard]] const std::vector<KChoice>& both_k();
 
-[[nodiscard]] Chapter pulled_board(const Laboratory& lab);       // experiment 1, Fig. 4
-[[nodiscard]] Chapter notched_board(const Laboratory& lab);      // experiment 2, Fig. 5
-[[nodiscard]] Chapter pressure_distance(const Laboratory& lab);  // experiment 3, Fig. 6
-[[nodiscard]] Chapter pressure_side(const Laboratory& lab);      // experiment 4, Fig. 7
-[[nodiscard]] Chapter paper_times(const Laboratory& lab);        // experiment 5, Tables 2 and 3
+[[nodiscard]] Chapter pulled_board(const Laboratory& lab,
+                                   const Effort& effort);    // experiment 1, Fig. 4, 5(a)
+[[nodiscard]] Chapter notched_board(const Laboratory& lab);  // experiment 2, Fig. 5
+[[nodiscard]] Chapter pressure_distance(const Laboratory& lab,
+                                        const Effort& effort);  // experiment 3, Fig. 6
+[[nodiscard]] Chapter pressure_side(const Laboratory& lab);     // experiment 4, Fig. 7
+[[nodiscard]] Chapter paper_times(const Laboratory& lab);       // experiment 5, Tables 2 and 3
+[[nodiscard]] Chapter several_cracks(const Laboratory& lab);
 [[nodiscard]] Chapter k_along_crack(const Laboratory& lab);
 [[nodiscard]] Chapter mesh_study(const Laboratory& lab, const Effort& effort);
 [[nodiscard]] Chapter notch_length(const Laboratory& lab, const Effort& effort);

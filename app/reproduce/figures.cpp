@@ -7,13 +7,14 @@
 #include "app/figure/figure.hpp"
 #include "app/figure/shading.hpp"
 #include "app/figure/svg.hpp"
+#include "app/figure/tip_vectors.hpp"
 #include "app/output/text.hpp"
 
 namespace sunder::app::reproduce {
 namespace {
 
 constexpr double kPanel = 300, kGap = 14, kTop = 52, kRowTitle = 24, kPanelTitle = 20;
-constexpr double kLegend = 60, kInset = 6;
+constexpr double kLegend = 84, kInset = 6;
 
 std::vector<Panel> all_panels(const std::vector<PanelRow>& rows) {
   std::vector<Panel> panels;
@@ -42,6 +43,22 @@ std::string panel_drawing(const Panel& panel, const Canvas& canvas, const Vec2& 
          "\" height=\"" + c(height) + "\" viewBox=\"" + c(corner.x()) + " " + c(corner.y()) + " " +
          c(size.x()) + " " + c(size.y()) + "\">\n" +
          FigurePainter(*panel.run->problem).drawing(*panel.state, canvas) + "</svg>\n";
+}
+
+/// The vectors' colours: by the formula and by the field, whichever the panels have.
+std::string vector_keys(double top, const std::vector<PanelRow>& rows) {
+  std::string out;
+  double left = kGap;
+  for (const auto& [drives, width] :
+       {std::pair{SifSource::formula, 470.0}, std::pair{SifSource::field, 370.0}}) {
+    bool any = false;
+    for (const Panel& panel : all_panels(rows))
+      any = any ||
+            (!panel.state->growths.empty() && panel.run->problem->scene().fracture.sif == drives);
+    out += tip_vector_key({left, top}, drives, any);
+    if (any) left += width;
+  }
+  return out;
 }
 
 std::string legend(double top, bool cracks) {
@@ -88,7 +105,8 @@ std::string montage(const std::string& title, const std::vector<PanelRow>& rows)
                          : svg::text({at.x() + 2, at.y() + 14}, panel.title, "fill=\"#888\"");
     }
   }
-  return out + legend(page.y() - kLegend + 8, cracks) + "</svg>\n";
+  const double below = page.y() - kLegend + 8;
+  return out + legend(below, cracks) + vector_keys(below + 56, rows) + "</svg>\n";
 }
 
 }  // namespace sunder::app::reproduce

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/reproduce/judgement.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/output/text.hpp"
 
@@ -14,7 +16,9 @@ constexpr double kMostSnapshots = 0.75, kHalf = 0.5;
 constexpr double kFewShared = 0.5, kManyShared = 0.8;
 constexpr double kTurn = 5.0;      // deg: a deviation the eye sees on the paper's pictures
 constexpr double kDip = 0.1;       // of the height: not a turn of its own
+constexpr double kResolved = 1.0;  // h: a smaller deviation is the mesh's
 constexpr double kClearly = 0.05;  // 5 %: of forces, lengths
+constexpr double kAlike = 1.25;    // times: equal but for what a machine does meanwhile
 constexpr double kAngleStep = 2.0, kStraight = 10.0;  // deg
 
 /// Comparisons with NaN or a missing number are false.
@@ -50,18 +54,19 @@ Judgement judge_one_crack(const OneCrack& measured) {
            {"share by growth of a crack", measured.growth}}};
 }
 
-Judgement judge_peak_at_tip(std::span<const std::optional<double>> distances) {
+Judgement judge_peak_at_tip(std::span<const std::optional<double>> distances,
+                            const std::string& at) {
   Judgement judgement;
   double near = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {
     near += known(distances[i]) <= kAtTip ? 1 : 0;
     judgement.numbers.push_back(
-        {"distance of the peak from the tip, picture " + std::to_string(i + 1) + " [h]",
+        {"distance of the peak from " + at + ", picture " + std::to_string(i + 1) + " [h]",
          distances[i]});
   }
   const double share = distances.empty() ? 0 : near / static_cast<double>(distances.size());
   judgement.verdict = verdict_of(share >= kMostSnapshots, share >= kHalf);
-  judgement.rule = "reproduced: within " + rounded(kAtTip, 2) + " h of a tip in at least " +
+  judgement.rule = "reproduced: within " + rounded(kAtTip, 2) + " h of " + at + " in at least " +
                    percent(kMostSnapshots) + " of the pictures; partly: in at least half";
   return judgement;
 }
@@ -73,24 +78,37 @@ Judgement judge_models_differ(std::optional<double> overlap) {
           {{"share of elements in both lists", overlap}}};
 }
 
-Judgement judge_up_then_down(const std::optional<Turns>& turns) {
-  const bool first = turns && -turns->dip <= kDip * turns->highest;
-  const bool up = turns && turns->rise_deg >= kTurn && first;
-  const bool down = up && turns->fall_deg <= -kTurn;
-  Judgement judgement{verdict_of(up && down, up),
+namespace {
+
+bool goes_up(const Turns& turns) {
+  return turns.rise_deg >= kTurn && -turns.dip <= kDip * turns.highest;
+}
+
+}  // namespace
+
+bool goes_up_then_down(const Turns& turns) { return goes_up(turns) && turns.fall_deg <= -kTurn; }
+
+Judgement judge_up_then_down(const std::optional<Turns>& turns, double h) {
+  const bool up = turns && goes_up(*turns), down = turns && goes_up_then_down(*turns);
+  const bool resolved = turns && turns->highest >= kResolved * h;
+  Judgement judgement{verdict_of(down && resolved, up),
                       "reproduced: mean slope at least " + rounded(kTurn, 2) +
-                          " deg up to the highest point, before it never lower than " +
-                          percent(kDip) + " of that height below the begin, and at least " +
-                          rounded(kTurn, 2) + " deg down from there; partly: up only",
+                          " deg up to the highest point, which is at least " +
+                          rounded(kResolved, 2) +
+                          " h above the begin, before it never lower than " + percent(kDip) +
+                          " of that height below the begin, and at least " + rounded(kTurn, 2) +
+                          " deg down from there; partly: a lower top, or up only",
                       {}};
   const auto number = [&](double Turns::*which) {
     return turns ? std::optional<double>((*turns).*which) : std::nullopt;
   };
-  judgement.numbers = {{"slope to the highest point [deg]", number(&Turns::rise_deg)},
-                       {"slope from there [deg]", number(&Turns::fall_deg)},
-                       {"highest point [mm]", number(&Turns::highest)},
-                       {"lowest before it [mm]", number(&Turns::dip)},
-                       {"height at the end [mm]", number(&Turns::end)}};
+  judgement.numbers = {
+      {"slope to the highest point [deg]", number(&Turns::rise_deg)},
+      {"slope from there [deg]", number(&Turns::fall_deg)},
+      {"highest point [mm]", number(&Turns::highest)},
+      {"highest point [h]", turns ? std::optional<double>(turns->highest / h) : std::nullopt},
+      {"lowest before it [mm]", number(&Turns::dip)},
+      {"height at the end [mm]", number(&Turns::end)}};
   return judgement;
 }
 
@@ -105,12 +123,59 @@ Judgement judge_lower_force(std::optional<double> lower, std::optional<double> h
            {"ratio", std::isfinite(ratio) ? std::optional<double>(ratio) : std::nullopt}}};
 }
 
-Judgement judge_goes_further(std::optional<double> near, std::optional<double> far) {
-  const double ratio = known(near) / known(far);
-  const bool only_near = known(near) > 0 && known(far) == 0;
+Judgement judge_goes_further(const NextRupture& near, const NextRupture& far) {
+  const double ratio = known(near.length) / known(far.length);
+  const bool only_near = known(near.length) > 0 && known(far.length) == 0;
   return {verdict_of(ratio >= 1 + kClearly || only_near, ratio > 1),
-          "reproduced: longer by at least " + percent(kClearly) + "; partly: longer by less",
-          {{"grown, pressed near the tip [mm]", near}, {"grown, pressed far from it [mm]", far}}};
+          "reproduced: under the same force the next rupture is longer by at least " +
+              percent(kClearly) + "; partly: longer by less",
+          {{"next rupture, pressed near the tip [mm]", near.length},
+           {"next rupture, pressed far from it [mm]", far.length},
+           {"reach of Eq. 1, near [mm]", near.reach},
+           {"reach of Eq. 1, far [mm]", far.reach}}};
+}
+
+Judgement judge_final_length(std::span<const FinalLength> lengths) {
+  bool rises = lengths.size() > 1, outruns = rises;
+  Judgement judgement;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    judgement.numbers.push_back(
+        {"final length from " + rounded(lengths[i].preset, 3) + " mm [mm]", lengths[i].final});
+    if (i == 0) continue;
+    const double more = known(lengths[i].final) - known(lengths[i - 1].final);
+    rises = rises && more > 0;
+    outruns = outruns && more > (1 + kClearly) * (lengths[i].preset - lengths[i - 1].preset);
+  }
+  judgement.verdict = verdict_of(rises && outruns, rises);
+  judgement.rule =
+      "reproduced: from each preset length to the next the final length rises by at least " +
+      percent(kClearly) +
+      " more than the preset length itself, so that a longer notch also tears further; partly: it "
+      "rises, but at some step by no more than the notch";
+  return judgement;
+}
+
+Judgement judge_propagation_first(const Order& order) {
+  const bool kept = order.growths > 0 && order.mixed == 0;
+  const bool tested = order.went_first > 0;
+  return {verdict_of(kept && tested, kept),
+          "reproduced: no event both grows a crack and starts one, and at least one growth went "
+          "before an element, away from every crack, that stood at or above its yield stress; "
+          "partly: none stood there, so that the order was not put to the test",
+          {{"events by growth", order.growths},
+           {"of them before an element at its yield stress", order.went_first},
+           {"events that start a crack", order.births},
+           {"events that do both", order.mixed}}};
+}
+
+Judgement judge_several(const Several& several) {
+  const bool cracks = several.grown >= 2;
+  return {verdict_of(cracks && several.tools >= 2 && several.at_once > 0, cracks),
+          "reproduced: at least two cracks grow, at least two instruments are the nearest one to a "
+          "crack, and at least once two cracks grow in one event; partly: at least two cracks grow",
+          {{"cracks that grew", several.grown},
+           {"instruments with a crack of their own", several.tools},
+           {"events in which several cracks grow", several.at_once}}};
 }
 
 Judgement judge_sides(const SideAngles& a) {
@@ -134,6 +199,25 @@ Judgement judge_side_forces(const SideForces& f) {
           {{"critical force, under face [N]", f.under},
            {"critical force, no pressure [N]", f.none},
            {"critical force, upper face [N]", f.upper}}};
+}
+
+Judgement judge_equal_totals(std::span<const Figure> totals) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  bool complete = totals.size() > 1;
+  for (const Figure& total : totals) {
+    complete = complete && total.value.has_value();
+    least = std::min(least, total.value.value_or(least));
+    most = std::max(most, total.value.value_or(most));
+  }
+  const double ratio = complete ? most / least : std::nan("");
+  Judgement judgement{verdict_of(ratio <= 1 + kClearly, ratio <= kAlike),
+                      "reproduced: the longest at most " + percent(kClearly) +
+                          " above the shortest (the paper: 3.6 %); partly: at most " +
+                          percent(kAlike - 1),
+                      {totals.begin(), totals.end()}};
+  judgement.numbers.push_back(
+      {"longest / shortest", std::isfinite(ratio) ? std::optional<double>(ratio) : std::nullopt});
+  return judgement;
 }
 
 Judgement judge_takes_longer(std::optional<double> more, std::optional<double> less,

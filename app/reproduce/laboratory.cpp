@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "app/input/scene_toml.hpp"
-#include "app/reproduce/notch_mesh.hpp"
 #include "app/reproduce/paper_files.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/simulation.hpp"
@@ -19,6 +18,18 @@ void scale_forces(Scene& scene, double factor) {
   for (Instrument& instrument : scene.instruments) {
     if (auto* pull = std::get_if<Pull>(&instrument.action)) pull->force *= factor;
     if (auto* press = std::get_if<Press>(&instrument.action)) press->force *= factor;
+  }
+}
+
+void grip_instead(Scene& scene, double way) {
+  for (Instrument& instrument : scene.instruments) {
+    const auto* pull = std::get_if<Pull>(&instrument.action);
+    if (!pull) continue;
+    Axes along{0};
+    for (int axis = 0; axis < 3; ++axis)
+      if (pull->force[axis] != 0) along.bits = static_cast<std::uint8_t>(along.bits | 1 << axis);
+    const Vec3 moved = way * pull->force.normalized();
+    instrument.action = Grip{NodeSelection(pull->nodes), moved, along};
   }
 }
 
@@ -67,6 +78,18 @@ const Mesh& Laboratory::mesh_of(const std::string& file) const {
   return meshes_.emplace(file, read_embedded_mesh(file)).first->second;
 }
 
+std::shared_ptr<const Mesh> Laboratory::notch(const NotchMesh& wanted) const {
+  auto& mesh = made_[notch_geometry(wanted)];
+  if (!mesh) mesh = mesh_notch(wanted);
+  return mesh;
+}
+
+std::shared_ptr<const Mesh> Laboratory::board(const BoardMesh& wanted) const {
+  auto& mesh = made_[board_geometry(wanted)];
+  if (!mesh) mesh = mesh_board(wanted);
+  return mesh;
+}
+
 Scene Laboratory::scene(const RunPlan& plan) const {
   std::vector<std::string> overrides = plan.overrides;
   overrides.push_back("solver.backend=" + backend_);
@@ -74,6 +97,7 @@ Scene Laboratory::scene(const RunPlan& plan) const {
       parse_scene(paper_file(plan.scene + ".toml"), plan.scene + ".toml", overrides);
   parsed.scene.mesh = plan.mesh ? *plan.mesh : mesh_of(parsed.mesh_path);
   scale_forces(parsed.scene, plan.load);
+  if (plan.grip) grip_instead(parsed.scene, *plan.grip);
   return std::move(parsed.scene);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/output/state.hpp"
+#include "app/reproduce/notch_mesh.hpp"
 #include "sunder/board_plane.hpp"
 
 namespace sunder::app::reproduce {
@@ -25,6 +26,8 @@ struct RunPlan {
   std::shared_ptr<const Mesh> mesh;    ///< instead of the scene's own
   double load = 1;                     ///< all forces times this
   std::vector<int> snapshots;          ///< at so many fractures, presets not counted; ascending
+  /// Pulls become grips that move so far [mm] along their force, free across it.
+  std::optional<double> grip = std::nullopt;
 };
 
 struct RunResult {
@@ -53,6 +56,9 @@ class Laboratory {
   /// Throws Interrupted, InputError, NumericalError.
   [[nodiscard]] RunResult run(const RunPlan& plan) const;
   [[nodiscard]] Scene scene(const RunPlan& plan) const;
+  /// mesh_notch() and mesh_board(), each mesh made once.
+  [[nodiscard]] std::shared_ptr<const Mesh> notch(const NotchMesh& wanted) const;
+  [[nodiscard]] std::shared_ptr<const Mesh> board(const BoardMesh& wanted) const;
   void tell(const std::string& what) const { tell_(what); }
   void check_interrupt() const;
 
@@ -62,7 +68,8 @@ class Laboratory {
   std::string backend_;
   std::function<bool()> stop_;
   std::function<void(const std::string&)> tell_;
-  mutable std::map<std::string, Mesh> meshes_;
+  mutable std::map<std::string, Mesh> meshes_;                       // by file
+  mutable std::map<std::string, std::shared_ptr<const Mesh>> made_;  // by geometry
 };
 
 }  // namespace sunder::app::reproduce

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -22,6 +21,25 @@ std::set<Index> first_elements(std::span<const DestroyedElement> rows, std::size
   for (const DestroyedElement& row : rows.subspan(0, std::min(count, rows.size())))
     ids.insert(row.element);
   return ids;
+}
+
+Vec2 centroid(const RunResult& run, Index e) {
+  const Mesh& mesh = run.problem->mesh();
+  Vec3 sum = Vec3::Zero();
+  for (const Index node : mesh.tets[e]) sum += mesh.nodes[node] / 4;
+  return run.plane.project(sum);
+}
+
+/// Of the live breakable element with the largest yield ratio.
+std::optional<Vec2> place_of_peak(const RunResult& run, const State& state) {
+  const std::vector<double> ratios = yield_ratios(*run.problem, state);
+  const auto peak = std::max_element(ratios.begin(), ratios.end());
+  if (peak == ratios.end() || !(*peak > 0)) return std::nullopt;
+  return centroid(run, static_cast<Index>(peak - ratios.begin()));
+}
+
+double nearer(const std::optional<double>& known, double found) {
+  return known ? std::min(*known, found) : found;
 }
 
 Index root(std::vector<Index>& parent, Index i) {
@@ -59,6 +77,19 @@ GrownPath preset_path(const RunResult& run) {
   const Vec2 tip = run.plane.project(preset.tips.at(0));
   if (run.cracks.empty()) return {{Vec2::Zero()}};
   return grown_path(run.cracks.front(), tip, tip - mouth);
+}
+
+std::optional<GrownPath> born_path(const RunResult& run) {
+  if (run.cracks.empty() || !run.cracks.front().mouth) return std::nullopt;
+  const Vec2 mouth = *run.cracks.front().mouth;
+  const Vec2 to_low = mouth - run.plane.outline_min, to_high = run.plane.outline_max - mouth;
+  const double nearest = std::min(to_low.minCoeff(), to_high.minCoeff());
+  Vec2 inwards = Vec2::Zero();
+  for (int axis = 0; axis < 2; ++axis) {
+    if (to_low[axis] == nearest) inwards[axis] = 1;
+    if (to_high[axis] == nearest) inwards[axis] = -1;
+  }
+  return grown_path(run.cracks.front(), mouth, inwards);
 }
 
 Turns turns_of(const GrownPath& path) {
@@ -113,21 +144,40 @@ double connected_share(const Mesh& mesh, std::span<const DestroyedElement> rows)
 }
 
 std::optional<double> peak_to_tip(const RunResult& run, const State& state) {
-  const std::vector<double> ratios = yield_ratios(*run.problem, state);
-  const auto peak = std::max_element(ratios.begin(), ratios.end());
-  if (peak == ratios.end() || !(*peak > 0)) return std::nullopt;
-  const Mesh& mesh = run.problem->mesh();
-  Vec3 centroid = Vec3::Zero();
-  for (const Index node : mesh.tets[static_cast<std::size_t>(peak - ratios.begin())])
-    centroid += mesh.nodes[node] / 4;
+  const auto peak = place_of_peak(run, state);
+  if (!peak) return std::nullopt;
   std::optional<double> nearest;
   for (const Crack& crack : state.cracks)
-    for (const CrackTip& tip : crack.tips) {
-      const double away =
-          (run.plane.project(centroid) - tip.position).norm() / run.plane.edge_length;
-      nearest = std::min(nearest.value_or(std::numeric_limits<double>::infinity()), away);
-    }
+    for (const CrackTip& tip : crack.tips)
+      nearest = nearer(nearest, (*peak - tip.position).norm() / run.plane.edge_length);
   return nearest;
+}
+
+std::optional<double> peak_to_damage(const RunResult& run, const State& state) {
+  const auto peak = place_of_peak(run, state);
+  if (!peak) return std::nullopt;
+  std::optional<double> nearest;
+  for (Index e = 0; e < run.problem->tet_count(); ++e)
+    if (state.destroyed[e])
+      nearest = nearer(nearest, (*peak - centroid(run, e)).norm() / run.plane.edge_length);
+  return nearest;
+}
+
+double largest_free_ratio(const RunResult& run, const State& state) {
+  const Mesh& mesh = run.problem->mesh();
+  std::vector<std::uint8_t> at_crack(mesh.nodes.size(), 0);
+  for (const Crack& crack : state.cracks)
+    for (const Index e : crack.elements)
+      for (const Index node : mesh.tets[e]) at_crack[node] = 1;
+  const std::vector<double> ratios = yield_ratios(*run.problem, state);
+  double largest = 0;
+  for (Index e = 0; e < static_cast<Index>(ratios.size()); ++e) {
+    const auto& corners = mesh.tets[e];
+    const bool free = std::none_of(corners.begin(), corners.end(),
+                                   [&](Index node) { return at_crack[node] != 0; });
+    if (free) largest = std::max(largest, ratios[e]);
+  }
+  return largest;
 }
 
 double power(std::span<const Vec2> points) {

@@ -25,6 +25,10 @@ struct GrownPath {
 /// Of the run's crack 0, a preset with a mouth.
 [[nodiscard]] GrownPath preset_path(const RunResult& run);
 
+/// Of the run's first crack, born at the rim: from its mouth straight into the body. None: there is
+/// none, or it is internal.
+[[nodiscard]] std::optional<GrownPath> born_path(const RunResult& run);
+
 struct Turns {
   double rise_deg = 0;  ///< mean slope from the begin to the highest point
   double fall_deg = 0;  ///< mean slope from there to the end, falling is negative
@@ -50,6 +54,13 @@ struct Deviation {
 /// In-plane distance from the live breakable element with the largest yield ratio to the nearest
 /// tip of any crack, in h; none without cracks.
 [[nodiscard]] std::optional<double> peak_to_tip(const RunResult& run, const State& state);
+
+/// The same to the nearest destroyed element: model A knows no tips.
+[[nodiscard]] std::optional<double> peak_to_damage(const RunResult& run, const State& state);
+
+/// Largest yield ratio of the live breakable elements that share no node with a crack's: those that
+/// may rupture anew (method.md 11).
+[[nodiscard]] double largest_free_ratio(const RunResult& run, const State& state);
 
 /// Slope of log y over log x by least squares; two points or more.
 [[nodiscard]] double power(std::span<const Vec2> points);

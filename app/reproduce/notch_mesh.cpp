@@ -45,8 +45,23 @@ class TemporaryFile {
 void replace_once(std::string& text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos || text.find(from, at + 1) != std::string::npos)
-    throw std::logic_error("the notch's geometry does not hold \"" + from + "\" once");
+    throw std::logic_error("the board's geometry does not hold \"" + from + "\" once");
   text.replace(at, from.size(), to);
+}
+
+std::shared_ptr<const Mesh> mesh_of_geometry(const std::string& text) {
+  const TemporaryFile geometry(".geo", text);
+  ChildLimits limits;
+  limits.timeout = std::chrono::minutes(2);
+  const ChildOutcome outcome =
+      run_in_child([&] { return gmsh_task("mesh", {geometry.path().string()}); }, limits);
+  const bool done = outcome.end == ChildOutcome::End::done && outcome.result.starts_with('M');
+  const auto raw =
+      done ? from_bytes(std::string_view(outcome.result).substr(1)) : std::optional<RawMesh>();
+  if (!raw)
+    throw Error(1, "gmsh failed to mesh the board: " +
+                       (outcome.result.empty() ? outcome.error_text : outcome.result.substr(1)));
+  return std::make_shared<const Mesh>(to_mesh(*raw, nullptr, "board", nullptr));
 }
 
 }  // namespace
@@ -60,19 +75,20 @@ std::string notch_geometry(const NotchMesh& wanted) {
   return text;
 }
 
+std::string board_geometry(const BoardMesh& wanted) {
+  std::string text(paper_file("meshes/board1954.geo"));
+  replace_once(text, "h=3.823;", "h=" + number(wanted.size) + ";");
+  replace_once(text, "Mesh.Algorithm=5;",
+               "Mesh.Algorithm=" + std::to_string(wanted.plane_mesher) + ";");
+  return text;
+}
+
 std::shared_ptr<const Mesh> mesh_notch(const NotchMesh& wanted) {
-  const TemporaryFile geometry(".geo", notch_geometry(wanted));
-  ChildLimits limits;
-  limits.timeout = std::chrono::minutes(2);
-  const ChildOutcome outcome =
-      run_in_child([&] { return gmsh_task("mesh", {geometry.path().string()}); }, limits);
-  const bool done = outcome.end == ChildOutcome::End::done && outcome.result.starts_with('M');
-  const auto raw =
-      done ? from_bytes(std::string_view(outcome.result).substr(1)) : std::optional<RawMesh>();
-  if (!raw)
-    throw Error(1, "gmsh failed to mesh the notched board: " +
-                       (outcome.result.empty() ? outcome.error_text : outcome.result.substr(1)));
-  return std::make_shared<const Mesh>(to_mesh(*raw, nullptr, "notched board", nullptr));
+  return mesh_of_geometry(notch_geometry(wanted));
+}
+
+std::shared_ptr<const Mesh> mesh_board(const BoardMesh& wanted) {
+  return mesh_of_geometry(board_geometry(wanted));
 }
 
 void remove_temporary_files() {

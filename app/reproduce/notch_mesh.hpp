@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boards with a notch in the middle of the right edge, in other sizes and from other meshers than
-// the one that scenes/ holds.
+// The paper's board, whole or with a notch in the middle of its right edge, in other sizes and from
+// other meshers than those that scenes/ holds.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,15 @@ struct NotchMesh {
   double length = 4.04;  ///< of the notch [mm]
   int plane_mesher = 5;  ///< gmsh's Mesh.Algorithm: 1 MeshAdapt, 5 Delaunay, 6 Frontal-Delaunay
 };
+
+struct BoardMesh {
+  double size = 3.823;   ///< of elements [mm]; default: the board of 1954 elements
+  int plane_mesher = 5;  ///< gmsh's Mesh.Algorithm
+};
+
+/// Meshes scenes/meshes/board1954.geo with these numbers in place of its own; else as mesh_notch().
+[[nodiscard]] std::shared_ptr<const Mesh> mesh_board(const BoardMesh& wanted);
+[[nodiscard]] std::string board_geometry(const BoardMesh& wanted);
 
 /// Meshes scenes/meshes/board1954_notch.geo with these numbers in place of its own. Deterministic
 /// for one version of gmsh. Throws sunder::Error when gmsh fails.

@@ -102,14 +102,27 @@ Chapter paper_times(const Laboratory& lab) {
     chapter.findings.push_back("A run broke nothing: there is no time of a fracture.");
     return chapter;
   }
+  const std::string words = "the calculation time required for the rupture model to run";
   for (const auto& [by, t] : {std::pair{"formula K", times[1]}, std::pair{"field K", times[3]}}) {
     chapter.statements.push_back(
         {"5a", "Deciding which element ruptures takes longer with B than with A.", by,
-         judge_takes_longer(t.decide, times[0].decide, "decision, B", "decision, A")});
+         judge_takes_longer(t.decide, times[0].decide, "decision, B", "decision, A"), words});
     chapter.statements.push_back(
         {"5b", "The reconstruction takes longer than the decision.", by,
-         judge_takes_longer(sum(t), t.decide, "reconstruction", "decision")});
+         judge_takes_longer(sum(t), t.decide, "reconstruction", "decision"), words});
   }
+  const std::string equal = "One reconstruction takes A and B the same time (Table 2's totals).";
+  chapter.statements.push_back(
+      {"5c", equal, "formula K",
+       judge_equal_totals(std::vector<Figure>{{"A [ms]", sum(times[0])},
+                                              {"B, expansion [ms]", sum(times[1])},
+                                              {"B, expansion + pressure [ms]", sum(times[2])}}),
+       words});
+  chapter.statements.push_back(
+      {"5c", equal, "field K",
+       judge_equal_totals(
+           std::vector<Figure>{{"A [ms]", sum(times[0])}, {"B, expansion [ms]", sum(times[3])}}),
+       words});
   chapter.tables = {table_2(times), table_3(times)};
   return chapter;
 }

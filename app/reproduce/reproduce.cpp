@@ -18,11 +18,12 @@ ChapterFunction plain(Chapter (*chapter)(const Laboratory&)) {
 }
 
 const std::vector<ChapterFunction>& all_chapters() {
-  static const std::vector<ChapterFunction> chapters = {plain(pulled_board),
+  static const std::vector<ChapterFunction> chapters = {pulled_board,
                                                         plain(notched_board),
-                                                        plain(pressure_distance),
+                                                        pressure_distance,
                                                         plain(pressure_side),
                                                         plain(paper_times),
+                                                        plain(several_cracks),
                                                         plain(k_along_crack),
                                                         notch_length,
                                                         pressure_position,

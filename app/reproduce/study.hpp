@@ -17,6 +17,7 @@ struct Statement {
   std::string text;  ///< the paper's, in our words
   std::string by;    ///< "formula K", "field K", ""
   Judgement judgement;
+  std::string words = {};  ///< the paper's own, from its title or abstract
 };
 
 struct Drawing {

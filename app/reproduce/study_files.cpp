@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/reproduce/study_files.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
 
@@ -28,6 +29,7 @@ Json json_of(const Statement& statement) {
         {{"name", figure.name}, {"value", figure.value ? Json(*figure.value) : Json(nullptr)}});
   return {{"id", statement.id},
           {"statement", statement.text},
+          {"words", statement.words.empty() ? Json(nullptr) : Json(statement.words)},
           {"by", statement.by},
           {"verdict", to_string(statement.judgement.verdict)},
           {"rule", statement.judgement.rule},
@@ -85,6 +87,27 @@ std::string numbers_of(const Judgement& judgement) {
   return text;
 }
 
+std::string quoted(const std::string& words) {
+  return words.empty() ? words : " \"" + words + "\"";
+}
+
+/// Each rule once, under the statements that it judges.
+std::string rules_of(const Study& study) {
+  std::vector<std::pair<std::string, std::string>> rules;  // rule, ids
+  for (const Chapter& chapter : study.chapters)
+    for (const Statement& s : chapter.statements) {
+      const auto same = std::find_if(rules.begin(), rules.end(),
+                                     [&](const auto& r) { return r.first == s.judgement.rule; });
+      if (same == rules.end())
+        rules.emplace_back(s.judgement.rule, s.id);
+      else if (same->second.find(s.id) == std::string::npos)
+        same->second += ", " + s.id;
+    }
+  std::string text = "\n## Rules of the verdicts\n\n";
+  for (const auto& [rule, ids] : rules) text += "- " + ids + ": " + rule + ".\n";
+  return text;
+}
+
 }  // namespace
 
 std::string study_json(const Study& study) {
@@ -110,16 +133,17 @@ std::string study_markdown(const Study& study) {
       "<!-- SPDX-License-Identifier: Apache-2.0 -->\n# The paper's statements and what comes out "
       "here\n\nWritten by `sunder reproduce" +
       std::string(study.quick ? " --quick" : "") +
-      "` (`reproduction.md` in its result folder; `index.html` beside it has the figures, the "
-      "rules "
-      "of the verdicts and every number), computed on " +
+      "` (`reproduction.md` in its result folder; `index.html` beside it has the figures "
+      "and every number), computed on " +
       study.device + " in " + rounded(study.seconds, 3) +
-      " s. Statements in our words; times depend on what else the machine did.\n\n"
+      " s. Statements in our words, and quoted what the paper's title or abstract says of them; "
+      "times depend on what else the machine did.\n\n"
       "| | statement | K | verdict | numbers |\n|---|---|---|---|---|\n";
   for (const Chapter& chapter : study.chapters)
     for (const Statement& s : chapter.statements)
-      text += "| " + s.id + " | " + s.text + " | " + s.by + " | **" +
+      text += "| " + s.id + " | " + s.text + quoted(s.words) + " | " + s.by + " | **" +
               to_string(s.judgement.verdict) + "** | " + numbers_of(s.judgement) + " |\n";
+  text += rules_of(study);
   for (const Chapter& chapter : study.chapters) {
     if (chapter.findings.empty()) continue;
     text += "\n## " + chapter.title + "\n" + chapter.setup + "\n\n";

@@ -32,11 +32,16 @@ std::string numbers_of(const Judgement& judgement) {
   return html;
 }
 
+/// The paper's own words, if there are any.
+std::string quoted(const std::string& words) {
+  return words.empty() ? words : "<br><q>" + escaped(words) + "</q>";
+}
+
 std::string statement_rows(const std::vector<Statement>& statements, bool detailed) {
   std::string rows;
   for (const Statement& s : statements) {
-    rows += "<tr><td>" + escaped(s.id) + "</td><td>" + escaped(s.text) + "</td><td>" +
-            escaped(s.by) + "</td><td>" + badge(s.judgement.verdict) + "</td><td>" +
+    rows += "<tr><td>" + escaped(s.id) + "</td><td>" + escaped(s.text) + quoted(s.words) +
+            "</td><td>" + escaped(s.by) + "</td><td>" + badge(s.judgement.verdict) + "</td><td>" +
             numbers_of(s.judgement) + "</td>";
     if (detailed) rows += "<td>" + escaped(s.judgement.rule) + "</td>";
     rows += "</tr>\n";
@@ -46,7 +51,8 @@ std::string statement_rows(const std::vector<Statement>& statements, bool detail
 
 std::string open_verdicts(bool detailed) {
   return std::string(
-             "<table class=\"verdicts\"><tr><th></th><th>the paper's statement, in our words</th>"
+             "<table class=\"verdicts\"><tr><th></th><th>the paper's statement, in our words; "
+             "quoted: its own</th>"
              "<th>by</th><th>verdict</th><th>numbers it rests on</th>") +
          (detailed ? "<th>rule</th>" : "") + "</tr>\n";
 }

@@ -58,6 +58,10 @@ SifTerms with_formula(SifTerms terms, const SifTerms& formula) {
   terms.b = formula.b;
   terms.k_formula = formula.k_formula;
   terms.theta_formula = formula.theta_formula;
+  terms.at = formula.at;
+  terms.d = formula.d;
+  terms.e_a = formula.e_a;
+  terms.e_c = formula.e_c;
   return terms;
 }
 
@@ -77,7 +81,8 @@ Combined::Combined(const Problem& problem)
       yields_(yields_of(problem)),
       lists_(room_for_cracks(yields_)),
       excluded_(problem.mesh().tets.size(), 0),
-      remote_(problem, board_, {}),
+      pristine_(problem, board_, {}),
+      present_(problem, board_),
       bands_(board_),
       taken_(problem.mesh().tets.size(), 0) {
   anything_breakable_ = std::ranges::any_of(yields_, [](double yield) { return yield > 0; });
@@ -150,11 +155,20 @@ void Combined::next_in_line(const FractureState& state, std::vector<Index>& next
   if (state.summary.candidate.element != kNone) add(state.summary.candidate.element);
 }
 
+const RemoteField& Combined::remote_field(const FractureState& state) {
+  if (problem_.scene().fracture.sigma0 == RemoteStress::present) {
+    present_.take(state.destroyed, state.displacement);
+    return present_;
+  }
+  pristine_.take(state.pristine_displacement());
+  return pristine_;
+}
+
 void Combined::drive_tips(const FractureState& state, std::vector<Finding>& findings) {
   driven_.clear();
   if (!any_tip_left(cracks_)) return;
   // The remote field of the intact body costs a solve; the field's K does without it.
-  if (!by_field()) remote_.take(state.pristine_displacement());
+  const RemoteField* remote = by_field() ? nullptr : &remote_field(state);
   const FieldView view = by_field() ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
     face_pressure(board_, crack, state, findings, faces_);
@@ -162,7 +176,7 @@ void Combined::drive_tips(const FractureState& state, std::vector<Finding>& find
       if (crack.tips[tip].ended) continue;
       if (!by_field() && !formula_holds(crack, findings)) continue;
       const auto growth = by_field() ? field_growth(meter_, crack, tip, view, findings)
-                                     : tip_growth(board_, remote_, crack, tip, faces_, state);
+                                     : tip_growth(board_, *remote, crack, tip, faces_, state);
       if (growth) driven_.push_back({crack.id, *growth});
     }
   }
@@ -182,8 +196,8 @@ bool Combined::formula_holds(const Crack& crack, std::vector<Finding>& findings)
 
 void Combined::tips(const FractureState& state, std::vector<TipState>& tips,
                     std::vector<Finding>& findings) {
-  if (!by_field() && anything_breakable_ && any_tip_left(cracks_))
-    remote_.take(state.pristine_displacement());
+  const bool formula = !by_field() && anything_breakable_ && any_tip_left(cracks_);
+  const RemoteField* remote = formula ? &remote_field(state) : nullptr;
   const FieldView view = by_field() ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
@@ -191,13 +205,14 @@ void Combined::tips(const FractureState& state, std::vector<TipState>& tips,
       if (crack.tips[tip].ended) continue;
       if (by_field())
         add_field_state(meter_, crack, tip, view, tips.back(), findings);
-      else if (anything_breakable_)  // else there is no remote stress
-        add_formula_state(crack, state, tips.back(), findings);
+      else if (remote)
+        add_formula_state(*remote, crack, state, tips.back(), findings);
     }
   }
 }
 
-void Combined::add_formula_state(const Crack& crack, const FractureState& state, TipState& tip,
+void Combined::add_formula_state(const RemoteField& remote, const Crack& crack,
+                                 const FractureState& state, TipState& tip,
                                  std::vector<Finding>& findings) {
   if (!formula_holds(crack, findings)) {
     tip.field_note = "notch";
@@ -205,7 +220,7 @@ void Combined::add_formula_state(const Crack& crack, const FractureState& state,
   }
   const auto at = static_cast<std::size_t>(tip.tip);
   face_pressure(board_, crack, state, findings, faces_);
-  const auto growth = tip_growth(board_, remote_, crack, at, faces_, state);
+  const auto growth = tip_growth(board_, remote, crack, at, faces_, state);
   tip.k = growth ? growth->terms.k : 0.0;
   if (growth) tip.theta = growth->terms.theta;
 }
@@ -220,16 +235,16 @@ void Combined::add_other_terms(const FractureState& state) {
                       growth.terms, untold_);
     return;
   }
-  remote_.take(state.pristine_displacement());
+  const RemoteField& remote = remote_field(state);
   for (auto& [id, growth] : driven_) {
     const Crack& crack = cracks_[id];
     const auto tip = static_cast<std::size_t>(growth.terms.tip);
     if (!formula_holds(crack, untold_)) continue;
     face_pressure(board_, crack, state, untold_, faces_);
-    const auto formula = tip_growth(board_, remote_, crack, tip, faces_, state);
+    const auto formula = tip_growth(board_, remote, crack, tip, faces_, state);
     growth.terms = with_formula(
         growth.terms,
-        formula ? formula->terms : formula_terms(board_, remote_, crack, tip, faces_, state));
+        formula ? formula->terms : formula_terms(board_, remote, crack, tip, faces_, state));
   }
 }
 

@@ -12,6 +12,8 @@
 #include "fracture/board.hpp"
 #include "fracture/criterion.hpp"
 #include "fracture/field_sif/field_growth.hpp"
+#include "fracture/present_field.hpp"
+#include "fracture/pristine_field.hpp"
 #include "fracture/tip_growth.hpp"
 
 namespace sunder::fracture {
@@ -41,8 +43,10 @@ class Combined final : public FractureCriterion {
   [[nodiscard]] bool by_field() const { return problem_.scene().fracture.sif == SifSource::field; }
   /// Whether the formula has a remote stress for the crack; says why not, and where it is poor.
   [[nodiscard]] bool formula_holds(const Crack& crack, std::vector<Finding>& findings) const;
-  void add_formula_state(const Crack& crack, const FractureState& state, TipState& tip,
-                         std::vector<Finding>& findings);
+  void add_formula_state(const RemoteField& remote, const Crack& crack, const FractureState& state,
+                         TipState& tip, std::vector<Finding>& findings);
+  /// The field that rules 5 and 8 ask for, as it is in this state.
+  [[nodiscard]] const RemoteField& remote_field(const FractureState& state);
   /// What the other criterion says of the same tips, for the rows that will tell.
   void add_other_terms(const FractureState& state);
   /// Moves one tip as far as it goes; its elements are added to the decision.
@@ -64,7 +68,8 @@ class Combined final : public FractureCriterion {
   std::vector<std::uint8_t> excluded_;  // shape (elements)
   std::vector<DrivenTip> driven_;       // of the last decision
   // Of the decision in work, with room from the start: a frame allocates nothing.
-  PristineField remote_;
+  PristineField pristine_;
+  PresentField present_;
   BandSearch bands_;
   Walk walk_;
   FacePressure faces_;

@@ -20,18 +20,4 @@ std::optional<InPlane> PristineField::at(const Vec2& p) const {
   return in_plane(sum / volume, board_.plane());
 }
 
-std::optional<InPlane> PristineField::along(const Vec2& from, const Vec2& to) const {
-  constexpr int kStations = 9;
-  InPlane sum = InPlane::Zero();
-  int count = 0;
-  for (int k = 0; k < kStations; ++k) {
-    const auto stress = at(from + (k + 0.5) / kStations * (to - from));
-    if (!stress) continue;
-    sum += *stress;
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  return sum / count;
-}
-
 }  // namespace sunder::fracture

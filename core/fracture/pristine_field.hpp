@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "fracture/board.hpp"
-#include "fracture/in_plane_stress.hpp"
+#include "fracture/remote_field.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::fracture {
 
-class PristineField {
+class PristineField final : public RemoteField {
  public:
   /// `displacement` of the intact body, shape (3 * nodes), mm; must outlive the field.
   PristineField(const Problem& problem, const Board& board, std::span<const double> displacement)
@@ -23,17 +23,10 @@ class PristineField {
   /// From now on that of another displacement.
   void take(std::span<const double> displacement) { displacement_ = displacement; }
 
-  /// Volume-weighted mean over breakable elements with centroids within 1.5 h of p; none when
-  /// there is no such element.
-  [[nodiscard]] std::optional<InPlane> at(const Vec2& p) const;
-
-  /// Mean of at() over 9 stations between two points, empty neighbourhoods skipped; none when all
-  /// are empty (method.md 5).
-  [[nodiscard]] std::optional<InPlane> along(const Vec2& from, const Vec2& to) const;
+  /// Over the breakable elements.
+  [[nodiscard]] std::optional<InPlane> at(const Vec2& p) const override;
 
  private:
-  static constexpr double kNeighbourhood = 1.5;  // in h
-
   const Problem& problem_;
   const Board& board_;
   std::span<const double> displacement_;

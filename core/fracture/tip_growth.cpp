@@ -20,15 +20,16 @@ Vec2 mean_position(const Board& board, std::span<const Index> nodes) {
   return sum / static_cast<double>(nodes.size());
 }
 
-/// Remote stress of method.md 5; none: no breakable element near any station.
-std::optional<InPlane> remote_stress(const PristineField& field, const Crack& crack,
-                                     const Vec2& tip, RemoteStress choice) {
+/// Remote stress of method.md 5, `field` being the one that the choice asks for; none: no element
+/// that counts near any station.
+std::optional<InPlane> remote_stress(const RemoteField& field, const Crack& crack, const Vec2& tip,
+                                     RemoteStress choice) {
   if (choice == RemoteStress::tip) return field.at(tip);
   return field.along(crack_origin(crack).position, tip);
 }
 
 /// e_a: where the expansion alone would lead the crack (method.md 8).
-Vec2 expansion_direction(const PristineField& field, const CrackTip& tip) {
+Vec2 expansion_direction(const RemoteField& field, const CrackTip& tip) {
   constexpr double kPerpendicular = 1e-12;
   const auto stress = field.at(tip.position);
   if (!stress) return tip.direction;
@@ -97,13 +98,17 @@ TipState tip_state(const Board& board, const Crack& crack, std::size_t tip) {
   return state;
 }
 
-SifTerms formula_terms(const Board& board, const PristineField& field, const Crack& crack,
+SifTerms formula_terms(const Board& board, const RemoteField& field, const Crack& crack,
                        std::size_t tip, const FacePressure& pressure, const FractureState& state) {
   const FractureOptions& options = state.problem.scene().fracture;
   const CrackTip& at = crack.tips[tip];
   const Vec2& d = at.direction;
   SifTerms terms;
   terms.tip = static_cast<int>(tip);
+  terms.at = at.position;
+  terms.d = d;
+  terms.e_a = expansion_direction(field, at);
+  terms.e_c = one_sided_direction(pressure);
 
   const double tool = pressure_distance(pressure, at.position);
   const double distance = std::max(tool, board.h() / 2);  // b'
@@ -120,22 +125,20 @@ SifTerms formula_terms(const Board& board, const PristineField& field, const Cra
   }
   terms.k_b = balanced_intensity(pressure.upper, pressure.lower, distance);
   terms.k_c = one_sided_intensity(pressure.upper, pressure.lower, distance);
-  const Vec3 opening = board.plane().lift_direction(one_sided_direction(pressure));
+  const Vec3 opening = board.plane().lift_direction(terms.e_c);
   const double sign = pressure_sign(opening, state.expansion_resultant);
   terms.k = total_intensity(terms.k_a, terms.k_b, terms.k_c, sign);
   return terms;
 }
 
-std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& field,
+std::optional<TipGrowth> tip_growth(const Board& board, const RemoteField& field,
                                     const Crack& crack, std::size_t tip,
                                     const FacePressure& pressure, const FractureState& state) {
   TipGrowth growth;
   SifTerms& terms = growth.terms;
   terms = formula_terms(board, field, crack, tip, pressure, state);
-  const CrackTip& at = crack.tips[tip];
-  const Vec2& d = at.direction;
-  const Vec2 v = terms.k_a * expansion_direction(field, at) + terms.k_b * d +
-                 terms.k_c * one_sided_direction(pressure);
+  const Vec2& d = terms.d;
+  const Vec2 v = terms.k_a * terms.e_a + terms.k_b * d + terms.k_c * terms.e_c;
   if (!(v.norm() > 0)) return std::nullopt;
   growth.theta = growth_angle(d, v);
   growth.direction = turned(d, growth.theta);

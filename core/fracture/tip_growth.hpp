@@ -7,7 +7,7 @@
 
 #include "fracture/board.hpp"
 #include "fracture/criterion.hpp"
-#include "fracture/pristine_field.hpp"
+#include "fracture/remote_field.hpp"
 #include "sunder/crack.hpp"
 
 namespace sunder::fracture {
@@ -41,13 +41,13 @@ struct TipGrowth {
 /// The tip as it stands, without K.
 [[nodiscard]] TipState tip_state(const Board& board, const Crack& crack, std::size_t tip);
 
-/// What Eq. 2 to 4 say of one tip; theta is left at 0.
-[[nodiscard]] SifTerms formula_terms(const Board& board, const PristineField& field,
+/// What Eq. 2 to 4 say of one tip, with what its direction is made of; theta is left at 0.
+[[nodiscard]] SifTerms formula_terms(const Board& board, const RemoteField& field,
                                      const Crack& crack, std::size_t tip,
                                      const FacePressure& pressure, const FractureState& state);
 
 /// K and direction of one tip; none when nothing drives it (v = 0, method.md 8).
-[[nodiscard]] std::optional<TipGrowth> tip_growth(const Board& board, const PristineField& field,
+[[nodiscard]] std::optional<TipGrowth> tip_growth(const Board& board, const RemoteField& field,
                                                   const Crack& crack, std::size_t tip,
                                                   const FacePressure& pressure,
                                                   const FractureState& state);

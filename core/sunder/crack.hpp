@@ -60,6 +60,9 @@ struct SifTerms {
   /// What disturbs the field's K, words joined by +: "fixed", "material", "damage"; "notch": it
   /// was not measured at a notch of the mesh's shape; empty: nothing. The text is static.
   std::string_view field_note = {};
+  /// What the formula's direction v = K_a e_a + K_b d + K_c e_c is made of (method.md 8), in the
+  /// plane: the tip's place [mm] and the unit vectors; d is its direction before the growth.
+  Vec2 at = Vec2::Zero(), d = Vec2::Zero(), e_a = Vec2::Zero(), e_c = Vec2::Zero();
 };
 
 /// A tip as it stands, whether it grows or rests (Simulation::tips): a row of tips.csv.

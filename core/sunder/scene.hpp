@@ -94,7 +94,8 @@ struct ScriptedRemoval {
 
 enum class FractureModel { none, a, b };
 enum class YieldMeasure { max_shear, tresca };
-enum class RemoteStress { line, tip };
+/// present: the line mean of the current, damaged field (method.md 5).
+enum class RemoteStress { line, tip, present };
 enum class CrackLength { path, tool };
 enum class CrackBirth { element, through };
 enum class SifSource { formula, field };

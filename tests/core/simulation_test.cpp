@@ -271,6 +271,11 @@ TEST(Needs, FollowTheScene) {
   EXPECT_TRUE(a.stress && a.yield && a.damage && !a.pristine);
   const Needs b = needs([](Scene& s) { s.fracture.model = FractureModel::b; });
   EXPECT_TRUE(b.stress && b.yield && b.damage && b.pristine);
+  const Needs present = needs([](Scene& s) {
+    s.fracture.model = FractureModel::b;
+    s.fracture.sigma0 = RemoteStress::present;
+  });
+  EXPECT_TRUE(present.stress && present.damage && !present.pristine);
   const Needs quiet = needs([](Scene& s) {
     s.fracture.model = FractureModel::none;
     s.output.stress = false;

@@ -75,6 +75,11 @@ TEST(SceneToml, DefaultsAreTheContracts) {
   EXPECT_TRUE(scene.output.stress);
 }
 
+TEST(SceneToml, RemoteStressOfThePresentField) {
+  const Scene scene = parse(with(good_scene(), "\"line\"", "\"present\""));
+  EXPECT_EQ(scene.fracture.sigma0, RemoteStress::present);
+}
+
 TEST(SceneToml, OtherWordsOfTheSchema) {
   std::string text = good_scene();
   text = with(text, "model = \"B\"", "model = \"A\"");

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "app/reproduce/measures.hpp"
 #include "app/reproduce/notch_mesh.hpp"
 #include "app/reproduce/paper_files.hpp"
 
@@ -60,6 +63,42 @@ TEST(CriticalLoad, StopsWhenAsked) {
   const Laboratory lab(
       "cpu", [] { return true; }, [](const std::string&) {});
   EXPECT_THROW(static_cast<void>(critical_load(lab, {"notch-b", {}, nullptr, 1, {}})), Interrupted);
+}
+
+TEST(Laboratory, AGripMovesAlongThePullAndIsFreeAcrossIt) {
+  RunPlan plan{"board-pull-b", {}, nullptr, 1, {}};
+  plan.grip = 36;
+  const Scene scene = laboratory().scene(plan);
+  const auto* grip = std::get_if<Grip>(&scene.instruments.at(0).action);
+  ASSERT_NE(grip, nullptr);
+  EXPECT_EQ(grip->displacement, Vec3(0, -36, 0));
+  EXPECT_EQ(grip->axes, Axes{2});
+}
+
+TEST(Laboratory, LargestFreeRatioLeavesOutWhatTouchesACrack) {
+  // Under a load that breaks the intact notched board elsewhere (A: 57.7 N) the ratio away from
+  // the notch is that of model A's first element or less.
+  const Laboratory lab = laboratory();
+  const RunResult run = lab.run({"notch-b",
+                                 {"fracture.model=B", "time.steps=1", "fracture.max_events=1"},
+                                 nullptr,
+                                 0.5,
+                                 {0}});
+  ASSERT_EQ(run.snapshots.size(), 1u);
+  const double free = largest_free_ratio(run, run.snapshots[0]);
+  const auto ratios = app::yield_ratios(*run.problem, run.snapshots[0]);
+  const double all = *std::max_element(ratios.begin(), ratios.end());
+  EXPECT_GT(free, 0);
+  EXPECT_LT(free, all) << "the most stressed element lies at the notch's tip";
+}
+
+TEST(BoardMesh, DefaultIsTheScenesOwnGeometry) {
+  EXPECT_EQ(board_geometry({}), paper_file("meshes/board1954.geo"));
+  EXPECT_NE(board_geometry({2.6, 6}).find("h=2.6;"), std::string::npos);
+  EXPECT_NE(board_geometry({2.6, 6}).find("Mesh.Algorithm=6;"), std::string::npos);
+  const Laboratory lab = laboratory();
+  EXPECT_EQ(lab.board({}), lab.board({})) << "made once";
+  EXPECT_EQ(lab.board({})->tet_count(), 1954);
 }
 
 TEST(NotchMesh, TakesSizeLengthAndMesher) {

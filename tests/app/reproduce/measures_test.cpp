@@ -48,6 +48,32 @@ TEST(GrownPath, TurnsAtItsHighestPoint) {
   EXPECT_NEAR(down.fall_deg, -45, 1e-12);
 }
 
+/// A run that broke nothing, with one crack put into it.
+RunResult with_crack(Crack crack) {
+  RunResult run;
+  run.plane.outline_min = {0, 0};
+  run.plane.outline_max = {50, 40};
+  run.cracks.push_back(std::move(crack));
+  return run;
+}
+
+TEST(BornPath, RunsFromItsMouthStraightIntoTheBody) {
+  Crack crack;
+  crack.mouth = Vec2(50, 30);
+  crack.path = {{50, 30}, {46, 31}, {40, 28}};
+  const auto right = born_path(with_crack(crack));
+  ASSERT_TRUE(right);
+  EXPECT_DOUBLE_EQ(right->advance(), 10);
+  EXPECT_DOUBLE_EQ(right->height(4).value(), 1);
+  EXPECT_DOUBLE_EQ(right->points.back().y(), -2);
+  crack.mouth = Vec2(0, 30);
+  crack.path = {{0, 30}, {6, 29}};
+  EXPECT_DOUBLE_EQ(born_path(with_crack(crack))->points.back().x(), 6);
+  crack.mouth.reset();
+  EXPECT_FALSE(born_path(with_crack(crack)));
+  EXPECT_FALSE(born_path(RunResult{}));
+}
+
 TEST(Deviation, OverTheCommonLength) {
   const GrownPath flat{{{0, 0}, {10, 0}}}, steep{{{0, 0}, {5, 5}, {20, 20}}};
   const Deviation apart = deviation(flat, steep);

@@ -14,8 +14,8 @@ Study small_study(double near) {
   Study study;
   study.device = "a <device>";
   Chapter chapter{"experiment-3", "Three", "Set up & run.", {}, {}, {}, {"A finding."}};
-  chapter.statements.push_back(
-      {"3a", "Nearer is earlier.", "field K", judge_lower_force(near, 20, "near", "far")});
+  chapter.statements.push_back({"3a", "Nearer is earlier.", "field K",
+                                judge_lower_force(near, 20, "near", "far"), "the <paper's> words"});
   chapter.tables.push_back(
       {"table", "A table.", {"name, unit", "value"}, {{"a \"b\"", "1.5"}, {"c", ""}}, true});
   chapter.drawings.push_back(
@@ -31,6 +31,7 @@ TEST(StudyFiles, JsonHoldsVerdictRuleAndNumbers) {
   EXPECT_EQ(statement["by"], "field K");
   EXPECT_EQ(statement["numbers"][2]["value"], 0.5);
   EXPECT_FALSE(statement["rule"].get<std::string>().empty());
+  EXPECT_EQ(statement["words"], "the <paper's> words");
   const auto& table = json["chapters"][0]["tables"][0];
   EXPECT_EQ(table["rows"][0], nlohmann::json::array({"a \"b\"", 1.5}));
   EXPECT_TRUE(table["rows"][1][1].is_null());
@@ -43,6 +44,15 @@ TEST(StudyFiles, AnotherNumberIsAnotherVerdictEverywhere) {
   EXPECT_NE(study_markdown(worse).find("**not reproduced**"), std::string::npos);
   EXPECT_EQ(study_markdown(small_study(10)).find("not reproduced"), std::string::npos);
   EXPECT_NE(study_page(worse, {}).find(">not reproduced</span>"), std::string::npos);
+}
+
+TEST(StudyFiles, PageAndMarkdownQuoteThePaperAndStateTheRule) {
+  const Study study = small_study(10);
+  const std::string markdown = study_markdown(study);
+  EXPECT_NE(markdown.find("Nearer is earlier. \"the <paper's> words\" |"), std::string::npos);
+  EXPECT_NE(markdown.find("- 3a: " + study.chapters[0].statements[0].judgement.rule),
+            std::string::npos);
+  EXPECT_NE(study_page(study, {}).find("<q>the &lt;paper"), std::string::npos);
 }
 
 TEST(StudyFiles, CsvQuotesWhatItMust) {

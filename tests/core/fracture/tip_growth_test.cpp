@@ -7,6 +7,7 @@
 
 #include "board_fixture.hpp"
 #include "fracture/geometry_factor.hpp"
+#include "fracture/pristine_field.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -186,6 +187,22 @@ TEST(TipGrowth, SurplusTurnsPartly) {
   ASSERT_TRUE(growth);
   // K_b d + K_c e_c with K_b = 2 * 3, K_c = 2 (same denominator).
   EXPECT_NEAR(growth->terms.theta, std::atan(2.0 / 6) * 180 / pi, 1e-12);
+}
+
+TEST(TipGrowth, TellsTheVectorsThatMakeItsDirection) {
+  const std::vector<Pusher> both{pusher(CrackSide::upper, 5, 2), pusher(CrackSide::lower, -3, 2)};
+  Driver driver(with_instruments(test::edge_slit(5), both));
+  driver.pull(tension(0.3, 110));
+  const auto growth = grow_tip(driver, both).growth;
+  ASSERT_TRUE(growth);
+  const SifTerms& k = growth->terms;
+  const double angle = 20 * pi / 180;
+  EXPECT_EQ(k.at, Vec2(5, kSlitHeight));
+  EXPECT_EQ(k.d, Vec2(1, 0));
+  EXPECT_NEAR((k.e_a - Vec2(std::cos(angle), std::sin(angle))).norm(), 0, 1e-12);
+  EXPECT_NEAR((k.e_c - Vec2(0, 1)).norm(), 0, 1e-12);
+  const Vec2 v = k.k_a * k.e_a + k.k_b * k.d + k.k_c * k.e_c;
+  EXPECT_NEAR((v.normalized() - growth->direction).norm(), 0, 1e-12);
 }
 
 TEST(TipGrowth, PressureFallsWithTheRootOfItsDistance) {

@@ -10,6 +10,7 @@
 #include "fracture/band.hpp"
 #include "fracture/crack_birth.hpp"
 #include "fracture/geometry_factor.hpp"
+#include "fracture/pristine_field.hpp"
 #include "fracture/stress_intensity.hpp"
 #include "fracture/tip_growth.hpp"
 #include "sunder/backends.hpp"

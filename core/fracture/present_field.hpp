@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stress of the body as it is now, damaged and under all instruments, smoothed over the live
+// breakable elements around a place (method.md 5, sigma0 = "present"). Only the displacements of
+// the elements asked for are read.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fracture/board.hpp"
+#include "fracture/remote_field.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::fracture {
+
+class PresentField final : public RemoteField {
+ public:
+  using ReadDisplacement = std::function<void(std::span<const Index>, std::span<Vec3>)>;
+
+  PresentField(const Problem& problem, const Board& board);
+  /// From now on that of this state. `destroyed` (per element) and `displacement` (of some nodes,
+  /// mm) must outlive its use.
+  void take(std::span<const std::uint8_t> destroyed, const ReadDisplacement& displacement) {
+    destroyed_ = destroyed;
+    displacement_ = &displacement;
+  }
+
+  /// Over the live breakable elements.
+  [[nodiscard]] std::optional<InPlane> at(const Vec2& p) const override;
+
+ private:
+  const Problem& problem_;
+  const Board& board_;
+  std::span<const std::uint8_t> destroyed_;
+  const ReadDisplacement* displacement_ = nullptr;
+  // Of the place being looked at: its elements, their corners, the corners' displacements.
+  mutable std::vector<Index> near_, corners_;
+  mutable std::vector<Vec3> moved_;
+};
+
+}  // namespace sunder::fracture
