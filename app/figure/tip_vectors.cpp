@@ -24,7 +24,7 @@ constexpr std::array<Style, 5> kStyles = {{
     {TipVector::Kind::expansion, "#1a7f37", "K_a e_a", 2},
     {TipVector::Kind::balanced, "#8250df", "K_b d", 2},
     {TipVector::Kind::one_sided, "#d9730d", "K_c e_c", 2},
-    {TipVector::Kind::sum, "#111", "v, their sum", 3},
+    {TipVector::Kind::sum, "#111", "v, their sum", 5},
     {TipVector::Kind::field, "#111", "K of the field, along the growth", 3},
 }};
 
@@ -42,7 +42,7 @@ std::string shape(const Vec2& from, const Vec2& to, const Style& style) {
   // A white rim: the arrows lie on dark red.
   return svg::line(from, to,
                    "stroke=\"#fff\" stroke-opacity=\"0.8\" stroke-width=\"" +
-                       svg::coordinate(style.width + 2) + "\"") +
+                       svg::coordinate(style.width + 1) + "\"") +
          svg::line(
              from, neck,
              "stroke=\"" + color + "\" stroke-width=\"" + svg::coordinate(style.width) + "\"") +
@@ -86,7 +86,10 @@ std::string draw_tip_vectors(const Problem& problem, const BoardPlane& plane, co
   for (const LastGrowth& growth : state.growths) {
     const Crack& crack = state.cracks[static_cast<std::size_t>(growth.crack)];
     const Vec2 root = drawn_point(problem.mesh(), plane, pose, crack, growth.terms.at);
-    for (const TipVector& v : tip_vectors(growth.terms, drives))
+    // The sum lies under its parts: without pressure it is K_a e_a.
+    std::vector<TipVector> vectors = tip_vectors(growth.terms, drives);
+    std::reverse(vectors.begin(), vectors.end());
+    for (const TipVector& v : vectors)
       out += shape(canvas.map(root), canvas.map(root + v.k * (kLongest * side / longest)),
                    style_of(v.kind));
   }
