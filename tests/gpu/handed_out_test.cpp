@@ -39,7 +39,7 @@ class HandedOutStress : public Kernels {
     std::vector<Voigt> stress;
     for (Index e = 0; e < problem_->tet_count(); ++e) {
       const auto corners = fem::corner_displacement(problem_->mesh(), e, u);
-      stress.push_back(fem::stress(problem_->shape(e), problem_->material(e), corners));
+      stress.push_back(fem::stress(problem_->shape(e), problem_->small_strain(e), corners));
     }
     return stress;
   }

@@ -45,7 +45,7 @@ TEST(PresentField, IsTheMeanOverLiveBreakableNeighbours) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if ((driver.board.centroid(e) - p).norm() > 1.5 * driver.board.h()) continue;
     const double volume = problem.shape(e).volume;
-    const Voigt s = fem::stress(problem.shape(e), problem.material(e),
+    const Voigt s = fem::stress(problem.shape(e), problem.small_strain(e),
                                 fem::corner_displacement(problem.mesh(), e, u));
     all += volume * in_plane(s, driver.board.plane());
     all_volume += volume;
