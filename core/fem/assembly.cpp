@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fem/element.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::fem {
 namespace {
