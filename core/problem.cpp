@@ -10,6 +10,7 @@
 #include "material/linear.hpp"
 #include "selection.hpp"
 #include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/in_quotes.hpp"
 
 namespace sunder {
@@ -52,6 +53,15 @@ void check_ramp(const Ramp& ramp, const std::string& what) {
                      what + " has ramp = [" + number(ramp.begin) + ", " + number(ramp.end) +
                          "]; it must be finite and must not run backwards");
   }
+}
+
+/// `"B" or "none"`.
+std::string models_with_cracks() {
+  std::string names;
+  for (const FractureModelRow& row : fracture_models()) {
+    if (row.keeps_cracks) names = in_quotes(row.name) + (names.empty() ? "" : " or " + names);
+  }
+  return names;
 }
 
 std::string instrument_name(const Instrument& instrument, std::size_t i) {
@@ -191,7 +201,7 @@ void Problem::build_shapes() {
 }
 
 void Problem::resolve_elements() {
-  const bool cracks_kept = scene_.fracture.model != FractureModel::a;
+  const bool cracks_kept = row_of(scene_.fracture.model).keeps_cracks;
   std::vector<int> owner(mesh().tets.size(), kNone);
   for (std::size_t c = 0; c < scene_.cracks.size(); ++c) {
     const PresetCrack& crack = scene_.cracks[c];
@@ -316,14 +326,14 @@ void Problem::resolve_instruments() {
       check_finite(press->force, what, "force");
       check_finite(press->at, what, "at");
       const int presets = static_cast<int>(scene_.cracks.size());
-      if (scene_.fracture.model == FractureModel::a) {
+      if (!row_of(scene_.fracture.model).keeps_cracks) {
         throw InputError(InputFault::unknown_name,
-                         what +
-                             " presses on a crack, but model \"A\" keeps no cracks; use model "
-                             "\"B\" or \"none\"");
+                         what + " presses on a crack, but model " +
+                             in_quotes(row_of(scene_.fracture.model).name) +
+                             " keeps no cracks; use model " + models_with_cracks());
       }
       if (press->crack < 0 ||
-          (press->crack >= presets && scene_.fracture.model != FractureModel::b)) {
+          (press->crack >= presets && !row_of(scene_.fracture.model).grows_cracks)) {
         throw InputError(InputFault::unknown_name,
                          what + " presses on crack " + std::to_string(press->crack) +
                              ", but the scene presets " + std::to_string(presets));

@@ -11,6 +11,7 @@
 #include "loads.hpp"
 #include "pieces.hpp"
 #include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder {
@@ -58,7 +59,8 @@ void check_needs(const Needs& scene, const Needs& backend) {
 
 Needs needs_of(const Problem& problem) {
   const Scene& scene = problem.scene();
-  const bool breaks = scene.fracture.model != FractureModel::none && any_breakable(problem);
+  const FractureModelRow& model = row_of(scene.fracture.model);
+  const bool breaks = model.breaks && any_breakable(problem);
   const bool presses =
       std::any_of(scene.instruments.begin(), scene.instruments.end(),
                   [](const Instrument& i) { return std::holds_alternative<Press>(i.action); });
@@ -66,7 +68,7 @@ Needs needs_of(const Problem& problem) {
   needs.stress = breaks || scene.output.stress;
   needs.yield = needs.stress && any_breakable(problem);
   needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
-  needs.pristine = breaks && scene.fracture.model == FractureModel::b;
+  needs.pristine = breaks && model.pristine;
   if (!needs.stress) {
     needs.left_out.push_back(
         "stress of each element: no fracture model and no output needs it; a frame's check "
@@ -210,7 +212,7 @@ FractureState Simulation::fracture_state(const StressSummary& summary) {
 
 void Simulation::decide(const StressSummary& summary) {
   decision_->clear();
-  if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return;
+  if (!row_of(problem_->scene().fracture.model).breaks || interrupted_) return;
   if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
     capped_.add(next_step_);
     return;
@@ -223,7 +225,7 @@ void Simulation::decide(const StressSummary& summary) {
 void Simulation::prepare_next(const StressSummary& summary) {
   const Scene& scene = problem_->scene();
   if (!scene.solver.prepare || !backend_->prepares() || interrupted_ || done()) return;
-  if (scene.fracture.model == FractureModel::none) return;
+  if (!row_of(scene.fracture.model).breaks) return;
   criterion_->next_in_line(fracture_state(summary), next_in_line_);
   backend_->prepare(next_in_line_);
 }

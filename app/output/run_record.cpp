@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sunder/fracture_model.hpp"
+
 namespace sunder::app {
 
 int RunRecord::event_count() const { return destroyed.empty() ? 0 : destroyed.back().event + 1; }
@@ -43,9 +45,7 @@ TimeStatistics statistics(const std::vector<StepReport>& steps, const Stage& sta
   return statistics(std::move(ms));
 }
 
-const char* name_of(FractureModel model) {
-  return model == FractureModel::none ? "none" : model == FractureModel::a ? "A" : "B";
-}
+const char* name_of(FractureModel model) { return row_of(model).name; }
 
 const char* name_of(CrackKind kind) { return kind == CrackKind::edge ? "edge" : "internal"; }
 

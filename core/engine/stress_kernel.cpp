@@ -9,6 +9,7 @@
 
 #include "engine/vectorised.hpp"
 #include "fem/element.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::engine {
@@ -260,10 +261,10 @@ Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
   }
   Worst worst;
   if (!(largest > 0)) return worst;
+  const YieldMeasure measure = strength_measure(problem_->scene().fracture);
   const auto look_at = [&](std::size_t i) {
     const Index e = blocks_[i / kLanes].element[i % kLanes];
-    const double ratio =
-        yield_measure(stress[i], problem_->scene().fracture.yield_measure) / problem_->yield(e);
+    const double ratio = yield_measure(stress[i], measure) / problem_->yield(e);
     if (ratio > worst.ratio || (ratio == worst.ratio && e < worst.element)) worst = {e, ratio};
   };
   // The ratio is at most the bound's: the largest bound's element leaves few others to look at.
@@ -277,7 +278,7 @@ Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
 
 /// J_2 / yield^2 of an element whose ratio may just be 1.
 double StressKernel::least_bound() const {
-  return problem_->scene().fracture.yield_measure == YieldMeasure::tresca ? 0.25 : 1.0;
+  return strength_measure(problem_->scene().fracture) == YieldMeasure::tresca ? 0.25 : 1.0;
 }
 
 StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
@@ -290,7 +291,7 @@ StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
   summary.candidate = candidate ? summary.any : worst(excluded, stress);
   if (!(summary.any.ratio >= 1)) return summary;
   // At or over yield for sure, for sure not, or to be looked at; the bound is J_2 / yield^2.
-  const YieldMeasure measure = problem_->scene().fracture.yield_measure;
+  const YieldMeasure measure = strength_measure(problem_->scene().fracture);
   const double least = least_bound();
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     if (!(bounds_[i] >= least * (1 - 1e-9))) continue;

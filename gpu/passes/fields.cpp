@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "fem/element.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::gpu {
@@ -201,7 +202,7 @@ shaders::ElementPush Fields::element_push(std::uint32_t keep) const {
   const FractureOptions& fracture = problem_.scene().fracture;
   const auto alpha = static_cast<float>(fracture.alpha);
   return {alpha, static_cast<float>(fracture.alpha - static_cast<double>(alpha)), keep,
-          fracture.yield_measure == YieldMeasure::tresca ? 1u : 0u};
+          strength_measure(fracture) == YieldMeasure::tresca ? 1u : 0u};
 }
 
 void Fields::set_load(std::span<const double> force, std::span<const double> displacements) {

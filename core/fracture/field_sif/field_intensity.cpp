@@ -9,6 +9,7 @@
 
 #include "fracture/crack_path.hpp"
 #include "fracture/stress_intensity.hpp"
+#include "sunder/fracture_model.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -76,7 +77,7 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
       builder_(board, surface_),
       own_(problem.mesh().tets.size(), 0) {
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
-  if (problem.scene().fracture.model != FractureModel::b) return;
+  if (!row_of(problem.scene().fracture.model).grows_cracks) return;
   const double radius = kDomainRadius * board.h();
   near_.reserve(board.most_within(radius));
   builder_.reserve(radius, domain_);
