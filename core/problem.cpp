@@ -138,11 +138,16 @@ Problem::Problem(const Problem& whole, const PartOfBody& part, Surroundings arou
   anchor_stiffness_ = whole.anchor_stiffness_;
 }
 
-void Problem::check_options() const {
+void Problem::check_options() {
   const FractureOptions& f = scene_.fracture;
   if (!(f.alpha > 0 && f.alpha < 1)) {
     throw InputError(InputFault::out_of_range,
                      "fracture.alpha = " + number(f.alpha) + " must lie above 0 and below 1");
+  }
+  const FractureModelRow& model = row_of(f.model);
+  if (model.measure && f.yield_measure != FractureOptions{}.yield_measure) {
+    warnings_.push_back("fracture.yield_measure is not read: model " + in_quotes(model.name) +
+                        " has a measure of its own");
   }
   if (f.max_events < 1) {
     throw InputError(

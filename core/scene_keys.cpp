@@ -233,7 +233,7 @@ std::span<const MemberKey<FractureOptions>> fracture_keys() {
   static const std::vector<MemberKey<F>> keys{
       row<&F::model>("fracture", "model",
                      "what breaks elements (`docs/method.md`): nothing, maximum shear stress (A), "
-                     "with it stress intensity (B)",
+                     "with it stress intensity (B), largest principal stress (P)",
                      "", {.words = model_names()}),
       row<&F::alpha>("fracture", "alpha", "remaining share of a destroyed element's stiffness",
                      "not above 0 and below 1: error"),

@@ -38,9 +38,14 @@ const int kNewton = 1;  // 3e-9
 // there cos(3 psi) = sqrt(1 - r^2) comes from a difference of squares; |Q| does not. The cubic
 // 4 w^3 - 3 w = cos(3 psi) for w = cos(psi) in [sqrt(3)/2, 1] is well conditioned throughout. No
 // arc cosine: the driver's is off by 1,300 ulp.
-REAL principal_range(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
+struct Principal {
+  REAL range;    // s1 - s3
+  REAL largest;  // s1
+};
+Principal principal(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
   const REAL third = REAL(1) / REAL(3);
-  normal -= (normal.x + normal.y + normal.z) * third;
+  const REAL mean = (normal.x + normal.y + normal.z) * third;
+  normal -= mean;
   const REAL3 a = abs(normal), b = abs(shear);
   const REAL largest = max(max(a.x, max(a.y, a.z)), max(b.x, max(b.y, b.z)));
   const REAL scale = largest > REAL(0) ? REAL(1) / largest : REAL(0);
@@ -69,7 +74,13 @@ REAL principal_range(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
     const REAL w2 = w * w;
     w -= ((REAL(4) * w2 - REAL(3)) * w - cos_3psi) / (REAL(12) * w2 - REAL(3));
   }
-  return REAL(1.4142135623730951) * largest * size * w;
+  const REAL length_ = largest * size;
+  // s1 = sqrt(2/3) |s| cos(psi - 30 deg), where sin(3 psi) = sqrt(6) tr s^3, psi = 30 deg in tension,
+  // and sin(psi) = sin(3 psi) / (4 cos(psi)^2 - 1), whose divisor is 2 to 3.
+  const REAL sine = REAL(2.449489742783178) * along / (REAL(4) * w * w - REAL(1));
+  const REAL lode = REAL(0.8660254037844386) * w + REAL(0.5) * sine;
+  return Principal(REAL(1.4142135623730951) * length_ * w,
+                   mean + REAL(0.816496580927726) * length_ * lode);
 }
 
 void store(uint e, REAL4 a, REAL4 b) {
@@ -165,8 +176,11 @@ void main() {
   const uint bits = fact.x;
   const bool live = (bits & (kDestroyed | kAbsent)) == 0u;
   // Of the strain: the pressure of a nearly incompressible body would hide it in rounding.
-  const REAL range = REAL(2) * mu * principal_range(strain, twice_shear / REAL(2));
-  const REAL measure = p.tresca != 0u ? range : range / REAL(2);
+  const Principal of_strain = principal(strain, twice_shear / REAL(2));
+  const REAL range = REAL(2) * mu * of_strain.range;
+  const REAL measure = p.measure == 2u ? pressure + REAL(2) * mu * of_strain.largest
+                       : p.measure == 1u ? range
+                                         : range / REAL(2);
   const bool counts = live && (bits & kBreakable) != 0u;
 #ifdef SUNDER_SINGLE
   const float yield_ = uintBitsToFloat(fact.z);

@@ -17,7 +17,7 @@ StepReport RunRecord::last_report() const {
 
 const DestroyedElement* RunRecord::first_rupture() const {
   const auto found = std::find_if(destroyed.begin(), destroyed.end(), [](const auto& d) {
-    return d.cause == Cause::mss || d.cause == Cause::sif;
+    return d.cause != Cause::preset && d.cause != Cause::script;
   });
   return found == destroyed.end() ? nullptr : &*found;
 }

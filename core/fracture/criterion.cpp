@@ -46,6 +46,14 @@ constexpr std::array kModels{
                      .grows_cracks = true,
                      .pristine = true,
                      .measure = {}},
+    FractureModelRow{.model = FractureModel::p,
+                     .name = "P",
+                     .make = make_worst<Cause::principal>,
+                     .breaks = true,
+                     .keeps_cracks = false,
+                     .grows_cracks = false,
+                     .pristine = false,
+                     .measure = YieldMeasure::principal},
 };
 
 }  // namespace

@@ -103,7 +103,7 @@ class Problem {
   void resolve_supports();
   void resolve_instruments();
   void resolve_elements();
-  void check_options() const;
+  void check_options();
   void check_held_bodies();
 
   Scene scene_;

@@ -92,8 +92,8 @@ struct ScriptedRemoval {
   ElementSelection elements;
 };
 
-enum class FractureModel { none, a, b };
-enum class YieldMeasure { max_shear, tresca };
+enum class FractureModel { none, a, b, p };
+enum class YieldMeasure { max_shear, tresca, principal };  ///< principal: model P's own
 enum class RemoteStress { line, tip };
 enum class CrackLength { path, tool };
 enum class CrackBirth { element, through };

@@ -111,6 +111,7 @@ TEST(SceneKeys, HaveTheirWordsInC) {
                sunder_scene_set_fracture);
   expect_words(solver_keys(), solver_members(), sunder_solver_options_init,
                sunder_scene_set_solver);
+  EXPECT_EQ(key_words("fracture", "model").at(SUNDER_FRACTURE_P), "P");
 }
 
 }  // namespace
