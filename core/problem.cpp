@@ -154,6 +154,11 @@ void Problem::check_options() {
         InputFault::out_of_range,
         "fracture.max_events = " + std::to_string(f.max_events) + " must be at least 1");
   }
+  if (!(f.averaging >= 0 && std::isfinite(f.averaging))) {
+    throw InputError(InputFault::out_of_range,
+                     "fracture.averaging = " + number(f.averaging) +
+                         " must be a radius in mm, or 0: strength is judged by element");
+  }
   if (f.plane_normal && !(f.plane_normal->allFinite() && f.plane_normal->norm() > 0)) {
     throw InputError(InputFault::out_of_range, "fracture.plane_normal must be finite and not zero");
   }

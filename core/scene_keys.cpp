@@ -261,6 +261,10 @@ std::span<const MemberKey<FractureOptions>> fracture_keys() {
           "model B: a rupture that starts a crack takes its element alone or all through "
           "the thickness (method.md 4)",
           "", {.words = {"element", "through"}}),
+      row<&F::averaging>("fracture", "averaging",
+                         "radius of the mean stress that strength is judged by [mm]; 0: by element "
+                         "(method.md \"Averaged strength\")",
+                         "below 0: error"),
   };
   return keys;
 }

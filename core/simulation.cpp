@@ -7,6 +7,7 @@
 #include "attribution.hpp"
 #include "fem/element.hpp"
 #include "finding.hpp"
+#include "fracture/averaged_strength.hpp"
 #include "fracture/criterion.hpp"
 #include "loads.hpp"
 #include "pieces.hpp"
@@ -94,6 +95,9 @@ Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<B
   loads_ = std::make_unique<Loads>(*problem_);
   criterion_ = make_criterion(*problem_);
   loose_ = std::make_unique<LooseSearch>(*problem_);
+  if (problem_->scene().fracture.averaging > 0 && backend_->needs().yield) {
+    averaged_ = std::make_unique<fracture::AveragedStrength>(*problem_);
+  }
   decision_ = std::make_unique<Decision>();
   reserve();
 }
@@ -154,6 +158,7 @@ StepReport Simulation::step() {
       {
         const Timer timer(times.stress);
         summary = backend_->needs().stress ? backend_->stress() : StressSummary{};
+        if (averaged_) summary = averaged_->summarize(*backend_);
       }
       report.max_yield_ratio = summary.any.ratio;
       if (frame_observer_) frame_observer_();
@@ -305,6 +310,7 @@ bool Simulation::apply_event() {
   }
   backend_->destroy(event_);
   if (backend_->needs().yield) backend_->exclude_candidates(decision_->excluded);
+  if (averaged_) averaged_->exclude(decision_->excluded);
   ++next_event_;
   ++events_this_step_;
   destroyed_.insert(destroyed_.end(), decision_->elements.begin(), decision_->elements.end());

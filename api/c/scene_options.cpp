@@ -20,6 +20,7 @@ sunder_fracture_options fracture_defaults() {
   auto options = sized<sunder_fracture_options>();
   options.alpha = defaults.alpha;
   options.max_events = defaults.max_events;
+  options.averaging = defaults.averaging;
   return options;
 }
 
@@ -41,6 +42,7 @@ sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   f.birth = word<sunder::CrackBirth>(given.birth, "fracture", "birth");
   f.sif = word<sunder::SifSource>(given.sif, "fracture", "sif");
   f.max_events = given.max_events;
+  f.averaging = given.averaging;
   if (given.has_plane_normal) f.plane_normal = sunder::Vec3(given.plane_normal);
   return f;
 }

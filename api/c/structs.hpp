@@ -17,6 +17,9 @@ inline constexpr std::size_t kFirstSize = sizeof(T);
 template <>
 inline constexpr std::size_t kFirstSize<sunder_solver_options> = offsetof(sunder_solver_options,
                                                                           no_preparation);
+template <>
+inline constexpr std::size_t kFirstSize<sunder_fracture_options> = offsetof(sunder_fracture_options,
+                                                                            averaging);
 
 /// No version of any struct comes near this; protects from reading far beyond a struct whose size
 /// was never set.

@@ -223,6 +223,7 @@ typedef struct sunder_fracture_options {
   int32_t has_plane_normal;
   int32_t attribution;  ///< 1: say which instrument broke an element; one more solve an event
   double plane_normal[3];
+  double averaging;  ///< radius of the mean that strength is judged by [mm], 0: by element
 } sunder_fracture_options;
 
 SUNDER_API void sunder_fracture_options_init(sunder_fracture_options* options);

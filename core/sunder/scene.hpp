@@ -111,6 +111,7 @@ struct FractureOptions {
   SifSource sif = SifSource::formula;
   int max_events = 10000;            ///< of one step
   std::optional<Vec3> plane_normal;  ///< overrides the third axis of the bounding box
+  double averaging = 0;  ///< radius of the mean that strength is judged by [mm], 0: by element
 };
 
 enum class Route { automatic, inverse, condensed, factor, cg };

@@ -3,6 +3,7 @@
 // default is the key's, and takes as many values as the key has words.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <variant>
@@ -28,6 +29,7 @@ const std::map<std::string, Member<sunder_fracture_options>>& fracture_members()
       {"max_events", &O::max_events},
       {"plane_normal", &O::has_plane_normal},  // none: 0
       {"birth", &O::birth},
+      {"averaging", &O::averaging},
   };
   return members;
 }
@@ -112,6 +114,16 @@ TEST(SceneKeys, HaveTheirWordsInC) {
   expect_words(solver_keys(), solver_members(), sunder_solver_options_init,
                sunder_scene_set_solver);
   EXPECT_EQ(key_words("fracture", "model").at(SUNDER_FRACTURE_P), "P");
+}
+
+// A caller compiled before a member came: what it leaves out is the default.
+TEST(SceneKeys, OlderCallersLeaveNewOnesOut) {
+  const CScene scene;
+  sunder_fracture_options options;
+  sunder_fracture_options_init(&options);
+  options.struct_size = offsetof(sunder_fracture_options, averaging);
+  options.averaging = -1;
+  EXPECT_EQ(sunder_scene_set_fracture(scene.get(), &options), SUNDER_OK);
 }
 
 }  // namespace
