@@ -15,6 +15,7 @@
 #include "cpu_reference/cpu_reference.hpp"
 #include "gpu/choose_device.hpp"
 #include "gpu/vulkan_backend.hpp"
+#include "sunder/error.hpp"
 #include "sunder/simulation.hpp"
 #include "support/accuracy.hpp"
 #include "support/loads.hpp"
