@@ -11,6 +11,7 @@
 #include "material/linear.hpp"
 #include "selection.hpp"
 #include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/in_quotes.hpp"
 #include "sunder/words.hpp"
 
@@ -75,10 +76,10 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
 }
 
 void Problem::note_no_board() {
-  if (scene_.fracture.model != FractureModel::b) return;
+  if (!row_of(scene_.fracture.model).grows_cracks) return;
   if (const auto why = fracture::why_no_board(mesh(), scene_.fracture.plane_normal)) {
-    warnings_.push_back("model \"B\" takes the body for a flat board of even thickness, but " +
-                        *why +
+    warnings_.push_back("model " + in_quotes(row_of(scene_.fracture.model).name) +
+                        " takes the body for a flat board of even thickness, but " + *why +
                         ": its cracks and their stress intensity are not those of this body "
                         "(docs/limits.md); model \"A\" assumes no shape");
   }
@@ -131,16 +132,26 @@ Problem::Problem(const Problem& whole, const PartOfBody& part, Surroundings arou
   anchor_stiffness_ = whole.anchor_stiffness_;
 }
 
-void Problem::check_options() const {
+void Problem::check_options() {
   const FractureOptions& f = scene_.fracture;
   if (!(f.alpha > 0 && f.alpha < 1)) {
     throw InputError(InputFault::out_of_range, "fracture.alpha = " + in_digits(f.alpha) +
                                                    "; it must lie above 0 and below 1");
   }
+  const FractureModelRow& model = row_of(f.model);
+  if (model.measure && f.yield_measure != FractureOptions{}.yield_measure) {
+    warnings_.push_back("fracture.yield_measure is not read: model " + in_quotes(model.name) +
+                        " has a measure of its own");
+  }
   if (f.max_events < 1) {
     throw InputError(
         InputFault::out_of_range,
         "fracture.max_events = " + std::to_string(f.max_events) + "; it must be at least 1");
+  }
+  if (!(f.averaging >= 0 && std::isfinite(f.averaging))) {
+    throw InputError(InputFault::out_of_range,
+                     "fracture.averaging = " + in_digits(f.averaging) +
+                         " must be a radius in mm, or 0: strength is judged by element");
   }
   if (f.plane_normal && !(f.plane_normal->allFinite() && f.plane_normal->norm() > 0)) {
     throw InputError(InputFault::out_of_range, "fracture.plane_normal must be finite and not zero");
@@ -195,7 +206,7 @@ void Problem::build_shapes() {
 }
 
 void Problem::resolve_elements() {
-  const bool cracks_kept = scene_.fracture.model != FractureModel::a;
+  const bool cracks_kept = row_of(scene_.fracture.model).keeps_cracks;
   std::vector<int> owner(mesh().tets.size(), kNone);
   for (std::size_t c = 0; c < scene_.cracks.size(); ++c) {
     const PresetCrack& crack = scene_.cracks[c];

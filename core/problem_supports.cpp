@@ -11,6 +11,8 @@
 #include "selection.hpp"
 #include "sunder/board_plane.hpp"
 #include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
+#include "sunder/in_quotes.hpp"
 #include "sunder/problem.hpp"
 #include "sunder/words.hpp"
 
@@ -243,6 +245,19 @@ void Problem::resolve_pulls() {
   }
 }
 
+namespace {
+
+/// `"B" or "none"`.
+std::string models_with_cracks() {
+  std::string names;
+  for (const FractureModelRow& row : fracture_models()) {
+    if (row.keeps_cracks) names = in_quotes(row.name) + (names.empty() ? "" : " or " + names);
+  }
+  return names;
+}
+
+}  // namespace
+
 void Problem::resolve_presses() {
   const int presets = static_cast<int>(scene_.cracks.size());
   for (std::size_t i = 0; i < scene_.instruments.size(); ++i) {
@@ -251,14 +266,13 @@ void Problem::resolve_presses() {
     const std::string what = instrument_name(scene_.instruments[i], i);
     check_finite(press->force, what, "force");
     check_finite(press->at, what, "at");
-    if (scene_.fracture.model == FractureModel::a) {
+    const FractureModelRow& model = row_of(scene_.fracture.model);
+    if (!model.keeps_cracks) {
       throw InputError(InputFault::unknown_name,
-                       what +
-                           " presses on a crack, but model \"A\" keeps no cracks; use model "
-                           "\"B\" or \"none\"");
+                       what + " presses on a crack, but model " + in_quotes(model.name) +
+                           " keeps no cracks; use model " + models_with_cracks());
     }
-    if (press->crack < 0 ||
-        (press->crack >= presets && scene_.fracture.model != FractureModel::b)) {
+    if (press->crack < 0 || (press->crack >= presets && !model.grows_cracks)) {
       throw InputError(InputFault::unknown_name,
                        what + " presses on crack " + std::to_string(press->crack) +
                            ", but the scene presets " + std::to_string(presets));

@@ -13,6 +13,8 @@ const char* to_string(Cause cause) {
       return "preset";
     case Cause::script:
       return "script";
+    case Cause::principal:
+      return "principal";
   }
   return "";
 }

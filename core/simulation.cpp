@@ -9,11 +9,13 @@
 
 #include "attribution.hpp"
 #include "fem/element.hpp"
+#include "fracture/averaged_strength.hpp"
 #include "fracture/criterion.hpp"
 #include "fracture/finding.hpp"
 #include "loads.hpp"
 #include "pieces.hpp"
 #include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 #include "sunder/words.hpp"
 
@@ -74,7 +76,8 @@ void check_needs(const Needs& scene, const Needs& backend) {
 
 Needs needs_of(const Problem& problem) {
   const Scene& scene = problem.scene();
-  const bool breaks = scene.fracture.model != FractureModel::none && any_breakable(problem);
+  const FractureModelRow& model = row_of(scene.fracture.model);
+  const bool breaks = model.breaks && any_breakable(problem);
   const bool presses =
       std::any_of(scene.instruments.begin(), scene.instruments.end(),
                   [](const Instrument& i) { return std::holds_alternative<Press>(i.action); });
@@ -82,8 +85,7 @@ Needs needs_of(const Problem& problem) {
   needs.stress = breaks || scene.output.stress;
   needs.yield = needs.stress && any_breakable(problem);
   needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
-  needs.pristine = breaks && scene.fracture.model == FractureModel::b &&
-                   scene.fracture.sigma0 != RemoteStress::present;
+  needs.pristine = breaks && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
   if (!needs.stress) {
     needs.left_out.push_back(
         "stress of each element: no fracture model and no output needs it; a frame's check "
@@ -113,6 +115,9 @@ Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<B
   loads_ = std::make_unique<Loads>(*problem_);
   criterion_ = make_criterion(*problem_);
   loose_ = std::make_unique<LooseSearch>(*problem_);
+  if (problem_->scene().fracture.averaging > 0 && backend_->needs().yield) {
+    averaged_ = std::make_unique<fracture::AveragedStrength>(*problem_);
+  }
   decision_ = std::make_unique<Decision>();
   reserve();
 }
@@ -178,6 +183,7 @@ StepReport Simulation::step() {
       {
         const Timer timer(times.stress);
         summary = backend_->needs().stress ? backend_->stress() : StressSummary{};
+        if (averaged_) summary = averaged_->summarize(*backend_);
       }
       report.max_yield_ratio = summary.any.ratio;
       if (frame_observer_) frame_observer_();
@@ -249,7 +255,7 @@ FractureState Simulation::fracture_state(const StressSummary& summary) {
 
 void Simulation::decide(const StressSummary& summary) {
   decision_->clear();
-  if (problem_->scene().fracture.model == FractureModel::none || interrupted_) return;
+  if (!row_of(problem_->scene().fracture.model).breaks || interrupted_) return;
   if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
     capped_.add(next_step_);
     return;
@@ -262,7 +268,7 @@ void Simulation::decide(const StressSummary& summary) {
 void Simulation::prepare_next(const StressSummary& summary) {
   const Scene& scene = problem_->scene();
   if (!scene.solver.prepare || !backend_->prepares() || interrupted_ || done()) return;
-  if (scene.fracture.model == FractureModel::none) return;
+  if (!row_of(scene.fracture.model).breaks) return;
   criterion_->next_in_line(fracture_state(summary), next_in_line_);
   backend_->prepare(next_in_line_);
 }
@@ -347,6 +353,7 @@ bool Simulation::apply_event() {
   }
   backend_->destroy(event_);
   if (backend_->needs().yield) backend_->exclude_candidates(decision_->excluded);
+  if (averaged_) averaged_->exclude(decision_->excluded);
   ++next_event_;
   ++events_this_step_;
   destroyed_.insert(destroyed_.end(), decision_->elements.begin(), decision_->elements.end());

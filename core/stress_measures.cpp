@@ -23,6 +23,7 @@ double max_shear(const Voigt& s) {
 }
 
 double yield_measure(const Voigt& s, YieldMeasure measure) {
+  if (measure == YieldMeasure::principal) return principal_stresses(s)[0];
   return measure == YieldMeasure::max_shear ? max_shear(s) : 2 * max_shear(s);
 }
 

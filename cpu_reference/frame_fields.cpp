@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fem/assembly.hpp"
+#include "sunder/fracture_model.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -26,7 +27,7 @@ FrameFields::FrameFields(const DamagedBody& body, const Needs& needs,
   if (region) {
     elements = region->elements;
     condensed_.emplace(problem_, std::move(*region));
-    if (problem_.scene().fracture.model != FractureModel::none) {
+    if (row_of(problem_.scene().fracture.model).breaks) {
       condensed_->make_room(needs.stress);
     }
     if (elements.empty()) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fem/element.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::cpu_reference {
@@ -18,7 +19,7 @@ void element_stress(const Problem& problem, std::span<const double> scale,
 
 StressSummary summarize(const Problem& problem, std::span<const std::uint8_t> destroyed,
                         std::span<const std::uint8_t> excluded, std::span<const Voigt> stress) {
-  const YieldMeasure measure = problem.scene().fracture.yield_measure;
+  const YieldMeasure measure = strength_measure(problem.scene().fracture);
   StressSummary summary;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (destroyed[e] || !problem.breakable(e)) continue;

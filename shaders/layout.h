@@ -78,7 +78,7 @@ struct GatherPush {
 struct ElementPush {
   float alpha, alpha_low;  // its sum has 48 bits
   uint keep;               // kKeepStress, kListOver
-  uint tresca;             // 1: measure s1 - s3 instead of half of it
+  uint measure;            // 0: (s1 - s3)/2, 1: s1 - s3, 2: s1, as YieldMeasure
 };
 
 struct DisplayPush {

@@ -39,8 +39,9 @@ const int kNewton = 1;  // 3e-9
 // 4 w^3 - 3 w = cos(3 psi) for w = cos(psi) in [sqrt(3)/2, 1] is well conditioned throughout. No
 // arc cosine: the driver's is off by 1,300 ulp.
 struct Principal {
-  REAL range;            // s1 - s3
-  float least, largest;  // s3, s1
+  REAL range;     // s1 - s3
+  float least;    // s3
+  REAL largest;   // s1
 };
 Principal principal(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
   const REAL third = REAL(1) / REAL(3);
@@ -75,11 +76,13 @@ Principal principal(REAL3 normal, REAL3 shear) {  // (xx, yy, zz), (xy, yz, zx)
     w -= ((REAL(4) * w2 - REAL(3)) * w - cos_3psi) / (REAL(12) * w2 - REAL(3));
   }
   const REAL length_ = largest * size;
-  // sin(3 psi) = sqrt(6) tr s^3, and sin(psi) = sin(3 psi) / (4 cos(psi)^2 - 1).
-  const float c = float(w), sine = 2.4494897f * float(along) / (4.0f * c * c - 1.0f);
-  const float half_ = 0.8164966f * float(length_), m = float(mean) + 0.5f * half_ * sine;
-  return Principal(REAL(1.4142135623730951) * length_ * w, m - 0.8660254f * half_ * c,
-                   m + 0.8660254f * half_ * c);
+  // s1 = sqrt(2/3) |s| cos(psi - 30 deg), where sin(3 psi) = sqrt(6) tr s^3, psi = 30 deg in tension,
+  // and sin(psi) = sin(3 psi) / (4 cos(psi)^2 - 1), whose divisor is 2 to 3.
+  const REAL sine = REAL(2.449489742783178) * along / (REAL(4) * w * w - REAL(1));
+  const REAL lode = REAL(0.8660254037844386) * w + REAL(0.5) * sine;
+  const REAL top = mean + REAL(0.816496580927726) * length_ * lode;
+  const REAL range = REAL(1.4142135623730951) * length_ * w;
+  return Principal(range, float(top - range), top);
 }
 
 void store(uint e, REAL4 a, REAL4 b) {
@@ -150,9 +153,10 @@ struct Deformation {
 // tan(theta) = |curl|/2 / (1 + (tr E - n E n)/2) holds (core/fem/deformation.cpp).
 uvec3 deformation_of(Deformation d, Principal e) {
   const vec3 normal = vec3(d.strain), twice = vec3(d.twice_shear), w = d.curl;
-  const bool shorter = -e.least > e.largest;
+  const float largest = float(e.largest);
+  const bool shorter = -e.least > largest;
   const uint strain =
-      (floatBitsToUint(shorter ? -e.least : max(e.largest, 0.0f)) & ~1u) | (shorter ? 1u : 0u);
+      (floatBitsToUint(shorter ? -e.least : max(largest, 0.0f)) & ~1u) | (shorter ? 1u : 0u);
   const float squared = dot(w, w);
   const float along = squared > 0.0f
       ? (dot(w * w, normal) + w.x * w.y * twice.x + w.y * w.z * twice.y + w.z * w.x * twice.z) / squared
@@ -271,7 +275,9 @@ void main() {
   // Of the strain: the pressure of a nearly incompressible body would hide it in rounding.
   const Principal of_strain = principal(strain, twice_shear / REAL(2));
   const REAL range = REAL(2) * mu * of_strain.range;
-  const REAL measure = p.tresca != 0u ? range : range / REAL(2);
+  const REAL measure = p.measure == 2u ? pressure + REAL(2) * mu * of_strain.largest
+                       : p.measure == 1u ? range
+                                         : range / REAL(2);
   const bool counts = live && (bits & kBreakable) != 0u;
 #ifdef SUNDER_SINGLE
   const float yield_ = uintBitsToFloat(fact.z);

@@ -2,16 +2,25 @@
 #include "c/names.hpp"
 #include "c/scene.hpp"
 #include "c/structs.hpp"
+#include "sunder/scene_keys.hpp"
 
 namespace {
 
 using namespace sunder::c;
+
+/// A value of an enumeration that has as many as the scene's key has words.
+template <class Enum>
+Enum word(std::int32_t value, const char* table, const char* key, const char* what = nullptr) {
+  const auto count = static_cast<std::int32_t>(sunder::key_words(table, key).size());
+  return choice<Enum>(value, count, what ? what : key);
+}
 
 sunder_fracture_options fracture_defaults() {
   const sunder::FractureOptions defaults;
   auto options = sized<sunder_fracture_options>();
   options.alpha = defaults.alpha;
   options.max_events = defaults.max_events;
+  options.averaging = defaults.averaging;
   return options;
 }
 
@@ -25,15 +34,17 @@ sunder_solver_options solver_defaults() {
 
 sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   sunder::FractureOptions f;
-  f.model = choice<sunder::FractureModel>(given.model, 3, "fracture model");
+  f.model = word<sunder::FractureModel>(given.model, "fracture", "model", "fracture model");
   require_finite(given.alpha, "alpha");
   f.alpha = given.alpha;
-  f.yield_measure = choice<sunder::YieldMeasure>(given.yield_measure, 2, "yield_measure");
-  f.sigma0 = choice<sunder::RemoteStress>(given.sigma0, 3, "sigma0");
-  f.crack_length = choice<sunder::CrackLength>(given.crack_length, 2, "crack_length");
-  f.birth = choice<sunder::CrackBirth>(given.birth, 2, "birth");
-  f.sif = choice<sunder::SifSource>(given.sif, 2, "sif");
+  f.yield_measure = word<sunder::YieldMeasure>(given.yield_measure, "fracture", "yield_measure");
+  f.sigma0 = word<sunder::RemoteStress>(given.sigma0, "fracture", "sigma0");
+  f.crack_length = word<sunder::CrackLength>(given.crack_length, "fracture", "crack_length");
+  f.birth = word<sunder::CrackBirth>(given.birth, "fracture", "birth");
+  f.sif = word<sunder::SifSource>(given.sif, "fracture", "sif");
   f.max_events = given.max_events;
+  require_finite(given.averaging, "averaging");
+  f.averaging = given.averaging;
   if (given.has_plane_normal) {
     require_finite(given.plane_normal, 3, "plane_normal");
     f.plane_normal = sunder::Vec3(given.plane_normal);
@@ -49,9 +60,9 @@ sunder::SolverOptions to_solver(const sunder_solver_options& given) {
                                           " is neither an index nor -1 (let the library choose)");
   }
   s.device = given.device;
-  s.route = choice<sunder::Route>(given.route, 5, "route");
-  s.update = choice<sunder::Update>(given.update, 3, "update");
-  s.precision = choice<sunder::Precision>(given.precision, 3, "precision");
+  s.route = word<sunder::Route>(given.route, "solver", "route");
+  s.update = word<sunder::Update>(given.update, "solver", "update");
+  s.precision = word<sunder::Precision>(given.precision, "solver", "precision");
   require_finite(given.tolerance, "tolerance");
   s.tolerance = given.tolerance;
   s.prepare = given.no_preparation == 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "c/simulation.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace {
@@ -75,7 +76,7 @@ sunder_status sunder_simulation_yield_ratio(sunder_simulation simulation, double
                                             size_t size) {
   return read(simulation, values, size, tets, [&](SimulationObject& object) {
     const sunder::Problem& problem = object.problem();
-    const auto measure = problem.scene().fracture.yield_measure;
+    const auto measure = sunder::strength_measure(problem.scene().fracture);
     const auto destroyed = object.simulation().backend().destroyed();
     per_element(object, values, [&](Index e, const Voigt& s) {
       if (!problem.breakable(e) || destroyed[static_cast<std::size_t>(e)]) return 0.0;

@@ -19,6 +19,9 @@ inline constexpr std::size_t kFirstSize<sunder_solver_options> = offsetof(sunder
                                                                           no_preparation);
 template <>
 inline constexpr std::size_t kFirstSize<sunder_step> = offsetof(sunder_step, strain_max);
+template <>
+inline constexpr std::size_t kFirstSize<sunder_fracture_options> = offsetof(sunder_fracture_options,
+                                                                            averaging);
 
 /// No version of any struct comes near these: such a size was never set. What an option struct has
 /// beyond what is known here is read, so its limit is the lower one.

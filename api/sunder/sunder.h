@@ -234,7 +234,12 @@ SUNDER_API sunder_status sunder_scene_add_crack(sunder_scene scene,
 SUNDER_API sunder_status sunder_scene_add_removal(sunder_scene scene, int32_t step,
                                                   const sunder_selection* elements);
 
-enum { SUNDER_FRACTURE_NONE = 0, SUNDER_FRACTURE_A = 1, SUNDER_FRACTURE_B = 2 };
+enum {
+  SUNDER_FRACTURE_NONE = 0,
+  SUNDER_FRACTURE_A = 1,
+  SUNDER_FRACTURE_B = 2,
+  SUNDER_FRACTURE_P = 3
+};
 enum { SUNDER_YIELD_MAX_SHEAR = 0, SUNDER_YIELD_TRESCA = 1 };
 enum { SUNDER_SIGMA0_LINE = 0, SUNDER_SIGMA0_TIP = 1, SUNDER_SIGMA0_PRESENT = 2 };
 enum { SUNDER_LENGTH_PATH = 0, SUNDER_LENGTH_TOOL = 1 };
@@ -244,7 +249,8 @@ enum { SUNDER_SIF_FORMULA = 0, SUNDER_SIF_FIELD = 1 };
 /// docs/method.md says what each reading means.
 typedef struct sunder_fracture_options {
   uint32_t struct_size;
-  int32_t model;          ///< none (default), A: maximum shear stress, B: with stress intensity
+  int32_t model;          ///< none (default), A: maximum shear stress, B: with stress intensity,
+                          ///< P: largest principal stress
   double alpha;           ///< remaining share of a destroyed element's stiffness, 1e-6
   int32_t yield_measure;  ///< SUNDER_YIELD_*
   int32_t sigma0;         ///< SUNDER_SIGMA0_*
@@ -255,6 +261,7 @@ typedef struct sunder_fracture_options {
   int32_t has_plane_normal;
   int32_t attribution;  ///< 1: say which instrument broke an element; one more solve an event
   double plane_normal[3];
+  double averaging;  ///< radius of the mean that strength is judged by [mm], 0: by element
 } sunder_fracture_options;
 
 #define SUNDER_FRACTURE_OPTIONS_INIT                                                             \
@@ -464,7 +471,8 @@ enum {
   SUNDER_CAUSE_MSS = 0,
   SUNDER_CAUSE_SIF = 1,
   SUNDER_CAUSE_PRESET = 2,
-  SUNDER_CAUSE_SCRIPT = 3
+  SUNDER_CAUSE_SCRIPT = 3,
+  SUNDER_CAUSE_PRINCIPAL = 4
 };
 
 /// One destroyed element. `order` counts them over the whole run, as the index does.
@@ -479,7 +487,7 @@ typedef struct sunder_event {
   int32_t instrument;       ///< with the largest share of its maximum shear stress; -1: not known
   double instrument_share;  ///< that share of the whole; 0: not known
   double load_factor;
-  double ratio;  ///< mss: measure / yield; sif: r_e / max(rho, h/2); else 0
+  double ratio;  ///< mss, principal: measure / yield; sif: r_e / max(rho, h/2); else 0
   int32_t has_sif;
   int32_t tip;                ///< with has_sif: which tip of the crack
   double k, k_a, k_b, k_c;    ///< Eq. 2 to 4 [MPa sqrt(mm)]

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "sunder/fracture_model.hpp"
+
 namespace sunder::app {
 namespace {
 
@@ -53,10 +55,12 @@ bool shows_frame(const Problem& problem) {
 
 std::optional<StressScale> stress_scale(const Problem& problem, const State& state) {
   if (state.stress.empty()) return std::nullopt;
-  if (problem.scene().fracture.model != FractureModel::none && shows_frame(problem)) {
-    const bool tresca = problem.scene().fracture.yield_measure == YieldMeasure::tresca;
+  if (row_of(problem.scene().fracture.model).breaks && shows_frame(problem)) {
+    constexpr std::array kOverYield{"max. shear / yield", "Tresca stress / yield",
+                                    "principal stress / yield"};  // by YieldMeasure
+    const YieldMeasure measure = strength_measure(problem.scene().fracture);
     return StressScale{yield_ratios(problem, state), 1.0,
-                       tresca ? "Tresca stress / yield" : "max. shear / yield"};
+                       kOverYield[static_cast<std::size_t>(measure)]};
   }
   StressScale scale{max_shears(state), 1.0, "max. shear [MPa]"};
   scale.maximum = round_up(nearly_largest(problem, scale.value, state.destroyed));

@@ -6,6 +6,7 @@
 #include "app/input/nearest.hpp"
 #include "app/input/scene_selection.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/scene_keys.hpp"
 
 namespace sunder::app {
 namespace {
@@ -13,17 +14,54 @@ namespace {
 constexpr int kMostSteps = std::numeric_limits<int>::max();
 
 // A section that may be left out: an empty table stands for it.
-TomlTable section(const TomlTable& root, const std::string& file, const std::string& name,
-                  std::vector<std::string> allowed) {
+TomlTable section(const TomlTable& root, const std::string& file, const std::string& name) {
   static const toml::table empty;
   const toml::table* table = root.table(name);
-  return TomlTable(table ? *table : empty, file, name, std::move(allowed));
+  return TomlTable(table ? *table : empty, file, name, key_names(name));
+}
+
+// A key that fills a member; these types alone do.
+std::optional<KeyValue> read_value(const TomlTable& table, const SceneKey& key) {
+  switch (key.type) {
+    case KeyType::boolean:
+      return table.boolean(key.name);
+    case KeyType::integer:
+      return table.integer(key.name, key.least, kMostSteps);
+    case KeyType::word:
+      return table.word(key.name, key.words);
+    case KeyType::number:
+      return table.number(key.name);
+    case KeyType::vector:
+      return table.vec3(key.name);
+    default:
+      return table.text(key.name);
+  }
+}
+
+template <class Owner>
+void read_members(const TomlTable& table, std::span<const MemberKey<Owner>> keys, Owner& owner) {
+  for (const MemberKey<Owner>& key : keys) {
+    if (const std::optional<KeyValue> value = read_value(table, key)) {
+      key.set(owner, *value);
+    } else if (key.required) {
+      table.fail_missing(key.name);
+    }
+  }
+}
+
+// One of the words of a key of the scene, as the value with its place.
+template <class Value>
+std::optional<Value> read_word(const TomlTable& table, std::string_view section,
+                               std::string_view key) {
+  const auto place = table.word(key, key_words(section, key));
+  return place ? std::optional(static_cast<Value>(*place)) : std::nullopt;
 }
 
 // Calls read(table) for every table of [[name]].
 template <class Read>
 void for_each_table(const TomlTable& root, const std::string& file, const std::string& name,
-                    const std::vector<std::string>& allowed, Read&& read) {
+                    Read&& read) {
+  const std::vector<std::string> allowed = key_names(name);
   int i = 0;
   for (const toml::table* table : root.tables(name))
     read(TomlTable(*table, file, name + "." + std::to_string(i++), allowed));
@@ -31,9 +69,7 @@ void for_each_table(const TomlTable& root, const std::string& file, const std::s
 
 Material read_material(const TomlTable& table) {
   Material material;
-  material.young = table.require("young", table.number("young"));
-  material.poisson = table.require("poisson", table.number("poisson"));
-  material.yield = table.number("yield");
+  read_members(table, material_keys(), material);
   return material;
 }
 
@@ -46,14 +82,12 @@ void forbid(const TomlTable& table, const std::vector<std::string>& keys, const 
 Press read_press(const TomlTable& table) {
   forbid(table, {"displacement", "axes"},
          "does not go with kind = \"pressure\": pressure takes a force");
-  forbid(table, node_selection_keys(),
+  forbid(table, key_names("nodes"),
          "does not go with kind = \"pressure\": its nodes follow from \"at\", \"side\" and "
          "\"crack\"");
   Press press;
   press.at = table.require("at", table.vec3("at"));
-  press.side = table.require(
-      "side",
-      table.choice<CrackSide>("side", {{"upper", CrackSide::upper}, {"lower", CrackSide::lower}}));
+  press.side = table.require("side", read_word<CrackSide>(table, "instrument", "side"));
   press.crack = table.integer("crack", 0, std::numeric_limits<int>::max()).value_or(0);
   press.force = table.require("force", table.vec3("force"));
   return press;
@@ -75,9 +109,7 @@ Instrument read_instrument(const TomlTable& table, std::size_t index) {
   Instrument instrument;
   instrument.name = table.text("name").value_or("instrument-" + std::to_string(index));
   enum class Kind { expansion, pressure };
-  const Kind kind = table.require(
-      "kind",
-      table.choice<Kind>("kind", {{"expansion", Kind::expansion}, {"pressure", Kind::pressure}}));
+  const Kind kind = table.require("kind", read_word<Kind>(table, "instrument", "kind"));
   if (kind == Kind::pressure)
     instrument.action = read_press(table);
   else
@@ -100,17 +132,14 @@ std::map<std::string, Material> read_materials(const TomlTable& root, const std:
                                                    " takes a table [material.<volume>], not " +
                                                    describe(node));
     }
-    materials[name] =
-        read_material(TomlTable(*node.as_table(), file, path, {"young", "poisson", "yield"}));
+    materials[name] = read_material(TomlTable(*node.as_table(), file, path, key_names("material")));
   }
   return materials;
 }
 
 std::vector<Support> read_supports(const TomlTable& root, const std::string& file) {
   std::vector<Support> supports;
-  std::vector<std::string> keys = node_selection_keys();
-  keys.push_back("axes");
-  for_each_table(root, file, "fixed", keys, [&](const TomlTable& table) {
+  for_each_table(root, file, "fixed", [&](const TomlTable& table) {
     supports.push_back({read_nodes(table), read_axes(table)});
   });
   return supports;
@@ -118,10 +147,7 @@ std::vector<Support> read_supports(const TomlTable& root, const std::string& fil
 
 std::vector<Instrument> read_instruments(const TomlTable& root, const std::string& file) {
   std::vector<Instrument> instruments;
-  std::vector<std::string> keys = {"name", "kind", "force", "displacement", "axes",
-                                   "ramp", "at",   "side",  "crack"};
-  keys.insert(keys.end(), node_selection_keys().begin(), node_selection_keys().end());
-  for_each_table(root, file, "instrument", keys, [&](const TomlTable& table) {
+  for_each_table(root, file, "instrument", [&](const TomlTable& table) {
     instruments.push_back(read_instrument(table, instruments.size()));
   });
   return instruments;
@@ -129,8 +155,7 @@ std::vector<Instrument> read_instruments(const TomlTable& root, const std::strin
 
 std::vector<PresetCrack> read_cracks(const TomlTable& root, const std::string& file) {
   std::vector<PresetCrack> cracks;
-  const std::vector<std::string> keys = {"volume", "elements", "mouth", "tip", "tips"};
-  for_each_table(root, file, "crack", keys, [&](const TomlTable& table) {
+  for_each_table(root, file, "crack", [&](const TomlTable& table) {
     PresetCrack crack;
     crack.elements = read_elements(table, {"volume", "elements"});
     if (require_one(table, {"tip", "tips"}) == "tips") {
@@ -147,8 +172,7 @@ std::vector<PresetCrack> read_cracks(const TomlTable& root, const std::string& f
 
 std::vector<ScriptedRemoval> read_removals(const TomlTable& root, const std::string& file) {
   std::vector<ScriptedRemoval> removals;
-  const std::vector<std::string> keys = {"step", "volume", "elements", "box"};
-  for_each_table(root, file, "destroy", keys, [&](const TomlTable& table) {
+  for_each_table(root, file, "destroy", [&](const TomlTable& table) {
     ScriptedRemoval removal;
     removal.step = table.require("step", table.integer("step", 0, kMostSteps));
     removal.elements = read_elements(table, {"volume", "elements", "box"});
@@ -158,73 +182,19 @@ std::vector<ScriptedRemoval> read_removals(const TomlTable& root, const std::str
 }
 
 FractureOptions read_fracture(const TomlTable& root, const std::string& file) {
-  const TomlTable table = section(root, file, "fracture",
-                                  {"model", "alpha", "yield_measure", "sigma0", "crack_length",
-                                   "sif", "max_events", "plane_normal", "birth"});
   FractureOptions options;
-  options.model = table
-                      .choice<FractureModel>("model", {{"none", FractureModel::none},
-                                                       {"A", FractureModel::a},
-                                                       {"B", FractureModel::b}})
-                      .value_or(options.model);
-  options.alpha = table.number("alpha").value_or(options.alpha);
-  options.yield_measure =
-      table
-          .choice<YieldMeasure>("yield_measure", {{"max_shear", YieldMeasure::max_shear},
-                                                  {"tresca", YieldMeasure::tresca}})
-          .value_or(options.yield_measure);
-  options.sigma0 = table
-                       .choice<RemoteStress>("sigma0", {{"line", RemoteStress::line},
-                                                        {"tip", RemoteStress::tip},
-                                                        {"present", RemoteStress::present}})
-                       .value_or(options.sigma0);
-  options.crack_length = table
-                             .choice<CrackLength>("crack_length", {{"path", CrackLength::path},
-                                                                   {"tool", CrackLength::tool}})
-                             .value_or(options.crack_length);
-  options.sif =
-      table.choice<SifSource>("sif", {{"formula", SifSource::formula}, {"field", SifSource::field}})
-          .value_or(options.sif);
-  options.birth = table
-                      .choice<CrackBirth>("birth", {{"element", CrackBirth::element},
-                                                    {"through", CrackBirth::through}})
-                      .value_or(options.birth);
-  options.max_events = table.integer("max_events", 1, kMostSteps).value_or(options.max_events);
-  options.plane_normal = table.vec3("plane_normal");
+  read_members(section(root, file, "fracture"), fracture_keys(), options);
   return options;
 }
 
 SolverOptions read_solver(const TomlTable& root, const std::string& file) {
-  const TomlTable table =
-      section(root, file, "solver",
-              {"backend", "route", "update", "precision", "tolerance", "device", "prepare"});
   SolverOptions options;
-  options.backend = table.text("backend").value_or(options.backend);
-  options.device = table.integer("device", 0, std::numeric_limits<int>::max()).value_or(kNone);
-  options.route = table
-                      .choice<Route>("route", {{"auto", Route::automatic},
-                                               {"inverse", Route::inverse},
-                                               {"condensed", Route::condensed},
-                                               {"factor", Route::factor},
-                                               {"cg", Route::cg}})
-                      .value_or(options.route);
-  options.update = table
-                       .choice<Update>("update", {{"auto", Update::automatic},
-                                                  {"eager", Update::eager},
-                                                  {"deferred", Update::deferred}})
-                       .value_or(options.update);
-  options.precision = table
-                          .choice<Precision>("precision", {{"auto", Precision::automatic},
-                                                           {"fp32", Precision::fp32},
-                                                           {"fp64", Precision::fp64}})
-                          .value_or(options.precision);
-  options.tolerance = table.number("tolerance").value_or(options.tolerance);
-  options.prepare = table.boolean("prepare").value_or(options.prepare);
+  read_members(section(root, file, "solver"), solver_keys(), options);
   return options;
 }
 
 OutputOptions read_output(const TomlTable& root, const std::string& file) {
-  const TomlTable table = section(root, file, "output", {"fields"});
+  const TomlTable table = section(root, file, "output");
   OutputOptions options;
   const auto fields = table.texts("fields");
   if (!fields) return options;
@@ -243,8 +213,9 @@ OutputOptions read_output(const TomlTable& root, const std::string& file) {
 }
 
 int read_steps(const TomlTable& root, const std::string& file) {
-  const TomlTable table = section(root, file, "time", {"steps"});
-  return table.integer("steps", 1, kMostSteps).value_or(1);
+  Scene scene;
+  read_members(section(root, file, "time"), time_keys(), scene);
+  return scene.steps;
 }
 
 }  // namespace sunder::app

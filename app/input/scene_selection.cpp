@@ -47,11 +47,6 @@ std::string require_one(const TomlTable& table, const std::vector<std::string>& 
   return found;
 }
 
-const std::vector<std::string>& node_selection_keys() {
-  static const std::vector<std::string> keys = {"box", "nodes", "near", "radius", "surface"};
-  return keys;
-}
-
 NodeSelection read_nodes(const TomlTable& table) {
   const std::string key = require_one(table, {"box", "nodes", "near", "surface"});
   if (table.has("radius") && key != "near")

@@ -9,7 +9,6 @@ namespace sunder::app {
 
 /// box, nodes, near + radius, or surface: exactly one.
 [[nodiscard]] NodeSelection read_nodes(const TomlTable& table);
-[[nodiscard]] const std::vector<std::string>& node_selection_keys();
 
 /// volume, elements or box: exactly one of those in `keys`.
 [[nodiscard]] ElementSelection read_elements(const TomlTable& table,

@@ -6,6 +6,7 @@
 #include "app/input/scene_overrides.hpp"
 #include "app/input/scene_sections.hpp"
 #include "app/input/toml_guard.hpp"
+#include "sunder/scene_keys.hpp"
 
 namespace sunder::app {
 namespace {
@@ -41,9 +42,7 @@ ParsedScene parse_scene(std::string_view text, const std::string& source,
   toml::table parsed = parse_toml(text, source);
   for (const std::string& override_text : overrides) apply_override(parsed, override_text);
 
-  const TomlTable root(parsed, source, "",
-                       {"title", "mesh", "material", "fixed", "instrument", "crack", "destroy",
-                        "fracture", "solver", "time", "output"});
+  const TomlTable root(parsed, source, "", key_names(""));
   ParsedScene result;
   Scene& scene = result.scene;
   scene.source = source;

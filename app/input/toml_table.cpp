@@ -159,6 +159,15 @@ std::optional<std::string> TomlTable::text(std::string_view key) const {
   return node->as_string()->get();
 }
 
+std::optional<int> TomlTable::word(std::string_view key,
+                                   const std::vector<std::string>& known) const {
+  const std::optional<std::string> given = text(key);
+  if (!given) return std::nullopt;
+  const auto found = std::find(known.begin(), known.end(), *given);
+  if (found == known.end()) fail_unknown_word(key, *given, known);
+  return static_cast<int>(found - known.begin());
+}
+
 const toml::array* TomlTable::array(std::string_view key, const std::string& expected) const {
   const toml::node* node = table_.get(key);
   if (node && !node->is_array()) fail_type(key, *node, expected);

@@ -42,19 +42,9 @@ class TomlTable {
   /// Array of tables; empty when absent.
   [[nodiscard]] std::vector<const toml::table*> tables(std::string_view key) const;
 
-  /// The value that goes with the word; an unknown word is an error that lists the known ones.
-  template <class Value>
-  [[nodiscard]] std::optional<Value> choice(
-      std::string_view key, const std::vector<std::pair<std::string, Value>>& known) const {
-    const std::optional<std::string> word = text(key);
-    if (!word) return std::nullopt;
-    std::vector<std::string> words;
-    for (const auto& [name, value] : known) {
-      if (name == *word) return value;
-      words.push_back(name);
-    }
-    fail_unknown_word(key, *word, words);
-  }
+  /// The place of the word among `known`; an unknown word is an error that lists them.
+  [[nodiscard]] std::optional<int> word(std::string_view key,
+                                        const std::vector<std::string>& known) const;
 
   template <class Value>
   [[nodiscard]] Value require(std::string_view key, std::optional<Value> value) const {

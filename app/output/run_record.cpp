@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sunder/fracture_model.hpp"
+
 namespace sunder::app {
 
 int RunRecord::event_count() const { return destroyed.empty() ? 0 : destroyed.back().event + 1; }
@@ -39,7 +41,7 @@ StepReport RunRecord::last_report() const {
 
 const DestroyedElement* RunRecord::first_rupture() const {
   const auto found = std::find_if(destroyed.begin(), destroyed.end(), [](const auto& d) {
-    return d.cause == Cause::mss || d.cause == Cause::sif;
+    return d.cause != Cause::preset && d.cause != Cause::script;
   });
   return found == destroyed.end() ? nullptr : &*found;
 }
@@ -67,9 +69,7 @@ TimeStatistics statistics(const std::vector<StepReport>& steps, const Stage& sta
   return statistics(std::move(ms));
 }
 
-const char* name_of(FractureModel model) {
-  return model == FractureModel::none ? "none" : model == FractureModel::a ? "A" : "B";
-}
+const char* name_of(FractureModel model) { return row_of(model).name; }
 
 const char* name_of(CrackKind kind) { return kind == CrackKind::edge ? "edge" : "internal"; }
 

@@ -41,7 +41,7 @@ struct RunRecord {
   [[nodiscard]] double volume_lost() const;
   /// The report that belongs to `last`; zeros before the first.
   [[nodiscard]] StepReport last_report() const;
-  /// First rupture by a criterion (mss or sif), or null.
+  /// First rupture by a criterion, or null.
   [[nodiscard]] const DestroyedElement* first_rupture() const;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::app {
@@ -58,7 +59,7 @@ double scene_time(const Scene& scene, int step) {
 }
 
 std::vector<double> yield_ratios(const Problem& problem, const State& state) {
-  const YieldMeasure measure = problem.scene().fracture.yield_measure;
+  const YieldMeasure measure = strength_measure(problem.scene().fracture);
   std::vector<double> ratios(state.stress.size(), 0.0);
   for (Index e = 0; e < static_cast<Index>(ratios.size()); ++e)
     if (problem.breakable(e) && !state.destroyed[e])

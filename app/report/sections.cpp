@@ -6,6 +6,7 @@
 
 #include "app/report/chart.hpp"
 #include "app/report/table.hpp"
+#include "sunder/fracture_model.hpp"
 
 namespace sunder::app {
 namespace {
@@ -146,12 +147,12 @@ std::string header(const RunRecord& run) {
   const std::string chip = run.failure       ? "<span class=\"chip bad\">failed</span>"
                            : run.interrupted ? "<span class=\"chip bad\">interrupted</span>"
                                              : "<span class=\"chip\">done</span>";
-  const FractureModel model = problem.scene().fracture.model;
+  const FractureModelRow& model = row_of(problem.scene().fracture.model);
   return "<header><h1>" + escaped(problem.scene().title) + chip + "</h1>\n<p>" +
          escaped(grouped(problem.tet_count()) + " tetrahedra, " + grouped(problem.dof_count()) +
                  " unknowns, " +
-                 (model == FractureModel::none ? std::string("no fracture model")
-                                               : std::string("fracture model ") + name_of(model)) +
+                 (model.breaks ? std::string("fracture model ") + model.name
+                               : std::string("no fracture model")) +
                  ", " + std::to_string(run.steps.size()) + " of " +
                  counted(problem.scene().steps, "step") + ", " + run.backend.backend + " " +
                  run.backend.precision) +

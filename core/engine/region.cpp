@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sunder/fracture_model.hpp"
+
 namespace sunder::engine {
 namespace {
 
@@ -14,7 +16,7 @@ void mark_elements(const Problem& problem, const Needs& needs, Region& region) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (!problem.breakable(e)) continue;
     mark(problem, e, region.inside);
-    region.tears = region.tears || problem.scene().fracture.model != FractureModel::none;
+    region.tears = region.tears || row_of(problem.scene().fracture.model).breaks;
   }
   if (!needs.damage) return;
   for (const auto* lists : {&problem.crack_elements(), &problem.removal_elements()}) {

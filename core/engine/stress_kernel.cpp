@@ -10,6 +10,7 @@
 #include "engine/deformation_search.hpp"
 #include "fem/element.hpp"
 #include "parallel/vectorised.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::engine {
@@ -126,6 +127,24 @@ void StressKernel::destroy(std::span<const Index> elements) {
   }
 }
 
+namespace {
+
+/// Of eight elements, (s1 / yield)^2 where s1 may be tension, else 0: s1 is at most the mean stress
+/// and 2 sqrt(J_2 / 3).
+inline void bound_principal(const double (&s)[6][StressKernel::kLanes],
+                            const double (&strength)[StressKernel::kLanes],
+                            double (&bound)[StressKernel::kLanes]) {
+  for (int l = 0; l < StressKernel::kLanes; ++l) {
+    const double x = s[0][l], y = s[1][l], z = s[2][l];
+    const double j2 = ((x - y) * (x - y) + (y - z) * (y - z) + (z - x) * (z - x)) / 6 +
+                      (s[3][l] * s[3][l] + s[4][l] * s[4][l] + s[5][l] * s[5][l]);
+    const double most = (x + y + z) / 3 + 2 * std::sqrt(j2 / 3);
+    bound[l] = most > 0 && strength[l] != 0 ? most * most * strength[l] : 0.0;
+  }
+}
+
+}  // namespace
+
 SUNDER_VECTORISED
 void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                               Partial& partial) {
@@ -180,6 +199,7 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
     }
     if (to.bounds) {
       double* at = to.bounds + k * kLanes;
+      if (to.principal) bound_principal(s, b.strength, bound);
       for (int l = 0; l < kLanes; ++l) at[l] = bound[l];
     }
     if (to.groups && (k % kGroup == kGroup - 1 || k + 1 == count)) {
@@ -224,7 +244,8 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
 double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
   return run_storing(
       u, {stress.empty() ? nullptr : stress.data(), bounds_.empty() ? nullptr : bounds_.data(),
-          forces_.empty() ? nullptr : forces_.data(), groups_.empty() ? nullptr : groups_.data()});
+          forces_.empty() ? nullptr : forces_.data(), groups_.empty() ? nullptr : groups_.data(),
+          strength_measure(problem_->scene().fracture) == YieldMeasure::principal});
 }
 
 double StressKernel::largest(std::span<const double> u) { return run_storing(u, Stores{}); }
@@ -348,10 +369,10 @@ Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
   }
   Worst worst;
   if (!(largest > 0)) return worst;
+  const YieldMeasure measure = strength_measure(problem_->scene().fracture);
   const auto look_at = [&](std::size_t i) {
     const Index e = blocks_[i / kLanes].element[i % kLanes];
-    const double ratio =
-        yield_measure(stress[i], problem_->scene().fracture.yield_measure) / problem_->yield(e);
+    const double ratio = yield_measure(stress[i], measure) / problem_->yield(e);
     if (ratio > worst.ratio || (ratio == worst.ratio && e < worst.element)) worst = {e, ratio};
   };
   // The ratio is at most the bound's: the largest bound's element leaves few others to look at.
@@ -363,9 +384,9 @@ Worst StressKernel::worst(std::span<const std::uint8_t> excluded,
   return worst;
 }
 
-/// J_2 / yield^2 of an element whose ratio may just be 1.
+/// Bound of an element whose ratio may just be 1.
 double StressKernel::least_bound() const {
-  return problem_->scene().fracture.yield_measure == YieldMeasure::tresca ? 0.25 : 1.0;
+  return strength_measure(problem_->scene().fracture) == YieldMeasure::tresca ? 0.25 : 1.0;
 }
 
 StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
@@ -377,15 +398,19 @@ StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
   const bool candidate = excluded.empty() || worst_of_all == kNone || !excluded[worst_of_all];
   summary.candidate = candidate ? summary.any : worst(excluded, stress);
   if (!(summary.any.ratio >= 1)) return summary;
-  // At or over yield for sure, for sure not, or to be looked at; the bound is J_2 / yield^2.
-  const YieldMeasure measure = problem_->scene().fracture.yield_measure;
+  // At or over yield for sure, for sure not, or to be looked at; of shear the bound is J_2 /
+  // yield^2.
+  const YieldMeasure measure = strength_measure(problem_->scene().fracture);
   const double least = least_bound();
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     if (!(bounds_[i] >= least * (1 - 1e-9))) continue;
     const Index e = blocks_[i / kLanes].element[i % kLanes];
-    const auto over = bounds_[i] * kShearRange > least
-                          ? std::optional(true)
-                          : shears(stress[i], std::sqrt(least) * problem_->yield(e));
+    std::optional<bool> over;
+    if (measure != YieldMeasure::principal) {
+      over = bounds_[i] * kShearRange > least
+                 ? std::optional(true)
+                 : shears(stress[i], std::sqrt(least) * problem_->yield(e));
+    }
     if (over ? *over : yield_measure(stress[i], measure) / problem_->yield(e) >= 1) {
       ++summary.over;
     }

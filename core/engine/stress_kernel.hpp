@@ -81,6 +81,7 @@ class StressKernel {
     double* bounds = nullptr;
     double* forces = nullptr;
     GroupBounds* groups = nullptr;
+    bool principal = false;  // the bounds are of the largest principal stress
   };
   static void run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                          Partial& partial);
@@ -95,7 +96,7 @@ class StressKernel {
   std::size_t size_ = 0;  // listed elements
   std::vector<Block> blocks_;
   std::vector<Index> place_;    // of each element, kNone: not in here
-  std::vector<double> bounds_;  // J_2 / yield^2 per place
+  std::vector<double> bounds_;  // of ratios, squared and in order: J_2 / yield^2 for shear
   std::vector<GroupBounds> groups_;
   std::vector<std::uint8_t> cut_off_;  // per element; empty: deformation() is not asked for
   // Forces on the corners of a block's elements: axis, corner, lane; of each node, where in there

@@ -5,9 +5,10 @@
 
 #include "fracture/crack_birth.hpp"
 #include "fracture/crack_path.hpp"
-#include "fracture/max_shear.hpp"
 #include "fracture/preset_cracks.hpp"
 #include "fracture/pressed_nodes.hpp"
+#include "fracture/worst_element.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::fracture {
@@ -282,7 +283,7 @@ void Combined::grow(const DrivenTip& driven, const FractureState& state, Decisio
 }
 
 void Combined::start_crack(const FractureState& state, Decision& decision) {
-  auto row = rupture(state.summary.candidate);
+  auto row = rupture(state.summary.candidate, Cause::mss);
   if (!row) return;
   const InPlane stress = in_plane(state.current_stress(row->element), board_.plane());
   const int id = static_cast<int>(cracks_.size());
@@ -304,7 +305,7 @@ void Combined::cut_through(Crack& crack, const FractureState& state, Decision& d
     DestroyedElement row = decision.elements.front();
     row.element = beside.element;
     row.ratio = yield_measure(state.current_stress(beside.element),
-                              problem_.scene().fracture.yield_measure) /
+                              strength_measure(problem_.scene().fracture)) /
                 problem_.yield(beside.element);
     take(row, decision);
     crack.elements.push_back(beside.element);

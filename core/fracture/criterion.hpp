@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a fracture model is to the frame: it looks at the state and names the next event, and it
-// keeps the cracks. A further model is a further implementation and one line in make_criterion.
+// keeps the cracks. A further model is a further implementation and one row
+// in criterion.cpp.
 #pragma once
 
 #include <array>

@@ -115,7 +115,7 @@ class Problem {
   void resolve_pulls();
   void resolve_presses();
   void resolve_elements();
-  void check_options() const;
+  void check_options();
   void check_held_bodies(const fem::Bodies& bodies);
   void note_odd_mesh();
   void note_no_board();

@@ -12,7 +12,7 @@
 
 namespace sunder {
 
-enum class Cause { mss, sif, preset, script };
+enum class Cause { mss, sif, preset, script, principal };
 [[nodiscard]] const char* to_string(Cause cause);
 
 /// One destroyed element (a row of events.csv).
@@ -22,7 +22,7 @@ struct DestroyedElement {
   Index element = kNone;
   Cause cause = Cause::mss;
   int crack = kNone;            ///< for sif, preset, and the mss that starts a crack
-  std::optional<double> ratio;  ///< mss: measure/yield; sif: r_e / max(rho, h/2)
+  std::optional<double> ratio;  ///< mss, principal: measure/yield; sif: r_e / max(rho, h/2)
   double load_factor = 0;       ///< scene time t
   std::optional<SifTerms> sif;
   /// The instrument with the largest share of the maximum shear stress of the event's first

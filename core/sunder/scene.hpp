@@ -92,8 +92,8 @@ struct ScriptedRemoval {
   ElementSelection elements;
 };
 
-enum class FractureModel { none, a, b };
-enum class YieldMeasure { max_shear, tresca };
+enum class FractureModel { none, a, b, p };
+enum class YieldMeasure { max_shear, tresca, principal };  ///< principal: model P's own
 /// present: the line mean of the current, damaged field (method.md 5).
 enum class RemoteStress { line, tip, present };
 enum class CrackLength { path, tool };
@@ -112,6 +112,7 @@ struct FractureOptions {
   SifSource sif = SifSource::formula;
   int max_events = 10000;            ///< of one step
   std::optional<Vec3> plane_normal;  ///< overrides the third axis of the bounding box
+  double averaging = 0;  ///< radius of the mean that strength is judged by [mm], 0: by element
 };
 
 enum class Route { automatic, inverse, condensed, factor, cg };

@@ -17,6 +17,9 @@ namespace sunder {
 class FractureCriterion;
 class Loads;
 class LooseSearch;
+namespace fracture {
+class AveragedStrength;
+}
 struct Decision;
 struct Finding;
 struct FractureState;
@@ -139,6 +142,7 @@ class Simulation {
   std::unique_ptr<Loads> loads_;
   std::unique_ptr<FractureCriterion> criterion_;
   std::unique_ptr<LooseSearch> loose_;
+  std::unique_ptr<fracture::AveragedStrength> averaged_;  // null: strength is judged by element
   EventObserver observer_;
   FrameObserver frame_observer_;
   std::vector<DestroyedElement> destroyed_;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "fem/element.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::gpu {
@@ -196,7 +197,7 @@ shaders::ElementPush Fields::element_push(std::uint32_t keep) const {
   const FractureOptions& fracture = problem_.scene().fracture;
   const auto alpha = static_cast<float>(fracture.alpha);
   return {alpha, static_cast<float>(fracture.alpha - static_cast<double>(alpha)), keep,
-          fracture.yield_measure == YieldMeasure::tresca ? 1u : 0u};
+          static_cast<std::uint32_t>(strength_measure(fracture))};
 }
 
 void Fields::set_load(std::span<const double> force, std::span<const double> displacements) {

@@ -420,6 +420,40 @@ TEST_P(Kernels, YieldRatioOfKnownStates) {
   }
 }
 
+/// The same for the largest principal stress; compression in all directions has no ratio.
+TEST_P(Kernels, PrincipalRatioOfKnownStates) {
+  Scene scene;
+  scene.mesh = structured_board({1, 1, 1, 1, 1, 1});
+  scene.materials["board"] = {5, 0.25, 2.0};
+  scene.supports.push_back({std::vector<Index>{0}, Axes{7}});
+  scene.supports.push_back({std::vector<Index>{1, 2}, Axes{7}});
+  scene.fracture.model = FractureModel::p;
+  const Problem problem(scene);
+  gpu::Fields fields(*factory_, problem, all_needs());
+  fields.set_load(std::vector<double>(fields.rows(), 0.0), {});
+  const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  for (const Vec3& strain :
+       {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(0, 0, 0), Vec3(1, -1, 0),
+        Vec3(1, 1 + 1e-6, -2), Vec3(-3, 1e-3, 2), Vec3(2, -1, -1), Vec3(1, 1, -2), Vec3(4, 2, 1),
+        Vec3(-1, 0, 0), Vec3(-1, -1, -2)}) {
+    for (const bool rotated : {false, true}) {
+      Mat3 h = 0.01 * strain.asDiagonal();
+      if (rotated) h = rotation * h * rotation.transpose();
+      std::vector<double> u;
+      for (const Vec3& x : problem.mesh().nodes) {
+        const Vec3 at = h * x;
+        u.insert(u.end(), at.data(), at.data() + 3);
+      }
+      fields.write_displacement(u);
+      compute_state(fields);
+      // s1 = lambda tr + 2 mu (largest principal strain), lambda = mu = 2 MPa; yield 2 MPa.
+      const double ratio = std::max(0.0, 0.01 * (strain.sum() + 2 * strain.maxCoeff()));
+      EXPECT_NEAR(fields.state().any_ratio, ratio, 16 * GetParam().eps() * 0.01 * 12)
+          << strain.transpose() << (rotated ? " rotated" : "");
+    }
+  }
+}
+
 const auto kAllNumbers =
     testing::Values(Numbers{gpu::Variant::gpu, false}, Numbers{gpu::Variant::gpu, true},
                     Numbers{gpu::Variant::lvp, false}, Numbers{gpu::Variant::lvp, true});

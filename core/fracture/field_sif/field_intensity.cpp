@@ -9,6 +9,7 @@
 
 #include "fracture/crack_path.hpp"
 #include "fracture/stress_intensity.hpp"
+#include "sunder/fracture_model.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -77,7 +78,7 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
       builder_(board, surface_),
       own_(problem.mesh().tets.size(), 0) {
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
-  if (problem.scene().fracture.model != FractureModel::b) return;
+  if (!row_of(problem.scene().fracture.model).grows_cracks) return;
   double radius = kDomainRadius * board.h();
   for (const Notch& notch : notches_) radius = std::max(radius, kDomainOfWidths * notch.width);
   near_.reserve(board.most_within(radius));

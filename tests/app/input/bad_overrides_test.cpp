@@ -63,7 +63,7 @@ TEST(Overrides, NameTheirTextWhenWrong) {
       {"title=\"open", F::syntax, {"not valid TOML"}},
       {"fracture.modle=A", F::unknown_key, {"fracture.modle", "did you mean \"model\""}},
       {"fractur.model=A", F::unknown_key, {"\"fractur\"", "did you mean \"fracture\""}},
-      {"fracture.model=C", F::unknown_key, {"\"none\", \"A\" or \"B\""}},
+      {"fracture.model=C", F::unknown_key, {"\"none\", \"A\", \"B\" or \"P\""}},
       {"fracture.model.x=1", F::unknown_key, {"\"x\" lies inside a plain value"}},
       {"time.steps=many", F::wrong_type, {"time.steps takes an integer", "\"many\""}},
       {"time.steps=0", F::out_of_range, {"time.steps is 0"}},

@@ -294,7 +294,7 @@ TEST(BadScenes, ValuesThatAreNotAllowed) {
           {"model = \"B\"",
            "model = \"C\"",
            F::unknown_key,
-           {"fracture.model is \"C\"", "\"none\", \"A\" or \"B\""}},
+           {"fracture.model is \"C\"", "\"none\", \"A\", \"B\" or \"P\""}},
           {"yield_measure = \"max_shear\"",
            "yield_measure = \"mises\"",
            F::unknown_key,

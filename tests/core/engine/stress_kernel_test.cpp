@@ -10,6 +10,7 @@
 
 #include "fem/assembly.hpp"
 #include "fem/element.hpp"
+#include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 #include "support/accuracy.hpp"
 #include "support/table1_board.hpp"
@@ -54,8 +55,14 @@ TEST(StressKernel, EqualsThePlainStressBitByBitForAnyNumberOfThreads) {
   }
 }
 
-TEST(StressKernel, FindsTheWorstRatiosThatALoopFinds) {
-  const Field field;
+class WorstRatios : public ::testing::TestWithParam<FractureModel> {};
+
+TEST_P(WorstRatios, AreThoseThatALoopFinds) {
+  Scene scene = test::pulled_board();
+  scene.fracture.model = GetParam();
+  Field field;
+  field.problem = std::make_shared<Problem>(std::move(scene));
+  const YieldMeasure measure = strength_measure(field.problem->scene().fracture);
   StressKernel kernel(field.problem, {}, 2);
   kernel.keep_bounds();
   kernel.destroy(field.destroyed);
@@ -66,7 +73,7 @@ TEST(StressKernel, FindsTheWorstRatiosThatALoopFinds) {
     StressSummary expected;
     for (Index e = 0; e < field.problem->tet_count(); ++e) {
       if (!field.live[e] || !field.problem->breakable(e)) continue;
-      const double ratio = max_shear(stress[e]) / field.problem->yield(e);
+      const double ratio = yield_measure(stress[e], measure) / field.problem->yield(e);
       if (ratio >= 1) ++expected.over;
       if (ratio > expected.any.ratio) expected.any = {e, ratio};
       if (!excluded[e] && ratio > expected.candidate.ratio) expected.candidate = {e, ratio};
@@ -81,8 +88,12 @@ TEST(StressKernel, FindsTheWorstRatiosThatALoopFinds) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(StressKernel, WorstRatios,
+                         ::testing::Values(FractureModel::a, FractureModel::p));
+
 TEST(StressKernel, CountsWhatIsOverYieldWhereSomeElementIsJustThere) {
-  for (YieldMeasure measure : {YieldMeasure::max_shear, YieldMeasure::tresca}) {
+  for (YieldMeasure measure :
+       {YieldMeasure::max_shear, YieldMeasure::tresca, YieldMeasure::principal}) {
     Scene scene = test::pulled_board();
     scene.fracture.yield_measure = measure;
     Field field;
@@ -95,7 +106,7 @@ TEST(StressKernel, CountsWhatIsOverYieldWhereSomeElementIsJustThere) {
       return yield_measure(stress[e], measure) / field.problem->yield(e);
     };
     for (Index at = 0; at < field.problem->tet_count(); at += 97) {
-      if (!field.problem->breakable(at)) continue;
+      if (!field.problem->breakable(at) || !(ratio(at) > 0)) continue;  // compression
       for (double& d : field.u) d /= ratio(at);
       kernel.run(field.u, stress);
       Index over = 0;

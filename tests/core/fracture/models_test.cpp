@@ -4,6 +4,7 @@
 
 #include "board_fixture.hpp"
 #include "fracture/crack_birth.hpp"
+#include "sunder/fracture_model.hpp"
 
 namespace sunder {
 namespace {
@@ -29,6 +30,21 @@ int run_out(Driver& driver, int most = 200) {
     }
   }
   return events;
+}
+
+// Scenes, results and the C interface name models by these.
+TEST(FractureModels, HaveARowEach) {
+  const auto rows = fracture_models();
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(rows[i].model), i) << "row_of() finds rows by their place";
+    EXPECT_TRUE(names.insert(rows[i].name).second) << rows[i].name;
+    EXPECT_TRUE(rows[i].breaks || !rows[i].pristine) << rows[i].name;
+    EXPECT_TRUE(rows[i].keeps_cracks || !rows[i].grows_cracks) << rows[i].name;
+  }
+  EXPECT_STREQ(row_of(FractureModel::none).name, "none");
+  EXPECT_STREQ(row_of(FractureModel::a).name, "A");
+  EXPECT_STREQ(row_of(FractureModel::b).name, "B");
 }
 
 TEST(ModelA, DestroysTheWorstElementFromRatioOne) {

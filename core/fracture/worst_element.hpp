@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Model A: the maximum shear stress hypothesis alone (method.md "Model A").
+// Strength alone (method.md "Model A"): what a further model of that kind measures stands in its
+// row (criterion.cpp).
 #pragma once
 
 #include "fracture/criterion.hpp"
@@ -8,9 +9,10 @@ namespace sunder::fracture {
 
 /// Destroys the live breakable element with the largest ratio while it is >= 1, one per event.
 /// Keeps no crack records.
-class MaxShear final : public FractureCriterion {
+class WorstElement final : public FractureCriterion {
  public:
-  explicit MaxShear(const Problem& problem) : problem_(problem) {}
+  /// `cause`: what the rows of its events say.
+  WorstElement(const Problem& problem, Cause cause) : problem_(problem), cause_(cause) {}
 
   void decide(const FractureState& state, Decision& decision) override;
   void next_in_line(const FractureState& state, std::vector<Index>& next) override;
@@ -21,10 +23,11 @@ class MaxShear final : public FractureCriterion {
 
  private:
   const Problem& problem_;
+  Cause cause_;
   std::vector<Crack> none_;
 };
 
-/// The row of a rupture by maximum shear stress; none while the ratio stays under 1.
-[[nodiscard]] std::optional<DestroyedElement> rupture(const Worst& worst);
+/// The row of a rupture by strength; none while the ratio stays under 1.
+[[nodiscard]] std::optional<DestroyedElement> rupture(const Worst& worst, Cause cause);
 
 }  // namespace sunder::fracture

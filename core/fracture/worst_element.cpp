@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fracture/max_shear.hpp"
+#include "fracture/worst_element.hpp"
 
 #include "fracture/preset_cracks.hpp"
 
 namespace sunder::fracture {
 
-std::optional<DestroyedElement> rupture(const Worst& worst) {
+std::optional<DestroyedElement> rupture(const Worst& worst, Cause cause) {
   if (worst.element == kNone || !(worst.ratio >= 1)) return std::nullopt;
   DestroyedElement row;
   row.element = worst.element;
-  row.cause = Cause::mss;
+  row.cause = cause;
   row.ratio = worst.ratio;
   return row;
 }
 
-void MaxShear::decide(const FractureState& state, Decision& decision) {
+void WorstElement::decide(const FractureState& state, Decision& decision) {
   decision.clear();
-  if (const auto row = rupture(state.summary.any)) decision.elements.push_back(*row);
+  if (const auto row = rupture(state.summary.any, cause_)) decision.elements.push_back(*row);
 }
 
-void MaxShear::next_in_line(const FractureState& state, std::vector<Index>& next) {
+void WorstElement::next_in_line(const FractureState& state, std::vector<Index>& next) {
   next.clear();
   if (state.summary.any.element != kNone) next.push_back(state.summary.any.element);
 }
 
-Decision MaxShear::preset() {
+Decision WorstElement::preset() {
   Decision decision;
   decision.elements = preset_elements(problem_);
   return decision;
 }
 
 /// Without crack records there is no face to press on.
-PressedNodes MaxShear::pressed_nodes(const Press&, std::span<const std::uint8_t>) const {
+PressedNodes WorstElement::pressed_nodes(const Press&, std::span<const std::uint8_t>) const {
   return {};
 }
 

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/averaged_strength.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <tuple>
+
+#include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
+#include "sunder/stress_measures.hpp"
+
+namespace sunder::fracture {
+namespace {
+
+constexpr std::size_t kMostNeighbours = std::size_t{1} << 30;  // 4 GiB of ids
+
+Vec3 centroid(const Mesh& mesh, Index e) {
+  Vec3 sum = Vec3::Zero();
+  for (Index n : mesh.tets[static_cast<std::size_t>(e)])
+    sum += mesh.nodes[static_cast<std::size_t>(n)];
+  return sum / 4;
+}
+
+/// Points in cubes, sorted by cube, so that a neighbourhood costs what lies in it.
+class Cubes {
+ public:
+  struct Point {
+    std::array<long long, 3> cube;
+    Index id;
+    bool operator<(const Point& other) const {
+      return std::tie(cube, id) < std::tie(other.cube, other.id);
+    }
+  };
+
+  Cubes(const Problem& problem, double side) : side_(side) {
+    const Mesh& mesh = problem.mesh();
+    centroids_.reserve(mesh.tets.size());
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      centroids_.push_back(centroid(mesh, e));
+      if (problem.breakable(e)) points_.push_back({cube_of(centroids_.back()), e});
+    }
+    std::sort(points_.begin(), points_.end());
+  }
+
+  /// visit(id) for the points at most one side away from that of element e.
+  template <class Visit>
+  void around(Index e, Visit&& visit) const {
+    const Vec3& centre = centroids_[static_cast<std::size_t>(e)];
+    const auto own = cube_of(centre);
+    for (long long x = own[0] - 1; x <= own[0] + 1; ++x) {
+      for (long long y = own[1] - 1; y <= own[1] + 1; ++y) {
+        auto it = std::lower_bound(points_.begin(), points_.end(), Point{{x, y, own[2] - 1}, 0});
+        const Point end{{x, y, own[2] + 2}, 0};
+        for (; it != points_.end() && *it < end; ++it) {
+          const Vec3& other = centroids_[static_cast<std::size_t>(it->id)];
+          if ((other - centre).norm() <= side_) visit(it->id);
+        }
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::array<long long, 3> cube_of(const Vec3& p) const {
+    std::array<long long, 3> cube{};
+    for (int axis = 0; axis < 3; ++axis)
+      cube[static_cast<std::size_t>(axis)] = std::llround(std::floor(p[axis] / side_));
+    return cube;
+  }
+
+  double side_;
+  std::vector<Vec3> centroids_;
+  std::vector<Point> points_;
+};
+
+}  // namespace
+
+AveragedStrength::AveragedStrength(const Problem& problem)
+    : problem_(problem),
+      begin_(problem.mesh().tets.size() + 1, 0),
+      excluded_(problem.mesh().tets.size(), 0),
+      stress_(problem.mesh().tets.size()) {
+  find_neighbours(problem.scene().fracture.averaging);
+}
+
+void AveragedStrength::find_neighbours(double radius) {
+  const Mesh& mesh = problem_.mesh();
+  Vec3 size = Vec3::Zero();
+  for (const Vec3& node : mesh.nodes) size = size.cwiseMax((node - mesh.nodes.front()).cwiseAbs());
+  // No farther than the body reaches, and no cubes beyond what counts them.
+  radius = std::clamp(radius, 1e-9 * size.norm(), 2 * size.norm());
+  const Cubes cubes(problem_, radius);
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    const auto at = static_cast<std::size_t>(e);
+    begin_[at] = neighbours_.size();
+    if (!problem_.breakable(e)) continue;
+    cubes.around(e, [&](Index other) {
+      if (mesh.volume_of[static_cast<std::size_t>(other)] == mesh.volume_of[at])
+        neighbours_.push_back(other);
+    });
+    std::sort(neighbours_.begin() + static_cast<std::ptrdiff_t>(begin_[at]), neighbours_.end());
+    if (neighbours_.size() <= kMostNeighbours) continue;
+    std::ostringstream words;
+    words << "fracture.averaging = " << problem_.scene().fracture.averaging
+          << " mm reaches so many elements that their lists pass 4 GiB; take a smaller radius";
+    throw InputError(InputFault::out_of_range, words.str());
+  }
+  begin_.back() = neighbours_.size();
+}
+
+void AveragedStrength::exclude(std::span<const Index> elements) {
+  for (Index e : elements) excluded_[static_cast<std::size_t>(e)] = 1;
+}
+
+Voigt AveragedStrength::mean(Index element, std::span<const std::uint8_t> destroyed) const {
+  const auto at = static_cast<std::size_t>(element);
+  Voigt sum = Voigt::Zero();
+  double volume = 0;
+  for (std::size_t i = begin_[at]; i < begin_[at + 1]; ++i) {
+    const auto other = static_cast<std::size_t>(neighbours_[i]);
+    if (destroyed[other]) continue;
+    const double share = problem_.shape(neighbours_[i]).volume;
+    sum += share * stress_[other];
+    volume += share;
+  }
+  return sum / volume;  // its own at least
+}
+
+StressSummary AveragedStrength::summarize(const Backend& backend) {
+  backend.read_stress(stress_);
+  const auto destroyed = backend.destroyed();
+  const YieldMeasure measure = strength_measure(problem_.scene().fracture);
+  StressSummary summary;
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    const auto at = static_cast<std::size_t>(e);
+    if (destroyed[at] || !problem_.breakable(e)) continue;
+    const double ratio = yield_measure(mean(e, destroyed), measure) / problem_.yield(e);
+    if (ratio > summary.any.ratio) summary.any = {e, ratio};
+    if (ratio >= 1) ++summary.over;
+    if (!excluded_[at] && ratio > summary.candidate.ratio) summary.candidate = {e, ratio};
+  }
+  return summary;
+}
+
+}  // namespace sunder::fracture

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sunder/scene_keys.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <type_traits>
+
+#include "sunder/fracture_model.hpp"
+
+namespace sunder {
+namespace {
+
+// ---- What a key is, by the member that it fills -------------------------------------------------
+
+template <class Owner, class T>
+struct MemberOf {
+  using owner = Owner;
+  using type = T;
+};
+template <class Owner, class T>
+MemberOf<Owner, T> member_of(T Owner::*);
+template <auto kMember>
+using Of = decltype(member_of(kMember));
+
+template <class T>
+struct Plain {
+  using type = T;
+};
+template <class T>
+struct Plain<std::optional<T>> {
+  using type = T;
+};
+
+template <class T>
+constexpr KeyType key_type() {
+  if constexpr (std::is_enum_v<T>) return KeyType::word;
+  if constexpr (std::is_same_v<T, bool>) return KeyType::boolean;
+  if constexpr (std::is_same_v<T, int>) return KeyType::integer;
+  if constexpr (std::is_same_v<T, double>) return KeyType::number;
+  if constexpr (std::is_same_v<T, Vec3>) return KeyType::vector;
+  return KeyType::text;
+}
+
+template <auto kMember>
+void set_member(typename Of<kMember>::owner& owner, const KeyValue& value) {
+  using T = typename Plain<typename Of<kMember>::type>::type;
+  if constexpr (std::is_enum_v<T>) {
+    owner.*kMember = static_cast<T>(std::get<int>(value));
+  } else {
+    owner.*kMember = std::get<T>(value);
+  }
+}
+
+template <auto kMember>
+std::optional<KeyValue> get_member(const typename Of<kMember>::owner& owner) {
+  using T = typename Of<kMember>::type;
+  if constexpr (std::is_enum_v<T>) {
+    return KeyValue(static_cast<int>(owner.*kMember));
+  } else if constexpr (std::is_same_v<T, typename Plain<T>::type>) {
+    return KeyValue(owner.*kMember);
+  } else {
+    const auto& value = owner.*kMember;
+    return value ? std::optional(KeyValue(*value)) : std::nullopt;
+  }
+}
+
+// ---- Defaults as a scene would write them -------------------------------------------------------
+
+std::string written(double value) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  std::string text(digits.data(), end);
+  const std::size_t zero = text.find("e-0");  // 1e-06
+  return zero == std::string::npos ? text : text.erase(zero + 2, 1);
+}
+
+std::string written(const SceneKey& key, const KeyValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* number = std::get_if<double>(&value)) return written(*number);
+  if (const auto* text = std::get_if<std::string>(&value)) return '"' + *text + '"';
+  const int count = std::get<int>(value);
+  if (key.type == KeyType::word) return '"' + key.words[static_cast<std::size_t>(count)] + '"';
+  return count < key.least ? "" : std::to_string(count);  // below: none, whatever stands for it
+}
+
+struct More {
+  std::vector<std::string> words = {};
+  int least = 0;
+  bool required = false;
+};
+
+template <auto kMember>
+auto row(std::string_view table, std::string_view name, std::string_view meaning,
+         std::string_view wrong, More more = {}) {
+  using Owner = typename Of<kMember>::owner;
+  MemberKey<Owner> key;
+  key.table = table;
+  key.name = name;
+  key.type = key_type<typename Plain<typename Of<kMember>::type>::type>();
+  key.meaning = meaning;
+  key.wrong = wrong;
+  key.words = std::move(more.words);
+  key.least = more.least;
+  key.required = more.required;
+  key.get = get_member<kMember>;
+  key.set = set_member<kMember>;
+  const auto standard = key.get(Owner{});
+  if (standard && !key.required) key.standard = written(key, *standard);
+  return key;
+}
+
+/// A key that something else than one member is made of.
+SceneKey row(std::string_view table, std::string_view name, KeyType type, std::string standard,
+             std::string_view meaning, std::string_view wrong, More more = {}) {
+  return {
+      table,         name,      type, meaning, wrong, std::move(more.words), std::move(standard),
+      more.required, more.least};
+}
+
+const More kRequired{.required = true};
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const FractureModelRow& model : fracture_models()) names.emplace_back(model.name);
+  return names;
+}
+
+// ---- The rows -----------------------------------------------------------------------------------
+
+std::vector<SceneKey> root_rows() {
+  using enum KeyType;
+  return {
+      row("", "title", text, "", "for figures and reports", "left out: the file's name"),
+      row("", "mesh", text, "",
+          "path, relative to the scene: .msh 1, 2.2 and 4.1 (ascii, binary), .vtk, .vtu "
+          "(`result.vtu` "
+          "too), .mesh, .unv, .bdf, .nas: \"Meshes\" below",
+          "empty, not there, not a mesh: error", kRequired),
+      row("", "material", table, "", "one table a named volume", "no such volume: error"),
+      row("", "fixed", tables, "", "supports", "a body that can move as one: error"),
+      row("", "instrument", tables, "", "what pulls, grips and presses; any number", ""),
+      row("", "crack", tables, "", "preset cracks", ""),
+      row("", "destroy", tables, "", "elements removed by script", ""),
+      row("", "fracture", table, "", "what breaks, and how", ""),
+      row("", "solver", table, "", "how it is computed", ""),
+      row("", "time", table, "", "how often", ""),
+      row("", "output", table, "", "what is stored", ""),
+  };
+}
+
+std::vector<SceneKey> body_rows() {
+  using enum KeyType;
+  return {
+      row("fixed", "", nodes, "", "the nodes held", "none: error"),
+      row("fixed", "axes", text, "\"xyz\"", "the axes held", "other letters, one twice: error"),
+      row("instrument", "name", text, "", "in results; left out: \"instrument-\" and its index",
+          "given twice: error"),
+      row("instrument", "kind", word, "",
+          "what it does: \"expansion\" pulls or grips nodes, \"pressure\" presses on a face of a "
+          "crack",
+          "", {.words = {"expansion", "pressure"}, .required = true}),
+      row("instrument", "force", vector, "",
+          "expansion: in equal parts on its nodes, in total [N]; pressure: on the face [N]",
+          "beside `displacement`, or on an axis that a grip holds: error; on one that a support "
+          "holds: "
+          "warning"),
+      row("instrument", "displacement", vector, "",
+          "expansion: a grip that holds its nodes from the start and moves them [mm]",
+          "beside `force`, or of a held node: error"),
+      row("instrument", "axes", text, "\"xyz\"", "axes that a grip holds",
+          "without `displacement`: error"),
+      row("instrument", "ramp", range, "",
+          "[t0, t1]: scene times of no and of full action; t0 = t1 is a step; left out: fully from "
+          "the start",
+          "backwards: error"),
+      row("instrument", "at", vector, "", "pressure: the pressed place [mm], needed there",
+          "with \"expansion\": error"),
+      row("instrument", "side", word, "", "pressure: the face of the crack, needed there",
+          "with \"expansion\": error", {.words = {"upper", "lower"}}),
+      row("instrument", "crack", integer, "0", "pressure: number of the crack, presets first",
+          "not born yet: waits, with a warning; never born: error"),
+      row("instrument", "", nodes, "", "expansion: the nodes it acts on",
+          "none, or with \"pressure\": error"),
+      row("crack", "volume", text, "", "a named volume whose elements are the crack",
+          "beside `elements`: error"),
+      row("crack", "elements", ids, "",
+          "its elements; []: split nodes of the mesh make the crack, or a notch that belongs to "
+          "its "
+          "shape",
+          "an element of two cracks: error"),
+      row("crack", "mouth", vector, "", "where an edge crack begins [mm]", "beside `tips`: error"),
+      row("crack", "tip", vector, "", "where an edge crack ends [mm]", "length 0: error"),
+      row("crack", "tips", points, "", "both ends of an internal crack [mm]", "length 0: error"),
+      row("destroy", "step", integer, "", "step before which they go, from 0",
+          "beyond the last: error", kRequired),
+      row("destroy", "volume", text, "", "a named volume", "two of these three, or none: error"),
+      row("destroy", "elements", ids, "", "elements", ""),
+      row("destroy", "box", points, "", "elements with centroids in [[min], [max]] (closed)", ""),
+      row("nodes", "box", points, "", "nodes in [[min], [max]] (closed) [mm]",
+          "minimum over maximum, no node inside: error"),
+      row("nodes", "nodes", ids, "", "nodes by id", "an id that is not there: error"),
+      row("nodes", "near", vector, "", "nodes at most `radius` from [x, y, z] [mm]",
+          "no node there: error"),
+      row("nodes", "radius", number, "", "of `near`, needed there [mm]",
+          "below 0, or without `near`: error"),
+      row("nodes", "surface", text, "", "nodes of a named surface", "no such surface: error"),
+  };
+}
+
+SceneKey output_row() {
+  return row("output", "fields", KeyType::texts, "[\"displacement\", \"stress\"]",
+             "fields to store; what is left out is not stored unless the fracture model needs it "
+             "(the check of a frame still takes the largest stress)",
+             "another field: error");
+}
+
+template <class Keys>
+void append(std::vector<SceneKey>& all, const Keys& keys) {
+  all.insert(all.end(), keys.begin(), keys.end());
+}
+
+}  // namespace
+
+std::span<const MemberKey<Material>> material_keys() {
+  static const std::vector<MemberKey<Material>> keys{
+      row<&Material::young>("material", "young", "Young's modulus E [MPa]", "0 or below: error",
+                            kRequired),
+      row<&Material::poisson>("material", "poisson", "Poisson's ratio",
+                              "not above -1 and below 0.5: error", kRequired),
+      row<&Material::yield>("material", "yield", "yield stress [MPa]; left out: unbreakable",
+                            "0 or below: error"),
+  };
+  return keys;
+}
+
+std::span<const MemberKey<FractureOptions>> fracture_keys() {
+  using F = FractureOptions;
+  static const std::vector<MemberKey<F>> keys{
+      row<&F::model>("fracture", "model",
+                     "what breaks elements (`docs/method.md`): nothing, maximum shear stress (A), "
+                     "with it stress intensity (B), largest principal stress (P)",
+                     "", {.words = model_names()}),
+      row<&F::alpha>("fracture", "alpha", "remaining share of a destroyed element's stiffness",
+                     "not above 0 and below 1: error"),
+      row<&F::yield_measure>("fracture", "yield_measure",
+                             "what reaches yield: (s1 - s3)/2 or s1 - s3", "",
+                             {.words = {"max_shear", "tresca"}}),
+      row<&F::sigma0>("fracture", "sigma0",
+                      "model B: the remote stress, a mean along the crack, that at its tip, or the "
+                      "mean of the present field (method.md 5)",
+                      "", {.words = {"line", "tip", "present"}}),
+      row<&F::crack_length>("fracture", "crack_length",
+                            "model B: a is the path's length or the tool's distance (method.md 6)",
+                            "", {.words = {"path", "tool"}}),
+      row<&F::sif>("fracture", "sif",
+                   "model B: K by Eq. 2 or by the current field (method.md \"Field K\")", "",
+                   {.words = {"formula", "field"}}),
+      row<&F::max_events>("fracture", "max_events", "most events of one step",
+                          "below 1: error; reached: a warning", {.least = 1}),
+      row<&F::plane_normal>("fracture", "plane_normal",
+                            "normal of the board's plane; left out: the shortest axis of the "
+                            "bounding box",
+                            "zero: error"),
+      row<&F::birth>(
+          "fracture", "birth",
+          "model B: a rupture that starts a crack takes its element alone or all through "
+          "the thickness (method.md 4)",
+          "", {.words = {"element", "through"}}),
+      row<&F::averaging>("fracture", "averaging",
+                         "radius of the mean stress that strength is judged by [mm]; 0: by element "
+                         "(method.md \"Averaged strength\")",
+                         "below 0: error"),
+  };
+  return keys;
+}
+
+std::span<const MemberKey<SolverOptions>> solver_keys() {
+  using S = SolverOptions;
+  static const std::vector<MemberKey<S>> keys{
+      row<&S::backend>("solver", "backend", "\"auto\", \"cpu\" or \"vulkan\"",
+                       "not there: exit code 4, names what is"),
+      row<&S::route>("solver", "route", "how displacements follow from loads",
+                     "cannot serve the scene: error that says why",
+                     {.words = {"auto", "inverse", "condensed", "factor", "cg"}}),
+      row<&S::update>("solver", "update", "how a fracture enters",
+                      "eager but for `inverse` in fp64: exit code 4",
+                      {.words = {"auto", "eager", "deferred"}}),
+      row<&S::precision>("solver", "precision",
+                         "of a device; auto takes fp64 where `tolerance` is below 1e-4, the "
+                         "contrast of E over 1,000 or Poisson's ratio over 0.4999",
+                         "not there: exit code 4", {.words = {"auto", "fp32", "fp64"}}),
+      row<&S::tolerance>("solver", "tolerance", "the promised relative stress error of every frame",
+                         "not above 0 and below 1: error; not kept: exit code 5"),
+      row<&S::device>("solver", "device", "index among the backend's devices; left out: it chooses",
+                      "below 0: error; no such device: exit code 4"),
+      row<&S::prepare>("solver", "prepare",
+                       "a quiet frame prepares the fractures next in line (no result changes)", ""),
+  };
+  return keys;
+}
+
+std::span<const MemberKey<Scene>> time_keys() {
+  static const std::vector<MemberKey<Scene>> keys{
+      row<&Scene::steps>("time", "steps", "number of steps; scene time of step i is (i + 1)/steps",
+                         "below 1: error", {.least = 1}),
+  };
+  return keys;
+}
+
+const std::vector<SceneKey>& scene_keys() {
+  static const std::vector<SceneKey> keys = [] {
+    std::vector<SceneKey> all = root_rows();
+    append(all, material_keys());
+    append(all, body_rows());
+    append(all, fracture_keys());
+    append(all, solver_keys());
+    append(all, time_keys());
+    all.push_back(output_row());
+    return all;
+  }();
+  return keys;
+}
+
+std::vector<std::string> key_names(std::string_view table) {
+  std::vector<std::string> names;
+  for (const SceneKey& key : scene_keys()) {
+    if (key.table != table) continue;
+    if (key.type != KeyType::nodes) {
+      names.emplace_back(key.name);
+      continue;
+    }
+    const std::vector<std::string> all = key_names("nodes");
+    names.insert(names.end(), all.begin(), all.end());
+  }
+  return names;
+}
+
+const std::vector<std::string>& key_words(std::string_view table, std::string_view name) {
+  static const std::vector<std::string> none;
+  for (const SceneKey& key : scene_keys()) {
+    if (key.table == table && key.name == name) return key.words;
+  }
+  return none;
+}
+
+}  // namespace sunder

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/input/scene_key_pages.hpp"
+
+#include <set>
+#include <stdexcept>
+
+#include "sunder/scene_keys.hpp"
+
+namespace sunder::test {
+namespace {
+
+std::string heading(const SceneKey& key) {
+  const std::string name(key.name);
+  if (name == "material") return "[material.NAME]";
+  return key.type == KeyType::tables ? "[[" + name + "]]" : "[" + name + "]";
+}
+
+std::string kind(const SceneKey& key) {
+  std::string words;
+  switch (key.type) {
+    case KeyType::text:
+      return "string";
+    case KeyType::number:
+      return "number";
+    case KeyType::integer:
+      return "integer";
+    case KeyType::boolean:
+      return "true, false";
+    case KeyType::word:
+      for (const std::string& word : key.words)
+        words += (words.empty() ? "\"" : ", \"") + word + '"';
+      return words;
+    case KeyType::vector:
+      return "[x, y, z]";
+    case KeyType::points:
+      return "two [x, y, z]";
+    case KeyType::range:
+      return "two numbers";
+    case KeyType::ids:
+      return "ids";
+    case KeyType::texts:
+      return "strings";
+    default:
+      return "";
+  }
+}
+
+std::string cell(std::string_view text) {
+  return text.empty() ? " |" : ' ' + std::string(text) + " |";
+}
+
+std::string row(const SceneKey& key) {
+  const std::string name =
+      key.type == KeyType::nodes ? "a selection of nodes" : '`' + std::string(key.name) + '`';
+  const std::string standard = key.required           ? "(needed)"
+                               : key.standard.empty() ? ""
+                                                      : '`' + key.standard + '`';
+  return '|' + cell(name) + cell(kind(key)) + cell(standard) + cell(key.meaning) + cell(key.wrong) +
+         '\n';
+}
+
+std::string rows_of(std::string_view table) {
+  std::string rows;
+  for (const SceneKey& key : scene_keys()) {
+    if (key.table == table) rows += row(key);
+  }
+  return rows;
+}
+
+std::string key_table() {
+  std::string text = "| key | type | default | meaning | wrong, or odd |\n|---|---|---|---|---|\n";
+  for (const SceneKey& key : scene_keys()) {
+    if (!key.table.empty()) continue;
+    if (key.type != KeyType::table && key.type != KeyType::tables) {
+      text += row(key);
+      continue;
+    }
+    text += "| **`" + heading(key) + "`** | | | **" + std::string(key.meaning) + "** |" +
+            cell(key.wrong) + '\n' + rows_of(key.name);
+  }
+  return text +
+         "| **a selection of nodes** | | | **exactly one of `box`, `nodes`, `near` with `radius`, "
+         "`surface`** | none or two of them: error |\n" +
+         rows_of("nodes");
+}
+
+constexpr std::string_view kBegin =
+    "<!-- keys: written by scene_keys from core/scene_keys.cpp -->\n";
+constexpr std::string_view kEnd = "<!-- end of keys -->\n";
+
+}  // namespace
+
+std::string with_key_table(const std::string& page) {
+  const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
+  if (begin == std::string::npos || end == std::string::npos || end < begin) {
+    throw std::runtime_error("the page has no place for the keys: lines \"" +
+                             std::string(kBegin, 0, kBegin.size() - 1) + "\" and \"" +
+                             std::string(kEnd, 0, kEnd.size() - 1) + "\"");
+  }
+  return page.substr(0, begin + kBegin.size()) + key_table() + page.substr(end);
+}
+
+std::string scene_dictionary() {
+  std::set<std::string> entries;  // \" as the format of libFuzzer has it
+  for (const SceneKey& key : scene_keys()) {
+    const std::string name(key.name);
+    if (key.type == KeyType::nodes) continue;
+    if (name == "material" && key.table.empty()) {
+      entries.insert("[material.");
+    } else if (key.type == KeyType::table || key.type == KeyType::tables) {
+      entries.insert(heading(key));
+    } else {
+      entries.insert(name + " = ");
+    }
+    for (const std::string& word : key.words) entries.insert("\\\"" + word + "\\\"");
+  }
+  std::string text =
+      "# SPDX-License-Identifier: Apache-2.0\n"
+      "# Written by scene_keys from core/scene_keys.cpp.\n";
+  for (const std::string& entry : entries) text += '"' + entry + "\"\n";
+  // What breaks readers of numbers and of TOML.
+  return text +
+         "\"nan\"\n\"inf\"\n\"1e400\"\n\"\\x0a%%\\x0a\"\n\"\\\"\\\"\\\"\"\n\"'''\"\n"
+         "\"0x7fffffffffffffff\"\n";
+}
+
+}  // namespace sunder::test
