@@ -14,7 +14,6 @@ namespace {
 
 // The bound adds moduli of roundings that partly cancel.
 constexpr double kLoose = 10;
-// The estimate of what the solution owes is right within this factor.
 
 class HandedOutStress : public Kernels {
  protected:

@@ -12,6 +12,7 @@
 #include "app/input/same_mesh.hpp"
 #include "app/mesh_board/msh_writer.hpp"
 #include "app/mesh_board/structured_board.hpp"
+#include "app/output/result_file.hpp"
 #include "app/output/vtu.hpp"
 #include "sunder/problem.hpp"
 
@@ -129,7 +130,9 @@ TEST(MeshRoundTrip, ResultFilesOfSunder) {
   state.displacement.assign(problem.mesh().nodes.size(), Vec3(1, 2, 3));
   state.destroyed.assign(problem.mesh().tets.size(), 0);
   const TemporaryFolder folder;
-  app::write_vtu(folder.file("result.vtu"), problem, state);
+  app::ResultFile file(folder.file("result.vtu"));
+  app::write_vtu(file, problem, state);
+  file.commit();
   expect_same_mesh(app::import_mesh(folder.file("result.vtu")), problem.mesh());
 }
 
