@@ -268,9 +268,7 @@ typedef struct sunder_fracture_options {
   {                                                                                              \
     sizeof(sunder_fracture_options), SUNDER_FRACTURE_NONE, 1e-6, SUNDER_YIELD_MAX_SHEAR,         \
         SUNDER_SIGMA0_LINE, SUNDER_LENGTH_PATH, SUNDER_BIRTH_ELEMENT, SUNDER_SIF_FORMULA, 10000, \
-        0, 0, {                                                                                  \
-      0, 0, 0                                                                                    \
-    }                                                                                            \
+        0, 0, {0, 0, 0}, 0                                                                       \
   }
 
 SUNDER_API void sunder_fracture_options_init(sunder_fracture_options* options);

@@ -23,14 +23,12 @@ std::string padded(int value, std::size_t width) {
 }  // namespace
 
 ResultWriter::ResultWriter(ResultFolder& folder, const Problem& problem, bool series)
-    : folder_(cleared(folder)),
-      problem_(problem),
-      series_(series),
-      painter_(problem),
-      frames_(folder_, "frames.csv"),
-      tips_(folder_, "tips.csv") {
-  frames_.write(frames_header());
-  tips_.write(tips_header());
+    : folder_(cleared(folder)), problem_(problem), series_(series), painter_(problem) {}
+
+void ResultWriter::begin() {
+  if (frames_) return;
+  frames_.emplace(folder_, "frames.csv").write(frames_header());
+  tips_.emplace(folder_, "tips.csv").write(tips_header());
 }
 
 void ResultWriter::write(const std::string& name, std::string_view text) {
@@ -47,10 +45,10 @@ void ResultWriter::write_state(const std::string& name, const State& state) {
 
 void ResultWriter::step_done(const StepReport& report, const State& state,
                              const std::vector<TipState>& tips) {
-  frames_.write(frames_row(report));
-  frames_.flush();
-  for (const TipState& tip : tips) tips_.write(tips_row(report.step, tip));
-  tips_.flush();
+  frames_->write(frames_row(report));
+  frames_->flush();
+  for (const TipState& tip : tips) tips_->write(tips_row(report.step, tip));
+  tips_->flush();
   if (!series_) return;
   const std::string name = "result_" + padded(report.step, 4) + ".vtu";
   write_state(name, state);
@@ -68,12 +66,13 @@ void ResultWriter::snapshot(int wanted, const State& state) {
 }
 
 void ResultWriter::finish(const RunRecord& run) {
+  begin();
   std::string events = events_header();
   for (const DestroyedElement& record : run.destroyed) events += events_row(record);
   write("events.csv", events);
-  frames_.commit();
+  frames_->commit();
   files_.push_back("frames.csv");
-  tips_.commit();
+  tips_->commit();
   files_.push_back("tips.csv");
   write_state("result.vtu", run.last);
   if (series_) write("series.pvd", pvd(series_entries_));

@@ -2,6 +2,7 @@
 // The result folder of one run: what is written while it goes on and what is written at its end.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,11 @@ namespace sunder::app {
 
 class ResultWriter {
  public:
-  /// Removes an earlier run's results from the folder and opens frames.csv and tips.csv.
+  /// Removes an earlier run's results from the folder.
   ResultWriter(ResultFolder& folder, const Problem& problem, bool series);
+
+  /// Opens frames.csv and tips.csv, once.
+  void begin();
 
   void step_done(const StepReport& report, const State& state, const std::vector<TipState>& tips);
   void snapshot(int wanted, const State& state);
@@ -35,7 +39,7 @@ class ResultWriter {
   const Problem& problem_;
   bool series_;
   FigurePainter painter_;
-  ResultFile frames_, tips_;
+  std::optional<ResultFile> frames_, tips_;
   std::vector<SeriesEntry> series_entries_;
   std::vector<SnapshotPicture> snapshots_;
   std::vector<std::string> files_;

@@ -82,6 +82,7 @@ class Run {
  private:
   std::unique_ptr<Simulation> make_simulation(const OpenedScene& scene);
   void observe();
+  void begin();
   void compute();
   void step();
   void note();
@@ -225,6 +226,12 @@ void Run::step() {
   progress_.update(simulation_->steps_done(), report.destroyed);
 }
 
+/// Files appear once a signal ends the computing and no longer the set-up.
+void Run::begin() {
+  const std::lock_guard turn(turn_);
+  writer_.begin();
+}
+
 void Run::compute() {
   try {
     while (!simulation_->done() && !interruption_.requested()) step();
@@ -239,6 +246,7 @@ int Run::carry_out() {
   observe();
   const Expecting computing(interruption_, {"", [this] { writer_.folder().drop(); },
                                             [this] { return end_without_computing(); }, kGrace});
+  begin();
   compute();
   interruption_.claim();
   record_.interrupted = simulation_->interrupted() || (!simulation_->done() && !record_.failure);

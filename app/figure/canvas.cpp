@@ -9,7 +9,7 @@
 namespace sunder::app {
 namespace {
 
-constexpr double kMargin = 28, kTitle = 58, kBar = 118;
+constexpr double kMargin = 28, kTitle = 66, kBar = 118;
 constexpr double kWidth = 640, kLeastHeight = 150, kMostHeight = 680;
 constexpr double kInsetGap = 22, kInsetBelow = 10;
 

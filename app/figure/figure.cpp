@@ -98,7 +98,7 @@ std::string FigurePainter::svg(const State& state) const {
   if (torn)
     out += destroyed_inset(problem_.mesh(), plane_, *faces_, state.destroyed, canvas.inset_corner(),
                            canvas.inset_size());
-  out += tip_vector_key(canvas.corner() - Vec2(0, 8), problem_.scene().fracture.sif,
+  out += tip_vector_key(canvas.corner() - Vec2(0, 16), problem_.scene().fracture.sif,
                         !state.growths.empty());
   return out + "</svg>\n";
 }

@@ -102,7 +102,7 @@ TEST(TwoRuns, AfterOneThatWasKilledTheNextCleansUp) {
   expect_whole_results(out);
   EXPECT_EQ(names_in(out),
             (std::vector<std::string>{"events.csv", "figure.png", "figure.svg", "frames.csv",
-                                      "index.html", "result.vtu", "summary.json"}));
+                                      "index.html", "result.vtu", "summary.json", "tips.csv"}));
 }
 
 TEST(TwoRuns, AFolderThatCannotBeWrittenToIsRefused) {
