@@ -56,14 +56,15 @@ StressSummary Backend::stress() {
 }
 
 Deformation Backend::deformation() {
-  require(stage_ == Stage::stressed, "deformation() needs stress() first");
+  require(stage_ == Stage::stressed, "there is no deformation before the stress of a solution");
   return do_deformation();
 }
 
 void Backend::cut_off(std::span<const Index> elements) {
   require(needs_.damage, "damage was left out of this backend's needs");
   for (Index e : elements) {
-    require(e >= 0 && e < problem_->tet_count(), "cut_off() names an element outside the mesh");
+    require(e >= 0 && e < problem_->tet_count(),
+            "an element that is cut off lies outside the mesh");
   }
   if (needs_.stress && !elements.empty()) do_cut_off(elements);
 }

@@ -78,9 +78,9 @@ std::string written(double value) {
 std::string written(const SceneKey& key, const KeyValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* number = std::get_if<double>(&value)) return written(*number);
-  if (const auto* text = std::get_if<std::string>(&value)) return '"' + *text + '"';
+  if (const auto* text = std::get_if<std::string>(&value)) return "\"" + *text + "\"";
   const int count = std::get<int>(value);
-  if (key.type == KeyType::word) return '"' + key.words[static_cast<std::size_t>(count)] + '"';
+  if (key.type == KeyType::word) return "\"" + key.words[static_cast<std::size_t>(count)] + "\"";
   return count < key.least ? "" : std::to_string(count);  // below: none, whatever stands for it
 }
 

@@ -83,6 +83,16 @@ void expect_same(const Told& told, const Told& reference, const Allowed& allowed
   EXPECT_TRUE(stress_error(out, told.stress, reference.stress) <= of_stress);
 }
 
+/// Large rotations are estimates on a device (docs/vulkan.md "Deformation"): their figure is left
+/// out.
+std::vector<std::string> without_rotation(std::vector<std::string> warnings) {
+  for (std::string& text : warnings) {
+    if (text.find("turned live tissue by over") != std::string::npos)
+      text.erase(text.find(" (most"));
+  }
+  return warnings;
+}
+
 /// The reference's, and where the device was lost that it was.
 void expect_warned(const Told& told, const Told& reference) {
   std::vector<std::string> others;
@@ -92,7 +102,7 @@ void expect_warned(const Told& told, const Told& reference) {
       others.push_back(text);
     }
   }
-  EXPECT_EQ(others, reference.warnings);
+  EXPECT_EQ(without_rotation(others), without_rotation(reference.warnings));
   EXPECT_EQ(told.warnings.size() - others.size(), told.backend.backend == "cpu" ? 1u : 0u);
 }
 
