@@ -14,11 +14,11 @@
 #include <limits>
 #include <map>
 
-#include "cpu_reference/check_terms.hpp"
 #include "cpu_reference/cost_model.hpp"
 #include "engine/deferred.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
+#include "engine/stress_bounds.hpp"
 #include "engine/stress_kernel.hpp"
 #include "fem/assembly.hpp"
 #include "frame_cascades.hpp"
@@ -97,7 +97,7 @@ class Frames {
       f_[board.load_dofs[i]] = board.load_values[i];
     }
     product_.setZero(f_.size());
-    of_energy_ = cpu_reference::largest_stress_of_energy(problem_);
+    of_energy_ = engine::largest_stress_of_energy(problem_);
     solve(0);
   }
 
