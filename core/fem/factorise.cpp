@@ -6,8 +6,8 @@
 #include <atomic>
 #include <numeric>
 
-#include "parallel/workers.hpp"
 #include "fem/row_product.hpp"
+#include "parallel/workers.hpp"
 
 namespace sunder::fem {
 namespace {

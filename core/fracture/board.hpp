@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "fracture/point_grid.hpp"
 #include "fem/node_elements.hpp"
+#include "fracture/point_grid.hpp"
 #include "sunder/board_plane.hpp"
 #include "sunder/mesh.hpp"
 
