@@ -316,8 +316,8 @@ void Deferred::add_to_grips(Eigen::Index width) {
                        grip_compliance_.outerStride());
 }
 
-void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
-                     double enough) {
+const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
+                                              std::span<const double> displacement, double enough) {
   constexpr int kRefinements = 4;
   const Eigen::VectorXd& p = base_->load(forces);
   start(p, displacement);
@@ -328,7 +328,12 @@ void Deferred::solve(const Forces& forces, std::span<const double> displacement,
     defect_energy_ = refine(p, displacement);
     converged_ = defect_energy_ <= enough || (pass > 0 && !(defect_energy_ < before / 4));
   }
-  base_->expand(x_, u);
+  return x_;
+}
+
+void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
+                     double enough) {
+  base_->expand(coefficients(forces, displacement, enough), u);
   for (Eigen::Index i = 0; i < grips_; ++i) {  // free of rounding
     u[touched_[static_cast<std::size_t>(i)]] =
         displacement.empty() ? 0.0 : displacement[static_cast<std::size_t>(i)];
@@ -336,10 +341,13 @@ void Deferred::solve(const Forces& forces, std::span<const double> displacement,
 }
 
 void Deferred::correct(const Forces& residual, Eigen::VectorXd& du) {
-  const Eigen::VectorXd& p = base_->load(residual);
-  start(p, {});
-  base_->expand(x_, du);
+  base_->expand(correction_coefficients(base_->load(residual)), du);
   for (Eigen::Index i = 0; i < grips_; ++i) du[touched_[static_cast<std::size_t>(i)]] = 0;
+}
+
+const Eigen::VectorXd& Deferred::correction_coefficients(const Eigen::VectorXd& projection) {
+  start(projection, {});
+  return x_;
 }
 
 /// x = M p and what the grips add: A^-1 as it is stored.

@@ -49,11 +49,17 @@ class Deferred {
   /// what they lack has no more energy than `enough` [N mm], or rounding.
   void solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
              double enough = 0);
+  /// The x of solve() with u = X (f + B x), for a device that does that product itself: the first
+  /// rank() entries, until the next call.
+  const Eigen::VectorXd& coefficients(const Forces& forces, std::span<const double> displacement,
+                                      double enough = 0);
   /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
   /// residual where damage acts, in the base's arithmetic.
   [[nodiscard]] double defect_energy() const { return defect_energy_; }
   /// One application of A^-1 with u_G = 0, to the few digits that a correction needs.
   void correct(const Forces& residual, Eigen::VectorXd& du);
+  /// The x of correct() for B^T X r.
+  const Eigen::VectorXd& correction_coefficients(const Eigen::VectorXd& projection);
   /// Whether the last solution was refined down to `enough` or to rounding.
   [[nodiscard]] bool converged() const { return converged_; }
   /// Forces of the grips on the base in the last solution, anchors included.
