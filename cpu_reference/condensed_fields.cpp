@@ -42,7 +42,7 @@ void CondensedFields::publish_stress() {
 
 void CondensedFields::solve(Solution& solution) {
   if (solution.everywhere) return;
-  solve_whole(solution.of, room_, u_);
+  engine::solve_whole(solution.of, room_, u_);
   solution.nodal.resize(problem_.dofs().size());
   fem::scatter(problem_, {u_.data(), static_cast<std::size_t>(u_.size())}, solution.nodal);
   solution.everywhere = true;

@@ -8,6 +8,7 @@
 
 #include "cpu_reference/routes.hpp"
 #include "engine/region.hpp"
+#include "engine/whole_solution.hpp"
 
 namespace sunder::cpu_reference {
 
@@ -45,7 +46,7 @@ class CondensedFields {
   Solution displacement_, of_stress_;
   std::vector<Voigt> stress_;
   bool stress_known_ = false;
-  WholeRoom room_;
+  engine::WholeRoom room_;
   Eigen::VectorXd u_;
 };
 

@@ -3,10 +3,11 @@
 #include <numeric>
 #include <optional>
 
-#include "cpu_reference/background_rebase.hpp"
-#include "cpu_reference/load_room.hpp"
 #include "cpu_reference/routes.hpp"
+#include "engine/background_rebase.hpp"
 #include "engine/condensed_update.hpp"
+#include "engine/load_room.hpp"
+#include "engine/whole_solution.hpp"
 #include "fem/assembly.hpp"
 
 namespace sunder::cpu_reference {
@@ -41,50 +42,54 @@ constexpr std::size_t kLargestEvent = 512, kUsualEvent = 32;
 // is up to 2e-11 within 30,246 elements and 1e-11 within 119,286, without growth from base to base.
 constexpr double kDrift = 5e-11;
 
-void complete_by(const engine::CondensedBase& base, engine::Equilibrium& whole, WholeRoom& room,
-                 Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
+void complete_by(const engine::CondensedBase& base, engine::Equilibrium& whole,
+                 engine::WholeRoom& room, Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
   base.equilibrium(whole);
-  solve_whole(whole, room, everywhere);
+  engine::solve_whole(whole, room, everywhere);
   for (Index d : base.dofs()) everywhere[d] = u[d];
   u.swap(everywhere);
 }
 
-Based lay_over(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
-               std::unique_ptr<engine::CondensedBase> base, bool damage) {
-  Based based;
+/// The base below a deferred update of this route.
+engine::CondensedBase& base_of(const engine::Based& based) {
+  return static_cast<engine::CondensedBase&>(based.deferred->base());
+}
+
+engine::Based lay_over(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
+                       std::unique_ptr<engine::CondensedBase> base, bool damage) {
+  engine::Based based;
   based.factor = std::move(factor);
-  based.condensed = base.get();
   const Index columns = columns_of_a_base(base->dofs().size());
   based.deferred = std::make_unique<engine::Deferred>(problem, std::move(base), damage, columns);
   return based;
 }
 
 /// X_SS by a factor.
-Based condensed_by(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
-                   std::span<const Index> dofs, bool damage) {
+engine::Based condensed_by(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
+                           std::span<const Index> dofs, bool damage) {
   auto base = std::make_unique<engine::CondensedBase>(factor, dofs);
   return lay_over(problem, std::move(factor), std::move(base), damage);
 }
 
-void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
+void check_condensed(engine::Based& based, const DamagedBody& body, const Load& load) {
   engine::Equilibrium whole;
-  WholeRoom room;
+  engine::WholeRoom room;
   Eigen::VectorXd everywhere;
-  check_base(based, body, load, [&](Eigen::VectorXd& u) {
-    complete_by(*based.condensed, whole, room, everywhere, u);
+  engine::check_base(based, body, load, [&](Eigen::VectorXd& u) {
+    complete_by(base_of(based), whole, room, everywhere, u);
   });
 }
 
 /// A check of an updated X_SS by the factor's own: what it lacks, in elements within S. What lies
 /// outside follows from the forces on S by that factor, exactly. False: it cannot be had.
-bool check_updated(Based& based, const DamagedBody& body, const Load& load,
+bool check_updated(engine::Based& based, const DamagedBody& body, const Load& load,
                    std::span<const Index> elements) {
-  if (elements.empty() || !based.condensed->inside(load.force_dofs)) return false;
+  if (elements.empty() || !base_of(based).inside(load.force_dofs)) return false;
   Eigen::VectorXd u, du;
   based.deferred->solve({load.force_dofs, load.forces}, load.displacements, u);
-  const Eigen::VectorXd lacks = based.condensed->drift();
+  const Eigen::VectorXd lacks = base_of(based).drift();
   du.setZero(u.size());
-  const auto dofs = based.condensed->dofs();
+  const auto dofs = base_of(based).dofs();
   for (std::size_t i = 0; i < dofs.size(); ++i) du[dofs[i]] = lacks[static_cast<Eigen::Index>(i)];
   const double stress = body.largest_stress(du, elements),
                largest = body.largest_stress(u, elements);
@@ -130,19 +135,19 @@ class NextBase {
   }
 
   /// Copies what the next base is to be made of; `lost`: elements destroyed since the factor.
-  void begin(const Based& last, std::span<const Index> lost) {
-    last.condensed->copy_state(state_);
+  void begin(const engine::Based& last, std::span<const Index> lost) {
+    base_of(last).copy_state(state_);
     last.deferred->copy_damage(damage_);
     lost_.assign(lost.begin(), lost.end());
   }
 
   /// On another thread; holds nothing of the last base afterwards.
-  Based make(const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
+  engine::Based make(const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
     const struct AtEnd {
       NextBase& next;
       ~AtEnd() { next.release(); }
     } at_end{*this};
-    Based based = updated(body.problem(), load);
+    engine::Based based = updated(body.problem(), load);
     if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
     if (based.check.error <= kDrift) return based;
     based = condensed_by(body.problem(),
@@ -159,7 +164,7 @@ class NextBase {
   }
 
  private:
-  Based updated(const Problem& problem, const Load& load) const {
+  engine::Based updated(const Problem& problem, const Load& load) const {
     return lay_over(problem, state_.factor,
                     std::make_unique<engine::CondensedBase>(
                         state_, engine::updated_inverse(state_, damage_, load.force_dofs),
@@ -203,11 +208,11 @@ class CondensedRoute final : public InverseRoute {
   }
 
   void complete(Eigen::VectorXd& u) override {
-    complete_by(*based_.condensed, whole_, room_, everywhere_, u);
+    complete_by(base_of(based_), whole_, room_, everywhere_, u);
   }
 
   bool equilibrium(engine::Equilibrium& of) const override {
-    based_.condensed->equilibrium(of);
+    base_of(based_).equilibrium(of);
     return true;
   }
 
@@ -244,7 +249,7 @@ class CondensedRoute final : public InverseRoute {
   const engine::Deferred* deferred() const override { return based_.deferred.get(); }
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return bases_; }
-  const BaseCheck& base_check() const override { return based_.check; }
+  const engine::BaseCheck& base_check() const override { return based_.check; }
   double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
 
   std::vector<BufferPlan> buffers() const override {
@@ -266,7 +271,7 @@ class CondensedRoute final : public InverseRoute {
 
   /// So that frames allocate nothing, a full check among them.
   void make_room(const Problem& problem) {
-    reserve(load_, problem);
+    engine::reserve(load_, problem);
     whole_.reserve(all_.size(), dofs_.size());
     room_.reserve(problem.dof_count(), dofs_.size());
     everywhere_.resize(problem.dof_count());
@@ -290,45 +295,20 @@ class CondensedRoute final : public InverseRoute {
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
   const fem::Factor* intact_ = nullptr;
   Load load_;  // of the last solution
-  Based based_;
+  engine::Based based_;
   std::vector<Index> lost_;        // elements destroyed since based_.factor
   std::size_t lost_at_start_ = 0;  // of them, when coming_ started
   engine::Equilibrium whole_;
-  WholeRoom room_;
+  engine::WholeRoom room_;
   Eigen::VectorXd everywhere_;
   double enough_ = 0;
   int bases_ = 1;
   // Where something can be destroyed.
   std::optional<NextBase> next_;
-  std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
+  std::optional<engine::BackgroundRebase> coming_;  // last: its thread uses what is above
 };
 
 }  // namespace
-
-void WholeRoom::reserve(Index unknowns, std::size_t touched) {
-  right_side.resize(unknowns);
-  lost.reserve(touched);
-  work.below.reserve(static_cast<std::size_t>(unknowns));
-  work.permuted.resize(unknowns);
-}
-
-std::size_t WholeRoom::bytes() const {
-  return sizeof(double) * (static_cast<std::size_t>(right_side.size() + work.permuted.size()) +
-                           lost.capacity() + work.below.capacity());
-}
-
-void solve_whole(const engine::Equilibrium& of, WholeRoom& room, Eigen::VectorXd& u) {
-  Eigen::VectorXd& right_side = room.right_side;
-  right_side.setZero(of.factor->cholesky().size());
-  for (std::size_t i = 0; i < of.dofs.size(); ++i) right_side[of.dofs[i]] += of.forces[i];
-  if (of.lost) {
-    room.lost.resize(of.lost_u.size());
-    of.lost->multiply(of.lost_u, room.lost);
-    const auto dofs = of.lost->dofs();
-    for (std::size_t i = 0; i < dofs.size(); ++i) right_side[dofs[i]] += room.lost[i];
-  }
-  of.factor->solve(right_side, u, room.work);
-}
 
 std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body, const IntactBody& intact,
                                               std::span<const Index> dofs, bool damage,

@@ -3,12 +3,12 @@
 #include <numeric>
 #include <optional>
 
-#include "cpu_reference/background_rebase.hpp"
 #include "cpu_reference/cost_model.hpp"
-#include "cpu_reference/load_room.hpp"
 #include "cpu_reference/routes.hpp"
+#include "engine/background_rebase.hpp"
 #include "engine/factor_base.hpp"
 #include "engine/inverse_base.hpp"
+#include "engine/load_room.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -28,7 +28,7 @@ class DeferredRoute final : public InverseRoute {
         all_(static_cast<std::size_t>(body.problem().dof_count())),
         stiffness_(std::move(intact.stiffness)) {
     std::iota(all_.begin(), all_.end(), 0);
-    reserve(load_, body.problem());
+    engine::reserve(load_, body.problem());
     std::unique_ptr<engine::Base> base;
     if (dense) {
       base = std::make_unique<engine::InverseBase>(intact.factor);
@@ -75,8 +75,8 @@ class DeferredRoute final : public InverseRoute {
                static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
       coming_->start(
           load_, [this](const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
-            Based based = based_on(body, work);
-            check_base(based, body, load, [](Eigen::VectorXd&) {});
+            engine::Based based = based_on(body, work);
+            engine::check_base(based, body, load, [](Eigen::VectorXd&) {});
             return based;
           });
     }
@@ -100,7 +100,7 @@ class DeferredRoute final : public InverseRoute {
   const engine::Deferred* deferred() const override { return based_.deferred.get(); }
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return bases_; }
-  const BaseCheck& base_check() const override { return based_.check; }
+  const engine::BaseCheck& base_check() const override { return based_.check; }
   double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
 
   std::vector<BufferPlan> buffers() const override {
@@ -126,9 +126,9 @@ class DeferredRoute final : public InverseRoute {
   }
 
   /// A factor of the body and an empty damage over it.
-  Based based_on(const DamagedBody& body, const fem::FactorWork& work) {
+  engine::Based based_on(const DamagedBody& body, const fem::FactorWork& work) {
     stiffness_->follow(body.scale());
-    Based based;
+    engine::Based based;
     based.factor = std::make_shared<const fem::Factor>(stiffness_->factor(work));
     based.deferred = std::make_unique<engine::Deferred>(
         body.problem(), std::make_unique<engine::FactorBase>(*based.factor), true, columns_);
@@ -141,7 +141,7 @@ class DeferredRoute final : public InverseRoute {
   bool dense_;              // the first base is an inverse
   std::vector<Index> all_;  // every unknown: the loads of a residual
   Load load_;               // of the last solution
-  Based based_;
+  engine::Based based_;
   // Columns of the damage at which a new base begins: now, and over a factor.
   std::size_t threshold_ = 0, rebased_at_ = 0;
   Index columns_ = 0;  // that a base over a factor is expected to serve
@@ -149,7 +149,7 @@ class DeferredRoute final : public InverseRoute {
   double saved_ms_ = 0;  // by the bases before this one
   double enough_ = 0;
   std::unique_ptr<fem::OrderedStiffness> stiffness_;  // of whoever makes a base
-  std::optional<BackgroundRebase> coming_;            // last: its thread uses what is above
+  std::optional<engine::BackgroundRebase> coming_;    // last: its thread uses what is above
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <limits>
 #include <sstream>
 
-#include "cpu_reference/load_room.hpp"
 #include "engine/instrument_block.hpp"
+#include "engine/load_room.hpp"
 #include "engine/stress_bounds.hpp"
 #include "sunder/error.hpp"
 
@@ -52,7 +52,7 @@ FrameSolver::FrameSolver(const ChosenRoute& chosen, const DamagedBody& body,
     checks_.emplace(problem());
     fields.keep_forces();
   }
-  reserve(load_, problem());
+  engine::reserve(load_, problem());
   force_.setZero(problem().dof_count());
   u_ = force_;
   reactions_.assign(problem().gripped_dofs().size(), 0.0);
@@ -66,7 +66,7 @@ void FrameSolver::set_load(const Load& load) {
 
 void FrameSolver::event() {
   if (!energy_checks_) return;
-  for (EnergyCheck& check : energy_checks_->all()) check.event();
+  for (engine::EnergyCheck& check : energy_checks_->all()) check.event();
 }
 
 SolveReport FrameSolver::solve() { return energy_checks_ ? solve_condensed() : solve_everywhere(); }
@@ -74,7 +74,7 @@ SolveReport FrameSolver::solve() { return energy_checks_ ? solve_condensed() : s
 SolveReport FrameSolver::solve_everywhere() {
   SolveReport report;
   check_ = check_of_load();
-  const auto scale = check_ ? check_->scale_of(load_, route_) : std::nullopt;
+  const auto scale = check_ ? check_->scale_of(load_, route_.bases()) : std::nullopt;
   route_.set_enough(scale ? check_->enough(*scale) : 0);
   solve_by(route_, report);
   const auto known =
@@ -90,17 +90,19 @@ SolveReport FrameSolver::solve_everywhere() {
 }
 
 /// Nothing: the route is checked fully in any case.
-FrameCheck* FrameSolver::check_of_load() {
+engine::FrameCheck* FrameSolver::check_of_load() {
   if (!checks_) return nullptr;
-  for (FrameCheck& check : checks_->all()) check.follow(route_);
-  return &checks_->of(load_, route_);
+  for (engine::FrameCheck& check : checks_->all())
+    check.follow(route_.bases(), route_.base_check());
+  return &checks_->of(load_, route_.bases());
 }
 
 /// A condensed frame has no residual outside its region: the energy of what damage lacks bounds
 /// its error.
 SolveReport FrameSolver::solve_condensed() {
-  for (EnergyCheck& each : energy_checks_->all()) each.follow(route_);
-  EnergyCheck& check = energy_checks_->of(load_, route_);
+  for (engine::EnergyCheck& each : energy_checks_->all())
+    each.follow(route_.bases(), route_.base_check());
+  engine::EnergyCheck& check = energy_checks_->of(load_, route_.bases());
   if (const auto known = solve_on_region(check)) {
     fields_.publish(route_);
     return *known;
@@ -116,8 +118,8 @@ SolveReport FrameSolver::solve_condensed() {
 }
 
 /// The solution without a full check, where one like it has had its check.
-std::optional<SolveReport> FrameSolver::solve_on_region(EnergyCheck& check) {
-  const auto expected = check.expected(load_, route_);
+std::optional<SolveReport> FrameSolver::solve_on_region(engine::EnergyCheck& check) {
+  const auto expected = check.expected(load_, route_.bases());
   if (!expected) return std::nullopt;
   route_.set_enough(check.enough(*expected));
   route_.solve(load_, force_, u_);
@@ -126,7 +128,7 @@ std::optional<SolveReport> FrameSolver::solve_on_region(EnergyCheck& check) {
   for (std::size_t g = 0; g < gripped.size(); ++g) {
     reactions_[g] = grip_force(g) - anchors_[g] * u_[gripped[g]];  // the anchor's share
   }
-  return check.known(*expected, route_, largest_in_region(), largest_);
+  return check.known(*expected, route_.deferred()->defect_energy(), largest_in_region(), largest_);
 }
 
 /// The solution by a route, with its residual.
@@ -243,7 +245,7 @@ double FrameSolver::largest_in_region() const {
   return largest;
 }
 
-FrameCheck::Solution FrameSolver::solution() const {
+engine::FrameCheck::Solution FrameSolver::solution() const {
   return {free_residual_, largest_u(), largest_};
 }
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "cpu_reference/choose_route.hpp"
-#include "cpu_reference/energy_check.hpp"
-#include "cpu_reference/frame_check.hpp"
 #include "cpu_reference/frame_fields.hpp"
-#include "cpu_reference/recent_checks.hpp"
 #include "cpu_reference/routes.hpp"
+#include "engine/energy_check.hpp"
+#include "engine/frame_check.hpp"
+#include "engine/recent_checks.hpp"
 
 namespace sunder::cpu_reference {
 
@@ -35,8 +35,8 @@ class FrameSolver {
  private:
   SolveReport solve_everywhere();
   SolveReport solve_condensed();
-  [[nodiscard]] std::optional<SolveReport> solve_on_region(EnergyCheck& check);
-  [[nodiscard]] FrameCheck* check_of_load();
+  [[nodiscard]] std::optional<SolveReport> solve_on_region(engine::EnergyCheck& check);
+  [[nodiscard]] engine::FrameCheck* check_of_load();
 
   void solve_by(InverseRoute& route, SolveReport& report);
   void look_at(SolveReport& report);
@@ -56,15 +56,16 @@ class FrameSolver {
   [[nodiscard]] double grip_force(std::size_t g) const;
   [[nodiscard]] double largest_u() const;
   [[nodiscard]] double largest_in_region() const;
-  [[nodiscard]] FrameCheck::Solution solution() const;
+  [[nodiscard]] engine::FrameCheck::Solution solution() const;
 
   const ChosenRoute& chosen_;
   const DamagedBody& body_;
   const IntactBody* intact_;
   InverseRoute& route_;
   FrameFields& fields_;
-  std::optional<RecentChecks<FrameCheck>> checks_;  // of a deferred update that knows u everywhere
-  std::optional<RecentChecks<EnergyCheck>> energy_checks_;  // of a condensed body
+  std::optional<engine::RecentChecks<engine::FrameCheck>>
+      checks_;  // of a deferred update that knows u everywhere
+  std::optional<engine::RecentChecks<engine::EnergyCheck>> energy_checks_;  // of a condensed body
   std::vector<double> anchors_;  // stiffness of each gripped unknown's anchor
 
   // Stress error up to which a base is kept: what fp64 promises, or somewhat above what a fresh one
@@ -72,7 +73,7 @@ class FrameSolver {
   double keeps_;
 
   Load load_;
-  FrameCheck* check_ = nullptr;  // of load_, of checks_
+  engine::FrameCheck* check_ = nullptr;  // of load_, of checks_
   Eigen::VectorXd force_, u_, du_, product_, r_;
   std::vector<double> reactions_;
   double free_residual_ = 0;  // |r_|

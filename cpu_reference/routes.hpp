@@ -6,82 +6,25 @@
 // inverse of a region's unknowns alone.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <chrono>
 #include <memory>
 #include <vector>
 
+#include "cpu_reference/intact_body.hpp"
+#include "engine/base_check.hpp"
 #include "engine/condensed_base.hpp"
+#include "engine/damaged_body.hpp"
 #include "engine/deferred.hpp"
-#include "fem/analysis.hpp"
-#include "fem/factor.hpp"
-#include "fem/ordered_stiffness.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::cpu_reference {
 
-/// Prescribed displacements by the compliance block of the gripped dofs G: with C = A^-1 E_G,
-/// x + C C_G^-1 (d - x_G) has x_G = d, and the added forces act on G alone.
-class Grips {
- public:
-  explicit Grips(std::span<const Index> dofs) : dofs_(dofs) {}
-  /// Takes new columns A^-1 E_G, shape (n x dofs). Throws NumericalError when C_G is singular.
-  void set_columns(Eigen::MatrixXd columns);
-  /// The same out of the whole inverse.
-  void read(const Eigen::MatrixXd& inverse);
-  /// Moves x so that x_G = displacement (empty: 0). By one thread at a time.
-  void hold(Eigen::VectorXd& x, std::span<const double> displacement) const;
-  [[nodiscard]] bool none() const { return dofs_.empty(); }
-  [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
-  [[nodiscard]] std::size_t bytes() const {
-    return static_cast<std::size_t>(columns_.size()) * sizeof(double);
-  }
-
- private:
-  void factor();
-
-  std::span<const Index> dofs_;
-  Eigen::MatrixXd columns_, at_grips_;                        // C and C_G
-  Eigen::LLT<Eigen::MatrixXd> block_{Eigen::MatrixXd(0, 0)};  // copied before its first use
-  mutable Eigen::VectorXd gap_;                               // room to work in
-};
-
-/// The damaged body: which elements are destroyed, and K u.
-class DamagedBody {
- public:
-  explicit DamagedBody(std::shared_ptr<const Problem> problem);
-  void destroy(std::span<const Index> elements);
-  /// y = K x over the unknowns, without anchors.
-  void apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
-  /// Largest stress norm over live elements of the displacement x.
-  [[nodiscard]] double largest_stress(const Eigen::VectorXd& x) const;
-  /// Over live ones of some elements.
-  [[nodiscard]] double largest_stress(const Eigen::VectorXd& x,
-                                      std::span<const Index> elements) const;
-  [[nodiscard]] const Problem& problem() const { return *problem_; }
-  [[nodiscard]] const std::shared_ptr<const Problem>& shared_problem() const { return problem_; }
-  /// a_e per element: 1 or alpha.
-  [[nodiscard]] std::span<const double> scale() const { return scale_; }
-  [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
-
- private:
-  std::shared_ptr<const Problem> problem_;
-  std::vector<double> scale_;
-  std::vector<std::uint8_t> destroyed_;
-  mutable std::vector<double> nodal_in_, nodal_out_;
-};
+using engine::DamagedBody;
 
 struct Applied {
   int iterations = 0;
   bool converged = true;
-};
-
-/// What a full check of a base has found (frame_check.hpp): for which load, how much stress [MPa] a
-/// residual of 1 N is worth (0: there was no check), and the error of the stress as it came.
-struct BaseCheck {
-  Load load;
-  double stress_of_residual = 0, error = 0;
 };
 
 /// One way to apply the inverse of the damaged stiffness, grips held at zero.
@@ -112,29 +55,13 @@ class InverseRoute {
   /// Bases there have been so far: another one needs a full check.
   [[nodiscard]] virtual int bases() const { return 1; }
   /// Of the newest base, if whoever made it has checked it.
-  [[nodiscard]] virtual const BaseCheck& base_check() const {
-    static const BaseCheck none;
+  [[nodiscard]] virtual const engine::BaseCheck& base_check() const {
+    static const engine::BaseCheck none;
     return none;
   }
   /// Milliseconds that frames have waited for a rebase so far.
   [[nodiscard]] virtual double waited_ms() const { return 0; }
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
-};
-
-/// The intact body's factor with its grips; the preconditioner of the CG route where it fits the
-/// memory.
-struct IntactBody {
-  /// `rebases`: factors of the damaged body are to follow.
-  IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis);
-  /// x = K0^-1 f with x_G = displacement (empty: 0). By one thread at a time.
-  void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
-             Eigen::VectorXd& x) const;
-  fem::Factor factor;
-  Grips grips;
-  std::unique_ptr<fem::OrderedStiffness> stiffness;  // empty without `rebases`, or handed on
-
- private:
-  mutable fem::SolveWork work_;
 };
 
 /// An incomplete factor of the intact stiffness, with as many entries as the stiffness has.
@@ -154,17 +81,6 @@ class IncompleteFactor;
                                                             std::span<const Index> dofs,
                                                             bool damage,
                                                             std::chrono::milliseconds rest);
-/// What solve_whole() works in.
-struct WholeRoom {
-  /// For a body of so many unknowns, some of them touched.
-  void reserve(Index unknowns, std::size_t touched);
-  [[nodiscard]] std::size_t bytes() const;
-  Eigen::VectorXd right_side;
-  std::vector<double> lost;
-  fem::SolveWork work;
-};
-/// u at all unknowns.
-void solve_whole(const engine::Equilibrium& of, WholeRoom& room, Eigen::VectorXd& u);
 [[nodiscard]] std::unique_ptr<InverseRoute> conjugate_gradient_route(const DamagedBody& body,
                                                                      const IntactBody& intact);
 /// Conjugate gradients without any factor, for bodies whose factor is larger than the memory;

@@ -19,11 +19,4 @@ void element_stress(const Problem& problem, std::span<const double> scale,
                                       std::span<const std::uint8_t> excluded,
                                       std::span<const Voigt> stress);
 
-/// Largest Frobenius norm of the stress tensor over live elements.
-[[nodiscard]] double largest_stress(const Problem& problem, std::span<const std::uint8_t> destroyed,
-                                    std::span<const double> u);
-/// The same over live ones of some elements.
-[[nodiscard]] double largest_stress(const Problem& problem, std::span<const std::uint8_t> destroyed,
-                                    std::span<const double> u, std::span<const Index> elements);
-
 }  // namespace sunder::cpu_reference

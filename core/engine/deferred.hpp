@@ -70,6 +70,8 @@ class Deferred {
   /// L with L L^T = (A^-1)_GG.
   [[nodiscard]] const Eigen::MatrixXd& grip_factor() const { return grip_block_.matrixLLT(); }
 
+  [[nodiscard]] Base& base() { return *base_; }
+  [[nodiscard]] const Base& base() const { return *base_; }
   [[nodiscard]] Index events() const { return static_cast<Index>(events_.size()); }
   /// Unknowns of destroyed elements, gripped ones first.
   [[nodiscard]] std::span<const Index> touched() const { return touched_; }

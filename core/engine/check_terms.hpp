@@ -6,9 +6,9 @@
 
 #include "sunder/backend.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 /// s > 0 with a = s b, but for the rounding of a ramp; nothing: a has another direction.
 [[nodiscard]] std::optional<double> multiple(const Load& a, const Load& b);
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -6,7 +6,7 @@
 
 #include "sunder/backend.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 /// Forces of the largest load that a scene's instruments, or a question about one of its elements
 /// (attribution.hpp), can bring.
@@ -14,4 +14,4 @@ namespace sunder::cpu_reference {
 
 void reserve(Load& load, const Problem& problem);
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

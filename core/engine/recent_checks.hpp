@@ -6,9 +6,9 @@
 
 #include <array>
 
-#include "cpu_reference/routes.hpp"
+#include "sunder/backend.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 /// Check: FrameCheck or EnergyCheck.
 template <class Check>
@@ -17,8 +17,8 @@ class RecentChecks {
   explicit RecentChecks(const Problem& problem) : checks_{Check(problem), Check(problem)} {}
 
   /// The check that takes the load's kind; else the one used longest ago.
-  [[nodiscard]] Check& of(const Load& load, const InverseRoute& route) {
-    if (checks_[last_].takes(load, route)) return checks_[last_];
+  [[nodiscard]] Check& of(const Load& load, int bases) {
+    if (checks_[last_].takes(load, bases)) return checks_[last_];
     last_ = 1 - last_;
     return checks_[last_];
   }
@@ -29,4 +29,4 @@ class RecentChecks {
   std::size_t last_ = 0;
 };
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

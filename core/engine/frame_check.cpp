@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/frame_check.hpp"
+#include "engine/frame_check.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "cpu_reference/check_terms.hpp"
-#include "cpu_reference/load_room.hpp"
+#include "engine/check_terms.hpp"
+#include "engine/load_room.hpp"
 #include "engine/stress_bounds.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 namespace {
 
 // Half of what double precision promises along a crack (at a contrast of 1e4 a solution was a
@@ -40,18 +40,17 @@ void FrameCheck::checked(const Load& load, const Solution& solution, double stre
   bases_ = bases;
 }
 
-void FrameCheck::follow(const InverseRoute& route) {
-  const BaseCheck& check = route.base_check();
-  if (bases_ == 0 || route.bases() == bases_ || !(check.stress_of_residual > 0) ||
+void FrameCheck::follow(int bases, const BaseCheck& check) {
+  if (bases_ == 0 || bases == bases_ || !(check.stress_of_residual > 0) ||
       !multiple(check.load, load_)) {
     return;
   }
   stress_of_residual_ = check.stress_of_residual;
-  bases_ = route.bases();
+  bases_ = bases;
 }
 
-std::optional<double> FrameCheck::scale_of(const Load& load, const InverseRoute& route) const {
-  if (route.bases() != bases_) return std::nullopt;
+std::optional<double> FrameCheck::scale_of(const Load& load, int bases) const {
+  if (bases != bases_) return std::nullopt;
   return multiple(load, load_);
 }
 
@@ -68,4 +67,4 @@ std::optional<double> FrameCheck::error(double scale, const Solution& solution) 
   return error;
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -7,9 +7,9 @@
 
 #include <optional>
 
-#include "cpu_reference/routes.hpp"
+#include "engine/base_check.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 class FrameCheck {
  public:
@@ -26,12 +26,12 @@ class FrameCheck {
   /// of A^-1 (f - K u) over live elements.
   void checked(const Load& load, const Solution& solution, double stress, int bases);
   /// Takes what is known of a base that is new since the last full check.
-  void follow(const InverseRoute& route);
+  void follow(int bases, const BaseCheck& check);
   /// The load as a multiple of that of the last full check; nothing: another direction, or a base
   /// that nothing is known of.
-  [[nodiscard]] std::optional<double> scale_of(const Load& load, const InverseRoute& route) const;
-  [[nodiscard]] bool takes(const Load& load, const InverseRoute& route) const {
-    return scale_of(load, route).has_value();
+  [[nodiscard]] std::optional<double> scale_of(const Load& load, int bases) const;
+  [[nodiscard]] bool takes(const Load& load, int bases) const {
+    return scale_of(load, bases).has_value();
   }
 
   /// Energy [N mm] of a defect of the deferred update that needs no refinement.
@@ -50,4 +50,4 @@ class FrameCheck {
   int bases_ = 0;                  // 0: there was none
 };
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/background_rebase.hpp"
+#include "engine/background_rebase.hpp"
 
 #include <chrono>
 #include <exception>
 #include <numeric>
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 void check_base(Based& based, const DamagedBody& body, const Load& load,
                 const std::function<void(Eigen::VectorXd&)>& complete) {
-  engine::Deferred& deferred = *based.deferred;
-  const engine::Forces forces{load.force_dofs, load.forces};
+  Deferred& deferred = *based.deferred;
+  const Forces forces{load.force_dofs, load.forces};
   Eigen::VectorXd u, du, r;
   deferred.solve(forces, load.displacements, u);
   complete(u);
@@ -170,4 +170,4 @@ void BackgroundRebase::follow_next(std::unique_lock<std::mutex>& lock) {
   at_ = next;
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/check_terms.hpp"
+#include "engine/check_terms.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 namespace {
 
 bool proportional(std::span<const double> a, std::span<const double> b, double s) {
@@ -33,4 +33,4 @@ std::optional<double> multiple(const Load& a, const Load& b) {
   return s;
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -13,16 +13,18 @@
 #include <thread>
 #include <vector>
 
-#include "cpu_reference/routes.hpp"
+#include "engine/base_check.hpp"
+#include "engine/damaged_body.hpp"
+#include "engine/deferred.hpp"
+#include "fem/factor.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 /// A base with the damage laid over it.
 struct Based {
   BaseCheck check;
   std::shared_ptr<const fem::Factor> factor;  // what the base reads; empty: it is the intact one
-  std::unique_ptr<engine::Deferred> deferred;
-  engine::CondensedBase* condensed = nullptr;  // what `deferred` holds, where it is one
+  std::unique_ptr<Deferred> deferred;
 };
 
 /// Makes a base of a body with no damage over it yet, and checks it by a load; `work` is for a
@@ -95,4 +97,4 @@ class BackgroundRebase {
 void check_base(Based& based, const DamagedBody& body, const Load& load,
                 const std::function<void(Eigen::VectorXd&)>& complete);
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/load_room.hpp"
+#include "engine/load_room.hpp"
 
 #include <algorithm>
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 std::size_t most_forces(const Problem& problem) {
   constexpr std::size_t kPressed = 2, kElement = 12;  // nodes of a press, unknowns of an element
@@ -20,4 +20,4 @@ void reserve(Load& load, const Problem& problem) {
   load.displacements.reserve(problem.gripped_dofs().size());
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

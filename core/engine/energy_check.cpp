@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/energy_check.hpp"
+#include "engine/energy_check.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "cpu_reference/check_terms.hpp"
-#include "cpu_reference/load_room.hpp"
+#include "engine/check_terms.hpp"
+#include "engine/load_room.hpp"
 #include "engine/stress_bounds.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 namespace {
 
 // A bound on the stress error that needs no closer look: what double precision promises along a
@@ -36,7 +36,7 @@ double largest_of(std::span<const double> v) {
 }  // namespace
 
 void EnergyCheck::Directions::reserve(const Problem& problem) {
-  for (Checked& slot : slots_) cpu_reference::reserve(slot.load, problem);
+  for (Checked& slot : slots_) engine::reserve(slot.load, problem);
 }
 
 /// Whatever the direction of a load, a frame allocates nothing.
@@ -65,9 +65,8 @@ void EnergyCheck::checked(const Load& load, const SolveReport& report, double un
   add_direction(next_);
 }
 
-void EnergyCheck::follow(const InverseRoute& route) {
-  if (bases_ == 0 || route.bases() == bases_) return;
-  const BaseCheck& check = route.base_check();
+void EnergyCheck::follow(int bases, const BaseCheck& check) {
+  if (bases_ == 0 || bases == bases_) return;
   if (!(check.stress_of_residual > 0) || !on_same_unknowns(check.load) || !shares_of(check.load)) {
     return;
   }
@@ -81,7 +80,7 @@ void EnergyCheck::follow(const InverseRoute& route) {
     next.largest += share * checks_[i].largest;
   }
   checks_.clear();
-  bases_ = route.bases();
+  bases_ = bases;
   changed_ = true;
   add_direction(next);
 }
@@ -169,9 +168,8 @@ bool EnergyCheck::shares_of(const Load& load) {
   return true;
 }
 
-std::optional<EnergyCheck::Expected> EnergyCheck::expected(const Load& load,
-                                                           const InverseRoute& route) {
-  if (route.bases() != bases_ || !on_same_unknowns(load) || !shares_of(load)) return std::nullopt;
+std::optional<EnergyCheck::Expected> EnergyCheck::expected(const Load& load, int bases) {
+  if (bases != bases_ || !on_same_unknowns(load) || !shares_of(load)) return std::nullopt;
   Expected expected;
   expected.alone = true;
   const double all = shares_.cwiseAbs().maxCoeff();
@@ -192,7 +190,7 @@ double EnergyCheck::enough(const Expected& expected) const {
   return e * e;
 }
 
-std::optional<SolveReport> EnergyCheck::known(const Expected& expected, const InverseRoute& route,
+std::optional<SolveReport> EnergyCheck::known(const Expected& expected, double energy,
                                               double largest_u, double largest) const {
   if (!std::isfinite(largest)) return std::nullopt;  // the load is so large that stress overflows
   SolveReport report = report_;
@@ -205,11 +203,10 @@ std::optional<SolveReport> EnergyCheck::known(const Expected& expected, const In
   }
   if (!(largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
   if (!(expected.largest <= kGrowth * largest)) return std::nullopt;  // shares that cancel
-  const double energy = std::max(0.0, route.deferred()->defect_energy());
   report.error = kAmplified * std::max(expected.worst, expected.base_error / largest) +
-                 stress_of_energy_ * std::sqrt(energy) / largest;
+                 stress_of_energy_ * std::sqrt(std::max(0.0, energy)) / largest;
   if (!(report.error <= std::min(kEnough, tolerance / 10))) return std::nullopt;
   return report;
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "cpu_reference/routes.hpp"
+#include "engine/base_check.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 class EnergyCheck {
  public:
@@ -33,22 +33,20 @@ class EnergyCheck {
   void checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                double largest_u, double largest);
   /// Takes what is known of a base that is new since the last full check.
-  void follow(const InverseRoute& route);
+  void follow(int bases, const BaseCheck& check);
   /// Whether what this knows is of loads on the same unknowns.
-  [[nodiscard]] bool takes(const Load& load, const InverseRoute&) const {
-    return on_same_unknowns(load);
-  }
+  [[nodiscard]] bool takes(const Load& load, int) const { return on_same_unknowns(load); }
   /// Nothing: the load needs a full check.
-  [[nodiscard]] std::optional<Expected> expected(const Load& load, const InverseRoute& route);
+  [[nodiscard]] std::optional<Expected> expected(const Load& load, int bases);
   /// An event has changed the body.
   void event() { changed_ = true; }
 
   /// Energy [N mm] of a defect that needs no refinement.
   [[nodiscard]] double enough(const Expected& expected) const;
-  /// What is known of a solution without a full check; nothing when that is needed.
-  [[nodiscard]] std::optional<SolveReport> known(const Expected& expected,
-                                                 const InverseRoute& route, double largest_u,
-                                                 double largest) const;
+  /// What is known of a solution without a full check; nothing when that is needed. `energy`: of
+  /// what the deferred update lacked (Deferred::defect_energy).
+  [[nodiscard]] std::optional<SolveReport> known(const Expected& expected, double energy,
+                                                 double largest_u, double largest) const;
 
  private:
   struct Checked {
@@ -102,4 +100,4 @@ class EnergyCheck {
   bool changed_ = true;  // since the last full check
 };
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

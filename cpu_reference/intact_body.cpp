@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cpu_reference/intact_body.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "sunder/error.hpp"
+
+namespace sunder::cpu_reference {
+namespace {
+
+int machine_threads() {
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+}  // namespace
+
+void Grips::set_columns(Eigen::MatrixXd columns) {
+  columns_ = std::move(columns);
+  factor();
+}
+
+void Grips::read(const Eigen::MatrixXd& inverse) {
+  if (none()) return;
+  columns_.resize(inverse.rows(), static_cast<Index>(dofs_.size()));
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    columns_.col(static_cast<Index>(i)) = inverse.col(dofs_[i]);
+  }
+  factor();
+}
+
+void Grips::factor() {
+  at_grips_.resize(columns_.cols(), columns_.cols());
+  for (Index i = 0; i < columns_.cols(); ++i) {
+    at_grips_.row(i) = columns_.row(dofs_[static_cast<std::size_t>(i)]);
+  }
+  block_.compute(at_grips_);
+  if (block_.info() != Eigen::Success) {
+    throw NumericalError("the compliance of the gripped nodes is singular in double precision");
+  }
+}
+
+void Grips::hold(Eigen::VectorXd& x, std::span<const double> displacement) const {
+  if (none()) return;
+  gap_.resize(static_cast<Index>(dofs_.size()));
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    gap_[static_cast<Index>(i)] = (displacement.empty() ? 0.0 : displacement[i]) - x[dofs_[i]];
+  }
+  block_.solveInPlace(gap_);
+  x.noalias() += columns_ * gap_;
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    x[dofs_[i]] = displacement.empty() ? 0.0 : displacement[i];  // free of rounding
+  }
+}
+
+IntactBody::IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis)
+    : factor(analysis.nodes, analysis.ordered, {.threads = machine_threads()}),
+      grips(problem.gripped_dofs()) {
+  if (rebases) {
+    stiffness = std::make_unique<fem::OrderedStiffness>(problem, analysis.nodes, analysis.ordered);
+  }
+  if (!grips.none()) grips.set_columns(factor.inverse_columns(grips.dofs()));
+}
+
+void IntactBody::solve(const Eigen::VectorXd& f, std::span<const double> displacement,
+                       Eigen::VectorXd& x) const {
+  factor.solve(f, x, work_);
+  grips.hold(x, displacement);
+}
+
+}  // namespace sunder::cpu_reference

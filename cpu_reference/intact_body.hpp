@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The intact body's factor, with the displacements that grips prescribe.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+
+#include "fem/analysis.hpp"
+#include "fem/factor.hpp"
+#include "fem/ordered_stiffness.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::cpu_reference {
+
+/// Prescribed displacements by the compliance block of the gripped dofs G: with C = A^-1 E_G,
+/// x + C C_G^-1 (d - x_G) has x_G = d, and the added forces act on G alone.
+class Grips {
+ public:
+  explicit Grips(std::span<const Index> dofs) : dofs_(dofs) {}
+  /// Takes new columns A^-1 E_G, shape (n x dofs). Throws NumericalError when C_G is singular.
+  void set_columns(Eigen::MatrixXd columns);
+  /// The same out of the whole inverse.
+  void read(const Eigen::MatrixXd& inverse);
+  /// Moves x so that x_G = displacement (empty: 0). By one thread at a time.
+  void hold(Eigen::VectorXd& x, std::span<const double> displacement) const;
+  [[nodiscard]] bool none() const { return dofs_.empty(); }
+  [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
+  [[nodiscard]] std::size_t bytes() const {
+    return static_cast<std::size_t>(columns_.size()) * sizeof(double);
+  }
+
+ private:
+  void factor();
+
+  std::span<const Index> dofs_;
+  Eigen::MatrixXd columns_, at_grips_;                        // C and C_G
+  Eigen::LLT<Eigen::MatrixXd> block_{Eigen::MatrixXd(0, 0)};  // copied before its first use
+  mutable Eigen::VectorXd gap_;                               // room to work in
+};
+
+/// The intact body's factor with its grips; the preconditioner of the CG route where it fits the
+/// memory.
+struct IntactBody {
+  /// `rebases`: factors of the damaged body are to follow.
+  IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis);
+  /// x = K0^-1 f with x_G = displacement (empty: 0). By one thread at a time.
+  void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
+             Eigen::VectorXd& x) const;
+  fem::Factor factor;
+  Grips grips;
+  std::unique_ptr<fem::OrderedStiffness> stiffness;  // empty without `rebases`, or handed on
+
+ private:
+  mutable fem::SolveWork work_;
+};
+
+}  // namespace sunder::cpu_reference
