@@ -9,11 +9,12 @@
 
 #include "cpu_reference/choose_route.hpp"
 #include "cpu_reference/cost_model.hpp"
+#include "cpu_reference/cpu_frame.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/frame_fields.hpp"
 #include "cpu_reference/frame_kernels.hpp"
-#include "cpu_reference/frame_solver.hpp"
 #include "cpu_reference/routes.hpp"
+#include "engine/frame_solver.hpp"
 #include "engine/instrument_block.hpp"
 #include "fem/assembly.hpp"
 #include "sunder/error.hpp"
@@ -47,7 +48,8 @@ class CpuBackend final : public Backend {
         intact_(intact_body(*problem, this->needs(), chosen_)),
         fields_(body_, this->needs(), condensed_region(chosen_, *problem, this->needs())),
         route_(make_route(rest)),
-        solver_(chosen_, body_, intact_ ? &*intact_ : nullptr, *route_, fields_) {
+        frame_(chosen_, body_, intact_ ? &*intact_ : nullptr, *route_, fields_),
+        solver_(*problem, frame_) {
     if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (this->needs().pristine) {  // so that the first time allocates no more than the next
       pristine_force_.setZero(problem->dof_count());
@@ -163,7 +165,7 @@ class CpuBackend final : public Backend {
     return deferred_route(body_, *intact_, chosen_.route == Route::inverse, rest);
   }
 
-  void do_set_load(const Load& load) override { solver_.set_load(load); }
+  void do_set_load(const Load& load) override { frame_.set_load(load); }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override {
     return instruments_ ? instruments_->forces() : nullptr;
@@ -203,12 +205,13 @@ class CpuBackend final : public Backend {
   }
 
   SolveReport do_solve() override {
-    SolveReport report = solver_.solve();
+    SolveReport report = solver_.solve(frame_.load());
+    frame_.publish(solver_.everywhere());
     report.waited_ms = route_->waited_ms() - waited_ms_;
     waited_ms_ = route_->waited_ms();
     if (instruments_) {
-      instruments_->publish(route_->deferred()->grip_factor(), solver_.reactions(),
-                            solver_.load().displacements);
+      instruments_->publish(route_->deferred()->grip_factor(), frame_.reactions(),
+                            frame_.load().displacements);
     }
     return report;
   }
@@ -258,7 +261,7 @@ class CpuBackend final : public Backend {
   Voigt do_read_stress(Index element) const override { return fields_.read_stress(element); }
 
   void do_read_reactions(std::span<double> reactions) const override {
-    std::ranges::copy(solver_.reactions(), reactions.begin());
+    std::ranges::copy(frame_.reactions(), reactions.begin());
   }
 
   ChosenRoute chosen_;
@@ -267,7 +270,8 @@ class CpuBackend final : public Backend {
   std::optional<NeverDamaged> never_damaged_;  // in its place, for the pristine field
   FrameFields fields_;
   std::unique_ptr<InverseRoute> route_;
-  FrameSolver solver_;
+  CpuFrame frame_;
+  engine::FrameSolver solver_;
   Eigen::VectorXd pristine_force_, pristine_u_;  // of the intact body
   std::optional<engine::InstrumentBlock> instruments_;
   double waited_ms_ = 0;  // for rebases, as reported so far

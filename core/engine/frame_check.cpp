@@ -11,9 +11,6 @@
 namespace sunder::engine {
 namespace {
 
-// Half of what double precision promises along a crack (at a contrast of 1e4 a solution was a
-// quarter worse than this said), or a tenth of the scene's tolerance.
-constexpr double kEnough = 5e-9;
 // The stress that a residual is worth grows by less between full checks. Measured on boards of
 // 2,000 elements over 640 fractures: on an intact base it falls to a fifth as the damage spreads,
 // on a damaged one it stays within a third (tests/cpu_reference/engine/promise_test.cpp).
@@ -27,8 +24,10 @@ constexpr double kGrowth = 10;
 
 }  // namespace
 
-FrameCheck::FrameCheck(const Problem& problem)
-    : problem_(problem), stress_of_energy_(engine::largest_stress_of_energy(problem)) {
+FrameCheck::FrameCheck(const Problem& problem, double promised)
+    : problem_(problem),
+      promised_(std::min(promised, problem.scene().solver.tolerance / 10)),
+      stress_of_energy_(engine::largest_stress_of_energy(problem)) {
   reserve(load_, problem);
 }
 
@@ -63,7 +62,7 @@ std::optional<double> FrameCheck::error(double scale, const Solution& solution) 
   if (!(solution.largest_u <= kGrowth * scale * solution_.largest_u)) return std::nullopt;
   const double error =
       kAllowance * stress_of_residual_ * solution.residual / solution.largest_stress;
-  if (!(error <= std::min(kEnough, problem_.scene().solver.tolerance / 10))) return std::nullopt;
+  if (!(error <= promised_)) return std::nullopt;
   return error;
 }
 

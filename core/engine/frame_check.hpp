@@ -13,7 +13,8 @@ namespace sunder::engine {
 
 class FrameCheck {
  public:
-  explicit FrameCheck(const Problem& problem);
+  /// `promised`: the estimate of an error vouches for no more than this.
+  FrameCheck(const Problem& problem, double promised);
 
   /// A solution as its check sees it.
   struct Solution {
@@ -42,6 +43,7 @@ class FrameCheck {
 
  private:
   const Problem& problem_;
+  double promised_;          // or a tenth of the scene's tolerance
   double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
   // Of the last full check:
   Load load_;

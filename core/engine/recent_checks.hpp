@@ -14,7 +14,8 @@ namespace sunder::engine {
 template <class Check>
 class RecentChecks {
  public:
-  explicit RecentChecks(const Problem& problem) : checks_{Check(problem), Check(problem)} {}
+  template <class... Of>
+  explicit RecentChecks(const Of&... of) : checks_{Check(of...), Check(of...)} {}
 
   /// The check that takes the load's kind; else the one used longest ago.
   [[nodiscard]] Check& of(const Load& load, int bases) {
