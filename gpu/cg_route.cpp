@@ -163,7 +163,7 @@ void CgRoute::refresh_state(bool add) {
   commands_.submit();
 }
 
-int CgRoute::solve(const Load&, bool) {
+int CgRoute::solve(const Load&, double, bool) {
   refresh_state(false);  // f - K u of the last displacement, a multiple of which is the first guess
   const int iterations = run(kSolution, true);
   refresh_state(true);

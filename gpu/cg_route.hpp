@@ -18,16 +18,15 @@ class CgRoute final : public DeviceRoute {
   [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
                                                  const Problem& problem);
 
-  int solve(const Load& load, bool balance) override;
+  int solve(const Load& load, double enough, bool balance) override;
   int correct() override;
   void add_correction() override;
-  void destroy(std::span<const Index> elements, std::span<const Index>) override {
+  void destroy(std::span<const Index> elements) override {
     rigid_.destroy(elements);  // Fields' matrix follows by itself
   }
-  bool restart(std::span<const Index>) override { return false; }
 
   std::string name() const override { return "cg"; }
-  std::string update() const override { return "matrix"; }
+  std::string update_name() const override { return "matrix"; }
   std::vector<BufferPlan> buffers() const override;
   std::vector<vulkan::PassTime> pass_times() const override { return commands_.pass_times(); }
 

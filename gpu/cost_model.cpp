@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gpu/correction.hpp"
+#include "gpu/host_update.hpp"
 
 namespace sunder::gpu {
 namespace {

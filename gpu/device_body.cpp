@@ -24,13 +24,14 @@ Fields::RouteNeeds route_needs(const DeviceSetup& setup, const Problem& part) {
 
 }  // namespace
 
-DeviceBody::DeviceBody(const DeviceSetup& setup, const Problem& whole,
+DeviceBody::DeviceBody(const DeviceSetup& setup, std::shared_ptr<const Problem> whole,
                        std::optional<engine::Region> region, std::future<IntactInverse> started)
-    : kernels_(setup.kernels), whole_(whole), part_(&whole) {
+    : kernels_(setup.kernels), whole_(*whole), part_(std::move(whole)) {
   if (region) {
     region_ = std::make_unique<engine::Substructure>(whole_, std::move(*region));
-    part_ = region_->part().get();
+    part_ = region_->part();
   }
+  damaged_ = std::make_unique<engine::DamagedBody>(part_);
   fields_ =
       std::make_unique<Fields>(setup.kernels, *part_, setup.needs, route_needs(setup, *part_));
   prepare_intact(setup, std::move(started));
@@ -45,9 +46,7 @@ void DeviceBody::prepare_intact(const DeviceSetup& setup, std::future<IntactInve
                   : std::make_shared<const HostInverse>(*part_, std::span<const double>{},
                                                         !cg && !setup.inverse.on_device);
   }
-  if (!pristine) return;
-  pristine_ = std::make_unique<Correction>(
-      *part_, [host = intact_](std::span<const Index> dofs) { return host->columns(dofs); });
+  if (pristine) pristine_ = intact_update(*part_, intact_);
 }
 
 void DeviceBody::make_route(const DeviceSetup& setup) {
@@ -55,10 +54,11 @@ void DeviceBody::make_route(const DeviceSetup& setup) {
   if (setup.plan.cg) {
     route_ = std::make_unique<CgRoute>(kernels, *part_, *fields_);
   } else if (kernels.single()) {
-    route_ = std::make_unique<HostCorrectedRoute>(kernels, *part_, *fields_, intact_,
-                                                  setup.inverse.panel_bytes);
+    route_ = std::make_unique<HostCorrectedRoute>(kernels, *damaged_, *fields_, intact_,
+                                                  setup.inverse.panel_bytes, setup.needs.damage);
   } else {
-    route_ = std::make_unique<InverseRoute>(kernels, *part_, *fields_, intact_, setup.inverse);
+    route_ = std::make_unique<InverseRoute>(kernels, *damaged_, *fields_, intact_, setup.inverse,
+                                            setup.needs.damage);
   }
 }
 
@@ -71,6 +71,12 @@ std::vector<BufferPlan> DeviceBody::buffers() const {
   }
   for (BufferPlan& b : fields_->buffers()) plan.push_back(std::move(b));
   return plan;
+}
+
+void DeviceBody::destroy(std::span<const Index> elements) {
+  damaged_->destroy(elements);
+  fields_->destroy(elements);
+  route_->destroy(elements);
 }
 
 std::span<const Index> DeviceBody::on_device(std::span<const Index> elements) {
@@ -191,16 +197,8 @@ double DeviceBody::largest_outside(Field field, const Load& of_whole) const {
 
 void DeviceBody::solve_pristine(const Load& of_whole, std::span<double> displacement) const {
   const Load load = region_ ? region_->load(of_whole) : of_whole;
-  const Loaded loaded{load.force_dofs, load.forces};
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(part_->dof_count());
-  const Eigen::MatrixXd columns = intact_->columns(load.force_dofs);
-  for (std::size_t i = 0; i < load.forces.size(); ++i) {
-    u += load.forces[i] * columns.col(static_cast<Index>(i));
-  }
-  if (pristine_->count() > 0) {
-    u += pristine_->columns() *
-         pristine_->coefficients(pristine_->project(loaded), load.displacements);
-  }
+  Eigen::VectorXd u;
+  pristine_->solve({load.force_dofs, load.forces}, load.displacements, u);
   const std::span<const double> unknowns(u.data(), static_cast<std::size_t>(u.size()));
   if (!region_) {
     fem::scatter(whole_, unknowns, displacement);

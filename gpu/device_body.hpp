@@ -11,7 +11,6 @@
 
 #include "engine/region.hpp"
 #include "engine/substructure.hpp"
-#include "gpu/correction.hpp"
 #include "gpu/inverse_route.hpp"
 #include "gpu/plan.hpp"
 
@@ -31,13 +30,17 @@ class DeviceBody {
  public:
   /// `region`: what alone goes to the device, none: the whole. `started`: the whole body's inverse
   /// where it is being computed already, else not valid.
-  DeviceBody(const DeviceSetup& setup, const Problem& whole, std::optional<engine::Region> region,
-             std::future<IntactInverse> started = {});
+  DeviceBody(const DeviceSetup& setup, std::shared_ptr<const Problem> whole,
+             std::optional<engine::Region> region, std::future<IntactInverse> started = {});
 
   /// Problem that the device solves: the whole body's, or the region's with its surroundings.
   [[nodiscard]] const Problem& part() const { return *part_; }
   /// Null: the whole is there.
   [[nodiscard]] const engine::Substructure* region() const { return region_.get(); }
+  /// The same with its damage.
+  [[nodiscard]] const engine::DamagedBody& damaged() const { return *damaged_; }
+  /// Follows an event, elements as the device numbers them.
+  void destroy(std::span<const Index> elements);
   [[nodiscard]] Fields& fields() const { return *fields_; }
   [[nodiscard]] DeviceRoute& route() const { return *route_; }
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
@@ -78,10 +81,11 @@ class DeviceBody {
   const KernelFactory& kernels_;
   const Problem& whole_;
   std::unique_ptr<engine::Substructure> region_;
-  const Problem* part_;  // the region's or the whole
+  std::shared_ptr<const Problem> part_;  // the region's or the whole
+  std::unique_ptr<engine::DamagedBody> damaged_;
   std::unique_ptr<Fields> fields_;
   IntactInverse intact_;
-  std::unique_ptr<Correction> pristine_;  // of the intact body: its grips
+  mutable std::unique_ptr<engine::Deferred> pristine_;  // of the intact body: its grips
   std::unique_ptr<DeviceRoute> route_;
   std::vector<Index> in_part_;
   // Of a region: the load of the last solution, and its displacement once read.

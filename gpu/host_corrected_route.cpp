@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/host_corrected_route.hpp"
 
-#include <cmath>
-
-#include "fem/assembly.hpp"
+#include <algorithm>
+#include <numeric>
 
 namespace sunder::gpu {
 
@@ -15,65 +14,76 @@ std::size_t HostCorrectedRoute::planned_bytes(const KernelFactory& kernels, cons
   return base.bytes + std::size_t{base.chunks + base.panels} * rows * sizeof(double);
 }
 
-HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels, const Problem& problem,
-                                       Fields& fields, std::shared_ptr<const HostInverse> intact,
-                                       std::size_t panel_bytes)
-    : problem_(problem),
+HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels,
+                                       const engine::DamagedBody& body, Fields& fields,
+                                       std::shared_ptr<const HostInverse> intact,
+                                       std::size_t panel_bytes, bool damage)
+    : problem_(body.problem()),
       fields_(fields),
-      host_(std::move(intact)),
-      base_(kernels, problem.dof_count(), fields.rows(), panel_bytes),
+      update_(host_update(body, intact, damage)),
+      base_(kernels, problem_.dof_count(), fields.rows(), panel_bytes),
       partials_(kernels, fields.rows(), base_.chunks() + base_.loaded_chunks({})),
       add_(kernels, fields),
       commands_(kernels.device()) {
-  base_.bind(partials_, fields.residual());
-  sum_displacement_ = partials_.bind_sum(fields.positions(), fields.nodal(Field::displacement));
-  sum_correction_ = partials_.bind_sum(fields.positions(), fields.nodal(Field::correction));
-  make_base();
+  all_.resize(static_cast<std::size_t>(problem_.dof_count()));
+  std::iota(all_.begin(), all_.end(), 0);
+  base_.bind(partials_, fields_.residual());
+  sum_displacement_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::displacement));
+  upload_inverse(*intact, base_);
 }
 
-void HostCorrectedRoute::make_base() {
-  ++bases_;
-  fields_.set_roots(upload_inverse(*host_, base_, problem_.dof_count()));
-  correction_ = std::make_unique<Correction>(
-      problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });
+void HostCorrectedRoute::ensure_base() {
+  if (base_stale_) upload_inverse(base_of(*update_).inverse(), base_);
+  base_stale_ = false;
 }
 
-/// field = X_E c, on the host.
-void HostCorrectedRoute::write_corrected(Field field, const Eigen::VectorXd& coefficients) {
-  if (correction_->count() == 0) {
-    fields_.write_unknowns(field, Eigen::VectorXd::Zero(problem_.dof_count()));
-  } else {
-    fields_.write_unknowns(field,
-                           correction_->columns().leftCols(correction_->count()) * coefficients);
+/// Of the present base's inverse.
+const Eigen::MatrixXd& HostCorrectedRoute::load_columns(std::span<const Index> dofs) {
+  if (!std::ranges::equal(dofs, loaded_)) {
+    load_columns_ = base_of(*update_).inverse().columns(dofs);
+    loaded_.assign(dofs.begin(), dofs.end());
   }
+  return load_columns_;
 }
 
-void HostCorrectedRoute::record_sum(Field field, std::uint32_t chunks) {
-  if (chunks > 0) {
-    commands_.barrier();
-    partials_.record_sum(commands_,
-                         field == Field::displacement ? *sum_displacement_ : *sum_correction_,
-                         chunks, true);
+/// Displacement = X B c, and X f where the load has few unknowns.
+void HostCorrectedRoute::write_exact(const Load& load, const Eigen::VectorXd& of_damage,
+                                     bool loads) {
+  const HostBase& base = base_of(*update_);
+  exact_.setZero(problem_.dof_count());
+  if (base.count() > 0) {
+    exact_.noalias() += base.columns().leftCols(base.count()) * of_damage.head(base.count());
   }
-  commands_.barrier();
+  if (loads && !load.forces.empty()) {
+    exact_.noalias() += load_columns(load.force_dofs) *
+                        Eigen::Map<const Eigen::VectorXd>(
+                            load.forces.data(), static_cast<Eigen::Index>(load.forces.size()));
+  }
+  fields_.write_unknowns(Field::displacement, exact_);
 }
 
-int HostCorrectedRoute::solve(const Load& load, bool balance) {
-  Loaded loaded{load.force_dofs, load.forces};
-  if (loaded.dofs.size() <= kExactLoads) correction_->extend(loaded.dofs);
-  Eigen::VectorXd c = correction_->coefficients(correction_->project(loaded), load.displacements);
-  c += correction_->take_exact(loaded);
+int HostCorrectedRoute::solve(const Load& load, double enough, bool balance) {
+  update_->loaded(load);
+  const bool few = load.force_dofs.size() <= kExactLoads;
+  const Eigen::VectorXd& c =
+      update_->deferred().coefficients({load.force_dofs, load.forces}, load.displacements, enough);
   if (fields_.keeps_next()) {  // before the host writes there
     commands_.begin();
     fields_.record_keep(commands_);
     commands_.end();
     commands_.submit();
   }
-  write_corrected(Field::displacement, c);
-  base_.set_loaded(loaded);
+  write_exact(load, c, few);
+  if (!few) ensure_base();
+  base_.set_loaded(few ? Loaded{} : Loaded{load.force_dofs, load.forces});
   commands_.begin();
   commands_.pass("solve");
-  record_sum(Field::displacement, base_.record_loaded(commands_, 0));
+  const std::uint32_t chunks = base_.record_loaded(commands_, 0);
+  if (chunks > 0) {
+    commands_.barrier();
+    partials_.record_sum(commands_, *sum_displacement_, chunks, true);
+  }
+  commands_.barrier();
   fields_.record_hold(commands_, Field::displacement);
   fields_.record_state(commands_, balance);
   commands_.end();
@@ -82,23 +92,12 @@ int HostCorrectedRoute::solve(const Load& load, bool balance) {
   return 0;
 }
 
-std::optional<EnergyBound> HostCorrectedRoute::energy_bound() const {
-  const HostBalance& balance = fields_.host_balance();
-  const double of_base = balance.energy_root();
-  const double of_damage = correction_->energy(correction_->project(balance.residual()));
-  return EnergyBound{std::sqrt(of_base * of_base + of_damage), of_base, std::sqrt(of_damage)};
-}
-
 int HostCorrectedRoute::correct() {
   const Eigen::VectorXd& r = fields_.host_balance().residual();
-  write_corrected(Field::correction, correction_->coefficients(correction_->project(r), {}));
-  std::vector<double> padded(fields_.rows(), 0.0);
-  std::copy(r.begin(), r.end(), padded.begin());
-  fields_.write_residual(padded);
+  update_->deferred().correct({all_, {r.data(), all_.size()}}, correction_);
+  fields_.write_unknowns(Field::correction, correction_);
   commands_.begin();
   commands_.pass("estimate");
-  record_sum(Field::correction, base_.record_dense(commands_, 0));
-  fields_.record_hold(commands_, Field::correction);
   fields_.record_correction(commands_);
   commands_.end();
   commands_.submit();
@@ -116,26 +115,29 @@ void HostCorrectedRoute::add_correction() {
   fields_.balance_on_host();
 }
 
-void HostCorrectedRoute::destroy(std::span<const Index> elements,
-                                 std::span<const Index> destroyed) {
-  if (!correction_->destroy(elements)) static_cast<void>(restart(destroyed));
+void HostCorrectedRoute::destroy(std::span<const Index> elements) {
+  update_->destroy(elements);
+  follow_update();
 }
 
-/// A new base: the inverse of the body as damaged now.
-bool HostCorrectedRoute::restart(std::span<const Index> destroyed) {
-  if (bases_ > 1 || destroyed.empty()) return false;
-  std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
-  for (Index e : destroyed) scale[e] = problem_.scene().fracture.alpha;
-  host_ = std::make_shared<HostInverse>(problem_, scale, true);
-  make_base();
+bool HostCorrectedRoute::rebase() {
+  if (!update_->rebase()) return false;
+  follow_update();
   return true;
 }
 
+void HostCorrectedRoute::follow_update() {
+  if (update_->bases() == bases_) return;
+  bases_ = update_->bases();
+  base_stale_ = true;
+  loaded_.clear();
+}
+
 std::vector<BufferPlan> HostCorrectedRoute::buffers() const {
-  return {{"inverse (device, fp32)", base_.bytes()},
-          {"partial sums (device)", partials_.buffer().bytes()},
-          {"intact factor and inverse (host)", host_->bytes()},
-          {"exact columns and small matrix (host)", correction_->bytes()}};
+  std::vector<BufferPlan> plan = {{"inverse (device, fp32)", base_.bytes()},
+                                  {"partial sums (device)", partials_.buffer().bytes()}};
+  for (BufferPlan& b : update_->deferred().buffers()) plan.push_back(std::move(b));
+  return plan;
 }
 
 }  // namespace sunder::gpu

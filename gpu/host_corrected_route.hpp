@@ -6,8 +6,7 @@
 
 #include <memory>
 
-#include "gpu/correction.hpp"
-#include "gpu/host_inverse.hpp"
+#include "gpu/host_update.hpp"
 #include "gpu/passes/add.hpp"
 #include "gpu/route.hpp"
 
@@ -15,42 +14,46 @@ namespace sunder::gpu {
 
 class HostCorrectedRoute final : public DeviceRoute {
  public:
-  HostCorrectedRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
-                     std::shared_ptr<const HostInverse> intact, std::size_t panel_bytes);
+  /// The body must outlive it. `damage`: something can be destroyed.
+  HostCorrectedRoute(const KernelFactory& kernels, const engine::DamagedBody& body, Fields& fields,
+                     std::shared_ptr<const HostInverse> intact, std::size_t panel_bytes,
+                     bool damage);
 
   /// Device bytes of the route, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
                                                  const Problem& problem, std::size_t panel_bytes);
 
-  int solve(const Load& load, bool balance) override;
-  std::optional<EnergyBound> energy_bound() const override;
-  int bases() const override { return bases_; }
+  int solve(const Load& load, double enough, bool balance) override;
   int correct() override;
   void add_correction() override;
-  void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
-  bool restart(std::span<const Index> destroyed) override;
+  void destroy(std::span<const Index> elements) override;
+  bool rebase() override;
 
-  const Eigen::MatrixXd* grip_factor() const override { return &correction_->grip_factor(); }
+  const engine::RenewedUpdate* update() const override { return update_.get(); }
   std::string name() const override { return "inverse"; }
-  std::string update() const override { return "deferred"; }
+  std::string update_name() const override { return "deferred"; }
   std::vector<BufferPlan> buffers() const override;
   std::vector<vulkan::PassTime> pass_times() const override { return commands_.pass_times(); }
 
  private:
-  void make_base();
-  void write_corrected(Field field, const Eigen::VectorXd& coefficients);
-  void record_sum(Field field, std::uint32_t chunks);
+  void follow_update();
+  void ensure_base();
+  [[nodiscard]] const Eigen::MatrixXd& load_columns(std::span<const Index> dofs);
+  void write_exact(const Load& load, const Eigen::VectorXd& of_damage, bool loads);
 
   const Problem& problem_;
   Fields& fields_;
-  std::shared_ptr<const HostInverse> host_;  // of the base
+  std::unique_ptr<engine::RenewedUpdate> update_;
+  int bases_ = 1;            // of update_
+  bool base_stale_ = false;  // base_ is that of an earlier one
   DenseInverse base_;
   PartialSums partials_;
-  std::unique_ptr<Correction> correction_;
-  std::unique_ptr<vulkan::Binding> sum_displacement_, sum_correction_;
+  std::unique_ptr<vulkan::Binding> sum_displacement_;
   AddCorrection add_;
   vulkan::Commands commands_;
-  int bases_ = 0;
+  std::vector<Index> all_, loaded_;  // every unknown; those whose columns are in load_columns_
+  Eigen::MatrixXd load_columns_;
+  Eigen::VectorXd exact_, correction_;
 };
 
 }  // namespace sunder::gpu

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/host_inverse.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace sunder::gpu {
@@ -14,8 +15,9 @@ constexpr Index kHostDense = 6000;
 
 }  // namespace
 
-HostInverse::HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense)
-    : factor_(problem, scale) {
+HostInverse::HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense,
+                         const fem::FactorWork& work)
+    : factor_(problem, scale, work) {
   if (keep_dense && problem.dof_count() <= kHostDense) dense_ = factor_.inverse();
 }
 
@@ -32,21 +34,31 @@ Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
   return factor_.inverse_columns(list);
 }
 
-std::vector<double> upload_inverse(const HostInverse& host, DenseInverse& device, Index n) {
-  std::vector<double> roots(static_cast<std::size_t>(n));
-  device.upload([&](Index first, Index count) {
-    Eigen::MatrixXd columns = host.range(first, count);
-    for (Index c = 0; c < count; ++c) {
-      roots[static_cast<std::size_t>(first + c)] = std::sqrt(columns(first + c, c));
-    }
-    return columns;
-  });
-  return roots;
+void HostInverse::differences(std::span<const engine::Difference> vectors,
+                              Eigen::Ref<Eigen::MatrixXd> to) const {
+  std::vector<Index> dofs;
+  for (const engine::Difference& v : vectors) {
+    dofs.push_back(v.dof);
+    if (v.other != kNone) dofs.push_back(v.other);
+  }
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  Eigen::MatrixXd solved;
+  if (!is_dense()) solved = factor_.inverse_columns(dofs);
+  const auto column = [&](Index dof) {
+    if (is_dense()) return dense_.col(dof);
+    const auto at = std::lower_bound(dofs.begin(), dofs.end(), dof) - dofs.begin();
+    return std::as_const(solved).col(at);
+  };
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const auto [dof, other] = vectors[i];
+    to.col(static_cast<Index>(i)) = column(dof);
+    if (other != kNone) to.col(static_cast<Index>(i)) -= column(other);
+  }
 }
 
-std::vector<double> HostInverse::roots() const {
-  const Eigen::VectorXd roots = dense_.diagonal().cwiseSqrt();
-  return {roots.begin(), roots.end()};
+void upload_inverse(const HostInverse& host, DenseInverse& device) {
+  device.upload([&](Index first, Index count) { return host.range(first, count); });
 }
 
 std::size_t HostInverse::bytes() const {

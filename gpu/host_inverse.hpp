@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "engine/difference_basis.hpp"
 #include "fem/factor.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 
@@ -13,12 +14,15 @@ namespace sunder::gpu {
 
 class HostInverse {
  public:
-  /// Of a body's stiffness, elements scaled as in assemble_lower.
-  HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense);
+  /// Of a body's stiffness, elements scaled as in assemble_lower. Throws fem::Stopped when the work
+  /// was given up.
+  HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense,
+              const fem::FactorWork& work = {});
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
+  /// The same for differences of unit vectors, into `to`, shape (n x vectors).
+  void differences(std::span<const engine::Difference> vectors,
+                   Eigen::Ref<Eigen::MatrixXd> to) const;
   [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
-  /// Of the diagonal; a dense inverse only.
-  [[nodiscard]] std::vector<double> roots() const;
   [[nodiscard]] bool is_dense() const { return dense_.size() > 0; }
   [[nodiscard]] const fem::Factor& factor() const { return factor_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -28,9 +32,7 @@ class HostInverse {
   Eigen::MatrixXd dense_;  // empty: too large
 };
 
-/// Fills `device` with it, in storage precision; returns the roots of its diagonal in fp64, for `n`
-/// unknowns.
-[[nodiscard]] std::vector<double> upload_inverse(const HostInverse& host, DenseInverse& device,
-                                                 Index n);
+/// Fills `device` with it, in storage precision.
+void upload_inverse(const HostInverse& host, DenseInverse& device);
 
 }  // namespace sunder::gpu

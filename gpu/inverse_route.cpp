@@ -2,23 +2,15 @@
 #include "gpu/inverse_route.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 
+#include "engine/update_vectors.hpp"
 #include "fem/assembly.hpp"
 #include "fem/event_factor.hpp"
 #include "gpu/passes/block_inversion.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
-namespace {
-
-// So many exact columns begin a new base, which replaces the old one so many events later: a frame
-// reads all exact columns, and the inverse of the board takes a thread some 50 frames.
-constexpr Index kColumnsPerBase = 256;
-constexpr int kEventsUntilNext = 24;
-
-}  // namespace
-
 std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Problem& problem,
                                         const InverseOptions& options) {
   const Index n = problem.dof_count();
@@ -27,9 +19,7 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
   std::size_t bytes = base.bytes;
   std::uint32_t capacity = 0;
   const std::size_t grips = problem.gripped_dofs().size();
-  auto picked = static_cast<std::size_t>(options.on_device ? DenseInverse::diagonal_block(n) : 0);
-  if (options.eager) picked = std::max(picked, grips);
-  if (picked > 0) bytes += DenseInverse::planned_pick(picked, picked);
+  if (options.eager && grips > 0) bytes += DenseInverse::planned_pick(grips, grips);
   if (!options.eager) {
     capacity = ExactColumns::planned_capacity(kernels.device().physical(), rows,
                                               static_cast<Index>(grips));
@@ -43,75 +33,97 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
                   base.bytes + planned_inversion_bytes(kernels, n, rows, options.panel_bytes));
 }
 
-InverseRoute::InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
-                           std::shared_ptr<const HostInverse> intact, const InverseOptions& options)
+InverseRoute::InverseRoute(const KernelFactory& kernels, const engine::DamagedBody& body,
+                           Fields& fields, std::shared_ptr<const HostInverse> intact,
+                           const InverseOptions& options, bool damage)
     : kernels_(kernels),
-      problem_(problem),
+      problem_(body.problem()),
+      body_(body),
       fields_(fields),
-      host_(std::move(intact)),
+      intact_(std::move(intact)),
       options_(options),
       eager_(options.eager),
-      base_(kernels, problem.dof_count(), fields.rows(), options.panel_bytes),
+      damage_(damage),
+      base_(kernels, problem_.dof_count(), fields.rows(), options.panel_bytes),
       exact_(kernels, fields.rows()),
+      load_place_(static_cast<std::size_t>(problem_.dof_count()), kNone),
+      residual_(problem_.dof_count()),
       partials_(kernels, fields.rows()),
       add_(kernels, fields),
       commands_(kernels.device()),
       quiet_(kernels.device()),
       checked_(kernels.device()) {
-  next_possible_ = host_->is_dense();
-  make_base({});
+  all_.resize(load_place_.size());
+  std::iota(all_.begin(), all_.end(), 0);
+  fill_base(*intact_, {});
   if (eager_) {
     bind();
     factor_grips();
   } else {
-    defer({});
+    update_ = host_update(body_, intact_, damage_);
+    new_base();
   }
 }
 
-/// X of the body with the elements `destroyed`, and the roots of its diagonal.
-void InverseRoute::make_base(std::span<const Index> destroyed) {
-  ++bases_;
-  base_destroyed_.assign(destroyed.begin(), destroyed.end());
+/// X of the body whose elements are scaled so; empty: intact.
+void InverseRoute::fill_base(const HostInverse& host, std::span<const double> scale) {
   base_stale_ = false;
-  std::vector<double> roots;
   if (options_.on_device) {
-    invert_on_device(kernels_, fem::assemble_lower(problem_, scale_of(destroyed)), fields_.rows(),
+    invert_on_device(kernels_, fem::assemble_lower(problem_, scale), fields_.rows(),
                      options_.panel_bytes, base_);
-    roots = base_.diagonal();
-    for (double& x : roots) x = std::sqrt(x);
   } else {
-    roots = upload_inverse(*host_, base_, problem_.dof_count());
+    upload_inverse(host, base_);
   }
-  fields_.set_roots(roots);
 }
 
-/// The base on the device, which a new one leaves behind until something needs it.
+/// The base on the device, which a new one leaves behind until a load needs it.
 void InverseRoute::ensure_base() {
-  if (!base_stale_) return;
-  static_cast<void>(upload_inverse(*host_, base_, problem_.dof_count()));
-  base_stale_ = false;
-}
-
-std::vector<double> InverseRoute::scale_of(std::span<const Index> destroyed) const {
-  std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
-  for (Index e : destroyed) scale[e] = problem_.scene().fracture.alpha;
-  return scale;
+  if (base_stale_) fill_base(base_of(*update_).inverse(), base_scale_);
 }
 
 void InverseRoute::bind() {
   // The loaded columns never need more chunks than all columns do, one per panel aside.
   partials_.reserve(base_.chunks() + base_.loaded_chunks({}) + exact_.chunk_capacity());
   base_.bind(partials_, fields_.residual());
-  exact_.bind(partials_, fields_.residual());
+  exact_.bind(partials_);
   exact_.bind_solve(fields_.positions(), fields_.nodal(Field::displacement));
   sum_displacement_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::displacement));
   sum_correction_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::correction));
   quiet_.columns = checked_.columns = kNone;
 }
 
+/// The columns of the update's present base, in place of those of the one before.
+void InverseRoute::new_base() {
+  bases_ = update_->bases();
+  exact_.clear();
+  exact_.reserve();
+  place_.clear();
+  std::fill(load_place_.begin(), load_place_.end(), kNone);
+  sum_displacement_.reset();
+  extend_exact();
+}
+
+/// Brings the columns that the update has gained to the device.
 void InverseRoute::extend_exact() {
-  const bool moved = exact_.extend(correction_->columns(), correction_->dofs());
+  const HostBase& base = base_of(*update_);
+  const Index before = static_cast<Index>(place_.size());
+  for (Index c = before; c < base.count(); ++c) place_.push_back(exact_.count() + c - before);
+  const bool moved = exact_.append(base.columns().middleCols(before, base.count() - before));
   if (moved || !sum_displacement_) bind();
+}
+
+/// Gives a load of few unknowns columns of its own, so that its solution is exact.
+void InverseRoute::hold_loads(const Load& load) {
+  if (load.force_dofs.size() > kExactLoads) return;
+  std::vector<Index> added;
+  for (Index d : load.force_dofs) {
+    if (load_place_[d] == kNone) added.push_back(d);
+  }
+  if (added.empty() || exact_.count() + static_cast<Index>(added.size()) > exact_.most()) return;
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    load_place_[added[i]] = exact_.count() + static_cast<Index>(i);
+  }
+  if (exact_.append(base_of(*update_).inverse().columns(added))) bind();
 }
 
 void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) {
@@ -121,44 +133,42 @@ void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) 
   commands_.barrier();
 }
 
-void InverseRoute::record_state(bool balance) {
-  fields_.record_state(commands_, balance);
-  if (!balance || eager_) return;
-  commands_.pass("residual");
-  exact_.record_project(commands_);
-}
-
-int InverseRoute::solve(const Load& load, bool balance) {
+int InverseRoute::solve(const Load& load, double enough, bool balance) {
   last_ = &commands_;
   if (eager_) {
     solve_eager(load, balance);
   } else {
-    solve_deferred(load, balance);
+    solve_deferred(load, enough, balance);
   }
   return 0;
 }
 
-std::optional<EnergyBound> InverseRoute::energy_bound() const {
-  if (eager_) return std::nullopt;
-  // A^-1 = X + X_E M X_E^T, and r^T X r <= (sum of |r_j| sqrt(X_jj))^2 in the norm of X.
-  const double of_base = fields_.state().energy_root;
-  const double of_damage = correction_->energy(exact_.projection());
-  const double of_touched = correction_->base_energy(exact_.values());
-  return EnergyBound{std::sqrt(of_base * of_base + of_damage), of_base,
-                     std::sqrt(of_touched) + std::sqrt(of_damage)};
+/// Of the exact columns; returns what of the load has none.
+Loaded InverseRoute::set_coefficients(const Load& load, const Eigen::VectorXd& of_damage) {
+  coefficients_.setZero(exact_.count());
+  for (std::size_t i = 0; i < place_.size(); ++i) {
+    coefficients_[place_[i]] = of_damage[static_cast<Index>(i)];
+  }
+  Loaded rest;
+  for (std::size_t i = 0; i < load.force_dofs.size(); ++i) {
+    const Index at = load_place_[load.force_dofs[i]];
+    if (at != kNone) {
+      coefficients_[at] = load.forces[i];
+    } else {
+      rest.dofs.push_back(load.force_dofs[i]);
+      rest.values.push_back(load.forces[i]);
+    }
+  }
+  exact_.set_coefficients(coefficients_);
+  return rest;
 }
 
-void InverseRoute::solve_deferred(const Load& load, bool balance) {
-  Loaded loaded{load.force_dofs, load.forces};
-  const Index added = correction_->new_dofs(loaded.dofs);
-  if (added > 0 && loaded.dofs.size() <= kExactLoads &&
-      correction_->count() + added <= exact_.most()) {
-    correction_->extend(loaded.dofs);
-    extend_exact();
-  }
-  Eigen::VectorXd c = correction_->coefficients(correction_->project(loaded), load.displacements);
-  c += correction_->take_exact(loaded);
-  exact_.set_coefficients(c);
+void InverseRoute::solve_deferred(const Load& load, double enough, bool balance) {
+  update_->loaded(load);
+  hold_loads(load);
+  const Loaded loaded = set_coefficients(
+      load,
+      update_->deferred().coefficients({load.force_dofs, load.forces}, load.displacements, enough));
   if (loaded.dofs.empty() && exact_.whole_in_one()) {
     solve_on_exact(balance);
     return;
@@ -173,7 +183,7 @@ void InverseRoute::solve_deferred(const Load& load, bool balance) {
   chunks += exact_.record_apply(commands_, chunks);
   record_solution(Field::displacement, chunks, false);
   fields_.record_hold(commands_, Field::displacement);
-  record_state(balance);
+  fields_.record_state(commands_, balance);
   commands_.end();
   commands_.submit();
 }
@@ -193,10 +203,6 @@ void InverseRoute::solve_on_exact(bool balance) {
     commands.barrier();
     fields_.record_hold(commands, Field::displacement);
     fields_.record_state(commands, balance);
-    if (balance) {
-      commands.pass("residual");
-      exact_.record_project(commands);
-    }
     commands.end();
   }
   fields_.kept();
@@ -220,31 +226,32 @@ void InverseRoute::solve_eager(const Load& load, bool balance) {
     record_solution(Field::displacement, base_.record_loaded(commands_, 0), true);
   }
   fields_.record_hold(commands_, Field::displacement);
-  record_state(balance);
+  fields_.record_state(commands_, balance);
   commands_.end();
   commands_.submit();
 }
 
 int InverseRoute::correct() {
-  // Where a processor emulates the device its host applies the factor for a twentieth of what the
-  // dense product takes.
-  if (!eager_ && kernels_.emulated()) {
-    correct_on_host();
+  if (eager_) {
+    correct_eager();
     return 0;
   }
-  ensure_base();
-  if (!eager_) {
-    exact_.set_coefficients(correction_->coefficients(exact_.projection(), {}));
-  }
+  fields_.residual().read(std::span<double>(residual_.data(), all_.size()));
+  update_->deferred().correct({all_, {residual_.data(), all_.size()}}, correction_);
+  fields_.write_unknowns(Field::correction, correction_);
   commands_.begin();
   commands_.pass("estimate");
-  std::uint32_t chunks = base_.record_dense(commands_, 0);
-  if (!eager_) {
-    commands_.barrier();
-    chunks += exact_.record_apply(commands_, chunks);
-  }
-  record_solution(Field::correction, chunks, false);
-  if (eager_ && !problem_.gripped_dofs().empty()) {
+  fields_.record_correction(commands_);
+  commands_.end();
+  commands_.submit();
+  return 0;
+}
+
+void InverseRoute::correct_eager() {
+  commands_.begin();
+  commands_.pass("estimate");
+  record_solution(Field::correction, base_.record_dense(commands_, 0), false);
+  if (!problem_.gripped_dofs().empty()) {
     commands_.end();
     commands_.submit();
     base_.set_loaded(grip_forces(Field::correction, {}));
@@ -256,25 +263,6 @@ int InverseRoute::correct() {
   fields_.record_correction(commands_);
   commands_.end();
   commands_.submit();
-  return 0;
-}
-
-void InverseRoute::correct_on_host() {
-  std::vector<double> r(static_cast<std::size_t>(problem_.dof_count()));
-  fields_.residual().read(std::span<double>(r));
-  const Eigen::Map<const Eigen::VectorXd> residual(r.data(), problem_.dof_count());
-  Eigen::VectorXd du = host_->factor().solve(residual);
-  if (const Index count = correction_->count(); count > 0) {
-    du +=
-        correction_->columns().leftCols(count) * correction_->coefficients(exact_.projection(), {});
-  }
-  fields_.write_unknowns(Field::correction, du);
-  commands_.begin();
-  commands_.pass("estimate");
-  fields_.record_hold(commands_, Field::correction);
-  fields_.record_correction(commands_);
-  commands_.end();
-  commands_.submit();
 }
 
 void InverseRoute::add_correction() {
@@ -282,7 +270,7 @@ void InverseRoute::add_correction() {
   commands_.pass("refine");
   add_.record(commands_);
   commands_.barrier();
-  record_state(true);
+  fields_.record_state(commands_, true);
   commands_.end();
   commands_.submit();
 }
@@ -307,66 +295,49 @@ void InverseRoute::factor_grips() {
   }
 }
 
-void InverseRoute::destroy(std::span<const Index> elements, std::span<const Index> destroyed) {
+void InverseRoute::destroy(std::span<const Index> elements) {
   if (eager_) {
     if (!update_eager(elements)) {
-      defer(destroyed);
-      return;
+      defer();
+    } else {
+      factor_grips();
     }
-    factor_grips();
     return;
   }
-  rebased_ = false;
-  if (next_.valid() && --events_until_next_ == 0 && take_next_base(destroyed)) return;
-  if (correction_->count() + correction_->new_dofs_of(elements) > exact_.most() ||
-      !correction_->destroy(elements)) {
-    rebase(destroyed);
-    return;
-  }
-  extend_exact();
-  const auto grips = static_cast<Index>(problem_.gripped_dofs().size());
-  if (!next_.valid() && next_possible_ && correction_->count() > grips + kColumnsPerBase) {
-    start_next_base(destroyed);
-  }
+  constexpr std::size_t kUnknowns = 12;  // of an element: so many columns at most
+  const auto most = static_cast<Index>(std::min(all_.size(), kUnknowns * elements.size()));
+  update_->destroy(elements, exact_.count() + most > exact_.most());
+  follow_update();
 }
 
-void InverseRoute::start_next_base(std::span<const Index> destroyed) {
-  next_destroyed_.assign(destroyed.begin(), destroyed.end());
-  events_until_next_ = kEventsUntilNext;
-  next_ = std::async(std::launch::async, [&problem = problem_, scale = scale_of(destroyed)] {
-    return std::make_shared<const HostInverse>(problem, scale, true);
-  });
-}
-
-/// The base to come with what was destroyed since it was begun. False: it is none in double
-/// precision, and nothing has changed.
-bool InverseRoute::take_next_base(std::span<const Index> destroyed) {
-  std::shared_ptr<const HostInverse> host;
-  try {
-    host = next_.get();
-  } catch (const NumericalError&) {
-    next_possible_ = false;
-    return false;
+bool InverseRoute::rebase() {
+  if (eager_) {
+    if (std::ranges::count(body_.destroyed(), 1) == 0) return false;
+    defer();
+    return true;
   }
-  auto correction = std::make_unique<Correction>(
-      problem_, [host](std::span<const Index> dofs) { return host->columns(dofs); });
-  if (!correction->destroy(destroyed.subspan(next_destroyed_.size()))) return false;
-  host_ = std::move(host);
-  correction_ = std::move(correction);
-  base_destroyed_ = next_destroyed_;
-  base_stale_ = true;
-  ++bases_;
-  fields_.set_roots(host_->roots());
-  make_exact();
+  if (!update_->rebase()) return false;
+  follow_update();
   return true;
+}
+
+/// What the update has gained since, or its new base.
+void InverseRoute::follow_update() {
+  if (update_->bases() == bases_) {
+    extend_exact();
+    return;
+  }
+  base_stale_ = true;
+  if (options_.on_device) base_scale_.assign(body_.scale().begin(), body_.scale().end());
+  new_base();
 }
 
 /// X += Z Z^T with Z = X W L^-T, L L^T = I - W^T X W, all as it stands on the device. False: the
 /// precision does not carry it, and nothing has changed.
 bool InverseRoute::update_eager(std::span<const Index> elements) {
-  const fem::EventFactor event = fem::event_factor(problem_, elements);
+  const fem::EventFactor event = engine::compressed(fem::event_factor(problem_, elements));
   if (event.dofs.empty()) return true;
-  const Eigen::MatrixXd w = compressed(event.w);
+  const Eigen::MatrixXd& w = event.w;
   Eigen::MatrixXd c = -w.transpose() * base_.pick(event.dofs, event.dofs) * w;
   c.diagonal().array() += 1;
   const Eigen::LLT<Eigen::MatrixXd> llt(c);
@@ -375,55 +346,33 @@ bool InverseRoute::update_eager(std::span<const Index> elements) {
   return true;
 }
 
-bool InverseRoute::restart(std::span<const Index> destroyed) {
-  if (rebased_ || destroyed.empty()) return false;
-  rebase(destroyed);
-  return true;
-}
-
-/// The recipe from here on: a pristine base and all damage so far as one correction.
-void InverseRoute::defer(std::span<const Index> destroyed) {
-  const bool overwritten = eager_;
+/// The recipe from here on: an intact base and all damage so far as one update.
+void InverseRoute::defer() {
   eager_ = false;
-  correction_ = std::make_unique<Correction>(
-      problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });
-  if (!destroyed.empty() && !correction_->destroy(destroyed)) {
-    rebase(destroyed);
-    return;
+  base_stale_ = true;  // events have been worked into it
+  base_scale_.clear();
+  update_ = host_update(body_, intact_, damage_);
+  std::vector<Index> destroyed;
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (body_.destroyed()[e]) destroyed.push_back(e);
   }
-  if (overwritten) make_base({});
-  make_exact();
-}
-
-/// The correction's columns on the device, from the first one on.
-void InverseRoute::make_exact() {
-  exact_.clear();
-  exact_.reserve();
-  sum_displacement_.reset();
-  extend_exact();
-}
-
-/// A new base: the inverse of the body as damaged now, from a factor of its own.
-void InverseRoute::rebase(std::span<const Index> destroyed) {
-  next_ = {};
-  host_ = std::make_shared<HostInverse>(problem_, scale_of(destroyed), !options_.on_device);
-  make_base(destroyed);
-  correction_ = std::make_unique<Correction>(
-      problem_, [host = host_](std::span<const Index> dofs) { return host->columns(dofs); });
-  make_exact();
-  eager_ = false;
-  rebased_ = true;
+  if (!destroyed.empty()) update_->destroy(destroyed);
+  if (options_.on_device && update_->bases() > 1) {
+    base_scale_.assign(body_.scale().begin(), body_.scale().end());
+  }
+  new_base();
 }
 
 std::vector<BufferPlan> InverseRoute::buffers() const {
   std::vector<BufferPlan> plan = {
       {kernels_.fp64() ? "inverse (device, fp64)" : "inverse (device, fp32)", base_.bytes()},
-      {"partial sums (device)", partials_.buffer().bytes()},
-      {"intact factor and inverse (host)", host_->bytes()}};
-  if (correction_) {
-    plan.push_back({"exact columns (device)", exact_.bytes()});
-    plan.push_back({"exact columns and small matrix (host)", correction_->bytes()});
+      {"partial sums (device)", partials_.buffer().bytes()}};
+  if (!update_) {
+    plan.push_back({"factor and inverse of the base (host)", intact_->bytes()});
+    return plan;
   }
+  plan.push_back({"exact columns (device)", exact_.bytes()});
+  for (BufferPlan& b : update_->deferred().buffers()) plan.push_back(std::move(b));
   return plan;
 }
 

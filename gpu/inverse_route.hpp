@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Route inverse: a dense inverse on the device, with the damage either as a correction to it
-// (deferred) or worked into it (eager).
+// (deferred) or worked into it (eager). The small matrices are the host's.
 #pragma once
 
-#include <future>
 #include <memory>
 
-#include "gpu/correction.hpp"
-#include "gpu/host_inverse.hpp"
+#include "gpu/host_update.hpp"
 #include "gpu/passes/add.hpp"
 #include "gpu/passes/exact_columns.hpp"
 #include "gpu/route.hpp"
@@ -22,70 +20,68 @@ struct InverseOptions {
 
 class InverseRoute final : public DeviceRoute {
  public:
-  InverseRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields,
-               std::shared_ptr<const HostInverse> intact, const InverseOptions& options);
+  /// The body must outlive it. `damage`: something can be destroyed.
+  InverseRoute(const KernelFactory& kernels, const engine::DamagedBody& body, Fields& fields,
+               std::shared_ptr<const HostInverse> intact, const InverseOptions& options,
+               bool damage);
 
   /// Device bytes that the route begins with, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
                                                  const Problem& problem,
                                                  const InverseOptions& options);
 
-  int solve(const Load& load, bool balance) override;
-  std::optional<EnergyBound> energy_bound() const override;
-  int bases() const override { return bases_; }
+  int solve(const Load& load, double enough, bool balance) override;
   int correct() override;
   void add_correction() override;
-  void destroy(std::span<const Index> elements, std::span<const Index> destroyed) override;
-  bool restart(std::span<const Index> destroyed) override;
+  void destroy(std::span<const Index> elements) override;
+  bool rebase() override;
 
+  const engine::RenewedUpdate* update() const override { return update_.get(); }
   const Eigen::MatrixXd* grip_factor() const override {
-    return eager_ ? &grips_.matrixLLT() : &correction_->grip_factor();
+    return eager_ ? &grips_.matrixLLT() : DeviceRoute::grip_factor();
   }
   std::string name() const override { return "inverse"; }
-  std::string update() const override { return eager_ ? "eager" : "deferred"; }
+  std::string update_name() const override { return eager_ ? "eager" : "deferred"; }
   std::vector<BufferPlan> buffers() const override;
   std::vector<vulkan::PassTime> pass_times() const override;
 
  private:
-  void make_base(std::span<const Index> destroyed);
-  [[nodiscard]] std::vector<double> scale_of(std::span<const Index> destroyed) const;
+  void fill_base(const HostInverse& host, std::span<const double> scale);
+  void ensure_base();
   void bind();
-  void make_exact();
+  void new_base();
   void extend_exact();
+  void hold_loads(const Load& load);
   void record_solution(Field field, std::uint32_t chunks, bool add);
-  void record_state(bool balance);
-  void solve_deferred(const Load& load, bool balance);
+  void solve_deferred(const Load& load, double enough, bool balance);
+  [[nodiscard]] Loaded set_coefficients(const Load& load, const Eigen::VectorXd& of_damage);
   void solve_on_exact(bool balance);
   void solve_eager(const Load& load, bool balance);
   bool update_eager(std::span<const Index> elements);
+  void correct_eager();
   void factor_grips();
   [[nodiscard]] Loaded grip_forces(Field field, std::span<const double> displacement) const;
-  void defer(std::span<const Index> destroyed);
-  void rebase(std::span<const Index> destroyed);
-  void start_next_base(std::span<const Index> destroyed);
-  bool take_next_base(std::span<const Index> destroyed);
-  void correct_on_host();
-  void ensure_base();
+  void follow_update();
+  void defer();
 
   const KernelFactory& kernels_;
   const Problem& problem_;
+  const engine::DamagedBody& body_;
   Fields& fields_;
-  std::shared_ptr<const HostInverse> host_;  // of the base
+  std::shared_ptr<const HostInverse> intact_;
   InverseOptions options_;
-  bool eager_, rebased_ = false;
-  int bases_ = 0;
-  std::vector<Index> base_destroyed_;  // elements that the base lacks
-  bool base_stale_ = false;            // base_ is that of an earlier one
+  bool eager_, damage_;
+  std::unique_ptr<engine::RenewedUpdate> update_;  // empty while eager
+  int bases_ = 0;                                  // of update_, whose columns are in exact_
+  bool base_stale_ = false;                        // base_ is that of an earlier one
+  std::vector<double> base_scale_;                 // a_e of the body that base_ is to be made of
   DenseInverse base_;
-  // A base to come, computed on a thread of its own while frames go on: started where the exact
-  // columns pass a threshold and taken a fixed number of events later, so that results depend on
-  // the events alone.
-  std::future<std::shared_ptr<const HostInverse>> next_;
-  std::vector<Index> next_destroyed_;
-  int events_until_next_ = 0;
-  bool next_possible_ = true;  // the host holds dense inverses, and they were positive definite
+  // The update's columns and those of loads, as they came: where each column is among them.
   ExactColumns exact_;
-  std::unique_ptr<Correction> correction_;
+  std::vector<Index> place_;       // of the update's columns
+  std::vector<Index> load_place_;  // of each unknown's unit load; kNone: it has none
+  std::vector<Index> all_;         // every unknown: the loads of a residual
+  Eigen::VectorXd coefficients_, residual_, correction_;
   PartialSums partials_;
   std::unique_ptr<vulkan::Binding> sum_displacement_, sum_correction_;
   AddCorrection add_;

@@ -7,17 +7,14 @@
 #include <iomanip>
 #include <sstream>
 
+#include "engine/frame_solver.hpp"
 #include "engine/instrument_block.hpp"
-#include "engine/stress_bounds.hpp"
 #include "gpu/choose_device.hpp"
-#include "gpu/device_body.hpp"
-#include "gpu/frame_check.hpp"
+#include "gpu/device_frame.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
 namespace {
-
-constexpr int kRefinements = 8;
 
 std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int asked) {
   if (options.lent) return vulkan::borrow_device(*options.lent, options.probe);
@@ -38,16 +35,17 @@ class VulkanBackend final : public Backend {
  public:
   VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
       : Backend(problem, std::move(needs)),
+        whole_(problem),
         started_(start_inverse(*problem, options)),
         device_(open_device(options, problem->scene().solver.device)),
         plan_(make_plan(*problem, this->needs(), device_->physical(), options.lent.has_value())),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
         inverse_{plan_.eager, options.panel_bytes,
-                 options.invert_on_device.value_or(plan_.invert_on_device)},
-        check_(*problem, plan_.fp64) {
+                 options.invert_on_device.value_or(plan_.invert_on_device)} {
     device_->set_timing(false);
     body_ = plan_.region ? make_body(plan_.region) : make_body({}, std::move(started_));
+    make_solver();
     force_.assign(body_->fields().rows(), 0.0);
     if (body_->region()) leave_out_the_rest();
     if (options.lent) {
@@ -65,7 +63,7 @@ class VulkanBackend final : public Backend {
     info.driver = device_->physical().driver;
     info.precision = plan_.fp64 ? "fp64" : "fp32";
     info.route = body_->region() ? "condensed" : body_->route().name();
-    info.update = needs().damage ? body_->route().update() : "none";
+    info.update = needs().damage ? body_->route().update_name() : "none";
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
     const FrameCost cost = predicted();
@@ -147,8 +145,14 @@ class VulkanBackend final : public Backend {
 
   [[nodiscard]] std::unique_ptr<DeviceBody> make_body(std::optional<engine::Region> region,
                                                       std::future<IntactInverse> started = {}) {
-    return std::make_unique<DeviceBody>(DeviceSetup{kernels_, plan_, inverse_, needs()}, problem(),
+    return std::make_unique<DeviceBody>(DeviceSetup{kernels_, plan_, inverse_, needs()}, whole_,
                                         std::move(region), std::move(started));
+  }
+
+  void make_solver() {
+    frame_ = std::make_unique<DeviceFrame>(*body_, plan_.fp64);
+    solver_.emplace(body_->part(), *frame_);
+    waited_ms_ = 0;
   }
 
   /// What a host's submit still reads must not be written.
@@ -168,8 +172,7 @@ class VulkanBackend final : public Backend {
     if (body_->region()) whole_load_ = load;
     load_ = body_->load(load);
     solved_ = false;
-    force_squared_ = 0;
-    for (double f : load.forces) force_squared_ += f * f;
+    frame_->set_load(load_, whole_load_);
     for (std::size_t i = 0; i < load_.forces.size(); ++i) {
       force_[load_.force_dofs[i]] = load_.forces[i];
     }
@@ -178,10 +181,12 @@ class VulkanBackend final : public Backend {
 
   SolveReport do_solve() override {
     finish_display();
-    const bool known = check_.known(load_).has_value();
+    const bool known = solver_->known(load_);
     if (!known) body_->fields().keep_next();
     try {
-      SolveReport report = solve_within_tolerance();
+      SolveReport report = solver_->solve(load_);
+      report.waited_ms = waited_ms() - waited_ms_;
+      waited_ms_ += report.waited_ms;
       report.error += plan_.condensing_error;
       if (!known) handed_out_ = handed_out();  // linear in the load, as the rest of the error
       add_handed_out(report);
@@ -190,10 +195,15 @@ class VulkanBackend final : public Backend {
       if (instruments_) publish_instruments();
       return report;
     } catch (const NumericalError&) {
-      check_.event();
+      solver_->event();
       body_->fields().restore();  // results so far stay readable
       throw;
     }
+  }
+
+  double waited_ms() const {
+    const engine::RenewedUpdate* update = body_->route().update();
+    return update ? update->waited_ms() : 0;
   }
 
   /// What rounding on the way out may cost, by the largest stress. No refinement helps against it.
@@ -213,97 +223,6 @@ class VulkanBackend final : public Backend {
     reactions_.resize(body_->part().gripped_dofs().size());
     body_->fields().read_reactions(body_->part().gripped_dofs(), reactions_);
     instruments_->publish(*body_->route().grip_factor(), reactions_, load_.displacements);
-  }
-
-  SolveReport solve_within_tolerance() {
-    SolveReport report = attempt();
-    if (!(report.error <= tolerance()) || is_off(report.error)) {
-      if (body_->route().restart(destroyed_list_)) {
-        const bool polished = report.polished;
-        report = attempt();
-        report.polished = report.polished || polished;
-      }
-      check_.settled(report.error);
-    }
-    if (!(report.error <= tolerance())) {
-      throw NumericalError(
-          "the solution cannot be brought under the tolerance: estimated stress error " +
-          std::to_string(report.error) + ", residual " + std::to_string(report.residual) +
-          "; use precision fp64, raise solver.tolerance or ease contrast, Poisson's ratio or "
-          "slivers");
-    }
-    return report;
-  }
-
-  /// More than the precision promises, more than rounding explains, and more than a fresh base came
-  /// to.
-  bool is_off(double error) const {
-    if (!(error > check_.keeps())) return false;
-    std::vector<double> u(3 * body_->part().mesh().nodes.size());
-    body_->fields().read_displacement(u);
-    double largest = 0;
-    for (double v : u) largest = std::max(largest, std::abs(v));
-    constexpr double kRoundings = 10;
-    return error > kRoundings * engine::stress_of_rounding(body_->part(), largest) /
-                       body_->fields().largest_stress(Field::displacement);
-  }
-
-  /// One solve, refined while that helps and is needed.
-  SolveReport attempt() {
-    SolveReport report;
-    const double target = check_.target();
-    if (const auto known = check_.known(load_)) {
-      report = *known;
-      report.iterations = body_->route().solve(load_, !body_->part().gripped_dofs().empty());
-      if (body_->fields().finite()) return report;
-    }
-    check_.event();
-    report.iterations += body_->route().solve(load_, true);
-    const auto energy = body_->route().energy_bound();
-    const double stress = energy ? body_->fields().largest_stress(Field::displacement) : 0.0;
-    if (energy) {
-      if (const auto error = check_.bounded(load_, *energy, stress, body_->route().bases())) {
-        report.error = *error;
-        report.residual = residual();
-        check_.checked(load_, report);
-        return report;
-      }
-    }
-    for (int refinement = 0;; ++refinement) {
-      report.iterations += body_->route().correct();
-      const double error = estimate();
-      report.residual = residual();
-      if (refinement == 0) {
-        report.polished = !(error <= tolerance());
-      }
-      // A correction that no longer shrinks is rounding: stop there if the promise holds.
-      const bool stalled = refinement > 0 && !(error < report.error / 2);
-      report.error = error;
-      if (refinement == 0 && energy) {
-        check_.estimated(load_, error, *energy, stress, body_->route().bases());
-      }
-      if (refinement == 0 && error <= target) check_.checked(load_, report);
-      if (error <= target || refinement == kRefinements || stalled) return report;
-      body_->route().add_correction();
-    }
-  }
-
-  double estimate() const {
-    if (!std::isfinite(residual())) return residual();
-    double of_u = body_->fields().largest_stress(Field::displacement);
-    double of_du = body_->fields().largest_stress(Field::correction);
-    if (!std::isfinite(of_u)) return of_u;
-    if (body_->region()) {
-      of_u = std::max(of_u, body_->largest_outside(Field::displacement, whole_load_));
-      of_du = std::max(of_du, body_->largest_outside(Field::correction, {}));
-    }
-    return of_du == 0 ? 0.0 : of_du / of_u;
-  }
-
-  double residual() const {
-    const shaders::Summary s = body_->fields().state();
-    const double load = force_squared_ + s.reaction_squared;
-    return load > 0 ? std::sqrt(s.residual_squared / load) : 0.0;
   }
 
   double tolerance() const { return problem().scene().solver.tolerance; }
@@ -335,12 +254,11 @@ class VulkanBackend final : public Backend {
   void do_destroy(std::span<const Index> elements) override {
     finish_display();
     if (body_->region()) follow_outside(elements);
-    check_.event();
+    solver_->event();
     solved_ = false;
     const auto list = body_->on_device(elements);
     destroyed_list_.insert(destroyed_list_.end(), list.begin(), list.end());
-    body_->fields().destroy(list);
-    body_->route().destroy(list, destroyed_list_);
+    body_->destroy(list);
   }
 
   /// What the scene says can be destroyed is in the region; for what else a host destroys it grows.
@@ -369,6 +287,7 @@ class VulkanBackend final : public Backend {
       take_over_state(*other, destroyed);
     } catch (...) {
       body_.swap(other);
+      make_solver();
       number_anew(destroyed);
       throw;
     }
@@ -384,15 +303,12 @@ class VulkanBackend final : public Backend {
   }
 
   void take_over_state(const DeviceBody& before, std::span<const Index> destroyed) {
-    check_ = FrameCheck(problem(), plan_.fp64);
+    make_solver();
     number_anew(destroyed);
     body_->show(before.whole_displacement());
     body_->fields().exclude(body_->on_device(excluded_));
     body_->fields().cut_off(body_->on_device(cut_off_));
-    if (!destroyed_list_.empty()) {
-      body_->fields().destroy(destroyed_list_);
-      body_->route().destroy(destroyed_list_, destroyed_list_);
-    }
+    if (!destroyed_list_.empty()) body_->destroy(destroyed_list_);
     if (!instruments_) return;
     std::shared_ptr<InstrumentForces> forces = instruments_->forces();
     instruments_.emplace(body_->part());
@@ -422,13 +338,16 @@ class VulkanBackend final : public Backend {
     body_->fields().read_reactions(body_->part().gripped_dofs(), reactions);
   }
 
+  std::shared_ptr<const Problem> whole_;
   std::future<IntactInverse> started_;
   std::unique_ptr<vulkan::Device> device_;
   Plan plan_;
   KernelFactory kernels_;
   InverseOptions inverse_;  // of routes inverse and condensed
   std::unique_ptr<DeviceBody> body_;
-  FrameCheck check_;
+  std::unique_ptr<DeviceFrame> frame_;
+  std::optional<engine::FrameSolver> solver_;
+  double waited_ms_ = 0;  // for new bases, as reported so far
   std::unique_ptr<Display> display_;
   Load load_;        // of body_->part()
   Load whole_load_;  // of a region's problem
@@ -441,7 +360,6 @@ class VulkanBackend final : public Backend {
   double handed_out_ = 0;          // of the last solution whose error was estimated
   std::optional<double> loosest_;  // error over the tolerance for what handing out costs
   std::vector<double> force_;      // over the padded unknowns
-  double force_squared_ = 0;
   std::vector<Index> destroyed_list_;
 };
 

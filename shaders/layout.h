@@ -86,11 +86,6 @@ struct DisplayPush {
   uint stress;  // 1: it is there
 };
 
-struct ProjectPush {
-  uint packs;
-  uint capacity;  // of columns
-};
-
 struct SummaryPush {
   uint element_parts;  // partial results of the stress pass
   uint node_parts;     // of the residual pass; 0: none
@@ -180,11 +175,11 @@ SUNDER_WIDE_STRUCT(StressPartial) {
   float handed_out;  // largest bound of what rounding costs a live element's stress, by 2^-24 [MPa]
 };
 
-// Sums over the nodes of one workgroup.
+// Sums over the nodes of one workgroup, and their largest displacement.
 SUNDER_WIDE_STRUCT(NodePartial) {
   WIDE residual_squared;  // over dofs that no grip holds
   WIDE reaction_squared;  // over those that one holds
-  WIDE energy_root;       // sum of |r_j| sqrt(X_jj): bounds sqrt(r^T X r) from above
+  WIDE largest_u;         // in magnitude
   WIDE unused;
 };
 
@@ -194,7 +189,7 @@ SUNDER_WIDE_STRUCT(Summary) {
   WIDE stress_squared;    // infinite when a stress is no number
   WIDE residual_squared;  // of the nodes' partial sums
   WIDE reaction_squared;
-  WIDE energy_root;
+  WIDE largest_u;
   uint any_element, candidate_element;
   uint over;                            // live breakable elements at or over yield
   uint strain, half_tangent, inverted;  // as above

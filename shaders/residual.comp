@@ -12,22 +12,23 @@ IN_DVEC4(1, Blocks, blocks)  // three rows a block; the fourth value of the firs
 IN_WORDS(2, Slices, slices)  // first block of each slice, / 64
 IN_UVEC4(3, Dofs, dofs)      // x, y, z; w: gripped axes as bits
 IN_DVEC4(4, Load, load)      // of each node
-IN_DVEC4(5, Roots, roots)    // sqrt(X_jj) of each node's unknowns
-OUT(6, Balance, dvec4, balance)     // f - K u of each node
-OUT(7, Residual, double, residual)  // r of each unknown
-OUT(8, NodePartials, NodePartial, partials)
+OUT(5, Balance, dvec4, balance)     // f - K u of each node
+OUT(6, Residual, double, residual)  // r of each unknown
+OUT(7, NodePartials, NodePartial, partials)
 
 #ifndef SUNDER_LVP
 shared dvec3 subgroup_sums[kGroup];
 #endif
 
 void leave(dvec3 sums) {
-  sums = dvec3(subgroupAdd(sums.x), subgroupAdd(sums.y), subgroupAdd(sums.z));
+  sums = dvec3(subgroupAdd(sums.x), subgroupAdd(sums.y), subgroupMax(sums.z));
 #ifndef SUNDER_LVP
   if (subgroupElect()) subgroup_sums[gl_SubgroupID] = sums;
   barrier();
   sums = subgroup_sums[0];
-  for (uint s = 1u; s < gl_NumSubgroups; ++s) sums += subgroup_sums[s];
+  for (uint s = 1u; s < gl_NumSubgroups; ++s) {
+    sums = dvec3(sums.xy + subgroup_sums[s].xy, max(sums.z, subgroup_sums[s].z));
+  }
 #endif
   if (leads_part()) partials.data[part()] = NodePartial(sums.x, sums.y, sums.z, 0.0LF);
 }
@@ -45,14 +46,14 @@ void main() {
                  dot(DVEC4(blocks, at + 2u).xyz, d));
   }
   const uvec4 dof = UVEC4(dofs, n);
-  const dvec3 gap = DVEC4(load, n).xyz - k_u, root = DVEC4(roots, n).xyz;
+  const dvec3 gap = DVEC4(load, n).xyz - k_u;
   balance.data[n] = dvec4(gap, 0);
-  dvec3 sums = dvec3(0);  // free squared, held squared, energy root
+  // Free squared, held squared, the largest displacement.
+  dvec3 sums = dvec3(0, 0, max(abs(own.x), max(abs(own.y), abs(own.z))));
   [[unroll]] for (int axis = 0; axis < 3; ++axis) {
     const bool held = dof[axis] == kHeld, gripped = (dof.w >> axis & 1u) != 0u;
     const double squared = held ? 0.0LF : gap[axis] * gap[axis];
-    sums += dvec3(gripped ? 0.0LF : squared, gripped ? squared : 0.0LF,
-                  held || gripped ? 0.0LF : abs(gap[axis]) * root[axis]);
+    sums.xy += dvec2(gripped ? 0.0LF : squared, gripped ? squared : 0.0LF);
     if (!held) residual.data[dof[axis]] = gripped ? 0.0LF : gap[axis];
   }
   leave(sums);

@@ -17,7 +17,7 @@ layout(push_constant) uniform Push { SummaryPush p; };
 struct Found {
   Worst any, candidate;
   REAL stress_squared;
-  REAL3 sums;
+  REAL3 sums;  // the last one: a largest
   uvec3 deformation;  // strain, half_tangent, inverted
   float handed_out;
 };
@@ -27,7 +27,7 @@ void join(inout Found a, Found b) {
   keep_worse(a.any, b.any);
   keep_worse(a.candidate, b.candidate);
   a.stress_squared = max(a.stress_squared, b.stress_squared);
-  a.sums += b.sums;
+  a.sums = REAL3(a.sums.xy + b.sums.xy, max(a.sums.z, b.sums.z));
   a.deformation =
       uvec3(max(a.deformation.xy, b.deformation.xy), a.deformation.z + b.deformation.z);
   a.handed_out = max(a.handed_out, b.handed_out);
@@ -45,13 +45,14 @@ void main() {
   }
   for (uint g = lane; g < p.node_parts; g += kGroup) {
     const NodePartial b = node_partials.data[g];
-    mine.sums += REAL3(b.residual_squared, b.reaction_squared, b.energy_root);
+    mine.sums = REAL3(mine.sums.x + b.residual_squared, mine.sums.y + b.reaction_squared,
+                      max(mine.sums.z, b.largest_u));
   }
   mine.any = subgroup_worst(mine.any);
   mine.candidate = subgroup_worst(mine.candidate);
   mine.stress_squared = subgroupMax(mine.stress_squared);
   mine.handed_out = subgroupMax(mine.handed_out);
-  mine.sums = REAL3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupAdd(mine.sums.z));
+  mine.sums = REAL3(subgroupAdd(mine.sums.x), subgroupAdd(mine.sums.y), subgroupMax(mine.sums.z));
   mine.deformation =
       uvec3(subgroupMax(mine.deformation.x), subgroupMax(mine.deformation.y),
             subgroupAdd(mine.deformation.z));

@@ -406,19 +406,6 @@ void DenseInverse::take_complement(const DenseInverse& other, double scale) {
   }
 }
 
-std::vector<double> DenseInverse::diagonal() {
-  const Index side = diagonal_block(n_);
-  std::vector<double> values;
-  std::vector<Index> dofs;
-  for (Index first = 0; first < n_; first += side) {
-    dofs.resize(static_cast<std::size_t>(std::min(side, n_ - first)));
-    std::iota(dofs.begin(), dofs.end(), first);
-    const Eigen::VectorXd block = pick(dofs, dofs).diagonal();
-    values.insert(values.end(), block.begin(), block.end());
-  }
-  return values;
-}
-
 std::size_t DenseInverse::bytes() const {
   std::size_t bytes = 0;
   for (const Panel& panel : panels_) bytes += panel.matrix.bytes();

@@ -62,8 +62,6 @@ class DenseInverse {
 
   /// Bytes that the first pick() of such a block takes.
   [[nodiscard]] static std::size_t planned_pick(std::size_t rows, std::size_t columns);
-  /// Side of the blocks that diagonal() picks.
-  [[nodiscard]] static Index diagonal_block(Index n) { return std::min<Index>(128, n); }
   /// Of update() by a V of this shape.
   [[nodiscard]] static std::size_t planned_update(const KernelFactory& kernels, std::uint32_t rows,
                                                   std::uint32_t dofs, std::uint32_t rank);
@@ -90,9 +88,6 @@ class DenseInverse {
   void update(std::span<const Index> dofs, const Eigen::MatrixXd& v, float sign = 1);
   /// X = scale (I - other), of the same size; `other` in fp64.
   void take_complement(const DenseInverse& other, double scale);
-
-  /// The diagonal, as it stands on the device.
-  [[nodiscard]] std::vector<double> diagonal();
 
   [[nodiscard]] std::size_t bytes() const;
 

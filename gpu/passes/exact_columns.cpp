@@ -14,7 +14,6 @@ ExactColumns::ExactColumns(const KernelFactory& kernels, std::uint32_t rows)
     : kernels_(kernels),
       rows_(rows),
       dense_(kernels.make_fp64("dense")),
-      project_(kernels.make_fp64("project")),
       solve_(kernels.make_fp64("solve")) {}
 
 namespace {
@@ -55,28 +54,33 @@ std::uint32_t ExactColumns::planned_capacity(const vulkan::PhysicalDevice& devic
 
 std::size_t ExactColumns::planned_bytes(std::uint32_t rows, std::uint32_t capacity) {
   const std::size_t vector = capacity * sizeof(double);
-  return vector * rows + 3 * Buffer::padded(vector) +
-         Buffer::padded(capacity * sizeof(std::uint32_t));
+  return vector * rows + Buffer::padded(vector);
 }
 
 std::uint32_t ExactColumns::chunks() const {
   return round_up(static_cast<std::uint32_t>(count_), shaders::kChunk) / shaders::kChunk;
 }
 
+/// What is there stays.
 void ExactColumns::allocate(std::uint32_t capacity) {
   capacity_ = capacity;
   apply_binding_.reset();
-  project_binding_.reset();
   solve_binding_.reset();
+  const Buffer before = std::move(columns_);
   columns_ =
       Buffer(kernels_.device(), std::size_t{capacity_} * rows_ * sizeof(double), Placement::device);
   zeroed_ = 0;
   coefficients_ = Buffer(kernels_.device(), capacity_ * sizeof(double), Placement::host);
   coefficients_.fill_zero();
-  dofs_ = Buffer(kernels_.device(), capacity_ * sizeof(std::uint32_t), Placement::host);
-  dofs_.fill_zero();
-  projection_ = Buffer(kernels_.device(), 2 * capacity_ * sizeof(double), Placement::host);
-  count_ = 0;
+  if (count_ == 0) return;
+  zeroed_ = static_cast<std::uint32_t>(count_);
+  vulkan::Commands commands(kernels_.device());
+  commands.begin();
+  commands.copy(before.handle(), before.offset(), columns_.handle(), columns_.offset(),
+                std::size_t{zeroed_} * rows_ * sizeof(double));
+  commands.barrier();
+  commands.end();
+  commands.submit();
 }
 
 void ExactColumns::reserve() {
@@ -84,31 +88,28 @@ void ExactColumns::reserve() {
   if (room > capacity_) allocate(room);
 }
 
-bool ExactColumns::extend(const Eigen::MatrixXd& all, std::span<const Index> dofs) {
-  const auto count = static_cast<Index>(dofs.size());
-  bool moved = false;
-  if (static_cast<std::uint32_t>(count) > capacity_) {
+bool ExactColumns::append(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  const Index count = count_ + static_cast<Index>(columns.cols());
+  if (count == count_) return false;
+  const bool moved = static_cast<std::uint32_t>(count) > capacity_;
+  if (moved) {
     allocate(
         grown(capacity_, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(most())));
-    moved = true;
   }
-  if (count == 0) return moved;
-  std::copy(dofs.begin(), dofs.end(), dofs_.mapped<Index>());
   zero_to(round_up(static_cast<std::uint32_t>(count), shaders::kChunk));
-  if (kernels_.device().physical().unified()) {
-    // Rows beyond the unknowns stay zero.
-    for (; count_ < count; ++count_) {
-      columns_.write(
-          std::span<const double>(all.col(count_).data(), static_cast<std::size_t>(all.rows())),
-          static_cast<std::size_t>(count_) * rows_);
+  const auto rows = static_cast<std::size_t>(columns.rows());
+  if (kernels_.device().physical().unified()) {  // rows beyond the unknowns stay zero
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+      columns_.write(std::span<const double>(columns.col(c).data(), rows),
+                     static_cast<std::size_t>(count_ + c) * rows_);
     }
-  } else if (count > count_) {  // one transfer
-    Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(static_cast<Index>(rows_), count - count_);
-    padded.topRows(all.rows()) = all.middleCols(count_, count - count_);
+  } else {  // one transfer
+    Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(static_cast<Index>(rows_), columns.cols());
+    padded.topRows(columns.rows()) = columns;
     columns_.write(std::span<const double>(padded.data(), static_cast<std::size_t>(padded.size())),
                    static_cast<std::size_t>(count_) * rows_);
-    count_ = count;
   }
+  count_ = count;
   return moved;
 }
 
@@ -121,12 +122,10 @@ void ExactColumns::zero_to(std::uint32_t end) {
   zeroed_ = end;
 }
 
-void ExactColumns::bind(const PartialSums& partials, const Buffer& vector) {
+void ExactColumns::bind(const PartialSums& partials) {
   if (capacity_ == 0) return;
   const Buffer* apply[] = {&columns_, &coefficients_, &partials.buffer()};
-  const Buffer* project[] = {&columns_, &vector, &projection_, &dofs_, &vector};
   apply_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *dense_, apply);
-  project_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *project_, project);
 }
 
 void ExactColumns::bind_solve(const Buffer& positions, const Buffer& nodal) {
@@ -160,23 +159,6 @@ std::uint32_t ExactColumns::record_apply(vulkan::Commands& commands,
       shaders::ApplyPush{rows_ / 4, 0, chunks() * shaders::kChunk, 0, first_chunk, 0, capacity_, 0},
       rows_ / shaders::kRowPad, chunks());
   return chunks();
-}
-
-void ExactColumns::record_project(vulkan::Commands& commands) const {
-  if (count_ == 0) return;
-  const std::uint32_t parts = kernels_.parts();
-  commands.dispatch(*project_binding_, shaders::ProjectPush{rows_ / 4, capacity_},
-                    round_up(static_cast<std::uint32_t>(count_), parts) / parts);
-}
-
-Eigen::VectorXd ExactColumns::projection() const {
-  if (count_ == 0) return {};
-  return Eigen::Map<const Eigen::VectorXd>(projection_.mapped<double>(), count_);
-}
-
-Eigen::VectorXd ExactColumns::values() const {
-  if (count_ == 0) return {};
-  return Eigen::Map<const Eigen::VectorXd>(projection_.mapped<double>() + capacity_, count_);
 }
 
 }  // namespace sunder::gpu

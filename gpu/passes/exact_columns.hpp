@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of the pristine inverse in fp64 on the device: those that the correction multiplies
-// (mixed recipe: their coefficients grow to 30 times the load, so they must be exact).
+// Columns of the base's inverse in fp64 on the device: those that the damage, the grips and a few
+// loads multiply (mixed recipe: their coefficients grow to 30 times the load, so they must be
+// exact).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,9 +20,8 @@ class ExactColumns {
 
   /// Columns beyond this do not fit the device's buffers.
   [[nodiscard]] Index most() const;
-  /// Takes over the first columns of `all`, those of `dofs`; those held before are the same and are
-  /// not sent again. Returns true when buffers moved: bind() anew.
-  bool extend(const Eigen::MatrixXd& all, std::span<const Index> dofs);
+  /// Adds columns, shape (n x columns). Returns true when buffers moved: bind() anew.
+  bool append(const Eigen::Ref<const Eigen::MatrixXd>& columns);
   void clear() { count_ = 0; }
   /// Room for the damage to come, so that a frame need not allocate.
   void reserve();
@@ -34,7 +34,7 @@ class ExactColumns {
   [[nodiscard]] std::uint32_t chunks() const;
   /// Chunks that the present capacity may need.
   [[nodiscard]] std::uint32_t chunk_capacity() const { return capacity_ / shaders::kChunk; }
-  void bind(const PartialSums& partials, const vulkan::Buffer& vector);
+  void bind(const PartialSums& partials);
   /// For record_solve(): places of the unknowns in `nodal`.
   void bind_solve(const vulkan::Buffer& positions, const vulkan::Buffer& nodal);
 
@@ -45,10 +45,6 @@ class ExactColumns {
   [[nodiscard]] bool whole_in_one() const;
   /// nodal = columns times coefficients, without partial sums.
   void record_solve(vulkan::Commands& commands) const;
-  /// projection() = columns^T times the bound vector, values() = the vector at the columns' dofs.
-  void record_project(vulkan::Commands& commands) const;
-  [[nodiscard]] Eigen::VectorXd projection() const;
-  [[nodiscard]] Eigen::VectorXd values() const;
 
   [[nodiscard]] std::size_t bytes() const { return columns_.bytes(); }
 
@@ -59,9 +55,9 @@ class ExactColumns {
   void allocate(std::uint32_t capacity);
   void zero_to(std::uint32_t end);
 
-  std::unique_ptr<vulkan::Kernel> dense_, project_, solve_;
-  vulkan::Buffer columns_, coefficients_, dofs_, projection_;  // projection_: values() behind it
-  std::unique_ptr<vulkan::Binding> apply_binding_, project_binding_, solve_binding_;
+  std::unique_ptr<vulkan::Kernel> dense_, solve_;
+  vulkan::Buffer columns_, coefficients_;
+  std::unique_ptr<vulkan::Binding> apply_binding_, solve_binding_;
 };
 
 }  // namespace sunder::gpu

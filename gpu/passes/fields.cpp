@@ -62,7 +62,6 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   kept_ = make(nodal_bytes);
   correction_ = make(nodal_bytes);
   load_ = make(std::size_t{4} * nodes_ * sizeof(double), Placement::host);
-  roots_ = make(std::size_t{4} * nodes_ * sizeof(double));
   residual_ = make(rows_ * sizeof(double));
   balance_ = make(std::size_t{4} * nodes_ * sizeof(double));
   stress_ = make(keep_stress_ ? std::size_t{elements_} * 8 * kernels.real_bytes() : 16);
@@ -83,7 +82,7 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
   std::size_t sum = kernels_.single() ? 0 : matrix_.planned_bytes(preconditioner);
   for (const std::size_t bytes :
        {3 * (nodal + unknowns),  // displacement, kept, correction
-        3 * nodal + unknowns,    // load, roots, balance; residual
+        2 * nodal + unknowns,    // load, balance; residual
         keep_stress_ ? elements * 8 * kernels_.real_bytes() : 16,
         (1 + (norms_ ? elements : 0)) * sizeof(std::uint32_t),  // over yield
         (norms_ ? element_parts_ : 1) * sizeof(shaders::StressPartial),
@@ -186,8 +185,7 @@ void Fields::create_kernels() {
 void Fields::create_residual_pass() {
   residual_pass_.kernel = kernels_.make_fp64("residual");
   const Buffer* buffers[] = {&displacement_, &matrix_.blocks(), &matrix_.slices(), &dofs_,
-                             &load_,         &roots_,           &balance_,         &residual_,
-                             &node_partials_};
+                             &load_,         &balance_,         &residual_,        &node_partials_};
   residual_pass_.binding =
       std::make_unique<vulkan::Binding>(kernels_.device(), *residual_pass_.kernel, buffers);
   balance_gather_ = std::make_unique<Gather>(kernels_, balance_);
@@ -259,7 +257,7 @@ shaders::Summary Fields::state() const {
   if (host_balance_) {
     s.residual_squared = host_balance_->residual_squared();
     s.reaction_squared = host_balance_->reaction_squared();
-    s.energy_root = host_balance_->energy_root();
+    s.largest_u = host_balance_->largest_u();
   }
   return s;
 }
@@ -302,16 +300,6 @@ void Fields::write_unknowns(Field field, const Eigen::VectorXd& values) {
   std::vector<double> padded(4 * problem_.mesh().nodes.size(), 0.0);
   for (Index d = 0; d < problem_.dof_count(); ++d) padded[place_[d]] = values[d];
   write_wide(nodal(field), padded);
-}
-
-void Fields::set_roots(std::span<const double> roots) {
-  if (host_balance_) {
-    host_balance_->set_roots(roots);
-    return;
-  }
-  std::vector<double> nodal(std::size_t{4} * nodes_, 0.0);
-  for (Index d = 0; d < problem_.dof_count(); ++d) nodal[place_[d]] = roots[d];
-  roots_.write(std::span<const double>(nodal));
 }
 
 std::vector<Index> Fields::over_yield() const {
@@ -534,14 +522,14 @@ std::vector<BufferPlan> Fields::buffers() const {
     for (const Buffer* b : list) bytes += b->bytes();
     return bytes;
   };
-  return {{"mesh and element state (device)",
-           sum({&nodes_of_, &shape_, &facts_, &dofs_, &positions_, &roots_})},
-          {"displacement, correction, load, residual (device)",
-           sum({&displacement_, &kept_, &correction_, &load_, &residual_, &balance_})},
-          {"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},
-          {"element stress (device)", stress_.bytes()},
-          {"partial results and summary (device)",
-           sum({&stress_partials_, &node_partials_, &summaries_, &over_})}};
+  return {
+      {"mesh and element state (device)", sum({&nodes_of_, &shape_, &facts_, &dofs_, &positions_})},
+      {"displacement, correction, load, residual (device)",
+       sum({&displacement_, &kept_, &correction_, &load_, &residual_, &balance_})},
+      {"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},
+      {"element stress (device)", stress_.bytes()},
+      {"partial results and summary (device)",
+       sum({&stress_partials_, &node_partials_, &summaries_, &over_})}};
 }
 
 }  // namespace sunder::gpu

@@ -47,8 +47,6 @@ class Fields {
   [[nodiscard]] bool norms() const { return norms_; }
 
   void set_load(std::span<const double> force, std::span<const double> displacements);
-  /// sqrt(X_jj) of every unknown: with them the summary bounds the energy of X r.
-  void set_roots(std::span<const double> roots);
   void destroy(std::span<const Index> elements);
   void exclude(std::span<const Index> elements);
   /// Their deformation no longer counts, from the next record_state() on.
@@ -151,7 +149,7 @@ class Fields {
   std::vector<std::uint32_t> place_;               // host copy of positions_
 
   vulkan::Buffer nodes_of_, shape_, facts_;
-  vulkan::Buffer dofs_, positions_, roots_;
+  vulkan::Buffer dofs_, positions_;
   BlockMatrix matrix_;
   std::unique_ptr<HostBalance> host_balance_;  // empty: the device does it
   bool keep_ = false;

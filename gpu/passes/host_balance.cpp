@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/passes/host_balance.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "fem/assembly.hpp"
 
 namespace sunder::gpu {
@@ -10,16 +13,11 @@ HostBalance::HostBalance(const Problem& problem)
       scale_(problem.mesh().tets.size(), 1.0),
       k_u_(3 * problem.mesh().nodes.size()),
       load_(Eigen::VectorXd::Zero(problem.dof_count())),
-      roots_(load_),
       balance_(load_),
       residual_(load_) {}
 
 void HostBalance::set_load(std::span<const double> force) {
   load_ = Eigen::Map<const Eigen::VectorXd>(force.data(), problem_.dof_count());
-}
-
-void HostBalance::set_roots(std::span<const double> roots) {
-  roots_ = Eigen::Map<const Eigen::VectorXd>(roots.data(), problem_.dof_count());
 }
 
 void HostBalance::destroy(std::span<const Index> elements) {
@@ -28,6 +26,8 @@ void HostBalance::destroy(std::span<const Index> elements) {
 
 void HostBalance::compute(std::span<const double> displacement) {
   fem::apply_stiffness(problem_, scale_, displacement, k_u_);
+  largest_u_ = 0;
+  for (double u : displacement) largest_u_ = std::max(largest_u_, std::abs(u));
   for (Index n = 0; n < problem_.node_count(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
       const Index dof = problem_.dof(n, axis);

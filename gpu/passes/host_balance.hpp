@@ -17,7 +17,6 @@ class HostBalance {
 
   /// Over the unknowns.
   void set_load(std::span<const double> force);
-  void set_roots(std::span<const double> roots);
   void destroy(std::span<const Index> elements);
 
   /// `displacement`: shape (3 * nodes).
@@ -29,12 +28,13 @@ class HostBalance {
   // Sums as in shaders::NodePartial.
   [[nodiscard]] double residual_squared() const { return residual_.squaredNorm(); }
   [[nodiscard]] double reaction_squared() const { return (balance_ - residual_).squaredNorm(); }
-  [[nodiscard]] double energy_root() const { return residual_.cwiseAbs().dot(roots_); }
+  [[nodiscard]] double largest_u() const { return largest_u_; }
 
  private:
   const Problem& problem_;
   std::vector<double> scale_, k_u_;  // a_e; K u at all nodes
-  Eigen::VectorXd load_, roots_, balance_, residual_;
+  Eigen::VectorXd load_, balance_, residual_;
+  double largest_u_ = 0;
 };
 
 }  // namespace sunder::gpu

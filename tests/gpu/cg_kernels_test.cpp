@@ -178,7 +178,7 @@ TEST_P(CgKernels, DispatchesBeyondConvergenceAreEmpty) {
   const Load load{{0}, {1e-3}, {}};
   force[0] = load.forces.front();
   fields.set_load(force, {});
-  const int iterations = route.solve(load, true);
+  const int iterations = route.solve(load, 0, true);
   EXPECT_GT(iterations, 0);
   EXPECT_NE(iterations % 64, 0) << "the recorded iterations were all needed";
 

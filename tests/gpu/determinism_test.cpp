@@ -84,7 +84,7 @@ std::uint64_t bits_of(const Way& way) {
 /// Bytes that the damage since the base takes.
 std::size_t damage_bytes(const Backend& backend) {
   for (const BufferPlan& b : backend.buffers()) {
-    if (b.name == "exact columns and small matrix (host)") return b.bytes;
+    if (b.name == "small matrix of the damage") return b.bytes;
   }
   return 0;
 }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The deferred update of a device: its base and its small matrices are the host's, the product with
+// the base's columns is the device's.
+#pragma once
+
+#include <memory>
+
+#include "engine/renewed_update.hpp"
+#include "gpu/host_base.hpp"
+
+namespace sunder::gpu {
+
+/// Loads of up to so many unknowns get exact columns; a larger one is multiplied by the inverse in
+/// storage precision.
+inline constexpr std::size_t kExactLoads = 64;
+
+/// Over the intact body's inverse, without damage.
+[[nodiscard]] std::unique_ptr<engine::Deferred> intact_update(
+    const Problem& problem, std::shared_ptr<const HostInverse> intact);
+
+/// The same for a body that can be damaged; a dense inverse is made anew beside the frames.
+[[nodiscard]] std::unique_ptr<engine::RenewedUpdate> host_update(
+    const engine::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage);
+
+/// The base that such an update has at present.
+[[nodiscard]] inline const HostBase& base_of(const engine::RenewedUpdate& update) {
+  return static_cast<const HostBase&>(update.deferred().base());
+}
+
+}  // namespace sunder::gpu
