@@ -9,12 +9,13 @@
 
 #include "cpu_reference/choose_route.hpp"
 #include "cpu_reference/cost_model.hpp"
-#include "cpu_reference/cpu_frame.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/frame_fields.hpp"
 #include "cpu_reference/frame_kernels.hpp"
 #include "cpu_reference/routes.hpp"
+#include "engine/condensed_route.hpp"
 #include "engine/frame_solver.hpp"
+#include "engine/host_frame.hpp"
 #include "engine/instrument_block.hpp"
 #include "fem/assembly.hpp"
 #include "sunder/error.hpp"
@@ -48,7 +49,7 @@ class CpuBackend final : public Backend {
         intact_(intact_body(*problem, this->needs(), chosen_)),
         fields_(body_, this->needs(), condensed_region(chosen_, *problem, this->needs())),
         route_(make_route(rest)),
-        frame_(chosen_, body_, intact_ ? &*intact_ : nullptr, *route_, fields_),
+        frame_(body_, *route_, fields_, yardstick(), fall_back()),
         solver_(*problem, frame_) {
     if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (this->needs().pristine) {  // so that the first time allocates no more than the next
@@ -159,10 +160,35 @@ class CpuBackend final : public Backend {
     }
     if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, *intact_);
     if (const engine::Region* region = fields_.region()) {
-      return condensed_route(body_, *intact_, region->dofs, needs().damage, rest);
+      // Without an owner: the intact body outlives the route.
+      return engine::condensed_route(body_, {std::shared_ptr<void>(), &intact_->factor},
+                                     region->dofs, needs().damage, rest);
     }
     if (chosen_.update == Update::eager) return dense_inverse_route(body_, *intact_);
+    fields_.keep_forces();
     return deferred_route(body_, *intact_, chosen_.route == Route::inverse, rest);
+  }
+
+  /// The plain routes are what others are measured by.
+  [[nodiscard]] bool yardstick() const {
+    return (chosen_.route == Route::cg && intact_) ||
+           (chosen_.route == Route::inverse && chosen_.update == Update::eager);
+  }
+
+  /// Conjugate gradients on the intact body.
+  engine::HostFrame::MakeRoute fall_back() {
+    if (chosen_.route == Route::cg || !intact_) return {};
+    return [this] { return conjugate_gradient_route(body_, *intact_); };
+  }
+
+  /// The solution in work holds.
+  void publish() {
+    if (fields_.region() && solver_.everywhere()) {
+      fields_.publish_everywhere(frame_.u());
+      return;
+    }
+    if (!fields_.region() && !fields_.has_forces()) static_cast<void>(fields_.take(frame_.u()));
+    fields_.publish(*route_);
   }
 
   void do_set_load(const Load& load) override { frame_.set_load(load); }
@@ -206,7 +232,7 @@ class CpuBackend final : public Backend {
 
   SolveReport do_solve() override {
     SolveReport report = solver_.solve(frame_.load());
-    frame_.publish(solver_.everywhere());
+    publish();
     report.waited_ms = route_->waited_ms() - waited_ms_;
     waited_ms_ = route_->waited_ms();
     if (instruments_) {
@@ -270,7 +296,7 @@ class CpuBackend final : public Backend {
   std::optional<NeverDamaged> never_damaged_;  // in its place, for the pristine field
   FrameFields fields_;
   std::unique_ptr<InverseRoute> route_;
-  CpuFrame frame_;
+  engine::HostFrame frame_;
   engine::FrameSolver solver_;
   Eigen::VectorXd pristine_force_, pristine_u_;  // of the intact body
   std::optional<engine::InstrumentBlock> instruments_;

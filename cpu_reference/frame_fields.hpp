@@ -8,12 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "cpu_reference/condensed_fields.hpp"
+#include "cpu_reference/routes.hpp"
+#include "engine/condensed_fields.hpp"
+#include "engine/host_fields.hpp"
 #include "engine/stress_kernel.hpp"
 
 namespace sunder::cpu_reference {
 
-class FrameFields {
+class FrameFields final : public engine::HostFields {
  public:
   /// `region`: frames compute these alone of a condensed body.
   FrameFields(const DamagedBody& body, const Needs& needs, std::optional<engine::Region> region);
@@ -21,13 +23,10 @@ class FrameFields {
   /// stored only for those who do. For a body that is not condensed.
   void keep_forces();
 
-  /// Takes the displacement in work and computes its stress. Returns the largest over live
-  /// elements; nothing: nobody needs stress, and forces are not kept.
-  std::optional<double> take(const Eigen::VectorXd& u);
-  /// K u of the displacement in work.
-  void forces(Eigen::VectorXd& f);
-  /// Largest stress over live elements of another displacement.
-  [[nodiscard]] double largest_stress(const Eigen::VectorXd& u);
+  std::optional<double> take(const Eigen::VectorXd& u) override;
+  [[nodiscard]] bool has_forces() const override { return !nodal_forces_.empty(); }
+  void forces(Eigen::VectorXd& f) override;
+  [[nodiscard]] double largest_stress(const Eigen::VectorXd& u) override;
 
   /// The displacement in work holds; the route that solved for it knows it outside a region.
   void publish(const InverseRoute& by);
@@ -51,8 +50,7 @@ class FrameFields {
   void read_stress(std::span<Voigt> stress) const;
   [[nodiscard]] Voigt read_stress(Index element) const;
 
-  /// Null: the body is not condensed.
-  [[nodiscard]] const engine::Region* region() const;
+  [[nodiscard]] const engine::Region* region() const override;
   /// Elements whose stress a frame computes, and the threads that share it.
   [[nodiscard]] std::size_t stressed() const { return kernel_ ? kernel_->size() : 0; }
   [[nodiscard]] std::size_t threads() const;
@@ -65,9 +63,9 @@ class FrameFields {
 
   const DamagedBody& body_;
   const Problem& problem_;
-  mutable std::vector<double> nodal_;                 // outside a region only once read
-  std::vector<double> next_nodal_;                    // in work
-  mutable std::optional<CondensedFields> condensed_;  // computes what is read
+  mutable std::vector<double> nodal_;                         // outside a region only once read
+  std::vector<double> next_nodal_;                            // in work
+  mutable std::optional<engine::CondensedFields> condensed_;  // computes what is read
   std::optional<engine::StressKernel> kernel_;
   std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
   bool fresh_ = false;                       // next_stress_ is that of nodal_

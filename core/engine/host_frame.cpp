@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/cpu_frame.hpp"
+#include "engine/host_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 #include "engine/instrument_block.hpp"
 #include "engine/load_room.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 namespace {
 
-// A full check refines silently down to these stress errors, for the yardstick a tenth of what
-// double precision promises for an intact body; only frames over the scene's tolerance count as
-// polished.
+// A full check refines silently down to these stress errors, for a yardstick and a region, whose
+// next frames rely on it, a tenth of what double precision promises for an intact body; only frames
+// over the scene's tolerance count as polished.
 constexpr double kReferenceError = 1e-10, kDeferredError = 1e-9;
 // What double precision promises of a damaged body; of an estimate half of it (at a contrast of 1e4
 // a solution was a quarter worse than its residual said).
@@ -21,38 +21,31 @@ constexpr double kDamagedError = 1e-8, kEstimated = 5e-9;
 
 }  // namespace
 
-CpuFrame::CpuFrame(const ChosenRoute& chosen, const DamagedBody& body, const IntactBody* intact,
-                   InverseRoute& route, FrameFields& fields)
-    : chosen_(chosen),
-      body_(body),
-      intact_(intact),
+HostFrame::HostFrame(const DamagedBody& body, InverseRoute& route, HostFields& fields,
+                     bool yardstick, MakeRoute fall_back)
+    : body_(body),
       route_(route),
       fields_(fields),
-      anchors_(engine::anchors_of(problem())) {
-  if (by_fields()) fields.keep_forces();
-  engine::reserve(load_, problem());
+      yardstick_(yardstick),
+      fall_back_(std::move(fall_back)),
+      anchors_(anchors_of(problem())) {
+  reserve(load_, problem());
   force_.setZero(problem().dof_count());
   u_ = force_;
   reactions_.assign(problem().gripped_dofs().size(), 0.0);
 }
 
-void CpuFrame::set_load(const Load& load) {
+void HostFrame::set_load(const Load& load) {
   for (Index d : load_.force_dofs) force_[d] = 0;
   load_ = load;
   for (std::size_t i = 0; i < load.forces.size(); ++i) force_[load.force_dofs[i]] = load.forces[i];
 }
 
-engine::Precision CpuFrame::precision() const {
-  return {by_fields() || !intact_ ? kDeferredError : kReferenceError, kDamagedError, kEstimated};
+Precision HostFrame::precision() const {
+  return {yardstick_ || condensed() ? kReferenceError : kDeferredError, kDamagedError, kEstimated};
 }
 
-/// The plain routes are what others are measured by.
-bool CpuFrame::yardstick() const {
-  return (chosen_.route == Route::cg && intact_) ||
-         (chosen_.route == Route::inverse && chosen_.update == Update::eager);
-}
-
-int CpuFrame::solve(double enough, bool) {
+int HostFrame::solve(double enough, bool) {
   route().set_enough(enough);
   const int iterations = route().solve(load_, force_, u_).iterations;
   route().complete(u_);
@@ -61,8 +54,8 @@ int CpuFrame::solve(double enough, bool) {
 }
 
 /// Residual f - K u and reactions of the solution, and its largest stress.
-void CpuFrame::look_at() {
-  if (by_fields()) {
+void HostFrame::look_at() {
+  if (fields_.has_forces()) {
     hand_out();
     fields_.forces(product_);
   } else {
@@ -79,34 +72,34 @@ void CpuFrame::look_at() {
   }
 }
 
-engine::Balance CpuFrame::balance() const {
+Balance HostFrame::balance() const {
   return {r_.norm(), load_squared_, u_.size() > 0 ? u_.cwiseAbs().maxCoeff() : 0.0, largest_};
 }
 
 /// Displacement at all nodes, and its stress.
-void CpuFrame::hand_out() {
+void HostFrame::hand_out() {
   if (const auto largest = fields_.take(u_)) largest_ = *largest;
 }
 
-engine::FrameDevice::Correction CpuFrame::correct() {
+FrameDevice::Correction HostFrame::correct() {
   const Applied applied = route().apply(r_, du_);
   if (!applied.converged) return {std::numeric_limits<double>::infinity(), applied.iterations};
-  return {by_fields() ? fields_.largest_stress(du_) : body_.largest_stress(du_),
+  return {fields_.has_forces() ? fields_.largest_stress(du_) : body_.largest_stress(du_),
           applied.iterations};
 }
 
-void CpuFrame::add_correction() {
+void HostFrame::add_correction() {
   u_ += du_;
   look_at();
 }
 
-bool CpuFrame::fall_back(bool on) {
-  if (chosen_.route == Route::cg || !intact_) return false;
-  cg_ = on ? conjugate_gradient_route(body_, *intact_) : nullptr;
+bool HostFrame::fall_back(bool on) {
+  if (!fall_back_) return false;
+  other_ = on ? fall_back_() : nullptr;
   return true;
 }
 
-engine::FrameDevice::OnRegion CpuFrame::solve_region(double enough) {
+FrameDevice::OnRegion HostFrame::solve_region(double enough) {
   route_.set_enough(enough);
   route_.solve(load_, force_, u_);
   const OnRegion found = on_region();
@@ -117,7 +110,7 @@ engine::FrameDevice::OnRegion CpuFrame::solve_region(double enough) {
   return found;
 }
 
-engine::FrameDevice::OnRegion CpuFrame::on_region() {
+FrameDevice::OnRegion HostFrame::on_region() {
   hand_out();
   OnRegion found;
   for (Index d : fields_.region()->dofs) {
@@ -127,17 +120,8 @@ engine::FrameDevice::OnRegion CpuFrame::on_region() {
   return found;
 }
 
-void CpuFrame::publish(bool everywhere) {
-  if (condensed() && everywhere) {
-    fields_.publish_everywhere(u_);
-    return;
-  }
-  if (!condensed() && !by_fields()) hand_out();
-  fields_.publish(route_);
-}
-
-double CpuFrame::grip_force(std::size_t g) const {
+double HostFrame::grip_force(std::size_t g) const {
   return route_.deferred()->grip_forces()[static_cast<Eigen::Index>(g)];
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

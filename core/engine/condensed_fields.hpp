@@ -6,18 +6,18 @@
 #include <span>
 #include <vector>
 
-#include "cpu_reference/routes.hpp"
+#include "engine/inverse_route.hpp"
 #include "engine/region.hpp"
 #include "engine/whole_solution.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
 class CondensedFields {
  public:
-  CondensedFields(const Problem& problem, engine::Region region);
+  CondensedFields(const Problem& problem, Region region);
   /// Makes room now: frames will ask, such as a criterion that looks around a tip.
   void make_room(bool stress);
-  [[nodiscard]] const engine::Region& region() const { return region_; }
+  [[nodiscard]] const Region& region() const { return region_; }
 
   /// A solution of the route on the region.
   void take(const InverseRoute& route);
@@ -35,19 +35,19 @@ class CondensedFields {
 
  private:
   struct Solution {
-    engine::Equilibrium of;
+    Equilibrium of;
     std::vector<double> nodal;
     bool everywhere = false;  // `nodal` is filled
   };
   void solve(Solution& solution);
 
   const Problem& problem_;
-  engine::Region region_;
+  Region region_;
   Solution displacement_, of_stress_;
   std::vector<Voigt> stress_;
   bool stress_known_ = false;
-  engine::WholeRoom room_;
+  WholeRoom room_;
   Eigen::VectorXd u_;
 };
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

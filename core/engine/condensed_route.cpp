@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "engine/condensed_route.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <optional>
 
-#include "cpu_reference/routes.hpp"
 #include "engine/background_rebase.hpp"
 #include "engine/condensed_update.hpp"
 #include "engine/load_room.hpp"
 #include "engine/whole_solution.hpp"
 #include "fem/assembly.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 namespace {
 
 // Events between the start of a new base and the frame that takes it. For 1,000 unknowns it takes
@@ -42,47 +43,46 @@ constexpr std::size_t kLargestEvent = 512, kUsualEvent = 32;
 // is up to 2e-11 within 30,246 elements and 1e-11 within 119,286, without growth from base to base.
 constexpr double kDrift = 5e-11;
 
-void complete_by(const engine::CondensedBase& base, engine::Equilibrium& whole,
-                 engine::WholeRoom& room, Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
+void complete_by(const CondensedBase& base, Equilibrium& whole, WholeRoom& room,
+                 Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
   base.equilibrium(whole);
-  engine::solve_whole(whole, room, everywhere);
+  solve_whole(whole, room, everywhere);
   for (Index d : base.dofs()) everywhere[d] = u[d];
   u.swap(everywhere);
 }
 
 /// The base below a deferred update of this route.
-engine::CondensedBase& base_of(const engine::Based& based) {
-  return static_cast<engine::CondensedBase&>(based.deferred->base());
+CondensedBase& base_of(const Based& based) {
+  return static_cast<CondensedBase&>(based.deferred->base());
 }
 
-engine::Based lay_over(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
-                       std::unique_ptr<engine::CondensedBase> base, bool damage) {
-  engine::Based based;
+Based lay_over(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
+               std::unique_ptr<CondensedBase> base, bool damage) {
+  Based based;
   based.factor = std::move(factor);
   const Index columns = columns_of_a_base(base->dofs().size());
-  based.deferred = std::make_unique<engine::Deferred>(problem, std::move(base), damage, columns);
+  based.deferred = std::make_unique<Deferred>(problem, std::move(base), damage, columns);
   return based;
 }
 
 /// X_SS by a factor.
-engine::Based condensed_by(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
-                           std::span<const Index> dofs, bool damage) {
-  auto base = std::make_unique<engine::CondensedBase>(factor, dofs);
+Based condensed_by(const Problem& problem, std::shared_ptr<const fem::Factor> factor,
+                   std::span<const Index> dofs, bool damage) {
+  auto base = std::make_unique<CondensedBase>(factor, dofs);
   return lay_over(problem, std::move(factor), std::move(base), damage);
 }
 
-void check_condensed(engine::Based& based, const DamagedBody& body, const Load& load) {
-  engine::Equilibrium whole;
-  engine::WholeRoom room;
+void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
+  Equilibrium whole;
+  WholeRoom room;
   Eigen::VectorXd everywhere;
-  engine::check_base(based, body, load, [&](Eigen::VectorXd& u) {
-    complete_by(base_of(based), whole, room, everywhere, u);
-  });
+  check_base(based, body, load,
+             [&](Eigen::VectorXd& u) { complete_by(base_of(based), whole, room, everywhere, u); });
 }
 
 /// A check of an updated X_SS by the factor's own: what it lacks, in elements within S. What lies
 /// outside follows from the forces on S by that factor, exactly. False: it cannot be had.
-bool check_updated(engine::Based& based, const DamagedBody& body, const Load& load,
+bool check_updated(Based& based, const DamagedBody& body, const Load& load,
                    std::span<const Index> elements) {
   if (elements.empty() || !base_of(based).inside(load.force_dofs)) return false;
   Eigen::VectorXd u, du;
@@ -135,19 +135,19 @@ class NextBase {
   }
 
   /// Copies what the next base is to be made of; `lost`: elements destroyed since the factor.
-  void begin(const engine::Based& last, std::span<const Index> lost) {
+  void begin(const Based& last, std::span<const Index> lost) {
     base_of(last).copy_state(state_);
     last.deferred->copy_damage(damage_);
     lost_.assign(lost.begin(), lost.end());
   }
 
   /// On another thread; holds nothing of the last base afterwards.
-  engine::Based make(const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
+  Based make(const DamagedBody& body, const Load& load, const fem::FactorWork& work) {
     const struct AtEnd {
       NextBase& next;
       ~AtEnd() { next.release(); }
     } at_end{*this};
-    engine::Based based = updated(body.problem(), load);
+    Based based = updated(body.problem(), load);
     if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
     if (based.check.error <= kDrift) return based;
     based = condensed_by(body.problem(),
@@ -164,16 +164,16 @@ class NextBase {
   }
 
  private:
-  engine::Based updated(const Problem& problem, const Load& load) const {
-    return lay_over(problem, state_.factor,
-                    std::make_unique<engine::CondensedBase>(
-                        state_, engine::updated_inverse(state_, damage_, load.force_dofs),
-                        std::make_shared<const engine::LostStiffness>(problem, lost_)),
-                    true);
+  Based updated(const Problem& problem, const Load& load) const {
+    return lay_over(
+        problem, state_.factor,
+        std::make_unique<CondensedBase>(state_, updated_inverse(state_, damage_, load.force_dofs),
+                                        std::make_shared<const LostStiffness>(problem, lost_)),
+        true);
   }
 
-  engine::CondensedState state_;
-  engine::Damage damage_;
+  CondensedState state_;
+  Damage damage_;
   std::vector<Index> lost_;    // elements destroyed since the factor
   std::vector<Index> within_;  // elements within S
 };
@@ -181,12 +181,11 @@ class NextBase {
 /// Deferred update over X_SS.
 class CondensedRoute final : public InverseRoute {
  public:
-  CondensedRoute(const DamagedBody& body, const IntactBody& intact, std::span<const Index> dofs,
-                 bool damage, std::chrono::milliseconds rest)
+  CondensedRoute(const DamagedBody& body, std::shared_ptr<const fem::Factor> intact,
+                 std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest)
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()) {
     std::iota(all_.begin(), all_.end(), 0);
-    // Without an owner: the intact body outlives the route.
-    based_ = condensed_by(body.problem(), {std::shared_ptr<void>(), &intact.factor}, dofs_, damage);
+    based_ = condensed_by(body.problem(), std::move(intact), dofs_, damage);
     intact_ = based_.factor.get();
     make_room(body.problem());
     if (!damage) return;
@@ -211,7 +210,7 @@ class CondensedRoute final : public InverseRoute {
     complete_by(base_of(based_), whole_, room_, everywhere_, u);
   }
 
-  bool equilibrium(engine::Equilibrium& of) const override {
+  bool equilibrium(Equilibrium& of) const override {
     base_of(based_).equilibrium(of);
     return true;
   }
@@ -246,10 +245,10 @@ class CondensedRoute final : public InverseRoute {
     return true;
   }
 
-  const engine::Deferred* deferred() const override { return based_.deferred.get(); }
+  const Deferred* deferred() const override { return based_.deferred.get(); }
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return bases_; }
-  const engine::BaseCheck& base_check() const override { return based_.check; }
+  const BaseCheck& base_check() const override { return based_.check; }
   double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
 
   std::vector<BufferPlan> buffers() const override {
@@ -271,7 +270,7 @@ class CondensedRoute final : public InverseRoute {
 
   /// So that frames allocate nothing, a full check among them.
   void make_room(const Problem& problem) {
-    engine::reserve(load_, problem);
+    reserve(load_, problem);
     whole_.reserve(all_.size(), dofs_.size());
     room_.reserve(problem.dof_count(), dofs_.size());
     everywhere_.resize(problem.dof_count());
@@ -295,25 +294,26 @@ class CondensedRoute final : public InverseRoute {
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
   const fem::Factor* intact_ = nullptr;
   Load load_;  // of the last solution
-  engine::Based based_;
+  Based based_;
   std::vector<Index> lost_;        // elements destroyed since based_.factor
   std::size_t lost_at_start_ = 0;  // of them, when coming_ started
-  engine::Equilibrium whole_;
-  engine::WholeRoom room_;
+  Equilibrium whole_;
+  WholeRoom room_;
   Eigen::VectorXd everywhere_;
   double enough_ = 0;
   int bases_ = 1;
   // Where something can be destroyed.
   std::optional<NextBase> next_;
-  std::optional<engine::BackgroundRebase> coming_;  // last: its thread uses what is above
+  std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
 };
 
 }  // namespace
 
-std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body, const IntactBody& intact,
+std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body,
+                                              std::shared_ptr<const fem::Factor> intact,
                                               std::span<const Index> dofs, bool damage,
                                               std::chrono::milliseconds rest) {
-  return std::make_unique<CondensedRoute>(body, intact, dofs, damage, rest);
+  return std::make_unique<CondensedRoute>(body, std::move(intact), dofs, damage, rest);
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/condensed_fields.hpp"
+#include "engine/condensed_fields.hpp"
 
-#include "cpu_reference/stress.hpp"
 #include "fem/assembly.hpp"
+#include "fem/element.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::engine {
 
-CondensedFields::CondensedFields(const Problem& problem, engine::Region region)
+CondensedFields::CondensedFields(const Problem& problem, Region region)
     : problem_(problem), region_(std::move(region)) {
   for (Solution* s : {&displacement_, &of_stress_}) {  // so that frames allocate nothing
     s->of.reserve(region_.dofs.size(), region_.dofs.size());
@@ -42,7 +42,7 @@ void CondensedFields::publish_stress() {
 
 void CondensedFields::solve(Solution& solution) {
   if (solution.everywhere) return;
-  engine::solve_whole(solution.of, room_, u_);
+  solve_whole(solution.of, room_, u_);
   solution.nodal.resize(problem_.dofs().size());
   fem::scatter(problem_, {u_.data(), static_cast<std::size_t>(u_.size())}, solution.nodal);
   solution.everywhere = true;
@@ -60,7 +60,9 @@ std::span<const Voigt> CondensedFields::stress(std::span<const double> scale) {
   if (stress_known_) return stress_;
   solve(of_stress_);
   stress_.resize(scale.size());
-  element_stress(problem_, scale, of_stress_.nodal, stress_);
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    stress_[e] = scale[e] * fem::stress(problem_, e, of_stress_.nodal);
+  }
   stress_known_ = true;
   return stress_;
 }
@@ -71,4 +73,4 @@ std::size_t CondensedFields::bytes() const {
          stress_.capacity() * sizeof(Voigt);
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::engine
