@@ -87,7 +87,7 @@ void Problem::note_no_board() {
 
 namespace {
 
-/// The scene of a part. Its ground is a copy of its first node, which nothing is ever computed of.
+/// The scene of a part.
 Scene scene_of_part(const Scene& whole, const PartOfBody& part) {
   Scene scene = whole;
   Mesh mesh;
@@ -97,7 +97,6 @@ Scene scene_of_part(const Scene& whole, const PartOfBody& part) {
     place[n] = mesh.node_count();
     mesh.nodes.push_back(whole.mesh.nodes[n]);
   }
-  mesh.nodes.push_back(mesh.nodes.front());
   for (Index e : part.elements) {
     auto tet = whole.mesh.tets[e];
     for (Index& n : tet) n = place[n];
@@ -110,8 +109,8 @@ Scene scene_of_part(const Scene& whole, const PartOfBody& part) {
 
 }  // namespace
 
-Problem::Problem(const Problem& whole, const PartOfBody& part, Surroundings around)
-    : scene_(scene_of_part(whole.scene_, part)), around_(std::move(around)) {
+Problem::Problem(const Problem& whole, const PartOfBody& part)
+    : scene_(scene_of_part(whole.scene_, part)) {
   resolve_materials();
   for (Index e : part.elements) shapes_.push_back(whole.shapes_[e]);
   dof_.assign(3 * mesh().nodes.size(), kNone);

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the device has of a problem's body: all of it or, on route condensed, the region that can
-// break, which numbers unknowns and elements anew; with its fields and the route that solves it.
+// What the device has of a problem's body, with what solves it: all of it (whole_body.hpp) or, on
+// route condensed, the fields of the region that can break (condensed_body.hpp).
 #pragma once
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "engine/region.hpp"
-#include "engine/substructure.hpp"
+#include "engine/frame_device.hpp"
 #include "gpu/inverse_route.hpp"
 #include "gpu/plan.hpp"
 
@@ -22,76 +21,59 @@ using IntactInverse = std::shared_ptr<const HostInverse>;
 struct DeviceSetup {
   const KernelFactory& kernels;
   const Plan& plan;
-  const InverseOptions& inverse;  ///< of routes inverse and condensed
+  const InverseOptions& inverse;
   const Needs& needs;
 };
 
+/// Elements, nodes and unknowns are the problem's.
 class DeviceBody {
  public:
-  /// `region`: what alone goes to the device, none: the whole. `started`: the whole body's inverse
-  /// where it is being computed already, else not valid.
-  DeviceBody(const DeviceSetup& setup, std::shared_ptr<const Problem> whole,
-             std::optional<engine::Region> region, std::future<IntactInverse> started = {});
+  DeviceBody() = default;
+  DeviceBody(const DeviceBody&) = delete;
+  DeviceBody& operator=(const DeviceBody&) = delete;
+  virtual ~DeviceBody() = default;
 
-  /// Problem that the device solves: the whole body's, or the region's with its surroundings.
-  [[nodiscard]] const Problem& part() const { return *part_; }
+  /// What the device computes the fields of, with numbers of its own.
+  [[nodiscard]] virtual const Problem& part() const = 0;
+  [[nodiscard]] virtual Fields& fields() = 0;
+  [[nodiscard]] virtual const Fields& fields() const = 0;
   /// Null: the whole is there.
-  [[nodiscard]] const engine::Substructure* region() const { return region_.get(); }
-  /// The same with its damage.
-  [[nodiscard]] const engine::DamagedBody& damaged() const { return *damaged_; }
-  /// Follows an event, elements as the device numbers them.
-  void destroy(std::span<const Index> elements);
-  [[nodiscard]] Fields& fields() const { return *fields_; }
-  [[nodiscard]] DeviceRoute& route() const { return *route_; }
-  [[nodiscard]] std::vector<BufferPlan> buffers() const;
-
+  [[nodiscard]] virtual const engine::Region* region() const { return nullptr; }
   /// Elements as the device numbers them, without those that are not there; until the next call.
-  [[nodiscard]] std::span<const Index> on_device(std::span<const Index> elements);
-  [[nodiscard]] Index of_whole(std::uint32_t on_device) const;
-  [[nodiscard]] bool holds(Index element) const {
-    return !region_ || region_->element(element) != kNone;
-  }
-  /// A load of the whole as the device has it.
-  [[nodiscard]] Load load(const Load& of_whole);
+  [[nodiscard]] virtual std::span<const Index> on_device(std::span<const Index> elements) = 0;
+  [[nodiscard]] virtual Index of_whole(std::uint32_t on_device) const = 0;
 
-  /// The fields are now those of a solution under this load.
-  void solved(const Load& of_whole);
-  /// Publishes a displacement of all nodes of the whole, and the stress that goes with it.
-  void show(std::span<const double> displacement);
+  /// For the solver of a frame: the load it was given, a solution in work.
+  [[nodiscard]] virtual engine::FrameDevice& frame() = 0;
+  virtual void set_load(const Load& load) = 0;
+  /// The next solution is a new one: what is shown now comes back with restore().
+  virtual void keep() = 0;
+  virtual void restore() = 0;
+  /// The solution in work holds; `everywhere`: not on a region alone.
+  virtual void publish(bool everywhere) = 0;
+  /// The stress of the published solution is what read_stress() says.
+  virtual void publish_stress() {}
+  virtual void destroy(std::span<const Index> elements) = 0;
+  virtual void cut_off(std::span<const Index> elements) { fields().cut_off(on_device(elements)); }
+  /// Outside a region nothing is a candidate.
+  virtual void exclude(std::span<const Index> elements) { fields().exclude(on_device(elements)); }
 
-  /// Displacement of the last solution at all nodes of the whole: outside a region it is solved
-  /// for, once a solution. A region only.
-  [[nodiscard]] std::span<const double> whole_displacement() const;
-  void read_displacement(std::span<double> displacement) const;
-  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;
-  void read_stress(std::span<Voigt> stress) const;
-  [[nodiscard]] Voigt read_stress(Index element) const;
-  /// Largest norm of a field's stress outside the region: the rest may be stiffer and feel what
-  /// the region does not. A region only.
-  [[nodiscard]] double largest_outside(Field field, const Load& of_whole) const;
+  virtual void read_displacement(std::span<double> displacement) const = 0;
+  virtual void read_displacement(std::span<const Index> nodes,
+                                 std::span<Vec3> displacement) const = 0;
+  virtual void read_stress(std::span<Voigt> stress) const = 0;
+  [[nodiscard]] virtual Voigt read_stress(Index element) const = 0;
+  virtual void read_reactions(std::span<double> reactions) const = 0;
+  /// L with L L^T = (A^-1)_GG of the gripped unknowns, a lower triangle; null: there is none.
+  [[nodiscard]] virtual const Eigen::MatrixXd* grip_factor() const = 0;
+  /// Displacement of the intact body at all nodes; needs().pristine only.
+  virtual void solve_pristine(const Load& load, std::span<double> displacement) = 0;
 
-  /// Displacement of the intact body at all nodes of the whole; needs().pristine only.
-  void solve_pristine(const Load& of_whole, std::span<double> displacement) const;
-
- private:
-  void prepare_intact(const DeviceSetup& setup, std::future<IntactInverse> started);
-  void make_route(const DeviceSetup& setup);
-  void read_nodes(std::span<const Index> nodes, std::span<Vec3> displacement) const;
-
-  const KernelFactory& kernels_;
-  const Problem& whole_;
-  std::unique_ptr<engine::Substructure> region_;
-  std::shared_ptr<const Problem> part_;  // the region's or the whole
-  std::unique_ptr<engine::DamagedBody> damaged_;
-  std::unique_ptr<Fields> fields_;
-  IntactInverse intact_;
-  mutable std::unique_ptr<engine::Deferred> pristine_;  // of the intact body: its grips
-  std::unique_ptr<DeviceRoute> route_;
-  std::vector<Index> in_part_;
-  // Of a region: the load of the last solution, and its displacement once read.
-  Load solved_load_;
-  mutable std::vector<double> whole_u_;
-  mutable bool whole_u_known_ = false;
+  [[nodiscard]] virtual std::string route_name() const = 0;
+  [[nodiscard]] virtual std::string update_name() const = 0;
+  [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// Milliseconds that frames have waited for a new base so far.
+  [[nodiscard]] virtual double waited_ms() const = 0;
 };
 
 }  // namespace sunder::gpu

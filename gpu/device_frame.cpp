@@ -17,58 +17,48 @@ constexpr double kFp64Damaged = 1e-8, kFp64Estimated = 5e-9;
 
 }  // namespace
 
-void DeviceFrame::set_load(const Load& load, const Load& whole) {
+void DeviceFrame::set_load(const Load& load) {
   load_ = load;
-  whole_ = whole;
   force_squared_ = 0;
   for (double f : load.forces) force_squared_ += f * f;
 }
 
 engine::Precision DeviceFrame::precision() const {
   if (fp64_) return {kFp64Refined, kFp64Damaged, kFp64Estimated};
-  const double tolerance = body_.part().scene().solver.tolerance;
+  const double tolerance = problem_.scene().solver.tolerance;
   return {std::min(kFp32Refined, tolerance / 2), tolerance, kFp32Refined};
 }
 
 int DeviceFrame::solve(double enough, bool residual) {
-  const bool reactions = !body_.part().gripped_dofs().empty();
-  return body_.route().solve(load_, enough, residual || reactions);
+  const bool reactions = !problem_.gripped_dofs().empty();
+  return route_.solve(load_, enough, residual || reactions);
 }
 
 engine::Balance DeviceFrame::balance() const {
-  const shaders::Summary s = body_.fields().state();
+  const shaders::Summary s = fields_.state();
   return {std::sqrt(s.residual_squared), force_squared_ + s.reaction_squared, s.largest_u,
-          body_.fields().largest_stress(Field::displacement)};
-}
-
-double DeviceFrame::largest_everywhere() const {
-  const double largest = body_.fields().largest_stress(Field::displacement);
-  return body_.region() ? std::max(largest, body_.largest_outside(Field::displacement, whole_))
-                        : largest;
+          fields_.largest_stress(Field::displacement)};
 }
 
 engine::FrameDevice::Correction DeviceFrame::correct() {
   Correction found;
-  found.iterations = body_.route().correct();
-  found.stress = body_.fields().largest_stress(Field::correction);
-  if (body_.region()) {
-    found.stress = std::max(found.stress, body_.largest_outside(Field::correction, {}));
-  }
+  found.iterations = route_.correct();
+  found.stress = fields_.largest_stress(Field::correction);
   return found;
 }
 
 const engine::Deferred* DeviceFrame::deferred() const {
-  const engine::RenewedUpdate* update = body_.route().update();
+  const engine::RenewedUpdate* update = route_.update();
   return update ? &update->deferred() : nullptr;
 }
 
 int DeviceFrame::bases() const {
-  const engine::RenewedUpdate* update = body_.route().update();
+  const engine::RenewedUpdate* update = route_.update();
   return update ? update->bases() : 1;
 }
 
 const engine::BaseCheck& DeviceFrame::base_check() const {
-  const engine::RenewedUpdate* update = body_.route().update();
+  const engine::RenewedUpdate* update = route_.update();
   return update ? update->base_check() : FrameDevice::base_check();
 }
 

@@ -4,35 +4,36 @@
 #pragma once
 
 #include "engine/frame_device.hpp"
-#include "gpu/device_body.hpp"
+#include "gpu/route.hpp"
 
 namespace sunder::gpu {
 
 class DeviceFrame final : public engine::FrameDevice {
  public:
-  /// The body must outlive it. `fp64`: storage precision of the inverse.
-  DeviceFrame(DeviceBody& body, bool fp64) : body_(body), fp64_(fp64) {}
+  /// What it refers to must outlive it. `fp64`: storage precision of the inverse.
+  DeviceFrame(const Problem& problem, Fields& fields, DeviceRoute& route, bool fp64)
+      : problem_(problem), fields_(fields), route_(route), fp64_(fp64) {}
 
-  /// A load as the device numbers its unknowns; `whole`: of a region's problem.
-  void set_load(const Load& load, const Load& whole);
+  void set_load(const Load& load);
 
   [[nodiscard]] engine::Precision precision() const override;
   [[nodiscard]] bool residual_costs() const override { return true; }
   int solve(double enough, bool residual) override;
   [[nodiscard]] engine::Balance balance() const override;
-  [[nodiscard]] double largest_everywhere() const override;
-  [[nodiscard]] bool finite() const override { return body_.fields().finite(); }
+  [[nodiscard]] bool finite() const override { return fields_.finite(); }
   Correction correct() override;
-  void add_correction() override { body_.route().add_correction(); }
-  bool rebase() override { return body_.route().rebase(); }
+  void add_correction() override { route_.add_correction(); }
+  bool rebase() override { return route_.rebase(); }
   [[nodiscard]] const engine::Deferred* deferred() const override;
   [[nodiscard]] int bases() const override;
   [[nodiscard]] const engine::BaseCheck& base_check() const override;
 
  private:
-  DeviceBody& body_;
+  const Problem& problem_;
+  Fields& fields_;
+  DeviceRoute& route_;
   bool fp64_;
-  Load load_, whole_;
+  Load load_;
   double force_squared_ = 0;
 };
 

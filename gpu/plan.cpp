@@ -50,13 +50,6 @@ Extremes extremes(const Problem& problem) {
   return {stiffest / softest, poisson};
 }
 
-/// What condensing the rest of the body in fp64 costs of stress, which no residual over the region
-/// shows. Above all that bench_stability measured (contrast x nu, contrast x crack).
-double condensing_error(const Extremes& materials) {
-  const double c = materials.contrast, b = 1 - 2 * materials.poisson;
-  return 4e-19 * c * c + 2e-17 * c / (b * b);
-}
-
 /// The region of route condensed, where that was asked for or pays by itself.
 std::optional<engine::Region> choose_region(const Problem& problem, const Needs& needs,
                                             bool displayed) {
@@ -67,21 +60,8 @@ std::optional<engine::Region> choose_region(const Problem& problem, const Needs&
         "route condensed keeps a region's fields alone on the device, but the host draws those of "
         "the whole body; use route inverse or cg");
   }
-  const Extremes materials = extremes(problem);
-  const double error = condensing_error(materials);
-  constexpr double kRounding = 1e-10;  // what all that is done in fp64 may cost a torn body
-  const bool holds = error <= std::max(solver.tolerance / 4, kRounding);
-  if (asked && !holds) {
-    std::ostringstream poisson;
-    poisson << std::setprecision(8) << materials.poisson;
-    throw DeviceError("route condensed on Vulkan may lose " + number(error) +
-                      " of stress where Young's moduli differ by a factor of " +
-                      number(materials.contrast) + " and Poisson's ratio is " + poisson.str() +
-                      ", too much for tolerance " + number(solver.tolerance) +
-                      "; use route inverse or backend cpu");
-  }
   const bool possible =
-      solver.route == Route::automatic && solver.update != Update::eager && !displayed && holds;
+      solver.route == Route::automatic && solver.update != Update::eager && !displayed;
   if (!asked && !(possible && needs.damage)) return std::nullopt;
   engine::Region region = engine::region_of(problem, needs);
   if (asked) {
@@ -107,7 +87,6 @@ void choose_route(const Problem& problem, const Needs& needs, const vulkan::Phys
             (asked == Route::automatic && !plan.region && problem.dof_count() > kDenseLimit);
   plan.why = std::to_string(all) + " unknowns";
   if (plan.region) {
-    plan.condensing_error = condensing_error(extremes(problem));
     plan.why += ", of which " + std::to_string(n) + " can break, are loaded or held by instruments";
   }
   plan.why += ": ";
@@ -115,10 +94,9 @@ void choose_route(const Problem& problem, const Needs& needs, const vulkan::Phys
     plan.why += "route cg was asked for";
   } else if (plan.cg) {
     plan.why += "a dense inverse would take " + std::to_string(bytes / 1000000) + " MB";
-  } else if (bytes > device.memory) {
-    throw DeviceError("route " + std::string(plan.region ? "condensed" : "inverse") + " needs " +
-                      std::to_string(bytes) + " bytes for " + std::to_string(n) +
-                      " unknowns, but the device \"" + device.name + "\" has " +
+  } else if (!plan.region && bytes > device.memory) {
+    throw DeviceError("route inverse needs " + std::to_string(bytes) + " bytes for " +
+                      std::to_string(n) + " unknowns, but the device \"" + device.name + "\" has " +
                       std::to_string(device.memory) + "; use route cg");
   } else {
     plan.why +=

@@ -17,7 +17,6 @@ struct Plan {
   bool eager = false;                    ///< the update
   bool cg = false;                       ///< the route: conjugate gradients instead of the inverse
   std::optional<engine::Region> region;  ///< route condensed: what alone is on the device
-  double condensing_error = 0;           ///< of stress, by that route's stiffness of the rest
   bool invert_on_device = false;         ///< the inverse is computed there
   std::string why;
   std::vector<std::string> warnings;

@@ -10,7 +10,8 @@
 #include "engine/frame_solver.hpp"
 #include "engine/instrument_block.hpp"
 #include "gpu/choose_device.hpp"
-#include "gpu/device_frame.hpp"
+#include "gpu/condensed_body.hpp"
+#include "gpu/whole_body.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -35,7 +36,6 @@ class VulkanBackend final : public Backend {
  public:
   VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
       : Backend(problem, std::move(needs)),
-        whole_(problem),
         started_(start_inverse(*problem, options)),
         device_(open_device(options, problem->scene().solver.device)),
         plan_(make_plan(*problem, this->needs(), device_->physical(), options.lent.has_value())),
@@ -44,10 +44,14 @@ class VulkanBackend final : public Backend {
         inverse_{plan_.eager, options.panel_bytes,
                  options.invert_on_device.value_or(plan_.invert_on_device)} {
     device_->set_timing(false);
-    body_ = plan_.region ? make_body(plan_.region) : make_body({}, std::move(started_));
-    make_solver();
-    force_.assign(body_->fields().rows(), 0.0);
-    if (body_->region()) leave_out_the_rest();
+    const DeviceSetup setup{kernels_, plan_, inverse_, this->needs()};
+    if (plan_.region) {
+      body_ = std::make_unique<CondensedBody>(setup, problem, *plan_.region);
+      leave_out_the_rest();
+    } else {
+      body_ = std::make_unique<WholeBody>(setup, problem, std::move(started_));
+    }
+    solver_.emplace(*problem, body_->frame());
     if (options.lent) {
       body_->fields().show();
       display_ = std::make_unique<Display>(kernels_, this->problem(), body_->fields(),
@@ -62,8 +66,8 @@ class VulkanBackend final : public Backend {
     info.device = device_->physical().name;
     info.driver = device_->physical().driver;
     info.precision = plan_.fp64 ? "fp64" : "fp32";
-    info.route = body_->region() ? "condensed" : body_->route().name();
-    info.update = needs().damage ? body_->route().update_name() : "none";
+    info.route = body_->route_name();
+    info.update = needs().damage ? body_->update_name() : "none";
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
     const FrameCost cost = predicted();
@@ -77,8 +81,8 @@ class VulkanBackend final : public Backend {
   std::vector<KernelPlan> kernels() const override { return describe(device_->living_pipelines()); }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override {
-    if (!instruments_ && !body_->part().gripped_dofs().empty() && body_->route().grip_factor()) {
-      instruments_.emplace(body_->part());
+    if (!instruments_ && !problem().gripped_dofs().empty() && body_->grip_factor()) {
+      instruments_.emplace(problem());
       if (solved_) publish_instruments();
     }
     return instruments_ ? instruments_->forces() : nullptr;
@@ -127,32 +131,20 @@ class VulkanBackend final : public Backend {
     FrameShape shape;
     shape.cg = plan_.cg;
     shape.eager = plan_.eager;
-    shape.host_corrects = kernels_.single();
+    shape.host_corrects = kernels_.single() || body_->region() != nullptr;
     shape.damage = needs().damage;
     shape.real_bytes = kernels_.real_bytes();
     shape.rows = body_->fields().rows();
-    shape.grips = body_->part().gripped_dofs().size();
+    shape.grips = problem().gripped_dofs().size();
     for (const InstrumentNodes& i : problem().instrument_nodes()) {
       shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
     }
     shape.loaded -= std::min(shape.loaded, shape.grips);
     shape.elements = body_->part().mesh().tets.size();
-    shape.stiffness_bytes = body_->fields().matrix().bytes();
+    shape.stiffness_bytes = body_->region() ? 0 : body_->fields().matrix().bytes();
     shape.stress = needs().stress;
     shape.norms = body_->fields().norms();
     return shape;
-  }
-
-  [[nodiscard]] std::unique_ptr<DeviceBody> make_body(std::optional<engine::Region> region,
-                                                      std::future<IntactInverse> started = {}) {
-    return std::make_unique<DeviceBody>(DeviceSetup{kernels_, plan_, inverse_, needs()}, whole_,
-                                        std::move(region), std::move(started));
-  }
-
-  void make_solver() {
-    frame_ = std::make_unique<DeviceFrame>(*body_, plan_.fp64);
-    solver_.emplace(body_->part(), *frame_);
-    waited_ms_ = 0;
   }
 
   /// What a host's submit still reads must not be written.
@@ -161,49 +153,37 @@ class VulkanBackend final : public Backend {
   }
 
   void leave_out_the_rest() {
-    for (std::string& what : engine::left_out_of(problem(), body_->region()->region())) {
+    for (std::string& what : engine::left_out_of(problem(), *body_->region())) {
       leave_out(std::move(what));
     }
   }
 
   void do_set_load(const Load& load) override {
     finish_display();
-    for (Index d : load_.force_dofs) force_[d] = 0;
-    if (body_->region()) whole_load_ = load;
-    load_ = body_->load(load);
+    load_ = load;
     solved_ = false;
-    frame_->set_load(load_, whole_load_);
-    for (std::size_t i = 0; i < load_.forces.size(); ++i) {
-      force_[load_.force_dofs[i]] = load_.forces[i];
-    }
-    body_->fields().set_load(force_, load_.displacements);
+    body_->set_load(load);
   }
 
   SolveReport do_solve() override {
     finish_display();
     const bool known = solver_->known(load_);
-    if (!known) body_->fields().keep_next();
+    if (!known) body_->keep();
     try {
       SolveReport report = solver_->solve(load_);
-      report.waited_ms = waited_ms() - waited_ms_;
-      waited_ms_ += report.waited_ms;
-      report.error += plan_.condensing_error;
+      body_->publish(solver_->everywhere());
+      report.waited_ms = body_->waited_ms() - waited_ms_;
+      waited_ms_ = body_->waited_ms();
       if (!known) handed_out_ = handed_out();  // linear in the load, as the rest of the error
       add_handed_out(report);
-      body_->solved(whole_load_);
       solved_ = true;
       if (instruments_) publish_instruments();
       return report;
     } catch (const NumericalError&) {
       solver_->event();
-      body_->fields().restore();  // results so far stay readable
+      body_->restore();  // results so far stay readable
       throw;
     }
-  }
-
-  double waited_ms() const {
-    const engine::RenewedUpdate* update = body_->route().update();
-    return update ? update->waited_ms() : 0;
   }
 
   /// What rounding on the way out may cost, by the largest stress. No refinement helps against it.
@@ -220,14 +200,15 @@ class VulkanBackend final : public Backend {
 
   /// Only once somebody has asked for them: the reactions are read back from the device.
   void publish_instruments() {
-    reactions_.resize(body_->part().gripped_dofs().size());
-    body_->fields().read_reactions(body_->part().gripped_dofs(), reactions_);
-    instruments_->publish(*body_->route().grip_factor(), reactions_, load_.displacements);
+    reactions_.resize(problem().gripped_dofs().size());
+    body_->read_reactions(reactions_);
+    instruments_->publish(*body_->grip_factor(), reactions_, load_.displacements);
   }
 
   double tolerance() const { return problem().scene().solver.tolerance; }
 
   StressSummary do_stress() override {
+    body_->publish_stress();
     if (!needs().yield) return {};
     const shaders::Summary s = body_->fields().state();
     const auto worst = [this](double ratio, std::uint32_t element) {
@@ -246,80 +227,20 @@ class VulkanBackend final : public Backend {
 
   void do_cut_off(std::span<const Index> elements) override {
     finish_display();
-    cut_off_.insert(cut_off_.end(), elements.begin(), elements.end());
-    body_->fields().cut_off(body_->on_device(elements));
+    body_->cut_off(elements);
     renew_ = true;
   }
 
   void do_destroy(std::span<const Index> elements) override {
     finish_display();
-    if (body_->region()) follow_outside(elements);
     solver_->event();
     solved_ = false;
-    const auto list = body_->on_device(elements);
-    destroyed_list_.insert(destroyed_list_.end(), list.begin(), list.end());
-    body_->destroy(list);
-  }
-
-  /// What the scene says can be destroyed is in the region; for what else a host destroys it grows.
-  void follow_outside(std::span<const Index> elements) {
-    const std::size_t before = beyond_.size();
-    for (Index e : elements) {
-      if (!body_->holds(e)) beyond_.push_back(e);
-    }
-    if (beyond_.size() == before) return;
-    try {
-      grow();
-    } catch (...) {
-      beyond_.resize(before);
-      throw;
-    }
-  }
-
-  /// The region anew, with the elements `beyond_`. The last solution, damage, load and what is no
-  /// candidate go over to it; nothing changes when it cannot be made.
-  void grow() {
-    std::vector<Index> destroyed;
-    for (Index e : destroyed_list_) destroyed.push_back(body_->of_whole(e));
-    auto other = make_body(engine::region_of(problem(), needs(), beyond_));
-    body_.swap(other);
-    try {
-      take_over_state(*other, destroyed);
-    } catch (...) {
-      body_.swap(other);
-      make_solver();
-      number_anew(destroyed);
-      throw;
-    }
-  }
-
-  /// Load and damage as the region on the device numbers them.
-  void number_anew(std::span<const Index> destroyed) {
-    force_.assign(body_->fields().rows(), 0.0);
-    load_ = {};
-    do_set_load(Load(whole_load_));
-    const auto list = body_->on_device(destroyed);
-    destroyed_list_.assign(list.begin(), list.end());
-  }
-
-  void take_over_state(const DeviceBody& before, std::span<const Index> destroyed) {
-    make_solver();
-    number_anew(destroyed);
-    body_->show(before.whole_displacement());
-    body_->fields().exclude(body_->on_device(excluded_));
-    body_->fields().cut_off(body_->on_device(cut_off_));
-    if (!destroyed_list_.empty()) body_->destroy(destroyed_list_);
-    if (!instruments_) return;
-    std::shared_ptr<InstrumentForces> forces = instruments_->forces();
-    instruments_.emplace(body_->part());
-    instruments_->take_over(std::move(forces));
+    body_->destroy(elements);
   }
 
   void do_exclude_candidates(std::span<const Index> elements) override {
     finish_display();
-    if (body_->region()) excluded_.insert(excluded_.end(), elements.begin(), elements.end());
-    body_->fields().exclude(
-        body_->on_device(elements));  // outside the region nothing is a candidate
+    body_->exclude(elements);
   }
 
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
@@ -335,32 +256,25 @@ class VulkanBackend final : public Backend {
   void do_read_stress(std::span<Voigt> stress) const override { body_->read_stress(stress); }
   Voigt do_read_stress(Index element) const override { return body_->read_stress(element); }
   void do_read_reactions(std::span<double> reactions) const override {
-    body_->fields().read_reactions(body_->part().gripped_dofs(), reactions);
+    body_->read_reactions(reactions);
   }
 
-  std::shared_ptr<const Problem> whole_;
   std::future<IntactInverse> started_;
   std::unique_ptr<vulkan::Device> device_;
   Plan plan_;
   KernelFactory kernels_;
   InverseOptions inverse_;  // of routes inverse and condensed
   std::unique_ptr<DeviceBody> body_;
-  std::unique_ptr<DeviceFrame> frame_;
   std::optional<engine::FrameSolver> solver_;
   double waited_ms_ = 0;  // for new bases, as reported so far
   std::unique_ptr<Display> display_;
-  Load load_;        // of body_->part()
-  Load whole_load_;  // of a region's problem
-  // Of a region's problem: what has been destroyed outside the region planned, and excluded.
-  std::vector<Index> beyond_, excluded_, cut_off_;
+  Load load_;
   bool renew_ = false;  // the summary was made before the last pieces were cut off
   std::optional<engine::InstrumentBlock> instruments_;  // once asked for
   std::vector<double> reactions_;
   bool solved_ = false;            // the load and the damage as they are
   double handed_out_ = 0;          // of the last solution whose error was estimated
   std::optional<double> loosest_;  // error over the tolerance for what handing out costs
-  std::vector<double> force_;      // over the padded unknowns
-  std::vector<Index> destroyed_list_;
 };
 
 }  // namespace

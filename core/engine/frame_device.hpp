@@ -41,8 +41,6 @@ class FrameDevice {
   virtual int solve(double enough, bool residual) = 0;
   /// Of the solution in work.
   [[nodiscard]] virtual Balance balance() const = 0;
-  /// Largest stress of that solution where a frame does not look; else what balance() says.
-  [[nodiscard]] virtual double largest_everywhere() const { return balance().largest_stress; }
   /// Whether the solution in work is made of numbers, where its residual was left out.
   [[nodiscard]] virtual bool finite() const { return true; }
 

@@ -143,13 +143,15 @@ void FrameSolver::check_fully(SolveReport& report) {
 void FrameSolver::refine(SolveReport& report, bool by_base) {
   report.error = std::numeric_limits<double>::infinity();
   for (int attempt = 0;; ++attempt) {
-    double stress = report.residual;  // overflow
-    if (std::isfinite(report.residual)) {
+    double stress = std::numeric_limits<double>::infinity();  // overflow
+    if (std::isfinite(report.residual) && std::isfinite(balance_.largest_stress)) {
       const FrameDevice::Correction correction = device_.correct();
       report.iterations += correction.iterations;
       stress = correction.stress;
     }
-    const double error = stress == 0 ? 0.0 : stress / device_.largest_everywhere();
+    const double error = stress == 0             ? 0.0
+                         : std::isfinite(stress) ? stress / balance_.largest_stress
+                                                 : stress;
     if (attempt == 0) {
       unrefined_ = error;
       if (check_ && by_base) check_->checked(*load_, solution(), stress, device_.bases());

@@ -22,27 +22,6 @@ void add_element(const Problem& problem, Index e, const ElementMatrix& k,
   }
 }
 
-/// y += C u over the unknowns that the rest of the body touches.
-void add_surroundings(const Problem& problem, std::span<const double> u, std::span<double> y) {
-  const Surroundings& around = problem.surroundings();
-  if (around.dofs.empty()) return;
-  std::vector<double> unknowns(static_cast<std::size_t>(problem.dof_count()));
-  gather(problem, u, unknowns);
-  Eigen::VectorXd of_touched(around.stiffness.rows());
-  for (std::size_t i = 0; i < around.dofs.size(); ++i) {
-    of_touched[static_cast<Index>(i)] = unknowns[around.dofs[i]];
-  }
-  const Eigen::VectorXd force = around.stiffness * of_touched;
-  std::fill(unknowns.begin(), unknowns.end(), 0.0);
-  for (std::size_t i = 0; i < around.dofs.size(); ++i) {
-    unknowns[around.dofs[i]] = force[static_cast<Index>(i)];
-  }
-  const auto dofs = problem.dofs();
-  for (std::size_t i = 0; i < dofs.size(); ++i) {
-    if (dofs[i] != kNone) y[i] += unknowns[dofs[i]];
-  }
-}
-
 }  // namespace
 
 SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale) {
@@ -55,13 +34,6 @@ SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scal
   }
   for (Index dof : problem.anchored_dofs()) {
     triplets.emplace_back(dof, dof, problem.anchor_stiffness());
-  }
-  const Surroundings& around = problem.surroundings();
-  for (std::size_t j = 0; j < around.dofs.size(); ++j) {
-    for (std::size_t i = j; i < around.dofs.size(); ++i) {
-      triplets.emplace_back(around.dofs[i], around.dofs[j],
-                            around.stiffness(static_cast<Index>(i), static_cast<Index>(j)));
-    }
   }
   SparseMatrix matrix(problem.dof_count(), problem.dof_count());
   matrix.setFromTriplets(triplets.begin(), triplets.end());
@@ -81,7 +53,6 @@ void apply_stiffness(const Problem& problem, std::span<const double> scale,
       for (int axis = 0; axis < 3; ++axis) y[3 * n + axis] += force(axis, a);
     }
   }
-  add_surroundings(problem, u, y);
 }
 
 void scatter(const Problem& problem, std::span<const double> unknowns, std::span<double> nodal) {

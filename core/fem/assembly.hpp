@@ -14,11 +14,11 @@ namespace sunder::fem {
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
 
 /// Stiffness over the unknowns, shape (dof_count x dof_count), lower triangle only, anchors
-/// and surroundings included. `scale` multiplies each element's K_e (its a_e); empty: intact.
+/// included. `scale` multiplies each element's K_e (its a_e); empty: intact.
 [[nodiscard]] SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale);
 
 /// y = K u over all 3 * node_count entries, supports included (there y is minus the support's
-/// force), surroundings too, anchors left out. Element by element, with `scale` as above: no
+/// force), anchors left out. Element by element, with `scale` as above: no
 /// cancellation between a destroyed element's stiffness and its neighbours'.
 void apply_stiffness(const Problem& problem, std::span<const double> scale,
                      std::span<const double> u, std::span<double> y);

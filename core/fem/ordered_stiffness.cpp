@@ -59,7 +59,7 @@ void OrderedStiffness::follow(std::span<const double> scale) {
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (Index e : around) add(e);
-  add_anchors_and_surroundings();
+  add_anchors();
   for (Index i : entries_) changed_[i] = 0;
   entries_.clear();
 }
@@ -83,23 +83,10 @@ void OrderedStiffness::add(Index element) {
   });
 }
 
-void OrderedStiffness::add_anchors_and_surroundings() {
+void OrderedStiffness::add_anchors() {
   for (Index dof : problem_.anchored_dofs()) {
     const Index i = entry(dof, dof);
     if (i != kNone && changed_[i]) matrix_.valuePtr()[i] += problem_.anchor_stiffness();
-  }
-  const Surroundings& around = problem_.surroundings();
-  const auto changes = [&](Index dof) {
-    const Index i = entry(dof, dof);
-    return i != kNone && changed_[i] != 0;
-  };
-  for (std::size_t j = 0; j < around.dofs.size(); ++j) {
-    if (!changes(around.dofs[j])) continue;
-    for (std::size_t i = j; i < around.dofs.size(); ++i) {
-      const Index at = entry(around.dofs[i], around.dofs[j]);
-      if (at == kNone || !changed_[at]) continue;
-      matrix_.valuePtr()[at] += around.stiffness(static_cast<Index>(i), static_cast<Index>(j));
-    }
   }
 }
 

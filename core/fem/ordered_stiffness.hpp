@@ -33,7 +33,7 @@ class OrderedStiffness {
   [[nodiscard]] Index entry(Index dof, Index other) const;
   void clear(Index element);
   void add(Index element);
-  void add_anchors_and_surroundings();
+  void add_anchors();
 
   const Problem& problem_;
   std::shared_ptr<const Supernodes> nodes_;

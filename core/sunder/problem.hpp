@@ -29,13 +29,6 @@ struct InstrumentNodes {
   std::vector<Index> nodes;  ///< ascending
 };
 
-/// What the rest of a body adds to the stiffness of a part: K_BB - K_BR K_RR^-1 K_RB of what lies
-/// outside, over the part's unknowns B that it touches (static condensation).
-struct Surroundings {
-  std::vector<Index> dofs;    ///< B, ascending unknowns of the part
-  Eigen::MatrixXd stiffness;  ///< [N/mm], symmetric
-};
-
 /// Nodes and elements of a body, ascending. Elements have their corners among the nodes.
 struct PartOfBody {
   std::vector<Index> nodes, elements;
@@ -46,9 +39,9 @@ class Problem {
   /// Checks the scene strictly and resolves all names and selections; turns elements of negative
   /// volume (mesh()). Throws InputError.
   explicit Problem(Scene scene);
-  /// A part of a body, with unknowns, grips and anchors of its own numbering; `around` in that too.
-  /// Its last node belongs to no element and is held: the ground that the surroundings stand on.
-  Problem(const Problem& whole, const PartOfBody& part, Surroundings around);
+  /// A part of a body, with unknowns, grips and anchors of its own numbering: what computes its
+  /// fields. Its stiffness lacks that of the rest.
+  Problem(const Problem& whole, const PartOfBody& part);
   Problem(const Problem&) = delete;  // holds pointers into its own scene
   Problem& operator=(const Problem&) = delete;
 
@@ -87,7 +80,6 @@ class Problem {
   [[nodiscard]] std::span<const Index> anchored_dofs() const { return anchored_dofs_; }
 
   /// Of a part of a body; empty for a whole one.
-  [[nodiscard]] const Surroundings& surroundings() const { return around_; }
 
   [[nodiscard]] const std::vector<InstrumentNodes>& instrument_nodes() const {
     return instrument_nodes_;
@@ -128,7 +120,6 @@ class Problem {
   Index dof_count_ = 0;
   std::vector<Index> gripped_dofs_, anchored_dofs_;
   double anchor_stiffness_ = 0;
-  Surroundings around_;
   std::vector<InstrumentNodes> instrument_nodes_;
   std::vector<std::vector<Index>> crack_elements_, removal_elements_;
   std::vector<std::string> warnings_;

@@ -84,7 +84,6 @@ void BlockMatrix::build_pattern() {
       all[n].insert(problem_.mesh().tets[e].begin(), problem_.mesh().tets[e].end());
     }
   }
-  add_surroundings(all);
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     all[n].erase(static_cast<Index>(n));
     neighbours_[n].assign(all[n].begin(), all[n].end());
@@ -101,54 +100,9 @@ void BlockMatrix::build_pattern() {
   }
 }
 
-void BlockMatrix::add_surroundings(std::vector<std::set<Index>>& all) {
-  const Surroundings& around = problem_.surroundings();
-  if (around.dofs.empty()) return;
-  std::vector<Index> touched;
-  around_.assign(all.size(), {kNone, kNone, kNone});
-  for (Index n = 0; n < problem_.node_count(); ++n) {
-    bool any = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Index dof = problem_.dof(n, axis);
-      const auto at = std::lower_bound(around.dofs.begin(), around.dofs.end(), dof);
-      if (dof == kNone || at == around.dofs.end() || *at != dof) continue;
-      around_[n][axis] = static_cast<Index>(at - around.dofs.begin());
-      any = true;
-    }
-    if (any) touched.push_back(n);
-  }
-  for (Index n : touched) {
-    all[n].insert(touched.begin(), touched.end());
-    all[n].insert(problem_.node_count() - 1);  // the ground
-  }
-}
-
-/// A block of the surroundings' stiffness; towards the ground what makes the row sum to zero.
-Mat3 BlockMatrix::of_surroundings(Index row, Index column) const {
-  const Eigen::MatrixXd& k = problem_.surroundings().stiffness;
-  const bool ground = column == problem_.node_count() - 1;
-  Mat3 value = Mat3::Zero();
-  for (int i = 0; i < 3; ++i) {
-    const Index at = around_[row][i];
-    if (at == kNone) continue;
-    if (!ground) {
-      for (int j = 0; j < 3; ++j) {
-        if (around_[column][j] != kNone) value(i, j) = k(at, around_[column][j]);
-      }
-      continue;
-    }
-    for (Index n = 0; n < column; ++n) {
-      for (int j = 0; j < 3; ++j) {
-        if (around_[n][j] != kNone) value(i, j) -= k(at, around_[n][j]);
-      }
-    }
-  }
-  return value;
-}
-
 /// Sum of a_e V (lambda g_i g_j^T + mu g_j g_i^T + mu g_i.g_j I) over the elements of both nodes.
 Mat3 BlockMatrix::block(Index row, Index column) const {
-  Mat3 sum = around_.empty() ? Mat3(Mat3::Zero()) : of_surroundings(row, column);
+  Mat3 sum = Mat3::Zero();
   for (Index e : elements_of_[row]) {
     const auto& tet = problem_.mesh().tets[e];
     const Index j = corner_of(tet, column);

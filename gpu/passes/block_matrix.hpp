@@ -3,9 +3,7 @@
 // block-Jacobi preconditioner. Rows sum to zero and K u is summed from differences, so that no
 // block is kept on the diagonal; each carries the number of its column. A destroyed element's 16
 // blocks are summed anew, element by element: no cancellation between its remaining stiffness and
-// what was taken out. The rest of a body round a part of it (Surroundings) adds blocks between all
-// nodes that it touches, and blocks to the part's held node: rows sum to zero as they do for
-// elements.
+// what was taken out.
 #pragma once
 
 #include <array>
@@ -42,8 +40,6 @@ class BlockMatrix {
 
  private:
   void build_pattern();
-  void add_surroundings(std::vector<std::set<Index>>& all);
-  [[nodiscard]] Mat3 of_surroundings(Index row, Index column) const;
   [[nodiscard]] Mat3 block(Index row, Index column) const;
   void pack(const Mat3& block, Index column, double* to) const;
   /// Of a row's k-th block, in blocks.
@@ -58,7 +54,6 @@ class BlockMatrix {
   std::vector<double> scale_;                    // a_e
   std::vector<std::vector<Index>> elements_of_;  // per node, ascending
   std::vector<std::vector<Index>> neighbours_;   // per node, ascending
-  std::vector<std::array<Index, 3>> around_;     // per node: rows of Surroundings, empty: none
   std::vector<std::uint32_t> first_;             // of each slice, in rows of 64 blocks
   vulkan::Buffer blocks_, slices_, preconditioner_;
 };

@@ -39,6 +39,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       keep_stress_(needs.stress),
       list_over_(needs.yield),
       norms_(needs.stress || needs.yield || needs.damage || kernels.single()),
+      has_residual_(route.residual),
       rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
       elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
       nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
@@ -47,9 +48,9 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       matrix_(problem) {
   vulkan::Device& device = kernels.device();
   device.require_memory(planned_bytes(route.preconditioner) + route.bytes, "this scene");
-  if (kernels.single()) {
+  if (has_residual_ && kernels.single()) {
     host_balance_ = std::make_unique<HostBalance>(problem);
-  } else {
+  } else if (has_residual_) {
     matrix_.upload(kernels, route.preconditioner);
   }
   const auto make = [&](std::size_t bytes, Placement placement = Placement::device) {
@@ -79,7 +80,7 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
   const std::size_t nodal = std::size_t{4} * nodes_ * sizeof(double);
   const std::size_t unknowns = rows_ * sizeof(double);
   const std::size_t elements = elements_, grips = problem_.gripped_dofs().size();
-  std::size_t sum = kernels_.single() ? 0 : matrix_.planned_bytes(preconditioner);
+  std::size_t sum = kernels_.single() || !has_residual_ ? 0 : matrix_.planned_bytes(preconditioner);
   for (const std::size_t bytes :
        {3 * (nodal + unknowns),  // displacement, kept, correction
         2 * nodal + unknowns,    // load, balance; residual
@@ -175,7 +176,7 @@ void Fields::create_kernels() {
     correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &facts_,
                                                      &stress_, &stress_partials_, &over_});
   }
-  if (!host_balance_) create_residual_pass();
+  if (has_residual_ && !host_balance_) create_residual_pass();
   summary_pass_.kernel = kernels_.make_fp64("summary");
   summary_pass_.binding =
       bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_, &over_});
@@ -375,7 +376,7 @@ void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits)
 void Fields::destroy(std::span<const Index> elements) {
   if (host_balance_) {
     host_balance_->destroy(elements);
-  } else {
+  } else if (has_residual_) {
     matrix_.destroy(elements);
   }
   set_state_bits(elements, shaders::kDestroyed);
@@ -390,7 +391,7 @@ void Fields::cut_off(std::span<const Index> elements) {
 }
 
 void Fields::record_state(vulkan::Commands& commands, bool balance) const {
-  balance = (balance || !norms_) && !host_balance_;
+  balance = (balance || !norms_) && has_residual_ && !host_balance_;
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
   const std::uint32_t node_groups = nodes_ / shaders::kGroup;
   if (norms_) {

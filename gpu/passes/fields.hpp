@@ -27,6 +27,7 @@ class Fields {
   struct RouteNeeds {
     std::size_t bytes = 0;        ///< of its own buffers, at most
     bool preconditioner = false;  ///< of the stiffness
+    bool residual = true;         ///< f - K u, and the stiffness for it
   };
   /// Throws DeviceError, before anything is allocated, when the device's memory cannot hold the
   /// fields and the route's buffers together.
@@ -143,6 +144,7 @@ class Fields {
   const KernelFactory& kernels_;
   const Problem& problem_;
   bool keep_stress_, list_over_, norms_, shown_ = false;
+  bool has_residual_;
   std::uint32_t rows_, elements_, nodes_;          // padded
   std::uint32_t element_parts_, node_parts_;       // partial results
   std::vector<shaders::ElementFacts> facts_host_;  // copy of facts_

@@ -81,15 +81,14 @@ TEST_P(CondensedOnVulkan, AgreesWithADirectSolution) {
             allowed(kCrackTolerance));
 }
 
-// Over a contrast of 1e4 a frame keeps its promise and no more: the stiffness that the rest lends
-// the region is rounded in fp64, which costs stress 3e-7 at 1e6 and shows in no residual over the
-// region.
+// Over a contrast of 1e4 or a ratio of .499 a frame keeps the scene's tolerance, by a margin of 20.
 TEST_P(CondensedOnVulkan, StiffAndNearlyIncompressible) {
   struct Case {
     double contrast, poisson;
   };
   for (const auto& [contrast, poisson] :
-       {Case{1e4, 0.4}, Case{1, 0.499}, Case{1e6, 0.4}, Case{1, 0.4999}}) {
+       {Case{1e4, 0.4}, Case{1, 0.499}, Case{1e6, 0.4}, Case{1, 0.4999}, Case{1e5, 0.4999},
+        Case{1e4, 0.49999}, Case{1e6, 0.4999}}) {
     Scene scene = organ(contrast, poisson);
     add_pull(scene);
     Pair pair(std::move(scene), GetParam());
@@ -98,7 +97,8 @@ TEST_P(CondensedOnVulkan, StiffAndNearlyIncompressible) {
     for (std::size_t done = 0; done < 50; done += 10) {
       pair.destroy(std::span(sequence).subspan(done, 10));
     }
-    expect(pair.solve(), contrast > 1e4 ? 1e-4 : allowed(kCrackTolerance),
+    const bool named = contrast <= 1e4 && poisson <= 0.499;  // by the table of accuracy
+    expect(pair.solve(), allowed(named ? kCrackTolerance : 5e-6),
            "contrast " + std::to_string(contrast) + ", Poisson's ratio " + std::to_string(poisson));
   }
 }
@@ -155,8 +155,7 @@ TEST_P(CondensedOnVulkan, AfterACut) {
   for (double u : Pair::displacement(*pair.vulkan)) ASSERT_TRUE(std::isfinite(u));
 }
 
-// The region grows then: what was destroyed, loaded, excluded and solved goes over to the larger
-// one.
+// The unknowns that the host keeps grow then; the device keeps the region.
 TEST_P(CondensedOnVulkan, DestroysOutsideTheRegion) {
   Scene scene = organ();
   add_pull(scene);
@@ -228,7 +227,7 @@ TEST_F(CondensedChoice, HoldsTheRegionAlone) {
   const auto bytes = [](const Backend& backend) {
     std::size_t inverse = 0, stress = 0;
     for (const BufferPlan& b : backend.buffers()) {
-      if (b.name == "condensed inverse (device, fp32)") inverse = b.bytes;
+      if (b.name == "condensed inverse (dense, |S| x |S|)") inverse = b.bytes;
       if (b.name == "element stress (device)") stress = b.bytes;
     }
     return std::pair(inverse, stress);
@@ -239,8 +238,7 @@ TEST_F(CondensedChoice, HoldsTheRegionAlone) {
   EXPECT_EQ(backend->info().update, "deferred");
   EXPECT_NE(backend->info().why.find("366 can break"), std::string::npos) << backend->info().why;
   const auto [inverse, stress] = bytes(*backend);
-  EXPECT_GE(inverse, 366u * 366u * 4u);
-  EXPECT_LE(inverse, 2 * 512u * 512u * 4u);
+  EXPECT_EQ(inverse, 366u * 366u * 8u);
   EXPECT_EQ(stress, 256u * 8u * 4u);
   std::string left_out;
   for (const std::string& what : backend->needs().left_out) left_out += what + "\n";
@@ -268,24 +266,6 @@ TEST_F(CondensedChoice, TearsAsTheCpuDoes) {
       auto backend = watched.create();
       EXPECT_EQ(backend->info().route, "condensed");
       EXPECT_EQ(destroyed_by(watched.problem, std::move(backend)), reference);
-    }
-  }
-}
-
-// The study of stability found 2e-4 to 6e-2 of stress lost there, with nothing in `error`.
-TEST_F(CondensedChoice, RefusesMaterialsThatCondensingWouldLose) {
-  struct Case {
-    double contrast, poisson;
-    bool holds;
-  };
-  for (const auto& [contrast, poisson, holds] :
-       {Case{1e4, 0.49999, false}, Case{1e6, 0.4999, false}, Case{1e6, 0.49999, false},
-        Case{1e6, 0.4, true}, Case{1e4, 0.499, true}, Case{1, 0.4999, true}}) {
-    const WatchedBackend watched(organ(contrast, poisson), {.route = Route::condensed});
-    if (holds) {
-      EXPECT_TRUE(watched.create()) << contrast << ' ' << poisson;
-    } else {
-      EXPECT_THROW(static_cast<void>(watched.create()), DeviceError) << contrast << ' ' << poisson;
     }
   }
 }

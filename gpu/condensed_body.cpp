@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/condensed_body.hpp"
+
+#include <algorithm>
+
+#include "fem/assembly.hpp"
+
+namespace sunder::gpu {
+
+CondensedBody::CondensedBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
+                             const engine::Region& region)
+    : problem_(*problem),
+      damaged_(std::move(problem)),
+      part_(problem_, region),
+      fields_(setup.kernels, *part_.problem(), setup.needs, {.residual = false}),
+      commands_(setup.kernels.device()),
+      intact_(std::make_shared<const HostInverse>(problem_, std::span<const double>{}, false)),
+      route_(engine::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
+                                     setup.needs.damage, {})),
+      frame_(damaged_, *route_, *this),
+      outside_(problem_, region),
+      nodal_(part_.problem()->dofs().size(), 0.0),
+      next_nodal_(nodal_),
+      whole_nodal_(problem_.dofs().size(), 0.0) {
+  if (setup.needs.pristine) pristine_ = intact_update(problem_, intact_);
+}
+
+std::span<const Index> CondensedBody::on_device(std::span<const Index> elements) {
+  in_part_.clear();
+  for (Index e : elements) {
+    if (part_.element(e) != kNone) in_part_.push_back(part_.element(e));
+  }
+  return in_part_;
+}
+
+std::optional<double> CondensedBody::take(const Eigen::VectorXd& u) {
+  for (std::size_t i = 0; i < part_.nodes().size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem_.dof(part_.nodes()[i], axis);
+      if (d != kNone) next_nodal_[3 * i + static_cast<std::size_t>(axis)] = u[d];
+    }
+  }
+  fields_.write_displacement(next_nodal_);
+  show();
+  return fields_.largest_stress(Field::displacement);
+}
+
+/// Stress and summary of the displacement that is there.
+void CondensedBody::show() {
+  commands_.begin();
+  fields_.record_state(commands_, false);
+  commands_.end();
+  commands_.submit();
+}
+
+void CondensedBody::restore() {
+  fields_.write_displacement(nodal_);
+  show();
+}
+
+void CondensedBody::publish(bool everywhere) {
+  nodal_.swap(next_nodal_);
+  whole_known_ = false;
+  if (!everywhere) {
+    outside_.take(*route_);
+    return;
+  }
+  const Eigen::VectorXd& u = frame_.u();
+  fem::scatter(problem_, {u.data(), static_cast<std::size_t>(u.size())}, whole_nodal_);
+  outside_.take(whole_nodal_);
+  whole_known_ = true;
+}
+
+void CondensedBody::publish_stress() {
+  outside_.publish_stress();
+  stressed_ = true;
+}
+
+void CondensedBody::destroy(std::span<const Index> elements) {
+  // What lies outside the region and has a stress keeps it, whatever it is scaled by from now on.
+  if (stressed_ && on_device(elements).size() < elements.size()) {
+    static_cast<void>(outside_.stress(damaged_.scale()));
+  }
+  fields_.destroy(on_device(elements));
+  damaged_.destroy(elements);
+  route_->destroy(elements);
+}
+
+void CondensedBody::read_displacement(std::span<double> displacement) const {
+  if (!whole_known_) {
+    for (std::size_t i = 0; i < part_.nodes().size(); ++i) {
+      std::copy_n(&nodal_[3 * i], 3, &whole_nodal_[3 * static_cast<std::size_t>(part_.nodes()[i])]);
+    }
+    outside_.complete(whole_nodal_);
+    whole_known_ = true;
+  }
+  std::copy(whole_nodal_.begin(), whole_nodal_.end(), displacement.begin());
+}
+
+void CondensedBody::read_displacement(std::span<const Index> nodes,
+                                      std::span<Vec3> displacement) const {
+  const bool inside = std::ranges::all_of(
+      nodes, [this](Index n) { return outside_.region().inside[n] && part_.node(n) != kNone; });
+  std::vector<double> whole;
+  if (!inside) {
+    whole.resize(whole_nodal_.size());
+    read_displacement(whole);
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    displacement[i] = inside ? Vec3(&nodal_[3 * static_cast<std::size_t>(part_.node(nodes[i]))])
+                             : Vec3(&whole[3 * static_cast<std::size_t>(nodes[i])]);
+  }
+}
+
+void CondensedBody::read_stress(std::span<Voigt> stress) const {
+  const auto whole = outside_.stress(damaged_.scale());
+  std::copy(whole.begin(), whole.end(), stress.begin());
+  std::vector<Voigt> of_part(part_.elements().size());
+  fields_.read_stress(of_part);
+  for (std::size_t i = 0; i < of_part.size(); ++i) stress[part_.elements()[i]] = of_part[i];
+}
+
+Voigt CondensedBody::read_stress(Index element) const {
+  const Index e = part_.element(element);
+  return e != kNone ? fields_.read_stress(e) : outside_.stress(damaged_.scale())[element];
+}
+
+void CondensedBody::read_reactions(std::span<double> reactions) const {
+  std::ranges::copy(frame_.reactions(), reactions.begin());
+}
+
+void CondensedBody::solve_pristine(const Load& load, std::span<double> displacement) {
+  Eigen::VectorXd u;
+  pristine_->solve({load.force_dofs, load.forces}, load.displacements, u);
+  fem::scatter(problem_, {u.data(), static_cast<std::size_t>(u.size())}, displacement);
+}
+
+std::vector<BufferPlan> CondensedBody::buffers() const {
+  std::vector<BufferPlan> plan = route_->buffers();
+  plan.push_back({"intact factor (host)", intact_->bytes()});
+  plan.push_back({"fields outside the condensed region (host)",
+                  outside_.bytes() + whole_nodal_.size() * sizeof(double)});
+  for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
+  return plan;
+}
+
+}  // namespace sunder::gpu

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Route condensed: the host solves for the region by the engine's own route (condensed_route.hpp),
+// in fp64 and at the price of what the region is large; the device has the region's displacement,
+// stress, summary and list of elements over yield. What lies outside is solved for when somebody
+// reads it.
+#pragma once
+
+#include "engine/condensed_fields.hpp"
+#include "engine/condensed_route.hpp"
+#include "engine/host_frame.hpp"
+#include "engine/region_part.hpp"
+#include "gpu/device_body.hpp"
+
+namespace sunder::gpu {
+
+class CondensedBody final : public DeviceBody, private engine::HostFields {
+ public:
+  CondensedBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
+                const engine::Region& region);
+
+  const Problem& part() const override { return *part_.problem(); }
+  Fields& fields() override { return fields_; }
+  const Fields& fields() const override { return fields_; }
+  const engine::Region* region() const override { return &outside_.region(); }
+  std::span<const Index> on_device(std::span<const Index> elements) override;
+  Index of_whole(std::uint32_t on_device) const override { return part_.elements()[on_device]; }
+
+  engine::FrameDevice& frame() override { return frame_; }
+  void set_load(const Load& load) override { frame_.set_load(load); }
+  void keep() override {}
+  void restore() override;
+  void publish(bool everywhere) override;
+  void publish_stress() override;
+  void destroy(std::span<const Index> elements) override;
+
+  void read_displacement(std::span<double> displacement) const override;
+  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const override;
+  void read_stress(std::span<Voigt> stress) const override;
+  Voigt read_stress(Index element) const override;
+  void read_reactions(std::span<double> reactions) const override;
+  const Eigen::MatrixXd* grip_factor() const override { return &route_->deferred()->grip_factor(); }
+  void solve_pristine(const Load& load, std::span<double> displacement) override;
+
+  std::string route_name() const override { return "condensed"; }
+  std::string update_name() const override { return "deferred"; }
+  std::vector<BufferPlan> buffers() const override;
+  double waited_ms() const override { return route_->waited_ms(); }
+
+ private:
+  std::optional<double> take(const Eigen::VectorXd& u) override;
+  void show();
+
+  const Problem& problem_;
+  engine::DamagedBody damaged_;
+  engine::RegionPart part_;
+  Fields fields_;
+  vulkan::Commands commands_;
+  IntactInverse intact_;                        // its factor
+  std::unique_ptr<engine::Deferred> pristine_;  // of the intact body: its grips
+  std::unique_ptr<engine::InverseRoute> route_;
+  engine::HostFrame frame_;
+  mutable engine::CondensedFields outside_;  // computes what is read
+  // At the part's nodes: as published, in work; at the whole's, filled where it is read.
+  std::vector<double> nodal_, next_nodal_;
+  mutable std::vector<double> whole_nodal_;
+  mutable bool whole_known_ = false;
+  std::vector<Index> in_part_;
+  bool stressed_ = false;  // some stress has been published
+};
+
+}  // namespace sunder::gpu

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole body on the device, with the route that solves it there.
+#pragma once
+
+#include <future>
+
+#include "gpu/device_body.hpp"
+#include "gpu/device_frame.hpp"
+
+namespace sunder::gpu {
+
+class WholeBody final : public DeviceBody {
+ public:
+  /// `started`: the body's inverse where it is being computed already, else not valid.
+  WholeBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
+            std::future<IntactInverse> started);
+
+  const Problem& part() const override { return problem_; }
+  Fields& fields() override { return fields_; }
+  const Fields& fields() const override { return fields_; }
+  std::span<const Index> on_device(std::span<const Index> elements) override { return elements; }
+  Index of_whole(std::uint32_t on_device) const override { return static_cast<Index>(on_device); }
+
+  engine::FrameDevice& frame() override { return *frame_; }
+  void set_load(const Load& load) override;
+  void keep() override { fields_.keep_next(); }
+  void restore() override { fields_.restore(); }
+  void publish(bool) override {}
+  void destroy(std::span<const Index> elements) override;
+
+  void read_displacement(std::span<double> displacement) const override {
+    fields_.read_displacement(displacement);
+  }
+  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const override;
+  void read_stress(std::span<Voigt> stress) const override { fields_.read_stress(stress); }
+  Voigt read_stress(Index element) const override { return fields_.read_stress(element); }
+  void read_reactions(std::span<double> reactions) const override {
+    fields_.read_reactions(problem_.gripped_dofs(), reactions);
+  }
+  const Eigen::MatrixXd* grip_factor() const override { return route_->grip_factor(); }
+  void solve_pristine(const Load& load, std::span<double> displacement) override;
+
+  std::string route_name() const override { return route_->name(); }
+  std::string update_name() const override { return route_->update_name(); }
+  std::vector<BufferPlan> buffers() const override;
+  double waited_ms() const override;
+
+ private:
+  void make_route(const DeviceSetup& setup, IntactInverse intact);
+
+  const Problem& problem_;
+  engine::DamagedBody damaged_;
+  Fields fields_;
+  std::unique_ptr<engine::Deferred> pristine_;  // of the intact body: its grips
+  std::unique_ptr<DeviceRoute> route_;
+  std::optional<DeviceFrame> frame_;
+  std::vector<Index> loaded_;  // unknowns of the last load
+  std::vector<double> force_;  // over the padded unknowns
+};
+
+}  // namespace sunder::gpu
