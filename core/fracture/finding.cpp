@@ -52,9 +52,19 @@ std::string sentence(const Finding& f, const Scene& scene) {
     case Finding::Kind::field_notch:
       return field_of(f) +
              " is not measured: the notch of the mesh's shape is too wide there for a sharp "
-             "crack's "
-             "K within 3 %; make it narrower (a slot under a fifteenth of its length, a V of at "
-             "most 60 degrees), split the mesh's nodes, or let the crack take elements "
+             "crack's K within 3 %; make it narrower (a slot under a fifteenth of its length, a V "
+             "of "
+             "at most 60 degrees, less under shear or inside the body), split the mesh's nodes, or "
+             "let the crack take elements (docs/method.md)";
+    case Finding::Kind::field_coarse:
+      return field_of(f) +
+             " is not measured: the mesh is too coarse for K within 3 % at the tip of the notch "
+             "that belongs to its shape; make its elements there and ahead of it smaller "
+             "(docs/method.md)";
+    case Finding::Kind::field_split:
+      return field_of(f) +
+             " is more than 3 % low: the mesh's nodes are split up to there, and linear elements "
+             "hold such a tip too stiffly; make them smaller there, or let the crack take elements "
              "(docs/method.md)";
     case Finding::Kind::formula_notch:
       return formula_of(f) +

@@ -18,6 +18,8 @@ struct Finding {
     field_material,    ///< crack, tip
     field_damage,      ///< crack, tip
     field_notch,       ///< crack, tip
+    field_coarse,      ///< crack, tip
+    field_split,       ///< crack, tip
     formula_notch,     ///< crack
     formula_split,     ///< crack
   };

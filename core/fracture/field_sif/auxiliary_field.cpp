@@ -71,4 +71,26 @@ std::array<AuxiliaryState, kModes> auxiliary_states(const Vec2& x, int side,
   return states;
 }
 
+std::array<AuxiliaryState, kModes> shift_states(const Vec2& x, int side,
+                                                const TipMaterial& material) {
+  const double r = x.norm(), kappa = material.kolosov();
+  // sqrt(z/(2 pi)). A crack that ends at -d: 1/sqrt(2 pi (z + d)) = (1 - d/(2 z))/sqrt(2 pi z) +
+  // ...
+  const Complex w = -2.0 * times({x.x(), x.y()}, inverse_root(x, r, side));
+  const Complex z_bar_over_z = times({x.x() / r, -x.y() / r}, {x.x() / r, -x.y() / r});
+  std::array<AuxiliaryState, kModes> states;
+  // z Phi' = Phi/2; Psi = conj(Phi(conj z)) - 3/2 Phi.
+  const Complex phi_1 = w / 2.0, phi_2 = times({0, -1}, phi_1);
+  const Complex turned_1 = times(z_bar_over_z, phi_1) / 2.0 - phi_1 / 2.0;
+  const Complex turned_2 = times(z_bar_over_z, phi_2) / 2.0 - 2.5 * phi_2;
+  states[kModeI] = in_plane_state(phi_1, turned_1, material, kappa);
+  states[kModeII] = in_plane_state(phi_2, turned_2, material, kappa);
+  AuxiliaryState& shear = states[kModeIII];
+  shear.stress.setZero();
+  shear.stress(0, 2) = shear.stress(2, 0) = w.imag();
+  shear.stress(1, 2) = shear.stress(2, 1) = w.real();
+  shear.slope = Vec3(0, 0, w.imag() / material.shear());
+  return states;
+}
+
 }  // namespace sunder::fracture

@@ -37,4 +37,10 @@ struct AuxiliaryState {
 [[nodiscard]] std::array<AuxiliaryState, kModes> auxiliary_states(const Vec2& x, int side,
                                                                   const TipMaterial& material);
 
+/// The states whose interaction with the field of a crack that ends a little behind the tip is its
+/// intensity times that distance: those of Williams' next term but one, displacement ~ r^(3/2),
+/// which see nothing of a crack's field that ends at the tip.
+[[nodiscard]] std::array<AuxiliaryState, kModes> shift_states(const Vec2& x, int side,
+                                                              const TipMaterial& material);
+
 }  // namespace sunder::fracture

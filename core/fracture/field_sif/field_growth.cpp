@@ -19,6 +19,8 @@ void add_findings(const Disturbances& disturbed, const Crack& crack, std::size_t
   add(disturbed.material, Finding::Kind::field_material);
   add(disturbed.damage, Finding::Kind::field_damage);
   add(disturbed.notch, Finding::Kind::field_notch);
+  add(disturbed.coarse && disturbed.left_out, Finding::Kind::field_coarse);
+  add(disturbed.coarse && !disturbed.left_out, Finding::Kind::field_split);
 }
 
 }  // namespace
@@ -28,7 +30,7 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
                                       std::vector<Finding>& findings) {
   const FieldIntensity measured = meter.at(crack, tip, view);
   add_findings(measured.disturbed, crack, tip, findings);
-  if (measured.disturbed.notch) {
+  if (measured.disturbed.left_out) {
     terms.field_note = measured.note();
     return std::nullopt;
   }

@@ -63,22 +63,20 @@ bool same(const SmallStrain& a, const SmallStrain& b) {
 
 }  // namespace
 
-/// What disturbs a domain: distances [mm] of the nearest element of another material and of the
-/// nearest element destroyed by something else than this crack.
-struct FieldIntensityMeter::Surroundings {
-  double other_material = std::numeric_limits<double>::infinity();
-  double other_damage = std::numeric_limits<double>::infinity();
-};
-
 FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& board)
     : problem_(problem),
       board_(board),
       surface_(board),
       notches_(find_notches(problem, board, surface_)),
+      per_shift_(problem.scene().cracks.size()),
       builder_(board, surface_),
       own_(problem.mesh().tets.size(), 0) {
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
-  if (!row_of(problem.scene().fracture.model).grows_cracks) return;
+  const FractureOptions& fracture = problem.scene().fracture;
+  const bool grows = row_of(fracture.model).grows_cracks;
+  // By the formula no tip of the mesh's own has a K of the field.
+  if (!grows || fracture.sif == SifSource::field) prepare_shifts();
+  if (!grows) return;
   double radius = kDomainRadius * board.h();
   for (const Notch& notch : notches_) radius = std::max(radius, kDomainOfWidths * notch.width);
   near_.reserve(board.most_within(radius));
@@ -90,6 +88,7 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
 
 std::string_view FieldIntensity::note() const {
   if (disturbed.notch) return "notch";
+  if (disturbed.coarse) return "coarse";
   constexpr std::array<std::string_view, 8> kNotes{
       "",       "fixed",        "material",        "fixed+material",
       "damage", "fixed+damage", "material+damage", "fixed+material+damage"};
@@ -178,46 +177,18 @@ const Notch* FieldIntensityMeter::notch_of(const Crack& crack, std::size_t tip) 
   return found == notches_.end() ? nullptr : &*found;
 }
 
-/// Radius that a domain needs to see the open notch at this tip as a crack. 0: there is none, or
-/// the crack has left it a domain behind.
-double FieldIntensityMeter::clear_of_notch(const Crack& crack, std::size_t tip) const {
-  const Notch* notch = notch_of(crack, tip);
-  if (!notch || notch->closed) return 0;
-  const double clear = std::max(kDomainOfWidths * notch->width, board_.h());
-  const double left = (crack.tips[tip].position - notch->root).norm();
-  return left < std::max(kDomainRadius * board_.h(), clear) ? clear : 0;
-}
-
-/// Of a notch of the mesh's shape that is no crack: K is not measured.
-FieldIntensity FieldIntensityMeter::too_blunt(const Crack& crack, std::size_t tip) const {
-  FieldIntensity nothing;
-  nothing.frame = {crack.tips[tip].position, crack.tips[tip].direction};
-  nothing.disturbed.notch = true;
-  return nothing;
-}
-
 FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, const FieldView& view,
                                        std::optional<double> radius) {
-  if (radius) return measure(crack, tip, view, *radius, {});
-  const double h = board_.h();
-  // The other tip of an internal crack stays outside: its field is not this tip's.
-  const double most = crack.kind == CrackKind::internal ? crack_length(crack) : kDomainRadius * h;
-  double wanted = std::clamp(most, kSmallestDomainRadius * h, kDomainRadius * h);
-  const double clear = clear_of_notch(crack, tip);
-  if (clear > 0) {
-    const CrackTip& at = crack.tips[tip];
-    const double b = board_.plane().chord(at.position, at.direction);
-    if (!sharp_enough(*notch_of(crack, tip), crack_length(crack), b, crack.kind == CrackKind::edge))
-      return too_blunt(crack, tip);
-    wanted = std::max(wanted, clear);
-  }
+  if (radius) return measure(crack, tip, view, *radius);
+  if (blunt(crack, tip)) return left_out(crack, tip, &Disturbances::notch);
+  const double wanted = wanted_radius(crack, tip);
   const Surroundings around = look_around(crack, crack.tips[tip].position, wanted, view);
-  const double free = std::min(around.other_material, around.other_damage);
-  const double chosen = std::clamp(free, kSmallestDomainRadius * h, wanted);
-  if (chosen < clear) return too_blunt(crack, tip);
-  FieldIntensity result = measure(crack, tip, view, chosen, {});
+  const double chosen = std::clamp(around.nearest(), kSmallestDomainRadius * board_.h(), wanted);
+  if (chosen < clear_of_notch(crack, tip)) return left_out(crack, tip, &Disturbances::notch);
+  FieldIntensity result = measure(crack, tip, view, chosen);
   result.disturbed.material = around.other_material < chosen;
   result.disturbed.damage = around.other_damage < chosen;
+  if (chosen == wanted) mend(crack, tip, view, result);
   return result;
 }
 
@@ -233,7 +204,8 @@ std::vector<FieldIntensity> FieldIntensityMeter::along_front(const Crack& crack,
 
 FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
                                             const FieldView& view, double radius,
-                                            const std::optional<FrontStretch>& stretch) {
+                                            const std::optional<FrontStretch>& stretch,
+                                            IntensityFactors* shift) {
   const Vec2& position = crack.tips[tip].position;
   FieldIntensity result;
   result.radius = radius;
@@ -252,6 +224,7 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   const auto tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;
   result.factors = interaction_integral(input, result.material);
+  if (shift) *shift = shift_integral(input, result.material);
   result.disturbed.fixed = std::ranges::any_of(domain.nodes, [&](Index n) {
     for (int axis = 0; axis < 3; ++axis)
       if (axis != normal_axis_ && problem_.dof(n, axis) == kNone) return true;

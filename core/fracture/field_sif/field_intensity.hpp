@@ -4,13 +4,16 @@
 // integral. Works on what lies within 6 h of the tip only.
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "fracture/field_sif/interaction_integral.hpp"
 #include "fracture/field_sif/notch.hpp"
+#include "fracture/field_sif/tip_shift.hpp"
 #include "sunder/crack.hpp"
 
 namespace sunder::fracture {
@@ -31,7 +34,9 @@ struct Disturbances {
   bool fixed = false;     ///< the domain reaches fixed nodes, whose reactions are left out
   bool material = false;  ///< it reaches another material
   bool damage = false;    ///< it reaches elements destroyed by something else
-  bool notch = false;     ///< the crack is a notch too blunt for K, which was not measured
+  bool notch = false;     ///< the crack is a notch too blunt for K, which is left out
+  bool coarse = false;    ///< the mesh at its tip is too coarse; of a notch K is left out
+  bool left_out = false;  ///< there is no K
 };
 
 struct FieldIntensity {
@@ -61,7 +66,13 @@ class FieldIntensityMeter {
   [[nodiscard]] const Notch* notch_of(const Crack& crack, std::size_t tip) const;
 
  private:
-  struct Surroundings;
+  /// What disturbs a domain: distances [mm] of the nearest element of another material and of the
+  /// nearest element destroyed by something else than this crack.
+  struct Surroundings {
+    double other_material = std::numeric_limits<double>::infinity();
+    double other_damage = std::numeric_limits<double>::infinity();
+    [[nodiscard]] double nearest() const { return std::min(other_material, other_damage); }
+  };
   [[nodiscard]] Surroundings look_around(const Crack& crack, const Vec2& tip, double radius,
                                          const FieldView& view);
   /// Whether a domain sees the board in plane stress.
@@ -74,15 +85,25 @@ class FieldIntensityMeter {
   [[nodiscard]] std::optional<Vec2> fitted_direction(const Crack& crack, std::size_t tip,
                                                      double radius);
   [[nodiscard]] double clear_of_notch(const Crack& crack, std::size_t tip) const;
-  [[nodiscard]] FieldIntensity too_blunt(const Crack& crack, std::size_t tip) const;
+  [[nodiscard]] double wanted_radius(const Crack& crack, std::size_t tip) const;
+  [[nodiscard]] bool at_root(const Crack& crack, std::size_t tip) const;
+  [[nodiscard]] bool blunt(const Crack& crack, std::size_t tip) const;
+  [[nodiscard]] FieldIntensity left_out(const Crack& crack, std::size_t tip,
+                                        bool Disturbances::*why) const;
+  void prepare_shifts();
+  [[nodiscard]] Vec3 shift_of(const Crack& crack, std::size_t tip, const FieldView& view);
+  void mend(const Crack& crack, std::size_t tip, const FieldView& view, FieldIntensity& measured);
   [[nodiscard]] FieldIntensity measure(const Crack& crack, std::size_t tip, const FieldView& view,
-                                       double radius, const std::optional<FrontStretch>& stretch);
+                                       double radius,
+                                       const std::optional<FrontStretch>& stretch = {},
+                                       IntensityFactors* shift = nullptr);
 
   const Problem& problem_;
   const Board& board_;
   int normal_axis_ = 2;  // coordinate axis nearest to the board's normal
   FreeSurface surface_;
-  std::vector<Notch> notches_;  // presets whose faces are the mesh's own
+  std::vector<Notch> notches_;              // presets whose faces are the mesh's own
+  std::vector<Eigen::MatrixXd> per_shift_;  // per preset; empty: no mesh of its own, or none seen
   DomainBuilder builder_;
   std::vector<std::uint8_t> own_;  // shape (elements): of the crack being looked at
   // Of the tip in work, with room from the start: a frame allocates nothing.

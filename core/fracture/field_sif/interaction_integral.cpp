@@ -11,6 +11,8 @@ namespace sunder::fracture {
 namespace {
 
 using Sums = std::array<double, kModes>;
+using States = std::array<AuxiliaryState, kModes>;
+using StatesAt = States(const Vec2&, int, const TipMaterial&);
 
 /// Field of one element in the tip's frame.
 struct ElementField {
@@ -33,12 +35,12 @@ ElementField element_field(const IntegralInput& in, std::size_t i, const Mat3& a
   return {gradient, tensor(stress(in.problem.small_strain(e), gradient)), weight_gradient};
 }
 
-std::array<AuxiliaryState, kModes> auxiliary_at(const IntegralInput& in, const Vec2& place,
-                                                const TipMaterial& material) {
+States auxiliary_at(const IntegralInput& in, const Vec2& place, const TipMaterial& material,
+                    StatesAt& states) {
   const Vec2 x = in.frame.local(place);
   const bool bent = !in.bent_path.empty() && x.x() < 0;
   const int side = bent ? path_side(in.bent_path, place, 0) : 0;
-  return auxiliary_states(x, side, material);
+  return states(x, side, material);
 }
 
 /// [s_ij u*_i,1 + s*_ij u_i,1 - s*_kl e_kl delta_1j] q,j
@@ -51,7 +53,7 @@ double integrand(const ElementField& field, const AuxiliaryState& aux) {
 /// q (s*_ij n_j u_i,1 - s*_kl e_kl n_1) dA over the element's part of the body's free surface.
 /// Plane stress leaves top and bottom free, so only the outline counts then.
 void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField& field,
-                      const Mat3& axes, const TipMaterial& material, Sums& sum) {
+                      const Mat3& axes, const TipMaterial& material, StatesAt& states, Sums& sum) {
   const Index e = in.domain.elements[i];
   const auto& tet = in.board.mesh().tets[e];
   for (const FreeSurface::Face& face : in.surface.of(e)) {
@@ -64,7 +66,7 @@ void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField
       weight += in.domain.weight[in.domain.corners[i][static_cast<std::size_t>(corner)]] / 3;
       centre += in.board.node(n) / 3;
     }
-    const auto aux = auxiliary_at(in, centre, material);
+    const auto aux = auxiliary_at(in, centre, material, states);
     const Vec3 area = axes * face.area;
     for (int m = 0; m < kModes; ++m) {
       const double work = aux[m].stress.cwiseProduct(field.gradient).sum();
@@ -74,35 +76,44 @@ void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField
 }
 
 void subtract_forces(const IntegralInput& in, const Mat3& axes, const TipMaterial& material,
-                     Sums& sum) {
+                     StatesAt& states, Sums& sum) {
   for (const NodalForce& load : in.forces) {
     const Vec2 place = in.board.node(load.node);
     const double r = (place - in.frame.position).norm();
     const double weight = domain_weight(r, in.domain.radius);
     if (!(weight > 0) || !(r > 0)) continue;
-    const auto aux = auxiliary_at(in, place, material);
+    const auto aux = auxiliary_at(in, place, material, states);
     const Vec3 force = axes * load.force;
     for (int m = 0; m < kModes; ++m) sum[m] -= weight * force.dot(aux[m].slope);
   }
 }
 
-}  // namespace
-
-IntensityFactors interaction_integral(const IntegralInput& in, const TipMaterial& material) {
+/// Per length of the front.
+IntensityFactors integrals(const IntegralInput& in, const TipMaterial& material, StatesAt& states) {
   const Mat3 axes = in.frame.axes(in.board.plane());
   Sums sum{};
   for (std::size_t i = 0; i < in.domain.elements.size(); ++i) {
     const Index e = in.domain.elements[i];
     const ElementField field = element_field(in, i, axes);
-    const auto aux = auxiliary_at(in, in.board.centroid(e), material);
+    const auto aux = auxiliary_at(in, in.board.centroid(e), material, states);
     for (int m = 0; m < kModes; ++m)
       sum[m] += in.problem.shape(e).volume * integrand(field, aux[m]);
-    subtract_surface(in, i, field, axes, material, sum);
+    subtract_surface(in, i, field, axes, material, states, sum);
   }
-  subtract_forces(in, axes, material, sum);
+  subtract_forces(in, axes, material, states, sum);
   const double half_young = material.effective_young() / 2;
   for (double& s : sum) s /= in.domain.front_length;
   return {half_young * sum[kModeI], half_young * sum[kModeII], material.shear() * sum[kModeIII]};
+}
+
+}  // namespace
+
+IntensityFactors interaction_integral(const IntegralInput& in, const TipMaterial& material) {
+  return integrals(in, material, auxiliary_states);
+}
+
+IntensityFactors shift_integral(const IntegralInput& in, const TipMaterial& material) {
+  return integrals(in, material, shift_states);
 }
 
 }  // namespace sunder::fracture

@@ -46,4 +46,9 @@ struct IntegralInput {
 [[nodiscard]] IntensityFactors interaction_integral(const IntegralInput& input,
                                                     const TipMaterial& material);
 
+/// K_I d, K_II d, K_III d [MPa sqrt(mm) mm] where the field is that of a crack which ends d behind
+/// the tip: the same integral with the shift's states. 0 where it ends at the tip.
+[[nodiscard]] IntensityFactors shift_integral(const IntegralInput& input,
+                                              const TipMaterial& material);
+
 }  // namespace sunder::fracture

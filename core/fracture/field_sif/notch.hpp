@@ -22,6 +22,9 @@ struct Notch {
   double angle = 0;     ///< [rad] between its walls
 };
 
+/// K of a notch is right within this share, or left out.
+inline constexpr double kAccuracy = 0.03;
+
 /// Radius of a domain that sees a slot as a crack, in its widths.
 inline constexpr double kDomainOfWidths = 2.0;
 
@@ -30,7 +33,13 @@ inline constexpr double kDomainOfWidths = 2.0;
 /// the crack has one tip; a and b [mm] as in Eq. 3.
 [[nodiscard]] double blunt_share(double width, double a, double b, bool edge);
 
-/// Whether K at the notch's root is that of a sharp crack within 3 %.
+/// By how much K of a V is below that of a sharp crack, as a share of it, seen by a domain of that
+/// radius: between its walls the field at the root is less singular than a crack's, in shear much
+/// less.
+[[nodiscard]] double angle_share(const Notch& notch, double radius, double a, const Vec3& k);
+
+/// Whether the notch is narrow enough for K of a sharp crack, whatever its angle brings on its
+/// load.
 [[nodiscard]] bool sharp_enough(const Notch& notch, double a, double b, bool edge);
 
 /// All presets whose faces are the mesh's own, a record for each tip. The faces of those that are

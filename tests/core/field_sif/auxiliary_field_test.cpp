@@ -80,6 +80,26 @@ TEST(AuxiliaryField, SideContinuesTheFieldBehindTheTip) {
   }
 }
 
+TEST(AuxiliaryField, ShiftStatesAreTheIntegralsOfTheOthers) {
+  const double step = 1e-6;
+  for (double degrees : {-170.0, -20.0, 40.0, 179.0}) {
+    const Vec2 x = polar(1.7, degrees), forward(step, 0);
+    const auto states = auxiliary_states(x, 0, kPlaneStrain);
+    const auto ahead = shift_states(x + forward, 0, kPlaneStrain);
+    const auto behind = shift_states(x - forward, 0, kPlaneStrain);
+    for (int mode = 0; mode < kModes; ++mode) {
+      EXPECT_LT(
+          ((ahead[mode].stress - behind[mode].stress) / (2 * step) + states[mode].stress).norm(),
+          1e-8);
+      EXPECT_LT(((ahead[mode].slope - behind[mode].slope) / (2 * step) + states[mode].slope).norm(),
+                1e-8);
+    }
+  }
+  for (int side : {1, -1})
+    for (const auto& state : shift_states({-3, 0}, side, kPlaneStrain))
+      EXPECT_LT((state.stress * Vec3::UnitY()).norm(), 1e-15);
+}
+
 TEST(AuxiliaryField, EffectiveModulus) {
   EXPECT_DOUBLE_EQ(kPlaneStress.effective_young(), 5);
   EXPECT_DOUBLE_EQ(kPlaneStrain.effective_young(), 5 / 0.91);

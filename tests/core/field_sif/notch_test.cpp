@@ -17,7 +17,8 @@
 namespace sunder::test {
 namespace {
 
-constexpr double kPromise = 0.03;  // of the published K, docs/method.md "Field K"
+constexpr double kPromise = 0.03;      // of the published K, docs/method.md "Field K"
+constexpr double kOfTheFamily = 0.02;  // W/20 to W/80, a/W .2 to .5; measured 1.6 %
 
 double published(int n, int cells) {
   const double a = cells;
@@ -51,7 +52,8 @@ TEST(Notch, RoundEndIsSharperThanAFlatOne) {
   EXPECT_FALSE(measured.disturbed.notch);
   EXPECT_NEAR(measured.factors.k_1 / published(80, 28), 1, kPromise);
   CrackedBody flat = slotted_strip(80, 28, 2);
-  EXPECT_LT(measured.factors.k_1, flat.chosen_intensity(0).factors.k_1);
+  EXPECT_NEAR(flat.chosen_intensity(0).factors.k_1 / published(80, 28), 1, kPromise);
+  EXPECT_LT(round.intensity(8).factors.k_1, flat.intensity(8).factors.k_1);  // nothing taken off
 }
 
 TEST(Notch, NarrowSlotIsTheSplitCrack) {
@@ -61,20 +63,91 @@ TEST(Notch, NarrowSlotIsTheSplitCrack) {
     return [width](double behind) { return width / 2 * std::sqrt(std::min(1.0, behind)); };
   };
   CrackedBody closed = v_strip(40, 14, 0), open = opened_strip(40, 14, slot(0.2));
-  const double of_closed = closed.chosen_intensity(0).factors.k_1;
-  EXPECT_NEAR(open.chosen_intensity(0).factors.k_1 / of_closed, 1, 0.005);
+  const double of_closed = closed.intensity(8).factors.k_1;
+  EXPECT_NEAR(open.intensity(8).factors.k_1 / of_closed, 1, 0.005);
+  EXPECT_NEAR(open.chosen_intensity(0).factors.k_1 / published(40, 14), 1, kOfTheFamily);
 }
 
 TEST(Notch, VIsACrackOfItsDepth) {
-  CrackedBody closed = v_strip(80, 28, 0);
-  const double of_closed = closed.chosen_intensity(0).factors.k_1;
-  for (double degrees : {10., 30., 45., 60.}) {
-    CrackedBody body = v_strip(80, 28, degrees);
-    const auto measured = body.chosen_intensity(0);
-    EXPECT_FALSE(measured.disturbed.notch);
-    EXPECT_NEAR(measured.factors.k_1 / published(80, 28), 1, kPromise) << degrees;
-    EXPECT_NEAR(measured.factors.k_1 / of_closed, 1, 0.01) << degrees;
+  // Without what the tips' shift brings: -5.9 to -10.6 % at W/20, -3.4 to -5.5 % at W/40.
+  for (const auto& [n, cells] :
+       {std::pair{20, 4}, std::pair{20, 7}, std::pair{20, 10}, std::pair{40, 8}, std::pair{40, 14},
+        std::pair{40, 20}, std::pair{80, 28}}) {
+    for (double degrees : {10., 45., 60.}) {
+      CrackedBody body = v_strip(n, cells, degrees);
+      const auto measured = body.chosen_intensity(0);
+      EXPECT_EQ(measured.note(), "") << n << " " << cells << " " << degrees;
+      EXPECT_NEAR(measured.factors.k_1 / published(n, cells), 1, kOfTheFamily)
+          << n << " " << cells << " " << degrees;
+    }
   }
+}
+
+TEST(Notch, CoarseMeshIsRightOrSaysSo) {
+  int left_out = 0;
+  for (const auto& [n, cells] : {std::pair{10, 2}, std::pair{10, 4}, std::pair{10, 5},
+                                 std::pair{10, 8}, std::pair{20, 12}, std::pair{20, 16}}) {
+    for (double degrees : {10., 60.}) {
+      CrackedBody body = v_strip(n, cells, degrees);
+      const auto measured = body.chosen_intensity(0);
+      if (measured.note().empty()) {
+        EXPECT_NEAR(measured.factors.k_1 / published(n, cells), 1, kPromise) << n << " " << cells;
+        continue;
+      }
+      EXPECT_EQ(measured.note(), "coarse") << n << " " << cells << " " << degrees;
+      EXPECT_TRUE(measured.disturbed.left_out);
+      ++left_out;
+    }
+  }
+  EXPECT_GE(left_out, 4);
+}
+
+TEST(Notch, SplitCrackKeepsItsKAndSaysWhatTheMeshOwes) {
+  CrackedBody coarse = v_strip(40, 14, 0), fine = v_strip(80, 28, 0);
+  const auto measured = coarse.chosen_intensity(0);
+  EXPECT_EQ(measured.note(), "coarse");
+  EXPECT_FALSE(measured.disturbed.left_out);
+  EXPECT_EQ(measured.factors.k_1, coarse.intensity(measured.radius).factors.k_1);
+  EXPECT_LT(measured.factors.k_1 / published(40, 14), 1 - kPromise);
+  const auto of_fine = fine.chosen_intensity(0);
+  EXPECT_EQ(of_fine.note(), "");
+  EXPECT_NEAR(of_fine.factors.k_1 / published(80, 28), 1, kPromise);
+}
+
+TEST(Notch, InternalOneUnderShearToo) {
+  // Turning the load instead of the crack by 30 degrees, in a plate 20 a wide.
+  const double c = std::cos(std::numbers::pi / 6), s = std::sin(std::numbers::pi / 6);
+  for (const auto& [cells, degrees] : {std::pair{4, 10.}, std::pair{10, 10.}, std::pair{10, 45.}}) {
+    CrackedBody body = opened_plate(cells, degrees);
+    body.load_uniform(s * s, c * c, s * c);
+    body.solve();
+    const double k = std::sqrt(std::numbers::pi * cells) * tada_centre(0.1);
+    for (std::size_t tip : {0, 1}) {
+      const auto measured = body.chosen_intensity(tip);
+      EXPECT_EQ(measured.note(), "");
+      EXPECT_NEAR(measured.factors.k_1 / (k * c), c, kPromise) << cells << " " << degrees;
+      EXPECT_NEAR(measured.factors.k_2 / (k * c), s, kPromise) << cells << " " << degrees;
+    }
+  }
+  CrackedBody lozenge = opened_plate(10, 60);
+  EXPECT_EQ(lozenge.chosen_intensity(0).note(), "notch");
+}
+
+TEST(Notch, WhatItsAngleCosts) {
+  // K_II of a V in shear against that of the split crack, 14 and 28 h long: -2.1 % (30 degrees),
+  // -7.9 % (60), then -7.0 and -19.7 %; K_I -.2, -1.3, -.2 and -1.9 %.
+  const auto share = [](double degrees, double a, const Vec3& k) {
+    fracture::Notch notch;
+    notch.angle = degrees * std::numbers::pi / 180;
+    return fracture::angle_share(notch, 7.6, a, k);
+  };
+  EXPECT_GT(share(30, 14, Vec3::UnitY()), 0.02);
+  EXPECT_GT(share(60, 14, Vec3::UnitY()), 0.079);
+  EXPECT_GT(share(30, 28, Vec3::UnitY()), 0.07);
+  EXPECT_GT(share(60, 28, Vec3::UnitY()), 0.197);
+  EXPECT_LT(share(60, 28, Vec3::UnitY()), 0.25);
+  EXPECT_LT(share(60, 28, Vec3::UnitX()), 0.02);
+  EXPECT_EQ(share(60, 28, Vec3::Zero()), 0);
 }
 
 TEST(Notch, DomainsAgree) {
@@ -139,6 +212,12 @@ struct FourSteps {
     return static_cast<int>(std::ranges::count_if(
         all, [&](const std::string& text) { return text.find(words) != std::string::npos; }));
   }
+  [[nodiscard]] double place(Index element) const {
+    const Mesh& mesh = simulation.problem().mesh();
+    double x = 0;
+    for (Index n : mesh.tets[element]) x += mesh.nodes[n].x() / 4;
+    return x;
+  }
   Simulation simulation;
 };
 
@@ -162,8 +241,8 @@ TEST(Notch, FormulaIsLeftOutAndSaysSoOnce) {
   EXPECT_EQ(run.warnings_with("formula's K of crack 0 is left out"), 1);
 }
 
-/// The held strip with a V of 20 degrees, 6 mm deep, in the place of its notch.
-Scene v_by_shape() {
+/// The held strip with a V, 6 mm deep, in the place of its notch; 0 degrees: split nodes.
+Scene v_by_shape(double degrees) {
   Scene scene = HeldStrip{}.scene(SifSource::field, {0, 8, 0});
   Mesh& mesh = scene.mesh;
   std::map<Index, Index> copy;
@@ -183,7 +262,7 @@ Scene v_by_shape() {
       upper[n] = true;
     }
   }
-  const double slope = std::tan(std::numbers::pi / 18);
+  const double slope = std::tan(degrees * std::numbers::pi / 360);
   for (Index n = 0; n < mesh.node_count(); ++n) {
     Vec3& x = mesh.nodes[n];
     const double half = slope * std::max(6 - x.x(), 0.0) * (1 - std::abs(x.y() - 10) / 11);
@@ -195,15 +274,41 @@ Scene v_by_shape() {
   return scene;
 }
 
+TEST(Notch, SplitOneGoesOnAndSaysSoOnce) {
+  FourSteps run(v_by_shape(0));
+  const auto tips = run.simulation.tips();
+  ASSERT_EQ(tips.size(), 1u);
+  EXPECT_EQ(tips[0].field_note, "coarse");
+  EXPECT_GT(tips[0].k_1.value_or(0), 0);
+  EXPECT_EQ(run.warnings_with("is more than 3 % low"), 1);
+}
+
+TEST(Notch, SplitOneByTheFormulaHasTheFieldsTermsToo) {
+  Scene scene = v_by_shape(0);
+  scene.fracture.sif = SifSource::formula;
+  FourSteps run(std::move(scene));
+  const auto grown = [&] {
+    return std::ranges::find_if(run.simulation.destroyed(),
+                                [](const DestroyedElement& row) { return row.sif.has_value(); });
+  };
+  const auto none = [&] { return grown() == run.simulation.destroyed().end(); };
+  while (!run.simulation.done() && none()) run.simulation.step();
+  ASSERT_FALSE(none());
+  const auto& sif = grown()->sif;
+  EXPECT_GT(sif->k_1.value_or(0), 0);
+  EXPECT_EQ(sif->field_note, "");
+}
+
 TEST(Notch, SharpOneGrowsByTheField) {
-  FourSteps run(v_by_shape());
+  FourSteps run(v_by_shape(20));
   Simulation& simulation = run.simulation;
   while (!simulation.done() && simulation.cracks()[0].length < 12) simulation.step();
   EXPECT_GE(simulation.cracks()[0].length, 12);
   int compared = 0;
   for (const DestroyedElement& row : simulation.destroyed()) {
-    if (!row.sif || row.sif->a > 12) continue;
-    EXPECT_NEAR(*row.sif->k_1 / HeldStrip{}.rice(8 * row.load_factor), 1, 0.1) << row.sif->a;
+    if (!row.sif || run.place(row.element) > 12) continue;
+    EXPECT_NEAR(*row.sif->k_1 / HeldStrip{}.rice(8 * row.load_factor), 1, 0.1)
+        << run.place(row.element);
     EXPECT_EQ(row.sif->field_note, "");
     EXPECT_FALSE(row.sif->k_formula);
     ++compared;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/field_sif/cracked_board.hpp"
 
@@ -14,6 +15,25 @@ constexpr double kClose = 1e-9;
 
 GridLines strip_lines(int n) {
   return {even_lines(n, 1.0), graded_lines(1.0, 0.2 * n, 3.0 * n, 1.1), even_lines(1, 1.0)};
+}
+
+/// Split nodes between two x, moved apart along y by `half` of x each: less and less of it up to
+/// `tall` above and below, so that elements stay whole.
+Scene opened(const GridLines& lines, std::pair<double, double> ends, double y, double tall,
+             const std::function<double(double)>& half) {
+  CrackedBoardOptions options;
+  options.made = CrackMade::split;
+  const CrackedBoard closed(lines, ends.first, ends.second, y, options);
+  Scene scene = closed.problem().scene();
+  const Index copies = grid_node_count(scene.mesh);
+  for (Index i = 0; i < scene.mesh.node_count(); ++i) {
+    Vec3& p = scene.mesh.nodes[i];
+    const double above = p.y() - y;
+    const bool upper = std::abs(above) > kClose ? above > 0 : i >= copies;
+    const double share = std::max(0.0, 1 - std::abs(above) / tall);
+    p.y() += (upper ? 1 : -1) * share * half(p.x());
+  }
+  return scene;
 }
 
 CrackedBody pulled(Scene scene, double cells, double y) {
@@ -68,21 +88,26 @@ CrackedBody slotted_strip(int n, int cells, int rows) {
 CrackedBody opened_strip(int n, int cells, const std::function<double(double)>& half) {
   const GridLines lines = strip_lines(n);
   const double y = lines.y[lines.y.size() / 2];
-  CrackedBoardOptions options;
-  options.made = CrackMade::split;
-  const CrackedBoard closed(lines, 0, cells, y, options);
-  Scene scene = closed.problem().scene();
-  const Index copies = grid_node_count(scene.mesh);
-  for (Index i = 0; i < scene.mesh.node_count(); ++i) {
-    Vec3& p = scene.mesh.nodes[i];
-    if (p.x() > cells - kClose) continue;
-    const double above = p.y() - y;
-    const bool upper = std::abs(above) > kClose ? above > 0 : i >= copies;
-    // Less and less of it, up to some of the strip's height: elements stay whole.
-    const double share = std::max(0.0, 1 - std::abs(above) / (1.8 * n));
-    p.y() += (upper ? 1 : -1) * share * half(cells - p.x());
-  }
+  Scene scene = opened(lines, {0, cells}, y, 1.8 * n,
+                       [&](double x) { return x > cells - kClose ? 0.0 : half(cells - x); });
   return pulled(std::move(scene), cells, y);
+}
+
+CrackedBody opened_plate(int cells, double degrees) {
+  const double a = cells, slope = std::tan(degrees * std::numbers::pi / 360);
+  std::vector<double> across = graded_lines(1, a + 12, 10 * a, 1.15);
+  for (double& x : across) x -= 0.5;  // tips on grid lines
+  const GridLines lines{across, across, even_lines(1, 1)};
+  const double y = across[across.size() / 2];
+  Scene scene = opened(lines, {-a, a}, y, 9 * a,
+                       [&](double x) { return slope * std::max(a - std::abs(x), 0.0); });
+  PresetCrack preset;
+  preset.elements = std::vector<Index>{};
+  preset.tips = {Vec3(-a, y, 0.5), Vec3(a, y, 0.5)};
+  scene.cracks = {preset};
+  CrackedBody body(std::move(scene));
+  body.set_crack(CrackKind::internal, {-a, y}, {a, y}, {});
+  return body;
 }
 
 CrackedBody v_strip(int n, int cells, double degrees) {

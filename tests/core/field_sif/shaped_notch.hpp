@@ -23,4 +23,8 @@ namespace sunder::test {
 /// V of that many degrees.
 [[nodiscard]] CrackedBody v_strip(int n, int cells, double degrees);
 
+/// Half a V of that many degrees at each end of an internal notch of length 2a, a = `cells` mm, in
+/// a plate 20 a wide; cells of 1 mm grow with the distance. Not loaded.
+[[nodiscard]] CrackedBody opened_plate(int cells, double degrees);
+
 }  // namespace sunder::test
