@@ -9,13 +9,16 @@ namespace sunder::engine {
 
 class DeformationSearch {
  public:
-  /// An element under both of these, squares of |sym grad u| and |curl u|, changes nothing.
+  /// What changes nothing: elements whose largest principal strain and shortening are at most
+  /// these, and whose rotation's tangent is at most that, or whose grad u is that of the largest
+  /// rotation.
   struct Limits {
-    double strain_squared, curl_squared;
+    double strain = 0, compression = 0, tangent = 0;
+    Mat3 turned = Mat3::Zero();
+    double alike_squared = 0;  ///< of the difference to it, Frobenius
   };
-  [[nodiscard]] Limits limits() const;
-  /// Whether an element within these bounds can change what has been found.
-  [[nodiscard]] bool matters(double strain_squared, double curl_squared) const;
+  /// `rounding`: of a strain that is held against them, as a share of the largest.
+  [[nodiscard]] Limits limits(double rounding) const;
   /// Takes an element; none twice.
   void take(const Mat3& gradient);
   /// Learns of an element, which is taken later, how far the search may leave out others.
@@ -24,11 +27,12 @@ class DeformationSearch {
   [[nodiscard]] const Deformation& found() const { return found_; }
 
  private:
-  [[nodiscard]] bool turns_further(double half_curl_squared, double cosine) const;
+  [[nodiscard]] double tangent() const;
   void raise(const Mat3& gradient, const fem::DeformationBounds& bounds);
 
   Deformation found_;
   double tangent_ = 0;  // of the largest rotation; not under 90 deg: infinite
+  Mat3 turned_ = Mat3::Zero();
 };
 
 }  // namespace sunder::engine
