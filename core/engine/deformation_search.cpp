@@ -34,7 +34,8 @@ DeformationSearch::Limits DeformationSearch::limits(double rounding) const {
   Limits limits;
   limits.strain = std::abs(found_.strain) * (1 + kAsLarge / 2 - rounding);
   limits.compression = std::min(limits.strain, 1 - kRounding);
-  limits.tangent = tangent() * (1 - kRounding);
+  limits.tangent =
+      std::min(tangent() * (1 - kRounding), 1e150);  // its square is finite or infinite
   limits.turned = turned_;
   limits.alike_squared = kAlike * kAlike * turned_.squaredNorm();
   return limits;

@@ -70,7 +70,7 @@ class StressKernel {
   };
   /// Of the live elements in one lane of kGroup blocks, of E = sym grad u with the mean m = tr E /
   /// 3: largest m, -m, |E - m I|^2 and |curl u|^2 / 3, none under 0.
-  struct GroupBounds {
+  struct alignas(64) GroupBounds {
     double stretch[kLanes], squeeze[kLanes], deviator[kLanes], curl[kLanes];
   };
   static constexpr std::size_t kGroup = 4;
@@ -102,10 +102,14 @@ class StressKernel {
     std::size_t group = 0;
     int lane = 0;
   };
-  static void largest_bounds(const GroupBounds* groups, std::size_t count, Place& strained,
-                             Place& turned);
-  static std::size_t next_over(const GroupBounds* groups, std::size_t count, std::size_t from,
-                               const DeformationSearch::Limits& limits);
+  static void largest_bounds(const GroupBounds* groups, std::size_t count, double (&strain)[kLanes],
+                             double (&curl)[kLanes]);
+  template <class Bound>
+  [[nodiscard]] Place place_of(const double (&largest)[kLanes], Bound&& bound) const;
+  static bool any_over(const GroupBounds* groups, std::size_t count,
+                       const DeformationSearch::Limits& limits);
+  [[nodiscard]] std::size_t next_over(std::size_t from,
+                                      const DeformationSearch::Limits& limits) const;
   static unsigned lanes_over(const GroupBounds& group, const DeformationSearch::Limits& limits);
   static unsigned lanes_over(const Block& block, const double* u,
                              const DeformationSearch::Limits& limits);

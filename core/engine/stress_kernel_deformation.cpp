@@ -19,11 +19,25 @@ constexpr double kOfCubic = 2e-15;
 // Up to so many lanes of a group are looked at one by one.
 constexpr int kFewLanes = 2;
 
-/// Whether all roots of x^3 - j2 x - j3, which are real, lie under x.
-inline bool over_all_roots(double x, double j2, double j3) {
-  const double square = x * x;
-  return int{x >= 0} & int{3 * square >= j2} &
-         int{x * (square - j2) - j3 >= -kOfCubic * (x * square)};
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline double smaller(double a, double b) { return a < b ? a : b; }
+
+inline double strain_bound(double stretch, double squeeze, double deviator) {
+  const double mean = larger(stretch, squeeze);
+  return deviator + 3 * (mean * mean);
+}
+
+/// Over 0 unless all roots of x^3 - j2 x - j3, which are real, are at most x.
+inline double under_a_root(double x, double j2, double j3) {
+  const double square = x * x, cubic = x * (square - j2) - j3;
+  return larger(larger(-x, j2 - 3 * square), -kOfCubic * (x * square) - cubic);
+}
+
+/// Over 0 where the tangent of a rotation may be over `tangent`, by fem::deformation_bounds: of a
+/// mean strain of at least -`squeeze` and a largest principal strain of at most `room` over it.
+inline double turns_further(double half_curl_squared, double squeeze, double room, double tangent) {
+  const double cosine = 1 - squeeze - 0.5 * room, sine = tangent * cosine;
+  return larger(-cosine, half_curl_squared - sine * sine);
 }
 
 }  // namespace
@@ -45,57 +59,66 @@ void StressKernel::cut_off(std::span<const Index> elements) {
   for (Index e : elements) cut_off_[static_cast<std::size_t>(e)] = 1;
 }
 
-/// Where the largest |E|^2 and |curl u|^2 may be; of those as large the first.
+/// Of each lane, the largest that |E|^2 and |curl u|^2 / 3 may be.
 SUNDER_VECTORISED
-void StressKernel::largest_bounds(const GroupBounds* groups, std::size_t count, Place& strained,
-                                  Place& turned) {
-  double strain[kLanes], curl[kLanes], of_strain[kLanes] = {}, of_curl[kLanes] = {};
-  std::fill_n(strain, kLanes, -1.0);
-  std::fill_n(curl, kLanes, -1.0);
+void StressKernel::largest_bounds(const GroupBounds* groups, std::size_t count,
+                                  double (&strain)[kLanes], double (&curl)[kLanes]) {
   for (std::size_t g = 0; g < count; ++g) {
-    const auto here = static_cast<double>(g);
+    const GroupBounds& b = groups[g];
     for (int l = 0; l < kLanes; ++l) {
-      const double up = groups[g].stretch[l], down = groups[g].squeeze[l];
-      const double mean = up > down ? up : down;
-      const double s = groups[g].deviator[l] + 3 * mean * mean, c = groups[g].curl[l];
-      of_strain[l] = s > strain[l] ? here : of_strain[l];
-      strain[l] = s > strain[l] ? s : strain[l];
-      of_curl[l] = c > curl[l] ? here : of_curl[l];
-      curl[l] = c > curl[l] ? c : curl[l];
+      strain[l] = larger(strain[l], strain_bound(b.stretch[l], b.squeeze[l], b.deviator[l]));
+      curl[l] = larger(curl[l], b.curl[l]);
     }
   }
-  int s = 0, c = 0;
-  for (int l = 1; l < kLanes; ++l) {
-    if (strain[l] > strain[s]) s = l;
-    if (curl[l] > curl[c]) c = l;
-  }
-  strained = {static_cast<std::size_t>(of_strain[s]), s};
-  turned = {static_cast<std::size_t>(of_curl[c]), c};
 }
 
-/// The bounds of fem::deformation_bounds over the elements of a lane; with d the deviator's share
-/// of the largest principal strain, (d^2/q + q)/2 >= d saves a root for all but those that pass.
+/// A lane with that much, the first of them.
+template <class Bound>
+StressKernel::Place StressKernel::place_of(const double (&largest)[kLanes], Bound&& bound) const {
+  const auto lane = std::max_element(largest, largest + kLanes) - largest;
+  const auto group = std::find_if(groups_.begin(), groups_.end(), [&](const GroupBounds& b) {
+    return bound(b, lane) >= largest[lane];
+  });
+  return {static_cast<std::size_t>(group - groups_.begin()), static_cast<int>(lane)};
+}
+
+/// Whether the bounds of a group pass the limits. With d the deviator's share of the largest
+/// principal strain, (d^2/q + q)/2 >= d saves a root.
 SUNDER_VECTORISED
-std::size_t StressKernel::next_over(const GroupBounds* groups, std::size_t count, std::size_t from,
-                                    const DeformationSearch::Limits& limits) {
+bool StressKernel::any_over(const GroupBounds* groups, std::size_t count,
+                            const DeformationSearch::Limits& limits) {
   const double q = limits.strain / 4, of_square = q > 0 ? 1 / q : 0.0;
   const double strain = limits.strain, compression = limits.compression;
   const double tangent = limits.tangent;
-  for (std::size_t g = from; g < count; ++g) {
+  double over[kLanes] = {};
+  for (std::size_t g = 0; g < count; ++g) {
     const GroupBounds& b = groups[g];
-    int any = 0;  // without a branch: nearly all groups have none
     for (int l = 0; l < kLanes; ++l) {
-      const double over = strain - b.stretch[l], under = compression - b.squeeze[l];
-      const double room = over < under ? over : under;
-      const double square = 2 * kThird * b.deviator[l], root = 0.5 * (square * of_square + q);
-      const double cosine = 1 - b.squeeze[l] - 0.5 * (root < room ? root : room);
-      const double sine = tangent * cosine;
-      any |= static_cast<int>(room < 0) | static_cast<int>(square > room * room) |
-             static_cast<int>(cosine <= 0) | static_cast<int>(0.75 * b.curl[l] > sine * sine);
+      const double room = smaller(strain - b.stretch[l], compression - b.squeeze[l]);
+      const double square = 2 * kThird * b.deviator[l];
+      const double strained = larger(-room, square - room * room);
+      const double root = smaller(0.5 * (square * of_square + q), room);
+      const double turned = turns_further(0.75 * b.curl[l], b.squeeze[l], root, tangent);
+      over[l] = larger(over[l], larger(strained, turned));
     }
-    if (any != 0) return g;
   }
-  return count;
+  double all = 0;
+  for (const double lane : over) all = larger(all, lane);
+  return all > 0;
+}
+
+/// Of several groups at once: nearly all pass nothing.
+std::size_t StressKernel::next_over(std::size_t from,
+                                    const DeformationSearch::Limits& limits) const {
+  constexpr std::size_t kAtOnce = 8;
+  for (std::size_t g = from; g < groups_.size(); g += kAtOnce) {
+    const std::size_t end = std::min(g + kAtOnce, groups_.size());
+    if (!any_over(&groups_[g], end - g, limits)) continue;
+    for (std::size_t one = g; one < end; ++one) {
+      if (any_over(&groups_[one], 1, limits)) return one;
+    }
+  }
+  return groups_.size();
 }
 
 /// The same with the root.
@@ -130,7 +153,8 @@ unsigned StressKernel::lanes_over(const Block& b, const double* u,
   for (int i = 0; i < 9; ++i) turned[i] = limits.turned(i / 3, i % 3);
   const double strain = limits.strain, compression = limits.compression;
   const double tangent = limits.tangent, alike = limits.alike_squared;
-  double within[kLanes];
+  const double q = limits.strain / 4, of_square = q > 0 ? 1 / q : 0.0;
+  double over[kLanes];
   for (int l = 0; l < kLanes; ++l) {
     double h[3][3], apart = 0;
     for (int i = 0; i < 3; ++i) {
@@ -148,17 +172,14 @@ unsigned StressKernel::lanes_over(const Block& b, const double* u,
     const double j2 = 0.5 * (x * x + y * y + z * z) + (xy * xy + yz * yz + zx * zx);
     const double j3 = x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx);
     const double a = h[2][1] - h[1][2], c = h[0][2] - h[2][0], e = h[1][0] - h[0][1];
-    const double half_curl_squared = 0.25 * (a * a + c * c + e * e);
-    const double cosine = 1 + mean - 0.5 * std::sqrt(4 * kThird * j2), sine = tangent * cosine;
-    const int turns_less =
-        static_cast<int>(cosine > 0) & static_cast<int>(half_curl_squared <= sine * sine);
-    const int all = static_cast<int>(over_all_roots(strain - mean, j2, j3)) &
-                    static_cast<int>(over_all_roots(compression + mean, j2, -j3)) &
-                    (turns_less | static_cast<int>(apart <= alike));
-    within[l] = all != 0 ? 1.0 : 0.0;
+    const double root = smaller(0.5 * (4 * kThird * j2 * of_square + q), strain - mean);
+    const double turns = turns_further(0.25 * (a * a + c * c + e * e), -mean, root, tangent);
+    over[l] = larger(
+        larger(under_a_root(strain - mean, j2, j3), under_a_root(compression + mean, j2, -j3)),
+        smaller(turns, apart - alike));
   }
   unsigned lanes = 0;
-  for (int l = 0; l < kLanes; ++l) lanes |= static_cast<unsigned>(within[l] == 0) << l;
+  for (int l = 0; l < kLanes; ++l) lanes |= static_cast<unsigned>(over[l] > 0) << l;
   return lanes;
 }
 
@@ -222,14 +243,18 @@ Deformation StressKernel::deformation(std::span<const double> u) const {
   DeformationSearch search;
   if (groups_.empty()) return search.found();
   // The elements with the largest bounds leave few others to look at.
-  Place strained, turned;
-  largest_bounds(groups_.data(), groups_.size(), strained, turned);
+  double strain[kLanes] = {}, curl[kLanes] = {};
+  largest_bounds(groups_.data(), groups_.size(), strain, curl);
+  const Place turned = place_of(curl, [](const auto& b, auto l) { return b.curl[l]; });
+  const Place strained = place_of(strain, [](const auto& b, auto l) {
+    return strain_bound(b.stretch[l], b.squeeze[l], b.deviator[l]);
+  });
   preview(search, turned, u);
   preview(search, strained, u);
-  std::size_t g = 0;
-  while ((g = next_over(groups_.data(), groups_.size(), g, search.limits(rounding_))) <
-         groups_.size()) {
-    take(search, g++, u);
+  for (std::size_t g = 0;; ++g) {
+    g = next_over(g, search.limits(rounding_));
+    if (g == groups_.size()) break;
+    take(search, g, u);
   }
   return search.found();
 }
