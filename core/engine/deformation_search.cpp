@@ -43,23 +43,26 @@ DeformationSearch::Limits DeformationSearch::limits(double rounding) const {
 
 void DeformationSearch::take(const Mat3& gradient) {
   const fem::DeformationBounds bounds = fem::deformation_bounds(gradient);
-  raise(gradient, bounds);
+  if (bounds.strain > std::abs(found_.strain) * (1 + kAsLarge) && gradient != strained_) {
+    preview_strain(gradient);
+  }
+  const double sine = tangent() * bounds.cosine;
+  const bool may_turn_further =
+      !(bounds.cosine > 0) || bounds.half_curl_squared * (1 + kRounding) > sine * sine;
+  if (may_turn_further && gradient != turned_) preview_rotation(gradient);
   if (!(bounds.compression < 1) && (Mat3::Identity() + gradient).determinant() <= 0) {
     ++found_.inverted;
   }
 }
 
-void DeformationSearch::preview(const Mat3& gradient) {
-  raise(gradient, fem::deformation_bounds(gradient));
+void DeformationSearch::preview_strain(const Mat3& gradient) {
+  const double strain = fem::principal_strain(gradient);
+  if (!(std::abs(strain) > std::abs(found_.strain))) return;
+  found_.strain = strain;
+  strained_ = gradient;
 }
 
-void DeformationSearch::raise(const Mat3& gradient, const fem::DeformationBounds& bounds) {
-  if (bounds.strain > std::abs(found_.strain) * (1 + kAsLarge)) {
-    const double strain = fem::principal_strain(gradient);
-    if (std::abs(strain) > std::abs(found_.strain)) found_.strain = strain;
-  }
-  const double sine = tangent() * bounds.cosine;
-  if (bounds.cosine > 0 && !(bounds.half_curl_squared * (1 + kRounding) > sine * sine)) return;
+void DeformationSearch::preview_rotation(const Mat3& gradient) {
   const double rotation = fem::rotation_deg(gradient);
   if (!(rotation > found_.rotation_deg)) return;
   found_.rotation_deg = rotation;

@@ -22,17 +22,17 @@ class DeformationSearch {
   /// Takes an element; none twice.
   void take(const Mat3& gradient);
   /// Learns of an element, which is taken later, how far the search may leave out others.
-  void preview(const Mat3& gradient);
+  void preview_strain(const Mat3& gradient);
+  void preview_rotation(const Mat3& gradient);
 
   [[nodiscard]] const Deformation& found() const { return found_; }
 
  private:
   [[nodiscard]] double tangent() const;
-  void raise(const Mat3& gradient, const fem::DeformationBounds& bounds);
 
   Deformation found_;
   double tangent_ = 0;  // of the largest rotation; not under 90 deg: infinite
-  Mat3 turned_ = Mat3::Zero();
+  Mat3 strained_ = Mat3::Zero(), turned_ = Mat3::Zero();  // grad u of both
 };
 
 }  // namespace sunder::engine

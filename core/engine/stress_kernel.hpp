@@ -73,7 +73,11 @@ class StressKernel {
   struct alignas(64) GroupBounds {
     double stretch[kLanes], squeeze[kLanes], deviator[kLanes], curl[kLanes];
   };
-  static constexpr std::size_t kGroup = 4;
+  static constexpr std::size_t kGroup = 8;
+  /// Of each lane, the largest that |E|^2 and |curl u|^2 / 3 may be.
+  struct Largest {
+    double strain[kLanes], curl[kLanes];
+  };
   struct Partial {
     double largest = 0, check = 0;
   };
@@ -102,8 +106,8 @@ class StressKernel {
     std::size_t group = 0;
     int lane = 0;
   };
-  static void largest_bounds(const GroupBounds* groups, std::size_t count, double (&strain)[kLanes],
-                             double (&curl)[kLanes]);
+  static double strain_bound(const GroupBounds& of, std::ptrdiff_t lane);
+  static Largest largest_bounds(const GroupBounds* groups, std::size_t count);
   template <class Bound>
   [[nodiscard]] Place place_of(const double (&largest)[kLanes], Bound&& bound) const;
   static bool any_over(const GroupBounds* groups, std::size_t count,
@@ -116,7 +120,8 @@ class StressKernel {
   [[nodiscard]] std::span<const Block> blocks_of(std::size_t group) const;
   [[nodiscard]] bool counts(const Block& block, int lane) const;
   static Mat3 gradient_of(const Block& block, int lane, std::span<const double> u);
-  void preview(DeformationSearch& search, Place at, std::span<const double> u) const;
+  template <class Measure>
+  [[nodiscard]] Mat3 most_by(Measure&& measure, Place at, std::span<const double> u) const;
   void take(DeformationSearch& search, std::size_t group, std::span<const double> u) const;
 
   std::shared_ptr<const Problem> problem_;

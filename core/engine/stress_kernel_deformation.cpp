@@ -22,11 +22,6 @@ constexpr int kFewLanes = 2;
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline double smaller(double a, double b) { return a < b ? a : b; }
 
-inline double strain_bound(double stretch, double squeeze, double deviator) {
-  const double mean = larger(stretch, squeeze);
-  return deviator + 3 * (mean * mean);
-}
-
 /// Over 0 unless all roots of x^3 - j2 x - j3, which are real, are at most x.
 inline double under_a_root(double x, double j2, double j3) {
   const double square = x * x, cubic = x * (square - j2) - j3;
@@ -59,20 +54,25 @@ void StressKernel::cut_off(std::span<const Index> elements) {
   for (Index e : elements) cut_off_[static_cast<std::size_t>(e)] = 1;
 }
 
-/// Of each lane, the largest that |E|^2 and |curl u|^2 / 3 may be.
-SUNDER_VECTORISED
-void StressKernel::largest_bounds(const GroupBounds* groups, std::size_t count,
-                                  double (&strain)[kLanes], double (&curl)[kLanes]) {
-  for (std::size_t g = 0; g < count; ++g) {
-    const GroupBounds& b = groups[g];
-    for (int l = 0; l < kLanes; ++l) {
-      strain[l] = larger(strain[l], strain_bound(b.stretch[l], b.squeeze[l], b.deviator[l]));
-      curl[l] = larger(curl[l], b.curl[l]);
-    }
-  }
+/// Of |E|^2.
+inline double StressKernel::strain_bound(const GroupBounds& of, std::ptrdiff_t lane) {
+  const double mean = larger(of.stretch[lane], of.squeeze[lane]);
+  return of.deviator[lane] + 3 * (mean * mean);
 }
 
-/// A lane with that much, the first of them.
+SUNDER_VECTORISED
+StressKernel::Largest StressKernel::largest_bounds(const GroupBounds* groups, std::size_t count) {
+  Largest all{};
+  for (std::size_t g = 0; g < count; ++g) {
+    for (int l = 0; l < kLanes; ++l) {
+      all.strain[l] = larger(all.strain[l], strain_bound(groups[g], l));
+      all.curl[l] = larger(all.curl[l], groups[g].curl[l]);
+    }
+  }
+  return all;
+}
+
+/// A lane of a group that has the largest bound.
 template <class Bound>
 StressKernel::Place StressKernel::place_of(const double (&largest)[kLanes], Bound&& bound) const {
   const auto lane = std::max_element(largest, largest + kLanes) - largest;
@@ -204,25 +204,21 @@ Mat3 StressKernel::gradient_of(const Block& b, int lane, std::span<const double>
   return h;
 }
 
-/// Its element that turns furthest, and the one that is strained most.
-void StressKernel::preview(DeformationSearch& search, Place at, std::span<const double> u) const {
-  Mat3 turned = Mat3::Zero(), strained = turned;
-  double curl = 0, strain = 0;
+/// grad u of the element with the largest bound; zeros: none counts.
+template <class Measure>
+Mat3 StressKernel::most_by(Measure&& measure, Place at, std::span<const double> u) const {
+  Mat3 most = Mat3::Zero();
+  double largest = 0;
   for (const Block& b : blocks_of(at.group)) {
     if (!counts(b, at.lane)) continue;
     const Mat3 h = gradient_of(b, at.lane, u);
-    const fem::DeformationBounds bounds = fem::deformation_bounds(h);
-    if (bounds.half_curl_squared > curl) {
-      curl = bounds.half_curl_squared;
-      turned = h;
-    }
-    if (bounds.strain > strain) {
-      strain = bounds.strain;
-      strained = h;
+    const double here = measure(fem::deformation_bounds(h));
+    if (here > largest) {
+      largest = here;
+      most = h;
     }
   }
-  if (curl > 0) search.preview(turned);
-  if (strain > 0) search.preview(strained);
+  return most;
 }
 
 void StressKernel::take(DeformationSearch& search, std::size_t group,
@@ -243,14 +239,12 @@ Deformation StressKernel::deformation(std::span<const double> u) const {
   DeformationSearch search;
   if (groups_.empty()) return search.found();
   // The elements with the largest bounds leave few others to look at.
-  double strain[kLanes] = {}, curl[kLanes] = {};
-  largest_bounds(groups_.data(), groups_.size(), strain, curl);
-  const Place turned = place_of(curl, [](const auto& b, auto l) { return b.curl[l]; });
-  const Place strained = place_of(strain, [](const auto& b, auto l) {
-    return strain_bound(b.stretch[l], b.squeeze[l], b.deviator[l]);
-  });
-  preview(search, turned, u);
-  preview(search, strained, u);
+  const Largest largest = largest_bounds(groups_.data(), groups_.size());
+  const Place turned = place_of(largest.curl, [](const auto& b, auto l) { return b.curl[l]; });
+  const Place strained = place_of(largest.strain, strain_bound);
+  search.preview_rotation(
+      most_by([](const auto& bounds) { return bounds.half_curl_squared; }, turned, u));
+  search.preview_strain(most_by([](const auto& bounds) { return bounds.strain; }, strained, u));
   for (std::size_t g = 0;; ++g) {
     g = next_over(g, search.limits(rounding_));
     if (g == groups_.size()) break;
