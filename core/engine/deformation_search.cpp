@@ -63,11 +63,12 @@ void DeformationSearch::preview_strain(const Mat3& gradient) {
 }
 
 void DeformationSearch::preview_rotation(const Mat3& gradient) {
-  const double rotation = fem::rotation_deg(gradient);
+  const double rotation = fem::rotation_deg(gradient, half_tangent_);
   if (!(rotation > found_.rotation_deg)) return;
   found_.rotation_deg = rotation;
   turned_ = gradient;
   constexpr double kRadians = std::numbers::pi / 180;
+  half_tangent_ = std::tan(rotation * kRadians / 2);
   tangent_ =
       rotation < 90 ? std::tan(rotation * kRadians) : std::numeric_limits<double>::infinity();
 }

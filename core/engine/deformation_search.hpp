@@ -31,7 +31,8 @@ class DeformationSearch {
   [[nodiscard]] double tangent() const;
 
   Deformation found_;
-  double tangent_ = 0;  // of the largest rotation; not under 90 deg: infinite
+  double tangent_ = 0;       // of the largest rotation; not under 90 deg: infinite
+  double half_tangent_ = 0;  // of half of it
   Mat3 strained_ = Mat3::Zero(), turned_ = Mat3::Zero();  // grad u of both
 };
 

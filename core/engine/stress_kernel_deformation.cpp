@@ -17,7 +17,7 @@ constexpr double kThird = 1.0 / 3;
 // is 3e-8 of them, as fem::principal_strain() has it.
 constexpr double kOfCubic = 2e-15;
 // Up to so many lanes of a group are looked at one by one.
-constexpr int kFewLanes = 2;
+constexpr int kFewLanes = 3;
 
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline double smaller(double a, double b) { return a < b ? a : b; }

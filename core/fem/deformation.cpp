@@ -35,8 +35,9 @@ Spread spread(const Mat3& h) {
 /// of the largest value l = max tr(R^T F) of Horn's matrix (J. Opt. Soc. Am. A 4, 1987), so that
 /// l = tr F + 4 w M^-1 w with M = (l + 1 + tr E) I - 2 E, and n tan(theta/2) = 2 M^-1 w. Newton
 /// from l = tr F, which is under the root: the function is concave above its poles, so every step
-/// stays under it. Nothing: tr F may lie under a pole.
-std::optional<double> half_tangent(const Mat3& h) {
+/// stays under it. |M^-1 w| falls with l, so that each step leaves less than the one before: once
+/// that is at most `least` it is enough. Nothing: tr F may lie under a pole.
+std::optional<double> half_tangent(const Mat3& h, double least) {
   const Spread of = spread(h);
   const Vec3 w = half_curl(h);
   const double trace = h.trace();
@@ -46,6 +47,7 @@ std::optional<double> half_tangent(const Mat3& h) {
   for (int step = 0; step < 50; ++step) {
     const Mat3 m = (l + 1 + trace) * Mat3::Identity() - 2 * strain;
     const Vec3 x = 2 * (m.inverse() * w);
+    if (x.squaredNorm() <= least * least) return x.norm();
     const double over = l - (3 + trace + 2 * w.dot(x));
     l -= over / (1 + x.squaredNorm());
     if (std::abs(over) <= 1e-14 * std::abs(l)) return x.norm();
@@ -81,8 +83,8 @@ double principal_strain(const Mat3& h) {
   return -e[0] > e[2] ? e[0] : e[2];
 }
 
-double rotation_deg(const Mat3& h) {
-  const auto tangent = half_tangent(h);
+double rotation_deg(const Mat3& h, double least) {
+  const auto tangent = half_tangent(h, least);
   return 2 * kDegrees * std::atan(tangent ? *tangent : half_tangent_by_quaternion(h));
 }
 
