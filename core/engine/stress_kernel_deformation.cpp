@@ -194,12 +194,17 @@ bool StressKernel::counts(const Block& b, int lane) const {
 }
 
 Mat3 StressKernel::gradient_of(const Block& b, int lane, std::span<const double> u) {
-  const Vec3 u0(&u[static_cast<std::size_t>(b.corner[0][lane])]);
-  Mat3 h = Mat3::Zero();
-  for (int corner = 1; corner < 4; ++corner) {
-    const Vec3 d = Vec3(&u[static_cast<std::size_t>(b.corner[corner][lane])]) - u0;
-    for (int axis = 0; axis < 3; ++axis)
-      h.col(axis) += d * b.gradient[3 * (corner - 1) + axis][lane];
+  double d[3][3];
+  for (int corner = 0; corner < 3; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      d[corner][axis] = u[static_cast<std::size_t>(b.corner[corner + 1][lane] + axis)] -
+                        u[static_cast<std::size_t>(b.corner[0][lane] + axis)];
+    }
+  }
+  Mat3 h;
+  for (int j = 0; j < 3; ++j) {
+    const double x = b.gradient[j][lane], y = b.gradient[3 + j][lane], z = b.gradient[6 + j][lane];
+    for (int i = 0; i < 3; ++i) h(i, j) = d[0][i] * x + d[1][i] * y + d[2][i] * z;
   }
   return h;
 }

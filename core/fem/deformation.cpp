@@ -27,8 +27,10 @@ struct Spread {
 };
 Spread spread(const Mat3& h) {
   const double mean = h.trace() / 3;
-  const double deviator = (small_strain(h) - mean * Mat3::Identity()).norm();
-  return {mean, std::sqrt(2.0 / 3) * deviator};
+  const double x = h(0, 0) - mean, y = h(1, 1) - mean, z = h(2, 2) - mean;
+  const double xy = h(0, 1) + h(1, 0), yz = h(1, 2) + h(2, 1), zx = h(2, 0) + h(0, 2);
+  const double squared = x * x + y * y + z * z + (xy * xy + yz * yz + zx * zx) / 2;
+  return {mean, std::sqrt(2.0 / 3 * squared)};
 }
 
 /// tan(theta/2) as the root of a scalar equation: (cos theta/2, n sin theta/2) is the eigenvector
