@@ -3,7 +3,8 @@
 // and 100 elements of an intact body; the first frames of a tear, element by element; the last
 // frames before a new base, which have the most columns; and those after so many fractures that the
 // base is a factor of the damaged body. The parts of the engine are called as the backend calls
-// them, on one thread with nothing beside it. Rows "frame_cascade" are frame_cascades.hpp's.
+// them, on one thread with nothing beside it. Rows "frame_cascade" are frame_cascades.hpp's, rows
+// "measures" frame_measures.hpp's.
 // bench/frames makes the tables of docs/frames.md of all this.
 #include <benchmark/benchmark.h>
 
@@ -22,6 +23,7 @@
 #include "engine/stress_kernel.hpp"
 #include "fem/assembly.hpp"
 #include "frame_cascades.hpp"
+#include "frame_measures.hpp"
 #include "run_rows.hpp"
 #include "sunder/error.hpp"
 #include "tearing_board.hpp"
@@ -257,5 +259,6 @@ void register_rows() {
 int main(int argc, char** argv) {
   sunder::bench::register_rows();
   sunder::bench::register_cascades();
+  sunder::bench::register_measures();
   return sunder::bench::run_rows(argc, argv);
 }

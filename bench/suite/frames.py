@@ -69,11 +69,22 @@ def _cascade_table(rows):
     return ["frames", "all", *(words for _, words in STAGES)], lines
 
 
+def _measures_table(rows):
+    lines = [[f"{field} {tets:,}", f"{c['pass_us']:,.1f}", f"{c['bounds_us']:,.1f}",
+              f"{c['search_us']:,.1f}", f"{100 * c['share']:,.0f} %"]
+             for field, tets, c in _found(rows, "measures")]
+    if not lines:
+        return None
+    return ["field", "stress pass", "bounds in it", "search after it", "of the pass"], lines
+
+
 def tables(rows):
     """[(title, head, lines)] of what has been measured; times in microseconds."""
     made = [(title, _part_table(rows, groups)) for title, groups in TABLES]
     made.append(("640 fractures one by one, by the library's backend, the next base made beside it",
                  _cascade_table(rows)))
+    made.append(("Largest strain and rotation beside the stress pass, one thread",
+                 _measures_table(rows)))
     return [(title, *table) for title, table in made if table]
 
 

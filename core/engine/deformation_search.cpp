@@ -10,62 +10,65 @@
 namespace sunder::engine {
 namespace {
 
-// Bounds come from stress, whose pressure may hide some of their digits.
+// Of bounds that are computed twice, in another order.
 constexpr double kRounding = 1e-6;
 // Where a large part turns as one, all its elements are as good as the largest.
 constexpr double kClose = 1e-3;
 // To what principal_strain() is right: where all elements are stretched alike, one is as good as
 // all.
 constexpr double kAsLarge = 1e-8;
+// Of elements whose grad u differs by so much beside the largest: their rotations do too.
+constexpr double kAlike = 1e-9;
+// What rounding leaves of a rotation in a strained element that does not turn, beside its strain.
+constexpr double kNoRotation = 1e-14;
 
 }  // namespace
 
-/// Whether the tangent of a rotation, at most |w| / cosine, may be over that found.
-bool DeformationSearch::turns_further(double half_curl_squared, double cosine) const {
-  if (!(cosine > 0)) return true;
-  const double limit = tangent_ * (1 + kClose) * cosine;
-  return half_curl_squared * (1 + kRounding) > limit * limit;
+/// Up to which the tangent of a rotation changes nothing.
+double DeformationSearch::tangent() const {
+  return std::max(tangent_ * (1 + kClose), kNoRotation * std::abs(found_.strain));
 }
 
-/// |E| is at least any principal strain and at least -(e2 + e3)/sqrt(2), so that the rotation is at
-/// most atan(|w| / (1 - |E|/sqrt(2))) (fem::deformation_bounds); F is inverted only where |E| >= 1.
-bool DeformationSearch::matters(double strain_squared, double curl_squared) const {
-  const double squared = strain_squared * (1 + kRounding);
-  if (!(squared < 1 && squared <= found_.strain * found_.strain)) return true;
-  return turns_further(curl_squared / 4, 1 - std::sqrt(squared / 2));
-}
-
-DeformationSearch::Limits DeformationSearch::limits() const {
-  const double strain = std::min(found_.strain * found_.strain, 1 - kRounding) / (1 + kRounding);
-  const double cosine = 1 - std::sqrt(strain / 2), limit = 2 * tangent_ * cosine;
-  return {strain, limit * limit};
+/// F is inverted only where something is shortened by all its length.
+DeformationSearch::Limits DeformationSearch::limits(double rounding) const {
+  Limits limits;
+  limits.strain = std::abs(found_.strain) * (1 + kAsLarge / 2 - rounding);
+  limits.compression = std::min(limits.strain, 1 - kRounding);
+  limits.tangent =
+      std::min(tangent() * (1 - kRounding), 1e150);  // its square is finite or infinite
+  limits.turned = turned_;
+  limits.alike_squared = kAlike * kAlike * turned_.squaredNorm();
+  return limits;
 }
 
 void DeformationSearch::take(const Mat3& gradient) {
-  const double twice = (gradient + gradient.transpose()).squaredNorm();
-  const double curl = (gradient - gradient.transpose()).squaredNorm() / 2;
-  if (!matters(twice / 4, curl)) return;
   const fem::DeformationBounds bounds = fem::deformation_bounds(gradient);
-  raise(gradient, bounds);
+  if (bounds.strain > std::abs(found_.strain) * (1 + kAsLarge) && gradient != strained_) {
+    preview_strain(gradient);
+  }
+  const double sine = tangent() * bounds.cosine;
+  const bool may_turn_further =
+      !(bounds.cosine > 0) || bounds.half_curl_squared * (1 + kRounding) > sine * sine;
+  if (may_turn_further && gradient != turned_) preview_rotation(gradient);
   if (!(bounds.compression < 1) && (Mat3::Identity() + gradient).determinant() <= 0) {
     ++found_.inverted;
   }
 }
 
-void DeformationSearch::preview(const Mat3& gradient) {
-  raise(gradient, fem::deformation_bounds(gradient));
+void DeformationSearch::preview_strain(const Mat3& gradient) {
+  const double strain = fem::principal_strain(gradient);
+  if (!(std::abs(strain) > std::abs(found_.strain))) return;
+  found_.strain = strain;
+  strained_ = gradient;
 }
 
-void DeformationSearch::raise(const Mat3& gradient, const fem::DeformationBounds& bounds) {
-  if (bounds.strain > std::abs(found_.strain) * (1 + kAsLarge)) {
-    const double strain = fem::principal_strain(gradient);
-    if (std::abs(strain) > std::abs(found_.strain)) found_.strain = strain;
-  }
-  if (!turns_further(bounds.half_curl_squared, bounds.cosine)) return;
-  const double rotation = fem::rotation_deg(gradient);
+void DeformationSearch::preview_rotation(const Mat3& gradient) {
+  const double rotation = fem::rotation_deg(gradient, half_tangent_);
   if (!(rotation > found_.rotation_deg)) return;
   found_.rotation_deg = rotation;
+  turned_ = gradient;
   constexpr double kRadians = std::numbers::pi / 180;
+  half_tangent_ = std::tan(rotation * kRadians / 2);
   tangent_ =
       rotation < 90 ? std::tan(rotation * kRadians) : std::numeric_limits<double>::infinity();
 }

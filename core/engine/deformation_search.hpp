@@ -9,26 +9,31 @@ namespace sunder::engine {
 
 class DeformationSearch {
  public:
-  /// An element under both of these, squares of |sym grad u| and |curl u|, changes nothing.
+  /// What changes nothing: elements whose largest principal strain and shortening are at most
+  /// these, and whose rotation's tangent is at most that, or whose grad u is that of the largest
+  /// rotation.
   struct Limits {
-    double strain_squared, curl_squared;
+    double strain = 0, compression = 0, tangent = 0;
+    Mat3 turned = Mat3::Zero();
+    double alike_squared = 0;  ///< of the difference to it, Frobenius
   };
-  [[nodiscard]] Limits limits() const;
-  /// Whether an element within these bounds can change what has been found.
-  [[nodiscard]] bool matters(double strain_squared, double curl_squared) const;
+  /// `rounding`: of a strain that is held against them, as a share of the largest.
+  [[nodiscard]] Limits limits(double rounding) const;
   /// Takes an element; none twice.
   void take(const Mat3& gradient);
   /// Learns of an element, which is taken later, how far the search may leave out others.
-  void preview(const Mat3& gradient);
+  void preview_strain(const Mat3& gradient);
+  void preview_rotation(const Mat3& gradient);
 
   [[nodiscard]] const Deformation& found() const { return found_; }
 
  private:
-  [[nodiscard]] bool turns_further(double half_curl_squared, double cosine) const;
-  void raise(const Mat3& gradient, const fem::DeformationBounds& bounds);
+  [[nodiscard]] double tangent() const;
 
   Deformation found_;
-  double tangent_ = 0;  // of the largest rotation; not under 90 deg: infinite
+  double tangent_ = 0;       // of the largest rotation; not under 90 deg: infinite
+  double half_tangent_ = 0;  // of half of it
+  Mat3 strained_ = Mat3::Zero(), turned_ = Mat3::Zero();  // grad u of both
 };
 
 }  // namespace sunder::engine

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <optional>
 
-#include "engine/deformation_search.hpp"
 #include "fem/element.hpp"
 #include "parallel/vectorised.hpp"
 #include "sunder/fracture_model.hpp"
@@ -89,11 +88,6 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
 
 void StressKernel::keep_bounds() { bounds_.assign(blocks_.size() * kLanes, 0.0); }
 
-void StressKernel::keep_deformation() {
-  groups_.assign((blocks_.size() + kGroup - 1) / kGroup, GroupBounds{});
-  cut_off_.assign(problem_->mesh().tets.size(), 0);
-}
-
 void StressKernel::keep_forces() {
   forces_.assign(blocks_.size() * kForces, 0.0);
   const auto nodes = problem_->mesh().nodes.size();
@@ -145,11 +139,12 @@ inline void bound_principal(const double (&s)[6][StressKernel::kLanes],
 
 }  // namespace
 
-SUNDER_VECTORISED
-void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
-                              Partial& partial) {
+template <bool kMeasured>
+inline __attribute__((always_inline)) void StressKernel::run_all(const Block* blocks,
+                                                                 std::size_t count, const double* u,
+                                                                 Stores to, Partial& partial) {
   double largest[kLanes] = {}, check[kLanes] = {};
-  double strained[kLanes] = {}, turned[kLanes] = {};
+  GroupBounds most{};
   for (std::size_t k = 0; k < count; ++k) {
     const Block& b = blocks[k];
     double d[9][kLanes];  // displacement of corners 1..3 against corner 0
@@ -184,12 +179,16 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
       const double j2 =
           ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 6 + shear;
       bound[l] = b.strength[l] != 0 ? j2 * b.strength[l] : 0.0;
-      const double trace = h[0][0] + (h[1][1] + h[2][2]);
-      const double strain = j2 * b.softness[l] + trace * (trace * b.live[l]);
-      strained[l] = strain > strained[l] ? strain : strained[l];
-      const double x = h[2][1] - h[1][2], y = h[0][2] - h[2][0], z = h[1][0] - h[0][1];
-      const double curl = (x * x + y * y + z * z) * b.live[l];
-      turned[l] = curl > turned[l] ? curl : turned[l];
+      if constexpr (kMeasured) {
+        const double mean = (h[0][0] + (h[1][1] + h[2][2])) * b.live[l];
+        most.stretch[l] = mean > most.stretch[l] ? mean : most.stretch[l];
+        most.squeeze[l] = -mean > most.squeeze[l] ? -mean : most.squeeze[l];
+        const double deviator = j2 * b.softness[l];
+        most.deviator[l] = deviator > most.deviator[l] ? deviator : most.deviator[l];
+        const double x = h[2][1] - h[1][2], y = h[0][2] - h[2][0], z = h[1][0] - h[0][1];
+        const double curl = (x * x + y * y + z * z) * b.live[l];
+        most.curl[l] = curl > most.curl[l] ? curl : most.curl[l];
+      }
       s[0][l] = scale * xx;
       s[1][l] = scale * yy;
       s[2][l] = scale * zz;
@@ -202,13 +201,9 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
       if (to.principal) bound_principal(s, b.strength, bound);
       for (int l = 0; l < kLanes; ++l) at[l] = bound[l];
     }
-    if (to.groups && (k % kGroup == kGroup - 1 || k + 1 == count)) {
-      GroupBounds& group = to.groups[k / kGroup];
-      for (int l = 0; l < kLanes; ++l) {
-        group.strain[l] = strained[l];
-        group.curl[l] = turned[l];
-        strained[l] = turned[l] = 0;
-      }
+    if (kMeasured && (k % kGroup == kGroup - 1 || k + 1 == count)) {
+      to.groups[k / kGroup] = most;
+      most = {};
     }
     if (to.forces) {
       constexpr int kRow[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};  // Voigt places of a tensor
@@ -241,6 +236,18 @@ void StressKernel::run_blocks(const Block* blocks, std::size_t count, const doub
   }
 }
 
+SUNDER_VECTORISED
+void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
+                              Partial& partial) {
+  run_all<false>(blocks, count, u, to, partial);
+}
+
+SUNDER_VECTORISED
+void StressKernel::run_and_bound(const Block* blocks, std::size_t count, const double* u, Stores to,
+                                 Partial& partial) {
+  run_all<true>(blocks, count, u, to, partial);
+}
+
 double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
   return run_storing(
       u, {stress.empty() ? nullptr : stress.data(), bounds_.empty() ? nullptr : bounds_.data(),
@@ -262,7 +269,8 @@ double StressKernel::run_storing(std::span<const double> u, Stores to) {
     if (part.forces) part.forces += begin * kForces;
     partials_[w] = {};
     if (part.stress) part.stress += begin * kLanes;
-    run_blocks(blocks_.data() + begin, end - begin, u.data(), part, partials_[w]);
+    const auto run = part.groups ? &run_and_bound : &run_blocks;
+    run(blocks_.data() + begin, end - begin, u.data(), part, partials_[w]);
   });
   Partial sum;
   for (const Partial& p : partials_) {
@@ -271,66 +279,6 @@ double StressKernel::run_storing(std::span<const double> u, Stores to) {
   }
   if (!(sum.check == 0)) return std::numeric_limits<double>::quiet_NaN();
   return std::sqrt(sum.largest);
-}
-
-void StressKernel::cut_off(std::span<const Index> elements) {
-  for (Index e : elements) cut_off_[static_cast<std::size_t>(e)] = 1;
-}
-
-Deformation StressKernel::deformation(std::span<const double> u) const {
-  DeformationSearch search;
-  // The elements with the largest bounds leave few others to look at.
-  double strain = 0, curl = 0;
-  std::size_t strained = 0, turned = 0;
-  const auto largest = [](const double(&lanes)[kLanes]) {
-    return *std::max_element(lanes, lanes + kLanes);
-  };
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const double s = largest(groups_[g].strain), c = largest(groups_[g].curl);
-    if (s > strain) strained = g;
-    if (c > curl) turned = g;
-    strain = std::max(strain, s);
-    curl = std::max(curl, c);
-  }
-  const auto preview = [&](const Mat3& h) { search.preview(h); };
-  const auto take = [&](const Mat3& h) { search.take(h); };
-  for (std::size_t l = 0; l < kLanes && !groups_.empty(); ++l) {
-    if (groups_[strained].strain[l] == strain && strain > 0) each_of(strained, l, u, preview);
-    if (groups_[turned].curl[l] == curl && curl > 0) each_of(turned, l, u, preview);
-  }
-  const DeformationSearch::Limits limits = search.limits();
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const GroupBounds& bounds = groups_[g];
-    int any = 0;  // without a branch: nearly all groups have none
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      any |= static_cast<int>(bounds.strain[l] > limits.strain_squared) |
-             static_cast<int>(bounds.curl[l] > limits.curl_squared * kLive);
-    }
-    for (std::size_t l = 0; any != 0 && l < kLanes; ++l) {
-      if (search.matters(bounds.strain[l], bounds.curl[l] / kLive)) each_of(g, l, u, take);
-    }
-  }
-  return search.found();
-}
-
-/// The displacement gradients of the elements in one lane of a group.
-template <class Visit>
-void StressKernel::each_of(std::size_t group, std::size_t lane, std::span<const double> u,
-                           Visit&& visit) const {
-  const std::size_t first = group * kGroup;
-  for (std::size_t k = first; k < std::min(first + kGroup, blocks_.size()); ++k) {
-    const Block& b = blocks_[k];
-    const Index e = b.element[lane];
-    if (e == kNone || b.live[lane] == 0 || cut_off_[static_cast<std::size_t>(e)]) continue;
-    const Vec3 u0(&u[static_cast<std::size_t>(b.corner[0][lane])]);
-    Mat3 h = Mat3::Zero();
-    for (int corner = 1; corner < 4; ++corner) {
-      const Vec3 d = Vec3(&u[static_cast<std::size_t>(b.corner[corner][lane])]) - u0;
-      for (int axis = 0; axis < 3; ++axis)
-        h.col(axis) += d * b.gradient[3 * (corner - 1) + axis][lane];
-    }
-    visit(h);
-  }
 }
 
 /// Node by node, in the order of elements: the same sums for any number of threads.

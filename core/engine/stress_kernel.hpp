@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/deformation_search.hpp"
 #include "parallel/workers.hpp"
 #include "sunder/backend.hpp"
 
@@ -60,18 +61,23 @@ class StressKernel {
     double gradient[9][kLanes];  // of corners 1..3: 3 * (corner - 1) + axis
     double mu[kLanes], lambda[kLanes];
     double scale[kLanes];     // a_e
-    double live[kLanes];      // share of (tr E)^2 in |E|^2, 1/3; 0: destroyed, does not count
+    double live[kLanes];      // 1/3: tr E times it is the mean strain; 0: destroyed, does not count
     double softness[kLanes];  // 1 / (2 mu^2); 0 where destroyed
     double volume[kLanes];
     double strength[kLanes];  // 1 / yield^2 of live breakable elements, else 0
     Index corner[4][kLanes];  // 3 * node
     Index element[kLanes];    // kNone: filler
   };
-  /// Of the live elements in one lane of kGroup blocks: largest |sym grad u|^2 and |curl u|^2 / 3.
-  struct GroupBounds {
+  /// Of the live elements in one lane of kGroup blocks, of E = sym grad u with the mean m = tr E /
+  /// 3: largest m, -m, |E - m I|^2 and |curl u|^2 / 3, none under 0.
+  struct alignas(64) GroupBounds {
+    double stretch[kLanes], squeeze[kLanes], deviator[kLanes], curl[kLanes];
+  };
+  static constexpr std::size_t kGroup = 8;
+  /// Of each lane, the largest that |E|^2 and |curl u|^2 / 3 may be.
+  struct Largest {
     double strain[kLanes], curl[kLanes];
   };
-  static constexpr std::size_t kGroup = 4;
   struct Partial {
     double largest = 0, check = 0;
   };
@@ -85,12 +91,38 @@ class StressKernel {
   };
   static void run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                          Partial& partial);
+  static void run_and_bound(const Block* blocks, std::size_t count, const double* u, Stores to,
+                            Partial& partial);
+  template <bool kMeasured>
+  static void run_all(const Block* blocks, std::size_t count, const double* u, Stores to,
+                      Partial& partial);
   [[nodiscard]] double run_storing(std::span<const double> u, Stores to);
   [[nodiscard]] Worst worst(std::span<const std::uint8_t> excluded,
                             std::span<const Voigt> stress) const;
   [[nodiscard]] double least_bound() const;
-  template <class Visit>
-  void each_of(std::size_t group, std::size_t lane, std::span<const double> u, Visit&& visit) const;
+  // stress_kernel_deformation.cpp
+  /// A lane of a group.
+  struct Place {
+    std::size_t group = 0;
+    int lane = 0;
+  };
+  static double strain_bound(const GroupBounds& of, std::ptrdiff_t lane);
+  static Largest largest_bounds(const GroupBounds* groups, std::size_t count);
+  template <class Bound>
+  [[nodiscard]] Place place_of(const double (&largest)[kLanes], Bound&& bound) const;
+  static bool any_over(const GroupBounds* groups, std::size_t count,
+                       const DeformationSearch::Limits& limits);
+  [[nodiscard]] std::size_t next_over(std::size_t from,
+                                      const DeformationSearch::Limits& limits) const;
+  static unsigned lanes_over(const GroupBounds& group, const DeformationSearch::Limits& limits);
+  static unsigned lanes_over(const Block& block, const double* u,
+                             const DeformationSearch::Limits& limits);
+  [[nodiscard]] std::span<const Block> blocks_of(std::size_t group) const;
+  [[nodiscard]] bool counts(const Block& block, int lane) const;
+  static Mat3 gradient_of(const Block& block, int lane, std::span<const double> u);
+  template <class Measure>
+  [[nodiscard]] Mat3 most_by(Measure&& measure, Place at, std::span<const double> u) const;
+  void take(DeformationSearch& search, std::size_t group, std::span<const double> u) const;
 
   std::shared_ptr<const Problem> problem_;
   std::size_t size_ = 0;  // listed elements
@@ -98,6 +130,7 @@ class StressKernel {
   std::vector<Index> place_;    // of each element, kNone: not in here
   std::vector<double> bounds_;  // of ratios, squared and in order: J_2 / yield^2 for shear
   std::vector<GroupBounds> groups_;
+  double rounding_ = 0;                // of the strains in groups_, a share of the largest
   std::vector<std::uint8_t> cut_off_;  // per element; empty: deformation() is not asked for
   // Forces on the corners of a block's elements: axis, corner, lane; of each node, where in there
   // its elements' forces on axis x begin.

@@ -27,16 +27,19 @@ struct Spread {
 };
 Spread spread(const Mat3& h) {
   const double mean = h.trace() / 3;
-  const double deviator = (small_strain(h) - mean * Mat3::Identity()).norm();
-  return {mean, std::sqrt(2.0 / 3) * deviator};
+  const double x = h(0, 0) - mean, y = h(1, 1) - mean, z = h(2, 2) - mean;
+  const double xy = h(0, 1) + h(1, 0), yz = h(1, 2) + h(2, 1), zx = h(2, 0) + h(0, 2);
+  const double squared = x * x + y * y + z * z + (xy * xy + yz * yz + zx * zx) / 2;
+  return {mean, std::sqrt(2.0 / 3 * squared)};
 }
 
 /// tan(theta/2) as the root of a scalar equation: (cos theta/2, n sin theta/2) is the eigenvector
 /// of the largest value l = max tr(R^T F) of Horn's matrix (J. Opt. Soc. Am. A 4, 1987), so that
 /// l = tr F + 4 w M^-1 w with M = (l + 1 + tr E) I - 2 E, and n tan(theta/2) = 2 M^-1 w. Newton
 /// from l = tr F, which is under the root: the function is concave above its poles, so every step
-/// stays under it. Nothing: tr F may lie under a pole.
-std::optional<double> half_tangent(const Mat3& h) {
+/// stays under it. |M^-1 w| falls with l, so that each step leaves less than the one before: once
+/// that is at most `least` it is enough. Nothing: tr F may lie under a pole.
+std::optional<double> half_tangent(const Mat3& h, double least) {
   const Spread of = spread(h);
   const Vec3 w = half_curl(h);
   const double trace = h.trace();
@@ -46,6 +49,7 @@ std::optional<double> half_tangent(const Mat3& h) {
   for (int step = 0; step < 50; ++step) {
     const Mat3 m = (l + 1 + trace) * Mat3::Identity() - 2 * strain;
     const Vec3 x = 2 * (m.inverse() * w);
+    if (x.squaredNorm() <= least * least) return x.norm();
     const double over = l - (3 + trace + 2 * w.dot(x));
     l -= over / (1 + x.squaredNorm());
     if (std::abs(over) <= 1e-14 * std::abs(l)) return x.norm();
@@ -81,8 +85,8 @@ double principal_strain(const Mat3& h) {
   return -e[0] > e[2] ? e[0] : e[2];
 }
 
-double rotation_deg(const Mat3& h) {
-  const auto tangent = half_tangent(h);
+double rotation_deg(const Mat3& h, double least) {
+  const auto tangent = half_tangent(h, least);
   return 2 * kDegrees * std::atan(tangent ? *tangent : half_tangent_by_quaternion(h));
 }
 

@@ -17,8 +17,8 @@ namespace sunder::fem {
 [[nodiscard]] double principal_strain(const Mat3& h);
 
 /// Angle of the rotation nearest to F [deg], 0 to 180: that of its polar decomposition where
-/// det F > 0.
-[[nodiscard]] double rotation_deg(const Mat3& h);
+/// det F > 0. Where the tangent of its half is at most `least`, any angle from it to that one.
+[[nodiscard]] double rotation_deg(const Mat3& h, double least = 0);
 
 /// What needs no eigenvalues and is never under the exact values but by rounding.
 struct DeformationBounds {

@@ -658,6 +658,12 @@ class Frames(unittest.TestCase):
                                          "2,001", "2,002", "2,003", "2,004"])
         self.assertEqual(frames.tables(self.rows()[:1])[0], first)
 
+    def test_the_measures_of_deformation_have_a_table_beside_the_stress_pass(self):
+        rows = [timed("measures/sheared/7776", frames.PROGRAM, [1.0], pass_us=90.0, bounds_us=1.0,
+                      search_us=17.0, share=0.2)]
+        (_, _, body), = frames.tables(rows)
+        self.assertEqual(body, [["sheared 7,776", "90.0", "1.0", "17.0", "20 %"]])
+
     def test_the_document_has_the_marks_and_names_the_command(self):
         text = (BENCH.parent / "docs" / "frames.md").read_text(encoding="utf-8")
         self.assertEqual((text.count(frames.BEGIN), text.count(frames.END)), (1, 1))
