@@ -161,8 +161,8 @@ inline std::vector<RunCase> run_cases() {
        }},
       {"SeveralTools", [] {
          Scene scene = tearing_board();
-         scene.instruments.push_back(tool(Pull{lower_right_corner(), Vec3(0, -120, 0)}));
-         scene.instruments.push_back(tool(Pull{right_edge(10, 25), Vec3(40, 0, 0)}));
+         scene.instruments.push_back(tool(Pull{lower_right_corner(), Vec3(0, -300, 0)}));
+         scene.instruments.push_back(tool(Pull{right_edge(10, 25), Vec3(120, 0, 0)}));
          scene.instruments.push_back(
              tool(Grip{Box{Vec3(-1, -1, -1), Vec3(0.1, 0.1, 4)}, Vec3(-2, 1, 0), Axes{3}}));
          return scene;
