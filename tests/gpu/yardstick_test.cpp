@@ -43,9 +43,8 @@ TEST_P(AgainstTheYardstick, TearsByEveryRoute) {
     SCOPED_TRACE(name_of(way) + " " + backend->info().route);
     const WholeRun run = whole_run(watched.problem, std::move(backend), kRunFractures);
     ASSERT_NO_FATAL_FAILURE(expect_same_fractures(right, run));
-    ASSERT_NO_FATAL_FAILURE(
-        expect_same_frames(*watched.problem, right, run,
-                           way.precision == Precision::fp64 ? of_fp64 : kFp32Tolerance));
+    ASSERT_NO_FATAL_FAILURE(expect_same_frames(
+        *watched.problem, right, run, way.precision == Precision::fp64 ? of_fp64 : kFp32Tolerance));
   }
 }
 
