@@ -15,6 +15,7 @@ set(rooms
   "core/fracture:core/sunder core/material core/fem"
   "core:core/sunder core/material core/fem core/engine core/fracture"
   "cpu_reference:core core/sunder core/material core/fem core/engine"
+  "cpu_reference/plain:core/sunder"
   "shaders:"
   "gpu:core core/sunder core/material core/fem core/engine shaders"
   "api/sunder:core/sunder"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU reference backend: double precision, Eigen, plain. The yardstick of every other backend.
+// The CPU reference backend: double precision, Eigen. Its own yardstick is cpu_reference/plain.
 #pragma once
 
 #include <chrono>

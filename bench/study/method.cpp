@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/has_vulkan.hpp"
+#include "cpu_reference/plain/plain.hpp"
 #include "pieces.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
@@ -31,12 +32,6 @@ std::vector<std::uint8_t> marked(const Problem& problem, std::span<const Index> 
   std::vector<std::uint8_t> destroyed(static_cast<std::size_t>(problem.tet_count()), 0);
   for (Index e : removed) destroyed[static_cast<std::size_t>(e)] = 1;
   return destroyed;
-}
-
-std::vector<double> scales(const Problem& problem, std::span<const std::uint8_t> destroyed) {
-  std::vector<double> scale;
-  for (auto d : destroyed) scale.push_back(d ? problem.scene().fracture.alpha : 1.0);
-  return scale;
 }
 
 double median(std::vector<double> values) {
@@ -108,15 +103,16 @@ std::vector<Method> methods() {
 Reference::Reference(const Problem& problem, std::span<const Index> removed,
                      std::span<const double> force)
     : ignored(marked(problem, removed)) {
-  const test::DirectSolution direct(problem, scales(problem, ignored));
+  plain::Body body(problem, ignored);
   for (const auto& piece : find_loose_parts(problem, ignored).pieces) {
     for (Index e : piece) ignored[static_cast<std::size_t>(e)] = 1;
   }
-  u = direct.solve(force);
-  stress = direct.stress(u);
+  const plain::Solution solution = body.solve(test::load_of(problem, force, {}));
+  u = solution.displacement;
+  stress = solution.stress;
   std::vector<double> rounded;
   for (double x : u) rounded.push_back(static_cast<double>(static_cast<float>(x)));
-  rounding = test::stress_error(ignored, direct.stress(rounded), stress);
+  rounding = test::stress_error(ignored, body.stress(rounded), stress);
 }
 
 Outcome run_cell(const Method& method, const Problem& problem, std::span<const double> force,

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "sunder/backend.hpp"
-#include "support/direct_solution.hpp"
 
 namespace sunder::bench {
 
@@ -22,7 +21,7 @@ struct Method {
 [[nodiscard]] std::vector<Method> methods();
 
 struct Outcome {
-  double u_error = 0, stress_error = 0;  ///< against the direct solution (support/accuracy.hpp)
+  double u_error = 0, stress_error = 0;  ///< against the yardstick (support/accuracy.hpp)
   double residual = 0, estimate = 0;     ///< what the solver reported
   int iterations = 0;
   double first_ms = 0, median_ms = 0;  ///< of the frames: update, load, solve, stress
@@ -30,8 +29,8 @@ struct Outcome {
   std::string reason;                  ///< of a refusal
 };
 
-/// The yardstick of one cell: a fresh factorisation of the damaged board in fp64, refined with
-/// residuals in extended precision.
+/// One cell by the yardstick (cpu_reference/plain): a fresh factorisation of the damaged board in
+/// fp64, refined with residuals in extended precision.
 struct Reference {
   Reference(const Problem& problem, std::span<const Index> removed, std::span<const double> force);
   std::vector<std::uint8_t> ignored;  ///< destroyed elements and pieces cut off

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prescribed displacements by the compliance block against plain elimination of the same dofs
-// (direct_solution.hpp), intact and torn, with supports, without any, and with two grips.
+// (cpu_reference/plain), intact and torn, with supports, without any, and with two grips.
 #include <gtest/gtest.h>
 
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
-#include "support/direct_solution.hpp"
 #include "support/sequences.hpp"
 #include "support/structured_board.hpp"
+#include "support/yardstick.hpp"
 
 namespace sunder::test {
 namespace {
@@ -29,20 +29,29 @@ Instrument grip(NodeSelection nodes, const Vec3& displacement, Axes axes) {
   return tool;
 }
 
-Known known_of(const Problem& problem) {
-  Known known;
-  const auto& instruments = problem.scene().instruments;
-  for (std::size_t i = 0; i < instruments.size(); ++i) {
-    const auto* g = std::get_if<Grip>(&instruments[i].action);
-    if (!g) continue;
-    for (Index n : problem.instrument_nodes()[i].nodes) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (g->axes.has(axis)) known[3 * n + axis] = g->displacement[axis];
+/// Displacement of each gripped dof, in the problem's order, and its place among all dofs.
+struct Gripped {
+  explicit Gripped(const Problem& problem) {
+    std::map<std::size_t, double> known;  // ascending as the unknowns are
+    const auto& instruments = problem.scene().instruments;
+    for (std::size_t i = 0; i < instruments.size(); ++i) {
+      const auto* g = std::get_if<Grip>(&instruments[i].action);
+      if (!g) continue;
+      for (Index n : problem.instrument_nodes()[i].nodes) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (g->axes.has(axis))
+            known[static_cast<std::size_t>(3 * n + axis)] = g->displacement[axis];
+        }
       }
     }
+    for (const auto& [place, value] : known) {
+      places.push_back(place);
+      values.push_back(value);
+    }
   }
-  return known;
-}
+  std::vector<std::size_t> places;
+  std::vector<double> values;
+};
 
 /// Compares displacement, stress and the grips' forces with elimination.
 void expect_elimination(Scene scene, Route route, const std::vector<Index>& destroyed) {
@@ -50,35 +59,28 @@ void expect_elimination(Scene scene, Route route, const std::vector<Index>& dest
   Body body(std::move(scene));
   const Problem& problem = *body.problem;
   if (!destroyed.empty()) body.backend->destroy(destroyed);
-  const Known known = known_of(problem);
-  std::vector<double> prescribed(problem.gripped_dofs().size());
-  ASSERT_EQ(prescribed.size(), known.size());
-  std::vector<std::size_t> place;  // in node layout, ascending as the unknowns are
-  for (const auto& [flat, value] : known) {
-    prescribed[place.size()] = value;
-    place.push_back(static_cast<std::size_t>(flat));
-  }
+  const Gripped gripped(problem);
+  ASSERT_EQ(gripped.places.size(), problem.gripped_dofs().size());
   std::vector<double> force(problem.dofs().size(), 0.0);
   for (std::size_t n = 0; n < problem.mesh().nodes.size(); ++n) {
     const Vec3& x = problem.mesh().nodes[n];
     if (x.x() > 7.9 && x.y() > 3.5 && x.y() < 4.5) force[3 * n] = 0.1;
   }
-  body.load(force, prescribed);
+  body.load(force, gripped.values);
   const SolveReport report = body.backend->solve();
   EXPECT_TRUE(report.residual <= 1e-9) << report.residual;
-  const DirectSolution direct(problem, body.scale(), known);
-  const auto reference = direct.solve(force);
-  const auto u = body.displacement();
   const auto ignored = body.backend->destroyed();
-  EXPECT_TRUE(displacement_error(problem.mesh(), ignored, u, reference) <= kIntactTolerance);
-  EXPECT_TRUE(stress_error(ignored, body.stress(), direct.stress(reference)) <= kIntactTolerance);
-  const auto expected = direct.reactions(reference, force);
+  const auto right = yardstick(problem, ignored, force, gripped.values);
+  const auto u = body.displacement();
+  EXPECT_TRUE(displacement_error(problem.mesh(), ignored, u, right.displacement) <=
+              kIntactTolerance);
+  EXPECT_TRUE(stress_error(ignored, body.stress(), right.stress) <= kIntactTolerance);
   const auto reactions = body.reactions();
   double largest = 0;
-  for (double r : expected) largest = std::max(largest, std::abs(r));
+  for (double r : right.reactions) largest = std::max(largest, std::abs(r));
   for (std::size_t g = 0; g < reactions.size(); ++g) {
-    EXPECT_EQ(u[place[g]], prescribed[g]);
-    EXPECT_TRUE(std::abs(reactions[g] - expected[place[g]]) <= 1e-9 * largest) << g;
+    EXPECT_EQ(u[gripped.places[g]], gripped.values[g]);
+    EXPECT_TRUE(std::abs(reactions[g] - right.reactions[g]) <= 1e-9 * largest) << g;
   }
 }
 
@@ -130,13 +132,10 @@ TEST_P(Grips, AtRestAreSupports) {
   held.solver.route = gripped.solver.route = GetParam();
   const Body a(std::move(held)), b(std::move(gripped));
   const Index nodes = (kShape.nx + 1) * 2;  // of one edge
-  std::vector<double> moved, both(static_cast<std::size_t>(6 * nodes), 0.0);
+  std::vector<double> moved;
   for (Index n = 0; n < nodes; ++n) moved.insert(moved.end(), {0.1, -0.5, 0.05});
-  const Known known = known_of(*b.problem);
-  std::size_t g = 0;
-  for (const auto& [flat, value] : known) both[g++] = value;
   a.load({}, moved);
-  b.load({}, both);
+  b.load({}, Gripped(*b.problem).values);
   a.backend->solve();
   b.backend->solve();
   const std::vector<std::uint8_t> none(a.problem->mesh().tets.size(), 0);

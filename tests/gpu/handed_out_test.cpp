@@ -6,8 +6,8 @@
 #include "agreement.hpp"
 #include "fem/element.hpp"
 #include "kernels_fixture.hpp"
-#include "support/direct_solution.hpp"
 #include "support/table1_board.hpp"
+#include "support/yardstick.hpp"
 
 namespace sunder::test {
 namespace {
@@ -125,15 +125,11 @@ TEST_P(ReportedError, IsWhatAReaderOfTheStressGets) {
   const Problem problem(scene());
   const auto force = corner_force(problem.mesh());
   const auto sequence = crack_sequence(problem, 10, 10);
-  std::vector<double> scale(problem.mesh().tets.size(), 1.0);
-  const DirectSolution whole(problem, scale);
-  std::vector<std::uint8_t> destroyed(scale.size(), 0);
-  for (Index e : sequence) {
-    scale[static_cast<std::size_t>(e)] = problem.scene().fracture.alpha;
-    destroyed[static_cast<std::size_t>(e)] = 1;
-  }
-  const DirectSolution torn(problem, scale);
-  const auto of_whole = whole.stress(whole.solve(force)), of_torn = torn.stress(torn.solve(force));
+  const std::vector<std::uint8_t> none(problem.mesh().tets.size(), 0);
+  std::vector<std::uint8_t> destroyed = none;
+  for (Index e : sequence) destroyed[static_cast<std::size_t>(e)] = 1;
+  const auto of_whole = yardstick(problem, none, force).stress;
+  const auto of_torn = yardstick(problem, destroyed, force).stress;
   for (const Way& way : ways_of_every_route()) {
     SCOPED_TRACE(name_of(way));
     const WatchedBackend watched(scene(), way);
@@ -150,7 +146,6 @@ TEST_P(ReportedError, IsWhatAReaderOfTheStressGets) {
       EXPECT_LE(report.error, way.tolerance);
       return std::pair(report.error, off);
     };
-    const std::vector<std::uint8_t> none(scale.size(), 0);
     const auto [reported, off] = compare(none, of_whole);
     // In fp64 the sum of rounding in the solution is there; with damage a bound of it (vulkan.md).
     if (way.precision == Precision::fp32) {

@@ -57,11 +57,43 @@ class IncludeRule(unittest.TestCase):
     def test_devices_program_and_interface_keep_apart(self):
         wrong = {"gpu/intruder.cpp": "cpu_reference/routes.hpp",
                  "cpu_reference/intruder.cpp": "gpu/plan.hpp",
+                 "cpu_reference/routes_intruder.cpp": "cpu_reference/plain/plain.hpp",
                  "app/input/intruder.cpp": "fem/element.hpp",
                  "app/report/intruder.cpp": "engine/deferred.hpp"}
         said = self.refuse(wrong)
         for file in wrong:
             self.assertIn(f"{file} includes ", said)
+
+    def test_the_yardstick_takes_public_headers_alone(self):
+        wrong = {"cpu_reference/plain/a.cpp": "fem/element.hpp",
+                 "cpu_reference/plain/b.cpp": "engine/deferred.hpp",
+                 "cpu_reference/plain/c.cpp": "material/linear.hpp",
+                 "cpu_reference/plain/d.cpp": "cpu_reference/routes.hpp",
+                 "cpu_reference/plain/e.cpp": "loads.hpp"}
+        said = self.refuse(wrong)
+        for file, header in wrong.items():
+            self.assertIn(f"{file} includes ", said, header)
+
+    def test_the_yardstick_reads_the_mesh_and_the_checked_problem_itself(self):
+        files = sorted((SOURCE / "cpu_reference" / "plain").glob("*"))
+        lines = [line for file in files for line in file.read_text("utf-8").splitlines()]
+        self.assertGreater(len(files), 4)
+        self.assertLessEqual(len(lines), 400)
+        judged = r"small_strain|problem.*\.shape\(|stress_measures|yield_measure\(|max_shear\(|anchor"
+        self.assertEqual([line for line in lines if re.search(judged, line)], [])
+
+    def test_e_and_nu_of_a_material_are_read_in_few_places(self):
+        read = re.compile(r"\b(m|material)\.(young|poisson)\b|\bmaterial\(\w+\)\.(young|poisson)")
+        readers = {str(file.relative_to(SOURCE))
+                   for top in ("core", "cpu_reference", "gpu")
+                   for file in (SOURCE / top).rglob("*.?pp")
+                   if read.search(file.read_text("utf-8"))}
+        # The law; what checks it and scales springs by it; the yardstick, which judges the law; and
+        # the mean of several laws at a tip, a material by name alone.
+        self.assertEqual(readers, {"core/material/linear.cpp", "core/problem.cpp",
+                                   "core/problem_supports.cpp", "cpu_reference/plain/element.cpp",
+                                   "core/fracture/field_sif/auxiliary_field.cpp",
+                                   "core/fracture/field_sif/field_intensity.cpp"})
 
     def test_a_folder_without_a_room_is_refused(self):
         said = self.refuse({"app/nowhere/stray.cpp": "sunder/mesh.hpp"})

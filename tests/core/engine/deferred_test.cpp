@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every base with the deferred update, against a fresh dense factor refined in extended precision.
+// Every base with the deferred update, against the yardstick.
 #include "engine/deferred.hpp"
 
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@
 #include "pieces.hpp"
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"
-#include "support/direct_solution.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"
+#include "support/yardstick.hpp"
 
 namespace sunder::engine {
 namespace {
@@ -85,28 +85,16 @@ void destroy_up_to(Engine& engine, std::span<const Index> sequence, std::size_t 
 /// Compares all engines with the yardstick; `ignored`: elements that do not count.
 void compare(const Board& board, std::span<Engine> all, std::span<const Index> destroyed,
              double tolerance) {
-  std::vector<double> scale(board.problem.mesh().tets.size(), 1.0);
-  std::vector<std::uint8_t> dead(scale.size(), 0);
-  for (Index e : destroyed) {
-    scale[e] = board.problem.scene().fracture.alpha;
-    dead[e] = 1;
-  }
-  test::Known known;
-  for (std::size_t i = 0; i < board.problem.dofs().size(); ++i) {
-    const auto grips = board.problem.gripped_dofs();
-    if (std::binary_search(grips.begin(), grips.end(), board.problem.dofs()[i])) {
-      known[static_cast<Index>(i)] = 0.25;
-    }
-  }
-  const test::DirectSolution direct(board.problem, scale, known);
-  const std::vector<double> reference = direct.solve(board.nodal);
-  const std::vector<Voigt> stress = direct.stress(reference);
+  std::vector<std::uint8_t> dead(board.problem.mesh().tets.size(), 0);
+  for (Index e : destroyed) dead[e] = 1;
+  const std::vector<double> grips(board.problem.gripped_dofs().size(), 0.25);
+  const plain::Body plain(board.problem, dead);
+  const auto right = test::yardstick(board.problem, dead, board.nodal, grips);
   const LooseParts loose = find_loose_parts(board.problem, dead);
   std::vector<std::uint8_t> ignored = dead;
   for (const auto& piece : loose.pieces) {
     for (Index e : piece) ignored[e] = 1;
   }
-  const std::vector<double> grips(board.problem.gripped_dofs().size(), 0.25);
   for (Engine& engine : all) {
     if (destroyed.size() % engine.batch != 0) continue;
     SCOPED_TRACE(engine.name + " after " + std::to_string(destroyed.size()));
@@ -114,8 +102,9 @@ void compare(const Board& board, std::span<Engine> all, std::span<const Index> d
     engine.deferred.solve({board.dofs, board.values}, grips, u);
     ASSERT_TRUE(u.allFinite());
     const std::vector<double> nodal = board.nodal_displacement(u);
-    EXPECT_LE(test::displacement_error(board.problem.mesh(), ignored, nodal, reference), tolerance);
-    EXPECT_LE(test::stress_error(ignored, direct.stress(nodal), stress), tolerance);
+    EXPECT_LE(test::displacement_error(board.problem.mesh(), ignored, nodal, right.displacement),
+              tolerance);
+    EXPECT_LE(test::stress_error(ignored, plain.stress(nodal), right.stress), tolerance);
   }
 }
 

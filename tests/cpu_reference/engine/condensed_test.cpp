@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Route `condensed`: a strip of a larger board can tear, and only its unknowns are kept. Everything
-// that can be read is compared with a direct solution of the whole body.
+// that can be read is compared with the yardstick's solution of the whole body.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,10 +9,10 @@
 #include "pieces.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
-#include "support/direct_solution.hpp"
 #include "support/sequences.hpp"
 #include "support/structured_board.hpp"
 #include "support/table1_board.hpp"
+#include "support/yardstick.hpp"
 
 namespace sunder::test {
 namespace {
@@ -65,24 +65,14 @@ std::vector<double> moved(const Problem& problem) {
   return d;
 }
 
-Known known_of(const Problem& problem) {
-  Known known;
-  const auto gripped = problem.gripped_dofs();
-  const auto values = moved(problem);
-  for (std::size_t i = 0; i < problem.dofs().size(); ++i) {
-    const auto it = std::ranges::find(gripped, problem.dofs()[i]);
-    if (it != gripped.end()) known[static_cast<Index>(i)] = values[it - gripped.begin()];
-  }
-  return known;
-}
-
 void expect_agreement(const Body& body, std::span<const double> force,
                       std::span<const std::uint8_t> ignored, double tolerance) {
-  const DirectSolution direct(*body.problem, body.scale(), known_of(*body.problem));
-  const auto reference = direct.solve(force);
-  EXPECT_LE(displacement_error(body.problem->mesh(), ignored, body.displacement(), reference),
-            tolerance);
-  EXPECT_LE(stress_error(ignored, body.stress(), direct.stress(reference)), tolerance);
+  const auto right =
+      yardstick(*body.problem, body.backend->destroyed(), force, moved(*body.problem));
+  EXPECT_LE(
+      displacement_error(body.problem->mesh(), ignored, body.displacement(), right.displacement),
+      tolerance);
+  EXPECT_LE(stress_error(ignored, body.stress(), right.stress), tolerance);
 }
 
 class Condensed : public ::testing::TestWithParam<Case> {};
@@ -237,17 +227,17 @@ TEST(CondensedRoute, ReadsTheStressOfTheLastStressCallEverywhere) {
     const auto sequence = crack_sequence(*body.problem, 4, 12);
     body.backend->destroy(std::span(sequence).subspan(2 * static_cast<std::size_t>(k), 2));
     body.backend->solve();
-    const auto reference = DirectSolution(*body.problem, body.scale()).stress(body.displacement());
+    const auto destroyed = body.backend->destroyed();
+    const auto reference = plain::Body(*body.problem, destroyed).stress(body.displacement());
     body.backend->stress();
     for (double& f : force) f *= 1.5;
     body.load(force);
     body.backend->solve();
     std::vector<Voigt> stress(body.problem->mesh().tets.size());
     body.backend->read_stress(stress);
-    EXPECT_LE(stress_error(body.backend->destroyed(), stress, reference), kIntactTolerance);
-    const auto twice = DirectSolution(*body.problem, body.scale()).solve(force);
-    EXPECT_LE(displacement_error(body.problem->mesh(), body.backend->destroyed(),
-                                 body.displacement(), twice),
+    EXPECT_LE(stress_error(destroyed, stress, reference), kIntactTolerance);
+    EXPECT_LE(displacement_error(body.problem->mesh(), destroyed, body.displacement(),
+                                 yardstick(*body.problem, destroyed, force).displacement),
               kCrackTolerance);
   }
 }
@@ -261,13 +251,10 @@ TEST(CondensedRoute, SolvesTheIntactBodyEverywhere) {
   body.backend->solve();
   std::vector<double> u(body.problem->dofs().size());
   body.backend->solve_pristine(load_of(*body.problem, force, {}), u);
-  const auto intact =
-      DirectSolution(*body.problem, std::vector<double>(body.problem->mesh().tets.size(), 1.0))
-          .solve(force);
-  EXPECT_LE(
-      displacement_error(body.problem->mesh(),
-                         std::vector<std::uint8_t>(body.problem->mesh().tets.size(), 0), u, intact),
-      kIntactTolerance);
+  const std::vector<std::uint8_t> none(body.problem->mesh().tets.size(), 0);
+  const auto intact = yardstick(*body.problem, none, force);
+  EXPECT_LE(displacement_error(body.problem->mesh(), none, u, intact.displacement),
+            kIntactTolerance);
 }
 
 // 366 unknowns of the strip and the pulled corner; 756 elements between them.

@@ -7,9 +7,9 @@
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
-#include "support/direct_solution.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"
+#include "support/yardstick.hpp"
 
 namespace sunder::test {
 namespace {
@@ -43,10 +43,9 @@ TEST_P(Estimate, IsNeverUnderTheErrorAlongACrack) {
     const SolveReport report = body.backend->solve();
     EXPECT_LE(report.error, kCrackTolerance) << i;
     if (i % 8 != 7) continue;
-    const DirectSolution direct(*body.problem, body.scale());
-    const auto reference = direct.solve(force);
+    const auto destroyed = body.backend->destroyed();
     const double error =
-        stress_error(body.backend->destroyed(), body.stress(), direct.stress(reference));
+        stress_error(destroyed, body.stress(), yardstick(*body.problem, destroyed, force).stress);
     // A solution refined to rounding has a correction of rounding's size, no bound (up to 2.4 times
     // under it); and the reference is off by this itself.
     constexpr double kOfRounding = 3, kReference = 1e-11;
@@ -87,9 +86,9 @@ struct Frame {
     return corner_force(body.problem->mesh(), Vec3(0, -60, 0));
   }
   [[nodiscard]] double true_error() const {
-    const DirectSolution direct(*body.problem, body.scale());
-    return stress_error(body.backend->destroyed(), body.stress(),
-                        direct.stress(direct.solve(force())));
+    const auto destroyed = body.backend->destroyed();
+    return stress_error(destroyed, body.stress(),
+                        yardstick(*body.problem, destroyed, force()).stress);
   }
   Body body;
 };

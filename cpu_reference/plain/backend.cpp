@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "cpu_reference/plain/plain.hpp"
+#include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
+
+namespace sunder::plain {
+namespace {
+
+Real strength(const Voigt& s, YieldMeasure measure) {
+  Real3x3 tensor;
+  tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+  const auto p = principal_values(tensor);
+  if (measure == YieldMeasure::principal) return p[2];
+  return measure == YieldMeasure::tresca ? p[2] - p[0] : (p[2] - p[0]) / 2;
+}
+
+class PlainBackend final : public Backend {
+ public:
+  PlainBackend(std::shared_ptr<const Problem> problem, Needs needs)
+      : Backend(problem, std::move(needs)),
+        body_(*problem),
+        excluded_(problem->mesh().tets.size(), 0),
+        cut_off_(excluded_) {}
+
+  BackendInfo info() const override {
+    return {"plain", "", "", "fp64", "LDL^T", "anew", "it judges the other routes"};
+  }
+  std::vector<BufferPlan> buffers() const override { return {}; }
+  std::vector<KernelPlan> kernels() const override { return {}; }
+
+ private:
+  void do_set_load(const Load& load) override { load_ = load; }
+  SolveReport do_solve() override {
+    solution_ = body_.solve(load_);
+    if (!(solution_.error <= problem().scene().solver.tolerance)) {
+      throw NumericalError("the yardstick cannot be refined under the tolerance");
+    }
+    return {.residual = solution_.residual, .error = solution_.error};
+  }
+  StressSummary do_stress() override {
+    stress_ = solution_.stress;
+    const YieldMeasure measure = strength_measure(problem().scene().fracture);
+    StressSummary summary;
+    for (Index e = 0; e < problem().tet_count(); ++e) {
+      if (destroyed()[e] || !problem().breakable(e)) continue;
+      const auto ratio = static_cast<double>(strength(stress_[e], measure) / problem().yield(e));
+      if (ratio > summary.any.ratio) summary.any = {e, ratio};
+      if (ratio > summary.candidate.ratio && !excluded_[e]) summary.candidate = {e, ratio};
+      summary.over += ratio >= 1;
+    }
+    return summary;
+  }
+  Deformation do_deformation() override {
+    return body_.deformation(solution_.displacement, cut_off_);
+  }
+  void do_cut_off(std::span<const Index> elements) override {
+    for (Index e : elements) cut_off_[e] = 1;
+  }
+  void do_destroy(std::span<const Index> elements) override { body_.destroy(elements); }
+  void do_exclude_candidates(std::span<const Index> elements) override {
+    for (Index e : elements) excluded_[e] = 1;
+  }
+  void do_solve_pristine(const Load& load, std::span<double> u) override {
+    std::ranges::copy(Body(problem()).solve(load).displacement, u.begin());
+  }
+  void do_read_displacement(std::span<double> u) const override {
+    std::ranges::copy(solution_.displacement, u.begin());
+  }
+  void do_read_displacement(std::span<const Index> nodes, std::span<Vec3> u) const override {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      u[i] = Vec3(&solution_.displacement[3 * nodes[i]]);
+  }
+  void do_read_stress(std::span<Voigt> s) const override { std::ranges::copy(stress_, s.begin()); }
+  Voigt do_read_stress(Index element) const override { return stress_[element]; }
+  void do_read_reactions(std::span<double> reactions) const override {
+    std::ranges::copy(solution_.reactions, reactions.begin());
+  }
+
+  Body body_;
+  Load load_;
+  Solution solution_;
+  std::vector<Voigt> stress_;  // of the last stress()
+  std::vector<std::uint8_t> excluded_, cut_off_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs) {
+  return std::make_unique<PlainBackend>(std::move(problem), std::move(needs));
+}
+
+}  // namespace sunder::plain
