@@ -99,8 +99,6 @@ class Frame {
     }
     if (s_.grips > 0) work_.pass(0);
     state(balance);
-    const bool projects = balance && touched > 0 && !s_.cg && !s_.eager && !s_.host_corrects;
-    if (projects) work_.pass(exact(touched) * static_cast<double>(s_.rows) * sizeof(double));
   }
 
   [[nodiscard]] bool few_loads() const { return s_.loaded <= kExactLoads; }

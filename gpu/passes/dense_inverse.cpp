@@ -155,7 +155,7 @@ void DenseInverse::bind(const PartialSums& partials, const Buffer& vector) {
   bind_loaded();
 }
 
-/// Most scenes never need it: an energy bound keeps the promise.
+/// Update eager alone needs it, for its estimate of the error.
 void DenseInverse::create_dense() {
   const bool narrow = narrows(kernels_);
   if (!dense_) {

@@ -177,19 +177,5 @@ TEST(PlainBackend, SummarisesByTheScenesMeasure) {
   }
 }
 
-// Part of a body: what the rest lends it is not assembled here.
-TEST(PlainBody, RefusesAPartOfABody) {
-  const Problem whole([] {
-    Scene scene = bar();
-    hold(scene);
-    return scene;
-  }());
-  PartOfBody part{{whole.mesh().tets[0].begin(), whole.mesh().tets[0].end()}, {0}};
-  std::ranges::sort(part.nodes);
-  Surroundings around{{0}, Eigen::MatrixXd::Identity(1, 1)};
-  const Problem of_it(whole, part, std::move(around));
-  EXPECT_THROW(plain::Body{of_it}, UsageError);
-}
-
 }  // namespace
 }  // namespace sunder::test
