@@ -9,6 +9,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -185,9 +186,9 @@ class Row:
     moment: Moment
     lasts: float  # s
     signals: int = 0
-    stopped: float = 0.0  # s until the first of the final files appears, or the end
+    stopped: float = 0.0  # s until files are written alone, or the end
+    computed: float = 0.0  # s of processor time until then
     ended: float = 0.0  # s
-    computed: float = 0.0  # s of processor time
     faults: list = dataclasses.field(default_factory=list)
 
 
@@ -261,12 +262,9 @@ class Bench:
         before = run.computed()
         run.process.send_signal(signal.SIGINT)
         sent = time.monotonic()
-        stopped = None
         again = row.moment.again
         while not run.ended():
             now = time.monotonic()
-            if stopped is None and (run.has("events.csv") or run.has("events.csv.{pid}.partial")):
-                stopped = now - sent
             if again and now - sent > AGAIN:
                 run.process.send_signal(signal.SIGINT)
                 again = False
@@ -278,8 +276,15 @@ class Bench:
         run.process.wait()
         row.signals += 1
         row.ended = max(row.ended, took)
-        row.stopped = max(row.stopped, took if stopped is None else stopped)
-        row.computed = max(row.computed, computed)
+        stopped, until = told(run.log.read_text(errors="replace")) or (took, computed)
+        row.stopped = max(row.stopped, stopped)
+        row.computed = max(row.computed, until)
+
+
+def told(text):
+    """(s, s of processor time) that the program says the computing still took."""
+    found = re.search(r"sunder: stopped (\S+) s after the signal \((\S+) s of processor", text)
+    return (float(found[1]), float(found[2])) if found else None
 
 
 def faults(run, moment):
@@ -318,8 +323,8 @@ def body(moment):
 
 def line(row):
     return (f"{row.moment.name} {body(row.moment)}: lasts {row.lasts:.2f} s; of {row.signals} "
-            f"signals: stopped {row.stopped:.3f} s, ended {row.ended:.3f} s, "
-            f"processor {row.computed:.3f} s{'; WRONG' if row.faults else ''}")
+            f"signals: stopped {row.stopped:.3f} s ({row.computed:.3f} s of processor), "
+            f"ended {row.ended:.3f} s{'; WRONG' if row.faults else ''}")
 
 
 def markdown(rows, about):
@@ -327,9 +332,9 @@ def markdown(rows, about):
     lines = [BEGIN, "",
              f"{about['cpu']}, {about['cores']} cores, {about['date']}, commit {about['commit']}, "
              f"load {about['load_before']} before the first run.", "",
-             "| the signal comes during | tetrahedra | lasts [s] | signals | computing stopped [s] "
-             "| program ended [s] | of processor [s] |", "|---|---:|---:|---:|---:|---:|---:|"]
+             "| the signal comes during | tetrahedra | lasts [s] | signals | stopped [s] "
+             "| of processor [s] | ended [s] |", "|---|---:|---:|---:|---:|---:|---:|"]
     for row in rows:
         lines.append(f"| {row.moment.name} | {body(row.moment)} | {row.lasts:.2f} | {row.signals} "
-                     f"| {row.stopped:.2f} | {row.ended:.2f} | {row.computed:.2f} |")
+                     f"| {row.stopped:.2f} | {row.computed:.2f} | {row.ended:.2f} |")
     return "\n".join(lines + ["", END])

@@ -135,6 +135,34 @@ TEST(Signals, WhileABodyIsPrepared) {
   }
 }
 
+// Conjugate gradients without a seventh of the elements: 1.5 s of processor time.
+TEST(Signals, WithinALongFrameLeavesItBehind) {
+  const TempFolder folder;
+  ASSERT_EQ(run_program({"mesh", "board", "--tets", "60000", "-o", (folder / "board.msh").string()})
+                .exit_code,
+            0);
+  const auto scene = folder / "holes.toml";
+  std::string holes = "0";
+  for (int element = 7; element < 60000; element += 7) holes += ", " + std::to_string(element);
+  write_text(scene, board_toml("Holes") + "[[destroy]]\nstep = 0\nelements = [" + holes + "]\n" +
+                        "[time]\nsteps = 1\n");
+  const auto out = folder / "out";
+  RunControl control;
+  control.one_processor = true;
+  control.meanwhile = [&](pid_t program) {
+    EXPECT_TRUE(wait_for(half_written(out, "frames.csv", program)));
+    kill(program, SIGINT);
+  };
+  const Outcome run = run_program(
+      {"run", scene.string(), "--out", out.string(), "--route", "cg", "--backend", "cpu"}, control);
+  EXPECT_EQ(run.exit_code, 130) << run.err;
+  const auto computed = told(run.err);
+  ASSERT_TRUE(computed) << run.err;
+  EXPECT_LE(*computed, kLimit);
+  expect_whole_results(out);
+  EXPECT_EQ(read_json(out / "summary.json")["steps_done"], 0);
+}
+
 TEST(Signals, WhileGmshMeshesLeavesNothing) {
   const TempFolder folder;
   for (const char* name : {"board.msh", "board.vtk"}) {
