@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -46,15 +47,10 @@ int carry_out(const std::function<int()>& results) {
   }
 }
 
-/// What is left behind shall not take the processors from what writes the results.
-void lower_priority_of_others() {
-  constexpr int kLowest = 19;
-  const std::string own = std::to_string(::gettid());
-  std::error_code none;
-  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", none)) {
-    const std::string id = task.path().filename().string();
-    if (id != own) ::setpriority(PRIO_PROCESS, static_cast<id_t>(std::stoul(id)), kLowest);
-  }
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 }  // namespace
@@ -83,6 +79,25 @@ void Interruption::stay_unless_free(std::unique_lock<std::mutex>& lock) const {
   for (;;) ::pause();
 }
 
+Interruption::Since Interruption::since_signal() const {
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - came_;
+  return {passed.count(), processor_seconds() - processor_at_};
+}
+
+/// What still computes shall not take the processors from what writes the results. It is not sent
+/// to the end of the queue: the last thread that ends gives the process's memory back, which takes
+/// ten seconds at the lowest priority on a busy machine.
+void Interruption::lower_priority_of_others() const {
+  constexpr int kLower = 5;  // a quarter of the processor beside what writes
+  const int priority = ::getpriority(PRIO_PROCESS, 0) + kLower;
+  const auto own = static_cast<id_t>(::gettid()), watcher = static_cast<id_t>(watcher_.load());
+  std::error_code none;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", none)) {
+    const auto id = static_cast<id_t>(std::stoul(task.path().filename().string()));
+    if (id != own && id != watcher) ::setpriority(PRIO_PROCESS, id, priority);
+  }
+}
+
 Interruption::Duty Interruption::expect(Duty duty) {
   std::unique_lock lock(mutex_);
   stay_unless_free(lock);
@@ -93,6 +108,8 @@ void Interruption::claim() {
   std::unique_lock lock(mutex_);
   stay_unless_free(lock);
   claimed_ = true;
+  lock.unlock();
+  if (requested_) lower_priority_of_others();
 }
 
 void Interruption::over(int exit_code) {
@@ -125,6 +142,7 @@ bool Interruption::await(std::chrono::milliseconds limit) const {
 }
 
 void Interruption::watch() {
+  watcher_ = ::gettid();
   static_cast<void>(await({}));
   if (ended_) return;
   first();
@@ -137,6 +155,8 @@ void Interruption::watch() {
 
 void Interruption::first() {
   std::unique_lock lock(mutex_);
+  came_ = std::chrono::steady_clock::now();
+  processor_at_ = processor_seconds();
   requested_ = true;
   if (claimed_ && !over_) return;
   const bool results = !over_ && duty_.results;

@@ -45,12 +45,18 @@ class Interruption {
 
   /// A signal has come.
   [[nodiscard]] bool requested() const noexcept { return requested_.load(); }
+  /// Since the first signal, which must have come.
+  struct Since {
+    double seconds, processor_seconds;  ///< of all threads together
+  };
+  [[nodiscard]] Since since_signal() const;
 
   /// Replaces what a signal finds and returns what it would have found. Does not return where
   /// that is under way.
   Duty expect(Duty duty);
-  /// The computing ends by itself and writes its results: nobody else will. Does not return where
-  /// somebody else does already.
+  /// The computing ends by itself and writes its results: nobody else will. What still computes
+  /// on other threads after a signal makes way for it. Does not return where somebody else does
+  /// already.
   void claim();
   /// All is done: a signal from here on ends the program with this exit code and takes nothing
   /// back. Does not return where somebody else ends the program.
@@ -62,6 +68,7 @@ class Interruption {
  private:
   void watch();
   [[nodiscard]] bool await(std::chrono::milliseconds limit) const;
+  void lower_priority_of_others() const;
   void first();
   void write_without_it();
   void drop(const std::string& what);
@@ -69,6 +76,9 @@ class Interruption {
   void stay_unless_free(std::unique_lock<std::mutex>& lock) const;
 
   std::atomic<bool> requested_{false}, ended_{false};
+  std::chrono::steady_clock::time_point came_;  // set before requested_
+  double processor_at_ = 0;                     // [s], likewise
+  std::atomic<int> watcher_{0};                 // the thread's id in the kernel
   std::mutex mutex_;
   Duty duty_;
   bool claimed_ = false;  // the computing writes its results itself

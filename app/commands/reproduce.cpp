@@ -62,12 +62,15 @@ int reproduce_paper(const ReproduceArguments& arguments, Interruption& interrupt
   line.finish();
   interruption.claim();
   const auto files = reproduce::write_study(study, folder);
+  const bool signalled = interruption.requested();
   interruption.over(0);
   print_verdicts(study);
   std::cout << counted(static_cast<long long>(files.size()), "file") << " in "
             << arguments.out.string() << " after " << rounded(study.seconds, 3) << " s: open "
             << (arguments.out / "index.html").string() << std::endl;
-  return 0;
+  if (!signalled) return 0;
+  std::cerr << "sunder: interrupted when all was computed: the results are complete\n";
+  return kInterruptedExit;
 }
 
 }  // namespace sunder::app

@@ -10,11 +10,6 @@
 namespace sunder::app {
 namespace {
 
-ResultFolder& cleared(ResultFolder& folder) {
-  folder.clear();
-  return folder;
-}
-
 std::string padded(int value, std::size_t width) {
   const std::string digits = std::to_string(value);
   return std::string(width > digits.size() ? width - digits.size() : 0, '0') + digits;
@@ -23,10 +18,11 @@ std::string padded(int value, std::size_t width) {
 }  // namespace
 
 ResultWriter::ResultWriter(ResultFolder& folder, const Problem& problem, bool series)
-    : folder_(cleared(folder)), problem_(problem), series_(series), painter_(problem) {}
+    : folder_(folder), problem_(problem), series_(series), painter_(problem) {}
 
 void ResultWriter::begin() {
   if (frames_) return;
+  folder_.clear();
   frames_.emplace(folder_, "frames.csv").write(frames_header());
   tips_.emplace(folder_, "tips.csv").write(tips_header());
 }

@@ -16,10 +16,9 @@ namespace sunder::app {
 
 class ResultWriter {
  public:
-  /// Removes an earlier run's results from the folder.
   ResultWriter(ResultFolder& folder, const Problem& problem, bool series);
 
-  /// Opens frames.csv and tips.csv, once.
+  /// Removes an earlier run's results from the folder, opens frames.csv and tips.csv; once.
   void begin();
 
   void step_done(const StepReport& report, const State& state, const std::vector<TipState>& tips);

@@ -91,6 +91,7 @@ class Run {
   void note_rupture(std::span<const DestroyedElement> event);
   void put_aside();
   void write_snapshots();
+  void tell_stopped();
   int end();
   int end_without_computing();
   void print_summary() const;
@@ -109,6 +110,7 @@ class Run {
   std::vector<Snapshot> taken_;        ///< in this step
   std::optional<Aside> aside_;         ///< in this step
   RuptureState now_;                   ///< of the last frame before the first rupture
+  bool told_stopped_ = false;
   Clock::time_point put_aside_ = Clock::now();
   double aside_seconds_ = 0;  ///< that putting aside took
 };
@@ -187,8 +189,21 @@ void Run::put_aside() {
 }
 
 void Run::write_snapshots() {
-  for (const Snapshot& snapshot : taken_) writer_.snapshot(snapshot.wanted, snapshot.state);
+  for (const Snapshot& snapshot : taken_) {
+    tell_stopped();
+    writer_.snapshot(snapshot.wanted, snapshot.state);
+  }
   taken_.clear();
+}
+
+/// Where a signal has come: from here on files are written alone, which may take longer.
+void Run::tell_stopped() {
+  if (quiet_ || !interruption_.requested() || std::exchange(told_stopped_, true)) return;
+  const Interruption::Since since = interruption_.since_signal();
+  progress_.finish();
+  std::cerr << "sunder: stopped " << rounded(since.seconds, 2) << " s after the signal ("
+            << rounded(since.processor_seconds, 2) << " s of processor time); writing results to "
+            << writer_.folder().path().string() << ", another signal drops them" << std::endl;
 }
 
 void Run::observe() {
@@ -222,6 +237,7 @@ void Run::step() {
     return;
   }
   record_.steps.push_back(report);
+  tell_stopped();
   writer_.step_done(report, record_.last, tips);
   progress_.update(simulation_->steps_done(), report.destroyed);
 }
@@ -274,11 +290,13 @@ int Run::end_without_computing() {
 /// The result files and what is to be said; reads the record alone.
 int Run::end() {
   progress_.finish();
+  tell_stopped();
   write_snapshots();
   for (const int count : wanted_)
     add_new(record_.warnings, {"no snapshot at " + counted(count, "destroyed element") + ": only " +
                                std::to_string(record_.destroyed.size()) + " were destroyed"});
   writer_.finish(record_);
+  const bool signalled = interruption_.requested();
   writer_.folder().release();
   const int steps = static_cast<int>(record_.steps.size());
   const std::string so_far = ": results so far are in " + writer_.folder().path().string();
@@ -288,11 +306,14 @@ int Run::end() {
   if (record_.interrupted)
     std::cerr << "sunder: interrupted " << (record_.unfinished ? "in step " : "after step ")
               << of_steps(record_.unfinished ? steps + 1 : steps, problem_) << so_far << "\n";
+  else if (signalled)
+    std::cerr << "sunder: interrupted after the last step: the results in "
+              << writer_.folder().path().string() << " are complete\n";
   if (!quiet_)
     for (const std::string& warning : record_.warnings)
       std::cerr << "sunder: warning: " << warning << "\n";
   print_summary();
-  return record_.interrupted ? kInterruptedExit : 0;
+  return signalled ? kInterruptedExit : 0;
 }
 
 void print_first_rupture(const RunRecord& run) {

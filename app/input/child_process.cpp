@@ -67,8 +67,9 @@ void write_all(int file, const std::string& bytes) {
 }
 
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits,
-                           Pipe& result, Pipe& errors) {
+                           Pipe& result, Pipe& errors, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(kFailed);  // it was gone before
   for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
     ::signal(signal, SIG_DFL);
   sigset_t none;  // the parent may hold some back
@@ -147,9 +148,9 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, const ChildL
   using End = ChildOutcome::End;
   Pipe result, errors;
   const auto deadline = std::chrono::steady_clock::now() + limits.timeout;
-  const pid_t child = ::fork();
+  const pid_t parent = ::getpid(), child = ::fork();
   if (child < 0) throw Error(1, std::string("cannot start a process: ") + std::strerror(errno));
-  if (child == 0) be_child(work, limits, result, errors);
+  if (child == 0) be_child(work, limits, result, errors, parent);
   Pipe::close_end(result.write);
   Pipe::close_end(errors.write);
 

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,6 +35,12 @@ struct Pipe {
   if (control.file_size_limit > 0) {
     const rlimit limit{control.file_size_limit, control.file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  if (control.one_processor) {
+    cpu_set_t here;
+    CPU_ZERO(&here);
+    CPU_SET(static_cast<std::size_t>(sched_getcpu()), &here);
+    sched_setaffinity(0, sizeof here, &here);
   }
   std::vector<std::string> copies = {SUNDER_PROGRAM};
   copies.insert(copies.end(), arguments.begin(), arguments.end());
@@ -88,7 +95,11 @@ Outcome run_program(const std::vector<std::string>& arguments, const RunControl&
   close(out.ends[0]);
   close(err.ends[0]);
   int status = 0;
-  waitpid(child, &status, 0);
+  rusage used{};
+  wait4(child, &status, 0, &used);
+  for (const timeval& time : {used.ru_utime, used.ru_stime})
+    outcome.processor_seconds +=
+        static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   return outcome;
 }

@@ -31,12 +31,14 @@ class TempFolder {
 struct Outcome {
   int exit_code = -1;  ///< minus the signal number when a signal ended it
   std::string out, err;
+  double processor_seconds = 0;  ///< of all its threads
 };
 
 struct RunControl {
   std::size_t file_size_limit = 0;       ///< bytes; 0: none
   std::function<void(pid_t)> meanwhile;  ///< called once it runs
   std::string standard_output;           ///< file to write to instead of a pipe
+  bool one_processor = false;            ///< all its threads share one
 };
 
 [[nodiscard]] Outcome run_program(const std::vector<std::string>& arguments,

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // SIGINT and SIGTERM at any moment: while libraries load, a mesh is read, a body is prepared, a
 // step is computed or a file is written.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <functional>
+#include <optional>
 #include <random>
+#include <regex>
 #include <thread>
 
 #include "app/commands/interruption.hpp"
@@ -17,10 +25,10 @@ namespace sunder::test {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
-// A second is what is promised on an idle machine (measured apart); tests share theirs.
-constexpr std::chrono::seconds kLimit{10};
+// A second is promised. Tests share their machine, so they count what the program computes in it:
+// on one processor it is no more than the time that passes. bench/signals measures that.
+constexpr double kLimit = 1.0;  // s
 
 /// Waits until a started process is no longer this program's copy.
 void wait_for_start(pid_t program) {
@@ -33,25 +41,46 @@ void wait_for_start(pid_t program) {
   FAIL() << "it has not started";
 }
 
+/// Of all threads of a process, so far [s].
+double processor_seconds(pid_t process) {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &time) != 0)
+    ADD_FAILURE() << "no clock of process " << process;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 struct Stopped {
   Outcome run;
-  Clock::duration took{};
+  double computed = 0;  ///< s of processor time from the signal to the last file or, without
+                        ///< results, to the end
 };
+
+/// What the program says that it computed between a signal and the first of the last files.
+std::optional<double> told(const std::string& err) {
+  std::smatch found;
+  static const std::regex sentence(
+      "sunder: stopped [0-9.e-]+ s after the signal \\(([0-9.e-]+) s of processor time\\); "
+      "writing results to .*, another signal drops them\n");
+  if (!std::regex_search(err, found, sentence)) return {};
+  return std::stod(found[1]);
+}
 
 /// Runs the program and sends it a signal so long after its start.
 Stopped stop(const std::vector<std::string>& arguments, std::chrono::microseconds after,
              int signal) {
   Stopped stopped;
-  Clock::time_point sent;
+  double before = 0;
   RunControl control;
+  control.one_processor = true;
   control.meanwhile = [&](pid_t program) {
     wait_for_start(program);
     std::this_thread::sleep_for(after);
+    before = processor_seconds(program);
     kill(program, signal);
-    sent = Clock::now();
   };
   stopped.run = run_program(arguments, control);
-  stopped.took = Clock::now() - sent;
+  stopped.computed = told(stopped.run.err).value_or(stopped.run.processor_seconds - before);
   return stopped;
 }
 
@@ -73,10 +102,11 @@ TEST(Signals, AtRandomMomentsOfARun) {
     SCOPED_TRACE("signal " + std::to_string(signal) + " after " + std::to_string(after.count()) +
                  " us");
     const Stopped stopped = stop({"run", board.scene.string(), "--out", out.string(), "--steps",
-                                  "100000", "--set", "instrument.0.ramp=[0, 1e3]", "--quiet"},
+                                  "100000", "--set", "instrument.0.ramp=[0, 1e3]"},
                                  after, signal);
     EXPECT_EQ(stopped.run.exit_code, 130) << stopped.run.err;
-    EXPECT_LT(stopped.took, kLimit);
+    EXPECT_LE(stopped.computed, kLimit);
+    EXPECT_EQ(told(stopped.run.err).has_value(), std::filesystem::exists(out)) << stopped.run.err;
     EXPECT_NE(stopped.run.err.find("sunder: interrupted"), std::string::npos) << stopped.run.err;
     expect_one_run_or_none(out, true);
   }
@@ -99,10 +129,38 @@ TEST(Signals, WhileABodyIsPrepared) {
                                   "inverse", "--backend", "cpu", "--quiet"},
                                  after, SIGINT);
     EXPECT_EQ(stopped.run.exit_code, 130) << stopped.run.err;
-    EXPECT_LT(stopped.took, kLimit);
+    EXPECT_LE(stopped.computed, kLimit);
     EXPECT_NE(stopped.run.err.find("nothing was"), std::string::npos) << stopped.run.err;
     EXPECT_EQ(names_in(out), std::vector<std::string>{"summary.json"});
   }
+}
+
+// Conjugate gradients without a seventh of the elements: 1.5 s of processor time.
+TEST(Signals, WithinALongFrameLeavesItBehind) {
+  const TempFolder folder;
+  ASSERT_EQ(run_program({"mesh", "board", "--tets", "60000", "-o", (folder / "board.msh").string()})
+                .exit_code,
+            0);
+  const auto scene = folder / "holes.toml";
+  std::string holes = "0";
+  for (int element = 7; element < 60000; element += 7) holes += ", " + std::to_string(element);
+  write_text(scene, board_toml("Holes") + "[[destroy]]\nstep = 0\nelements = [" + holes + "]\n" +
+                        "[time]\nsteps = 1\n");
+  const auto out = folder / "out";
+  RunControl control;
+  control.one_processor = true;
+  control.meanwhile = [&](pid_t program) {
+    EXPECT_TRUE(wait_for(half_written(out, "frames.csv", program)));
+    kill(program, SIGINT);
+  };
+  const Outcome run = run_program(
+      {"run", scene.string(), "--out", out.string(), "--route", "cg", "--backend", "cpu"}, control);
+  EXPECT_EQ(run.exit_code, 130) << run.err;
+  const auto computed = told(run.err);
+  ASSERT_TRUE(computed) << run.err;
+  EXPECT_LE(*computed, kLimit);
+  expect_whole_results(out);
+  EXPECT_EQ(read_json(out / "summary.json")["steps_done"], 0);
 }
 
 TEST(Signals, WhileGmshMeshesLeavesNothing) {
@@ -112,7 +170,7 @@ TEST(Signals, WhileGmshMeshesLeavesNothing) {
         {"mesh", "board", "--unstructured", "--tets", "400000", "-o", (folder / name).string()},
         700ms, SIGTERM);
     EXPECT_EQ(stopped.run.exit_code, 130) << stopped.run.err;
-    EXPECT_LT(stopped.took, kLimit);
+    EXPECT_LE(stopped.computed, kLimit);
     EXPECT_NE(stopped.run.err.find("interrupted"), std::string::npos) << stopped.run.err;
     EXPECT_TRUE(names_in(folder.path()).empty());
   }
@@ -131,6 +189,103 @@ TEST(Signals, ASecondOneDropsTheResults) {
   const Outcome run = run_program({"run", board.scene.string(), "--out", out.string(), "--steps",
                                    "1000000", "--set", "instrument.0.ramp=[0, 1e4]", "--series"},
                                   control);
+  EXPECT_EQ(run.exit_code, 130) << run.err;
+  EXPECT_NE(run.err.find("sunder: interrupted again: the results so far are dropped\n"),
+            std::string::npos)
+      << run.err;
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+/// A pipe in the place of a result file that a run has not begun to write: it gets stuck there
+/// until somebody reads.
+class StuckFile {
+ public:
+  StuckFile(const std::filesystem::path& out, const std::string& name, pid_t program) {
+    EXPECT_TRUE(wait_for(half_written(out, "frames.csv", program)));
+    kill(program, SIGSTOP);
+    EXPECT_FALSE(std::filesystem::exists(out / "events.csv")) << "too late";
+    const auto path = half_written(out, name, program);
+    EXPECT_EQ(mkfifo(path.c_str(), 0600), 0);
+    pipe_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    EXPECT_GT(fcntl(pipe_, F_SETPIPE_SZ, 4096), 0);
+    kill(program, SIGCONT);
+  }
+  ~StuckFile() { close(pipe_); }
+  StuckFile(const StuckFile&) = delete;
+  StuckFile& operator=(const StuckFile&) = delete;
+
+  void wait() const {
+    int bytes = 0;
+    for (int i = 0; i < 60000 && bytes == 0; ++i) {
+      std::this_thread::sleep_for(1ms);
+      ioctl(pipe_, FIONREAD, &bytes);
+    }
+    EXPECT_GT(bytes, 0) << "never written";
+  }
+  void read_all() const {
+    fcntl(pipe_, F_SETFL, 0);
+    char buffer[4096];
+    while (read(pipe_, buffer, sizeof buffer) > 0) continue;
+  }
+
+ private:
+  int pipe_ = -1;
+};
+
+/// A run of 300 steps that is stuck in result.vtu, when all is computed.
+Outcome run_stuck(const TearingBoard& board, const std::filesystem::path& out,
+                  const std::function<void(pid_t, const StuckFile&)>& then) {
+  RunControl control;
+  control.meanwhile = [&](pid_t program) {
+    const StuckFile file(out, "result.vtu", program);
+    file.wait();
+    then(program, file);
+  };
+  return run_program({"run", board.scene.string(), "--out", out.string(), "--steps", "300", "--set",
+                      "fracture.model=\"none\""},
+                     control);
+}
+
+TEST(Signals, WhileTheLastFilesAreWrittenLetsThemBeFinished) {
+  const TempFolder folder;
+  const TearingBoard board(folder);
+  const auto out = folder / "out";
+  const Outcome run = run_stuck(board, out, [](pid_t program, const StuckFile& file) {
+    kill(program, SIGINT);
+    std::this_thread::sleep_for(200ms);  // it waits for it all the time
+    file.read_all();
+  });
+  EXPECT_EQ(run.exit_code, 130) << run.err;
+  EXPECT_NE(run.err.find("sunder: interrupted after the last step: the results in " + out.string() +
+                         " are complete\n"),
+            std::string::npos)
+      << run.err;
+  const auto summary = read_json(out / "summary.json");
+  EXPECT_EQ(summary["interrupted"], false);
+  EXPECT_EQ(summary["steps_done"], 300);
+  std::filesystem::remove(out / "result.vtu");  // the pipe
+  EXPECT_EQ(names_in(out),
+            (std::vector<std::string>{"events.csv", "figure.png", "figure.svg", "frames.csv",
+                                      "index.html", "summary.json", "tips.csv"}));
+}
+
+TEST(Signals, ASecondOneEndsTheWritingInTheMidstOfAFile) {
+  const TempFolder folder;
+  const TearingBoard board(folder);
+  const auto out = folder / "out";
+  const Outcome run = run_stuck(board, out, [](pid_t program, const StuckFile& file) {
+    kill(program, SIGINT);
+    kill(program, SIGTERM);
+    for (int i = 0; i < 60000; ++i) {
+      siginfo_t end{};
+      if (waitid(P_PID, static_cast<id_t>(program), &end, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+          end.si_pid == program)
+        return;
+      std::this_thread::sleep_for(1ms);
+    }
+    ADD_FAILURE() << "it waits for the file";
+    file.read_all();
+  });
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_NE(run.err.find("sunder: interrupted again: the results so far are dropped\n"),
             std::string::npos)
