@@ -168,7 +168,7 @@ class NextBase {
   }
 
   engine::CondensedState state_;
-  engine::Damage damage_;
+  engine::DamageMatrices damage_;
   std::vector<Index> lost_;    // elements destroyed since the factor
   std::vector<Index> within_;  // elements within S
 };

@@ -391,7 +391,7 @@ void Deferred::add_grips(std::span<const double> displacement) {
   x_.head(g) += forces_;
 }
 
-void Deferred::copy_damage(Damage& to) const {
+void Deferred::copy_damage(DamageMatrices& to) const {
   const Eigen::Index n = count();
   for (fem::RowMajor* a : {&to.compliance, &to.m, &to.d}) make_room(*a, n, n);
   to.compliance.topLeftCorner(n, n) = compliance_.topLeftCorner(n, n);

@@ -22,7 +22,7 @@
 namespace sunder::engine {
 
 /// What the damage is in the coordinates of B, leading n x n blocks: G = B^T X B, M and D.
-struct Damage {
+struct DamageMatrices {
   fem::RowMajor compliance, m, d;
 };
 
@@ -76,7 +76,7 @@ class Deferred {
   /// Columns of B: what a frame pays for the damage.
   [[nodiscard]] Index rank() const { return count_; }
   /// Into the leading blocks of matrices that have room, or get it.
-  void copy_damage(Damage& to) const;
+  void copy_damage(DamageMatrices& to) const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 
  private:
