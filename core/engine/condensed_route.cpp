@@ -173,7 +173,7 @@ class NextBase {
   }
 
   CondensedState state_;
-  Damage damage_;
+  DamageMatrices damage_;
   std::vector<Index> lost_;    // elements destroyed since the factor
   std::vector<Index> within_;  // elements within S
 };

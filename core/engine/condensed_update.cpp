@@ -36,7 +36,7 @@ fem::LeftFactor plain(const fem::RowMajor& a) {
 }
 
 /// The forces of the damage under each column's unit load: one step of Deferred::refine().
-fem::RowMajor forces_of(const Damage& damage, const fem::RowMajor& p) {
+fem::RowMajor forces_of(const DamageMatrices& damage, const fem::RowMajor& p) {
   fem::RowMajor x = product(damage.m, p);
   const fem::RowMajor lack = product(damage.d, product(damage.compliance, x) + p) - x;
   x += lack + product(damage.m, product(damage.compliance, lack));
@@ -113,7 +113,7 @@ struct Parts {
   fem::RowMajor columns, at_loads;     // (X B)^T, and X under the loads row by row
   fem::RowMajor p;                     // B^T X
   std::vector<Index> loaded, of_load;  // places of the loads; per place: which load, or kNone
-  Damage damage;
+  DamageMatrices damage;
 };
 
 /// All that the damage and the loads act through.
@@ -193,7 +193,7 @@ void mirror_lower(Eigen::MatrixXd& x) {
 
 }  // namespace
 
-Eigen::MatrixXd updated_inverse(const CondensedState& state, const Damage& damage,
+Eigen::MatrixXd updated_inverse(const CondensedState& state, const DamageMatrices& damage,
                                 std::span<const Index> loaded) {
   std::vector<Index> place(static_cast<std::size_t>(state.factor->cholesky().size()), kNone);
   for (std::size_t i = 0; i < state.dofs.size(); ++i) place[state.dofs[i]] = static_cast<Index>(i);

@@ -14,7 +14,8 @@ namespace sunder::engine {
 /// those of the unknowns `loaded`, are first made exact by the factor and what was lost since.
 /// Others wait until damage comes to them. Cost some |S|^2 r / 2 + 5 |S| r^2 multiply-adds, and up
 /// to 2 |S| |T| r for the columns, T the unknowns of what was lost.
-[[nodiscard]] Eigen::MatrixXd updated_inverse(const CondensedState& state, const Damage& damage,
+[[nodiscard]] Eigen::MatrixXd updated_inverse(const CondensedState& state,
+                                              const DamageMatrices& damage,
                                               std::span<const Index> loaded = {});
 
 }  // namespace sunder::engine

@@ -41,7 +41,8 @@ Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool dama
     : problem_(problem),
       base_(std::move(base)),
       basis_(problem),
-      is_touched_(static_cast<std::size_t>(problem.dof_count()), 0) {
+      is_touched_(static_cast<std::size_t>(problem.dof_count()), 0),
+      forms_(problem) {
   const auto gripped = problem.gripped_dofs();
   grips_ = static_cast<Eigen::Index>(gripped.size());
   if (damage) reserve_for_fractures(columns + static_cast<Index>(grips_));
@@ -90,8 +91,9 @@ void Deferred::reserve_for_fractures(Index columns) {
   event_.ends.reserve(static_cast<std::size_t>(kElements));
   event_.w.reserve(static_cast<std::size_t>(6 * kElements * kRows));
   event_.compress.reserve(static_cast<std::size_t>(kRows));
-  events_.reserve(kReserved);
-  elements_.reserve(kReserved);
+  less_.reserve(static_cast<std::size_t>(kElements));
+  before_.reserve(kReserved);
+  damage_.reserve(kReserved, kReserved);
 }
 
 void Deferred::reserve(Index columns) {
@@ -106,19 +108,32 @@ void Deferred::reserve(Index columns) {
 
 bool Deferred::factor_grips() {
   if (grips_ == 0) return true;
-  grip_block_.compute(grip_compliance_.leftCols(grips_));
+  if (border_.empty()) {
+    grip_block_.compute(grip_compliance_.leftCols(grips_));
+  } else {
+    Eigen::MatrixXd compliance = grip_compliance_.leftCols(grips_);
+    border_.add_to_grips(compliance);
+    grip_block_.compute(compliance);
+  }
   return grip_block_.info() == Eigen::Success && grip_block_.matrixLLT().allFinite();
 }
 
 bool Deferred::destroy(std::span<const Index> elements) {
-  push(elements);
-  if (update(elements) && factor_grips()) return true;
+  damage_.add(elements);
+  return follow_last();
+}
+
+bool Deferred::follow_last() {
+  const Damage::Event event = damage_.last();
+  forms_.add(event.nodes);
+  push(event);
+  if (apply(event) && set_border() && factor_grips()) return true;
   take_back();
   return false;
 }
 
-void Deferred::touch(Index element) {
-  for (Index n : problem_.mesh().tets[element]) {
+void Deferred::touch(const std::array<Index, 4>& nodes) {
+  for (Index n : nodes) {
     for (int axis = 0; axis < 3; ++axis) {
       const Index d = problem_.dof(n, axis);
       if (d == kNone || is_touched_[d]) continue;
@@ -128,18 +143,23 @@ void Deferred::touch(Index element) {
   }
 }
 
+void Deferred::connect(const std::array<Index, 4>& nodes) {
+  touch(nodes);
+  basis_.add(nodes);
+}
+
 /// Brings the differences of an event to hand.
-void Deferred::push(std::span<const Index> elements) {
-  Event event{elements_.size(), touched_.size(), basis_.differences().size(), false};
-  elements_.insert(elements_.end(), elements.begin(), elements.end());
-  for (Index e : elements) {
-    touch(e);
-    basis_.add(e);
+void Deferred::push(const Damage::Event& event) {
+  Before had{touched_.size(), basis_.differences().size(), false};
+  for (Index e : event.leave) connect(glued(e));
+  for (const Coming& c : event.come) {
+    if (c.element < forms_.element_count()) connect(glued(c.element));
+    connect(forms_.parents(c.form.corners));
   }
-  const auto differences = basis_.differences().subspan(event.differences);
-  event.pushed = !differences.empty();
-  events_.push_back(event);
-  if (!event.pushed) return;
+  const auto differences = basis_.differences().subspan(had.differences);
+  had.pushed = !differences.empty();
+  before_.push_back(had);
+  if (!had.pushed) return;
   const Eigen::Index before = count_, added = static_cast<Eigen::Index>(differences.size());
   count_ += static_cast<Index>(added);
   reserve(count_);
@@ -169,55 +189,61 @@ void Deferred::prepare(std::span<const Index> elements) {
 }
 
 void Deferred::pop() {
-  const Event event = events_.back();
-  events_.pop_back();
-  elements_.resize(event.elements);
-  for (std::size_t i = event.touched; i < touched_.size(); ++i) is_touched_[touched_[i]] = 0;
-  touched_.resize(event.touched);
-  if (!event.pushed) return;
-  count_ -= static_cast<Index>(basis_.differences().size() - event.differences);
-  basis_.shrink(event.differences);
+  const Before before = before_.back();
+  before_.pop_back();
+  damage_.take_back();
+  for (std::size_t i = before.touched; i < touched_.size(); ++i) is_touched_[touched_[i]] = 0;
+  touched_.resize(before.touched);
+  if (!before.pushed) return;
+  count_ -= static_cast<Index>(basis_.differences().size() - before.differences);
+  basis_.shrink(before.differences);
   base_->pop();
 }
 
 void Deferred::take_back() {
-  if (events_.empty()) throw UsageError("there is no event to take back");
+  if (before_.empty()) throw UsageError("there is no event to take back");
   pop();
   replay();
+  if (!set_border()) throw NumericalError("the stiffness of the new unknowns is singular");
   if (!factor_grips()) throw NumericalError("the compliance of the gripped nodes is singular");
 }
 
-/// Adds all events up again, in order: the same sums as the first time.
-void Deferred::replay() {
+/// No element differs from what the base has: A^-1 = X.
+void Deferred::clear() {
   m_.topLeftCorner(count(), padded(count())).setZero();
   d_.topLeftCorner(count(), padded(count())).setZero();
   grip_compliance_.setZero(grips_, padded(grips_));
   grip_compliance_.leftCols(grips_) = compliance_.topLeftCorner(grips_, grips_);
-  for (std::size_t i = 0; i < events_.size(); ++i) {
-    const std::size_t end = i + 1 < events_.size() ? events_[i + 1].elements : elements_.size();
-    const std::size_t begin = events_[i].elements;
-    static_cast<void>(update(std::span(elements_).subspan(begin, end - begin)));
+}
+
+/// Adds all events up again, in order: the same sums as the first time.
+void Deferred::replay() {
+  clear();
+  forms_.clear();
+  for (std::size_t i = 0; i < damage_.size(); ++i) {
+    forms_.add(damage_[i].nodes);
+    static_cast<void>(apply(damage_[i]));
   }
 }
 
 /// The event's update vectors: where they act in B, and U, padded to full vectors.
-void Deferred::gather(std::span<const Index> elements) {
+void Deferred::gather(std::span<const Part> parts) {
   rank_ = 6;
-  if (elements.size() == 1) {
-    basis_.coordinates(elements[0], rows_, u_);
+  if (parts.size() == 1) {
+    basis_.coordinates(parts[0].nodes, parts[0].factor, rows_, u_);
   } else {
-    gather_event(elements);
+    gather_event(parts);
   }
   for (Index& row : rows_) row += static_cast<Index>(grips_);
 }
 
-void Deferred::gather_event(std::span<const Index> elements) {
+void Deferred::gather_event(std::span<const Part> all) {
   EventRoom& parts = event_;
   parts.rows.clear();
   parts.values.clear();
   parts.ends.clear();
-  for (Index e : elements) {
-    basis_.coordinates(e, rows_, u_);
+  for (const Part& part : all) {
+    basis_.coordinates(part.nodes, part.factor, rows_, u_);
     parts.rows.insert(parts.rows.end(), rows_.begin(), rows_.end());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const auto row = u_.row(static_cast<Eigen::Index>(i));
@@ -229,7 +255,7 @@ void Deferred::gather_event(std::span<const Index> elements) {
   std::sort(rows_.begin(), rows_.end());
   rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
   const auto height = static_cast<Eigen::Index>(rows_.size());
-  rank_ = 6 * static_cast<Eigen::Index>(elements.size());
+  rank_ = 6 * static_cast<Eigen::Index>(all.size());
   parts.w.assign(static_cast<std::size_t>(height * rank_), 0.0);
   for (std::size_t p = 0, i = 0; p < parts.ends.size(); ++p) {
     Eigen::Map<Eigen::MatrixXd> w(parts.w.data(), height, rank_);
@@ -245,9 +271,10 @@ void Deferred::gather_event(std::span<const Index> elements) {
   u_.block(0, rank_, height, padded(rank_) - rank_).setZero();
 }
 
-/// M += Z C^-1 Z^T; false, with M as it was, when C is not positive definite.
-bool Deferred::update(std::span<const Index> elements) {
-  gather(elements);
+/// M += Z C^-1 Z^T, or -= for more stiffness; false, with M as it was, when C is not positive
+/// definite.
+bool Deferred::update(std::span<const Part> parts, bool more) {
+  gather(parts);
   if (rows_.empty()) return true;  // every corner is held: nothing changes
   const Eigen::Index n = count(), width = padded(rank_), room = m_.rows();
   const auto rows = static_cast<Eigen::Index>(rows_.size());
@@ -272,7 +299,8 @@ bool Deferred::update(std::span<const Index> elements) {
   fem::row_product({xu_.data(), width, n, 1, xu_.outerStride()}, z_.data(), z_.outerStride(), width,
                    product.data(), product.outerStride());
   auto c = c_.topLeftCorner(width, width);
-  c = -product.topLeftCorner(width, width);
+  c = product.topLeftCorner(width, width);
+  if (!more) c = -c;
   c.diagonal().array() += 1;
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(c);
   if (llt.info() != Eigen::Success || !c.diagonal().allFinite()) return false;
@@ -281,15 +309,20 @@ bool Deferred::update(std::span<const Index> elements) {
   fem::lower_solve(c_.data(), c_.outerStride(), width, zt_.data(), zt_.outerStride(), padded(n),
                    product.data());
   if (!zt_.topLeftCorner(width, n).allFinite()) return false;
-  fem::row_product_add({zt_.data(), n, width, 1, zt_.outerStride()}, zt_.data(), zt_.outerStride(),
-                       padded(n), m_.data(), m_.outerStride());
-  if (grips_ > 0) add_to_grips(width);
-  add_to_d();
+  const fem::RowMajor* left = &zt_;
+  if (more) {
+    product.topLeftCorner(width, padded(n)) = -zt_.topLeftCorner(width, padded(n));
+    left = &product;
+  }
+  fem::row_product_add({left->data(), n, width, 1, left->outerStride()}, zt_.data(),
+                       zt_.outerStride(), padded(n), m_.data(), m_.outerStride());
+  if (grips_ > 0) add_to_grips(width, more);
+  add_to_d(more);
   return true;
 }
 
-/// D += U U^T.
-void Deferred::add_to_d() {
+/// D += U U^T, or -= for more stiffness.
+void Deferred::add_to_d(bool more) {
   const auto rows = static_cast<Eigen::Index>(rows_.size()), width = padded(rank_);
   make_room(zt_, width, padded(rows));
   make_room(product_, rows, padded(rows));
@@ -300,17 +333,23 @@ void Deferred::add_to_d() {
   for (Eigen::Index i = 0; i < rows; ++i) {
     double* row = d_.row(rows_[static_cast<std::size_t>(i)]).data();
     for (Eigen::Index j = 0; j < rows; ++j) {
-      row[rows_[static_cast<std::size_t>(j)]] += product_(i, j);
+      double& entry = row[rows_[static_cast<std::size_t>(j)]];
+      entry += more ? -product_(i, j) : product_(i, j);
     }
   }
 }
 
 /// (A^-1)_GG grows by the event's share of it.
-void Deferred::add_to_grips(Eigen::Index width) {
+void Deferred::add_to_grips(Eigen::Index width, bool more) {
   const Eigen::Index g = padded(grips_);
   make_room(at_grips_, width, g);
   fem::row_product({zt_.data(), width, count(), zt_.outerStride(), 1}, compliance_.data(),
                    compliance_.outerStride(), g, at_grips_.data(), at_grips_.outerStride());
+  if (more) {
+    const auto t = at_grips_.topLeftCorner(width, grips_);
+    grip_compliance_.leftCols(grips_).noalias() -= t.transpose() * t;
+    return;
+  }
   fem::row_product_add({at_grips_.data(), grips_, width, 1, at_grips_.outerStride()},
                        at_grips_.data(), at_grips_.outerStride(), g, grip_compliance_.data(),
                        grip_compliance_.outerStride());
@@ -319,9 +358,9 @@ void Deferred::add_to_grips(Eigen::Index width) {
 const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
                                               std::span<const double> displacement, double enough) {
   constexpr int kRefinements = 4;
-  const Eigen::VectorXd& p = base_->load(forces);
+  const Eigen::VectorXd& p = base_->load(on_body(forces));
   start(p, displacement);
-  converged_ = events_.empty();
+  converged_ = before_.empty();
   defect_energy_ = 0;
   for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
     const double before = defect_energy_;
@@ -341,18 +380,29 @@ void Deferred::solve(const Forces& forces, std::span<const double> displacement,
 }
 
 void Deferred::correct(const Forces& residual, Eigen::VectorXd& du) {
-  base_->expand(correction_coefficients(base_->load(residual)), du);
+  base_->expand(correct(base_->load(on_body(residual))), du);
   for (Eigen::Index i = 0; i < grips_; ++i) du[touched_[static_cast<std::size_t>(i)]] = 0;
 }
 
 const Eigen::VectorXd& Deferred::correction_coefficients(const Eigen::VectorXd& projection) {
+  border_.take_none();
+  return correct(projection);
+}
+
+const Eigen::VectorXd& Deferred::correct(const Eigen::VectorXd& projection) {
   start(projection, {});
   return x_;
+}
+
+/// The forces but those on new unknowns, which the border takes.
+Forces Deferred::on_body(const Forces& forces) {
+  return border_.empty() ? forces : border_.take(forces, base_->size());
 }
 
 /// x = M p and what the grips add: A^-1 as it is stored.
 void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacement) {
   multiply(m_, count(), p, x_);
+  if (!border_.empty()) border_.start(p, x_);
   if (grips_ == 0) return;
   forces_ = -p.head(grips_);
   forces_.noalias() -= compliance_.topLeftCorner(grips_, count()) * x_.head(count());
@@ -366,13 +416,19 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
   v_.head(n) += p.head(n);     // B^T u
   multiply(d_, n, v_, lack_);  // D B^T u - x
   lack_.segment(grips_, n - grips_) -= x_.segment(grips_, n - grips_);
+  if (!border_.empty()) border_.add_lack(v_, lack_);
   multiply(compliance_, n, lack_, gx_);
   multiply(m_, n, gx_, mgx_);
-  const double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n));
+  double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n));
   x_.head(n) += lack_.head(n);
   x_.head(n) += mgx_.head(n);
+  if (!border_.empty()) {
+    moved_.setZero(grips_);
+    energy += border_.correct(lack_, x_, moved_);
+  }
   if (grips_ == 0) return energy;
   forces_ = -v_.head(grips_) - gx_.head(grips_);
+  if (!border_.empty()) forces_ -= moved_;
   forces_.noalias() -= compliance_.topLeftCorner(grips_, n) * mgx_.head(n);
   add_grips(displacement);
   return energy;
@@ -389,9 +445,11 @@ void Deferred::add_grips(std::span<const double> displacement) {
   multiply(m_, n, gx_, mgx_);
   x_.head(n) += mgx_.head(n);
   x_.head(g) += forces_;
+  if (!border_.empty()) border_.follow_grips(forces_, x_);
 }
 
-void Deferred::copy_damage(Damage& to) const {
+void Deferred::copy_damage(DamageMatrices& to) const {
+  if (!border_.empty()) throw UsageError("a base cannot take new unknowns over");
   const Eigen::Index n = count();
   for (fem::RowMajor* a : {&to.compliance, &to.m, &to.d}) make_room(*a, n, n);
   to.compliance.topLeftCorner(n, n) = compliance_.topLeftCorner(n, n);
@@ -403,6 +461,7 @@ std::vector<BufferPlan> Deferred::buffers() const {
   std::vector<BufferPlan> plan = base_->buffers();
   const auto n = static_cast<std::size_t>(count());
   if (n > 0) plan.push_back({"small matrix of the damage", 3 * n * n * sizeof(double)});
+  if (!border_.empty()) plan.push_back({"border of the new unknowns", border_.bytes()});
   return plan;
 }
 

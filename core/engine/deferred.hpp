@@ -6,7 +6,9 @@
 // number of touched unknowns, not with the number of fractures. M is only as good as its entries
 // 1/alpha larger allow; the forces x = D B^T u that make up for the stiffness D that is gone
 // (u = X (f + B x)) are refined in these coordinates, to the base's accuracy. Grips add forces h on
-// the gripped unknowns G so that u_G = d; their unit vectors come first in B.
+// the gripped unknowns G so that u_G = d; their unit vectors come first in B. Elements may come as
+// well as leave (change.hpp): then M -= Z C^-1 Z^T, C = I + U^T B^T X B Z, and D is signed. New
+// unknowns are a border of all this (border.hpp).
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -16,13 +18,15 @@
 #include <vector>
 
 #include "engine/base.hpp"
+#include "engine/border.hpp"
+#include "engine/change.hpp"
 #include "engine/difference_basis.hpp"
 #include "engine/update_vectors.hpp"
 
 namespace sunder::engine {
 
 /// What the damage is in the coordinates of B, leading n x n blocks: G = B^T X B, M and D.
-struct Damage {
+struct DamageMatrices {
   fem::RowMajor compliance, m, d;
 };
 
@@ -39,6 +43,10 @@ class Deferred {
   /// Follows an event. Returns false and changes nothing when the damaged stiffness is not
   /// positive definite in double precision.
   [[nodiscard]] bool destroy(std::span<const Index> elements);
+  /// Follows any change, as destroy() does where elements leave and none comes; the reverse of the
+  /// last event takes that back. False also where a piece of the body would hang on nothing, for
+  /// which a grip does not count. Throws UsageError when the change does not fit the body.
+  [[nodiscard]] bool change(const Change& change);
   /// Prepares the base for the removal of live elements, each by itself.
   void prepare(std::span<const Index> elements);
   [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
@@ -46,7 +54,8 @@ class Deferred {
   void take_back();
 
   /// u = A^-1 f with u_G = displacement (empty: 0). The forces of the damage are refined until
-  /// what they lack has no more energy than `enough` [N mm], or rounding.
+  /// what they lack has no more energy than `enough` [N mm], or rounding. A force on a new node
+  /// acts on its parent's unknown and on its own (unknown()).
   void solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
              double enough = 0);
   /// The x of solve() with u = X (f + B x), for a device that does that product itself: the first
@@ -72,38 +81,66 @@ class Deferred {
 
   [[nodiscard]] Base& base() { return *base_; }
   [[nodiscard]] const Base& base() const { return *base_; }
-  [[nodiscard]] Index events() const { return static_cast<Index>(events_.size()); }
+  [[nodiscard]] Index events() const { return static_cast<Index>(damage_.size()); }
+  /// What has happened since the base was made; its reverses are engine::reverse().
+  [[nodiscard]] const Damage& damage() const { return damage_; }
+  [[nodiscard]] const Forms& forms() const { return forms_; }
+  /// The unknown of a new node's offset: after the body's; kNone where it keeps to its parent.
+  [[nodiscard]] Index unknown(Index node, int axis) const;
+  /// d [mm] of the last solution or correction: the last unknowns.
+  [[nodiscard]] const Eigen::VectorXd& offsets() const { return border_.offsets(); }
   /// Unknowns of destroyed elements, gripped ones first.
   [[nodiscard]] std::span<const Index> touched() const { return touched_; }
   /// Columns of B: what a frame pays for the damage.
   [[nodiscard]] Index rank() const { return count_; }
-  /// Into the leading blocks of matrices that have room, or get it.
-  void copy_damage(Damage& to) const;
+  /// Into the leading blocks of matrices that have room, or get it; throws UsageError where there
+  /// are new unknowns.
+  void copy_damage(DamageMatrices& to) const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 
  private:
-  /// An event, by what held before it.
-  struct Event {
-    std::size_t elements, touched, differences;
+  /// By what held before an event.
+  struct Before {
+    std::size_t touched, differences;
     bool pushed;
+  };
+  /// U of some stiffness U U^T between nodes of the mesh.
+  struct Part {
+    std::array<Index, 4> nodes;
+    fem::UpdateFactor factor;
   };
 
   void reserve_for_fractures(Index columns);
   void reserve(Index columns);
-  void push(std::span<const Index> elements);
+  [[nodiscard]] bool follow_last();
+  void push(const Damage::Event& event);
+  [[nodiscard]] std::array<Index, 4> glued(Index element) const;
+  void connect(const std::array<Index, 4>& nodes);
   void pop();
-  [[nodiscard]] bool update(std::span<const Index> elements);
-  void gather(std::span<const Index> elements);
-  void gather_event(std::span<const Index> elements);
-  void add_to_d();
+  [[nodiscard]] bool apply(const Damage::Event& event);
+  void collect(const Damage::Event& event);
+  void collect(const Form& before, const Form& after, std::vector<Part>& less,
+               std::vector<Part>& more) const;
+  [[nodiscard]] Part part(const Form& form, double share) const;
+  [[nodiscard]] bool update(std::span<const Part> parts, bool more);
+  void gather(std::span<const Part> parts);
+  void gather_event(std::span<const Part> parts);
+  void add_to_d(bool more);
+  [[nodiscard]] bool update_both();
+  void collect_all();
+  void sum_up_d();
+  [[nodiscard]] bool set_border();
+  [[nodiscard]] Forces on_body(const Forces& forces);
   void start(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
   void add_grips(std::span<const double> displacement);
-  void add_to_grips(Eigen::Index width);
+  void add_to_grips(Eigen::Index width, bool more);
+  [[nodiscard]] const Eigen::VectorXd& correct(const Eigen::VectorXd& projection);
+  void clear();
   void replay();
   [[nodiscard]] bool factor_grips();
   [[nodiscard]] Eigen::Index count() const { return count_; }
-  void touch(Index element);
+  void touch(const std::array<Index, 4>& nodes);
 
   const Problem& problem_;
   std::unique_ptr<Base> base_;
@@ -112,13 +149,17 @@ class Deferred {
   Index count_ = 0;                       // columns of B: grips and differences
   std::vector<Index> touched_;            // gripped unknowns, then by event
   std::vector<std::uint8_t> is_touched_;  // per unknown
-  std::vector<Event> events_;
-  std::vector<Index> elements_;       // of all events, one after the other
+  std::vector<Before> before_;            // each event
+  Damage damage_;
+  Forms forms_;  // after them
+  Border border_;
   std::vector<Difference> wanted_;    // by what is to be prepared
   fem::RowMajor compliance_, m_, d_;  // G = B^T X B, M and the stiffness D that is gone, in B
   fem::RowMajor grip_compliance_;     // (A^-1)_GG
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
-  // The event in work: its update vectors and where they act, and what comes of them.
+  // The event in work: what it takes and what it adds, its update vectors and where they act, and
+  // what comes of them.
+  std::vector<Part> less_, more_;
   std::vector<Index> rows_;
   Eigen::Index rank_ = 0;
   struct EventRoom {                // of an event with several elements
@@ -131,7 +172,7 @@ class Deferred {
   fem::RowMajor u_, columns_, xu_, z_, zt_, product_, gram_, at_grips_;
   Eigen::MatrixXd c_;
   // A solution: u in B, the forces x on B, what they lack, and its products; count() entries each.
-  Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_;
+  Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_, moved_;
   double defect_energy_ = 0;
   bool converged_ = true;
 };

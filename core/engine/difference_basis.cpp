@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "fem/element.hpp"
-
 namespace sunder::engine {
 namespace {
 
@@ -23,10 +21,10 @@ DifferenceBasis::DifferenceBasis(const Problem& problem)
   order_.reserve(1024);
 }
 
-std::array<Index, 4> DifferenceBasis::corners(Index element, int axis) const {
+std::array<Index, 4> DifferenceBasis::vertices(const Corners& corners, int axis) const {
   std::array<Index, 4> vertices;
   for (std::size_t a = 0; a < 4; ++a) {
-    const Index d = problem_.dof(problem_.mesh().tets[element][a], axis);
+    const Index d = problem_.dof(corners[a], axis);
     vertices[a] = d == kNone ? ground_ : d;
   }
   return vertices;
@@ -50,9 +48,9 @@ void DifferenceBasis::connect(Index a, Index b, Index difference) {
   }
 }
 
-void DifferenceBasis::add(Index element) {
+void DifferenceBasis::add(const Corners& corners) {
   for (int axis = 0; axis < 3; ++axis) {
-    const auto v = corners(element, axis);
+    const auto v = vertices(corners, axis);
     for (std::size_t a = 1; a < 4; ++a) {
       if (root(v[a]) == root(v[0])) continue;
       const auto difference = static_cast<Index>(differences_.size());
@@ -79,10 +77,14 @@ void DifferenceBasis::shrink(std::size_t count) {
 }
 
 void DifferenceBasis::coordinates(Index element, std::vector<Index>& rows, fem::RowMajor& u) {
-  const fem::UpdateFactor factor = fem::update_factor(problem_, element);
+  coordinates(problem_.mesh().tets[element], fem::update_factor(problem_, element), rows, u);
+}
+
+void DifferenceBasis::coordinates(const Corners& corners, const fem::UpdateFactor& forces,
+                                  std::vector<Index>& rows, fem::RowMajor& u) {
   rows.clear();
   for (int axis = 0; axis < 3; ++axis) {
-    const auto v = corners(element, axis);
+    const auto v = vertices(corners, axis);
     marked_.clear();
     order_.clear();
     for (unsigned a = 0; a < 4; ++a) {
@@ -106,7 +108,7 @@ void DifferenceBasis::coordinates(Index element, std::vector<Index>& rows, fem::
       auto row = u.row(static_cast<Eigen::Index>(rows.size())).head<8>();
       row.setZero();
       for (int a = 0; a < 4; ++a) {
-        if (side >> a & 1U) row.head<6>() += factor.row(3 * a + axis);
+        if (side >> a & 1U) row.head<6>() += forces.row(3 * a + axis);
       }
       rows.push_back(difference);
     }

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "fem/element.hpp"
 #include "fem/row_product.hpp"
 #include "sunder/problem.hpp"
 
@@ -22,11 +23,15 @@ struct Difference {
 
 class DifferenceBasis {
  public:
+  using Corners = std::array<Index, 4>;
+
   /// The problem must outlive it.
   explicit DifferenceBasis(const Problem& problem);
 
   /// Connects the corners of an element.
-  void add(Index element);
+  void add(Index element) { add(problem_.mesh().tets[element]); }
+  /// Connects nodes of the mesh.
+  void add(const Corners& corners);
   [[nodiscard]] std::span<const Difference> differences() const { return differences_; }
   /// Back to the first differences.
   void shrink(std::size_t count);
@@ -34,9 +39,12 @@ class DifferenceBasis {
   /// An element's update vectors (method.md "Elasticity" 3) in these coordinates: which
   /// differences, ascending, and 8 columns of `u` for each, the last two zero.
   void coordinates(Index element, std::vector<Index>& rows, fem::RowMajor& u);
+  /// The same of forces on connected nodes that balance on each axis.
+  void coordinates(const Corners& corners, const fem::UpdateFactor& forces,
+                   std::vector<Index>& rows, fem::RowMajor& u);
 
  private:
-  [[nodiscard]] std::array<Index, 4> corners(Index element, int axis) const;
+  [[nodiscard]] std::array<Index, 4> vertices(const Corners& corners, int axis) const;
   [[nodiscard]] Index root(Index vertex) const;
   void connect(Index a, Index b, Index difference);
 

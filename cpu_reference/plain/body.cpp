@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "cpu_reference/plain/plain.hpp"
-#include "sunder/error.hpp"
 
 namespace sunder::plain {
 namespace {

@@ -22,7 +22,7 @@ struct Solution {
 
 class Body {
  public:
-  /// `destroyed`: 1 for destroyed elements; empty: none. Throws UsageError for a part of a body.
+  /// `destroyed`: 1 for destroyed elements; empty: none.
   explicit Body(const Problem& problem, std::span<const std::uint8_t> destroyed = {});
   void destroy(std::span<const Index> elements);
   /// Throws std::runtime_error where the stiffness is not definite: a test may take a

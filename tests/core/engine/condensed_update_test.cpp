@@ -49,8 +49,8 @@ CondensedState state_of(const CondensedBase& base) {
   return state;
 }
 
-Damage damage_of(const Deferred& deferred) {
-  Damage damage;
+DamageMatrices damage_of(const Deferred& deferred) {
+  DamageMatrices damage;
   deferred.copy_damage(damage);
   return damage;
 }

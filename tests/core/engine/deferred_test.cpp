@@ -196,7 +196,7 @@ struct Based {
     for (const Index& e : lost) EXPECT_TRUE(before.destroy({&e, 1}));
     CondensedState state;
     condensed.copy_state(state);
-    Damage damage;
+    DamageMatrices damage;
     before.copy_damage(damage);
     return std::make_unique<CondensedBase>(state, updated_inverse(state, damage, board.dofs),
                                            std::make_shared<LostStiffness>(board.problem, lost));
