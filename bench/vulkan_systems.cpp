@@ -64,7 +64,7 @@ void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::s
   work.prepare = [&] { fields.write_displacement(rest); };
   work.run = [&] {
     const auto start = std::chrono::steady_clock::now();
-    iterations = std::max(1, route.solve(load, true));
+    iterations = std::max(1, route.solve(load, 0, true));
     wall =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };

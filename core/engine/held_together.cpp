@@ -124,8 +124,6 @@ class Pieces {
   /// Springs that stand in for supports.
   void hold_anchors() {
     std::vector<Index> anchored(problem_.anchored_dofs().begin(), problem_.anchored_dofs().end());
-    const auto& around = problem_.surroundings().dofs;
-    anchored.insert(anchored.end(), around.begin(), around.end());
     std::sort(anchored.begin(), anchored.end());
     for (Index i = 0; i < 3 * problem_.node_count(); ++i) {
       const auto at = static_cast<std::size_t>(i);
