@@ -58,7 +58,7 @@ SolveReport FrameSolver::solve(const Load& load) {
   last_.holds = false;
   const SolveReport report = solve_everywhere(load);
   if (!device_.residual_costs()) return report;
-  last_ = {load, report, report.error <= std::min(precision_.promised, tolerance())};
+  last_ = {load, report, !refined_ && report.error <= std::min(precision_.promised, tolerance())};
   last_.report.polished = false;
   return report;
 }
@@ -78,6 +78,7 @@ std::optional<SolveReport> FrameSolver::solve_known(const Load& load) {
 
 SolveReport FrameSolver::solve_everywhere(const Load& load) {
   SolveReport report;
+  refined_ = false;
   check_ = check_of(load);
   const auto scale = check_ ? check_->scale_of(load, device_.bases()) : std::nullopt;
   put_in_work(scale ? check_->enough(*scale) : 0, report);
@@ -164,6 +165,7 @@ void FrameSolver::refine(SolveReport& report, bool by_base) {
     const bool done = error <= precision_.refined && (attempt > 0 || !device_.yardstick());
     if (done || attempt == kRefinements || stalled) return;
     device_.add_correction();
+    refined_ = true;
     look_at(report);
   }
 }

@@ -58,6 +58,7 @@ class FrameSolver {
   Balance balance_;              // of the solution in work
   double unrefined_ = 0;         // error of the last full check's solution before it was refined
   bool everywhere_ = true;
+  bool refined_ = false;  // the solution in work is more than what the route gives by itself
   // The last frame, where a multiple of its load has the same relative error.
   struct Last {
     Load load;

@@ -7,14 +7,6 @@
 namespace sunder::test {
 namespace {
 
-// Misses of the accuracy table (1e-8 along a crack), as measured: displacement up to 3.0e-8 on the
-// notch board by routes inverse and condensed, both fields up to 1.8e-8 at nu .499 by condensed.
-constexpr double kMissed = 4e-8;
-bool misses(const std::string& scene, const Way& way) {
-  if (way.update != Update::deferred) return false;
-  return scene.starts_with("Notch") || (scene == "Poisson499" && way.route == Route::condensed);
-}
-
 class AgainstTheYardstick : public WithVulkan<testing::TestWithParam<RunCase>> {};
 
 std::vector<Way> ways() {
@@ -37,14 +29,14 @@ TEST_P(AgainstTheYardstick, TearsByEveryRoute) {
   const std::string name = GetParam().name;
   for (const Way& way : ways()) {
     if (!kSoak && way.route == Route::cg && name != "NotchB") continue;  // time: up to a minute
-    const double of_fp64 = misses(name, way) ? kMissed : kCrackTolerance;
     const WatchedBackend watched(scene, way);
     auto backend = watched.create();
     SCOPED_TRACE(name_of(way) + " " + backend->info().route);
     const WholeRun run = whole_run(watched.problem, std::move(backend), kRunFractures);
     ASSERT_NO_FATAL_FAILURE(expect_same_fractures(right, run));
-    ASSERT_NO_FATAL_FAILURE(expect_same_frames(
-        *watched.problem, right, run, way.precision == Precision::fp64 ? of_fp64 : kFp32Tolerance));
+    ASSERT_NO_FATAL_FAILURE(
+        expect_same_frames(*watched.problem, right, run,
+                           way.precision == Precision::fp64 ? kCrackTolerance : kFp32Tolerance));
   }
 }
 
