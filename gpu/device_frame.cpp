@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/assembly.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -40,7 +42,28 @@ engine::Balance DeviceFrame::balance() const {
           fields_.largest_stress(Field::displacement)};
 }
 
+bool DeviceFrame::sum_by_elements(bool on) {
+  by_elements_ = on && fp64_;
+  return by_elements_;
+}
+
+/// f - K u, 0 at grips, on the host and from there to the device.
+void DeviceFrame::sum_residual() {
+  nodal_.resize(problem_.dofs().size());
+  fields_.read_displacement(nodal_);
+  u_.resize(problem_.dof_count());
+  fem::gather(problem_, nodal_, {u_.data(), static_cast<std::size_t>(u_.size())});
+  body_.apply(u_, r_);
+  r_ = -r_;
+  for (std::size_t i = 0; i < load_.forces.size(); ++i) r_[load_.force_dofs[i]] += load_.forces[i];
+  for (Index d : problem_.gripped_dofs()) r_[d] = 0;
+  padded_.assign(fields_.rows(), 0.0);
+  std::copy(r_.begin(), r_.end(), padded_.begin());
+  fields_.write_residual(padded_);
+}
+
 engine::FrameDevice::Correction DeviceFrame::correct() {
+  if (by_elements_) sum_residual();
   Correction found;
   found.iterations = route_.correct();
   found.stress = fields_.largest_stress(Field::correction);

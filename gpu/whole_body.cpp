@@ -41,7 +41,7 @@ WholeBody::WholeBody(const DeviceSetup& setup, std::shared_ptr<const Problem> pr
   }
   if (pristine) pristine_ = intact_update(problem_, intact);
   make_route(setup, std::move(intact));
-  frame_.emplace(problem_, fields_, *route_, setup.plan.fp64);
+  frame_.emplace(damaged_, fields_, *route_, setup.plan.fp64);
 }
 
 void WholeBody::make_route(const DeviceSetup& setup, IntactInverse intact) {

@@ -53,6 +53,9 @@ class FrameDevice {
   /// u += du, with residual and stress.
   virtual void add_correction() = 0;
 
+  /// Turns to a residual that is summed element by element, where the usual one rounds more (a
+  /// part that hangs on one element turns far for its strain), and back; false: it always is.
+  virtual bool sum_by_elements(bool /*on*/) { return false; }
   /// Computes anew what updates have worn out; false: there is nothing of the kind.
   virtual bool rebase() { return false; }
   /// Turns to conjugate gradients on the intact body and back again; false: there are none.

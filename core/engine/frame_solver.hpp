@@ -38,6 +38,7 @@ class FrameSolver {
   void check_fully(SolveReport& report);
   void refine(SolveReport& report, bool by_base);
   [[nodiscard]] bool is_off(double error) const;
+  [[nodiscard]] double error_of_rounding() const;
   void polish(SolveReport& report);
 
   [[nodiscard]] double tolerance() const { return problem_.scene().solver.tolerance; }
