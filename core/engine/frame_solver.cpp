@@ -135,11 +135,10 @@ void FrameSolver::look_at(SolveReport& report) {
 }
 
 void FrameSolver::check_fully(SolveReport& report) {
-  refine(report, true);
-  // What rounding may cost counts too: conjugate gradients on blocks do not see it.
-  const bool rough = !(std::max(report.error, error_of_rounding()) <= precision_.kept);
-  if (rough && device_.sum_by_elements(true)) {
-    put_in_work(0, report);
+  // Where rounding may cost that much no estimate by the usual residual shows it.
+  const bool by_elements = error_of_rounding() > precision_.kept && device_.sum_by_elements(true);
+  refine(report, !by_elements);
+  if (!by_elements && !(report.error <= precision_.kept) && device_.sum_by_elements(true)) {
     refine(report, false);
   }
   if (!(report.error <= tolerance()) || is_off(report.error)) polish(report);
