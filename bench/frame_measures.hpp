@@ -3,8 +3,8 @@
 
 namespace sunder::bench {
 
-/// Rows "measures/FIELD/TETRAHEDRA": what the largest strain and rotation of a frame cost beside its
-/// stress pass, on one thread.
+/// Rows "measures/FIELD/TETRAHEDRA": what the largest strain and rotation of a frame cost beside
+/// its stress pass, on one thread.
 void register_measures();
 
 }  // namespace sunder::bench
