@@ -28,7 +28,6 @@ class CgRoute final : public DeviceRoute {
   std::string name() const override { return "cg"; }
   std::string update_name() const override { return "matrix"; }
   std::vector<BufferPlan> buffers() const override;
-  std::vector<vulkan::PassTime> pass_times() const override { return commands_.pass_times(); }
 
   /// Sizes of the dispatches of an iteration, three words for each of kCgSizes kinds: the device
   /// sets them to zero where it is done.

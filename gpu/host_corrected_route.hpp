@@ -33,7 +33,6 @@ class HostCorrectedRoute final : public DeviceRoute {
   std::string name() const override { return "inverse"; }
   std::string update_name() const override { return "deferred"; }
   std::vector<BufferPlan> buffers() const override;
-  std::vector<vulkan::PassTime> pass_times() const override { return commands_.pass_times(); }
 
  private:
   void follow_update();

@@ -134,7 +134,6 @@ void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) 
 }
 
 int InverseRoute::solve(const Load& load, double enough, bool balance) {
-  last_ = &commands_;
   if (eager_) {
     solve_eager(load, balance);
   } else {
@@ -207,7 +206,6 @@ void InverseRoute::solve_on_exact(bool balance) {
   }
   fields_.kept();
   frame.commands.submit();
-  last_ = &frame.commands;
 }
 
 void InverseRoute::solve_eager(const Load& load, bool balance) {
@@ -375,7 +373,5 @@ std::vector<BufferPlan> InverseRoute::buffers() const {
   for (BufferPlan& b : update_->deferred().buffers()) plan.push_back(std::move(b));
   return plan;
 }
-
-std::vector<vulkan::PassTime> InverseRoute::pass_times() const { return last_->pass_times(); }
 
 }  // namespace sunder::gpu

@@ -43,7 +43,6 @@ class InverseRoute final : public DeviceRoute {
   std::string name() const override { return "inverse"; }
   std::string update_name() const override { return eager_ ? "eager" : "deferred"; }
   std::vector<BufferPlan> buffers() const override;
-  std::vector<vulkan::PassTime> pass_times() const override;
 
  private:
   void fill_base(const HostInverse& host, std::span<const double> scale);
@@ -95,7 +94,6 @@ class InverseRoute final : public DeviceRoute {
     bool keep = false, timed = false;
   };
   Recorded quiet_, checked_;
-  vulkan::Commands* last_ = &commands_;  // what pass_times() asks
 };
 
 }  // namespace sunder::gpu

@@ -43,8 +43,6 @@ class DeviceRoute {
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string update_name() const = 0;
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
-  /// Device time of the last solve() and what followed it.
-  [[nodiscard]] virtual std::vector<vulkan::PassTime> pass_times() const = 0;
 };
 
 }  // namespace sunder::gpu
