@@ -25,8 +25,7 @@ constexpr double kGrowth = 10;
 }  // namespace
 
 FrameCheck::FrameCheck(const Problem& problem, double promised)
-    : problem_(problem),
-      promised_(std::min(promised, problem.scene().solver.tolerance / 10)),
+    : promised_(std::min(promised, problem.scene().solver.tolerance / 10)),
       stress_of_energy_(engine::largest_stress_of_energy(problem)) {
   reserve(load_, problem);
 }

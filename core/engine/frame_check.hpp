@@ -42,7 +42,6 @@ class FrameCheck {
   [[nodiscard]] std::optional<double> error(double scale, const Solution& solution) const;
 
  private:
-  const Problem& problem_;
   double promised_;          // or a tenth of the scene's tolerance
   double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
   // Of the last full check:
