@@ -147,15 +147,8 @@ inline __attribute__((always_inline)) void StressKernel::run_all(const Block* bl
   GroupBounds most{};
   for (std::size_t k = 0; k < count; ++k) {
     const Block& b = blocks[k];
-    double d[9][kLanes];  // displacement of corners 1..3 against corner 0
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int l = 0; l < kLanes; ++l) {
-        const double u0 = u[b.corner[0][l] + axis];
-        d[axis][l] = u[b.corner[1][l] + axis] - u0;
-        d[3 + axis][l] = u[b.corner[2][l] + axis] - u0;
-        d[6 + axis][l] = u[b.corner[3][l] + axis] - u0;
-      }
-    }
+    double d[9][kLanes];
+    b.differences(u, d);
     double s[6][kLanes], bound[kLanes];
     for (int l = 0; l < kLanes; ++l) {
       double h[3][3];  // du_i/dx_j

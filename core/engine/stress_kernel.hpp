@@ -67,6 +67,18 @@ class StressKernel {
     double strength[kLanes];  // 1 / yield^2 of live breakable elements, else 0
     Index corner[4][kLanes];  // 3 * node
     Index element[kLanes];    // kNone: filler
+
+    /// Displacement of corners 1..3 against corner 0: 3 * (corner - 1) + axis.
+    __attribute__((always_inline)) void differences(const double* u, double (&d)[9][kLanes]) const {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (int l = 0; l < kLanes; ++l) {
+          const double u0 = u[corner[0][l] + axis];
+          d[axis][l] = u[corner[1][l] + axis] - u0;
+          d[3 + axis][l] = u[corner[2][l] + axis] - u0;
+          d[6 + axis][l] = u[corner[3][l] + axis] - u0;
+        }
+      }
+    }
   };
   /// Of the live elements in one lane of kGroup blocks, of E = sym grad u with the mean m = tr E /
   /// 3: largest m, -m, |E - m I|^2 and |curl u|^2 / 3, none under 0.

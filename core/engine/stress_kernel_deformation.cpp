@@ -140,15 +140,8 @@ unsigned StressKernel::lanes_over(const GroupBounds& b, const DeformationSearch:
 SUNDER_VECTORISED
 unsigned StressKernel::lanes_over(const Block& b, const double* u,
                                   const DeformationSearch::Limits& limits) {
-  double d[9][kLanes];  // displacement of corners 1..3 against corner 0
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int l = 0; l < kLanes; ++l) {
-      const double u0 = u[b.corner[0][l] + axis];
-      d[axis][l] = u[b.corner[1][l] + axis] - u0;
-      d[3 + axis][l] = u[b.corner[2][l] + axis] - u0;
-      d[6 + axis][l] = u[b.corner[3][l] + axis] - u0;
-    }
-  }
+  double d[9][kLanes];
+  b.differences(u, d);
   double turned[9];
   for (int i = 0; i < 9; ++i) turned[i] = limits.turned(i / 3, i % 3);
   const double strain = limits.strain, compression = limits.compression;

@@ -42,6 +42,16 @@ AuxiliaryState in_plane_state(Complex phi, Complex turned, const TipMaterial& m,
   return state;
 }
 
+/// s13 - i s23 = mu (u3,1 - i u3,2) = -i w.
+AuxiliaryState anti_plane_state(Complex w, const TipMaterial& m) {
+  AuxiliaryState state;
+  state.stress.setZero();
+  state.stress(0, 2) = state.stress(2, 0) = w.imag();
+  state.stress(1, 2) = state.stress(2, 1) = w.real();
+  state.slope = Vec3(0, 0, w.imag() / m.shear());
+  return state;
+}
+
 }  // namespace
 
 double TipMaterial::kolosov() const {
@@ -62,12 +72,8 @@ std::array<AuxiliaryState, kModes> auxiliary_states(const Vec2& x, int side,
   const Complex turned_2 = -1.5 * phi_2 - times(z_bar_over_z, phi_2) / 2.0;
   states[kModeI] = in_plane_state(phi_1, turned_1, material, kappa);
   states[kModeII] = in_plane_state(phi_2, turned_2, material, kappa);
-  // u3 = 2/mu Im sqrt(z/(2 pi)), s13 - i s23 = mu (u3,1 - i u3,2) = -i/sqrt(2 pi z).
-  AuxiliaryState& shear = states[kModeIII];
-  shear.stress.setZero();
-  shear.stress(0, 2) = shear.stress(2, 0) = w.imag();
-  shear.stress(1, 2) = shear.stress(2, 1) = w.real();
-  shear.slope = Vec3(0, 0, w.imag() / material.shear());
+  // u3 = 2/mu Im sqrt(z/(2 pi)).
+  states[kModeIII] = anti_plane_state(w, material);
   return states;
 }
 
@@ -85,11 +91,7 @@ std::array<AuxiliaryState, kModes> shift_states(const Vec2& x, int side,
   const Complex turned_2 = times(z_bar_over_z, phi_2) / 2.0 - 2.5 * phi_2;
   states[kModeI] = in_plane_state(phi_1, turned_1, material, kappa);
   states[kModeII] = in_plane_state(phi_2, turned_2, material, kappa);
-  AuxiliaryState& shear = states[kModeIII];
-  shear.stress.setZero();
-  shear.stress(0, 2) = shear.stress(2, 0) = w.imag();
-  shear.stress(1, 2) = shear.stress(2, 1) = w.real();
-  shear.slope = Vec3(0, 0, w.imag() / material.shear());
+  states[kModeIII] = anti_plane_state(w, material);
   return states;
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "changed_body.hpp"
 #include "engine/condensed_base.hpp"
@@ -31,6 +32,24 @@ struct BodyOf {
   bool supported = true;  ///< else by grips alone
   std::string base = "factor";
 };
+
+/// Every base, with and without grips, stiff cells, nearly incompressible.
+inline std::vector<BodyOf> bodies() {
+  return {BodyOf{},
+          BodyOf{.base = "inverse"},
+          BodyOf{.base = "condensed"},
+          BodyOf{.gripped = true},
+          BodyOf{.contrast = 1e4},
+          BodyOf{.contrast = 1e4, .gripped = true},
+          BodyOf{.poisson = 0.499},
+          BodyOf{.poisson = 0.499, .gripped = true}};
+}
+
+inline std::string name_of_body(const ::testing::TestParamInfo<BodyOf>& tested) {
+  const BodyOf& b = tested.param;
+  return b.base + (b.gripped ? "_gripped" : "") + (b.contrast > 1 ? "_contrast" : "") +
+         (b.poisson > 0.4 ? "_incompressible" : "");
+}
 
 inline Scene scene_of(const BodyOf& b) {
   Scene scene;

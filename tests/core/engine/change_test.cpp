@@ -37,19 +37,7 @@ Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {
 
 class Bodies : public ::testing::TestWithParam<BodyOf> {};
 
-INSTANTIATE_TEST_SUITE_P(All, Bodies,
-                         ::testing::Values(BodyOf{}, BodyOf{.base = "inverse"},
-                                           BodyOf{.base = "condensed"}, BodyOf{.gripped = true},
-                                           BodyOf{.contrast = 1e4},
-                                           BodyOf{.contrast = 1e4, .gripped = true},
-                                           BodyOf{.poisson = 0.499},
-                                           BodyOf{.poisson = 0.499, .gripped = true}),
-                         [](const auto& tested) {
-                           const BodyOf& b = tested.param;
-                           return std::string(b.base) + (b.gripped ? "_gripped" : "") +
-                                  (b.contrast > 1 ? "_contrast" : "") +
-                                  (b.poisson > 0.4 ? "_incompressible" : "");
-                         });
+INSTANTIATE_TEST_SUITE_P(All, Bodies, ::testing::ValuesIn(test::bodies()), test::name_of_body);
 
 TEST_P(Bodies, FollowElementsThatComeBack) {
   Changing body(GetParam());
