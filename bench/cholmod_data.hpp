@@ -8,14 +8,15 @@
 #include <span>
 #include <vector>
 
-#include "fem/assembly.hpp"
-#include "fem/event_factor.hpp"
+#include "body/assembly.hpp"
+#include "body/event_factor.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::bench {
 
 /// A copy; `stype` -1: only the lower triangle of a symmetric matrix is stored.
-inline cholmod_sparse* to_cholmod(const fem::SparseMatrix& m, int stype, cholmod_common& common) {
+inline cholmod_sparse* to_cholmod(const linear_algebra::SparseMatrix& m, int stype,
+                                  cholmod_common& common) {
   cholmod_sparse* s = cholmod_allocate_sparse(
       static_cast<std::size_t>(m.rows()), static_cast<std::size_t>(m.cols()),
       static_cast<std::size_t>(m.nonZeros()), 1, 1, stype, CHOLMOD_REAL, &common);
@@ -26,8 +27,8 @@ inline cholmod_sparse* to_cholmod(const fem::SparseMatrix& m, int stype, cholmod
 }
 
 /// Stiffness with some elements destroyed, lower triangle.
-inline fem::SparseMatrix damaged_stiffness(const Problem& problem,
-                                           std::span<const Index> destroyed) {
+inline linear_algebra::SparseMatrix damaged_stiffness(const Problem& problem,
+                                                      std::span<const Index> destroyed) {
   std::vector<double> scale(problem.mesh().tets.size(), 1.0);
   for (Index e : destroyed) {
     scale[static_cast<std::size_t>(e)] = problem.scene().fracture.alpha;
@@ -37,8 +38,9 @@ inline fem::SparseMatrix damaged_stiffness(const Problem& problem,
 
 /// W with K - W W^T the stiffness after the elements are destroyed, six columns each. `order`: the
 /// unknown that comes at each row (a factor's Perm); empty: the unknowns' own order.
-inline fem::SparseMatrix update_columns(const Problem& problem, std::span<const Index> elements,
-                                        std::span<const int> order) {
+inline linear_algebra::SparseMatrix update_columns(const Problem& problem,
+                                                   std::span<const Index> elements,
+                                                   std::span<const int> order) {
   const auto n = static_cast<std::size_t>(problem.dof_count());
   std::vector<Index> place(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -57,7 +59,7 @@ inline fem::SparseMatrix update_columns(const Problem& problem, std::span<const 
       }
     }
   }
-  fem::SparseMatrix w(problem.dof_count(), column);
+  linear_algebra::SparseMatrix w(problem.dof_count(), column);
   w.setFromTriplets(entries.begin(), entries.end());
   return w;
 }

@@ -17,6 +17,7 @@
 #include <optional>
 #include <string_view>
 #include <thread>
+#include "body/stiffness_factor.hpp"
 
 #include "cholmod_peer.hpp"
 #include "cpu_reference/choose_route.hpp"
@@ -24,11 +25,11 @@
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/routes.hpp"
 #include "cpu_reference/stress.hpp"
-#include "engine/deferred.hpp"
-#include "engine/factor_base.hpp"
-#include "engine/inverse_base.hpp"
-#include "engine/stress_kernel.hpp"
 #include "run_rows.hpp"
+#include "solver/deferred.hpp"
+#include "solver/factor_base.hpp"
+#include "solver/inverse_base.hpp"
+#include "solver/stress_kernel.hpp"
 
 extern "C" {
 void openblas_set_num_threads(int);
@@ -48,10 +49,10 @@ const TearingBoard& board_of(Index cells) {
   return *board;
 }
 
-const fem::Factor& factor_of(Index cells) {
-  static std::map<Index, std::unique_ptr<fem::Factor>> factors;
+const linear_algebra::Factor& factor_of(Index cells) {
+  static std::map<Index, std::unique_ptr<linear_algebra::Factor>> factors;
   auto& factor = factors[cells];
-  if (!factor) factor = std::make_unique<fem::Factor>(*board_of(cells).problem);
+  if (!factor) factor = std::make_unique<linear_algebra::Factor>(*board_of(cells).problem);
   return *factor;
 }
 
@@ -109,19 +110,19 @@ bool has_room_for_inverse(Index cells) {
 }
 
 /// The engine over an inverse or a factor; one inverse serves all rows of a board. None: no room.
-engine::Deferred* deferred_of(Index cells, bool dense) {
-  static std::map<std::pair<Index, bool>, std::unique_ptr<engine::Deferred>> all;
+solver::Deferred* deferred_of(Index cells, bool dense) {
+  static std::map<std::pair<Index, bool>, std::unique_ptr<solver::Deferred>> all;
   auto& deferred = all[{cells, dense}];
   if (deferred) return deferred.get();
-  std::unique_ptr<engine::Base> base;
+  std::unique_ptr<solver::Base> base;
   if (!dense) {
-    base = std::make_unique<engine::FactorBase>(factor_of(cells));
+    base = std::make_unique<solver::FactorBase>(factor_of(cells));
   } else if (has_room_for_inverse(cells)) {
-    base = std::make_unique<engine::InverseBase>(factor_of(cells));
+    base = std::make_unique<solver::InverseBase>(factor_of(cells));
   } else {
     return nullptr;
   }
-  deferred = std::make_unique<engine::Deferred>(*board_of(cells).problem, std::move(base));
+  deferred = std::make_unique<solver::Deferred>(*board_of(cells).problem, std::move(base));
   return deferred.get();
 }
 
@@ -144,7 +145,7 @@ class TurningLoad {
 
 void engine_row(benchmark::State& state, Index cells, std::size_t k, bool dense) {
   const TearingBoard& board = board_of(cells);
-  engine::Deferred* deferred = deferred_of(cells, dense);
+  solver::Deferred* deferred = deferred_of(cells, dense);
   if (!deferred) return state.SkipWithError("refused: the inverse is larger than the free memory");
   const auto elements = board.connected(k);
   TurningLoad turning(board);
@@ -201,7 +202,7 @@ void own_refactor(benchmark::State& state, Index cells) {
     f[board.load_dofs[i]] = board.load_values[i];
   }
   measure(
-      state, [] {}, [&] { u = fem::Factor(*board.problem).solve(f); });
+      state, [] {}, [&] { u = fem::factor_stiffness(*board.problem).solve(f); });
   state.counters["nnz_L"] = static_cast<double>(factor_of(cells).entries());
 }
 
@@ -344,7 +345,7 @@ void instrument_row(benchmark::State& state, Index cells) {
 /// Element stress of the board: the vectorised kernel on one thread and on all, and the plain loop.
 void stress_row(benchmark::State& state, Index cells, int threads) {
   const auto& problem = board_of(cells).problem;
-  engine::StressKernel kernel(problem, {}, threads);
+  solver::StressKernel kernel(problem, {}, threads);
   kernel.keep_bounds();
   std::vector<double> u(problem->dofs().size());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = std::sin(0.1 * static_cast<double>(i));

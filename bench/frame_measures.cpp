@@ -11,9 +11,9 @@
 #include <numbers>
 #include <string>
 
-#include "engine/stress_kernel.hpp"
-#include "fem/assembly.hpp"
-#include "fem/factor.hpp"
+#include "body/assembly.hpp"
+#include "body/stiffness_factor.hpp"
+#include "solver/stress_kernel.hpp"
 #include "tearing_board.hpp"
 
 namespace sunder::bench {
@@ -59,7 +59,7 @@ std::vector<double> pulled(const TearingBoard& board, std::size_t count) {
   for (std::size_t i = 0; i < board.load_dofs.size(); ++i) {
     f[board.load_dofs[i]] = board.load_values[i];
   }
-  const Eigen::VectorXd solution = fem::Factor(problem, scale).solve(f);
+  const Eigen::VectorXd solution = fem::factor_stiffness(problem, scale).solve(f);
   std::vector<double> u(problem.dofs().size());
   fem::scatter(problem, {solution.data(), static_cast<std::size_t>(solution.size())}, u);
   return u;
@@ -82,9 +82,9 @@ void measures(benchmark::State& state, Index cells, const std::string& name) {
   const TearingBoard board(cells);
   const Field of = field(board, name);
   // As a frame has them: bounds of the ratios in both, what the measures read in one.
-  engine::StressKernel plain(board.problem, {}, 1), measured(board.problem, {}, 1);
+  solver::StressKernel plain(board.problem, {}, 1), measured(board.problem, {}, 1);
   measured.keep_deformation();
-  for (engine::StressKernel* kernel : {&plain, &measured}) {
+  for (solver::StressKernel* kernel : {&plain, &measured}) {
     kernel->keep_bounds();
     kernel->destroy(of.destroyed);
   }

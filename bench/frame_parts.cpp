@@ -14,17 +14,18 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include "body/stiffness_factor.hpp"
 
+#include "body/assembly.hpp"
 #include "cpu_reference/cost_model.hpp"
-#include "engine/deferred.hpp"
-#include "engine/factor_base.hpp"
-#include "engine/inverse_base.hpp"
-#include "engine/stress_bounds.hpp"
-#include "engine/stress_kernel.hpp"
-#include "fem/assembly.hpp"
 #include "frame_cascades.hpp"
 #include "frame_measures.hpp"
 #include "run_rows.hpp"
+#include "solver/deferred.hpp"
+#include "solver/factor_base.hpp"
+#include "solver/inverse_base.hpp"
+#include "solver/stress_bounds.hpp"
+#include "solver/stress_kernel.hpp"
 #include "sunder/error.hpp"
 #include "tearing_board.hpp"
 
@@ -46,17 +47,17 @@ double us_of(const std::function<void()>& run) {
 }
 
 /// Passes everything on and takes the time of what a frame asks for.
-class TimedBase final : public engine::Base {
+class TimedBase final : public solver::Base {
  public:
-  TimedBase(std::unique_ptr<engine::Base> base, Times& times)
+  TimedBase(std::unique_ptr<solver::Base> base, Times& times)
       : base_(std::move(base)), times_(times) {}
   [[nodiscard]] Index size() const override { return base_->size(); }
   void make_room() override { base_->make_room(); }
-  void push(std::span<const engine::Difference> vectors, fem::RowMajor& gram) override {
+  void push(std::span<const solver::Difference> vectors, linear_algebra::RowMajor& gram) override {
     times_[kForward] += us_of([&] { base_->push(vectors, gram); });
   }
   void pop() override { base_->pop(); }
-  const Eigen::VectorXd& load(const engine::Forces& forces) override {
+  const Eigen::VectorXd& load(const solver::Forces& forces) override {
     const Eigen::VectorXd* projected = nullptr;
     times_[kProject] += us_of([&] { projected = &base_->load(forces); });
     return *projected;
@@ -67,7 +68,7 @@ class TimedBase final : public engine::Base {
   [[nodiscard]] std::vector<BufferPlan> buffers() const override { return base_->buffers(); }
 
  private:
-  std::unique_ptr<engine::Base> base_;
+  std::unique_ptr<solver::Base> base_;
   Times& times_;
 };
 
@@ -80,11 +81,11 @@ class Frames {
     std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
     for (Index e : board.connected(before)) scale[e] = problem_.scene().fracture.alpha;
     factor_.emplace(problem_, scale);
-    std::unique_ptr<engine::Base> base;
+    std::unique_ptr<solver::Base> base;
     if (inverse) {
-      base = std::make_unique<engine::InverseBase>(*factor_);
+      base = std::make_unique<solver::InverseBase>(*factor_);
     } else {
-      base = std::make_unique<engine::FactorBase>(*factor_);
+      base = std::make_unique<solver::FactorBase>(*factor_);
     }
     deferred_.emplace(problem_, std::make_unique<TimedBase>(std::move(base), times_));
     kernel_.keep_bounds();
@@ -99,7 +100,7 @@ class Frames {
       f_[board.load_dofs[i]] = board.load_values[i];
     }
     product_.setZero(f_.size());
-    of_energy_ = engine::largest_stress_of_energy(problem_);
+    of_energy_ = solver::largest_stress_of_energy(problem_);
     solve(0);
   }
 
@@ -149,10 +150,10 @@ class Frames {
   const TearingBoard& board_;
   const Problem& problem_;
   std::size_t next_;
-  std::optional<fem::Factor> factor_;
+  std::optional<linear_algebra::Factor> factor_;
   Times times_{};
-  std::optional<engine::Deferred> deferred_;
-  engine::StressKernel kernel_;
+  std::optional<solver::Deferred> deferred_;
+  solver::StressKernel kernel_;
   std::vector<double> nodal_, forces_;
   std::vector<Voigt> stress_;
   std::vector<std::uint8_t> excluded_;
@@ -171,7 +172,7 @@ const TearingBoard& board_of(Index cells) {
 /// asked for (deferred_route.cpp).
 std::size_t frames_of_a_base(Index cells) {
   const TearingBoard& board = board_of(cells);
-  const fem::Factor factor(*board.problem);
+  const linear_algebra::Factor factor = fem::factor_stiffness(*board.problem);
   return 2 * static_cast<std::size_t>(cpu_reference::frames_of_a_factor(
                  factor.cholesky(), board.problem->mesh().tets.size()));
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/peers/matrix_peer.hpp"
-#include "fem/factor.hpp"
+#include "linear_algebra/factor.hpp"
 #include "run_rows.hpp"
 #include "tearing_board.hpp"
 
@@ -17,8 +17,8 @@ extern "C" void openblas_set_num_threads(int);
 namespace sunder::bench {
 namespace {
 
-const fem::SparseMatrix& stiffness(Index cells) {
-  static std::map<Index, fem::SparseMatrix> all;
+const linear_algebra::SparseMatrix& stiffness(Index cells) {
+  static std::map<Index, linear_algebra::SparseMatrix> all;
   auto& k = all[cells];
   if (k.size() == 0) k = fem::assemble_lower(*TearingBoard(cells).problem, {});
   return k;
@@ -27,10 +27,11 @@ const fem::SparseMatrix& stiffness(Index cells) {
 class Sunder : public MatrixPeer {
  public:
   void set_matrix(const LowerTriangle& m) override {
-    k_ = Eigen::Map<const fem::SparseMatrix>(m.n, m.n, static_cast<Index>(m.values.size()),
-                                             m.outer.data(), m.inner.data(), m.values.data());
+    k_ = Eigen::Map<const linear_algebra::SparseMatrix>(
+        m.n, m.n, static_cast<Index>(m.values.size()), m.outer.data(), m.inner.data(),
+        m.values.data());
   }
-  void update() override { inverse_ = fem::Factor(k_).inverse(); }
+  void update() override { inverse_ = linear_algebra::Factor(k_).inverse(); }
   void solve(std::span<const double> f, std::span<double> u) override {
     Eigen::Map<Eigen::VectorXd>(u.data(), inverse_.rows()) =
         inverse_ * Eigen::Map<const Eigen::VectorXd>(f.data(), inverse_.rows());
@@ -40,11 +41,11 @@ class Sunder : public MatrixPeer {
   }
 
  private:
-  fem::SparseMatrix k_;
+  linear_algebra::SparseMatrix k_;
   Eigen::MatrixXd inverse_;
 };
 
-double error_of(const fem::SparseMatrix& lower, MatrixPeer& inverse) {
+double error_of(const linear_algebra::SparseMatrix& lower, MatrixPeer& inverse) {
   const auto n = static_cast<std::size_t>(lower.rows());
   double worst = 0;
   for (std::size_t j = 0; j < n; j += std::max<std::size_t>(1, n / 20)) {
@@ -60,7 +61,7 @@ double error_of(const fem::SparseMatrix& lower, MatrixPeer& inverse) {
 }
 
 void invert(benchmark::State& state, Index cells, const MatrixPeerKind& kind) {
-  const fem::SparseMatrix& k = stiffness(cells);
+  const linear_algebra::SparseMatrix& k = stiffness(cells);
   const auto entries = static_cast<std::size_t>(k.nonZeros());
   const auto peer = kind.create();
   for (auto _ : state) {

@@ -7,8 +7,8 @@
 #include <chrono>
 
 #include "app/reproduce/paper_times.hpp"
-#include "fem/element.hpp"
-#include "fem/factor.hpp"
+#include "body/element.hpp"
+#include "linear_algebra/factor.hpp"
 #include "run_rows.hpp"
 #include "sunder/error.hpp"
 
@@ -42,13 +42,14 @@ void stress_displacement(const Problem& problem, std::vector<StressDisplacement>
 
 /// Every row of Table 2 made anew.
 void note_the_papers_way(benchmark::State& state, const Problem& problem) {
-  fem::SparseMatrix k;
+  linear_algebra::SparseMatrix k;
   std::vector<StressDisplacement> db(problem.mesh().tets.size());
   Eigen::MatrixXd inverse;
   state.counters["anew_stiffness_ms"] = least(5, [&] { k = fem::assemble_lower(problem, {}); });
   state.counters["anew_stress_displacement_ms"] =
       least(5, [&] { stress_displacement(problem, db); });
-  state.counters["anew_inverse_ms"] = least(2, [&] { inverse = fem::Factor(k).inverse(); });
+  state.counters["anew_inverse_ms"] =
+      least(2, [&] { inverse = linear_algebra::Factor(k).inverse(); });
   const Eigen::VectorXd f = Eigen::VectorXd::Ones(inverse.rows());
   Eigen::VectorXd u;
   state.counters["anew_displacement_ms"] = least(5, [&] { u.noalias() = inverse * f; });

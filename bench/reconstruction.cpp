@@ -295,7 +295,7 @@ void list_peers() {
   for (const PeerKind& kind : all_peers()) std::cout << kind.name << '\t' << kind.settings << '\n';
 }
 
-void write_matrix(const std::string& path, const fem::SparseMatrix& matrix, int stype) {
+void write_matrix(const std::string& path, const linear_algebra::SparseMatrix& matrix, int stype) {
   cholmod_common common;
   cholmod_start(&common);
   cholmod_sparse* sparse = to_cholmod(matrix, stype, common);

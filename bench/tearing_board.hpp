@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "fem/event_factor.hpp"
-#include "fem/factor.hpp"
+#include "body/event_factor.hpp"
+#include "linear_algebra/factor.hpp"
 #include "sunder/problem.hpp"
 #include "support/structured_board.hpp"
 

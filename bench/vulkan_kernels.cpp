@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 
+#include "body/assembly.hpp"
 #include "cpu_reference/stress.hpp"
-#include "fem/assembly.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "gpu/passes/fields.hpp"
 #include "support/structured_board.hpp"

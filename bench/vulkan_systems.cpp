@@ -3,8 +3,8 @@
 // gradients, the dense inverse computed on the device.
 #include <chrono>
 
+#include "body/assembly.hpp"
 #include "cpu_reference/conjugate_gradient.hpp"
-#include "fem/assembly.hpp"
 #include "gpu/cg_route.hpp"
 #include "gpu/host_inverse.hpp"
 #include "gpu/passes/block_inversion.hpp"
@@ -37,7 +37,7 @@ class AssembledCg {
   }
 
  private:
-  fem::SparseMatrix k_;
+  linear_algebra::SparseMatrix k_;
   Eigen::VectorXd inverse_;
 };
 
@@ -116,7 +116,7 @@ void stiffness_product(benchmark::State& state, const Rows& rows, const std::str
   work.run = [&] { commands.submit(); };
   work.milliseconds = device_clock(device, "product");
   work.bytes = static_cast<double>(matrix.bytes() + 2 * bytes);
-  const fem::SparseMatrix k = fem::assemble_lower(*problem, {});
+  const linear_algebra::SparseMatrix k = fem::assemble_lower(*problem, {});
   const Eigen::VectorXd in = Eigen::VectorXd::Constant(problem->dof_count(), 0.25);
   Eigen::VectorXd out;
   work.reference = [&] { out.noalias() = k.selfadjointView<Eigen::Lower>() * in; };
@@ -128,7 +128,7 @@ void inversion(benchmark::State& state, const Rows& rows, const std::string& nam
   rows.gpu.release();
   const auto problem = plain_board(cells);
   const gpu::KernelFactory& kernels = rows.gpu.kernels(true);
-  const fem::SparseMatrix lower = fem::assemble_lower(*problem, {});
+  const linear_algebra::SparseMatrix lower = fem::assemble_lower(*problem, {});
   const Index n = problem->dof_count();
   const auto padded = gpu::round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
   DenseInverse inverse(kernels, n, padded, 0);

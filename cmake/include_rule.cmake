@@ -3,34 +3,35 @@
 #   cmake -DROOT=SOURCE [-DSTAMP=FILE] -P cmake/include_rule.cmake
 # A room is a folder; a file belongs to the innermost one that is named here. It may include its own
 # room, the rooms after the colon, and headers in angle brackets. The first word of a header that has
-# no folder in its name ("loads.hpp") is looked up next to the file.
+# no folder in its name ("pieces.hpp") is looked up next to the file.
 cmake_minimum_required(VERSION 3.22)
 
 set(rooms
   "core/sunder:"
+  "core/scene:core/sunder"
   "core/material:core/sunder"
-  "core/parallel:"
-  "core/fem:core/sunder core/material core/parallel"
-  "core/engine:core/sunder core/material core/parallel core/fem"
-  "core/fracture:core/sunder core/material core/fem"
-  "core:core/sunder core/material core/fem core/engine core/fracture"
-  "cpu_reference:core core/sunder core/material core/fem core/engine"
+  "core/linear_algebra:core/sunder"
+  "core/body:core/sunder core/material core/linear_algebra"
+  "core/solver:core/sunder core/material core/linear_algebra core/body"
+  "core/fracture:core/sunder core/material core/linear_algebra core/body"
+  "core/frame:core/sunder core/material core/body core/fracture"
+  "cpu_reference:core/sunder core/material core/linear_algebra core/body core/solver"
   "cpu_reference/plain:core/sunder"
   "shaders:"
-  "gpu:core core/sunder core/material core/fem core/engine shaders"
+  "gpu:core/sunder core/material core/linear_algebra core/body core/solver shaders"
   "api/sunder:core/sunder"
-  "api:core core/sunder api/sunder cpu_reference gpu"
+  "api:core/sunder api/sunder core/frame cpu_reference gpu"
   "app/input:core/sunder"
   "app/mesh_board:core/sunder app/input app/output"
   "app/gmsh:core/sunder app/input app/mesh_board"
-  "app/output:core core/sunder"
-  "app/figure:core core/sunder app/output"
+  "app/output:core/sunder"
+  "app/figure:core/sunder app/output"
   "app/report:core/sunder app/output app/figure"
   "app/reproduce:core/sunder api/sunder app/input app/output app/figure app/report"
   "app/commands:core/sunder api/sunder app/input app/mesh_board app/output app/figure app/report app/reproduce"
   "app/cli:core/sunder api/sunder app/input app/commands"
 )
-# Where the headers of a room are looked for: "fem/element.hpp" is core/fem/element.hpp.
+# Where the headers of a room are looked for: "body/element.hpp" is core/body/element.hpp.
 set(include_folders . core api)
 
 set(names "")

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/region.hpp"
+#include "solver/region.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::cpu_reference {
@@ -78,7 +78,7 @@ void check_dense(const Problem& problem, const Needs& needs, std::size_t memory)
   const bool inverse = solver.route == Route::inverse ||
                        (solver.route == Route::automatic && solver.update == Update::eager);
   if (!condensed && !inverse) return;
-  const std::size_t n = condensed ? engine::region_of(problem, needs).dofs.size()
+  const std::size_t n = condensed ? solver::region_of(problem, needs).dofs.size()
                                   : static_cast<std::size_t>(problem.dof_count());
   const std::size_t needed = inverse_bytes(n);
   if (needed <= memory) return;
@@ -114,9 +114,9 @@ ChosenRoute choose_by_size(const Problem& problem, const Needs& needs, std::size
     return {Route::factor, Update::deferred,
             n + " and nothing can be destroyed: two triangular solves a load", nullptr};
   }
-  const engine::Region region = engine::region_of(problem, needs);
+  const solver::Region region = solver::region_of(problem, needs);
   const std::size_t inside = region.dofs.size();
-  if (region.tears && engine::kRegionShare * inside <= all &&
+  if (region.tears && solver::kRegionShare * inside <= all &&
       inside <= static_cast<std::size_t>(kDenseLimit) && inverse_bytes(inside) <= left) {
     return {Route::condensed, Update::deferred,
             n + ", of which " + std::to_string(inside) +
@@ -125,7 +125,7 @@ ChosenRoute choose_by_size(const Problem& problem, const Needs& needs, std::size
             nullptr};
   }
   const std::size_t loaded = loaded_unknowns(problem);
-  if (loaded * all > 2 * entries) {  // as core/engine/inverse_base.cpp
+  if (loaded * all > 2 * entries) {  // as core/solver/inverse_base.cpp
     return {Route::factor, Update::deferred,
             n + ", " + std::to_string(loaded) +
                 " of them loaded: so many columns of an inverse are more to read than two "
@@ -151,7 +151,7 @@ ChosenRoute asked_for(const Problem& problem, const Needs& needs) {
   }
   std::string why = "asked for";
   if (solver.route == Route::condensed) {
-    why += "; " + std::to_string(engine::region_of(problem, needs).dofs.size()) + " of " +
+    why += "; " + std::to_string(solver::region_of(problem, needs).dofs.size()) + " of " +
            std::to_string(problem.dof_count()) +
            " unknowns can break, are loaded or held by instruments";
   }

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "fem/analysis.hpp"
+#include "body/analysis.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::cpu_reference {

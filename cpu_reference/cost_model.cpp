@@ -12,7 +12,7 @@ constexpr double kCacheBytes = 16e6;        // sets up to here stay in the cache
 constexpr double kFromCache = 30e9;         // bytes a second
 constexpr double kFromMemory = 10e9;        // bytes a second
 constexpr double kFlops = 10e9;             // of panels with a dozen columns
-constexpr double kStressSeconds = 15e-9;    // per element, kernel of core/engine/stress_kernel.hpp
+constexpr double kStressSeconds = 15e-9;    // per element, kernel of core/solver/stress_kernel.hpp
 constexpr double kProductSeconds = 120e-9;  // per element of a product K u
 constexpr double kCall = 5e-6;              // of a frame's small change
 constexpr double kFactorFlops = 26e9;       // of a factor's dense products
@@ -71,7 +71,7 @@ double update(const FrameShape& s) {
 }
 
 /// Multiply-adds of a factor: each column of a panel with those after it.
-double multiply_adds(const fem::Supernodes& nodes) {
+double multiply_adds(const linear_algebra::Supernodes& nodes) {
   double sum = 0;
   for (Index s = 0; s < nodes.count(); ++s) {
     const double width = nodes.width(s), below = nodes.height(s) - width;
@@ -82,7 +82,7 @@ double multiply_adds(const fem::Supernodes& nodes) {
 
 }  // namespace
 
-int frames_of_a_factor(const fem::SupernodalCholesky& factor, std::size_t elements) {
+int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor, std::size_t elements) {
   constexpr double kSolutions = 4;  // of the check, each forward and backward
   constexpr double kUpdate = 3e-5;  // seconds of a frame with a fracture, whatever the size
   // The thread follows meanwhile, and a busy machine takes twice as long: a frame is not to wait.

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "fem/supernodal_cholesky.hpp"
+#include "linear_algebra/supernodal_cholesky.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::cpu_reference {
@@ -35,7 +35,8 @@ struct FrameCost {
 /// Frames that follow one another without a pause while another thread makes a factor of the
 /// damaged body, checks it and follows them. From sizes alone: what is taken after so many frames
 /// must not depend on how long anything took.
-[[nodiscard]] int frames_of_a_factor(const fem::SupernodalCholesky& factor, std::size_t elements);
+[[nodiscard]] int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor,
+                                     std::size_t elements);
 
 /// Whether an event of so many elements is worth a new factor of the body instead of an update.
 [[nodiscard]] bool takes_new_factor(std::size_t unknowns, std::size_t elements);

@@ -7,26 +7,26 @@
 #include <optional>
 #include <utility>
 
+#include "body/assembly.hpp"
 #include "cpu_reference/choose_route.hpp"
 #include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/frame_fields.hpp"
 #include "cpu_reference/frame_kernels.hpp"
 #include "cpu_reference/routes.hpp"
-#include "engine/condensed_route.hpp"
-#include "engine/frame_solver.hpp"
-#include "engine/host_frame.hpp"
-#include "engine/instrument_block.hpp"
-#include "fem/assembly.hpp"
+#include "solver/condensed_route.hpp"
+#include "solver/frame_solver.hpp"
+#include "solver/host_frame.hpp"
+#include "solver/instrument_block.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
 
-std::optional<engine::Region> condensed_region(const ChosenRoute& chosen, const Problem& problem,
+std::optional<solver::Region> condensed_region(const ChosenRoute& chosen, const Problem& problem,
                                                const Needs& needs) {
   if (chosen.route != Route::condensed) return std::nullopt;
-  return engine::region_of(problem, needs);
+  return solver::region_of(problem, needs);
 }
 
 /// The factor of the intact body, where it fits the memory.
@@ -58,7 +58,7 @@ class CpuBackend final : public Backend {
     }
     if (route_->deferred() && !problem->gripped_dofs().empty()) instruments_.emplace(*problem);
     if (!fields_.region()) return;
-    for (std::string& what : engine::left_out_of(*problem, *fields_.region())) {
+    for (std::string& what : solver::left_out_of(*problem, *fields_.region())) {
       leave_out(std::move(what));
     }
   }
@@ -159,9 +159,9 @@ class CpuBackend final : public Backend {
       return incomplete_route(body_, preconditioner);
     }
     if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, *intact_);
-    if (const engine::Region* region = fields_.region()) {
+    if (const solver::Region* region = fields_.region()) {
       // Without an owner: the intact body outlives the route.
-      return engine::condensed_route(body_, {std::shared_ptr<void>(), &intact_->factor},
+      return solver::condensed_route(body_, {std::shared_ptr<void>(), &intact_->factor},
                                      region->dofs, needs().damage, rest);
     }
     if (chosen_.update == Update::eager) return dense_inverse_route(body_, *intact_);
@@ -176,7 +176,7 @@ class CpuBackend final : public Backend {
   }
 
   /// Conjugate gradients on the intact body.
-  engine::HostFrame::MakeRoute fall_back() {
+  solver::HostFrame::MakeRoute fall_back() {
     if (chosen_.route == Route::cg || !intact_) return {};
     return [this] { return conjugate_gradient_route(body_, *intact_); };
   }
@@ -296,10 +296,10 @@ class CpuBackend final : public Backend {
   std::optional<NeverDamaged> never_damaged_;  // in its place, for the pristine field
   FrameFields fields_;
   std::unique_ptr<InverseRoute> route_;
-  engine::HostFrame frame_;
-  engine::FrameSolver solver_;
+  solver::HostFrame frame_;
+  solver::FrameSolver solver_;
   Eigen::VectorXd pristine_force_, pristine_u_;  // of the intact body
-  std::optional<engine::InstrumentBlock> instruments_;
+  std::optional<solver::InstrumentBlock> instruments_;
   double waited_ms_ = 0;  // for rebases, as reported so far
   PreparationReport preparation_;
   std::vector<std::uint8_t> is_prepared_;  // per element; empty: nothing ever was

@@ -5,9 +5,9 @@
 
 #include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/routes.hpp"
-#include "engine/factor_base.hpp"
-#include "engine/inverse_base.hpp"
-#include "engine/renewed_update.hpp"
+#include "solver/factor_base.hpp"
+#include "solver/inverse_base.hpp"
+#include "solver/renewed_update.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -26,20 +26,20 @@ class DeferredRoute final : public InverseRoute {
         all_(static_cast<std::size_t>(body.problem().dof_count())),
         stiffness_(std::move(intact.stiffness)) {
     std::iota(all_.begin(), all_.end(), 0);
-    std::unique_ptr<engine::Base> base;
+    std::unique_ptr<solver::Base> base;
     if (dense) {
-      base = std::make_unique<engine::InverseBase>(intact.factor);
+      base = std::make_unique<solver::InverseBase>(intact.factor);
     } else {
-      base = std::make_unique<engine::FactorBase>(intact.factor);
+      base = std::make_unique<solver::FactorBase>(intact.factor);
     }
-    engine::Based first;
+    solver::Based first;
     if (!stiffness_) {
-      first.deferred = std::make_unique<engine::Deferred>(body.problem(), std::move(base), false);
+      first.deferred = std::make_unique<solver::Deferred>(body.problem(), std::move(base), false);
       update_.emplace(body, std::move(first));
       return;
     }
     const int frames = frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
-    engine::Renewal renewal;
+    solver::Renewal renewal;
     renewal.events = frames;
     renewal.rest = rest;
     // As many as have followed a base when it is taken: where frames tear without a pause, the next
@@ -52,10 +52,10 @@ class DeferredRoute final : public InverseRoute {
     renewal.first_columns =
         dense ? std::max(renewal.columns, intact.factor.entries() / all_.size()) : renewal.columns;
     first.deferred =
-        std::make_unique<engine::Deferred>(body.problem(), std::move(base), true,
+        std::make_unique<solver::Deferred>(body.problem(), std::move(base), true,
                                            static_cast<Index>(renewal.first_columns) + followed);
     update_.emplace(body, std::move(first), renewal,
-                    [this, columns](const DamagedBody& of, const fem::FactorWork& work) {
+                    [this, columns](const DamagedBody& of, const linear_algebra::FactorWork& work) {
                       return based_on(of, work, columns);
                     });
   }
@@ -81,10 +81,10 @@ class DeferredRoute final : public InverseRoute {
   void prepare(std::span<const Index> elements) override { update_->deferred().prepare(elements); }
   double saved_ms() const override { return update_->saved_ms(); }
 
-  const engine::Deferred* deferred() const override { return &update_->deferred(); }
+  const solver::Deferred* deferred() const override { return &update_->deferred(); }
   void set_enough(double energy) override { enough_ = energy; }
   int bases() const override { return update_->bases(); }
-  const engine::BaseCheck& base_check() const override { return update_->base_check(); }
+  const solver::BaseCheck& base_check() const override { return update_->base_check(); }
   double waited_ms() const override { return update_->waited_ms(); }
 
   std::vector<BufferPlan> buffers() const override {
@@ -98,12 +98,13 @@ class DeferredRoute final : public InverseRoute {
 
  private:
   /// A factor of the body and an empty damage over it.
-  engine::Based based_on(const DamagedBody& body, const fem::FactorWork& work, Index columns) {
+  solver::Based based_on(const DamagedBody& body, const linear_algebra::FactorWork& work,
+                         Index columns) {
     stiffness_->follow(body.scale());
-    engine::Based based;
-    based.factor = std::make_shared<const fem::Factor>(stiffness_->factor(work));
-    based.deferred = std::make_unique<engine::Deferred>(
-        body.problem(), std::make_unique<engine::FactorBase>(*based.factor), true, columns);
+    solver::Based based;
+    based.factor = std::make_shared<const linear_algebra::Factor>(stiffness_->factor(work));
+    based.deferred = std::make_unique<solver::Deferred>(
+        body.problem(), std::make_unique<solver::FactorBase>(*based.factor), true, columns);
     // Room for predictions too: the frame that takes the base is to allocate nothing.
     if (body.problem().scene().solver.prepare) based.deferred->prepare({});
     return based;
@@ -113,7 +114,7 @@ class DeferredRoute final : public InverseRoute {
   std::vector<Index> all_;  // every unknown: the loads of a residual
   double enough_ = 0;
   std::unique_ptr<fem::OrderedStiffness> stiffness_;  // of whoever makes a base
-  std::optional<engine::RenewedUpdate> update_;       // last: its thread uses what is above
+  std::optional<solver::RenewedUpdate> update_;       // last: its thread uses what is above
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plain yardstick of the routes: a dense inverse into which every event is worked.
+#include "body/stiffness_factor.hpp"
 #include "cpu_reference/low_rank.hpp"
 #include "cpu_reference/routes.hpp"
 
@@ -38,7 +39,7 @@ class DenseInverseRoute final : public InverseRoute {
   }
 
   bool rebase() override {
-    x_ = fem::Factor(body_.problem(), body_.scale()).inverse();
+    x_ = fem::factor_stiffness(body_.problem(), body_.scale()).inverse();
     grips_.read(x_);
     return true;
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fem/assembly.hpp"
+#include "body/assembly.hpp"
 #include "sunder/fracture_model.hpp"
 
 namespace sunder::cpu_reference {
@@ -17,7 +17,7 @@ std::span<const double> view(const Eigen::VectorXd& v) {
 }  // namespace
 
 FrameFields::FrameFields(const DamagedBody& body, const Needs& needs,
-                         std::optional<engine::Region> region)
+                         std::optional<solver::Region> region)
     : body_(body),
       problem_(body.problem()),
       nodal_(problem_.dofs().size(), 0.0),
@@ -151,7 +151,7 @@ Voigt FrameFields::read_stress(Index element) const {
   return at != kNone ? stress_[at] : condensed_->stress(body_.scale())[element];
 }
 
-const engine::Region* FrameFields::region() const {
+const solver::Region* FrameFields::region() const {
   return condensed_ ? &condensed_->region() : nullptr;
 }
 

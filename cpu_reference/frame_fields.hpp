@@ -9,16 +9,16 @@
 #include <vector>
 
 #include "cpu_reference/routes.hpp"
-#include "engine/condensed_fields.hpp"
-#include "engine/host_fields.hpp"
-#include "engine/stress_kernel.hpp"
+#include "solver/condensed_fields.hpp"
+#include "solver/host_fields.hpp"
+#include "solver/stress_kernel.hpp"
 
 namespace sunder::cpu_reference {
 
-class FrameFields final : public engine::HostFields {
+class FrameFields final : public solver::HostFields {
  public:
   /// `region`: frames compute these alone of a condensed body.
-  FrameFields(const DamagedBody& body, const Needs& needs, std::optional<engine::Region> region);
+  FrameFields(const DamagedBody& body, const Needs& needs, std::optional<solver::Region> region);
   /// Makes ready for forces() and largest_stress(), whether or not anybody needs stress: it is
   /// stored only for those who do. For a body that is not condensed.
   void keep_forces();
@@ -50,7 +50,7 @@ class FrameFields final : public engine::HostFields {
   void read_stress(std::span<Voigt> stress) const;
   [[nodiscard]] Voigt read_stress(Index element) const;
 
-  [[nodiscard]] const engine::Region* region() const override;
+  [[nodiscard]] const solver::Region* region() const override;
   /// Elements whose stress a frame computes, and the threads that share it.
   [[nodiscard]] std::size_t stressed() const { return kernel_ ? kernel_->size() : 0; }
   [[nodiscard]] std::size_t threads() const;
@@ -65,8 +65,8 @@ class FrameFields final : public engine::HostFields {
   const Problem& problem_;
   mutable std::vector<double> nodal_;                         // outside a region only once read
   std::vector<double> next_nodal_;                            // in work
-  mutable std::optional<engine::CondensedFields> condensed_;  // computes what is read
-  std::optional<engine::StressKernel> kernel_;
+  mutable std::optional<solver::CondensedFields> condensed_;  // computes what is read
+  std::optional<solver::StressKernel> kernel_;
   std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
   bool fresh_ = false;                       // next_stress_ is that of nodal_
   bool stressed_ = false;                    // some stress has been published

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/stress_kernel.hpp"
+#include "solver/stress_kernel.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -90,7 +90,7 @@ class Frame {
 
   void fields() {
     if (shape_.stressed > 0) {
-      add("stress", std::to_string(engine::StressKernel::kLanes) + " elements at a time on " +
+      add("stress", std::to_string(solver::StressKernel::kLanes) + " elements at a time on " +
                         std::to_string(shape_.threads) +
                         (shape_.threads == 1 ? " thread, " : " threads, ") +
                         std::to_string(shape_.stressed) + " elements" +

@@ -21,7 +21,7 @@ constexpr int kMostIterations = 20000;
 class IncompleteFactor {
  public:
   explicit IncompleteFactor(const Problem& problem) {
-    const fem::SparseMatrix lower = fem::assemble_lower(problem, {});
+    const linear_algebra::SparseMatrix lower = fem::assemble_lower(problem, {});
     entries_ = static_cast<std::size_t>(lower.nonZeros());
     factor_.compute(lower);
   }

@@ -7,9 +7,9 @@
 #include <memory>
 #include <span>
 
-#include "fem/analysis.hpp"
-#include "fem/factor.hpp"
-#include "fem/ordered_stiffness.hpp"
+#include "body/analysis.hpp"
+#include "body/ordered_stiffness.hpp"
+#include "linear_algebra/factor.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::cpu_reference {
@@ -48,12 +48,12 @@ struct IntactBody {
   /// x = K0^-1 f with x_G = displacement (empty: 0). By one thread at a time.
   void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
              Eigen::VectorXd& x) const;
-  fem::Factor factor;
+  linear_algebra::Factor factor;
   Grips grips;
   std::unique_ptr<fem::OrderedStiffness> stiffness;  // empty without `rebases`, or handed on
 
  private:
-  mutable fem::SolveWork work_;
+  mutable linear_algebra::SolveWork work_;
 };
 
 }  // namespace sunder::cpu_reference

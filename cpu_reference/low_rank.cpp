@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/row_product.hpp"
+#include "linear_algebra/row_product.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -53,9 +53,11 @@ bool InverseUpdate::apply(Eigen::MatrixXd& x) {
     std::fill_n(columns + i * stride + n, stride - n, 0.0);
   }
   double* z = room(z_, width_, stride);  // W^T X: X is symmetric
-  fem::row_product({w_.data(), width_, touched, 1, width_}, columns, stride, stride, z, stride);
+  linear_algebra::row_product({w_.data(), width_, touched, 1, width_}, columns, stride, stride, z,
+                              stride);
   if (!factor_c(stride)) return false;
-  fem::lower_solve(c_.data(), width_, width_, z, stride, stride, room(product_, width_, stride));
+  linear_algebra::lower_solve(c_.data(), width_, width_, z, stride, stride,
+                              room(product_, width_, stride));
   for (Eigen::Index i = 0; i < width_; ++i) {
     if (!Eigen::Map<const Eigen::VectorXd>(z + i * stride, n).allFinite()) return false;
   }
@@ -72,8 +74,8 @@ bool InverseUpdate::factor_c(Eigen::Index stride) {
     for (Eigen::Index j = 0; j < width_; ++j) at_event[i * width_ + j] = from[j * stride];
   }
   Eigen::Map<Eigen::MatrixXd> c(room(c_, width_, width_), width_, width_);
-  fem::row_product({at_event, width_, touched, 1, width_}, w_.data(), width_, width_, c.data(),
-                   width_);
+  linear_algebra::row_product({at_event, width_, touched, 1, width_}, w_.data(), width_, width_,
+                              c.data(), width_);
   c = -c;
   c.diagonal().array() += 1;
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(c);
@@ -86,8 +88,8 @@ void InverseUpdate::add_product(Eigen::Index stride, Eigen::MatrixXd& x) {
   double* product = room(product_, kColumns, stride);
   for (Eigen::Index begin = 0; begin < n; begin += kColumns) {
     const Eigen::Index count = std::min(kColumns, n - begin);
-    fem::row_product({z_.data() + begin, count, rank_, 1, stride}, z_.data(), stride, stride,
-                     product, stride);
+    linear_algebra::row_product({z_.data() + begin, count, rank_, 1, stride}, z_.data(), stride,
+                                stride, product, stride);
     for (Eigen::Index j = 0; j < count; ++j) {
       x.col(begin + j) += Eigen::Map<const Eigen::VectorXd>(product + j * stride, n);
     }

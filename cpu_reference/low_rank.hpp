@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "fem/event_factor.hpp"
+#include "body/event_factor.hpp"
 
 namespace sunder::cpu_reference {
 

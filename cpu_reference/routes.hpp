@@ -11,16 +11,16 @@
 #include <memory>
 #include <vector>
 
+#include "body/damaged_body.hpp"
 #include "cpu_reference/intact_body.hpp"
-#include "engine/damaged_body.hpp"
-#include "engine/inverse_route.hpp"
+#include "solver/inverse_route.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::cpu_reference {
 
-using engine::Applied;
-using engine::DamagedBody;
-using engine::InverseRoute;
+using solver::Applied;
+using solver::DamagedBody;
+using solver::InverseRoute;
 
 /// An incomplete factor of the intact stiffness, with as many entries as the stiffness has.
 class IncompleteFactor;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/element.hpp"
+#include "body/element.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 

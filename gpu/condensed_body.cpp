@@ -3,19 +3,19 @@
 
 #include <algorithm>
 
-#include "fem/assembly.hpp"
+#include "body/assembly.hpp"
 
 namespace sunder::gpu {
 
 CondensedBody::CondensedBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
-                             const engine::Region& region)
+                             const solver::Region& region)
     : problem_(*problem),
       damaged_(std::move(problem)),
       part_(problem_, region),
       fields_(setup.kernels, *part_.problem(), setup.needs, {.residual = false}),
       commands_(setup.kernels.device()),
       intact_(std::make_shared<const HostInverse>(problem_, std::span<const double>{}, false)),
-      route_(engine::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
+      route_(solver::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
                                      setup.needs.damage, {})),
       frame_(damaged_, *route_, *this),
       outside_(problem_, region),

@@ -5,27 +5,27 @@
 // reads it.
 #pragma once
 
-#include "engine/condensed_fields.hpp"
-#include "engine/condensed_route.hpp"
-#include "engine/host_frame.hpp"
-#include "engine/region_part.hpp"
 #include "gpu/device_body.hpp"
+#include "solver/condensed_fields.hpp"
+#include "solver/condensed_route.hpp"
+#include "solver/host_frame.hpp"
+#include "solver/region_part.hpp"
 
 namespace sunder::gpu {
 
-class CondensedBody final : public DeviceBody, private engine::HostFields {
+class CondensedBody final : public DeviceBody, private solver::HostFields {
  public:
   CondensedBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
-                const engine::Region& region);
+                const solver::Region& region);
 
   const Problem& part() const override { return *part_.problem(); }
   Fields& fields() override { return fields_; }
   const Fields& fields() const override { return fields_; }
-  const engine::Region* region() const override { return &outside_.region(); }
+  const solver::Region* region() const override { return &outside_.region(); }
   std::span<const Index> on_device(std::span<const Index> elements) override;
   Index of_whole(std::uint32_t on_device) const override { return part_.elements()[on_device]; }
 
-  engine::FrameDevice& frame() override { return frame_; }
+  solver::FrameDevice& frame() override { return frame_; }
   void set_load(const Load& load) override { frame_.set_load(load); }
   void keep() override {}
   void restore() override;
@@ -51,15 +51,15 @@ class CondensedBody final : public DeviceBody, private engine::HostFields {
   void show();
 
   const Problem& problem_;
-  engine::DamagedBody damaged_;
-  engine::RegionPart part_;
+  solver::DamagedBody damaged_;
+  solver::RegionPart part_;
   Fields fields_;
   vulkan::Commands commands_;
   IntactInverse intact_;                        // its factor
-  std::unique_ptr<engine::Deferred> pristine_;  // of the intact body: its grips
-  std::unique_ptr<engine::InverseRoute> route_;
-  engine::HostFrame frame_;
-  mutable engine::CondensedFields outside_;  // computes what is read
+  std::unique_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
+  std::unique_ptr<solver::InverseRoute> route_;
+  solver::HostFrame frame_;
+  mutable solver::CondensedFields outside_;  // computes what is read
   // At the part's nodes: as published, in work; at the whole's, filled where it is read.
   std::vector<double> nodal_, next_nodal_;
   mutable std::vector<double> whole_nodal_;

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/frame_device.hpp"
 #include "gpu/inverse_route.hpp"
 #include "gpu/plan.hpp"
+#include "solver/frame_device.hpp"
 
 namespace sunder::gpu {
 
@@ -38,13 +38,13 @@ class DeviceBody {
   [[nodiscard]] virtual Fields& fields() = 0;
   [[nodiscard]] virtual const Fields& fields() const = 0;
   /// Null: the whole is there.
-  [[nodiscard]] virtual const engine::Region* region() const { return nullptr; }
+  [[nodiscard]] virtual const solver::Region* region() const { return nullptr; }
   /// Elements as the device numbers them, without those that are not there; until the next call.
   [[nodiscard]] virtual std::span<const Index> on_device(std::span<const Index> elements) = 0;
   [[nodiscard]] virtual Index of_whole(std::uint32_t on_device) const = 0;
 
   /// For the solver of a frame: the load it was given, a solution in work.
-  [[nodiscard]] virtual engine::FrameDevice& frame() = 0;
+  [[nodiscard]] virtual solver::FrameDevice& frame() = 0;
   virtual void set_load(const Load& load) = 0;
   /// The next solution is a new one: what is shown now comes back with restore().
   virtual void keep() = 0;

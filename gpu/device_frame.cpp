@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/assembly.hpp"
+#include "body/assembly.hpp"
 
 namespace sunder::gpu {
 namespace {
@@ -25,7 +25,7 @@ void DeviceFrame::set_load(const Load& load) {
   for (double f : load.forces) force_squared_ += f * f;
 }
 
-engine::Precision DeviceFrame::precision() const {
+solver::Precision DeviceFrame::precision() const {
   if (fp64_) return {kFp64Refined, kFp64Damaged, kFp64Estimated};
   const double tolerance = problem_.scene().solver.tolerance;
   return {std::min(kFp32Refined, tolerance / 2), tolerance, kFp32Refined};
@@ -36,7 +36,7 @@ int DeviceFrame::solve(double enough, bool residual) {
   return route_.solve(load_, enough, residual || reactions);
 }
 
-engine::Balance DeviceFrame::balance() const {
+solver::Balance DeviceFrame::balance() const {
   const shaders::Summary s = fields_.state();
   return {std::sqrt(s.residual_squared), force_squared_ + s.reaction_squared, s.largest_u,
           fields_.largest_stress(Field::displacement)};
@@ -62,7 +62,7 @@ void DeviceFrame::sum_residual() {
   fields_.write_residual(padded_);
 }
 
-engine::FrameDevice::Correction DeviceFrame::correct() {
+solver::FrameDevice::Correction DeviceFrame::correct() {
   if (by_elements_) sum_residual();
   Correction found;
   found.iterations = route_.correct();
@@ -70,18 +70,18 @@ engine::FrameDevice::Correction DeviceFrame::correct() {
   return found;
 }
 
-const engine::Deferred* DeviceFrame::deferred() const {
-  const engine::RenewedUpdate* update = route_.update();
+const solver::Deferred* DeviceFrame::deferred() const {
+  const solver::RenewedUpdate* update = route_.update();
   return update ? &update->deferred() : nullptr;
 }
 
 int DeviceFrame::bases() const {
-  const engine::RenewedUpdate* update = route_.update();
+  const solver::RenewedUpdate* update = route_.update();
   return update ? update->bases() : 1;
 }
 
-const engine::BaseCheck& DeviceFrame::base_check() const {
-  const engine::RenewedUpdate* update = route_.update();
+const solver::BaseCheck& DeviceFrame::base_check() const {
+  const solver::RenewedUpdate* update = route_.update();
   return update ? update->base_check() : FrameDevice::base_check();
 }
 

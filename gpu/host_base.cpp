@@ -9,7 +9,7 @@ HostBase::HostBase(std::shared_ptr<const HostInverse> inverse) : inverse_(std::m
   columns_.resize(inverse_->factor().cholesky().size(), 0);
 }
 
-void HostBase::push(std::span<const engine::Difference> vectors, fem::RowMajor& gram) {
+void HostBase::push(std::span<const solver::Difference> vectors, linear_algebra::RowMajor& gram) {
   pushes_.push_back(vectors_.size());
   const Index before = count(), added = static_cast<Index>(vectors.size());
   vectors_.insert(vectors_.end(), vectors.begin(), vectors.end());
@@ -32,7 +32,7 @@ void HostBase::pop() {
   projected_columns_ = std::min(projected_columns_, count());
 }
 
-const Eigen::VectorXd& HostBase::load(const engine::Forces& forces) {
+const Eigen::VectorXd& HostBase::load(const solver::Forces& forces) {
   if (load_.take(forces)) projected_columns_ = 0;
   if (projected_.size() < count()) projected_.conservativeResize(2 * count() + 256);
   for (; projected_columns_ < count(); ++projected_columns_) {

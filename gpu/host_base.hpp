@@ -6,20 +6,20 @@
 #include <memory>
 #include <vector>
 
-#include "engine/base.hpp"
-#include "engine/last_load.hpp"
 #include "gpu/host_inverse.hpp"
+#include "solver/base.hpp"
+#include "solver/last_load.hpp"
 
 namespace sunder::gpu {
 
-class HostBase final : public engine::Base {
+class HostBase final : public solver::Base {
  public:
   explicit HostBase(std::shared_ptr<const HostInverse> inverse);
 
   [[nodiscard]] Index size() const override { return static_cast<Index>(columns_.rows()); }
-  void push(std::span<const engine::Difference> vectors, fem::RowMajor& gram) override;
+  void push(std::span<const solver::Difference> vectors, linear_algebra::RowMajor& gram) override;
   void pop() override;
-  const Eigen::VectorXd& load(const engine::Forces& forces) override;
+  const Eigen::VectorXd& load(const solver::Forces& forces) override;
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
 
@@ -31,12 +31,12 @@ class HostBase final : public engine::Base {
  private:
   std::shared_ptr<const HostInverse> inverse_;
   Eigen::MatrixXd columns_;
-  std::vector<engine::Difference> vectors_;  // B
+  std::vector<solver::Difference> vectors_;  // B
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
-  engine::LastLoad load_;
+  solver::LastLoad load_;
   Eigen::VectorXd projected_, right_side_;
   Index projected_columns_ = 0;  // of projected_ that belong to the last load
-  fem::SolveWork work_;
+  linear_algebra::SolveWork work_;
 };
 
 }  // namespace sunder::gpu

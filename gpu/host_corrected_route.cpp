@@ -15,7 +15,7 @@ std::size_t HostCorrectedRoute::planned_bytes(const KernelFactory& kernels, cons
 }
 
 HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels,
-                                       const engine::DamagedBody& body, Fields& fields,
+                                       const solver::DamagedBody& body, Fields& fields,
                                        std::shared_ptr<const HostInverse> intact,
                                        std::size_t panel_bytes, bool damage)
     : problem_(body.problem()),

@@ -15,7 +15,7 @@ namespace sunder::gpu {
 class HostCorrectedRoute final : public DeviceRoute {
  public:
   /// The body must outlive it. `damage`: something can be destroyed.
-  HostCorrectedRoute(const KernelFactory& kernels, const engine::DamagedBody& body, Fields& fields,
+  HostCorrectedRoute(const KernelFactory& kernels, const solver::DamagedBody& body, Fields& fields,
                      std::shared_ptr<const HostInverse> intact, std::size_t panel_bytes,
                      bool damage);
 
@@ -29,7 +29,7 @@ class HostCorrectedRoute final : public DeviceRoute {
   void destroy(std::span<const Index> elements) override;
   bool rebase() override;
 
-  const engine::RenewedUpdate* update() const override { return update_.get(); }
+  const solver::RenewedUpdate* update() const override { return update_.get(); }
   std::string name() const override { return "inverse"; }
   std::string update_name() const override { return "deferred"; }
   std::vector<BufferPlan> buffers() const override;
@@ -42,7 +42,7 @@ class HostCorrectedRoute final : public DeviceRoute {
 
   const Problem& problem_;
   Fields& fields_;
-  std::unique_ptr<engine::RenewedUpdate> update_;
+  std::unique_ptr<solver::RenewedUpdate> update_;
   int bases_ = 1;            // of update_
   bool base_stale_ = false;  // base_ is that of an earlier one
   DenseInverse base_;

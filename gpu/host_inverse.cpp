@@ -16,7 +16,7 @@ constexpr Index kHostDense = 6000;
 }  // namespace
 
 HostInverse::HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense,
-                         const fem::FactorWork& work)
+                         const linear_algebra::FactorWork& work)
     : factor_(problem, scale, work) {
   if (keep_dense && problem.dof_count() <= kHostDense) dense_ = factor_.inverse();
 }
@@ -34,10 +34,10 @@ Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
   return factor_.inverse_columns(list);
 }
 
-void HostInverse::differences(std::span<const engine::Difference> vectors,
+void HostInverse::differences(std::span<const solver::Difference> vectors,
                               Eigen::Ref<Eigen::MatrixXd> to) const {
   std::vector<Index> dofs;
-  for (const engine::Difference& v : vectors) {
+  for (const solver::Difference& v : vectors) {
     dofs.push_back(v.dof);
     if (v.other != kNone) dofs.push_back(v.other);
   }

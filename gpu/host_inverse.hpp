@@ -6,29 +6,29 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "engine/difference_basis.hpp"
-#include "fem/factor.hpp"
 #include "gpu/passes/dense_inverse.hpp"
+#include "linear_algebra/factor.hpp"
+#include "solver/difference_basis.hpp"
 
 namespace sunder::gpu {
 
 class HostInverse {
  public:
-  /// Of a body's stiffness, elements scaled as in assemble_lower. Throws fem::Stopped when the work
-  /// was given up.
+  /// Of a body's stiffness, elements scaled as in assemble_lower. Throws linear_algebra::Stopped
+  /// when the work was given up.
   HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense,
-              const fem::FactorWork& work = {});
+              const linear_algebra::FactorWork& work = {});
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
   /// The same for differences of unit vectors, into `to`, shape (n x vectors).
-  void differences(std::span<const engine::Difference> vectors,
+  void differences(std::span<const solver::Difference> vectors,
                    Eigen::Ref<Eigen::MatrixXd> to) const;
   [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
   [[nodiscard]] bool is_dense() const { return dense_.size() > 0; }
-  [[nodiscard]] const fem::Factor& factor() const { return factor_; }
+  [[nodiscard]] const linear_algebra::Factor& factor() const { return factor_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  fem::Factor factor_;
+  linear_algebra::Factor factor_;
   Eigen::MatrixXd dense_;  // empty: too large
 };
 

@@ -9,37 +9,37 @@ namespace {
 constexpr Index kColumnsPerBase = 256;
 constexpr int kEventsUntilNext = 24;
 
-engine::Based based_on(const Problem& problem, std::shared_ptr<const HostInverse> inverse,
+solver::Based based_on(const Problem& problem, std::shared_ptr<const HostInverse> inverse,
                        bool damage) {
-  engine::Based based;
+  solver::Based based;
   based.factor = {inverse, &inverse->factor()};
-  based.deferred = std::make_unique<engine::Deferred>(
+  based.deferred = std::make_unique<solver::Deferred>(
       problem, std::make_unique<HostBase>(std::move(inverse)), damage, kColumnsPerBase);
   return based;
 }
 
 }  // namespace
 
-std::unique_ptr<engine::Deferred> intact_update(const Problem& problem,
+std::unique_ptr<solver::Deferred> intact_update(const Problem& problem,
                                                 std::shared_ptr<const HostInverse> intact) {
   return std::move(based_on(problem, std::move(intact), false).deferred);
 }
 
-std::unique_ptr<engine::RenewedUpdate> host_update(const engine::DamagedBody& body,
+std::unique_ptr<solver::RenewedUpdate> host_update(const solver::DamagedBody& body,
                                                    std::shared_ptr<const HostInverse> intact,
                                                    bool damage) {
   const bool dense = intact->is_dense();
-  engine::Based first = based_on(body.problem(), std::move(intact), damage);
-  if (!damage) return std::make_unique<engine::RenewedUpdate>(body, std::move(first));
-  engine::Renewal renewal;
+  solver::Based first = based_on(body.problem(), std::move(intact), damage);
+  if (!damage) return std::make_unique<solver::RenewedUpdate>(body, std::move(first));
+  solver::Renewal renewal;
   if (dense) {
     renewal.columns = body.problem().gripped_dofs().size() + kColumnsPerBase;
     renewal.first_columns = renewal.columns;
     renewal.events = kEventsUntilNext;
   }
-  return std::make_unique<engine::RenewedUpdate>(
+  return std::make_unique<solver::RenewedUpdate>(
       body, std::move(first), renewal,
-      [dense](const engine::DamagedBody& of, const fem::FactorWork& work) {
+      [dense](const solver::DamagedBody& of, const linear_algebra::FactorWork& work) {
         return based_on(of.problem(),
                         std::make_shared<const HostInverse>(of.problem(), of.scale(), dense, work),
                         true);

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "engine/renewed_update.hpp"
 #include "gpu/host_base.hpp"
+#include "solver/renewed_update.hpp"
 
 namespace sunder::gpu {
 
@@ -15,15 +15,15 @@ namespace sunder::gpu {
 inline constexpr std::size_t kExactLoads = 64;
 
 /// Over the intact body's inverse, without damage.
-[[nodiscard]] std::unique_ptr<engine::Deferred> intact_update(
+[[nodiscard]] std::unique_ptr<solver::Deferred> intact_update(
     const Problem& problem, std::shared_ptr<const HostInverse> intact);
 
 /// The same for a body that can be damaged; a dense inverse is made anew beside the frames.
-[[nodiscard]] std::unique_ptr<engine::RenewedUpdate> host_update(
-    const engine::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage);
+[[nodiscard]] std::unique_ptr<solver::RenewedUpdate> host_update(
+    const solver::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage);
 
 /// The base that such an update has at present.
-[[nodiscard]] inline const HostBase& base_of(const engine::RenewedUpdate& update) {
+[[nodiscard]] inline const HostBase& base_of(const solver::RenewedUpdate& update) {
   return static_cast<const HostBase&>(update.deferred().base());
 }
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "engine/update_vectors.hpp"
-#include "fem/assembly.hpp"
-#include "fem/event_factor.hpp"
+#include "body/assembly.hpp"
+#include "body/event_factor.hpp"
 #include "gpu/passes/block_inversion.hpp"
+#include "solver/update_vectors.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -33,7 +33,7 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
                   base.bytes + planned_inversion_bytes(kernels, n, rows, options.panel_bytes));
 }
 
-InverseRoute::InverseRoute(const KernelFactory& kernels, const engine::DamagedBody& body,
+InverseRoute::InverseRoute(const KernelFactory& kernels, const solver::DamagedBody& body,
                            Fields& fields, std::shared_ptr<const HostInverse> intact,
                            const InverseOptions& options, bool damage)
     : kernels_(kernels),
@@ -333,7 +333,7 @@ void InverseRoute::follow_update() {
 /// X += Z Z^T with Z = X W L^-T, L L^T = I - W^T X W, all as it stands on the device. False: the
 /// precision does not carry it, and nothing has changed.
 bool InverseRoute::update_eager(std::span<const Index> elements) {
-  const fem::EventFactor event = engine::compressed(fem::event_factor(problem_, elements));
+  const fem::EventFactor event = solver::compressed(fem::event_factor(problem_, elements));
   if (event.dofs.empty()) return true;
   const Eigen::MatrixXd& w = event.w;
   Eigen::MatrixXd c = -w.transpose() * base_.pick(event.dofs, event.dofs) * w;

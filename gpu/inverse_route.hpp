@@ -21,7 +21,7 @@ struct InverseOptions {
 class InverseRoute final : public DeviceRoute {
  public:
   /// The body must outlive it. `damage`: something can be destroyed.
-  InverseRoute(const KernelFactory& kernels, const engine::DamagedBody& body, Fields& fields,
+  InverseRoute(const KernelFactory& kernels, const solver::DamagedBody& body, Fields& fields,
                std::shared_ptr<const HostInverse> intact, const InverseOptions& options,
                bool damage);
 
@@ -36,7 +36,7 @@ class InverseRoute final : public DeviceRoute {
   void destroy(std::span<const Index> elements) override;
   bool rebase() override;
 
-  const engine::RenewedUpdate* update() const override { return update_.get(); }
+  const solver::RenewedUpdate* update() const override { return update_.get(); }
   const Eigen::MatrixXd* grip_factor() const override {
     return eager_ ? &grips_.matrixLLT() : DeviceRoute::grip_factor();
   }
@@ -65,12 +65,12 @@ class InverseRoute final : public DeviceRoute {
 
   const KernelFactory& kernels_;
   const Problem& problem_;
-  const engine::DamagedBody& body_;
+  const solver::DamagedBody& body_;
   Fields& fields_;
   std::shared_ptr<const HostInverse> intact_;
   InverseOptions options_;
   bool eager_, damage_;
-  std::unique_ptr<engine::RenewedUpdate> update_;  // empty while eager
+  std::unique_ptr<solver::RenewedUpdate> update_;  // empty while eager
   int bases_ = 0;                                  // of update_, whose columns are in exact_
   bool base_stale_ = false;                        // base_ is that of an earlier one
   std::vector<double> base_scale_;                 // a_e of the body that base_ is to be made of

@@ -51,7 +51,7 @@ Extremes extremes(const Problem& problem) {
 }
 
 /// The region of route condensed, where that was asked for or pays by itself.
-std::optional<engine::Region> choose_region(const Problem& problem, const Needs& needs,
+std::optional<solver::Region> choose_region(const Problem& problem, const Needs& needs,
                                             bool displayed) {
   const SolverOptions& solver = problem.scene().solver;
   const bool asked = solver.route == Route::condensed;
@@ -63,14 +63,14 @@ std::optional<engine::Region> choose_region(const Problem& problem, const Needs&
   const bool possible =
       solver.route == Route::automatic && solver.update != Update::eager && !displayed;
   if (!asked && !(possible && needs.damage)) return std::nullopt;
-  engine::Region region = engine::region_of(problem, needs);
+  solver::Region region = solver::region_of(problem, needs);
   if (asked) {
     if (!region.elements.empty()) return region;
     throw DeviceError(
         "route condensed needs elements that can break or be destroyed, of which this scene has "
         "none; use route inverse or cg");
   }
-  const bool pays = region.tears && engine::kRegionShare * region.dofs.size() <=
+  const bool pays = region.tears && solver::kRegionShare * region.dofs.size() <=
                                         static_cast<std::size_t>(problem.dof_count());
   if (!pays || region.dofs.size() > static_cast<std::size_t>(kDenseLimit)) return std::nullopt;
   return region;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/region.hpp"
 #include "gpu/vulkan/physical_device.hpp"
+#include "solver/region.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::gpu {
@@ -16,7 +16,7 @@ struct Plan {
   bool fp64 = false;                     ///< storage of the inverse and of element stress
   bool eager = false;                    ///< the update
   bool cg = false;                       ///< the route: conjugate gradients instead of the inverse
-  std::optional<engine::Region> region;  ///< route condensed: what alone is on the device
+  std::optional<solver::Region> region;  ///< route condensed: what alone is on the device
   bool invert_on_device = false;         ///< the inverse is computed there
   std::string why;
   std::vector<std::string> warnings;

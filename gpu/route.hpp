@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/renewed_update.hpp"
 #include "gpu/passes/fields.hpp"
 #include "gpu/vulkan/commands.hpp"
+#include "solver/renewed_update.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::gpu {
@@ -34,7 +34,7 @@ class DeviceRoute {
   virtual bool rebase() { return false; }
 
   /// The deferred update over the present base; null: this route has none.
-  [[nodiscard]] virtual const engine::RenewedUpdate* update() const { return nullptr; }
+  [[nodiscard]] virtual const solver::RenewedUpdate* update() const { return nullptr; }
   /// L with L L^T = (A^-1)_GG of the gripped unknowns, a lower triangle; null: the route has none.
   [[nodiscard]] virtual const Eigen::MatrixXd* grip_factor() const {
     return update() ? &update()->deferred().grip_factor() : nullptr;

@@ -7,11 +7,11 @@
 #include <iomanip>
 #include <sstream>
 
-#include "engine/frame_solver.hpp"
-#include "engine/instrument_block.hpp"
 #include "gpu/choose_device.hpp"
 #include "gpu/condensed_body.hpp"
 #include "gpu/whole_body.hpp"
+#include "solver/frame_solver.hpp"
+#include "solver/instrument_block.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -153,7 +153,7 @@ class VulkanBackend final : public Backend {
   }
 
   void leave_out_the_rest() {
-    for (std::string& what : engine::left_out_of(problem(), *body_->region())) {
+    for (std::string& what : solver::left_out_of(problem(), *body_->region())) {
       leave_out(std::move(what));
     }
   }
@@ -265,12 +265,12 @@ class VulkanBackend final : public Backend {
   KernelFactory kernels_;
   InverseOptions inverse_;  // of routes inverse and condensed
   std::unique_ptr<DeviceBody> body_;
-  std::optional<engine::FrameSolver> solver_;
+  std::optional<solver::FrameSolver> solver_;
   double waited_ms_ = 0;  // for new bases, as reported so far
   std::unique_ptr<Display> display_;
   Load load_;
   bool renew_ = false;  // the summary was made before the last pieces were cut off
-  std::optional<engine::InstrumentBlock> instruments_;  // once asked for
+  std::optional<solver::InstrumentBlock> instruments_;  // once asked for
   std::vector<double> reactions_;
   bool solved_ = false;            // the load and the damage as they are
   double handed_out_ = 0;          // of the last solution whose error was estimated

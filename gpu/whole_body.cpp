@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/whole_body.hpp"
 
-#include "fem/assembly.hpp"
+#include "body/assembly.hpp"
 #include "gpu/cg_route.hpp"
 #include "gpu/host_corrected_route.hpp"
 
@@ -96,7 +96,7 @@ std::vector<BufferPlan> WholeBody::buffers() const {
 }
 
 double WholeBody::waited_ms() const {
-  const engine::RenewedUpdate* update = route_->update();
+  const solver::RenewedUpdate* update = route_->update();
   return update ? update->waited_ms() : 0;
 }
 

@@ -21,7 +21,7 @@ class WholeBody final : public DeviceBody {
   std::span<const Index> on_device(std::span<const Index> elements) override { return elements; }
   Index of_whole(std::uint32_t on_device) const override { return static_cast<Index>(on_device); }
 
-  engine::FrameDevice& frame() override { return *frame_; }
+  solver::FrameDevice& frame() override { return *frame_; }
   void set_load(const Load& load) override;
   void keep() override { fields_.keep_next(); }
   void restore() override { fields_.restore(); }
@@ -49,9 +49,9 @@ class WholeBody final : public DeviceBody {
   void make_route(const DeviceSetup& setup, IntactInverse intact);
 
   const Problem& problem_;
-  engine::DamagedBody damaged_;
+  solver::DamagedBody damaged_;
   Fields fields_;
-  std::unique_ptr<engine::Deferred> pristine_;  // of the intact body: its grips
+  std::unique_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
   std::unique_ptr<DeviceRoute> route_;
   std::optional<DeviceFrame> frame_;
   std::vector<Index> loaded_;  // unknowns of the last load

@@ -150,7 +150,7 @@ struct Deformation {
 
 // Largest strain, rotation and inversion of a live element as StressPartial has them. The rotation's
 // axis is taken to be the curl's: true to second order in strain, exact in a plane. With it
-// tan(theta) = |curl|/2 / (1 + (tr E - n E n)/2) holds (core/fem/deformation.cpp).
+// tan(theta) = |curl|/2 / (1 + (tr E - n E n)/2) holds (core/body/deformation.cpp).
 uvec3 deformation_of(Deformation d, Principal e) {
   const vec3 normal = vec3(d.strain), twice = vec3(d.twice_shear), w = d.curl;
   const float largest = float(e.largest);

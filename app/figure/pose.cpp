@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pieces.hpp"
+#include "sunder/loose_parts.hpp"
 
 namespace sunder::app {
 namespace {

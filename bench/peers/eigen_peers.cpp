@@ -16,7 +16,7 @@ class Assembled : public Peer {
   }
   void prepare(std::span<const Index> elements) override {
     destroyed_.insert(destroyed_.end(), elements.begin(), elements.end());
-    const fem::SparseMatrix k = damaged_stiffness(*board_.problem, destroyed_);
+    const linear_algebra::SparseMatrix k = damaged_stiffness(*board_.problem, destroyed_);
     const auto entries = static_cast<std::size_t>(k.nonZeros());
     peer_->set_matrix({static_cast<int>(k.rows()),
                        {k.outerIndexPtr(), static_cast<std::size_t>(k.cols()) + 1},

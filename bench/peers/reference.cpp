@@ -5,8 +5,8 @@
 
 #include "bench/cholmod_data.hpp"
 #include "bench/peers/peer.hpp"
-#include "fem/element.hpp"
-#include "pieces.hpp"
+#include "body/element.hpp"
+#include "body/pieces.hpp"
 #include "support/accuracy.hpp"
 
 namespace sunder::bench {

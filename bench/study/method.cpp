@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "bench/has_vulkan.hpp"
+#include "body/pieces.hpp"
 #include "cpu_reference/plain/plain.hpp"
-#include "pieces.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"

@@ -15,7 +15,7 @@
 
 #include "app/input/scene_toml.hpp"
 #include "bench/study/method.hpp"
-#include "fem/element.hpp"
+#include "body/element.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
 #include "sunder/simulation.hpp"

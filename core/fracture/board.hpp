@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "fem/node_elements.hpp"
+#include "body/node_elements.hpp"
 #include "fracture/point_grid.hpp"
 #include "sunder/board_plane.hpp"
 #include "sunder/mesh.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "fem/element.hpp"
+#include "body/element.hpp"
 
 namespace sunder::fracture {
 

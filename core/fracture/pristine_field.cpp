@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fracture/pristine_field.hpp"
 
-#include "fem/element.hpp"
+#include "body/element.hpp"
 
 namespace sunder::fracture {
 

@@ -27,7 +27,7 @@ Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& pivot, Index first) {
 
 /// The largest diagonal entry, which the scaled matrix has as 1: the shift by the unit matrix below
 /// then costs no digits.
-double largest_diagonal(const fem::SparseMatrix& lower) {
+double largest_diagonal(const linear_algebra::SparseMatrix& lower) {
   double largest = 0;
   for (Index d = 0; d < lower.rows(); ++d) largest = std::max(largest, lower.coeff(d, d));
   return largest;
@@ -48,17 +48,17 @@ std::size_t planned_inversion_bytes(const KernelFactory& kernels, Index n, std::
 // B -= Y Y^T with Y = B(:, k) L^-T leaves A - A_k D^-1 A_k^T outside the block, A_k D^-1 in its
 // columns (and rows), and I - D^-1 where they meet: one step of Gauss-Jordan as a single low-rank
 // update, B = I - A^-1 when all blocks are done.
-void invert_on_device(const KernelFactory& kernels, const fem::SparseMatrix& lower,
+void invert_on_device(const KernelFactory& kernels, const linear_algebra::SparseMatrix& lower,
                       std::uint32_t rows, std::size_t panel_bytes, DenseInverse& inverse) {
   const Index n = static_cast<Index>(lower.rows());
   const KernelFactory exact = kernels.in_fp64();
   DenseInverse swept(exact, n, rows, panel_bytes);
   const double scale = 1 / largest_diagonal(lower);
-  const fem::SparseMatrix full = lower.selfadjointView<Eigen::Lower>();
+  const linear_algebra::SparseMatrix full = lower.selfadjointView<Eigen::Lower>();
   swept.upload([&](Index first, Index count) {
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(n, count);
     for (Index c = 0; c < count; ++c) {
-      for (fem::SparseMatrix::InnerIterator it(full, first + c); it; ++it) {
+      for (linear_algebra::SparseMatrix::InnerIterator it(full, first + c); it; ++it) {
         block(it.row(), c) = scale * it.value();
       }
       block(first + c, c) -= 1;

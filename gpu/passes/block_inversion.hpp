@@ -3,15 +3,15 @@
 // loses 1 to 33 % of u; stored in fp32, 1e-7 to 6e-5).
 #pragma once
 
-#include "fem/factor.hpp"
 #include "gpu/passes/dense_inverse.hpp"
+#include "linear_algebra/factor.hpp"
 
 namespace sunder::gpu {
 
 /// inverse = A^-1 for the symmetric positive definite A whose lower triangle is given. Symmetric
 /// block Gauss-Jordan: n / 60 updates of rank 60, n^3 fp64 multiply-adds, 8 n^2 bytes while it
 /// runs. Throws NumericalError when A is not positive definite in fp64.
-void invert_on_device(const KernelFactory& kernels, const fem::SparseMatrix& lower,
+void invert_on_device(const KernelFactory& kernels, const linear_algebra::SparseMatrix& lower,
                       std::uint32_t rows, std::size_t panel_bytes, DenseInverse& inverse);
 
 /// Device bytes of that beside `inverse`, before they exist.

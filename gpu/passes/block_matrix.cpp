@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "fem/element.hpp"
+#include "body/element.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "fem/element.hpp"
+#include "body/element.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 

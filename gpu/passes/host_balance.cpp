@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/assembly.hpp"
+#include "body/assembly.hpp"
 
 namespace sunder::gpu {
 

@@ -7,8 +7,8 @@
 #include <bit>
 #include <numeric>
 
-#include "fem/element.hpp"
-#include "fem/supports.hpp"
+#include "body/element.hpp"
+#include "body/supports.hpp"
 
 namespace sunder::gpu {
 namespace {

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <numeric>
 
-#include "fem/assembly.hpp"
-#include "fem/element.hpp"
+#include "body/assembly.hpp"
+#include "body/element.hpp"
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"

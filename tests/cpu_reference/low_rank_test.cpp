@@ -3,7 +3,7 @@
 // scattered damage, along a crack, one by one and in batches, by both routes.
 #include <gtest/gtest.h>
 
-#include "pieces.hpp"
+#include "body/pieces.hpp"
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"

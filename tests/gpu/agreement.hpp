@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "body/pieces.hpp"
 #include "gpu_body.hpp"
-#include "pieces.hpp"
 
 namespace sunder::test {
 

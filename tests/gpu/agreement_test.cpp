@@ -8,7 +8,7 @@
 #include <set>
 
 #include "agreement.hpp"
-#include "fem/supports.hpp"
+#include "body/supports.hpp"
 
 namespace sunder::test {
 namespace {

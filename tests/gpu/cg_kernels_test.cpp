@@ -9,7 +9,7 @@
 #include <numeric>
 #include <random>
 
-#include "fem/assembly.hpp"
+#include "body/assembly.hpp"
 #include "gpu/cg_route.hpp"
 #include "gpu/passes/block_matrix.hpp"
 #include "gpu/passes/fields.hpp"
@@ -142,7 +142,7 @@ TEST_P(CgKernels, MultiplyByTheDamagedStiffness) {
       }
     }
     const auto [q, pq] = multiply(p);
-    const fem::SparseMatrix k = fem::assemble_lower(problem, scale);
+    const linear_algebra::SparseMatrix k = fem::assemble_lower(problem, scale);
     const Eigen::MatrixXd full = Eigen::MatrixXd(k).selfadjointView<Eigen::Lower>();
     const Eigen::VectorXd expected = full * x;
     // A row sums three products for each of some 30 neighbours, each entry 24 elements or fewer.

@@ -3,9 +3,9 @@
 // larger board can tear, and the device has the strip alone.
 #include <algorithm>
 
+#include "body/pieces.hpp"
 #include "gpu_body.hpp"
 #include "organ.hpp"
-#include "pieces.hpp"
 #include "sunder/error.hpp"
 #include "support/yardstick.hpp"
 

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "agreement.hpp"
-#include "fem/element.hpp"
+#include "body/element.hpp"
 #include "kernels_fixture.hpp"
 #include "support/table1_board.hpp"
 #include "support/yardstick.hpp"

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "engine/instrument_block.hpp"
 #include "failover_backend.hpp"
 #include "gpu_body.hpp"
+#include "solver/instrument_block.hpp"
 #include "support/haptic_reader.hpp"
 
 namespace sunder::test {

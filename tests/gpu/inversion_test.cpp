@@ -2,10 +2,10 @@
 // The inverse computed on the device, against the CPU's.
 #include <numeric>
 
-#include "fem/assembly.hpp"
-#include "fem/factor.hpp"
+#include "body/assembly.hpp"
 #include "gpu/passes/block_inversion.hpp"
 #include "gpu_body.hpp"
+#include "linear_algebra/factor.hpp"
 #include "sunder/error.hpp"
 #include "support/table1_board.hpp"
 
@@ -30,7 +30,7 @@ struct OnDevice {
   }
   OnDevice(const OnDevice&) = delete;
   OnDevice& operator=(const OnDevice&) = delete;
-  Eigen::MatrixXd invert(const fem::SparseMatrix& lower, std::size_t panel_bytes) {
+  Eigen::MatrixXd invert(const linear_algebra::SparseMatrix& lower, std::size_t panel_bytes) {
     const auto n = static_cast<Index>(lower.rows());
     const auto rows = gpu::round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
     gpu::DenseInverse inverse(*factory, n, rows, panel_bytes);
@@ -45,7 +45,7 @@ struct OnDevice {
 };
 
 /// Some 300 unknowns, no multiple of 60 or 64, with a stiff frame.
-fem::SparseMatrix small_stiffness() {
+linear_algebra::SparseMatrix small_stiffness() {
   Scene scene;
   scene.mesh = structured_board({8, 5, 1});
   scene.materials["board"] = {5, 0.45, 2.0};
@@ -55,9 +55,9 @@ fem::SparseMatrix small_stiffness() {
 }
 
 TEST_F(Inversion, AgreesWithTheFactorsInverse) {
-  const fem::SparseMatrix lower = small_stiffness();
+  const linear_algebra::SparseMatrix lower = small_stiffness();
   ASSERT_NE(lower.rows() % 60, 0);
-  const Eigen::MatrixXd reference = fem::Factor(lower).inverse();
+  const Eigen::MatrixXd reference = linear_algebra::Factor(lower).inverse();
   for (const gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
     for (const bool fp64 : {false, true}) {
       OnDevice device(variant, fp64);
@@ -72,7 +72,7 @@ TEST_F(Inversion, AgreesWithTheFactorsInverse) {
 }
 
 TEST_F(Inversion, AMatrixThatIsNotPositiveDefiniteIsRefused) {
-  fem::SparseMatrix lower = small_stiffness();
+  linear_algebra::SparseMatrix lower = small_stiffness();
   lower.coeffRef(100, 100) = -1;
   OnDevice device(gpu::Variant::lvp, true);
   EXPECT_THROW(static_cast<void>(device.invert(lower, 0)), NumericalError);

@@ -11,8 +11,8 @@
 #include <numeric>
 #include <random>
 
-#include "fem/deformation.hpp"
-#include "fem/element.hpp"
+#include "body/deformation.hpp"
+#include "body/element.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "gpu/passes/exact_columns.hpp"
 #include "gpu/passes/fields.hpp"

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "app/input/scene_toml.hpp"
+#include "body/pieces.hpp"
 #include "fracture_lists.hpp"
 #include "gpu_body.hpp"
-#include "pieces.hpp"
 #include "sunder/simulation.hpp"
 #include "sunder/stress_measures.hpp"
 

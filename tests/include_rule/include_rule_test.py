@@ -58,15 +58,15 @@ class IncludeRule(unittest.TestCase):
         wrong = {"gpu/intruder.cpp": "cpu_reference/routes.hpp",
                  "cpu_reference/intruder.cpp": "gpu/plan.hpp",
                  "cpu_reference/routes_intruder.cpp": "cpu_reference/plain/plain.hpp",
-                 "app/input/intruder.cpp": "fem/element.hpp",
-                 "app/report/intruder.cpp": "engine/deferred.hpp"}
+                 "app/input/intruder.cpp": "body/element.hpp",
+                 "app/report/intruder.cpp": "solver/deferred.hpp"}
         said = self.refuse(wrong)
         for file in wrong:
             self.assertIn(f"{file} includes ", said)
 
     def test_the_yardstick_takes_public_headers_alone(self):
-        wrong = {"cpu_reference/plain/a.cpp": "fem/element.hpp",
-                 "cpu_reference/plain/b.cpp": "engine/deferred.hpp",
+        wrong = {"cpu_reference/plain/a.cpp": "body/element.hpp",
+                 "cpu_reference/plain/b.cpp": "solver/deferred.hpp",
                  "cpu_reference/plain/c.cpp": "material/linear.hpp",
                  "cpu_reference/plain/d.cpp": "cpu_reference/routes.hpp",
                  "cpu_reference/plain/e.cpp": "loads.hpp"}
@@ -90,8 +90,8 @@ class IncludeRule(unittest.TestCase):
                    if read.search(file.read_text("utf-8"))}
         # The law; what checks it and scales springs by it; the yardstick, which judges the law; and
         # the mean of several laws at a tip, a material by name alone.
-        self.assertEqual(readers, {"core/material/linear.cpp", "core/problem.cpp",
-                                   "core/problem_supports.cpp", "cpu_reference/plain/element.cpp",
+        self.assertEqual(readers, {"core/material/linear.cpp", "core/body/problem.cpp",
+                                   "core/body/problem_supports.cpp", "cpu_reference/plain/element.cpp",
                                    "core/fracture/field_sif/auxiliary_field.cpp",
                                    "core/fracture/field_sif/field_intensity.cpp"})
 

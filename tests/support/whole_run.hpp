@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "body/pieces.hpp"
 #include "cpu_reference/plain/plain.hpp"
-#include "pieces.hpp"
 #include "sunder/simulation.hpp"
 #include "support/accuracy.hpp"
 #include "support/notch_board.hpp"

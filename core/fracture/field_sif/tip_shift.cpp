@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "fem/factor.hpp"
-#include "fem/nested_dissection.hpp"
 #include "fracture/crack_path.hpp"
+#include "linear_algebra/factor.hpp"
+#include "linear_algebra/nested_dissection.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -19,8 +19,8 @@ std::vector<double> preset_scale(const Problem& problem) {
 }
 
 /// Stiffness in which grips hold their nodes.
-fem::SparseMatrix held_stiffness(const Problem& problem) {
-  fem::SparseMatrix lower = fem::assemble_lower(problem, preset_scale(problem));
+linear_algebra::SparseMatrix held_stiffness(const Problem& problem) {
+  linear_algebra::SparseMatrix lower = fem::assemble_lower(problem, preset_scale(problem));
   std::vector<bool> held(static_cast<std::size_t>(problem.dof_count()), false);
   for (Index dof : problem.gripped_dofs()) held[dof] = true;
   lower.prune([&](Index row, Index column, double) {
@@ -57,7 +57,7 @@ Eigen::MatrixXd intensity_per_shift(const Problem& problem, const Board& board, 
                                     double reach, const MeasureTip& measure) {
   const auto tips = static_cast<Index>(crack.tips.size());
   Eigen::MatrixXd factors(kModes * tips, kModes * tips), shifts(kModes * tips, kModes * tips);
-  const fem::Factor factor(held_stiffness(problem));
+  const linear_algebra::Factor factor(held_stiffness(problem));
   std::vector<double> displacement(3 * problem.mesh().nodes.size());
   std::vector<Index> near;
   for (Index source = 0; source < tips; ++source) {

@@ -85,7 +85,7 @@ std::string key_table() {
 }
 
 constexpr std::string_view kBegin =
-    "<!-- keys: written by scene_keys from core/scene_keys.cpp -->\n";
+    "<!-- keys: written by scene_keys from core/scene/scene_keys.cpp -->\n";
 constexpr std::string_view kEnd = "<!-- end of keys -->\n";
 
 }  // namespace
@@ -116,7 +116,7 @@ std::string scene_dictionary() {
   }
   std::string text =
       "# SPDX-License-Identifier: Apache-2.0\n"
-      "# Written by scene_keys from core/scene_keys.cpp.\n";
+      "# Written by scene_keys from core/scene/scene_keys.cpp.\n";
   for (const std::string& entry : entries) text += '"' + entry + "\"\n";
   // What breaks readers of numbers and of TOML.
   return text +

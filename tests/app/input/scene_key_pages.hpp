@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written from the table of scene keys (core/scene_keys.cpp) and committed.
+// What is written from the table of scene keys (core/scene/scene_keys.cpp) and committed.
 #pragma once
 
 #include <string>

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "fem/assembly.hpp"
-#include "fem/factor.hpp"
+#include "body/assembly.hpp"
 #include "fracture/band.hpp"
 #include "fracture/crack_path.hpp"
+#include "linear_algebra/factor.hpp"
 
 namespace sunder::test {
 namespace {
@@ -128,7 +128,7 @@ void CrackedBody::load_uniform(double s_xx, double s_yy, double s_xy) {
 }
 
 void CrackedBody::solve() {
-  const fem::Factor factor(fem::assemble_lower(*problem_, scale()));
+  const linear_algebra::Factor factor(fem::assemble_lower(*problem_, scale()));
   Eigen::VectorXd f(problem_->dof_count());
   fem::gather(*problem_, force_, {f.data(), static_cast<std::size_t>(f.size())});
   const Eigen::VectorXd u = factor.solve(f);

@@ -3,7 +3,7 @@
 #include "fracture/present_field.hpp"
 
 #include "board_fixture.hpp"
-#include "fem/element.hpp"
+#include "body/element.hpp"
 #include "fracture/pristine_field.hpp"
 
 namespace sunder::fracture {

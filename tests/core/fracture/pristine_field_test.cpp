@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "board_fixture.hpp"
-#include "fem/element.hpp"
+#include "body/element.hpp"
 
 namespace sunder::fracture {
 namespace {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "body/assembly.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "body/element.hpp"
+#include "sunder/stress_measures.hpp"
+
+namespace sunder::fem {
+namespace {
+
+void add_element(const Problem& problem, Index e, const ElementMatrix& k,
+                 std::vector<Eigen::Triplet<double, Index>>& triplets) {
+  std::array<Index, 12> dofs;
+  for (int i = 0; i < 12; ++i) dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], i % 3);
+  for (int j = 0; j < 12; ++j) {
+    for (int i = 0; i < 12; ++i) {
+      if (dofs[j] == kNone || dofs[i] < dofs[j]) continue;  // kNone < every dof
+      triplets.emplace_back(dofs[i], dofs[j], k(i, j));
+    }
+  }
+}
+
+}  // namespace
+
+linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale) {
+  std::vector<Eigen::Triplet<double, Index>> triplets;
+  triplets.reserve(static_cast<std::size_t>(problem.tet_count()) * 78);
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    ElementMatrix k = element_stiffness(problem, e);
+    if (!scale.empty()) k *= scale[e];
+    add_element(problem, e, k, triplets);
+  }
+  for (Index dof : problem.anchored_dofs()) {
+    triplets.emplace_back(dof, dof, problem.anchor_stiffness());
+  }
+  linear_algebra::SparseMatrix matrix(problem.dof_count(), problem.dof_count());
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  return matrix;
+}
+
+void apply_stiffness(const Problem& problem, std::span<const double> scale,
+                     std::span<const double> u, std::span<double> y) {
+  std::fill(y.begin(), y.end(), 0.0);
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const TetShape& shape = problem.shape(e);
+    const Voigt s = stress(problem, e, u);
+    const double weight = shape.volume * (scale.empty() ? 1.0 : scale[e]);
+    const Eigen::Matrix<double, 3, 4> force = weight * (tensor(s) * shape.gradient);
+    for (int a = 0; a < 4; ++a) {
+      const Index n = problem.mesh().tets[e][a];
+      for (int axis = 0; axis < 3; ++axis) y[3 * n + axis] += force(axis, a);
+    }
+  }
+}
+
+void scatter(const Problem& problem, std::span<const double> unknowns, std::span<double> nodal) {
+  const auto dofs = problem.dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    nodal[i] = dofs[i] == kNone ? 0.0 : unknowns[dofs[i]];
+  }
+}
+
+void gather(const Problem& problem, std::span<const double> nodal, std::span<double> unknowns) {
+  const auto dofs = problem.dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    if (dofs[i] != kNone) unknowns[dofs[i]] = nodal[i];
+  }
+}
+
+}  // namespace sunder::fem

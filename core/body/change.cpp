@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "body/change.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "sunder/error.hpp"
+
+namespace sunder::solver {
+namespace {
+
+bool same(const SmallStrain& a, const SmallStrain& b) {
+  return a.young == b.young && a.poisson == b.poisson && a.lambda == b.lambda && a.mu == b.mu;
+}
+
+bool same(const TetShape& a, const TetShape& b) {
+  return a.volume == b.volume && a.gradient == b.gradient;
+}
+
+bool same(const Form& a, const Form& b) {
+  return a.corners == b.corners && a.share == b.share && same(a.shape, b.shape) &&
+         same(a.law, b.law);
+}
+
+/// The forms that a change gives to elements.
+std::map<Index, Form> outcome(const Forms& forms, const Change& change) {
+  std::map<Index, Form> forms_after;
+  for (Index e : change.leave) {
+    Form form = forms.of(e);
+    form.share = forms.problem().scene().fracture.alpha;
+    forms_after[e] = form;
+  }
+  for (const Coming& c : change.come) forms_after[c.element] = c.form;
+  return forms_after;
+}
+
+[[noreturn]] void refuse(const std::string& what, Index id, const std::string& why) {
+  throw UsageError(what + " " + std::to_string(id) + " " + why);
+}
+
+void check_form(const Coming& coming, Index nodes) {
+  const Form& form = coming.form;
+  for (Index n : form.corners) {
+    if (n < 0 || n >= nodes) {
+      refuse("element", coming.element,
+             "cannot come: there is no node " + std::to_string(n) + " for a corner of it");
+    }
+  }
+  if (!(form.share >= 0 && std::isfinite(form.share))) {
+    refuse("element", coming.element, "cannot come: its share of stiffness must be 0 or more");
+  }
+  if (!(form.shape.volume > 0)) {
+    refuse("element", coming.element, "cannot come: its volume must be positive");
+  }
+}
+
+}  // namespace
+
+void Damage::reserve(std::size_t elements, std::size_t events) {
+  leave_.reserve(elements);
+  ends_.reserve(events);
+}
+
+void Damage::add(std::span<const Index> leave) {
+  leave_.insert(leave_.end(), leave.begin(), leave.end());
+  ends_.push_back({leave_.size(), come_.size(), nodes_.size()});
+}
+
+void Damage::add(const Change& change) {
+  come_.insert(come_.end(), change.come.begin(), change.come.end());
+  nodes_.insert(nodes_.end(), change.nodes.begin(), change.nodes.end());
+  add(change.leave);
+}
+
+void Damage::take_back() {
+  ends_.pop_back();
+  const End end = ends_.empty() ? End{} : ends_.back();
+  leave_.resize(end.leave);
+  come_.resize(end.come);
+  nodes_.resize(end.nodes);
+}
+
+Damage::Event Damage::operator[](std::size_t i) const {
+  const End begin = i == 0 ? End{} : ends_[i - 1], end = ends_[i];
+  const auto part = [](const auto& list, std::size_t from, std::size_t to) {
+    return std::span(list).subspan(from, to - from);
+  };
+  return {part(leave_, begin.leave, end.leave), part(come_, begin.come, end.come),
+          part(nodes_, begin.nodes, end.nodes)};
+}
+
+Forms::Forms(const Problem& problem)
+    : problem_(problem), left_(static_cast<std::size_t>(problem.tet_count()), 0) {}
+
+void Forms::clear() {
+  std::fill(left_.begin(), left_.end(), std::uint8_t{0});
+  came_.clear();
+  nodes_.clear();
+}
+
+void Forms::add(std::span<const NewNode> nodes) {
+  nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
+}
+
+void Forms::follow(const Damage::Event& event) {
+  for (Index e : event.leave) {
+    const auto form = came_.find(e);
+    if (form == came_.end()) {
+      left_[static_cast<std::size_t>(e)] = 1;
+    } else {
+      form->second.share = problem_.scene().fracture.alpha;
+    }
+  }
+  for (const Coming& c : event.come) {
+    came_[c.element] = c.form;
+    if (c.element < problem_.tet_count()) left_[static_cast<std::size_t>(c.element)] = 0;
+  }
+}
+
+Index Forms::element_count() const {
+  return came_.empty() ? problem_.tet_count()
+                       : std::max(problem_.tet_count(), came_.rbegin()->first + 1);
+}
+
+Index Forms::node_count() const {
+  return problem_.node_count() + static_cast<Index>(nodes_.size());
+}
+
+double Forms::share(Index element) const {
+  const auto form = came_.find(element);
+  if (form != came_.end()) return form->second.share;
+  if (element >= problem_.tet_count()) return 0;
+  return left_[static_cast<std::size_t>(element)] ? problem_.scene().fracture.alpha : 1;
+}
+
+Form Forms::of(Index element) const {
+  const auto form = came_.find(element);
+  if (form != came_.end()) return form->second;
+  Form in_mesh = form_in_mesh(problem_, element);
+  in_mesh.share = share(element);
+  return in_mesh;
+}
+
+std::array<Index, 4> Forms::parents(const std::array<Index, 4>& corners) const {
+  std::array<Index, 4> nodes = corners;
+  for (Index& n : nodes) {
+    const Index added = n - problem_.node_count();
+    if (added >= 0) n = nodes_[static_cast<std::size_t>(added)].parent;
+  }
+  return nodes;
+}
+
+Form form_in_mesh(const Problem& problem, Index element) {
+  return {problem.mesh().tets[static_cast<std::size_t>(element)], problem.shape(element),
+          problem.small_strain(element), 1};
+}
+
+bool same_matter(const Forms& forms, const Form& a, const Form& b) {
+  return forms.parents(a.corners) == forms.parents(b.corners) && same(a.shape, b.shape) &&
+         same(a.law, b.law);
+}
+
+void check(const Forms& forms, const Change& change) {
+  const double alpha = forms.problem().scene().fracture.alpha;
+  std::set<Index> leaving, coming;
+  for (Index e : change.leave) {
+    if (e < 0 || e >= forms.element_count()) refuse("element", e, "cannot leave: there is none");
+    if (!(forms.share(e) > alpha)) refuse("element", e, "cannot leave: it has left already");
+    if (!leaving.insert(e).second) refuse("element", e, "cannot leave twice in one change");
+  }
+  for (const NewNode& n : change.nodes) {
+    if (n.parent < 0 || n.parent >= forms.problem().node_count()) {
+      refuse("node", n.parent, "cannot be a parent: it is no node of the mesh");
+    }
+  }
+  Index beyond = forms.element_count();
+  for (const Coming& c : change.come) {
+    if (c.element < 0 || c.element > beyond) {
+      refuse("element", c.element, "cannot come: the next new id is " + std::to_string(beyond));
+    }
+    if (!coming.insert(c.element).second) refuse("element", c.element, "cannot come twice");
+    if (c.element == beyond) ++beyond;
+    check_form(c, forms.node_count() + static_cast<Index>(change.nodes.size()));
+  }
+}
+
+Change reverse(const Problem& problem, const Damage& damage, std::size_t i) {
+  Forms before(problem);
+  for (std::size_t j = 0; j < i; ++j) {
+    before.add(damage[j].nodes);
+    before.follow(damage[j]);
+  }
+  const Damage::Event event = damage[i];
+  std::map<Index, Form> forms;
+  for (const Coming& c : event.come) {
+    Form form = c.form;
+    form.share = 0;
+    forms[c.element] = c.element < before.element_count() ? before.of(c.element) : form;
+  }
+  for (Index e : event.leave) forms[e] = before.of(e);
+  Change change;
+  for (const auto& [element, form] : forms) change.come.push_back({element, form});
+  return change;
+}
+
+bool reverses_last(const Forms& forms, const Damage& damage, const Change& change) {
+  if (damage.size() == 0 || !change.nodes.empty()) return false;
+  const auto asked = outcome(forms, change);
+  const auto back = outcome(forms, reverse(forms.problem(), damage, damage.size() - 1));
+  return std::ranges::equal(asked, back, [](const auto& a, const auto& b) {
+    return a.first == b.first && same(a.second, b.second);
+  });
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// An event as a change of elements (method.md "Changes"): some leave, some come, and nodes may come
+// with them. Ids of the file's nodes and elements never change; what comes is appended. Destroying
+// is the change in which none comes; the reverse of a change is a change too.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "sunder/problem.hpp"
+
+namespace sunder::solver {
+
+/// An element as it stands in a body.
+struct Form {
+  std::array<Index, 4> corners{};  ///< nodes of the mesh and, with ids after theirs, new ones
+  TetShape shape;
+  SmallStrain law;
+  double share = 1;  ///< of its stiffness: alpha once it has left, 0 before it first came
+};
+/// An element that comes takes this form, whatever form it had.
+struct Coming {
+  Index element = 0;  ///< one that is there, or the first id beyond
+  Form form;
+};
+/// Its displacement is that of its parent, a node of the mesh, plus an offset of its own on some
+/// axes: the new unknowns. On the other axes it keeps to its parent, whatever holds that. Where
+/// stiffness differs the softer elements should take the new node (method.md 16).
+struct NewNode {
+  Index parent = 0;
+  Axes axes;
+};
+/// Elements in `leave` keep a share alpha of their stiffness.
+struct Change {
+  std::vector<Index> leave;
+  std::vector<Coming> come;
+  std::vector<NewNode> nodes;
+};
+
+/// The record of what has happened to a body, change by change.
+class Damage {
+ public:
+  struct Event {
+    std::span<const Index> leave;
+    std::span<const Coming> come;
+    std::span<const NewNode> nodes;
+  };
+
+  /// For so many events that leave so many elements: they allocate nothing.
+  void reserve(std::size_t elements, std::size_t events);
+  void add(std::span<const Index> leave);
+  void add(const Change& change);
+  /// Drops the last change.
+  void take_back();
+  [[nodiscard]] std::size_t size() const { return ends_.size(); }
+  [[nodiscard]] Event operator[](std::size_t i) const;
+  [[nodiscard]] Event last() const { return (*this)[size() - 1]; }
+
+ private:
+  struct End {
+    std::size_t leave = 0, come = 0, nodes = 0;
+  };
+  std::vector<End> ends_;  // of each event in the lists
+  std::vector<Index> leave_;
+  std::vector<Coming> come_;
+  std::vector<NewNode> nodes_;
+};
+
+/// Every element's form after some changes.
+class Forms {
+ public:
+  /// As the mesh has them. The problem must outlive it.
+  explicit Forms(const Problem& problem);
+  /// Back to the mesh's.
+  void clear();
+  /// The nodes of an event, before its elements are asked about or followed.
+  void add(std::span<const NewNode> nodes);
+  /// The elements of an event. Allocates nothing where elements of the mesh's form leave.
+  void follow(const Damage::Event& event);
+
+  [[nodiscard]] Index element_count() const;
+  [[nodiscard]] Index node_count() const;
+  [[nodiscard]] Form of(Index element) const;
+  /// Of its stiffness; 0 for one that never came.
+  [[nodiscard]] double share(Index element) const;
+  /// Elements that have taken a form by coming, by id; the others are as the mesh has them, but
+  /// that some have left.
+  [[nodiscard]] const std::map<Index, Form>& came() const { return came_; }
+  [[nodiscard]] std::span<const std::uint8_t> left() const { return left_; }
+  /// In the order of their ids, which begin after the mesh's.
+  [[nodiscard]] std::span<const NewNode> new_nodes() const { return nodes_; }
+  /// The corners' nodes of the mesh: a new node's is its parent.
+  [[nodiscard]] std::array<Index, 4> parents(const std::array<Index, 4>& corners) const;
+  [[nodiscard]] const Problem& problem() const { return problem_; }
+
+ private:
+  const Problem& problem_;
+  std::vector<std::uint8_t> left_;  // per element of the mesh, while it has not come again
+  std::map<Index, Form> came_;
+  std::vector<NewNode> nodes_;
+};
+
+/// An element's form in the mesh.
+[[nodiscard]] Form form_in_mesh(const Problem& problem, Index element);
+/// Same law and shape over the same nodes of the mesh: the stiffness differs by the share alone.
+[[nodiscard]] bool same_matter(const Forms& forms, const Form& a, const Form& b);
+
+/// Throws UsageError when the change does not fit a body of these forms.
+void check(const Forms& forms, const Change& change);
+/// The change that gives the elements of event i the forms back that they had before it. Its new
+/// nodes stay, without elements.
+[[nodiscard]] Change reverse(const Problem& problem, const Damage& damage, std::size_t i);
+/// Whether a change does what the reverse of the last event does.
+[[nodiscard]] bool reverses_last(const Forms& forms, const Damage& damage, const Change& change);
+
+}  // namespace sunder::solver

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stiffness in the order of a factor, kept up with damage. A new factor of the body takes order
+// and elimination tree from the first one, and the entries that no destroyed element touches from
+// the one before: on 1,944 elements that spares two thirds of it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "body/node_elements.hpp"
+#include "linear_algebra/factor.hpp"
+
+namespace sunder::fem {
+
+class OrderedStiffness {
+ public:
+  /// The intact stiffness as linear_algebra::FactorWork::ordered has received it, and where its
+  /// rows are. The problem must outlive it.
+  OrderedStiffness(const Problem& problem, std::shared_ptr<const linear_algebra::Supernodes> nodes,
+                   const linear_algebra::SparseMatrix& intact);
+
+  /// Takes a scale per element, as assemble_lower does. Entries that change are summed anew: there
+  /// is no difference between large numbers.
+  void follow(std::span<const double> scale);
+  /// Throws as linear_algebra::Factor's constructors do.
+  [[nodiscard]] linear_algebra::Factor factor(const linear_algebra::FactorWork& work = {}) const;
+  /// Lower triangle, rows in the order of the factor.
+  [[nodiscard]] const linear_algebra::SparseMatrix& matrix() const { return matrix_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  [[nodiscard]] Index entry(Index dof, Index other) const;
+  void clear(Index element);
+  void add(Index element);
+  void add_anchors();
+
+  const Problem& problem_;
+  std::shared_ptr<const linear_algebra::Supernodes> nodes_;
+  NodeElements around_;
+  linear_algebra::SparseMatrix matrix_;  // rows of a column ascending
+  std::vector<double> scale_;            // that matrix_ holds
+  std::vector<std::uint8_t> changed_;    // per entry of matrix_; all zero between calls
+  std::vector<Index> entries_;           // that have changed
+};
+
+}  // namespace sunder::fem

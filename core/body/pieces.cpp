@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "body/pieces.hpp"
+
+#include <algorithm>
+
+namespace sunder {
+
+LooseSearch::LooseSearch(const Problem& problem)
+    : problem_(problem), used_(used_nodes(problem.mesh())) {
+  unused_ = static_cast<std::size_t>(std::ranges::count(used_, std::uint8_t{0}));
+  const auto gripped = problem.gripped_dofs();
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    if (!used_[static_cast<std::size_t>(n)]) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem.dof(n, axis);
+      if (d == kNone || std::binary_search(gripped.begin(), gripped.end(), d)) {
+        all_held_.push_back({n, axis});
+      }
+    }
+  }
+  held_.resize(all_held_.size());
+  const std::size_t most = problem.mesh().nodes.size() / 4;  // bodies
+  held_end_.reserve(most + 1);
+  piece_of_body_.reserve(most);
+}
+
+/// held_ by body, each in the order of nodes.
+void LooseSearch::sort_held() {
+  held_end_.assign(static_cast<std::size_t>(bodies_.count) + 1, 0);
+  for (const fem::HeldDof& h : all_held_) {
+    if (!isolated(h.node)) ++held_end_[static_cast<std::size_t>(bodies_.body_of_node[h.node]) + 1];
+  }
+  for (std::size_t b = 1; b < held_end_.size(); ++b) held_end_[b] += held_end_[b - 1];
+  for (const fem::HeldDof& h : all_held_) {  // each body's begin becomes its end
+    if (!isolated(h.node)) {
+      held_[held_end_[static_cast<std::size_t>(bodies_.body_of_node[h.node])]++] = h;
+    }
+  }
+}
+
+void LooseSearch::look(std::span<const std::uint8_t> destroyed) {
+  const Mesh& mesh = problem_.mesh();
+  fem::find_bodies(mesh, destroyed, bodies_, room_);
+  isolated_ = static_cast<std::size_t>(std::ranges::count(bodies_.body_of_node, kNone)) - unused_;
+  sort_held();
+  pieces_ = cut_off_ = 0;
+  piece_of_body_.assign(static_cast<std::size_t>(bodies_.count), kNone);
+  std::size_t begin = 0;
+  for (std::size_t b = 0; b < piece_of_body_.size(); ++b) {
+    const std::span held(held_.data() + begin, held_end_[b] - begin);
+    begin = held_end_[b];
+    if (fem::rigid_modes_left(mesh, held) == 0) continue;
+    piece_of_body_[b] = static_cast<Index>(pieces_++);
+  }
+  if (pieces_ == 0) return;
+  for (Index e = 0; e < problem_.tet_count(); ++e) cut_off_ += piece_of(e) != kNone;
+}
+
+LooseParts find_loose_parts(const Problem& problem, std::span<const std::uint8_t> destroyed) {
+  LooseSearch search(problem);
+  search.look(destroyed);
+  LooseParts parts;
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    if (search.isolated(n)) parts.isolated_nodes.push_back(n);
+  }
+  parts.pieces.resize(search.pieces());
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const Index piece = search.piece_of(e);
+    if (piece != kNone) parts.pieces[static_cast<std::size_t>(piece)].push_back(e);
+  }
+  return parts;
+}
+
+}  // namespace sunder

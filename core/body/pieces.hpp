@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What damage has set loose (sunder/loose_parts.hpp), by graph search.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "body/supports.hpp"
+#include "sunder/loose_parts.hpp"
+
+namespace sunder {
+
+/// Finds them again and again in one body, with lists of its own: a frame allocates nothing.
+class LooseSearch {
+ public:
+  explicit LooseSearch(const Problem& problem);
+  void look(std::span<const std::uint8_t> destroyed);
+
+  // Of the last look:
+  [[nodiscard]] std::size_t isolated_nodes() const { return isolated_; }
+  [[nodiscard]] std::size_t pieces() const { return pieces_; }
+  [[nodiscard]] std::size_t elements_cut_off() const { return cut_off_; }
+  [[nodiscard]] bool isolated(Index node) const {
+    return bodies_.body_of_node[node] == kNone && used_[static_cast<std::size_t>(node)] != 0;
+  }
+  /// By their first element; kNone: held, or destroyed.
+  [[nodiscard]] Index piece_of(Index element) const {
+    const Index body = bodies_.body_of_element[element];
+    return body == kNone ? kNone : piece_of_body_[static_cast<std::size_t>(body)];
+  }
+
+ private:
+  void sort_held();
+
+  const Problem& problem_;
+  fem::Bodies bodies_;
+  fem::BodyRoom room_;
+  std::vector<fem::HeldDof> all_held_, held_;  // of the whole; sorted by body
+  std::vector<std::uint8_t> used_;             // per node: belongs to an element
+  std::size_t unused_ = 0;
+  std::vector<std::size_t> held_end_;  // per body
+  std::vector<Index> piece_of_body_;
+  std::size_t isolated_ = 0, pieces_ = 0, cut_off_ = 0;
+};
+
+}  // namespace sunder

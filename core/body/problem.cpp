@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sunder/problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "body/board_check.hpp"
+#include "body/element.hpp"
+#include "body/instrument_name.hpp"
+#include "body/selection.hpp"
+#include "body/supports.hpp"
+#include "material/linear.hpp"
+#include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
+#include "sunder/in_quotes.hpp"
+#include "sunder/words.hpp"
+
+namespace sunder {
+namespace {
+
+void check_material(const std::string& name, const Material& m) {
+  const std::string what = "material " + in_quotes(name);
+  if (!std::isfinite(m.young) || !(m.young > 0)) {
+    throw InputError(InputFault::out_of_range, what + " has young = " + in_digits(m.young) +
+                                                   "; it must be finite and above 0 MPa");
+  }
+  if (!(m.poisson > -1 && m.poisson < 0.5)) {
+    throw InputError(InputFault::out_of_range, what + " has poisson = " + in_digits(m.poisson) +
+                                                   "; it must lie above -1 and below 0.5");
+  }
+  if (m.yield && (!std::isfinite(*m.yield) || !(*m.yield > 0))) {
+    throw InputError(InputFault::out_of_range,
+                     what + " has yield = " + in_digits(*m.yield) +
+                         "; it must be finite and above 0 MPa, or left out (unbreakable)");
+  }
+}
+
+void check_finite(const Vec3& v, const std::string& what, const char* key) {
+  if (!v.allFinite()) {
+    throw InputError(InputFault::out_of_range, what + " has a " + key + " that is not finite");
+  }
+}
+
+}  // namespace
+
+double Ramp::factor(double time) const {
+  if (begin == end) return time >= begin ? 1.0 : 0.0;
+  return std::clamp((time - begin) / (end - begin), 0.0, 1.0);
+}
+
+Problem::Problem(Scene scene) : scene_(std::move(scene)) {
+  const std::string where = scene_.source.empty() ? "scene" : scene_.source;
+  const Turned turned = turn_inverted(scene_.mesh);
+  validate(scene_.mesh, where);
+  if (turned.count > 0) warnings_.push_back(sentence(turned));
+  try {
+    check_options();
+    resolve_materials();
+    build_shapes();
+    resolve_elements();
+    std::vector<std::uint8_t> held = held_axes();
+    select_instrument_nodes();
+    const fem::Bodies bodies = fem::find_bodies(mesh(), {});
+    leave_out_what_nothing_holds(bodies, held);
+    latch_what_hangs(bodies, held);
+    number_unknowns(held);
+    resolve_grips();
+    resolve_pulls();
+    resolve_presses();
+    check_held_bodies(bodies);
+    note_odd_mesh();
+    note_no_board();
+  } catch (const InputError& error) {
+    throw InputError(error.fault(), where + ": " + error.what());
+  }
+}
+
+void Problem::note_no_board() {
+  if (!row_of(scene_.fracture.model).grows_cracks) return;
+  if (const auto why = why_no_board(mesh(), scene_.fracture.plane_normal)) {
+    warnings_.push_back("model " + in_quotes(row_of(scene_.fracture.model).name) +
+                        " takes the body for a flat board of even thickness, but " + *why +
+                        ": its cracks and their stress intensity are not those of this body "
+                        "(docs/limits.md); model \"A\" assumes no shape");
+  }
+}
+
+namespace {
+
+/// The scene of a part.
+Scene scene_of_part(const Scene& whole, const PartOfBody& part) {
+  Scene scene = whole;
+  Mesh mesh;
+  mesh.volumes = whole.mesh.volumes;
+  std::vector<Index> place(whole.mesh.nodes.size(), kNone);
+  for (Index n : part.nodes) {
+    place[n] = mesh.node_count();
+    mesh.nodes.push_back(whole.mesh.nodes[n]);
+  }
+  for (Index e : part.elements) {
+    auto tet = whole.mesh.tets[e];
+    for (Index& n : tet) n = place[n];
+    mesh.tets.push_back(tet);
+    mesh.volume_of.push_back(whole.mesh.volume_of[e]);
+  }
+  scene.mesh = std::move(mesh);
+  return scene;
+}
+
+}  // namespace
+
+Problem::Problem(const Problem& whole, const PartOfBody& part)
+    : scene_(scene_of_part(whole.scene_, part)) {
+  resolve_materials();
+  for (Index e : part.elements) shapes_.push_back(whole.shapes_[e]);
+  dof_.assign(3 * mesh().nodes.size(), kNone);
+  std::vector<Index> place(static_cast<std::size_t>(whole.dof_count_), kNone);
+  for (std::size_t n = 0; n < part.nodes.size(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = whole.dof(part.nodes[n], axis);
+      if (d != kNone) dof_[3 * n + axis] = place[d] = dof_count_++;
+    }
+  }
+  const auto take = [&](const std::vector<Index>& from, std::vector<Index>& to) {
+    for (Index d : from) {
+      if (place[d] != kNone) to.push_back(place[d]);
+    }
+  };
+  take(whole.gripped_dofs_, gripped_dofs_);
+  take(whole.anchored_dofs_, anchored_dofs_);
+  anchor_stiffness_ = whole.anchor_stiffness_;
+}
+
+void Problem::check_options() {
+  const FractureOptions& f = scene_.fracture;
+  if (!(f.alpha > 0 && f.alpha < 1)) {
+    throw InputError(InputFault::out_of_range, "fracture.alpha = " + in_digits(f.alpha) +
+                                                   "; it must lie above 0 and below 1");
+  }
+  const FractureModelRow& model = row_of(f.model);
+  if (model.measure && f.yield_measure != FractureOptions{}.yield_measure) {
+    warnings_.push_back("fracture.yield_measure is not read: model " + in_quotes(model.name) +
+                        " has a measure of its own");
+  }
+  if (f.max_events < 1) {
+    throw InputError(
+        InputFault::out_of_range,
+        "fracture.max_events = " + std::to_string(f.max_events) + "; it must be at least 1");
+  }
+  if (!(f.averaging >= 0 && std::isfinite(f.averaging))) {
+    throw InputError(InputFault::out_of_range,
+                     "fracture.averaging = " + in_digits(f.averaging) +
+                         " must be a radius in mm, or 0: strength is judged by element");
+  }
+  if (f.plane_normal && !(f.plane_normal->allFinite() && f.plane_normal->norm() > 0)) {
+    throw InputError(InputFault::out_of_range, "fracture.plane_normal must be finite and not zero");
+  }
+  if (!(scene_.solver.tolerance > 0 && scene_.solver.tolerance < 1)) {
+    throw InputError(InputFault::out_of_range,
+                     "solver.tolerance = " + in_digits(scene_.solver.tolerance) +
+                         "; it must lie above 0 and below 1");
+  }
+  if (scene_.steps < 1) {
+    throw InputError(InputFault::out_of_range,
+                     "time.steps = " + std::to_string(scene_.steps) + "; it must be at least 1");
+  }
+}
+
+void Problem::resolve_materials() {
+  for (const auto& [name, material] : scene_.materials) {
+    check_material(name, material);
+    const bool known =
+        std::any_of(mesh().volumes.begin(), mesh().volumes.end(),
+                    [&wanted = name](const NamedVolume& v) { return v.name == wanted; });
+    if (!known) {
+      std::vector<std::string> names;
+      for (const NamedVolume& v : mesh().volumes) names.push_back(v.name);
+      throw InputError(
+          InputFault::unknown_name,
+          "material " + in_quotes(name) + " names no volume; the mesh has " + name_list(names));
+    }
+  }
+  std::vector<Index> elements(mesh().volumes.size(), 0);
+  for (Index v : mesh().volume_of) ++elements[v];
+  for (std::size_t v = 0; v < mesh().volumes.size(); ++v) {
+    const auto it = scene_.materials.find(mesh().volumes[v].name);
+    if (it == scene_.materials.end() && elements[v] > 0) {
+      throw InputError(InputFault::no_material, "volume " + in_quotes(mesh().volumes[v].name) +
+                                                    " (" + count_of(elements[v], "element") +
+                                                    ") has no material; add [material." +
+                                                    in_quotes(mesh().volumes[v].name) + "]");
+    }
+    const Material* material = it == scene_.materials.end() ? nullptr : &it->second;
+    material_of_volume_.push_back(material);
+    small_strain_of_volume_.push_back(material ? sunder::small_strain(*material) : SmallStrain{});
+  }
+}
+
+void Problem::build_shapes() {
+  shapes_.reserve(mesh().tets.size());
+  for (const auto& t : mesh().tets) {
+    const auto& x = mesh().nodes;
+    shapes_.push_back(fem::tet_shape(x[t[0]], x[t[1]], x[t[2]], x[t[3]]));
+  }
+}
+
+void Problem::resolve_elements() {
+  const bool cracks_kept = row_of(scene_.fracture.model).keeps_cracks;
+  std::vector<int> owner(mesh().tets.size(), kNone);
+  for (std::size_t c = 0; c < scene_.cracks.size(); ++c) {
+    const PresetCrack& crack = scene_.cracks[c];
+    const std::string what = "crack " + std::to_string(c);
+    // A crack of split nodes is in the mesh already and takes no elements: an empty list says so.
+    const auto* ids = std::get_if<std::vector<Index>>(&crack.elements);
+    const bool split = ids && ids->empty();
+    crack_elements_.push_back(split ? std::vector<Index>{}
+                                    : select_elements(mesh(), crack.elements, what));
+    const std::size_t tips = crack.tips.size();
+    if (crack.mouth ? tips != 1 : tips != 2) {
+      throw InputError(InputFault::missing_key,
+                       what + (crack.mouth ? " has a mouth and needs one tip"
+                                           : " has no mouth and needs two tips (internal crack)"));
+    }
+    if (crack.mouth) check_finite(*crack.mouth, what, "mouth");
+    for (const Vec3& tip : crack.tips) check_finite(tip, what, "tip");
+    const Vec3& start = crack.mouth ? *crack.mouth : crack.tips.front();
+    if (cracks_kept && !((crack.tips.back() - start).norm() > 0)) {
+      throw InputError(InputFault::out_of_range,
+                       what + " has length 0; its path needs two different points");
+    }
+    for (Index e : crack_elements_.back()) {
+      if (owner[e] != kNone) {
+        throw InputError(InputFault::bad_id, what + " takes element " + std::to_string(e) +
+                                                 ", which crack " + std::to_string(owner[e]) +
+                                                 " has already");
+      }
+      owner[e] = static_cast<int>(c);
+    }
+  }
+  for (std::size_t r = 0; r < scene_.removals.size(); ++r) {
+    const ScriptedRemoval& removal = scene_.removals[r];
+    const std::string what = "destroy " + std::to_string(r);
+    if (removal.step < 0 || removal.step >= scene_.steps) {
+      throw InputError(InputFault::out_of_range,
+                       what + " is for step " + std::to_string(removal.step) +
+                           ", but the scene has steps 0 to " + std::to_string(scene_.steps - 1));
+    }
+    removal_elements_.push_back(select_elements(mesh(), removal.elements, what));
+  }
+}
+
+}  // namespace sunder

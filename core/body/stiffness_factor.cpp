@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "body/stiffness_factor.hpp"
+
+#include <array>
+
+#include "body/assembly.hpp"
+#include "linear_algebra/nested_dissection.hpp"
+
+namespace sunder::fem {
+
+std::vector<Index> elimination_order(const Problem& problem) {
+  std::vector<std::array<Index, 3>> unknowns(static_cast<std::size_t>(problem.node_count()));
+  for (Index n = 0; n < problem.node_count(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) unknowns[n][axis] = problem.dof(n, axis);
+  }
+  return linear_algebra::nested_dissection({problem.mesh().nodes, unknowns, problem.mesh().tets});
+}
+
+linear_algebra::Factor factor_stiffness(const Problem& problem, std::span<const double> scale,
+                                        const linear_algebra::FactorWork& work) {
+  return {assemble_lower(problem, scale), elimination_order(problem), work};
+}
+
+}  // namespace sunder::fem

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame/loads.hpp"
+
+#include <algorithm>
+
+namespace sunder {
+namespace {
+
+bool is_press(const Instrument& instrument) {
+  return std::holds_alternative<Press>(instrument.action);
+}
+
+}  // namespace
+
+Loads::Loads(const Problem& problem) : problem_(problem) {
+  const auto& instruments = problem.scene().instruments;
+  if (std::any_of(instruments.begin(), instruments.end(), is_press)) {
+    elements_of_node_.emplace(problem.mesh());
+  }
+  pressed_.resize(instruments.size());
+  forces_.assign(instruments.size(), Vec3::Zero());
+  driven_.resize(instruments.size());
+  const auto gripped = problem.gripped_dofs();
+  gripped_.resize(gripped.size());
+  expansion_.displacements.assign(gripped.size(), 0.0);
+  reserve();
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    const auto* grip = std::get_if<Grip>(&instruments[i].action);
+    if (!grip) continue;
+    for (Index n : problem.instrument_nodes()[i].nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!grip->axes.has(axis)) continue;
+        const auto it = std::lower_bound(gripped.begin(), gripped.end(), problem.dof(n, axis));
+        gripped_[it - gripped.begin()] = {i, axis};
+      }
+    }
+  }
+}
+
+/// Whatever acts at a time, a frame allocates nothing.
+void Loads::reserve() {
+  constexpr std::size_t kPressed = std::tuple_size_v<decltype(PressedNodes::nodes)>;
+  std::size_t shares = 0;
+  for (const InstrumentNodes& i : problem_.instrument_nodes())
+    shares += 3 * std::max(i.nodes.size(), kPressed);
+  for (auto& pressed : pressed_) pressed.reserve(kPressed);
+  acting_.reserve(pressed_.size());
+  shares_.reserve(shares);
+  sorted_.reserve(shares);
+  for (Load* load : {&all_, &expansion_}) {
+    load->force_dofs.reserve(shares);
+    load->forces.reserve(shares);
+    load->displacements.reserve(gripped_.size());
+  }
+}
+
+std::span<const Index> Loads::nodes(std::size_t instrument) const {
+  return is_press(problem_.scene().instruments[instrument])
+             ? pressed_[instrument]
+             : problem_.instrument_nodes()[instrument].nodes;
+}
+
+void Loads::choose_pressed_nodes(std::size_t instrument, const FractureCriterion& criterion,
+                                 std::span<const std::uint8_t> destroyed,
+                                 std::vector<Finding>& findings) {
+  std::vector<Index>& chosen = pressed_[instrument];
+  const bool keep = !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](Index n) {
+    const auto around = elements_of_node_->of(n);
+    return std::any_of(around.begin(), around.end(), [&](Index e) { return !destroyed[e]; });
+  });
+  if (keep) return;
+  const Instrument& tool = problem_.scene().instruments[instrument];
+  const PressedNodes found = criterion.pressed_nodes(std::get<Press>(tool.action), destroyed);
+  chosen.assign(found.list().begin(), found.list().end());
+  if (chosen.empty()) {
+    findings.push_back({Finding::Kind::nothing_to_press, static_cast<int>(instrument)});
+  }
+}
+
+Vec3 Loads::value(std::size_t instrument, double time) const {
+  if (driven_[instrument]) return *driven_[instrument];
+  const Instrument& tool = problem_.scene().instruments[instrument];
+  const double factor = tool.factor(time);
+  if (const auto* grip = std::get_if<Grip>(&tool.action)) return factor * grip->displacement;
+  if (const auto* pull = std::get_if<Pull>(&tool.action)) return factor * pull->force;
+  return factor * std::get<Press>(tool.action).force;
+}
+
+void Loads::add(std::size_t instrument) {
+  const auto on = nodes(instrument);
+  for (Index n : on) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem_.dof(n, axis);
+      const double share = forces_[instrument][axis] / static_cast<double>(on.size());
+      if (d == kNone || share == 0) continue;
+      shares_.push_back({d, static_cast<int>(shares_.size()), share});
+    }
+  }
+}
+
+Vec3 Loads::force_on_supports() const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    if (forces_[i].isZero(0)) continue;
+    const auto on = nodes(i);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto held = std::count_if(on.begin(), on.end(),
+                                      [&](Index n) { return problem_.dof(n, axis) == kNone; });
+      if (held > 0)
+        sum[axis] += forces_[i][axis] * static_cast<double>(held) / static_cast<double>(on.size());
+    }
+  }
+  return sum;
+}
+
+void Loads::sum_into(Load& load) {
+  sorted_ = shares_;
+  std::sort(sorted_.begin(), sorted_.end(), [](const Share& a, const Share& b) {
+    return a.dof != b.dof ? a.dof < b.dof : a.order < b.order;
+  });
+  load.force_dofs.clear();
+  load.forces.clear();
+  for (const Share& s : sorted_) {
+    if (!load.force_dofs.empty() && load.force_dofs.back() == s.dof) {
+      load.forces.back() += s.force;
+    } else {
+      load.force_dofs.push_back(s.dof);
+      load.forces.push_back(s.force);
+    }
+  }
+}
+
+void Loads::update(double time, const FractureCriterion& criterion,
+                   std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings) {
+  const auto& instruments = problem_.scene().instruments;
+  shares_.clear();
+  acting_.clear();
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    if (!std::holds_alternative<Pull>(instruments[i].action)) continue;
+    forces_[i] = value(i, time);
+    add(i);
+  }
+  sum_into(expansion_);
+  for (std::size_t g = 0; g < gripped_.size(); ++g) {
+    expansion_.displacements[g] = value(gripped_[g].instrument, time)[gripped_[g].axis];
+  }
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    const auto* press = std::get_if<Press>(&instruments[i].action);
+    if (!press) continue;
+    forces_[i].setZero();
+    const bool idle = driven_[i] ? driven_[i]->isZero(0) : instruments[i].factor(time) == 0;
+    if (idle) continue;
+    choose_pressed_nodes(i, criterion, destroyed, findings);
+    if (pressed_[i].empty()) continue;
+    forces_[i] = value(i, time);
+    add(i);
+    acting_.push_back({i, press, forces_[i], pressed_[i]});
+  }
+  sum_into(all_);
+  all_.displacements = expansion_.displacements;
+}
+
+}  // namespace sunder

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The instruments as they act at a scene time: nodal forces, prescribed displacements.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "body/node_elements.hpp"
+#include "fracture/criterion.hpp"
+#include "sunder/backend.hpp"
+
+namespace sunder {
+
+class Loads {
+ public:
+  explicit Loads(const Problem& problem);
+
+  /// Instruments at scene time t. Pressing instruments choose their nodes when they start to act,
+  /// and again when such a node has lost its last live element (method.md 7). Adds to `findings`.
+  void update(double time, const FractureCriterion& criterion,
+              std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings);
+
+  /// Instrument i has this force or displacement from the next update on, whatever the scene says.
+  void drive(std::size_t instrument, const Vec3& value) { driven_[instrument] = value; }
+  /// Force or displacement of instrument i at a scene time.
+  [[nodiscard]] Vec3 value(std::size_t instrument, double time) const;
+
+  [[nodiscard]] const Load& load() const { return all_; }
+  /// Without the pressing instruments (the pristine field's load).
+  [[nodiscard]] const Load& expansion() const { return expansion_; }
+  /// Pressing instruments that act now.
+  [[nodiscard]] std::span<const ActingPress> presses() const { return acting_; }
+  /// Nodes on which instrument i acts now.
+  [[nodiscard]] std::span<const Index> nodes(std::size_t instrument) const;
+  /// Total force of instrument i now; zero for grips.
+  [[nodiscard]] const Vec3& force(std::size_t instrument) const { return forces_[instrument]; }
+  /// Of these, what acts on axes that supports hold.
+  [[nodiscard]] Vec3 force_on_supports() const;
+  /// Per gripped dof: the instrument that grips it, and the axis.
+  struct Gripped {
+    std::size_t instrument;
+    int axis;
+  };
+  [[nodiscard]] const std::vector<Gripped>& gripped() const { return gripped_; }
+
+ private:
+  void choose_pressed_nodes(std::size_t instrument, const FractureCriterion& criterion,
+                            std::span<const std::uint8_t> destroyed,
+                            std::vector<Finding>& findings);
+  void reserve();
+  void add(std::size_t instrument);
+  void sum_into(Load& load);
+
+  /// A share of an instrument's force; those of a dof are summed in the order they came in.
+  struct Share {
+    Index dof;
+    int order;
+    double force;
+  };
+
+  const Problem& problem_;
+  std::optional<NodeElements> elements_of_node_;  // only where something presses
+  std::vector<std::vector<Index>> pressed_;       // per instrument
+  std::vector<Gripped> gripped_;
+  std::vector<std::optional<Vec3>> driven_;
+  std::vector<Vec3> forces_;
+  std::vector<ActingPress> acting_;
+  Load all_, expansion_;
+  std::vector<Share> shares_, sorted_;  // of the update in work
+};
+
+}  // namespace sunder

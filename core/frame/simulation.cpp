@@ -1,0 +1,611 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sunder/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "body/element.hpp"
+#include "body/pieces.hpp"
+#include "fracture/averaged_strength.hpp"
+#include "fracture/criterion.hpp"
+#include "fracture/finding.hpp"
+#include "frame/attribution.hpp"
+#include "frame/loads.hpp"
+#include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
+#include "sunder/stress_measures.hpp"
+#include "sunder/words.hpp"
+
+namespace sunder {
+namespace {
+
+/// Adds the milliseconds of a scope to a stage.
+class Timer {
+ public:
+  explicit Timer(double& stage) : stage_(stage) {}
+  ~Timer() { stage_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& stage_;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// The report of a step while the step lasts.
+class Shown {
+ public:
+  Shown(const StepReport*& place, const StepReport& report) : place_(place) { place_ = &report; }
+  ~Shown() { place_ = nullptr; }
+  Shown(const Shown&) = delete;
+  Shown& operator=(const Shown&) = delete;
+
+ private:
+  const StepReport*& place_;
+};
+
+bool any_breakable(const Problem& problem) {
+  const auto& volumes = problem.mesh().volume_of;
+  std::vector<std::uint8_t> seen(problem.mesh().volumes.size(), 0);
+  for (Index e = 0; e < static_cast<Index>(volumes.size()); ++e) {
+    if (seen[volumes[e]]) continue;
+    seen[volumes[e]] = 1;
+    if (problem.breakable(e)) return true;
+  }
+  return false;
+}
+
+void check_needs(const Needs& scene, const Needs& backend) {
+  const auto check = [](bool needed, bool offered, const char* what) {
+    if (needed && !offered) {
+      throw UsageError(std::string("the scene needs ") + what +
+                       ", which was left out of the backend's needs");
+    }
+  };
+  check(scene.stress, backend.stress, "stress");
+  check(scene.yield, backend.yield, "the yield summary");
+  check(scene.damage, backend.damage, "damage");
+  check(scene.pristine, backend.pristine, "the intact body's field");
+}
+
+}  // namespace
+
+Needs needs_of(const Problem& problem) {
+  const Scene& scene = problem.scene();
+  const FractureModelRow& model = row_of(scene.fracture.model);
+  const bool breaks = model.breaks && any_breakable(problem);
+  const bool presses =
+      std::any_of(scene.instruments.begin(), scene.instruments.end(),
+                  [](const Instrument& i) { return std::holds_alternative<Press>(i.action); });
+  Needs needs;
+  needs.stress = breaks || scene.output.stress;
+  needs.yield = needs.stress && any_breakable(problem);
+  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
+  needs.pristine = breaks && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
+  if (!needs.stress) {
+    needs.left_out.push_back(
+        "stress of each element: no fracture model and no output needs it; a frame's check "
+        "takes the largest alone");
+    needs.left_out.push_back(
+        "largest strain and rotation, and the warnings that rest on them: measured with the "
+        "stress");
+  }
+  if (!needs.yield) needs.left_out.push_back("yield summary: nothing breakable or no stress");
+  if (!needs.damage) needs.left_out.push_back("update of the inverse: nothing can be destroyed");
+  if (!needs.pristine)
+    needs.left_out.push_back("intact body's field: only model B reads it, not with sigma0 present");
+  if (!presses) needs.left_out.push_back("pressure terms K_b, K_c: no pressing instrument");
+  if (problem.gripped_dofs().empty()) {
+    needs.left_out.push_back("compliance block of grips: no prescribed displacement");
+  }
+  return needs;
+}
+
+Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<Backend> backend)
+    : problem_(std::move(problem)), backend_(std::move(backend)) {
+  if (!problem_ || !backend_) throw UsageError("a simulation needs a problem and a backend");
+  if (&backend_->problem() != problem_.get()) {
+    throw UsageError("the backend was created for another problem");
+  }
+  check_needs(needs_of(*problem_), backend_->needs());
+  loads_ = std::make_unique<Loads>(*problem_);
+  criterion_ = make_criterion(*problem_);
+  loose_ = std::make_unique<LooseSearch>(*problem_);
+  if (problem_->scene().fracture.averaging > 0 && backend_->needs().yield) {
+    averaged_ = std::make_unique<fracture::AveragedStrength>(*problem_);
+  }
+  decision_ = std::make_unique<Decision>();
+  reserve();
+}
+
+/// Steps append to what is here and allocate nothing, up to so many destroyed elements.
+void Simulation::reserve() {
+  constexpr std::size_t kDestroyed = 1 << 16, kFindings = 256, kInLine = 1 << 14;
+  const std::size_t elements = problem_->mesh().tets.size();
+  if (backend_->needs().damage) destroyed_.reserve(std::min(elements, kDestroyed));
+  if (backend_->needs().damage) event_.reserve(std::min(elements, kDestroyed));
+  if (!problem_->scene().removals.empty()) taken_.reserve(elements);
+  if (backend_->needs().damage && backend_->needs().stress) {
+    cut_off_.reserve(elements);
+    newly_cut_off_.reserve(std::min(elements, kDestroyed));
+  }
+  if (backend_->needs().pristine) pristine_.reserve(3 * problem_->mesh().nodes.size());
+  findings_.reserve(kFindings);
+  of_loads_.reserve(kFindings);
+  next_in_line_.reserve(std::min(elements, kInLine));
+  std::size_t nodes = 0;
+  for (const InstrumentNodes& i : problem_->instrument_nodes()) {
+    nodes += std::max(i.nodes.size(), std::size_t{2});  // a press has up to two
+    reactions_.displacement.reserve(std::max(i.nodes.size(), std::size_t{2}));
+  }
+  instrument_forces_.reserve(nodes);
+  reactions_.forces.reserve(problem_->scene().instruments.size());
+}
+
+Simulation::~Simulation() = default;
+
+StepReport Simulation::step() {
+  if (done()) throw UsageError("all steps of the scene are done");
+  StepReport report;
+  const Shown shown(in_work_, report);
+  report.step = next_step_;
+  report.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
+  interrupted_ = false;
+  events_this_step_ = 0;
+  decisions_this_step_ = 0;
+  pristine_.clear();
+  StageTimes& times = report.times;
+  const std::size_t destroyed_before = destroyed_.size();
+  StressSummary summary;
+  {
+    const Timer total(times.total);
+    {
+      const Timer timer(times.update);
+      if (next_step_ == 0) apply_presets();
+      apply_removals();
+    }
+    for (bool broke = true; broke;) {
+      {
+        const Timer timer(times.load);
+        of_loads_.clear();
+        loads_->update(report.load_factor, *criterion_, backend_->destroyed(), of_loads_);
+        for (const Finding& found : of_loads_) note(found);
+        backend_->set_load(loads_->load());
+      }
+      {
+        const Timer timer(times.solve);
+        record_solve(backend_->solve(), report);
+      }
+      {
+        const Timer timer(times.stress);
+        summary = backend_->needs().stress ? backend_->stress() : StressSummary{};
+        if (averaged_) summary = averaged_->summarize(*backend_);
+      }
+      report.max_yield_ratio = summary.any.ratio;
+      if (frame_observer_) frame_observer_();
+      {
+        const Timer timer(times.decide);
+        decide(summary);
+      }
+      {
+        const Timer timer(times.update);
+        if (attribute_) attribute_event();
+        broke = apply_event();
+      }
+    }
+    if (destroyed_.size() != destroyed_before) find_loose();
+    if (backend_->needs().stress) {
+      const Timer timer(times.stress);
+      measure_deformation(report);
+    }
+  }
+  report.events = events_this_step_;
+  report.destroyed = static_cast<int>(destroyed_.size());
+  report.compliance = compliance();
+  report.passes = backend_->take_pass_times();
+  ++next_step_;
+  prepare_next(summary);
+  return report;
+}
+
+StepReport Simulation::so_far() {
+  if (!in_work_) return {};
+  StepReport report = *in_work_;
+  report.events = events_this_step_;
+  report.destroyed = static_cast<int>(destroyed_.size());
+  report.compliance = compliance();
+  return report;
+}
+
+void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
+  solved_ = true;
+  report.residual = solve.residual;
+  report.error = solve.error;
+  report.iterations += solve.iterations;
+  report.polished = report.polished || solve.polished;
+  if (solve.polished) polished_.add(next_step_);
+}
+
+FractureState Simulation::fracture_state(const StressSummary& summary) {
+  read(reactions_);
+  const std::vector<Vec3>& forces = reactions_.forces;
+  Vec3 resultant = Vec3::Zero();
+  const auto& instruments = problem_->scene().instruments;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (!std::holds_alternative<Press>(instruments[i].action)) resultant += forces[i];
+  }
+  return {
+      *problem_,
+      backend_->destroyed(),
+      summary,
+      [this](Index e) { return backend_->read_stress(e); },
+      [this] { return pristine_displacement(); },
+      resultant,
+      loads_->presses(),
+      [this](std::span<const Index> nodes, std::span<Vec3> u) {
+        backend_->read_displacement(nodes, u);
+      },
+      [this] { return instrument_forces(); },
+  };
+}
+
+void Simulation::decide(const StressSummary& summary) {
+  decision_->clear();
+  if (!row_of(problem_->scene().fracture.model).breaks || interrupted_) return;
+  if (decisions_this_step_ >= problem_->scene().fracture.max_events) {
+    capped_.add(next_step_);
+    return;
+  }
+  criterion_->decide(fracture_state(summary), *decision_);
+  if (!decision_->elements.empty()) ++decisions_this_step_;
+}
+
+/// In a frame in which nothing breaks: brings to hand what the next fractures will need.
+void Simulation::prepare_next(const StressSummary& summary) {
+  const Scene& scene = problem_->scene();
+  if (!scene.solver.prepare || !backend_->prepares() || interrupted_ || done()) return;
+  if (!row_of(scene.fracture.model).breaks) return;
+  criterion_->next_in_line(fracture_state(summary), next_in_line_);
+  backend_->prepare(next_in_line_);
+}
+
+/// Of reactions_, which fracture_state() has read.
+std::span<const NodalForce> Simulation::instrument_forces() {
+  instrument_forces_.clear();
+  const auto& instruments = problem_->scene().instruments;
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    if (std::holds_alternative<Grip>(instruments[i].action)) continue;
+    const auto nodes = loads_->nodes(i);
+    for (Index n : nodes) {
+      // What acts on a held axis is taken by the support there and does not reach the body.
+      NodalForce at{n, loads_->force(i) / static_cast<double>(nodes.size())};
+      for (int axis = 0; axis < 3; ++axis)
+        if (problem_->dof(n, axis) == kNone) at.force[axis] = 0;
+      instrument_forces_.push_back(at);
+    }
+  }
+  add_grip_forces();
+  return instrument_forces_;
+}
+
+void Simulation::add_grip_forces() {
+  const auto gripped = problem_->gripped_dofs();
+  if (gripped.empty()) return;
+  const auto& instruments = problem_->scene().instruments;
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    const auto* grip = std::get_if<Grip>(&instruments[i].action);
+    if (!grip) continue;
+    for (Index n : loads_->nodes(i)) {
+      NodalForce at{n, Vec3::Zero()};
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem_->dof(n, axis);
+        const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
+        if (grip->axes.has(axis)) at.force[axis] = reactions_.grips[static_cast<std::size_t>(g)];
+      }
+      instrument_forces_.push_back(at);
+    }
+  }
+}
+
+std::span<const double> Simulation::pristine_displacement() {
+  if (pristine_.empty()) {
+    pristine_.resize(3 * problem_->mesh().nodes.size());
+    backend_->solve_pristine(loads_->expansion(), pristine_);
+  }
+  return pristine_;
+}
+
+void Simulation::drive(std::size_t instrument, const Vec3& value) {
+  if (instrument >= problem_->scene().instruments.size()) {
+    throw UsageError("there is no instrument " + std::to_string(instrument));
+  }
+  if (!value.allFinite()) throw UsageError("an instrument's value must be finite");
+  loads_->drive(instrument, value);
+}
+
+/// The instrument behind a decision; the backend holds the same solution before and after.
+void Simulation::attribute_event() {
+  if (decision_->elements.empty()) return;
+  const double time = (next_step_ + 1.0) / problem_->scene().steps;
+  const Attribution a = attribution(*backend_, *loads_, time, decision_->elements.front().element);
+  backend_->set_load(loads_->load());
+  backend_->solve();
+  backend_->stress();
+  for (DestroyedElement& d : decision_->elements) {
+    d.instrument = a.instrument;
+    d.instrument_share = a.share;
+  }
+}
+
+bool Simulation::apply_event() {
+  for (const Finding& found : decision_->findings) note(found);
+  if (decision_->elements.empty()) return false;
+  event_.clear();
+  for (DestroyedElement& d : decision_->elements) {
+    d.step = next_step_;
+    d.event = next_event_;
+    d.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
+    event_.push_back(d.element);
+  }
+  backend_->destroy(event_);
+  if (backend_->needs().yield) backend_->exclude_candidates(decision_->excluded);
+  if (averaged_) averaged_->exclude(decision_->excluded);
+  ++next_event_;
+  ++events_this_step_;
+  destroyed_.insert(destroyed_.end(), decision_->elements.begin(), decision_->elements.end());
+  if (observer_ && !observer_(decision_->elements)) interrupted_ = true;
+  return true;
+}
+
+void Simulation::apply_presets() {
+  if (problem_->scene().cracks.empty()) return;
+  *decision_ = criterion_->preset();
+  apply_event();
+}
+
+void Simulation::apply_removals() {
+  const auto& removals = problem_->scene().removals;
+  const auto now = [this](const auto& removal) { return removal.step == next_step_; };
+  if (std::none_of(removals.begin(), removals.end(), now)) return;
+  decision_->clear();
+  taken_.assign(backend_->destroyed().begin(), backend_->destroyed().end());
+  for (std::size_t r = 0; r < removals.size(); ++r) {
+    if (removals[r].step != next_step_) continue;
+    int already = 0;
+    for (Index e : problem_->removal_elements()[r]) {
+      if (taken_[e]) {
+        ++already;
+        continue;
+      }
+      taken_[e] = 1;
+      DestroyedElement d;
+      d.element = e;
+      d.cause = Cause::script;
+      decision_->elements.push_back(d);
+    }
+    if (already > 0) {
+      note({Finding::Kind::removed_before, static_cast<int>(r), next_step_, already});
+    }
+  }
+  apply_event();
+}
+
+void Simulation::find_loose() {
+  loose_->look(backend_->destroyed());
+  loose_nodes_ = loose_->isolated_nodes();
+  loose_pieces_ = loose_->pieces();
+  loose_elements_ = loose_->elements_cut_off();
+  if (loose_nodes_ > 0 && loose_nodes_step_ == kNone) loose_nodes_step_ = next_step_;
+  if (loose_pieces_ > 0 && loose_pieces_step_ == kNone) loose_pieces_step_ = next_step_;
+  leave_out_loose();
+}
+
+/// Elements of pieces that have come off in this step.
+void Simulation::leave_out_loose() {
+  if (loose_pieces_ == 0 || !backend_->needs().stress) return;
+  cut_off_.resize(problem_->mesh().tets.size(), 0);
+  newly_cut_off_.clear();
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    if (cut_off_[e] || loose_->piece_of(e) == kNone) continue;
+    cut_off_[e] = 1;
+    newly_cut_off_.push_back(e);
+  }
+  backend_->cut_off(newly_cut_off_);
+}
+
+void Simulation::measure_deformation(StepReport& report) {
+  const Deformation d = backend_->deformation();
+  report.deformation = d;
+  if (std::abs(d.strain) > kSmallStrain) strained_.add(next_step_, std::abs(d.strain));
+  if (d.rotation_deg > kSmallRotationDeg) turned_.add(next_step_, d.rotation_deg);
+  if (d.inverted > 0) inverted_.add(next_step_, d.inverted);
+}
+
+void Simulation::Beyond::add(int step, double value) {
+  steps.add(step);
+  if (!(value > most)) return;
+  most = value;
+  at = step;
+}
+
+void Simulation::Steps::add(int step) {
+  if (step == last) return;
+  if (count++ == 0) first = step;
+  last = step;
+}
+
+std::string Simulation::Steps::sentence(const std::string& what) const {
+  if (count == 1) return "step " + std::to_string(first) + " " + what;
+  return std::to_string(count) + " steps between " + std::to_string(first) + " and " +
+         std::to_string(last) + " " + what;
+}
+
+void Simulation::note(const Finding& finding) {
+  if (std::ranges::find(findings_, finding) == findings_.end()) findings_.push_back(finding);
+}
+
+std::vector<std::string> Simulation::warnings() const {
+  std::vector<std::string> all = problem_->warnings();
+  for (std::string& words : backend_->warnings()) all.push_back(std::move(words));
+  for (const Finding& found : findings_) {  // instruments may have the same name
+    std::string words = sentence(found, problem_->scene());
+    if (std::ranges::find(all, words) == all.end()) all.push_back(std::move(words));
+  }
+  if (capped_.count > 0) {
+    all.push_back(capped_.sentence("ended at fracture.max_events = " +
+                                   count_of(problem_->scene().fracture.max_events, "event") +
+                                   "; more may have been ready to break"));
+  }
+  if (polished_.count > 0) {
+    all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
+  }
+  add_deformation_warnings(all);
+  if (loose_nodes_ > 0) {
+    all.push_back(count_of(static_cast<long long>(loose_nodes_), "node is", "nodes are") +
+                  " held by destroyed elements only (since step " +
+                  std::to_string(loose_nodes_step_) + "); " +
+                  (loose_nodes_ == 1 ? "its" : "their") + " displacement has no meaning");
+  }
+  if (loose_pieces_ > 0) {
+    const bool one = loose_pieces_ == 1;
+    all.push_back(count_of(static_cast<long long>(loose_pieces_), "piece") + " with " +
+                  count_of(static_cast<long long>(loose_elements_), "element") +
+                  (one ? " is" : " are") + " cut off (since step " +
+                  std::to_string(loose_pieces_step_) + "); only destroyed elements hold " +
+                  (one ? "it and its" : "them and their") + " displacement has no meaning");
+  }
+  return all;
+}
+
+void Simulation::add_deformation_warnings(std::vector<std::string>& all) const {
+  const auto add = [&](const Beyond& beyond, const std::string& what, const std::string& most,
+                       const std::string& so) {
+    if (beyond.steps.count == 0) return;
+    const bool part = backend_->info().route == "condensed";
+    all.push_back(beyond.steps.sentence(
+        what + " (most in step " + std::to_string(beyond.at) + ": " + most +
+        (part ? ", in the region that a frame computes" : "") + "): " + so + " (docs/limits.md)"));
+  };
+  const auto three = [](double value) {
+    std::ostringstream out;
+    out << std::setprecision(3) << value;
+    return out.str();
+  };
+  const std::string verb = " live tissue by over ";
+  add(strained_, "strained" + verb + three(100 * kSmallStrain) + " %",
+      three(100 * strained_.most) + " %",
+      "the law is linear, for small strains, and the figures there are no longer those of tissue");
+  add(turned_, "turned" + verb + three(kSmallRotationDeg) + " deg", three(turned_.most) + " deg",
+      "the theory of small strains takes a rotation for strain");
+  add(inverted_, "turned live elements inside out",
+      three(inverted_.most) + (inverted_.most > 1 ? " elements" : " element"),
+      "with det(I + grad u) <= 0 no body has that shape");
+}
+
+const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
+
+std::vector<TipState> Simulation::tips() {
+  std::vector<TipState> tips;
+  if (!solved_) return tips;
+  std::vector<Finding> found;
+  criterion_->tips(fracture_state({}), tips, found);
+  for (const Finding& finding : found) note(finding);
+  return tips;
+}
+
+std::vector<Vec3> Simulation::reactions() const {
+  Reactions r;
+  read(r);
+  return r.forces;
+}
+
+void Simulation::read(Reactions& r) const {
+  r.forces.clear();
+  for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
+    r.forces.push_back(loads_->force(i));
+  }
+  r.grips.resize(problem_->gripped_dofs().size());
+  if (r.grips.empty()) return;
+  backend_->read_reactions(r.grips);
+  for (std::size_t g = 0; g < r.grips.size(); ++g) {
+    const auto [instrument, axis] = loads_->gripped()[g];
+    r.forces[instrument][axis] += r.grips[g];
+  }
+}
+
+Vec3 Simulation::support_reaction() const {
+  std::vector<double> u(3 * problem_->mesh().nodes.size());
+  backend_->read_displacement(u);
+  const auto destroyed = backend_->destroyed();
+  Vec3 sum = -loads_->force_on_supports();
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    const auto& tet = problem_->mesh().tets[e];
+    for (int a = 0; a < 4; ++a) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (problem_->dof(tet[a], axis) != kNone) continue;
+        const double scale = destroyed[e] ? problem_->scene().fracture.alpha : 1.0;
+        const TetShape& shape = problem_->shape(e);
+        const Voigt s = fem::stress(shape, problem_->small_strain(e),
+                                    fem::corner_displacement(problem_->mesh(), e, u));
+        sum[axis] += scale * shape.volume * (tensor(s) * shape.gradient.col(a))[axis];
+      }
+    }
+  }
+  return sum;
+}
+
+std::vector<Index> Simulation::acting_nodes(std::size_t instrument) const {
+  const auto nodes = loads_->nodes(instrument);
+  return {nodes.begin(), nodes.end()};
+}
+
+double Simulation::compliance() {
+  read(reactions_);
+  const std::vector<Vec3>& forces = reactions_.forces;
+  std::vector<Vec3>& u = reactions_.displacement;
+  double work = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (problem_->scene().instruments.empty()) break;
+    const auto* grip = std::get_if<Grip>(&problem_->scene().instruments[i].action);
+    if (grip) {
+      const Vec3 displacement =
+          loads_->value(i, static_cast<double>(next_step_ + 1) / problem_->scene().steps);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (grip->axes.has(axis)) work += forces[i][axis] * displacement[axis];
+      }
+      continue;
+    }
+    const auto nodes = loads_->nodes(i);
+    if (nodes.empty()) continue;
+    u.resize(nodes.size());
+    backend_->read_displacement(nodes, u);
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& v : u) mean += v;
+    work += forces[i].dot(mean) / static_cast<double>(nodes.size());
+  }
+  return work;
+}
+
+std::vector<Vec3> Simulation::displacement() const {
+  std::vector<Vec3> result(problem_->mesh().nodes.size(), Vec3::Zero());
+  if (!solved_) return result;
+  std::vector<double> flat(3 * result.size());
+  backend_->read_displacement(flat);
+  for (std::size_t n = 0; n < result.size(); ++n) {
+    result[n] = Vec3(flat[3 * n], flat[3 * n + 1], flat[3 * n + 2]);
+  }
+  return result;
+}
+
+std::vector<Voigt> Simulation::stress() const {
+  std::vector<Voigt> result(problem_->mesh().tets.size(), Voigt::Zero());
+  if (!backend_->needs().stress) throw UsageError("stress was left out of this simulation");
+  if (solved_) backend_->read_stress(result);
+  return result;
+}
+
+}  // namespace sunder

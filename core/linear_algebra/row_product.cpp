@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "linear_algebra/row_product.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "linear_algebra/vectorised.hpp"
+
+namespace sunder::linear_algebra {
+namespace {
+
+using Index = Eigen::Index;
+constexpr Index kLanes = 8;
+typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
+
+inline __attribute__((always_inline)) void load(const double* p, Lanes& v) {
+  std::memcpy(&v, p, sizeof(v));
+}
+inline __attribute__((always_inline)) void store(double* p, const Lanes& v) {
+  std::memcpy(p, &v, sizeof(v));
+}
+
+/// Rows x (Vectors * kLanes) entries of c, kept in registers.
+template <bool Add, int Rows, int Vectors>
+inline __attribute__((always_inline)) void tile(const LeftFactor& a, Index row, const double* b,
+                                                Index b_stride, double* c, Index c_stride) {
+  Lanes sum[Rows][Vectors] = {};
+  for (int r = 0; Add && r < Rows; ++r) {
+    for (int v = 0; v < Vectors; ++v) load(c + r * c_stride + v * kLanes, sum[r][v]);
+  }
+  const double* left = a.data + row * a.row_stride;
+  for (Index k = 0; k < a.columns; ++k, left += a.column_stride, b += b_stride) {
+    Lanes right[Vectors];
+    for (int v = 0; v < Vectors; ++v) load(b + v * kLanes, right[v]);
+    for (int r = 0; r < Rows; ++r) {
+      const double l = left[r * a.row_stride];
+      for (int v = 0; v < Vectors; ++v) sum[r][v] += l * right[v];
+    }
+  }
+  for (int r = 0; r < Rows; ++r) {
+    for (int v = 0; v < Vectors; ++v) store(c + r * c_stride + v * kLanes, sum[r][v]);
+  }
+}
+
+template <bool Add, int Vectors>
+inline __attribute__((always_inline)) void strip(const LeftFactor& a, const double* b,
+                                                 Index b_stride, double* c, Index c_stride) {
+  constexpr int kRows = 4;
+  Index i = 0;
+  for (; i + kRows <= a.rows; i += kRows) {
+    tile<Add, kRows, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+  }
+  for (; i < a.rows; ++i) tile<Add, 1, Vectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+}
+
+template <bool Add>
+inline __attribute__((always_inline)) void product(const LeftFactor& a, const double* b,
+                                                   Index b_stride, Index width, double* c,
+                                                   Index c_stride) {
+  Index j = 0;
+  for (; j + 2 * kLanes <= width; j += 2 * kLanes) {
+    strip<Add, 2>(a, b + j, b_stride, c + j, c_stride);
+  }
+  for (; j + kLanes <= width; j += kLanes) strip<Add, 1>(a, b + j, b_stride, c + j, c_stride);
+  if (j == width) return;
+  // The last columns, padded with zeros to a full vector.
+  const Index rest = width - j;
+  std::vector<double> padded(static_cast<std::size_t>((a.columns + a.rows) * kLanes), 0.0);
+  for (Index k = 0; k < a.columns; ++k) {
+    std::copy_n(b + k * b_stride + j, rest, &padded[static_cast<std::size_t>(k * kLanes)]);
+  }
+  double* result = padded.data() + a.columns * kLanes;
+  for (Index i = 0; Add && i < a.rows; ++i) {
+    std::copy_n(c + i * c_stride + j, rest, result + i * kLanes);
+  }
+  strip<Add, 1>(a, padded.data(), kLanes, result, kLanes);
+  for (Index i = 0; i < a.rows; ++i) {
+    std::copy_n(result + i * kLanes, rest, c + i * c_stride + j);
+  }
+}
+
+}  // namespace
+
+SUNDER_VECTORISED
+void row_product(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
+                 Index c_stride) {
+  product<false>(a, b, b_stride, width, c, c_stride);
+}
+
+SUNDER_VECTORISED
+void row_product_add(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
+                     Index c_stride) {
+  product<true>(a, b, b_stride, width, c, c_stride);
+}
+
+SUNDER_VECTORISED
+void packed_product(const LeftFactor& a, const double* b, Index b_stride, Index width, double* c,
+                    Index c_stride, std::vector<double>& room) {
+  constexpr Index kTile = 4, kStrip = 2 * kLanes;
+  const Index tiles = a.rows / kTile, strips = width / kStrip;
+  if (tiles < 2 || strips < 2) {
+    product<false>(a, b, b_stride, width, c, c_stride);
+    return;
+  }
+  const Index packed = kTile * a.columns, left = tiles * packed;
+  room.resize(std::max(room.size(), static_cast<std::size_t>(left + kStrip * a.columns)));
+  for (Index t = 0; t < tiles; ++t) {
+    for (Index k = 0; k < a.columns; ++k) {
+      const double* from = a.data + kTile * t * a.row_stride + k * a.column_stride;
+      double* to = room.data() + t * packed + kTile * k;
+      for (Index r = 0; r < kTile; ++r) to[r] = from[r * a.row_stride];
+    }
+  }
+  double* strip_room = room.data() + left;
+  for (Index j = 0; j < strips * kStrip; j += kStrip) {
+    for (Index k = 0; k < a.columns; ++k) {
+      std::memcpy(strip_room + k * kStrip, b + k * b_stride + j, kStrip * sizeof(double));
+    }
+    for (Index t = 0; t < tiles; ++t) {
+      tile<false, kTile, 2>({room.data() + t * packed, kTile, a.columns, 1, kTile}, 0, strip_room,
+                            kStrip, c + kTile * t * c_stride + j, c_stride);
+    }
+    for (Index i = kTile * tiles; i < a.rows; ++i) {
+      tile<false, 1, 2>(a, i, strip_room, kStrip, c + i * c_stride + j, c_stride);
+    }
+  }
+  const Index done = strips * kStrip;
+  if (done < width) product<false>(a, b + done, b_stride, width - done, c + done, c_stride);
+}
+
+// Blocks of columns: their own triangle row by row, the rest by a product.
+SUNDER_VECTORISED
+void lower_solve(const double* l, Index l_stride, Index n, double* x, Index x_stride, Index width,
+                 double* product_room) {
+  constexpr Index kColumns = 16;
+  for (Index begin = 0; begin < n; begin += kColumns) {
+    const Index end = std::min(begin + kColumns, n);
+    for (Index j = begin; j < end; ++j) {
+      const double* column = l + j * l_stride;
+      double* solved = x + j * x_stride;
+      for (Index c = 0; c < width; ++c) solved[c] /= column[j];
+      for (Index i = j + 1; i < end; ++i) {
+        double* row = x + i * x_stride;
+        for (Index c = 0; c < width; ++c) row[c] -= column[i] * solved[c];
+      }
+    }
+    if (end == n) return;
+    product<false>({l + begin * l_stride + end, n - end, end - begin, 1, l_stride},
+                   x + begin * x_stride, x_stride, width, product_room, width);
+    for (Index i = end; i < n; ++i) {
+      const double* from = product_room + (i - end) * width;
+      for (Index c = 0; c < width; ++c) x[i * x_stride + c] -= from[c];
+    }
+  }
+}
+
+}  // namespace sunder::linear_algebra

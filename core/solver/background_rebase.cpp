@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/background_rebase.hpp"
+
+#include <chrono>
+#include <exception>
+#include <numeric>
+
+namespace sunder::solver {
+
+void check_base(Based& based, const DamagedBody& body, const Load& load,
+                const std::function<void(Eigen::VectorXd&)>& complete) {
+  Deferred& deferred = *based.deferred;
+  const Forces forces{load.force_dofs, load.forces};
+  Eigen::VectorXd u, du, r;
+  deferred.solve(forces, load.displacements, u);
+  complete(u);
+  body.apply(u, r);
+  r = -r;
+  for (std::size_t i = 0; i < load.forces.size(); ++i) r[load.force_dofs[i]] += load.forces[i];
+  for (Index d : body.problem().gripped_dofs()) r[d] = 0;
+  std::vector<Index> all(static_cast<std::size_t>(r.size()));
+  std::iota(all.begin(), all.end(), 0);
+  deferred.correct({all, {r.data(), all.size()}}, du);
+  complete(du);
+  const double stress = body.largest_stress(du), largest = body.largest_stress(u);
+  based.check = {load, stress / r.norm(), stress == 0 ? 0.0 : stress / largest};
+  deferred.solve(forces, load.displacements, u);
+}
+
+BackgroundRebase::BackgroundRebase(const DamagedBody& body, int events,
+                                   std::chrono::milliseconds rest)
+    : events_(events), rest_(rest), body_(body) {
+  const auto unknowns = static_cast<std::size_t>(body.problem().dof_count());
+  load_.force_dofs.reserve(unknowns);
+  load_.forces.reserve(unknowns);
+  load_.displacements.reserve(body.problem().gripped_dofs().size());
+  elements_.reserve(body.scale().size());  // each is destroyed once
+  ends_.reserve(body.scale().size());
+  thread_ = std::thread([this] { run(); });
+}
+
+BackgroundRebase::~BackgroundRebase() {
+  unwanted_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    quit_ = true;
+  }
+  asked_.notify_one();
+  thread_.join();
+}
+
+void BackgroundRebase::follow(std::span<const Index> elements) {
+  {
+    const std::lock_guard lock(mutex_);
+    elements_.insert(elements_.end(), elements.begin(), elements.end());
+    ends_.push_back(elements_.size());
+  }
+  if (!making_) return;
+  ++followed_;
+  asked_.notify_one();
+}
+
+void BackgroundRebase::start(const Load& load, MakeBase make) {
+  making_ = true;
+  followed_ = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    load_ = load;
+    make_ = std::move(make);
+    phase_ = Phase::asked;
+    start_ = ends_.size();
+  }
+  asked_.notify_one();
+}
+
+bool BackgroundRebase::take(Based& based) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  making_ = false;
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return phase_ == Phase::following && at_ == ends_.size(); });
+  waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  phase_ = Phase::idle;
+  if (!result_.deferred) return false;
+  old_ = std::move(based);
+  based = std::move(result_);
+  result_ = {};
+  lock.unlock();
+  asked_.notify_one();
+  return true;
+}
+
+void BackgroundRebase::give_up() {
+  making_ = false;
+  unwanted_ = true;
+  std::unique_lock lock(mutex_);
+  phase_ = Phase::idle;
+  done_.wait(lock, [this] { return !busy_; });
+  phase_ = Phase::idle;
+  result_ = {};
+  unwanted_ = false;
+}
+
+bool BackgroundRebase::work_waits() const {
+  return quit_ || old_.deferred || phase_ == Phase::asked ||
+         (phase_ == Phase::following && at_ < ends_.size());
+}
+
+void BackgroundRebase::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    asked_.wait(lock, [this] { return work_waits(); });
+    if (rest_.count() > 0) {
+      lock.unlock();
+      std::this_thread::sleep_for(rest_);
+      lock.lock();
+      if (!work_waits()) continue;
+    }
+    if (quit_) return;
+    busy_ = true;
+    if (old_.deferred) {
+      const Based old = std::move(old_);
+      old_ = {};
+      lock.unlock();
+    } else if (phase_ == Phase::asked) {
+      make(lock);
+    } else {
+      follow_next(lock);
+    }
+    if (!lock.owns_lock()) lock.lock();
+    busy_ = false;
+    done_.notify_one();
+  }
+}
+
+/// Events from at_ to `end`, so that the lists may grow meanwhile.
+void BackgroundRebase::copy_events(std::size_t end) {
+  const auto begin = elements_.begin();
+  const auto at = [&](std::size_t event) {
+    return begin + static_cast<std::ptrdiff_t>(event == 0 ? 0 : ends_[event - 1]);
+  };
+  event_.assign(at(at_), at(end));
+  at_ = end;
+}
+
+void BackgroundRebase::make(std::unique_lock<std::mutex>& lock) {
+  copy_events(start_);
+  const MakeBase make = std::move(make_);
+  lock.unlock();
+  body_.destroy(event_);
+  Based based;
+  try {
+    based = make(body_, load_, {.stop = &unwanted_});
+  } catch (const std::exception&) {
+    // Out of memory, not definite or unwanted: it stays empty, and the frame that takes it decides.
+  }
+  lock.lock();
+  result_ = std::move(based);
+  if (phase_ == Phase::asked) phase_ = Phase::following;
+}
+
+void BackgroundRebase::follow_next(std::unique_lock<std::mutex>& lock) {
+  const std::size_t next = at_ + 1;
+  copy_events(next);
+  at_ = next - 1;  // not yet followed
+  lock.unlock();
+  body_.destroy(event_);
+  if (result_.deferred && !result_.deferred->destroy(event_)) result_ = {};
+  lock.lock();
+  at_ = next;
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// New unknowns d, offsets of old ones, as a border of the damaged body (method.md "Changes"). An
+// element with corners at new nodes stays in A, the matrix of the old unknowns, as if they were
+// their parents; what is new are blocks beside it:
+//   [ A          B E ] [u]   [f  ]
+//   [ E^T B^T    F   ] [d] = [f_d],   S = F - E^T B^T A^-1 B E.
+// With A^-1 = X + X B M B^T X and G = B^T X B (deferred.hpp) S = F - E^T H, H = G N,
+// N = E + M G E, and u = X (f + B x) with x = M p - N d, p = B^T X f, S d = f_d - N^T p.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <vector>
+
+#include "body/change.hpp"
+#include "solver/base.hpp"
+#include "solver/difference_basis.hpp"
+
+namespace sunder::solver {
+
+class Border {
+ public:
+  /// Whether there are no new unknowns.
+  [[nodiscard]] bool empty() const { return d_.size() == 0; }
+  [[nodiscard]] Index size() const { return static_cast<Index>(d_.size()); }
+  /// Which of them a new node has on an axis; kNone: there it keeps to its parent.
+  [[nodiscard]] Index unknown(Index added, int axis) const;
+
+  /// E and F of the elements at new nodes, all of them in the basis; E has `columns` rows, the
+  /// first `grips` of them zero.
+  void assemble(const Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
+                Eigen::Index columns);
+  /// Reads the leading blocks of G and M; false where S is not positive definite in double
+  /// precision.
+  [[nodiscard]] bool factor(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m);
+  /// What the border adds to (A^-1)_GG of the grips.
+  void add_to_grips(Eigen::MatrixXd& compliance) const;
+
+  /// Takes forces on unknowns from `first` on as f_d; returns those before it.
+  [[nodiscard]] Forces take(const Forces& forces, Index first);
+  /// f_d = 0.
+  void take_none() { load_.setZero(); }
+  /// d by p, and x = M p becomes M p - N d.
+  void start(const Eigen::VectorXd& p, Eigen::VectorXd& x);
+  /// With v = B^T u: the forces -E d on B join `lack`; what lacks on the new unknowns is kept.
+  void add_lack(const Eigen::VectorXd& v, Eigen::VectorXd& lack);
+  /// Lets d follow forces `lack` on B and what lacks on the new unknowns; returns the energy that
+  /// this adds to that of `lack`. The grips' share of the motion -H dd joins `moved`.
+  [[nodiscard]] double correct(const Eigen::VectorXd& lack, Eigen::VectorXd& x,
+                               Eigen::VectorXd& moved);
+  /// Lets d follow forces of the grips.
+  void follow_grips(const Eigen::VectorXd& forces, Eigen::VectorXd& x);
+  [[nodiscard]] const Eigen::VectorXd& offsets() const { return d_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  void number(const Forms& forms);
+  void add(const Forms& forms, const Form& form, DifferenceBasis& basis, Eigen::Index grips);
+
+  std::vector<std::array<Index, 3>> unknowns_;  // of each new node
+  Eigen::MatrixXd e_, f_, n_, h_;
+  Eigen::LLT<Eigen::MatrixXd> s_;
+  Eigen::VectorXd load_, d_, lack_, step_;  // f_d; d; what lacks on d; a step of d
+  std::vector<Index> dofs_;                 // of the forces before f_d
+  std::vector<double> values_;
+  std::vector<Index> rows_;
+  linear_algebra::RowMajor y_;
+};
+
+}  // namespace sunder::solver

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/condensed_base.hpp"
+
+#include <algorithm>
+
+#include "solver/columns.hpp"
+
+namespace sunder::solver {
+
+namespace {
+
+/// X with further columns and, by symmetry, rows.
+std::shared_ptr<const Eigen::MatrixXd> extended(const Eigen::MatrixXd& x,
+                                                const Eigen::MatrixXd& columns) {
+  const Eigen::Index old = x.rows(), size = columns.rows();
+  auto result = std::make_shared<Eigen::MatrixXd>(size, size);
+  result->topLeftCorner(old, old) = x;
+  result->rightCols(size - old) = columns;
+  result->bottomLeftCorner(size - old, old) = columns.topRows(old).transpose();
+  return result;
+}
+
+constexpr std::size_t kVectors = 1024;  // room for them
+
+}  // namespace
+
+void Equilibrium::reserve(std::size_t loaded, std::size_t touched) {
+  dofs.reserve(loaded + touched);
+  forces.reserve(loaded + touched);
+  lost_u.reserve(touched);
+}
+
+std::size_t Equilibrium::bytes() const {
+  return dofs.capacity() * sizeof(Index) + (forces.capacity() + lost_u.capacity()) * sizeof(double);
+}
+
+void CondensedState::reserve(std::size_t unknowns, std::size_t differences) {
+  dofs.reserve(unknowns);
+  vectors.reserve(differences);
+}
+
+void CondensedState::release() {
+  factor.reset();
+  x.reset();
+  x_of_factor.reset();
+  lost.reset();
+}
+
+CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor,
+                             std::span<const Index> dofs)
+    : CondensedBase(factor, dofs,
+                    std::make_shared<const Eigen::MatrixXd>(factor->inverse_block(dofs, dofs))) {}
+
+CondensedBase::CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
+                             std::shared_ptr<const LostStiffness> lost)
+    : CondensedBase(before.factor, before.dofs,
+                    std::make_shared<const Eigen::MatrixXd>(std::move(x))) {
+  x_of_factor_ = before.x_of_factor;
+  lost_ = std::move(lost);
+}
+
+CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor,
+                             std::span<const Index> dofs, std::shared_ptr<const Eigen::MatrixXd> x)
+    : factor_(std::move(factor)),
+      dofs_(dofs.begin(), dofs.end()),
+      place_(static_cast<std::size_t>(factor_->cholesky().size()), kNone),
+      x_(std::move(x)),
+      x_of_factor_(x_) {
+  for (std::size_t i = 0; i < dofs_.size(); ++i) place_[dofs_[i]] = static_cast<Index>(i);
+  is_touched_.assign(dofs_.size(), kNone);
+  of_load_.setZero(x_->rows());
+  u_.setZero(x_->rows());
+  projected_.resize(kVectors);
+  touched_.reserve(dofs_.size());
+  loaded_.reserve(dofs_.size());
+  forces_.reserve(dofs_.size());
+  vectors_.reserve(kVectors);
+  pushes_.reserve(kVectors);
+  make_room_everywhere();
+}
+
+/// So that a load outside S, which is that of a full check, allocates nothing.
+void CondensedBase::make_room_everywhere() {
+  const auto all = static_cast<std::size_t>(size());
+  load_.reserve(all);
+  right_side_.setZero(size());
+  solution_.setZero(size());
+  work_.below.reserve(all);
+  work_.permuted.setZero(size());
+  moved_.reserve(dofs_.size());
+  of_moved_.reserve(dofs_.size());
+  forces_lost_.setZero(x_->rows());
+  of_lost_.setZero(x_->rows());
+}
+
+void CondensedBase::grow(std::span<const Difference> vectors) {
+  const std::size_t before = dofs_.size();
+  for (const Difference& v : vectors) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || place_[d] != kNone) continue;
+      place_[d] = static_cast<Index>(dofs_.size());
+      dofs_.push_back(d);
+    }
+  }
+  if (dofs_.size() == before) return;
+  const auto added = std::span(dofs_).subspan(before);
+  const auto old = static_cast<Eigen::Index>(before),
+             size = static_cast<Eigen::Index>(dofs_.size());
+  Eigen::MatrixXd columns = factor_->inverse_block(dofs_, added);
+  x_of_factor_ = extended(*x_of_factor_, columns);
+  if (lost_) {  // X = X0 + X0 D X0 + X0 D X D X0, and X D X0 of it on the old unknowns
+    const Eigen::MatrixXd forces = forces_lost(columns.topRows(old));
+    columns.topRows(old) += *x_ * forces;
+    columns.bottomRows(size - old) += forces.transpose() * columns.topRows(old);
+    x_ = extended(*x_, columns);
+  } else {
+    x_ = x_of_factor_;
+  }
+  is_touched_.resize(dofs_.size(), kNone);
+  load_.forget();
+  u_.setZero(size);
+}
+
+void CondensedBase::push(std::span<const Difference> vectors, linear_algebra::RowMajor& gram) {
+  grow(vectors);
+  pushes_.push_back(vectors_.size());
+  vectors_.insert(vectors_.end(), vectors.begin(), vectors.end());
+  for (const Difference& v : vectors) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || is_touched_[place_[d]] != kNone) continue;
+      is_touched_[place_[d]] = static_cast<Index>(touched_.size());
+      touched_.push_back(place_[d]);
+    }
+  }
+  for (std::size_t j = 0; j < vectors.size(); ++j) {
+    const double* a = x_->col(place_[vectors[j].dof]).data();
+    const double* b =
+        vectors[j].other == kNone ? nullptr : x_->col(place_[vectors[j].other]).data();
+    for (std::size_t i = 0; i < vectors_.size(); ++i) {
+      const Index dof = place_[vectors_[i].dof];
+      double value = b ? a[dof] - b[dof] : a[dof];
+      if (vectors_[i].other != kNone) {
+        const Index other = place_[vectors_[i].other];
+        value -= b ? a[other] - b[other] : a[other];
+      }
+      gram(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = value;
+    }
+  }
+}
+
+void CondensedBase::pop() {
+  vectors_.resize(pushes_.back());
+  pushes_.pop_back();
+  for (Index p : touched_) is_touched_[p] = kNone;
+  touched_.clear();
+  for (const Difference& v : vectors_) {
+    for (Index d : {v.dof, v.other}) {
+      if (d == kNone || is_touched_[place_[d]] != kNone) continue;
+      is_touched_[place_[d]] = static_cast<Index>(touched_.size());
+      touched_.push_back(place_[d]);
+    }
+  }
+}
+
+void CondensedBase::apply_inside(std::span<const Index> dofs, std::span<const double> values) {
+  loaded_.clear();
+  for (Index d : dofs) loaded_.push_back(place_[d]);
+  of_load_.setZero(x_->rows());
+  add_columns(*x_, loaded_, values, of_load_);
+}
+
+/// D u of one column u on S, on the unknowns of D; `moved` is u there.
+void CondensedBase::lose(const double* u, std::span<double> moved, std::span<double> forces) const {
+  const auto dofs = lost_->dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) moved[i] = u[place_[dofs[i]]];
+  lost_->multiply(moved, forces);
+}
+
+/// D u for columns u on S, as forces on S.
+Eigen::MatrixXd CondensedBase::forces_lost(const Eigen::MatrixXd& u) const {
+  const auto dofs = lost_->dofs();
+  std::vector<double> moved(dofs.size()), forces(dofs.size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(u.rows(), u.cols());
+  for (Eigen::Index j = 0; j < u.cols(); ++j) {
+    lose(u.col(j).data(), moved, forces);
+    for (std::size_t i = 0; i < dofs.size(); ++i) result(place_[dofs[i]], j) = forces[i];
+  }
+  return result;
+}
+
+/// of_load_ += X D of_load_.
+void CondensedBase::add_lost() {
+  const auto dofs = lost_->dofs();
+  moved_.resize(dofs.size());
+  of_moved_.resize(dofs.size());
+  lose(of_load_.data(), moved_, of_moved_);
+  forces_lost_.setZero(of_load_.size());
+  for (std::size_t i = 0; i < dofs.size(); ++i) forces_lost_[place_[dofs[i]]] = of_moved_[i];
+  of_lost_.noalias() = *x_ * forces_lost_;
+  of_load_ += of_lost_;
+}
+
+/// With g = X0 f, X f = g + X D g.
+void CondensedBase::apply_everywhere(std::span<const Index> dofs, std::span<const double> values) {
+  right_side_.setZero(size());
+  for (std::size_t i = 0; i < dofs.size(); ++i) right_side_[dofs[i]] += values[i];
+  factor_->solve(right_side_, solution_, work_);
+  of_load_.resize(x_->rows());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) {
+    of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
+  }
+  if (lost_) add_lost();
+}
+
+const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
+  if (load_.take(forces)) {
+    if (inside(forces.dofs)) {
+      apply_inside(forces.dofs, forces.values);
+    } else {
+      apply_everywhere(forces.dofs, forces.values);
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(vectors_.size());
+  if (projected_.size() < count) projected_.resize(2 * count + 256);
+  for (std::size_t i = 0; i < vectors_.size(); ++i) {
+    const auto [dof, other] = vectors_[i];
+    const double u = of_load_[place_[dof]];
+    projected_[static_cast<Eigen::Index>(i)] = other == kNone ? u : u - of_load_[place_[other]];
+  }
+  return projected_;
+}
+
+void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
+  forces_.assign(touched_.size(), 0.0);
+  for (std::size_t i = 0; i < vectors_.size(); ++i) {
+    const double force = c[static_cast<Eigen::Index>(i)];
+    forces_[is_touched_[place_[vectors_[i].dof]]] += force;
+    if (vectors_[i].other != kNone) forces_[is_touched_[place_[vectors_[i].other]]] -= force;
+  }
+  u_.setZero();
+  add_columns(*x_, touched_, forces_, u_);
+  u_ += of_load_;
+  if (u.size() != size()) u.setZero(size());
+  for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = u_[static_cast<Eigen::Index>(i)];
+}
+
+bool CondensedBase::inside(std::span<const Index> dofs) const {
+  return std::ranges::all_of(dofs, [&](Index d) { return place_[d] != kNone; });
+}
+
+Eigen::VectorXd CondensedBase::drift() const {
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(u_.size());
+  if (lost_) forces = forces_lost(u_);
+  for (std::size_t i = 0; i < load_.dofs().size(); ++i) {
+    forces[place_[load_.dofs()[i]]] += load_.values()[i];
+  }
+  for (std::size_t i = 0; i < touched_.size(); ++i) forces[touched_[i]] += forces_[i];
+  Eigen::VectorXd lacks = *x_of_factor_ * forces - u_;
+  if (lost_) lacks += *x_ * forces_lost(lacks);
+  return lacks;
+}
+
+void CondensedBase::copy_state(CondensedState& to) const {
+  to.factor = factor_;
+  to.dofs = dofs_;
+  to.x = x_;
+  to.x_of_factor = x_of_factor_;
+  to.lost = lost_;
+  to.vectors = vectors_;
+}
+
+void CondensedBase::equilibrium(Equilibrium& of) const {
+  of.factor = factor_;
+  of.dofs.assign(load_.dofs().begin(), load_.dofs().end());
+  of.forces.assign(load_.values().begin(), load_.values().end());
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    of.dofs.push_back(dofs_[touched_[i]]);
+    of.forces.push_back(forces_[i]);
+  }
+  of.lost = lost_;
+  of.lost_u.clear();
+  if (!lost_) return;
+  for (Index d : lost_->dofs()) of.lost_u.push_back(u_[place_[d]]);
+}
+
+std::vector<BufferPlan> CondensedBase::buffers() const {
+  const std::size_t bytes = static_cast<std::size_t>(x_->size()) * sizeof(double);
+  std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)", bytes}};
+  if (x_ != x_of_factor_) plan.push_back({"condensed inverse of the factor", bytes});
+  if (lost_) plan.push_back({"stiffness lost between factor and inverse", lost_->bytes()});
+  plan.push_back({"loads outside the condensed region",
+                  static_cast<std::size_t>(size()) * (5 * sizeof(double) + sizeof(Index))});
+  return plan;
+}
+
+}  // namespace sunder::solver

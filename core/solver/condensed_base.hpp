@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Base `condensed`: X_SS, the inverse restricted to the unknowns S that damage and instruments
+// touch. With forces on S alone u_S = X_SS f_S exactly, and an update between unknowns of S stays
+// in it: a frame costs what the region is large, whatever the body around it. What u is elsewhere
+// is solved for with the factor when somebody asks.
+#pragma once
+
+#include <memory>
+
+#include "linear_algebra/factor.hpp"
+#include "solver/last_load.hpp"
+#include "solver/lost_stiffness.hpp"
+
+namespace sunder::solver {
+
+/// Forces [N] on the body of `factor` whose solution is that of the damaged one: f + B c, and D u
+/// of what was lost between factor and base. An unknown may come twice.
+struct Equilibrium {
+  /// For forces on so many unknowns, loaded and touched by damage.
+  void reserve(std::size_t loaded, std::size_t touched);
+  [[nodiscard]] std::size_t bytes() const;
+  std::shared_ptr<const linear_algebra::Factor> factor;
+  std::vector<Index> dofs;
+  std::vector<double> forces;
+  std::shared_ptr<const LostStiffness> lost;  // empty: nothing
+  std::vector<double> lost_u;                 // u on its unknowns [mm]
+};
+
+/// A base as it is at a moment; the inverse is shared, and nobody writes it.
+struct CondensedState {
+  std::shared_ptr<const linear_algebra::Factor> factor;
+  std::vector<Index> dofs;                             // S
+  std::shared_ptr<const Eigen::MatrixXd> x;            // X_SS
+  std::shared_ptr<const Eigen::MatrixXd> x_of_factor;  // X_SS without what was lost since
+  std::shared_ptr<const LostStiffness> lost;           // since; empty: nothing
+  std::vector<Difference> vectors;                     // B
+
+  /// For so many unknowns of S and vectors.
+  void reserve(std::size_t unknowns, std::size_t differences);
+  /// Lets go of what is shared; the lists keep their room.
+  void release();
+};
+
+class CondensedBase final : public Base {
+ public:
+  /// Over the unknowns `dofs`, ascending.
+  CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs);
+  /// X_SS of a body that has lost stiffness, all of it within S, since it was factored.
+  CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
+                std::shared_ptr<const LostStiffness> lost);
+
+  [[nodiscard]] Index size() const override { return factor_->cholesky().size(); }
+  /// Vectors that leave S make S grow: one solve per unknown.
+  void push(std::span<const Difference> vectors, linear_algebra::RowMajor& gram) override;
+  void pop() override;
+  /// A load that leaves S costs one solve; the same load as last time costs nothing.
+  const Eigen::VectorXd& load(const Forces& forces) override;
+  /// Only the entries of S are written; the others keep what they held (0 at first).
+  void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
+  /// What stands behind the last expand().
+  void equilibrium(Equilibrium& of) const;
+  /// What the last expand() lacks on S by the factor's own inverse, D u as a force: with X0 that
+  /// inverse and g = X0 (f + B c + D u) - u it is g + X D g. All loads inside S.
+  [[nodiscard]] Eigen::VectorXd drift() const;
+  [[nodiscard]] bool inside(std::span<const Index> dofs) const;
+  /// S; at first the unknowns given.
+  [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
+  /// Into one that may have room already.
+  void copy_state(CondensedState& to) const;
+  [[nodiscard]] std::vector<BufferPlan> buffers() const override;
+
+ private:
+  CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs,
+                std::shared_ptr<const Eigen::MatrixXd> x);
+  void grow(std::span<const Difference> vectors);
+  void apply_inside(std::span<const Index> dofs, std::span<const double> values);
+  void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
+  void make_room_everywhere();
+  void lose(const double* u, std::span<double> moved, std::span<double> forces) const;
+  [[nodiscard]] Eigen::MatrixXd forces_lost(const Eigen::MatrixXd& u) const;
+  void add_lost();
+
+  std::shared_ptr<const linear_algebra::Factor> factor_;
+  std::vector<Index> dofs_, place_;                     // S, and where in it each unknown is
+  std::shared_ptr<const Eigen::MatrixXd> x_;            // X_SS
+  std::shared_ptr<const Eigen::MatrixXd> x_of_factor_;  // the same where nothing was lost
+  std::shared_ptr<const LostStiffness> lost_;           // between factor_ and x_; empty: nothing
+  std::vector<Difference> vectors_;
+  std::vector<std::size_t> pushes_;          // vectors_.size() before each
+  std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_
+  std::vector<double> forces_;               // B c on them
+  LastLoad load_;
+  std::vector<Index> loaded_;  // places that the load touches
+  Eigen::VectorXd of_load_;    // (X f)_S
+  Eigen::VectorXd u_, projected_, right_side_, solution_;
+  // Where a load is outside S and stiffness was lost: u on the unknowns of D, D u there and on S,
+  // and X D u.
+  std::vector<double> moved_, of_moved_;
+  Eigen::VectorXd forces_lost_, of_lost_;
+  linear_algebra::SolveWork work_;
+};
+
+}  // namespace sunder::solver

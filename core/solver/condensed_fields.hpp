@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Displacement and stress of a condensed body outside its region: a frame does not compute them; a
+// picture or a file that asks for them pays one solve with the factor.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/inverse_route.hpp"
+#include "solver/region.hpp"
+#include "solver/whole_solution.hpp"
+
+namespace sunder::solver {
+
+class CondensedFields {
+ public:
+  CondensedFields(const Problem& problem, Region region);
+  /// Makes room now: frames will ask, such as a criterion that looks around a tip.
+  void make_room(bool stress);
+  [[nodiscard]] const Region& region() const { return region_; }
+
+  /// A solution of the route on the region.
+  void take(const InverseRoute& route);
+  /// A solution that is known at all nodes (3 * nodes).
+  void take(std::span<const double> nodal);
+  /// The stress of the last solution is now what stress() says.
+  void publish_stress();
+
+  /// Fills the entries outside the region.
+  void complete(std::span<double> nodal);
+  /// Stress at all elements, a_e = scale[e]; inside the region a frame has its own, which counts.
+  [[nodiscard]] std::span<const Voigt> stress(std::span<const double> scale);
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct Solution {
+    Equilibrium of;
+    std::vector<double> nodal;
+    bool everywhere = false;  // `nodal` is filled
+  };
+  void solve(Solution& solution);
+
+  const Problem& problem_;
+  Region region_;
+  Solution displacement_, of_stress_;
+  std::vector<Voigt> stress_;
+  bool stress_known_ = false;
+  WholeRoom room_;
+  Eigen::VectorXd u_;
+};
+
+}  // namespace sunder::solver

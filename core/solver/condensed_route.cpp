@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/condensed_route.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "body/assembly.hpp"
+#include "body/stiffness_factor.hpp"
+#include "solver/background_rebase.hpp"
+#include "solver/condensed_update.hpp"
+#include "solver/load_room.hpp"
+#include "solver/whole_solution.hpp"
+
+namespace sunder::solver {
+namespace {
+
+// Events between the start of a new base and the frame that takes it. For 1,000 unknowns it takes
+// 30 to 60 ms: after 64 events frames that follow without a pause waited up to 40 ms (two
+// processors shared by four programs), after 96 up to 17; later ones gather more columns. A base
+// takes n^2 multiply-adds a column and a frame n, so that more unknowns need more frames.
+constexpr Index kFewestEvents = 96, kMostEvents = 384, kUnknownsPerEvent = 16;
+
+Index events_of_a_base(std::size_t dofs) {
+  return std::clamp(static_cast<Index>(dofs) / kUnknownsPerEvent, kFewestEvents, kMostEvents);
+}
+
+// A new base begins when the damage has so many columns: the small matrices then cost a frame about
+// as much as the columns of X_SS.
+constexpr std::size_t kFewestColumns = 64, kMostColumns = 256;
+
+// Columns that a base is expected to serve, fractures of some elements among them.
+Index columns_of_a_base(std::size_t dofs) {
+  return static_cast<Index>(kMostColumns) + 2 * events_of_a_base(dofs);
+}
+
+// Columns that an event brings: there is room for the damage of large ones (as in deferred.cpp),
+// and that of a few elements is touched from the start.
+constexpr std::size_t kLargestEvent = 512, kUsualEvent = 32;
+
+// An updated X_SS whose check finds more is computed anew from a factor of the damaged body, which
+// takes as long as thousands of frames. energy_check.cpp allows for a growth of 100 up to 1e-8;
+// half of that, as the shares of several loads add up. Over 640 fractures of 1,000 unknowns there
+// is up to 2e-11 within 30,246 elements and 1e-11 within 119,286, without growth from base to base.
+constexpr double kDrift = 5e-11;
+
+void complete_by(const CondensedBase& base, Equilibrium& whole, WholeRoom& room,
+                 Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
+  base.equilibrium(whole);
+  solve_whole(whole, room, everywhere);
+  for (Index d : base.dofs()) everywhere[d] = u[d];
+  u.swap(everywhere);
+}
+
+/// The base below a deferred update of this route.
+CondensedBase& base_of(const Based& based) {
+  return static_cast<CondensedBase&>(based.deferred->base());
+}
+
+Based lay_over(const Problem& problem, std::shared_ptr<const linear_algebra::Factor> factor,
+               std::unique_ptr<CondensedBase> base, bool damage) {
+  Based based;
+  based.factor = std::move(factor);
+  const Index columns = columns_of_a_base(base->dofs().size());
+  based.deferred = std::make_unique<Deferred>(problem, std::move(base), damage, columns);
+  return based;
+}
+
+/// X_SS by a factor.
+Based condensed_by(const Problem& problem, std::shared_ptr<const linear_algebra::Factor> factor,
+                   std::span<const Index> dofs, bool damage) {
+  auto base = std::make_unique<CondensedBase>(factor, dofs);
+  return lay_over(problem, std::move(factor), std::move(base), damage);
+}
+
+void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
+  Equilibrium whole;
+  WholeRoom room;
+  Eigen::VectorXd everywhere;
+  check_base(based, body, load,
+             [&](Eigen::VectorXd& u) { complete_by(base_of(based), whole, room, everywhere, u); });
+}
+
+/// A check of an updated X_SS by the factor's own: what it lacks, in elements within S. What lies
+/// outside follows from the forces on S by that factor, exactly. False: it cannot be had.
+bool check_updated(Based& based, const DamagedBody& body, const Load& load,
+                   std::span<const Index> elements) {
+  if (elements.empty() || !base_of(based).inside(load.force_dofs)) return false;
+  Eigen::VectorXd u, du;
+  based.deferred->solve({load.force_dofs, load.forces}, load.displacements, u);
+  const Eigen::VectorXd lacks = base_of(based).drift();
+  du.setZero(u.size());
+  const auto dofs = base_of(based).dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) du[dofs[i]] = lacks[static_cast<Eigen::Index>(i)];
+  const double stress = body.largest_stress(du, elements),
+               largest = body.largest_stress(u, elements);
+  if (!(stress > 0 && stress < largest)) return false;
+  based.check = {load, stress / lacks.norm(), stress / largest};
+  return true;
+}
+
+/// Elements all of whose unknowns are in S.
+std::vector<Index> elements_within(const Problem& problem, std::span<const Index> dofs) {
+  std::vector<std::uint8_t> inside(static_cast<std::size_t>(problem.dof_count()), 0);
+  for (Index d : dofs) inside[d] = 1;
+  std::vector<Index> elements;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    bool all = true;
+    for (Index n : problem.mesh().tets[e]) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem.dof(n, axis);
+        all = all && (d == kNone || inside[d]);
+      }
+    }
+    if (all) elements.push_back(e);
+  }
+  return elements;
+}
+
+/// The base that comes next: the last one updated, or a new factor where that has drifted. It has
+/// its room from the start, so that beginning one allocates nothing.
+class NextBase {
+ public:
+  /// Over the unknowns `dofs`; it begins once the damage has more columns than `threshold`.
+  NextBase(const Problem& problem, std::span<const Index> dofs, std::size_t threshold)
+      : within_(elements_within(problem, dofs)) {
+    const std::size_t columns = std::min(dofs.size(), threshold + kLargestEvent);
+    state_.reserve(dofs.size(), columns);
+    lost_.reserve(static_cast<std::size_t>(problem.tet_count()));
+    const auto room = static_cast<Eigen::Index>(columns),
+               touched = static_cast<Eigen::Index>(std::min(columns, threshold + kUsualEvent));
+    for (linear_algebra::RowMajor* a : {&damage_.compliance, &damage_.m, &damage_.d}) {
+      a->resize(room, room);
+      a->topLeftCorner(touched, touched).setZero();  // so that no frame waits for the memory
+    }
+  }
+
+  /// Copies what the next base is to be made of; `lost`: elements destroyed since the factor.
+  void begin(const Based& last, std::span<const Index> lost) {
+    base_of(last).copy_state(state_);
+    last.deferred->copy_damage(damage_);
+    lost_.assign(lost.begin(), lost.end());
+  }
+
+  /// On another thread; holds nothing of the last base afterwards.
+  Based make(const DamagedBody& body, const Load& load, const linear_algebra::FactorWork& work) {
+    const struct AtEnd {
+      NextBase& next;
+      ~AtEnd() { next.release(); }
+    } at_end{*this};
+    Based based = updated(body.problem(), load);
+    if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
+    if (based.check.error <= kDrift) return based;
+    based = condensed_by(body.problem(),
+                         std::make_shared<linear_algebra::Factor>(
+                             fem::factor_stiffness(body.problem(), body.scale(), work)),
+                         state_.dofs, true);
+    check_condensed(based, body, load);
+    return based;
+  }
+  void release() { state_.release(); }
+
+  [[nodiscard]] std::size_t bytes() const {
+    return sizeof(double) * static_cast<std::size_t>(damage_.compliance.size() + damage_.m.size() +
+                                                     damage_.d.size());
+  }
+
+ private:
+  Based updated(const Problem& problem, const Load& load) const {
+    return lay_over(
+        problem, state_.factor,
+        std::make_unique<CondensedBase>(state_, updated_inverse(state_, damage_, load.force_dofs),
+                                        std::make_shared<const LostStiffness>(problem, lost_)),
+        true);
+  }
+
+  CondensedState state_;
+  DamageMatrices damage_;
+  std::vector<Index> lost_;    // elements destroyed since the factor
+  std::vector<Index> within_;  // elements within S
+};
+
+/// Deferred update over X_SS.
+class CondensedRoute final : public InverseRoute {
+ public:
+  CondensedRoute(const DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
+                 std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest)
+      : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()) {
+    std::iota(all_.begin(), all_.end(), 0);
+    based_ = condensed_by(body.problem(), std::move(intact), dofs_, damage);
+    intact_ = based_.factor.get();
+    make_room(body.problem());
+    if (!damage) return;
+    lost_.reserve(body.scale().size());
+    next_.emplace(body.problem(), dofs_, threshold());
+    coming_.emplace(body, static_cast<int>(events_of_a_base(dofs_.size())), rest);
+  }
+
+  Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
+    load_ = load;
+    based_.deferred->solve({load.force_dofs, load.forces}, load.displacements, u, enough_);
+    return {};
+  }
+
+  Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& u) override {
+    based_.deferred->solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
+    complete(u);
+    return {};
+  }
+
+  void complete(Eigen::VectorXd& u) override {
+    complete_by(base_of(based_), whole_, room_, everywhere_, u);
+  }
+
+  bool equilibrium(Equilibrium& of) const override {
+    base_of(based_).equilibrium(of);
+    return true;
+  }
+
+  void destroy(std::span<const Index> elements) override {
+    if (coming_->due()) take_base();
+    coming_->follow(elements);
+    lost_.insert(lost_.end(), elements.begin(), elements.end());
+    if (!based_.deferred->destroy(elements)) {
+      rebase();
+    } else if (!coming_->making() &&
+               static_cast<std::size_t>(based_.deferred->rank()) > threshold()) {
+      lost_at_start_ = lost_.size();
+      next_->begin(based_, lost_);
+      coming_->start(load_, [this](const DamagedBody& body, const Load& load,
+                                   const linear_algebra::FactorWork& work) {
+        return next_->make(body, load, work);
+      });
+    }
+  }
+
+  bool rebase() override {
+    if (!coming_) return false;
+    coming_->give_up();
+    next_->release();
+    based_ = {};  // frees the old base first
+    based_ = condensed_by(body_.problem(),
+                          std::make_shared<linear_algebra::Factor>(
+                              fem::factor_stiffness(body_.problem(), body_.scale())),
+                          dofs_, true);
+    lost_.clear();
+    ++bases_;
+    return true;
+  }
+
+  const Deferred* deferred() const override { return based_.deferred.get(); }
+  void set_enough(double energy) override { enough_ = energy; }
+  int bases() const override { return bases_; }
+  const BaseCheck& base_check() const override { return based_.check; }
+  double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
+
+  std::vector<BufferPlan> buffers() const override {
+    std::vector<BufferPlan> plan = based_.deferred->buffers();
+    if (based_.factor.get() != intact_) {
+      plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
+    }
+    if (next_) plan.push_back({"damage that the next base takes over", next_->bytes()});
+    plan.push_back(
+        {"room of full checks", whole_.bytes() + room_.bytes() +
+                                    static_cast<std::size_t>(everywhere_.size()) * sizeof(double)});
+    return plan;
+  }
+
+ private:
+  [[nodiscard]] std::size_t dof_count() const {
+    return static_cast<std::size_t>(body_.problem().dof_count());
+  }
+
+  /// So that frames allocate nothing, a full check among them.
+  void make_room(const Problem& problem) {
+    reserve(load_, problem);
+    whole_.reserve(all_.size(), dofs_.size());
+    room_.reserve(problem.dof_count(), dofs_.size());
+    everywhere_.resize(problem.dof_count());
+  }
+
+  std::size_t threshold() const {
+    return body_.problem().gripped_dofs().size() +
+           std::clamp(dofs_.size() / 8, kFewestColumns, kMostColumns);
+  }
+
+  void take_base() {
+    const auto factor = based_.factor;
+    if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
+    if (based_.factor != factor) {       // what was destroyed before it is in it
+      lost_.erase(lost_.begin(), lost_.begin() + static_cast<std::ptrdiff_t>(lost_at_start_));
+    }
+    ++bases_;
+  }
+
+  const DamagedBody& body_;
+  std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
+  const linear_algebra::Factor* intact_ = nullptr;
+  Load load_;  // of the last solution
+  Based based_;
+  std::vector<Index> lost_;        // elements destroyed since based_.factor
+  std::size_t lost_at_start_ = 0;  // of them, when coming_ started
+  Equilibrium whole_;
+  WholeRoom room_;
+  Eigen::VectorXd everywhere_;
+  double enough_ = 0;
+  int bases_ = 1;
+  // Where something can be destroyed.
+  std::optional<NextBase> next_;
+  std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
+};
+
+}  // namespace
+
+std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body,
+                                              std::shared_ptr<const linear_algebra::Factor> intact,
+                                              std::span<const Index> dofs, bool damage,
+                                              std::chrono::milliseconds rest) {
+  return std::make_unique<CondensedRoute>(body, std::move(intact), dofs, damage, rest);
+}
+
+}  // namespace sunder::solver

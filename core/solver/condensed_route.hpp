@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Route condensed: the deferred update over X_SS (condensed_base.hpp), whose base is made anew
+// beside the frames from the last one.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <span>
+
+#include "body/damaged_body.hpp"
+#include "solver/inverse_route.hpp"
+
+namespace sunder::solver {
+
+/// Over the unknowns S = `dofs` (ascending), by the intact body's factor. The body must outlive it.
+/// `rest`: of the thread that makes new bases (background_rebase.hpp).
+[[nodiscard]] std::unique_ptr<InverseRoute> condensed_route(
+    const DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
+    std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest);
+
+}  // namespace sunder::solver

@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/deferred.hpp"
+
+#include <algorithm>
+
+#include "body/element.hpp"
+#include "solver/columns.hpp"
+#include "solver/update_vectors.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::solver {
+namespace {
+
+// Room for the differences of predicted fractures.
+constexpr std::size_t kPredicted = std::size_t{1} << 14;
+
+/// Rows and columns are processed in full vectors.
+Eigen::Index padded(Eigen::Index n) { return (n + 7) / 8 * 8; }
+
+/// At least so large; what it held is lost when it grows.
+void make_room(linear_algebra::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
+  if (a.rows() >= rows && a.cols() >= columns) return;
+  a.resize(std::max(rows, a.rows()), std::max(columns, a.cols()));
+}
+
+/// So that the system gives the memory now and no frame waits for it.
+void clear_corner(linear_algebra::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
+  a.topLeftCorner(std::min(rows, a.rows()), std::min(columns, a.cols())).setZero();
+}
+
+/// y = S x for the leading n rows and columns of a symmetric S, n entries of x and y.
+void multiply(const linear_algebra::RowMajor& s, Eigen::Index n, const Eigen::VectorXd& x,
+              Eigen::VectorXd& y) {
+  y.head(n).setZero();
+  add_product(s.data(), s.outerStride(), n, x.data(), n, y.data());
+}
+
+}  // namespace
+
+Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage, Index columns)
+    : problem_(problem),
+      base_(std::move(base)),
+      basis_(problem),
+      is_touched_(static_cast<std::size_t>(problem.dof_count()), 0),
+      forms_(problem) {
+  const auto gripped = problem.gripped_dofs();
+  grips_ = static_cast<Eigen::Index>(gripped.size());
+  if (damage) reserve_for_fractures(columns + static_cast<Index>(grips_));
+  if (grips_ == 0) return;
+  reserve(static_cast<Index>(grips_));
+  touched_.assign(gripped.begin(), gripped.end());
+  count_ = static_cast<Index>(grips_);
+  std::vector<Difference> units;
+  for (Index d : gripped) {
+    is_touched_[d] = 1;
+    units.push_back({d, kNone});
+  }
+  make_room(gram_, grips_, padded(grips_));
+  base_->push(units, gram_);
+  compliance_.topLeftCorner(grips_, grips_) = gram_.topLeftCorner(grips_, grips_);
+  replay();
+  if (!factor_grips()) {
+    throw NumericalError("the compliance of the gripped nodes is singular in double precision");
+  }
+}
+
+/// What events of some fifty connected elements need, so that they allocate nothing; what those of
+/// sixteen need is touched. Wider rows would cost every frame.
+void Deferred::reserve_for_fractures(Index columns) {
+  constexpr Eigen::Index kElements = 170, kRows = 512, kColumns = 96;
+  constexpr Eigen::Index kTouchedRows = 128;
+  base_->make_room();
+  reserve(std::min(problem_.dof_count(), kReserved) + static_cast<Index>(grips_));
+  touched_.reserve(is_touched_.size());
+  rows_.reserve(static_cast<std::size_t>(12 * kElements));
+  make_room(u_, kRows, kColumns);
+  make_room(columns_, kRows, m_.cols());
+  make_room(product_, kRows, m_.cols());
+  make_room(gram_, m_.rows(), kColumns);
+  make_room(xu_, m_.rows(), kColumns);
+  make_room(z_, m_.rows(), kColumns);
+  make_room(zt_, kColumns, m_.cols());
+  make_room(at_grips_, kColumns, padded(grips_));
+  clear_corner(u_, kTouchedRows, kColumns);
+  for (linear_algebra::RowMajor* a : {&columns_, &product_, &zt_})
+    clear_corner(*a, kTouchedRows, columns);
+  for (linear_algebra::RowMajor* a : {&gram_, &xu_, &z_}) clear_corner(*a, columns, kColumns);
+  for (linear_algebra::RowMajor* a : {&compliance_, &m_, &d_}) clear_corner(*a, columns, columns);
+  c_.resize(kColumns, kColumns);
+  event_.rows.reserve(static_cast<std::size_t>(12 * kElements));
+  event_.values.reserve(static_cast<std::size_t>(6 * 12 * kElements));
+  event_.ends.reserve(static_cast<std::size_t>(kElements));
+  event_.w.reserve(static_cast<std::size_t>(6 * kElements * kRows));
+  event_.compress.reserve(static_cast<std::size_t>(kRows));
+  less_.reserve(static_cast<std::size_t>(kElements));
+  before_.reserve(kReserved);
+  damage_.reserve(kReserved, kReserved);
+}
+
+void Deferred::reserve(Index columns) {
+  const Eigen::Index room = padded(columns) + 8;  // no power of two: rows share no cache set
+  if (room <= m_.rows()) return;
+  const Eigen::Index size = std::max(room, m_.rows() * 3 / 2);
+  compliance_.conservativeResize(size, padded(size));
+  m_.conservativeResize(size, padded(size));
+  d_.conservativeResize(size, padded(size));
+  for (Eigen::VectorXd* v : {&v_, &x_, &lack_, &gx_, &mgx_}) v->resize(size);
+}
+
+bool Deferred::factor_grips() {
+  if (grips_ == 0) return true;
+  if (border_.empty()) {
+    grip_block_.compute(grip_compliance_.leftCols(grips_));
+  } else {
+    Eigen::MatrixXd compliance = grip_compliance_.leftCols(grips_);
+    border_.add_to_grips(compliance);
+    grip_block_.compute(compliance);
+  }
+  return grip_block_.info() == Eigen::Success && grip_block_.matrixLLT().allFinite();
+}
+
+bool Deferred::destroy(std::span<const Index> elements) {
+  damage_.add(elements);
+  return follow_last();
+}
+
+bool Deferred::follow_last() {
+  const Damage::Event event = damage_.last();
+  forms_.add(event.nodes);
+  push(event);
+  if (apply(event) && set_border() && factor_grips()) return true;
+  take_back();
+  return false;
+}
+
+void Deferred::touch(const std::array<Index, 4>& nodes) {
+  for (Index n : nodes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem_.dof(n, axis);
+      if (d == kNone || is_touched_[d]) continue;
+      is_touched_[d] = 1;
+      touched_.push_back(d);
+    }
+  }
+}
+
+void Deferred::connect(const std::array<Index, 4>& nodes) {
+  touch(nodes);
+  basis_.add(nodes);
+}
+
+/// Brings the differences of an event to hand.
+void Deferred::push(const Damage::Event& event) {
+  Before had{touched_.size(), basis_.differences().size(), false};
+  for (Index e : event.leave) connect(glued(e));
+  for (const Coming& c : event.come) {
+    if (c.element < forms_.element_count()) connect(glued(c.element));
+    connect(forms_.parents(c.form.corners));
+  }
+  const auto differences = basis_.differences().subspan(had.differences);
+  had.pushed = !differences.empty();
+  before_.push_back(had);
+  if (!had.pushed) return;
+  const Eigen::Index before = count_, added = static_cast<Eigen::Index>(differences.size());
+  count_ += static_cast<Index>(added);
+  reserve(count_);
+  make_room(gram_, m_.rows(), padded(added));
+  base_->push(differences, gram_);
+  compliance_.block(0, before, count(), added) = gram_.topLeftCorner(count(), added);
+  for (Eigen::Index j = 0; j < added; ++j) {
+    for (Eigen::Index i = 0; i < before; ++i) compliance_(before + j, i) = gram_(i, j);
+  }
+  for (linear_algebra::RowMajor* a : {&m_, &d_}) {
+    a->block(0, before, before, padded(count()) - before).setZero();
+    a->block(before, 0, added, padded(count())).setZero();
+  }
+}
+
+void Deferred::prepare(std::span<const Index> elements) {
+  const std::size_t before = basis_.differences().size();
+  wanted_.clear();
+  wanted_.reserve(kPredicted);
+  for (Index e : elements) {
+    basis_.add(e);
+    const auto added = basis_.differences().subspan(before);
+    wanted_.insert(wanted_.end(), added.begin(), added.end());
+    basis_.shrink(before);
+  }
+  base_->prepare(wanted_);
+}
+
+void Deferred::pop() {
+  const Before before = before_.back();
+  before_.pop_back();
+  damage_.take_back();
+  for (std::size_t i = before.touched; i < touched_.size(); ++i) is_touched_[touched_[i]] = 0;
+  touched_.resize(before.touched);
+  if (!before.pushed) return;
+  count_ -= static_cast<Index>(basis_.differences().size() - before.differences);
+  basis_.shrink(before.differences);
+  base_->pop();
+}
+
+void Deferred::take_back() {
+  if (before_.empty()) throw UsageError("there is no event to take back");
+  pop();
+  replay();
+  if (!set_border()) throw NumericalError("the stiffness of the new unknowns is singular");
+  if (!factor_grips()) throw NumericalError("the compliance of the gripped nodes is singular");
+}
+
+/// No element differs from what the base has: A^-1 = X.
+void Deferred::clear() {
+  m_.topLeftCorner(count(), padded(count())).setZero();
+  d_.topLeftCorner(count(), padded(count())).setZero();
+  grip_compliance_.setZero(grips_, padded(grips_));
+  grip_compliance_.leftCols(grips_) = compliance_.topLeftCorner(grips_, grips_);
+}
+
+/// Adds all events up again, in order: the same sums as the first time.
+void Deferred::replay() {
+  clear();
+  forms_.clear();
+  for (std::size_t i = 0; i < damage_.size(); ++i) {
+    forms_.add(damage_[i].nodes);
+    static_cast<void>(apply(damage_[i]));
+  }
+}
+
+/// The event's update vectors: where they act in B, and U, padded to full vectors.
+void Deferred::gather(std::span<const Part> parts) {
+  rank_ = 6;
+  if (parts.size() == 1) {
+    basis_.coordinates(parts[0].nodes, parts[0].factor, rows_, u_);
+  } else {
+    gather_event(parts);
+  }
+  for (Index& row : rows_) row += static_cast<Index>(grips_);
+}
+
+void Deferred::gather_event(std::span<const Part> all) {
+  EventRoom& parts = event_;
+  parts.rows.clear();
+  parts.values.clear();
+  parts.ends.clear();
+  for (const Part& part : all) {
+    basis_.coordinates(part.nodes, part.factor, rows_, u_);
+    parts.rows.insert(parts.rows.end(), rows_.begin(), rows_.end());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto row = u_.row(static_cast<Eigen::Index>(i));
+      parts.values.insert(parts.values.end(), row.data(), row.data() + 6);
+    }
+    parts.ends.push_back(parts.rows.size());
+  }
+  rows_ = parts.rows;
+  std::sort(rows_.begin(), rows_.end());
+  rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
+  const auto height = static_cast<Eigen::Index>(rows_.size());
+  rank_ = 6 * static_cast<Eigen::Index>(all.size());
+  parts.w.assign(static_cast<std::size_t>(height * rank_), 0.0);
+  for (std::size_t p = 0, i = 0; p < parts.ends.size(); ++p) {
+    Eigen::Map<Eigen::MatrixXd> w(parts.w.data(), height, rank_);
+    for (; i < parts.ends[p]; ++i) {
+      const auto row = std::lower_bound(rows_.begin(), rows_.end(), parts.rows[i]);
+      w.block<1, 6>(row - rows_.begin(), 6 * static_cast<Eigen::Index>(p)) =
+          Eigen::Map<const Eigen::Matrix<double, 1, 6>>(&parts.values[6 * i]);
+    }
+  }
+  if (rank_ > height) rank_ = compress(height, rank_, parts.w, parts.compress);
+  make_room(u_, height, padded(rank_));
+  u_.topLeftCorner(height, rank_) = Eigen::Map<Eigen::MatrixXd>(parts.w.data(), height, rank_);
+  u_.block(0, rank_, height, padded(rank_) - rank_).setZero();
+}
+
+/// M += Z C^-1 Z^T, or -= for more stiffness; false, with M as it was, when C is not positive
+/// definite.
+bool Deferred::update(std::span<const Part> parts, bool more) {
+  gather(parts);
+  if (rows_.empty()) return true;  // every corner is held: nothing changes
+  const Eigen::Index n = count(), width = padded(rank_), room = m_.rows();
+  const auto rows = static_cast<Eigen::Index>(rows_.size());
+  make_room(columns_, rows, padded(room));
+  make_room(xu_, room, width);
+  make_room(z_, room, width);
+  make_room(zt_, width, padded(room));
+  make_room(product_, width, padded(room));
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    columns_.row(i).head(n) = compliance_.row(rows_[static_cast<std::size_t>(i)]).head(n);
+  }
+  // B^T X B U, from rows: X is symmetric.
+  linear_algebra::row_product({columns_.data(), n, rows, 1, columns_.outerStride()}, u_.data(),
+                              u_.outerStride(), width, xu_.data(), xu_.outerStride());
+  linear_algebra::row_product({m_.data(), n, n, m_.outerStride(), 1}, xu_.data(), xu_.outerStride(),
+                              width, z_.data(), z_.outerStride());
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    z_.row(rows_[static_cast<std::size_t>(i)]).head(width) += u_.row(i).head(width);
+  }
+  if (c_.rows() < width) c_.resize(width, width);
+  linear_algebra::RowMajor& product = product_;
+  linear_algebra::row_product({xu_.data(), width, n, 1, xu_.outerStride()}, z_.data(),
+                              z_.outerStride(), width, product.data(), product.outerStride());
+  auto c = c_.topLeftCorner(width, width);
+  c = product.topLeftCorner(width, width);
+  if (!more) c = -c;
+  c.diagonal().array() += 1;
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(c);
+  if (llt.info() != Eigen::Success || !c.diagonal().allFinite()) return false;
+  zt_.topLeftCorner(width, padded(n)).setZero();
+  zt_.topLeftCorner(width, n) = z_.topLeftCorner(n, width).transpose();
+  linear_algebra::lower_solve(c_.data(), c_.outerStride(), width, zt_.data(), zt_.outerStride(),
+                              padded(n), product.data());
+  if (!zt_.topLeftCorner(width, n).allFinite()) return false;
+  const linear_algebra::RowMajor* left = &zt_;
+  if (more) {
+    product.topLeftCorner(width, padded(n)) = -zt_.topLeftCorner(width, padded(n));
+    left = &product;
+  }
+  linear_algebra::row_product_add({left->data(), n, width, 1, left->outerStride()}, zt_.data(),
+                                  zt_.outerStride(), padded(n), m_.data(), m_.outerStride());
+  if (grips_ > 0) add_to_grips(width, more);
+  add_to_d(more);
+  return true;
+}
+
+/// D += U U^T, or -= for more stiffness.
+void Deferred::add_to_d(bool more) {
+  const auto rows = static_cast<Eigen::Index>(rows_.size()), width = padded(rank_);
+  make_room(zt_, width, padded(rows));
+  make_room(product_, rows, padded(rows));
+  zt_.topLeftCorner(width, padded(rows)).setZero();
+  zt_.topLeftCorner(width, rows) = u_.topLeftCorner(rows, width).transpose();
+  linear_algebra::row_product({u_.data(), rows, width, u_.outerStride(), 1}, zt_.data(),
+                              zt_.outerStride(), padded(rows), product_.data(),
+                              product_.outerStride());
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    double* row = d_.row(rows_[static_cast<std::size_t>(i)]).data();
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      double& entry = row[rows_[static_cast<std::size_t>(j)]];
+      entry += more ? -product_(i, j) : product_(i, j);
+    }
+  }
+}
+
+/// (A^-1)_GG grows by the event's share of it.
+void Deferred::add_to_grips(Eigen::Index width, bool more) {
+  const Eigen::Index g = padded(grips_);
+  make_room(at_grips_, width, g);
+  linear_algebra::row_product({zt_.data(), width, count(), zt_.outerStride(), 1},
+                              compliance_.data(), compliance_.outerStride(), g, at_grips_.data(),
+                              at_grips_.outerStride());
+  if (more) {
+    const auto t = at_grips_.topLeftCorner(width, grips_);
+    grip_compliance_.leftCols(grips_).noalias() -= t.transpose() * t;
+    return;
+  }
+  linear_algebra::row_product_add({at_grips_.data(), grips_, width, 1, at_grips_.outerStride()},
+                                  at_grips_.data(), at_grips_.outerStride(), g,
+                                  grip_compliance_.data(), grip_compliance_.outerStride());
+}
+
+const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
+                                              std::span<const double> displacement, double enough) {
+  constexpr int kRefinements = 4;
+  const Eigen::VectorXd& p = base_->load(on_body(forces));
+  start(p, displacement);
+  converged_ = before_.empty();
+  defect_energy_ = 0;
+  for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
+    const double before = defect_energy_;
+    defect_energy_ = refine(p, displacement);
+    converged_ = defect_energy_ <= enough || (pass > 0 && !(defect_energy_ < before / 4));
+  }
+  return x_;
+}
+
+void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
+                     double enough) {
+  base_->expand(coefficients(forces, displacement, enough), u);
+  for (Eigen::Index i = 0; i < grips_; ++i) {  // free of rounding
+    u[touched_[static_cast<std::size_t>(i)]] =
+        displacement.empty() ? 0.0 : displacement[static_cast<std::size_t>(i)];
+  }
+}
+
+void Deferred::correct(const Forces& residual, Eigen::VectorXd& du) {
+  base_->expand(correct(base_->load(on_body(residual))), du);
+  for (Eigen::Index i = 0; i < grips_; ++i) du[touched_[static_cast<std::size_t>(i)]] = 0;
+}
+
+const Eigen::VectorXd& Deferred::correction_coefficients(const Eigen::VectorXd& projection) {
+  border_.take_none();
+  return correct(projection);
+}
+
+const Eigen::VectorXd& Deferred::correct(const Eigen::VectorXd& projection) {
+  start(projection, {});
+  return x_;
+}
+
+/// The forces but those on new unknowns, which the border takes.
+Forces Deferred::on_body(const Forces& forces) {
+  return border_.empty() ? forces : border_.take(forces, base_->size());
+}
+
+/// x = M p and what the grips add: A^-1 as it is stored.
+void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacement) {
+  multiply(m_, count(), p, x_);
+  if (!border_.empty()) border_.start(p, x_);
+  if (grips_ == 0) return;
+  forces_ = -p.head(grips_);
+  forces_.noalias() -= compliance_.topLeftCorner(grips_, count()) * x_.head(count());
+  add_grips(displacement);
+}
+
+/// One step towards x = D B^T u, u_G = displacement; returns the energy of what was lacking.
+double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displacement) {
+  const Eigen::Index n = count();
+  multiply(compliance_, n, x_, v_);
+  v_.head(n) += p.head(n);     // B^T u
+  multiply(d_, n, v_, lack_);  // D B^T u - x
+  lack_.segment(grips_, n - grips_) -= x_.segment(grips_, n - grips_);
+  if (!border_.empty()) border_.add_lack(v_, lack_);
+  multiply(compliance_, n, lack_, gx_);
+  multiply(m_, n, gx_, mgx_);
+  double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n));
+  x_.head(n) += lack_.head(n);
+  x_.head(n) += mgx_.head(n);
+  if (!border_.empty()) {
+    moved_.setZero(grips_);
+    energy += border_.correct(lack_, x_, moved_);
+  }
+  if (grips_ == 0) return energy;
+  forces_ = -v_.head(grips_) - gx_.head(grips_);
+  if (!border_.empty()) forces_ -= moved_;
+  forces_.noalias() -= compliance_.topLeftCorner(grips_, n) * mgx_.head(n);
+  add_grips(displacement);
+  return energy;
+}
+
+/// Adds the grips' forces that move u_G, which is at -forces_, to the displacement.
+void Deferred::add_grips(std::span<const double> displacement) {
+  const Eigen::Index n = count(), g = grips_;
+  for (Eigen::Index i = 0; i < g && !displacement.empty(); ++i) {
+    forces_[i] += displacement[static_cast<std::size_t>(i)];
+  }
+  grip_block_.solveInPlace(forces_);
+  gx_.head(n).noalias() = compliance_.topLeftCorner(n, g) * forces_;
+  multiply(m_, n, gx_, mgx_);
+  x_.head(n) += mgx_.head(n);
+  x_.head(g) += forces_;
+  if (!border_.empty()) border_.follow_grips(forces_, x_);
+}
+
+void Deferred::copy_damage(DamageMatrices& to) const {
+  if (!border_.empty()) throw UsageError("a base cannot take new unknowns over");
+  const Eigen::Index n = count();
+  for (linear_algebra::RowMajor* a : {&to.compliance, &to.m, &to.d}) make_room(*a, n, n);
+  to.compliance.topLeftCorner(n, n) = compliance_.topLeftCorner(n, n);
+  to.m.topLeftCorner(n, n) = m_.topLeftCorner(n, n);
+  to.d.topLeftCorner(n, n) = d_.topLeftCorner(n, n);
+}
+
+std::vector<BufferPlan> Deferred::buffers() const {
+  std::vector<BufferPlan> plan = base_->buffers();
+  const auto n = static_cast<std::size_t>(count());
+  if (n > 0) plan.push_back({"small matrix of the damage", 3 * n * n * sizeof(double)});
+  if (!border_.empty()) plan.push_back({"border of the new unknowns", border_.bytes()});
+  return plan;
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Update `deferred`: damage carried by a small matrix over a base that stays pristine. With X the
+// base and B differences between unknowns that damage touches (difference_basis.hpp),
+// A^-1 = X + X B M B^T X. An element with update vectors B U (method.md "Elasticity" 3) changes M
+// by M += Z C^-1 Z^T, Z = U + M B^T X B U, C = I - U^T B^T X B Z: what a frame pays grows with the
+// number of touched unknowns, not with the number of fractures. M is only as good as its entries
+// 1/alpha larger allow; the forces x = D B^T u that make up for the stiffness D that is gone
+// (u = X (f + B x)) are refined in these coordinates, to the base's accuracy. Grips add forces h on
+// the gripped unknowns G so that u_G = d; their unit vectors come first in B. Elements may come as
+// well as leave (change.hpp): then M -= Z C^-1 Z^T, C = I + U^T B^T X B Z, and D is signed. New
+// unknowns are a border of all this (border.hpp).
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "body/change.hpp"
+#include "solver/base.hpp"
+#include "solver/border.hpp"
+#include "solver/difference_basis.hpp"
+#include "solver/update_vectors.hpp"
+
+namespace sunder::solver {
+
+/// What the damage is in the coordinates of B, leading n x n blocks: G = B^T X B, M and D.
+struct DamageMatrices {
+  linear_algebra::RowMajor compliance, m, d;
+};
+
+class Deferred {
+ public:
+  /// Columns of B that there is room for: more than a rebase lets gather.
+  static constexpr Index kReserved = 1024;
+
+  /// The problem must outlive it. Without `damage` nothing will be destroyed, and there is no room
+  /// for it. Room for `columns` of B is touched now, for later ones by the frames that need it.
+  Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage = true,
+           Index columns = kReserved);
+
+  /// Follows an event. Returns false and changes nothing when the damaged stiffness is not
+  /// positive definite in double precision.
+  [[nodiscard]] bool destroy(std::span<const Index> elements);
+  /// Follows any change, as destroy() does where elements leave and none comes; the reverse of the
+  /// last event takes that back. False also where a piece of the body would hang on nothing, for
+  /// which a grip does not count. Throws UsageError when the change does not fit the body.
+  [[nodiscard]] bool change(const Change& change);
+  /// Prepares the base for the removal of live elements, each by itself.
+  void prepare(std::span<const Index> elements);
+  [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
+  /// Takes the last event back: every later result is bit by bit what it was before the event.
+  void take_back();
+
+  /// u = A^-1 f with u_G = displacement (empty: 0). The forces of the damage are refined until
+  /// what they lack has no more energy than `enough` [N mm], or rounding. A force on a new node
+  /// acts on its parent's unknown and on its own (unknown()).
+  void solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
+             double enough = 0);
+  /// The x of solve() with u = X (f + B x), for a device that does that product itself: the first
+  /// rank() entries, until the next call.
+  const Eigen::VectorXd& coefficients(const Forces& forces, std::span<const double> displacement,
+                                      double enough = 0);
+  /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
+  /// residual where damage acts, in the base's arithmetic.
+  [[nodiscard]] double defect_energy() const { return defect_energy_; }
+  /// One application of A^-1 with u_G = 0, to the few digits that a correction needs.
+  void correct(const Forces& residual, Eigen::VectorXd& du);
+  /// The x of correct() for B^T X r.
+  const Eigen::VectorXd& correction_coefficients(const Eigen::VectorXd& projection);
+  /// Whether the last solution was refined down to `enough` or to rounding.
+  [[nodiscard]] bool converged() const { return converged_; }
+  /// Forces of the grips on the base in the last solution, anchors included.
+  [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType grip_forces() const {
+    return x_.head(grips_);
+  }
+
+  /// L with L L^T = (A^-1)_GG.
+  [[nodiscard]] const Eigen::MatrixXd& grip_factor() const { return grip_block_.matrixLLT(); }
+
+  [[nodiscard]] Base& base() { return *base_; }
+  [[nodiscard]] const Base& base() const { return *base_; }
+  [[nodiscard]] Index events() const { return static_cast<Index>(damage_.size()); }
+  /// What has happened since the base was made; its reverses are solver::reverse().
+  [[nodiscard]] const Damage& damage() const { return damage_; }
+  [[nodiscard]] const Forms& forms() const { return forms_; }
+  /// The unknown of a new node's offset: after the body's; kNone where it keeps to its parent.
+  [[nodiscard]] Index unknown(Index node, int axis) const;
+  /// d [mm] of the last solution or correction: the last unknowns.
+  [[nodiscard]] const Eigen::VectorXd& offsets() const { return border_.offsets(); }
+  /// Unknowns of destroyed elements, gripped ones first.
+  [[nodiscard]] std::span<const Index> touched() const { return touched_; }
+  /// Columns of B: what a frame pays for the damage.
+  [[nodiscard]] Index rank() const { return count_; }
+  /// Into the leading blocks of matrices that have room, or get it; throws UsageError where there
+  /// are new unknowns.
+  void copy_damage(DamageMatrices& to) const;
+  [[nodiscard]] std::vector<BufferPlan> buffers() const;
+
+ private:
+  /// By what held before an event.
+  struct Before {
+    std::size_t touched, differences;
+    bool pushed;
+  };
+  /// U of some stiffness U U^T between nodes of the mesh.
+  struct Part {
+    std::array<Index, 4> nodes;
+    fem::UpdateFactor factor;
+  };
+
+  void reserve_for_fractures(Index columns);
+  void reserve(Index columns);
+  [[nodiscard]] bool follow_last();
+  void push(const Damage::Event& event);
+  [[nodiscard]] std::array<Index, 4> glued(Index element) const;
+  void connect(const std::array<Index, 4>& nodes);
+  void pop();
+  [[nodiscard]] bool apply(const Damage::Event& event);
+  void collect(const Damage::Event& event);
+  void collect(const Form& before, const Form& after, std::vector<Part>& less,
+               std::vector<Part>& more) const;
+  [[nodiscard]] Part part(const Form& form, double share) const;
+  [[nodiscard]] bool update(std::span<const Part> parts, bool more);
+  void gather(std::span<const Part> parts);
+  void gather_event(std::span<const Part> parts);
+  void add_to_d(bool more);
+  [[nodiscard]] bool update_both();
+  void collect_all();
+  void sum_up_d();
+  [[nodiscard]] bool set_border();
+  [[nodiscard]] Forces on_body(const Forces& forces);
+  void start(const Eigen::VectorXd& p, std::span<const double> displacement);
+  [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
+  void add_grips(std::span<const double> displacement);
+  void add_to_grips(Eigen::Index width, bool more);
+  [[nodiscard]] const Eigen::VectorXd& correct(const Eigen::VectorXd& projection);
+  void clear();
+  void replay();
+  [[nodiscard]] bool factor_grips();
+  [[nodiscard]] Eigen::Index count() const { return count_; }
+  void touch(const std::array<Index, 4>& nodes);
+
+  const Problem& problem_;
+  std::unique_ptr<Base> base_;
+  Eigen::Index grips_ = 0;
+  DifferenceBasis basis_;
+  Index count_ = 0;                       // columns of B: grips and differences
+  std::vector<Index> touched_;            // gripped unknowns, then by event
+  std::vector<std::uint8_t> is_touched_;  // per unknown
+  std::vector<Before> before_;            // each event
+  Damage damage_;
+  Forms forms_;  // after them
+  Border border_;
+  std::vector<Difference> wanted_;  // by what is to be prepared
+  linear_algebra::RowMajor compliance_, m_,
+      d_;  // G = B^T X B, M and the stiffness D that is gone, in B
+  linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
+  Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
+  // The event in work: what it takes and what it adds, its update vectors and where they act, and
+  // what comes of them.
+  std::vector<Part> less_, more_;
+  std::vector<Index> rows_;
+  Eigen::Index rank_ = 0;
+  struct EventRoom {                // of an event with several elements
+    std::vector<Index> rows;        // of its elements, one after the other
+    std::vector<double> values;     // six per row
+    std::vector<std::size_t> ends;  // per element, in rows
+    std::vector<double> w;
+    CompressRoom compress;
+  } event_;
+  linear_algebra::RowMajor u_, columns_, xu_, z_, zt_, product_, gram_, at_grips_;
+  Eigen::MatrixXd c_;
+  // A solution: u in B, the forces x on B, what they lack, and its products; count() entries each.
+  Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_, moved_;
+  double defect_energy_ = 0;
+  bool converged_ = true;
+};
+
+}  // namespace sunder::solver

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a change takes from the stiffness between old unknowns and what it adds (method.md
+// "Changes").
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "body/element.hpp"
+#include "body/held_together.hpp"
+#include "material/linear.hpp"
+#include "solver/deferred.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::solver {
+
+bool Deferred::change(const Change& change) {
+  check(forms_, change);
+  if (reverses_last(forms_, damage_, change)) {
+    take_back();
+    return true;
+  }
+  if (!change.come.empty()) {  // what leaves keeps alpha, which holds it
+    Forms after = forms_;
+    after.add(change.nodes);
+    after.follow({change.leave, change.come, change.nodes});
+    if (!held_together(after)) return false;
+  }
+  damage_.add(change);
+  return follow_last();
+}
+
+Index Deferred::unknown(Index node, int axis) const {
+  if (node < problem_.node_count()) return problem_.dof(node, axis);
+  if (node >= forms_.node_count()) throw UsageError("there is no node " + std::to_string(node));
+  const Index own = border_.unknown(node - problem_.node_count(), axis);
+  return own == kNone ? kNone : base_->size() + own;
+}
+
+/// Nodes of the mesh between which an element's stiffness acts in A.
+std::array<Index, 4> Deferred::glued(Index element) const {
+  const auto form = forms_.came().find(element);
+  if (form == forms_.came().end()) return problem_.mesh().tets[static_cast<std::size_t>(element)];
+  return forms_.parents(form->second.corners);
+}
+
+Deferred::Part Deferred::part(const Form& form, double share) const {
+  return {forms_.parents(form.corners),
+          fem::update_factor(form.shape, elasticity(form.law), 0) * std::sqrt(share)};
+}
+
+/// The difference between two forms; where only the share differs, of that alone.
+void Deferred::collect(const Form& before, const Form& after, std::vector<Part>& less,
+                       std::vector<Part>& more) const {
+  if (same_matter(forms_, before, after)) {
+    const double grown = after.share - before.share;
+    if (grown > 0) more.push_back(part(after, grown));
+    if (grown < 0) less.push_back(part(after, -grown));
+    return;
+  }
+  if (before.share > 0) less.push_back(part(before, before.share));
+  if (after.share > 0) more.push_back(part(after, after.share));
+}
+
+void Deferred::collect(const Damage::Event& event) {
+  less_.clear();
+  more_.clear();
+  for (Index e : event.leave) {
+    const auto comes = [e](const Coming& c) { return c.element == e; };
+    if (std::ranges::any_of(event.come, comes)) continue;  // below
+    if (!forms_.came().contains(e)) {
+      less_.push_back(
+          {problem_.mesh().tets[static_cast<std::size_t>(e)], fem::update_factor(problem_, e)});
+      continue;
+    }
+    Form gone = forms_.of(e);
+    gone.share = problem_.scene().fracture.alpha;
+    collect(forms_.of(e), gone, less_, more_);
+  }
+  for (const Coming& c : event.come) {
+    Form before = c.form;
+    before.share = 0;
+    if (c.element < forms_.element_count()) before = forms_.of(c.element);
+    collect(before, c.form, less_, more_);
+  }
+}
+
+/// More stiffness first: then both small matrices are definite wherever the body is. Where the last
+/// digits of M decide otherwise, all changes so far are taken at once.
+bool Deferred::apply(const Damage::Event& event) {
+  collect(event);
+  const bool destroys = event.come.empty() && forms_.came().empty();
+  const bool followed = update_both();
+  forms_.follow(event);
+  if (destroys || (followed && event.come.empty())) return followed;
+  collect_all();
+  if (!followed || (less_.empty() && more_.empty())) clear();
+  if (!followed && !update_both()) return false;
+  sum_up_d();
+  return true;
+}
+
+bool Deferred::update_both() {
+  return (more_.empty() || update(more_, true)) && (less_.empty() || update(less_, false));
+}
+
+/// All that differs from what the base has.
+void Deferred::collect_all() {
+  less_.clear();
+  more_.clear();
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (forms_.left()[static_cast<std::size_t>(e)]) {
+      less_.push_back(
+          {problem_.mesh().tets[static_cast<std::size_t>(e)], fem::update_factor(problem_, e)});
+    }
+  }
+  for (const auto& [element, form] : forms_.came()) {
+    Form in_base = form;
+    in_base.share = 0;
+    if (element < problem_.tet_count()) in_base = form_in_mesh(problem_, element);
+    collect(in_base, form, less_, more_);
+  }
+}
+
+/// D element by element: what has come back leaves no rounding of its own stiffness in that of its
+/// neighbours.
+void Deferred::sum_up_d() {
+  d_.topLeftCorner(count(), count()).setZero();
+  for (const Part& part : more_) {
+    gather({&part, 1});
+    if (!rows_.empty()) add_to_d(true);
+  }
+  for (const Part& part : less_) {
+    gather({&part, 1});
+    if (!rows_.empty()) add_to_d(false);
+  }
+}
+
+bool Deferred::set_border() {
+  if (border_.empty() && forms_.new_nodes().empty()) return true;
+  border_.assemble(forms_, basis_, grips_, count());
+  return border_.factor(compliance_, m_);
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/frame_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "solver/check_terms.hpp"
+#include "solver/load_room.hpp"
+#include "solver/stress_bounds.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::solver {
+namespace {
+
+constexpr int kRefinements = 8;
+// The errors of a fresh base and of those events later differ by less where it is the body that
+// lets them be no smaller.
+constexpr double kLikeFresh = 10;
+// What rounding of the displacement costs by its bound, so many times, is no fault of the base.
+constexpr double kRoundings = 10;
+
+[[noreturn]] void fail(const SolveReport& report) {
+  std::ostringstream message;
+  message << "the solution cannot be brought under the tolerance: estimated stress error "
+          << report.error << ", residual " << report.residual
+          << "; raise solver.tolerance or ease contrast, Poisson's ratio or slivers";
+  throw NumericalError(message.str());
+}
+
+}  // namespace
+
+FrameSolver::FrameSolver(const Problem& problem, FrameDevice& device)
+    : problem_(problem),
+      device_(device),
+      precision_(device.precision()),
+      keeps_(std::min(precision_.kept, tolerance())) {
+  if (device.condensed()) {
+    energy_checks_.emplace(problem);
+  } else if (device.deferred()) {
+    checks_.emplace(problem, precision_.promised);
+  }
+  reserve(last_.load, problem);
+}
+
+void FrameSolver::event() {
+  last_.holds = false;
+  if (!energy_checks_) return;
+  for (EnergyCheck& check : energy_checks_->all()) check.event();
+}
+
+SolveReport FrameSolver::solve(const Load& load) {
+  load_ = &load;
+  everywhere_ = true;
+  if (energy_checks_) return solve_condensed(load);
+  if (auto report = solve_known(load)) return *report;
+  last_.holds = false;
+  const SolveReport report = solve_everywhere(load);
+  if (!device_.residual_costs()) return report;
+  last_ = {load, report, !refined_ && report.error <= std::min(precision_.promised, tolerance())};
+  last_.report.polished = false;
+  return report;
+}
+
+bool FrameSolver::known(const Load& load) const {
+  return device_.residual_costs() && last_.holds && multiple(load, last_.load).has_value();
+}
+
+/// The solution is linear in the load: its relative error is the last one's.
+std::optional<SolveReport> FrameSolver::solve_known(const Load& load) {
+  if (!known(load)) return std::nullopt;
+  SolveReport report = last_.report;
+  report.iterations = device_.solve(0, false);
+  if (!device_.finite()) return std::nullopt;
+  return report;
+}
+
+SolveReport FrameSolver::solve_everywhere(const Load& load) {
+  SolveReport report;
+  refined_ = false;
+  check_ = check_of(load);
+  const auto scale = check_ ? check_->scale_of(load, device_.bases()) : std::nullopt;
+  put_in_work(scale ? check_->enough(*scale) : 0, report);
+  const auto known =
+      scale && device_.deferred()->converged() ? check_->error(*scale, solution()) : std::nullopt;
+  if (known) {
+    report.error = *known;
+  } else {
+    check_fully(report);
+  }
+  return report;
+}
+
+/// Nothing: the route is checked fully in any case.
+FrameCheck* FrameSolver::check_of(const Load& load) {
+  if (!checks_) return nullptr;
+  for (FrameCheck& check : checks_->all()) check.follow(device_.bases(), device_.base_check());
+  return &checks_->of(load, device_.bases());
+}
+
+/// A condensed frame has no residual outside its region: the energy of what damage lacks bounds
+/// its error.
+SolveReport FrameSolver::solve_condensed(const Load& load) {
+  for (EnergyCheck& each : energy_checks_->all()) {
+    each.follow(device_.bases(), device_.base_check());
+  }
+  EnergyCheck& check = energy_checks_->of(load, device_.bases());
+  // The solution without a full check, where one like it has had its check.
+  if (const auto expected = check.expected(load, device_.bases())) {
+    const auto [largest_u, largest] = device_.solve_region(check.enough(*expected));
+    if (const auto known =
+            check.known(*expected, device_.deferred()->defect_energy(), largest_u, largest)) {
+      everywhere_ = false;
+      return *known;
+    }
+  }
+  SolveReport report;
+  put_in_work(0, report);
+  check_fully(report);
+  const auto [largest_u, largest] = device_.on_region();
+  check.checked(load, report, unrefined_, device_.bases(), largest_u, largest);
+  return report;
+}
+
+void FrameSolver::put_in_work(double enough, SolveReport& report) {
+  report.iterations += device_.solve(enough, true);
+  look_at(report);
+}
+
+void FrameSolver::look_at(SolveReport& report) {
+  balance_ = device_.balance();
+  report.residual =
+      balance_.load_squared > 0 ? balance_.residual / std::sqrt(balance_.load_squared) : 0.0;
+}
+
+void FrameSolver::check_fully(SolveReport& report) {
+  // Where rounding may cost that much no estimate by the usual residual shows it.
+  const bool by_elements = error_of_rounding() > precision_.kept && device_.sum_by_elements(true);
+  refine(report, !by_elements);
+  if (!by_elements && !(report.error <= precision_.kept) && device_.sum_by_elements(true)) {
+    refine(report, false);
+  }
+  if (!(report.error <= tolerance()) || is_off(report.error)) polish(report);
+  device_.sum_by_elements(false);
+  if (!(report.error <= tolerance())) fail(report);
+}
+
+/// Corrects the solution until the estimate is rounding's.
+void FrameSolver::refine(SolveReport& report, bool by_base) {
+  report.error = std::numeric_limits<double>::infinity();
+  for (int attempt = 0;; ++attempt) {
+    double stress = std::numeric_limits<double>::infinity();  // overflow
+    if (std::isfinite(report.residual) && std::isfinite(balance_.largest_stress)) {
+      const FrameDevice::Correction correction = device_.correct();
+      report.iterations += correction.iterations;
+      stress = correction.stress;
+    }
+    const double error = stress == 0             ? 0.0
+                         : std::isfinite(stress) ? stress / balance_.largest_stress
+                                                 : stress;
+    if (attempt == 0) {
+      unrefined_ = error;
+      if (check_ && by_base) check_->checked(*load_, solution(), stress, device_.bases());
+      report.polished = report.polished || !(error <= tolerance());
+    }
+    // A correction that no longer shrinks is rounding.
+    const bool stalled = attempt > 0 && !(error < report.error / 2);
+    report.error = error;
+    if (!std::isfinite(error)) return;  // there is no correction
+    const bool done = error <= precision_.refined && (attempt > 0 || !device_.yardstick());
+    if (done || attempt == kRefinements || stalled) return;
+    device_.add_correction();
+    refined_ = true;
+    look_at(report);
+  }
+}
+
+/// More than the precision promises, more than rounding explains, and more than a fresh base came
+/// to.
+bool FrameSolver::is_off(double error) const {
+  return error > keeps_ && error > error_of_rounding();
+}
+
+/// What rounding of the displacement may cost the stress, with room.
+double FrameSolver::error_of_rounding() const {
+  return kRoundings * stress_of_rounding(problem_, balance_.largest_u) / balance_.largest_stress;
+}
+
+/// Refinement converges only while the updated inverse is one; once it has drifted too far it is
+/// computed anew, and if that is not enough conjugate gradients on the intact base have the word.
+void FrameSolver::polish(SolveReport& report) {
+  if (device_.rebase()) {
+    put_in_work(0, report);
+    refine(report, true);
+  }
+  if (!(report.error <= tolerance()) && device_.fall_back(true)) {
+    put_in_work(0, report);
+    refine(report, false);
+    device_.fall_back(false);
+  }
+  keeps_ = std::max(keeps_, std::min(kLikeFresh * report.error, tolerance()));
+}
+
+FrameCheck::Solution FrameSolver::solution() const {
+  return {balance_.residual, balance_.largest_u, balance_.largest_stress};
+}
+
+}  // namespace sunder::solver

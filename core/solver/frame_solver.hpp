@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// One frame on any device: the displacement under a load, checked and refined until its stress
+// error is under the scene's tolerance.
+#pragma once
+
+#include <optional>
+
+#include "solver/energy_check.hpp"
+#include "solver/frame_check.hpp"
+#include "solver/frame_device.hpp"
+#include "solver/recent_checks.hpp"
+
+namespace sunder::solver {
+
+class FrameSolver {
+ public:
+  /// Both must outlive it. `problem`: what the device solves.
+  FrameSolver(const Problem& problem, FrameDevice& device);
+
+  /// Solves for a load that the device has been given. Throws NumericalError when the solution
+  /// cannot be brought under the tolerance.
+  SolveReport solve(const Load& load);
+  /// Whether the next solve() of this load leaves the checks out.
+  [[nodiscard]] bool known(const Load& load) const;
+  /// The last solution is known at all unknowns, not on a region alone.
+  [[nodiscard]] bool everywhere() const { return everywhere_; }
+  /// An event has changed the body.
+  void event();
+
+ private:
+  SolveReport solve_everywhere(const Load& load);
+  SolveReport solve_condensed(const Load& load);
+  [[nodiscard]] std::optional<SolveReport> solve_known(const Load& load);
+  [[nodiscard]] FrameCheck* check_of(const Load& load);
+
+  void put_in_work(double enough, SolveReport& report);
+  void look_at(SolveReport& report);
+  void check_fully(SolveReport& report);
+  void refine(SolveReport& report, bool by_base);
+  [[nodiscard]] bool is_off(double error) const;
+  [[nodiscard]] double error_of_rounding() const;
+  void polish(SolveReport& report);
+
+  [[nodiscard]] double tolerance() const { return problem_.scene().solver.tolerance; }
+  [[nodiscard]] FrameCheck::Solution solution() const;
+
+  const Problem& problem_;
+  FrameDevice& device_;
+  Precision precision_;
+  std::optional<RecentChecks<FrameCheck>> checks_;  // of a deferred update that knows u everywhere
+  std::optional<RecentChecks<EnergyCheck>> energy_checks_;  // of a condensed body
+
+  // Stress error up to which a base is kept: what the precision promises, or somewhat above what a
+  // fresh one came to where that is more.
+  double keeps_;
+
+  const Load* load_ = nullptr;   // of the solve() in work
+  FrameCheck* check_ = nullptr;  // of that load, of checks_
+  Balance balance_;              // of the solution in work
+  double unrefined_ = 0;         // error of the last full check's solution before it was refined
+  bool everywhere_ = true;
+  bool refined_ = false;  // the solution in work is more than what the route gives by itself
+  // The last frame, where a multiple of its load has the same relative error.
+  struct Last {
+    Load load;
+    SolveReport report;
+    bool holds = false;
+  };
+  Last last_;
+};
+
+}  // namespace sunder::solver

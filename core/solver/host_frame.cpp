@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/host_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/instrument_block.hpp"
+#include "solver/load_room.hpp"
+
+namespace sunder::solver {
+namespace {
+
+// A full check refines silently down to these stress errors, for a yardstick and a region, whose
+// next frames rely on it, a tenth of what double precision promises for an intact body; only frames
+// over the scene's tolerance count as polished.
+constexpr double kReferenceError = 1e-10, kDeferredError = 1e-9;
+// What double precision promises of a damaged body; of an estimate half of it (at a contrast of 1e4
+// a solution was a quarter worse than its residual said).
+constexpr double kDamagedError = 1e-8, kEstimated = 5e-9;
+
+}  // namespace
+
+HostFrame::HostFrame(const DamagedBody& body, InverseRoute& route, HostFields& fields,
+                     bool yardstick, MakeRoute fall_back)
+    : body_(body),
+      route_(route),
+      fields_(fields),
+      yardstick_(yardstick),
+      fall_back_(std::move(fall_back)),
+      anchors_(anchors_of(problem())) {
+  reserve(load_, problem());
+  force_.setZero(problem().dof_count());
+  u_ = force_;
+  reactions_.assign(problem().gripped_dofs().size(), 0.0);
+}
+
+void HostFrame::set_load(const Load& load) {
+  for (Index d : load_.force_dofs) force_[d] = 0;
+  load_ = load;
+  for (std::size_t i = 0; i < load.forces.size(); ++i) force_[load.force_dofs[i]] = load.forces[i];
+}
+
+Precision HostFrame::precision() const {
+  return {yardstick_ || condensed() ? kReferenceError : kDeferredError, kDamagedError, kEstimated};
+}
+
+int HostFrame::solve(double enough, bool) {
+  route().set_enough(enough);
+  const int iterations = route().solve(load_, force_, u_).iterations;
+  route().complete(u_);
+  look_at();
+  return iterations;
+}
+
+/// Residual f - K u and reactions of the solution, and its largest stress.
+void HostFrame::look_at() {
+  if (fields_.has_forces()) {
+    hand_out();
+    fields_.forces(product_);
+  } else {
+    body_.apply(u_, product_);
+    largest_ = body_.largest_stress(u_);
+  }
+  r_ = force_ - product_;
+  const auto gripped = problem().gripped_dofs();
+  load_squared_ = force_.squaredNorm();
+  for (std::size_t g = 0; g < gripped.size(); ++g) {
+    reactions_[g] = -r_[gripped[g]];  // what the grip adds to the applied force
+    load_squared_ += reactions_[g] * reactions_[g];
+    r_[gripped[g]] = 0;
+  }
+}
+
+Balance HostFrame::balance() const {
+  return {r_.norm(), load_squared_, u_.size() > 0 ? u_.cwiseAbs().maxCoeff() : 0.0, largest_};
+}
+
+/// Displacement at all nodes, and its stress.
+void HostFrame::hand_out() {
+  if (const auto largest = fields_.take(u_)) largest_ = *largest;
+}
+
+FrameDevice::Correction HostFrame::correct() {
+  const Applied applied = route().apply(r_, du_);
+  if (!applied.converged) return {std::numeric_limits<double>::infinity(), applied.iterations};
+  return {fields_.has_forces() ? fields_.largest_stress(du_) : body_.largest_stress(du_),
+          applied.iterations};
+}
+
+void HostFrame::add_correction() {
+  u_ += du_;
+  look_at();
+}
+
+bool HostFrame::fall_back(bool on) {
+  if (!fall_back_) return false;
+  other_ = on ? fall_back_() : nullptr;
+  return true;
+}
+
+FrameDevice::OnRegion HostFrame::solve_region(double enough) {
+  route_.set_enough(enough);
+  route_.solve(load_, force_, u_);
+  const OnRegion found = on_region();
+  const auto gripped = problem().gripped_dofs();
+  for (std::size_t g = 0; g < gripped.size(); ++g) {
+    reactions_[g] = grip_force(g) - anchors_[g] * u_[gripped[g]];  // the anchor's share
+  }
+  return found;
+}
+
+FrameDevice::OnRegion HostFrame::on_region() {
+  hand_out();
+  OnRegion found;
+  for (Index d : fields_.region()->dofs) {
+    found.largest_u = std::max(found.largest_u, std::abs(u_[d]));
+  }
+  found.largest_stress = largest_;
+  return found;
+}
+
+double HostFrame::grip_force(std::size_t g) const {
+  return route_.deferred()->grip_forces()[static_cast<Eigen::Index>(g)];
+}
+
+}  // namespace sunder::solver

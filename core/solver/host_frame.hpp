@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame whose solution is on the host: the route's, its residual and its fields, as the solver of
+// a frame asks for them (frame_device.hpp).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "body/damaged_body.hpp"
+#include "solver/frame_device.hpp"
+#include "solver/host_fields.hpp"
+#include "solver/inverse_route.hpp"
+
+namespace sunder::solver {
+
+class HostFrame final : public FrameDevice {
+ public:
+  using MakeRoute = std::function<std::unique_ptr<InverseRoute>()>;
+
+  /// What it refers to must outlive it. `yardstick`: a plain route that others are measured by.
+  /// `fall_back`: what has the word where the route fails; empty: nothing.
+  HostFrame(const DamagedBody& body, InverseRoute& route, HostFields& fields,
+            bool yardstick = false, MakeRoute fall_back = {});
+
+  void set_load(const Load& load);
+  [[nodiscard]] const Load& load() const { return load_; }
+  /// The solution in work, over all unknowns; solve_region() fills those of the region alone.
+  [[nodiscard]] const Eigen::VectorXd& u() const { return u_; }
+  /// Force that the grips exert on the body, one per gripped unknown.
+  [[nodiscard]] std::span<const double> reactions() const { return reactions_; }
+
+  [[nodiscard]] Precision precision() const override;
+  [[nodiscard]] bool yardstick() const override { return yardstick_; }
+  int solve(double enough, bool residual) override;
+  [[nodiscard]] Balance balance() const override;
+  Correction correct() override;
+  void add_correction() override;
+  bool rebase() override { return route_.rebase(); }
+  bool fall_back(bool on) override;
+  [[nodiscard]] const Deferred* deferred() const override { return route_.deferred(); }
+  [[nodiscard]] int bases() const override { return route_.bases(); }
+  [[nodiscard]] const BaseCheck& base_check() const override { return route_.base_check(); }
+  [[nodiscard]] bool condensed() const override { return fields_.region() != nullptr; }
+  OnRegion solve_region(double enough) override;
+  OnRegion on_region() override;
+
+ private:
+  void look_at();
+  void hand_out();
+  [[nodiscard]] const Problem& problem() const { return body_.problem(); }
+  [[nodiscard]] InverseRoute& route() { return other_ ? *other_ : route_; }
+  [[nodiscard]] double grip_force(std::size_t g) const;
+
+  const DamagedBody& body_;
+  InverseRoute& route_;
+  HostFields& fields_;
+  bool yardstick_;
+  MakeRoute fall_back_;
+  std::unique_ptr<InverseRoute> other_;  // while a frame falls back
+  std::vector<double> anchors_;          // stiffness of each gripped unknown's anchor
+
+  Load load_;
+  Eigen::VectorXd force_, u_, du_, product_, r_;
+  std::vector<double> reactions_;
+  double load_squared_ = 0, largest_ = 0;  // of the solution in work: its load, its stress
+};
+
+}  // namespace sunder::solver

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// One way of the host to apply the inverse of the damaged stiffness.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "solver/base_check.hpp"
+#include "solver/condensed_base.hpp"
+#include "solver/deferred.hpp"
+
+namespace sunder::solver {
+
+struct Applied {
+  int iterations = 0;
+  bool converged = true;
+};
+
+/// One way to apply the inverse of the damaged stiffness, grips held at zero.
+class InverseRoute {
+ public:
+  virtual ~InverseRoute() = default;
+  /// Displacement under a load with its grips. `f` is the force over the unknowns.
+  virtual Applied solve(const Load& load, const Eigen::VectorXd& f, Eigen::VectorXd& x) = 0;
+  /// x = A^-1 r with x_G = 0, to at least two digits.
+  virtual Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& x) = 0;
+  /// Fills what solve() left out of x: a condensed route solves for its own unknowns only.
+  virtual void complete(Eigen::VectorXd&) {}
+  /// What complete() would need later on, for the last solve(); false: it left nothing out.
+  virtual bool equilibrium(Equilibrium&) const { return false; }
+  /// Follows an event; the body has destroyed the elements already.
+  virtual void destroy(std::span<const Index> elements) = 0;
+  /// Whether prepare() is worth calling.
+  [[nodiscard]] virtual bool prepares() const { return false; }
+  virtual void prepare(std::span<const Index>) {}
+  /// Milliseconds that events have been spared so far.
+  [[nodiscard]] virtual double saved_ms() const { return 0; }
+  /// Computes anew what updates have worn out; false: this route has nothing of the kind.
+  virtual bool rebase() { return false; }
+  /// The deferred update, where there is one: it makes a frame's check cheap.
+  [[nodiscard]] virtual const Deferred* deferred() const { return nullptr; }
+  /// A deferred update may stop refining at this energy of the defect [N mm].
+  virtual void set_enough(double) {}
+  /// Bases there have been so far: another one needs a full check.
+  [[nodiscard]] virtual int bases() const { return 1; }
+  /// Of the newest base, if whoever made it has checked it.
+  [[nodiscard]] virtual const BaseCheck& base_check() const {
+    static const BaseCheck none;
+    return none;
+  }
+  /// Milliseconds that frames have waited for a rebase so far.
+  [[nodiscard]] virtual double waited_ms() const { return 0; }
+  [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+};
+
+}  // namespace sunder::solver

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/lost_stiffness.hpp"
+
+#include <algorithm>
+
+namespace sunder::solver {
+
+LostStiffness::LostStiffness(const Problem& problem, std::span<const Index> elements) {
+  elements_.reserve(elements.size());
+  for (Index e : elements) {
+    Element& lost = elements_.emplace_back();
+    lost.u = fem::update_factor(problem, e);
+    for (std::size_t i = 0; i < 12; ++i) {
+      lost.dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], static_cast<int>(i % 3));
+      if (lost.dofs[i] != kNone) dofs_.push_back(lost.dofs[i]);
+    }
+  }
+  std::sort(dofs_.begin(), dofs_.end());
+  dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
+  for (Element& lost : elements_) {
+    for (Index& d : lost.dofs) {
+      if (d == kNone) continue;
+      d = static_cast<Index>(std::lower_bound(dofs_.begin(), dofs_.end(), d) - dofs_.begin());
+    }
+  }
+}
+
+void LostStiffness::multiply(std::span<const double> u, std::span<double> y) const {
+  std::fill(y.begin(), y.end(), 0.0);
+  Eigen::Matrix<double, 12, 1> corners;
+  for (const Element& lost : elements_) {
+    for (std::size_t i = 0; i < 12; ++i) {
+      corners[static_cast<Eigen::Index>(i)] =
+          lost.dofs[i] == kNone ? 0.0 : u[static_cast<std::size_t>(lost.dofs[i])];
+    }
+    // From the first corner: the columns of u^T add up to nothing on each axis.
+    for (int i = 3; i < 12; ++i) corners[i] -= corners[i % 3];
+    corners.head<3>().setZero();
+    const Eigen::Matrix<double, 6, 1> strain = lost.u.transpose() * corners;
+    corners.noalias() = lost.u * strain;
+    for (std::size_t i = 0; i < 12; ++i) {
+      if (lost.dofs[i] == kNone) continue;
+      y[static_cast<std::size_t>(lost.dofs[i])] += corners[static_cast<Eigen::Index>(i)];
+    }
+  }
+}
+
+std::size_t LostStiffness::bytes() const {
+  return elements_.size() * sizeof(Element) + dofs_.size() * sizeof(Index);
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/renewed_update.hpp"
+
+#include "solver/load_room.hpp"
+
+namespace sunder::solver {
+
+RenewedUpdate::RenewedUpdate(const DamagedBody& body, Based first)
+    : body_(body), based_(std::move(first)) {
+  reserve(load_, body.problem());
+}
+
+RenewedUpdate::RenewedUpdate(const DamagedBody& body, Based first, const Renewal& renewal,
+                             Make make)
+    : RenewedUpdate(body, std::move(first)) {
+  renewal_ = renewal;
+  make_ = std::move(make);
+  threshold_ = renewal.first_columns;
+  coming_.emplace(body, renewal.events, renewal.rest);
+}
+
+void RenewedUpdate::destroy(std::span<const Index> elements, bool anew) {
+  if (coming_->due()) take_base();
+  coming_->follow(elements);
+  if (anew || !based_.deferred->destroy(elements)) {
+    rebase();
+  } else if (!coming_->making() && static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
+    coming_->start(load_, [this](const DamagedBody& body, const Load& load,
+                                 const linear_algebra::FactorWork& work) {
+      Based based = make_(body, work);
+      check_base(based, body, load, [](Eigen::VectorXd&) {});
+      return based;
+    });
+  }
+}
+
+bool RenewedUpdate::rebase() {
+  if (!coming_) return false;
+  coming_->give_up();
+  saved_ms_ = saved_ms();
+  based_ = {};  // frees the old base first
+  based_ = make_(body_, {});
+  renewed();
+  return true;
+}
+
+void RenewedUpdate::take_base() {
+  const double saved = saved_ms();
+  if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
+  saved_ms_ = saved;
+  renewed();
+}
+
+void RenewedUpdate::renewed() {
+  threshold_ = renewal_.columns;
+  ++bases_;
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The deferred update over a base that is made anew, beside the frames, once the damage has
+// gathered many columns.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "solver/background_rebase.hpp"
+
+namespace sunder::solver {
+
+/// When a base is made anew.
+struct Renewal {
+  static constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+  std::size_t columns = kNever;        ///< of the damage, over a later base
+  std::size_t first_columns = kNever;  ///< over the first one
+  int events = 0;                      ///< from its start to the event that finds it in place
+  std::chrono::milliseconds rest{0};   ///< of the thread that makes it (background_rebase.hpp)
+};
+
+class RenewedUpdate {
+ public:
+  /// A base of the body with no damage over it yet; `work` is for a factor on the way.
+  using Make = std::function<Based(const DamagedBody&, const linear_algebra::FactorWork&)>;
+
+  /// Nothing will be destroyed.
+  RenewedUpdate(const DamagedBody& body, Based first);
+  /// The body must outlive it.
+  RenewedUpdate(const DamagedBody& body, Based first, const Renewal& renewal, Make make);
+
+  /// Remembers the load of a frame: a base that is made is checked by it.
+  void loaded(const Load& load) { load_ = load; }
+  /// Follows an event; the body has destroyed the elements already. `anew`: a base of the body as
+  /// it is now costs less than following.
+  void destroy(std::span<const Index> elements, bool anew = false);
+  /// Waits for a base of the body as it is now. False: nothing can be destroyed.
+  bool rebase();
+
+  [[nodiscard]] Deferred& deferred() { return *based_.deferred; }
+  [[nodiscard]] const Deferred& deferred() const { return *based_.deferred; }
+  /// The factor of the damaged body below; null: the base is the first.
+  [[nodiscard]] const linear_algebra::Factor* factor() const { return based_.factor.get(); }
+  [[nodiscard]] int bases() const { return bases_; }
+  [[nodiscard]] const BaseCheck& base_check() const { return based_.check; }
+  [[nodiscard]] double waited_ms() const { return coming_ ? coming_->waited_ms() : 0; }
+  [[nodiscard]] double saved_ms() const { return saved_ms_ + based_.deferred->saved_ms(); }
+
+ private:
+  void take_base();
+  void renewed();
+
+  const DamagedBody& body_;
+  Load load_;
+  Based based_;
+  Renewal renewal_;
+  Make make_;
+  std::size_t threshold_ = 0;  // columns at which a new base begins
+  int bases_ = 1;
+  double saved_ms_ = 0;                     // by the bases before this one
+  std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
+};
+
+}  // namespace sunder::solver

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "linear_algebra/supernodal_cholesky.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <limits>
+#include <random>
+
+#include "linear_algebra/factor.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::linear_algebra {
+namespace {
+
+/// Random sparse, diagonally dominant; n of no special form.
+SparseMatrix random_matrix(Index n, int per_column, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  for (Index j = 0; j < n; ++j) {
+    entries.emplace_back(j, j, 2.0 * per_column + 1);
+    for (int k = 0; k < per_column; ++k) {
+      const Index i = static_cast<Index>(generator() % static_cast<unsigned>(n));
+      const double value = static_cast<double>(generator() % 1000) / 1000.0 - 0.5;
+      if (i > j) entries.emplace_back(i, j, value);
+      if (i < j) entries.emplace_back(j, i, value);
+    }
+  }
+  SparseMatrix a(n, n);
+  a.setFromTriplets(entries.begin(), entries.end());
+  return a;
+}
+
+Eigen::MatrixXd dense(const SparseMatrix& lower) {
+  return Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
+}
+
+TEST(SupernodalCholesky, SolvesLikeADenseFactor) {
+  for (Index n : {1, 2, 3, 43, 597}) {
+    for (int per_column : {0, 1, 3}) {
+      SCOPED_TRACE(std::to_string(n) + " unknowns, " + std::to_string(per_column) + " a column");
+      const SparseMatrix a = random_matrix(n, per_column, 7);
+      const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+      const Eigen::VectorXd x = Factor(a).solve(b);
+      const Eigen::VectorXd reference = dense(a).llt().solve(b);
+      EXPECT_LE((x - reference).norm(), 1e-14 * n * reference.norm());
+    }
+  }
+}
+
+TEST(SupernodalCholesky, InvertsTheMatrix) {
+  const SparseMatrix a = random_matrix(211, 2, 3);
+  const Eigen::MatrixXd x = Factor(a).inverse();
+  EXPECT_LE((x * dense(a) - Eigen::MatrixXd::Identity(211, 211)).norm(), 1e-12);
+  EXPECT_EQ(x, x.transpose());
+}
+
+TEST(SupernodalCholesky, GivesSomeColumnsAtSomeRows) {
+  const SparseMatrix a = random_matrix(211, 2, 3);
+  const Factor factor(a);
+  const std::vector<Index> rows{5, 210, 0, 77}, columns{210, 3, 3, 100, 8};
+  const Eigen::MatrixXd block = factor.inverse_block(rows, columns);
+  const Eigen::MatrixXd inverse = dense(a).inverse();
+  EXPECT_LE((block - inverse(rows, columns)).norm(), 1e-14);
+  EXPECT_LE((factor.inverse_columns(columns) - inverse(Eigen::all, columns)).norm(), 1e-14);
+}
+
+TEST(SupernodalCholesky, ForwardSolutionStaysOnItsPath) {
+  const SparseMatrix a = random_matrix(597, 1, 11);
+  const SupernodalCholesky l(a);
+  for (Index row : {0, 17, 300, 596}) {
+    const std::vector<Index> seeds{row};
+    Eigen::VectorXd on_path = Eigen::VectorXd::Zero(597), full = on_path;
+    on_path[row] = full[row] = 1;
+    SolveWork work;
+    std::vector<Index> path;
+    l.reach(seeds, path, work);
+    l.forward(path, on_path, work);
+    l.forward(full, work);
+    EXPECT_EQ(on_path, full) << "row " << row;
+  }
+}
+
+TEST(SupernodalCholesky, SolvesForwardForFewRightSidesByTheBitsOfMany) {
+  const SparseMatrix a = random_matrix(597, 3, 7);
+  const SupernodalCholesky l(a);
+  SolveWork work;
+  std::vector<Index> path;
+  for (Index columns : {1, 2, 3, 4}) {
+    RowMajor few = RowMajor::Zero(597, 8);
+    std::vector<Index> rows;
+    for (Index c = 0; c < columns; ++c) {
+      rows.push_back(3 + 40 * c);
+      few(rows.back(), c) = 1 + c;
+    }
+    RowMajor many = few;
+    l.reach(rows, path, work);
+    l.forward(path, many, work);
+    l.forward_few(path, few.leftCols(columns), work);
+    EXPECT_EQ(few, many) << columns;
+    EXPECT_GT(few.cwiseAbs().sum(), 0);
+  }
+}
+
+TEST(SupernodalCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
+  SparseMatrix a = random_matrix(43, 2, 5);
+  a.coeffRef(20, 20) = -1;
+  EXPECT_FALSE(SupernodalCholesky(a).succeeded());
+  EXPECT_THROW(Factor{a}, NumericalError);
+  a.coeffRef(20, 20) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(SupernodalCholesky(a).succeeded());
+}
+
+}  // namespace
+}  // namespace sunder::linear_algebra

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inverse on some unknowns after damage: by a dense update, and by the damaged body's factor.
+#include "solver/condensed_update.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "body/assembly.hpp"
+#include "solver/region.hpp"
+#include "support/notch_board.hpp"
+#include "support/sequences.hpp"
+
+namespace sunder::solver {
+namespace {
+
+struct Torn {
+  Problem problem{test::notch_board(FractureModel::a)};
+  std::vector<Index> elements = test::crack_sequence(problem, 40, 8);
+  std::vector<double> scale = std::vector<double>(problem.mesh().tets.size(), 1.0);
+  Torn() {
+    for (Index e : elements) scale[e] = problem.scene().fracture.alpha;
+  }
+};
+
+TEST(LostStiffness, IsTheDifferenceOfTheBodies) {
+  const Torn torn;
+  const LostStiffness lost(torn.problem, torn.elements);
+  const auto intact = fem::assemble_lower(torn.problem, {}),
+             damaged = fem::assemble_lower(torn.problem, torn.scale);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(torn.problem.dof_count());
+  std::vector<double> own;
+  for (Index d : lost.dofs()) {
+    u[d] = std::sin(0.7 * d);
+    own.push_back(u[d]);
+  }
+  Eigen::VectorXd expected = intact.selfadjointView<Eigen::Lower>() * u;
+  expected -= damaged.selfadjointView<Eigen::Lower>() * u;
+  std::vector<double> forces(own.size());
+  lost.multiply(own, forces);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    EXPECT_NEAR(forces[i], expected[lost.dofs()[i]], 1e-12 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+CondensedState state_of(const CondensedBase& base) {
+  CondensedState state;
+  base.copy_state(state);
+  return state;
+}
+
+DamageMatrices damage_of(const Deferred& deferred) {
+  DamageMatrices damage;
+  deferred.copy_damage(damage);
+  return damage;
+}
+
+TEST(LostStiffness, IsExactlyNothingForAMotionOfAll) {
+  const Torn torn;
+  const LostStiffness lost(torn.problem, std::span(torn.elements).first(1));
+  ASSERT_EQ(lost.dofs().size(), 12u);
+  std::vector<double> u(12, 1e9 / 3), forces(12, 1.0);
+  lost.multiply(u, forces);
+  EXPECT_EQ(forces, std::vector<double>(12, 0.0));
+}
+
+TEST(UpdatedInverse, IsThatOfTheDamagedBody) {
+  const Torn torn;
+  std::vector<Index> dofs;  // of the elements and some others
+  const LostStiffness lost(torn.problem, torn.elements);
+  for (Index d = 0; d < torn.problem.dof_count(); ++d) {
+    if (d % 17 == 0 || std::ranges::binary_search(lost.dofs(), d)) dofs.push_back(d);
+  }
+  auto base = std::make_unique<CondensedBase>(
+      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {})), dofs);
+  const CondensedBase& condensed = *base;
+  Deferred deferred(torn.problem, std::move(base));
+  for (const Index& e : torn.elements) ASSERT_TRUE(deferred.destroy({&e, 1}));
+  const Eigen::MatrixXd x = updated_inverse(state_of(condensed), damage_of(deferred));
+  const Eigen::MatrixXd expected =
+      linear_algebra::Factor(fem::assemble_lower(torn.problem, torn.scale))
+          .inverse_block(dofs, dofs);
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    // Loose nodes move by 1/alpha more than others.
+    EXPECT_LE((x.col(j) - expected.col(j)).norm(), 1e-8 * expected.col(j).norm()) << j;
+  }
+}
+
+// An inverse that was updated before has an error. Where damage and loads act it does not last.
+TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
+  constexpr double kLacks = 1e-7;
+  const Torn torn;
+  const std::span<const Index> elements = torn.elements;
+  const LostStiffness all(torn.problem, elements);
+  const auto before = std::make_shared<const LostStiffness>(torn.problem, elements.first(20));
+  std::vector<Index> dofs;
+  for (Index d = 0; d < torn.problem.dof_count(); ++d) {
+    if (d % 17 == 0 || std::ranges::binary_search(all.dofs(), d)) dofs.push_back(d);
+  }
+  std::vector<double> scale(torn.scale.size(), 1.0);
+  for (Index e : elements.first(20)) scale[e] = torn.problem.scene().fracture.alpha;
+  const auto intact =
+      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {}));
+  const Eigen::MatrixXd x0 = intact->inverse_block(dofs, dofs),
+                        x = linear_algebra::Factor(fem::assemble_lower(torn.problem, scale))
+                                .inverse_block(dofs, dofs) *
+                            (1 + kLacks);
+  const CondensedState worn{intact, dofs, nullptr, std::make_shared<const Eigen::MatrixXd>(x0),
+                            before, {}};
+  auto base = std::make_unique<CondensedBase>(worn, x, before);
+  const CondensedBase& condensed = *base;
+  Deferred deferred(torn.problem, std::move(base));
+  for (const Index& e : elements.subspan(20)) ASSERT_TRUE(deferred.destroy({&e, 1}));
+
+  const Index place = 3, loaded = dofs[place], elsewhere = 5;
+  CondensedState state = state_of(condensed);
+  const Eigen::MatrixXd mended = updated_inverse(state, damage_of(deferred), {&loaded, 1});
+  state.lost = nullptr;  // as if it were the factor's own
+  const Eigen::MatrixXd plain = updated_inverse(state, damage_of(deferred), {&loaded, 1});
+  const Eigen::MatrixXd expected =
+      linear_algebra::Factor(fem::assemble_lower(torn.problem, torn.scale))
+          .inverse_block(dofs, dofs);
+  const auto error = [&](const Eigen::MatrixXd& of, Index column) {
+    return (of.col(column) - expected.col(column)).norm() / expected.col(column).norm();
+  };
+  EXPECT_LE(error(mended, place), 1e-10);
+  EXPECT_GE(error(plain, place), kLacks / 10);
+  EXPECT_GE(error(mended, elsewhere), kLacks / 10) << "other columns wait for damage or loads";
+  EXPECT_EQ(mended, mended.transpose());
+}
+
+}  // namespace
+}  // namespace sunder::solver
