@@ -79,7 +79,7 @@ TEST(Assembly, EventFactorIsTheDestroyedStiffness) {
   EXPECT_LE((removed - expected).norm(), 1e-12 * removed.norm());
 }
 
-TEST(linear_algebra::Factor, InverseTimesMatrixIsTheIdentity) {
+TEST(Factor, InverseTimesMatrixIsTheIdentity) {
   const Problem problem(test::held_board());
   const linear_algebra::SparseMatrix k = assemble_lower(problem, {});
   const linear_algebra::Factor factor(k);
@@ -94,7 +94,7 @@ TEST(linear_algebra::Factor, InverseTimesMatrixIsTheIdentity) {
   EXPECT_LE((factor.inverse_columns(some) - x(Eigen::all, some)).norm(), 1e-9 * x.norm());
 }
 
-TEST(linear_algebra::Factor, IndefiniteMatrixIsATypedError) {
+TEST(Factor, IndefiniteMatrixIsATypedError) {
   linear_algebra::SparseMatrix k(2, 2);
   k.insert(0, 0) = 1;
   k.insert(1, 1) = -1;
