@@ -80,7 +80,7 @@ class Frames {
       : board_(board), problem_(*board.problem), next_(before), kernel_(board.problem, {}, 1) {
     std::vector<double> scale(problem_.mesh().tets.size(), 1.0);
     for (Index e : board.connected(before)) scale[e] = problem_.scene().fracture.alpha;
-    factor_.emplace(problem_, scale);
+    factor_.emplace(fem::factor_stiffness(problem_, scale));
     std::unique_ptr<solver::Base> base;
     if (inverse) {
       base = std::make_unique<solver::InverseBase>(*factor_);

@@ -2,8 +2,8 @@
 // The ways of the CPU to apply the inverse of the damaged stiffness. Two are the plain yardstick: a
 // dense inverse with eager updates, and conjugate gradients preconditioned by the intact factor.
 // Where that factor is larger than the memory an incomplete one takes its place. The others take
-// from the engine (core/engine): deferred updates over an inverse or over a factor; route condensed
-// is the engine's own (engine/condensed_route.hpp).
+// from the solver (core/solver): deferred updates over an inverse or over a factor; route condensed
+// is the solver's own (solver/condensed_route.hpp).
 #pragma once
 
 #include <Eigen/Core>

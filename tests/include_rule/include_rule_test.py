@@ -69,7 +69,7 @@ class IncludeRule(unittest.TestCase):
                  "cpu_reference/plain/b.cpp": "solver/deferred.hpp",
                  "cpu_reference/plain/c.cpp": "material/linear.hpp",
                  "cpu_reference/plain/d.cpp": "cpu_reference/routes.hpp",
-                 "cpu_reference/plain/e.cpp": "loads.hpp"}
+                 "cpu_reference/plain/e.cpp": "frame/loads.hpp"}
         said = self.refuse(wrong)
         for file, header in wrong.items():
             self.assertIn(f"{file} includes ", said, header)

@@ -166,7 +166,8 @@ TEST(Change, ReversedAtOnceRestoresEveryBit) {
                                body.split({5}, [](Index e) { return e % 2 == 0; })}) {
     ASSERT_TRUE(body.change(change));
     EXPECT_EQ(body.deferred.events(), 3);
-    EXPECT_NE(body.solution(), before);
+    const Eigen::VectorXd after = body.solution();  // longer where a node was split
+    EXPECT_TRUE(after.size() > before.size() || after != before);
     ASSERT_TRUE(body.change(reverse(body.problem, body.deferred.damage(), 2)));
     EXPECT_EQ(body.deferred.events(), 2);
     EXPECT_EQ(body.solution(), before);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/engine/allocation_count.hpp"
+#include "cpu_reference/frames/allocation_count.hpp"
 
 #include <atomic>
 #include <cerrno>

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "cpu_reference/engine/allocation_count.hpp"
-#include "cpu_reference/engine/allocation_ways.hpp"
+#include "cpu_reference/frames/allocation_count.hpp"
+#include "cpu_reference/frames/allocation_ways.hpp"
 #include "sunder/simulation.hpp"
 #include "support/body.hpp"
 #include "support/notch_board.hpp"

@@ -3,8 +3,8 @@
 // that turns: allocation_tear_test.cpp.
 #include <gtest/gtest.h>
 
-#include "cpu_reference/engine/allocation_count.hpp"
-#include "cpu_reference/engine/allocation_ways.hpp"
+#include "cpu_reference/frames/allocation_count.hpp"
+#include "cpu_reference/frames/allocation_ways.hpp"
 #include "sunder/simulation.hpp"
 #include "support/body.hpp"
 #include "support/notch_board.hpp"
