@@ -51,7 +51,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void show();
 
   const Problem& problem_;
-  solver::DamagedBody damaged_;
+  fem::DamagedBody damaged_;
   solver::RegionPart part_;
   Fields fields_;
   vulkan::Commands commands_;

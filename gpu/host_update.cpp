@@ -25,7 +25,7 @@ std::unique_ptr<solver::Deferred> intact_update(const Problem& problem,
   return std::move(based_on(problem, std::move(intact), false).deferred);
 }
 
-std::unique_ptr<solver::RenewedUpdate> host_update(const solver::DamagedBody& body,
+std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
                                                    std::shared_ptr<const HostInverse> intact,
                                                    bool damage) {
   const bool dense = intact->is_dense();
@@ -39,7 +39,7 @@ std::unique_ptr<solver::RenewedUpdate> host_update(const solver::DamagedBody& bo
   }
   return std::make_unique<solver::RenewedUpdate>(
       body, std::move(first), renewal,
-      [dense](const solver::DamagedBody& of, const linear_algebra::FactorWork& work) {
+      [dense](const fem::DamagedBody& of, const linear_algebra::FactorWork& work) {
         return based_on(of.problem(),
                         std::make_shared<const HostInverse>(of.problem(), of.scale(), dense, work),
                         true);

@@ -33,7 +33,7 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
                   base.bytes + planned_inversion_bytes(kernels, n, rows, options.panel_bytes));
 }
 
-InverseRoute::InverseRoute(const KernelFactory& kernels, const solver::DamagedBody& body,
+InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody& body,
                            Fields& fields, std::shared_ptr<const HostInverse> intact,
                            const InverseOptions& options, bool damage)
     : kernels_(kernels),

@@ -21,7 +21,7 @@ struct InverseOptions {
 class InverseRoute final : public DeviceRoute {
  public:
   /// The body must outlive it. `damage`: something can be destroyed.
-  InverseRoute(const KernelFactory& kernels, const solver::DamagedBody& body, Fields& fields,
+  InverseRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fields& fields,
                std::shared_ptr<const HostInverse> intact, const InverseOptions& options,
                bool damage);
 
@@ -65,7 +65,7 @@ class InverseRoute final : public DeviceRoute {
 
   const KernelFactory& kernels_;
   const Problem& problem_;
-  const solver::DamagedBody& body_;
+  const fem::DamagedBody& body_;
   Fields& fields_;
   std::shared_ptr<const HostInverse> intact_;
   InverseOptions options_;

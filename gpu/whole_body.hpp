@@ -49,7 +49,7 @@ class WholeBody final : public DeviceBody {
   void make_route(const DeviceSetup& setup, IntactInverse intact);
 
   const Problem& problem_;
-  solver::DamagedBody damaged_;
+  fem::DamagedBody damaged_;
   Fields fields_;
   std::unique_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
   std::unique_ptr<DeviceRoute> route_;

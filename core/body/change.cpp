@@ -8,7 +8,7 @@
 
 #include "sunder/error.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 namespace {
 
 bool same(const SmallStrain& a, const SmallStrain& b) {
@@ -214,4 +214,4 @@ bool reverses_last(const Forms& forms, const Damage& damage, const Change& chang
   });
 }
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

@@ -12,7 +12,7 @@
 
 #include "sunder/problem.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 
 /// An element as it stands in a body.
 struct Form {
@@ -116,4 +116,4 @@ void check(const Forms& forms, const Change& change);
 /// Whether a change does what the reverse of the last event does.
 [[nodiscard]] bool reverses_last(const Forms& forms, const Damage& damage, const Change& change);
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

@@ -7,12 +7,12 @@
 #include "body/assembly.hpp"
 #include "body/element.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 namespace {
 
 /// Square of the stress tensor's Frobenius norm.
 double squared_stress(const Problem& problem, Index e, std::span<const double> u) {
-  const Voigt s = fem::stress(problem, e, u);
+  const Voigt s = stress(problem, e, u);
   return s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm();
 }
 
@@ -48,14 +48,14 @@ void DamagedBody::destroy(std::span<const Index> elements) {
 }
 
 void DamagedBody::scatter(const Eigen::VectorXd& x) const {
-  fem::scatter(*problem_, {x.data(), static_cast<std::size_t>(x.size())}, nodal_in_);
+  scatter(*problem_, {x.data(), static_cast<std::size_t>(x.size())}, nodal_in_);
 }
 
 void DamagedBody::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   scatter(x);
-  fem::apply_stiffness(*problem_, scale_, nodal_in_, nodal_out_);
+  apply_stiffness(*problem_, scale_, nodal_in_, nodal_out_);
   y.resize(x.size());
-  fem::gather(*problem_, nodal_out_, {y.data(), static_cast<std::size_t>(y.size())});
+  gather(*problem_, nodal_out_, {y.data(), static_cast<std::size_t>(y.size())});
 }
 
 double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
@@ -71,4 +71,4 @@ double DamagedBody::largest_stress(const Eigen::VectorXd& x,
                     [&](std::size_t i) { return elements[i]; });
 }
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

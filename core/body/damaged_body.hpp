@@ -11,7 +11,7 @@
 
 #include "sunder/problem.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 
 class DamagedBody {
  public:
@@ -39,4 +39,4 @@ class DamagedBody {
   mutable std::vector<double> nodal_in_, nodal_out_;
 };
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

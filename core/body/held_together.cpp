@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace sunder::solver {
+namespace sunder::fem {
 namespace {
 
 // Of the scaled Gram matrix of what holds the pieces, relative to its largest eigenvalue.
@@ -169,4 +169,4 @@ class Pieces {
 
 bool held_together(const Forms& forms) { return Pieces(forms).held(); }
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

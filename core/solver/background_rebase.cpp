@@ -7,7 +7,7 @@
 
 namespace sunder::solver {
 
-void check_base(Based& based, const DamagedBody& body, const Load& load,
+void check_base(Based& based, const fem::DamagedBody& body, const Load& load,
                 const std::function<void(Eigen::VectorXd&)>& complete) {
   Deferred& deferred = *based.deferred;
   const Forces forces{load.force_dofs, load.forces};
@@ -27,7 +27,7 @@ void check_base(Based& based, const DamagedBody& body, const Load& load,
   deferred.solve(forces, load.displacements, u);
 }
 
-BackgroundRebase::BackgroundRebase(const DamagedBody& body, int events,
+BackgroundRebase::BackgroundRebase(const fem::DamagedBody& body, int events,
                                    std::chrono::milliseconds rest)
     : events_(events), rest_(rest), body_(body) {
   const auto unknowns = static_cast<std::size_t>(body.problem().dof_count());

@@ -31,7 +31,7 @@ struct Based {
 /// Makes a base of a body with no damage over it yet, and checks it by a load; `work` is for a
 /// factor on the way.
 using MakeBase =
-    std::function<Based(const DamagedBody&, const Load&, const linear_algebra::FactorWork&)>;
+    std::function<Based(const fem::DamagedBody&, const Load&, const linear_algebra::FactorWork&)>;
 
 /// Starting, following and taking a base allocate nothing on the frame's thread, but for what the
 /// caller's MakeBase holds.
@@ -39,7 +39,7 @@ class BackgroundRebase {
  public:
   /// `body` as it is now; a base is taken so many events after its start. The thread rests before
   /// each thing that it does (CpuOptions::rest).
-  BackgroundRebase(const DamagedBody& body, int events, std::chrono::milliseconds rest);
+  BackgroundRebase(const fem::DamagedBody& body, int events, std::chrono::milliseconds rest);
   /// Gives up what is being made.
   ~BackgroundRebase();
   BackgroundRebase(const BackgroundRebase&) = delete;
@@ -75,7 +75,7 @@ class BackgroundRebase {
   double waited_ms_ = 0;
   // The thread's.
   std::chrono::milliseconds rest_;
-  DamagedBody body_;  // after the events up to at_
+  fem::DamagedBody body_;  // after the events up to at_
   std::vector<Index> event_;
   // Guarded by mutex_.
   std::mutex mutex_;
@@ -96,7 +96,7 @@ class BackgroundRebase {
 /// A full check of a new base (frame_check.hpp). It solves for the load once more at the end: the
 /// frame that takes the base finds its load known, and all memory touched. `complete` fills what a
 /// solution leaves out.
-void check_base(Based& based, const DamagedBody& body, const Load& load,
+void check_base(Based& based, const fem::DamagedBody& body, const Load& load,
                 const std::function<void(Eigen::VectorXd&)>& complete);
 
 }  // namespace sunder::solver

@@ -73,7 +73,7 @@ Based condensed_by(const Problem& problem, std::shared_ptr<const linear_algebra:
   return lay_over(problem, std::move(factor), std::move(base), damage);
 }
 
-void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
+void check_condensed(Based& based, const fem::DamagedBody& body, const Load& load) {
   Equilibrium whole;
   WholeRoom room;
   Eigen::VectorXd everywhere;
@@ -83,7 +83,7 @@ void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
 
 /// A check of an updated X_SS by the factor's own: what it lacks, in elements within S. What lies
 /// outside follows from the forces on S by that factor, exactly. False: it cannot be had.
-bool check_updated(Based& based, const DamagedBody& body, const Load& load,
+bool check_updated(Based& based, const fem::DamagedBody& body, const Load& load,
                    std::span<const Index> elements) {
   if (elements.empty() || !base_of(based).inside(load.force_dofs)) return false;
   Eigen::VectorXd u, du;
@@ -143,7 +143,8 @@ class NextBase {
   }
 
   /// On another thread; holds nothing of the last base afterwards.
-  Based make(const DamagedBody& body, const Load& load, const linear_algebra::FactorWork& work) {
+  Based make(const fem::DamagedBody& body, const Load& load,
+             const linear_algebra::FactorWork& work) {
     const struct AtEnd {
       NextBase& next;
       ~AtEnd() { next.release(); }
@@ -183,7 +184,7 @@ class NextBase {
 /// Deferred update over X_SS.
 class CondensedRoute final : public InverseRoute {
  public:
-  CondensedRoute(const DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
+  CondensedRoute(const fem::DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
                  std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest)
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()) {
     std::iota(all_.begin(), all_.end(), 0);
@@ -227,7 +228,7 @@ class CondensedRoute final : public InverseRoute {
                static_cast<std::size_t>(based_.deferred->rank()) > threshold()) {
       lost_at_start_ = lost_.size();
       next_->begin(based_, lost_);
-      coming_->start(load_, [this](const DamagedBody& body, const Load& load,
+      coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
                                    const linear_algebra::FactorWork& work) {
         return next_->make(body, load, work);
       });
@@ -293,7 +294,7 @@ class CondensedRoute final : public InverseRoute {
     ++bases_;
   }
 
-  const DamagedBody& body_;
+  const fem::DamagedBody& body_;
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
   const linear_algebra::Factor* intact_ = nullptr;
   Load load_;  // of the last solution
@@ -312,7 +313,7 @@ class CondensedRoute final : public InverseRoute {
 
 }  // namespace
 
-std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body,
+std::unique_ptr<InverseRoute> condensed_route(const fem::DamagedBody& body,
                                               std::shared_ptr<const linear_algebra::Factor> intact,
                                               std::span<const Index> dofs, bool damage,
                                               std::chrono::milliseconds rest) {

@@ -125,7 +125,7 @@ bool Deferred::destroy(std::span<const Index> elements) {
 }
 
 bool Deferred::follow_last() {
-  const Damage::Event event = damage_.last();
+  const fem::Damage::Event event = damage_.last();
   forms_.add(event.nodes);
   push(event);
   if (apply(event) && set_border() && factor_grips()) return true;
@@ -150,10 +150,10 @@ void Deferred::connect(const std::array<Index, 4>& nodes) {
 }
 
 /// Brings the differences of an event to hand.
-void Deferred::push(const Damage::Event& event) {
+void Deferred::push(const fem::Damage::Event& event) {
   Before had{touched_.size(), basis_.differences().size(), false};
   for (Index e : event.leave) connect(glued(e));
-  for (const Coming& c : event.come) {
+  for (const fem::Coming& c : event.come) {
     if (c.element < forms_.element_count()) connect(glued(c.element));
     connect(forms_.parents(c.form.corners));
   }

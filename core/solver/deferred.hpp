@@ -46,7 +46,7 @@ class Deferred {
   /// Follows any change, as destroy() does where elements leave and none comes; the reverse of the
   /// last event takes that back. False also where a piece of the body would hang on nothing, for
   /// which a grip does not count. Throws UsageError when the change does not fit the body.
-  [[nodiscard]] bool change(const Change& change);
+  [[nodiscard]] bool change(const fem::Change& change);
   /// Prepares the base for the removal of live elements, each by itself.
   void prepare(std::span<const Index> elements);
   [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
@@ -82,9 +82,9 @@ class Deferred {
   [[nodiscard]] Base& base() { return *base_; }
   [[nodiscard]] const Base& base() const { return *base_; }
   [[nodiscard]] Index events() const { return static_cast<Index>(damage_.size()); }
-  /// What has happened since the base was made; its reverses are solver::reverse().
-  [[nodiscard]] const Damage& damage() const { return damage_; }
-  [[nodiscard]] const Forms& forms() const { return forms_; }
+  /// What has happened since the base was made; its reverses are fem::reverse().
+  [[nodiscard]] const fem::Damage& damage() const { return damage_; }
+  [[nodiscard]] const fem::Forms& forms() const { return forms_; }
   /// The unknown of a new node's offset: after the body's; kNone where it keeps to its parent.
   [[nodiscard]] Index unknown(Index node, int axis) const;
   /// d [mm] of the last solution or correction: the last unknowns.
@@ -113,15 +113,15 @@ class Deferred {
   void reserve_for_fractures(Index columns);
   void reserve(Index columns);
   [[nodiscard]] bool follow_last();
-  void push(const Damage::Event& event);
+  void push(const fem::Damage::Event& event);
   [[nodiscard]] std::array<Index, 4> glued(Index element) const;
   void connect(const std::array<Index, 4>& nodes);
   void pop();
-  [[nodiscard]] bool apply(const Damage::Event& event);
-  void collect(const Damage::Event& event);
-  void collect(const Form& before, const Form& after, std::vector<Part>& less,
+  [[nodiscard]] bool apply(const fem::Damage::Event& event);
+  void collect(const fem::Damage::Event& event);
+  void collect(const fem::Form& before, const fem::Form& after, std::vector<Part>& less,
                std::vector<Part>& more) const;
-  [[nodiscard]] Part part(const Form& form, double share) const;
+  [[nodiscard]] Part part(const fem::Form& form, double share) const;
   [[nodiscard]] bool update(std::span<const Part> parts, bool more);
   void gather(std::span<const Part> parts);
   void gather_event(std::span<const Part> parts);
@@ -150,8 +150,8 @@ class Deferred {
   std::vector<Index> touched_;            // gripped unknowns, then by event
   std::vector<std::uint8_t> is_touched_;  // per unknown
   std::vector<Before> before_;            // each event
-  Damage damage_;
-  Forms forms_;  // after them
+  fem::Damage damage_;
+  fem::Forms forms_;  // after them
   Border border_;
   std::vector<Difference> wanted_;  // by what is to be prepared
   linear_algebra::RowMajor compliance_, m_,

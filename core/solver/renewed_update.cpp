@@ -5,12 +5,12 @@
 
 namespace sunder::solver {
 
-RenewedUpdate::RenewedUpdate(const DamagedBody& body, Based first)
+RenewedUpdate::RenewedUpdate(const fem::DamagedBody& body, Based first)
     : body_(body), based_(std::move(first)) {
   reserve(load_, body.problem());
 }
 
-RenewedUpdate::RenewedUpdate(const DamagedBody& body, Based first, const Renewal& renewal,
+RenewedUpdate::RenewedUpdate(const fem::DamagedBody& body, Based first, const Renewal& renewal,
                              Make make)
     : RenewedUpdate(body, std::move(first)) {
   renewal_ = renewal;
@@ -25,7 +25,7 @@ void RenewedUpdate::destroy(std::span<const Index> elements, bool anew) {
   if (anew || !based_.deferred->destroy(elements)) {
     rebase();
   } else if (!coming_->making() && static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
-    coming_->start(load_, [this](const DamagedBody& body, const Load& load,
+    coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
                                  const linear_algebra::FactorWork& work) {
       Based based = make_(body, work);
       check_base(based, body, load, [](Eigen::VectorXd&) {});

@@ -24,12 +24,12 @@ struct Renewal {
 class RenewedUpdate {
  public:
   /// A base of the body with no damage over it yet; `work` is for a factor on the way.
-  using Make = std::function<Based(const DamagedBody&, const linear_algebra::FactorWork&)>;
+  using Make = std::function<Based(const fem::DamagedBody&, const linear_algebra::FactorWork&)>;
 
   /// Nothing will be destroyed.
-  RenewedUpdate(const DamagedBody& body, Based first);
+  RenewedUpdate(const fem::DamagedBody& body, Based first);
   /// The body must outlive it.
-  RenewedUpdate(const DamagedBody& body, Based first, const Renewal& renewal, Make make);
+  RenewedUpdate(const fem::DamagedBody& body, Based first, const Renewal& renewal, Make make);
 
   /// Remembers the load of a frame: a base that is made is checked by it.
   void loaded(const Load& load) { load_ = load; }
@@ -52,7 +52,7 @@ class RenewedUpdate {
   void take_base();
   void renewed();
 
-  const DamagedBody& body_;
+  const fem::DamagedBody& body_;
   Load load_;
   Based based_;
   Renewal renewal_;
