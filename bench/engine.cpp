@@ -19,6 +19,7 @@
 #include <thread>
 #include "body/stiffness_factor.hpp"
 
+#include "body/assembly.hpp"
 #include "cholmod_peer.hpp"
 #include "cpu_reference/choose_route.hpp"
 #include "cpu_reference/cost_model.hpp"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/peers/matrix_peer.hpp"
+#include "body/assembly.hpp"
 #include "linear_algebra/factor.hpp"
 #include "run_rows.hpp"
 #include "tearing_board.hpp"

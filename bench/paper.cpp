@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "app/reproduce/paper_times.hpp"
+#include "body/assembly.hpp"
 #include "body/element.hpp"
 #include "linear_algebra/factor.hpp"
 #include "run_rows.hpp"

@@ -2,6 +2,7 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 
+#include "body/assembly.hpp"
 #include "cpu_reference/conjugate_gradient.hpp"
 #include "cpu_reference/routes.hpp"
 #include "sunder/error.hpp"

@@ -5,6 +5,7 @@
 
 #include "bench/cholmod_data.hpp"
 #include "bench/peers/peer.hpp"
+#include "body/assembly.hpp"
 #include "body/element.hpp"
 #include "body/pieces.hpp"
 #include "support/accuracy.hpp"

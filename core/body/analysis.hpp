@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "linear_algebra/supernodes.hpp"
+#include "sunder/problem.hpp"
 
 namespace sunder::fem {
 

@@ -48,7 +48,7 @@ void DamagedBody::destroy(std::span<const Index> elements) {
 }
 
 void DamagedBody::scatter(const Eigen::VectorXd& x) const {
-  scatter(*problem_, {x.data(), static_cast<std::size_t>(x.size())}, nodal_in_);
+  fem::scatter(*problem_, {x.data(), static_cast<std::size_t>(x.size())}, nodal_in_);
 }
 
 void DamagedBody::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {

@@ -10,6 +10,7 @@
 
 #include "body/node_elements.hpp"
 #include "linear_algebra/factor.hpp"
+#include "sunder/problem.hpp"
 
 namespace sunder::fem {
 

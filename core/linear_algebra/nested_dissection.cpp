@@ -152,8 +152,9 @@ class Dissection {
 }  // namespace
 
 std::vector<Index> nested_dissection(const CoupledPoints& of) {
+  const Dissection dissection(of);
   std::vector<Index> unknowns;
-  for (Index point : Dissection(of).order()) {
+  for (Index point : dissection.order()) {
     for (Index i : of.unknowns[static_cast<std::size_t>(point)]) {
       if (i != kNone) unknowns.push_back(i);
     }

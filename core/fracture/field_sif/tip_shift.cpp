@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "body/assembly.hpp"
 #include "fracture/crack_path.hpp"
 #include "linear_algebra/factor.hpp"
 #include "linear_algebra/nested_dissection.hpp"

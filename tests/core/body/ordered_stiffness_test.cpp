@@ -7,6 +7,7 @@
 #include <cmath>
 #include "body/stiffness_factor.hpp"
 
+#include "body/assembly.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"
 

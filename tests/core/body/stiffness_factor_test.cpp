@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "body/assembly.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder::fem {

@@ -3,6 +3,7 @@
 // node has unknowns of its own; destroyed, split again, taken back bit for bit, refused.
 #include "solver/border.hpp"
 
+#include "body/assembly.hpp"
 #include "change_support.hpp"
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"

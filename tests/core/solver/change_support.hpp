@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "body/assembly.hpp"
 #include "body/element.hpp"
 #include "changed_body.hpp"
 #include "material/linear.hpp"

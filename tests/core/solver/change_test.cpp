@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "body/assembly.hpp"
 #include "change_support.hpp"
 #include "sunder/error.hpp"
 

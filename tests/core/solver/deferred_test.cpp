@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "body/assembly.hpp"
 #include "body/pieces.hpp"
 #include "solver/condensed_update.hpp"
 #include "solver/factor_base.hpp"
