@@ -53,7 +53,9 @@ const TearingBoard& board_of(Index cells) {
 const linear_algebra::Factor& factor_of(Index cells) {
   static std::map<Index, std::unique_ptr<linear_algebra::Factor>> factors;
   auto& factor = factors[cells];
-  if (!factor) factor = std::make_unique<linear_algebra::Factor>(*board_of(cells).problem);
+  if (!factor)
+    factor =
+        std::make_unique<linear_algebra::Factor>(fem::factor_stiffness(*board_of(cells).problem));
   return *factor;
 }
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "body/stiffness_factor.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr Index kHostDense = 6000;
 
 HostInverse::HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense,
                          const linear_algebra::FactorWork& work)
-    : factor_(problem, scale, work) {
+    : factor_(fem::factor_stiffness(problem, scale, work)) {
   if (keep_dense && problem.dof_count() <= kHostDense) dense_ = factor_.inverse();
 }
 
