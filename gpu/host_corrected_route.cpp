@@ -115,7 +115,7 @@ void HostCorrectedRoute::add_correction() {
 }
 
 void HostCorrectedRoute::destroy(std::span<const Index> elements) {
-  update_->destroy(elements);
+  update_->follow({.leave = elements});
   follow_update();
 }
 

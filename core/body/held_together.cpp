@@ -169,4 +169,12 @@ class Pieces {
 
 bool held_together(const Forms& forms) { return Pieces(forms).held(); }
 
+bool holds_together(const Forms& forms, const Event& change) {
+  if (change.come.empty()) return true;
+  Forms after = forms;
+  after.add(change.nodes);
+  after.follow(change);
+  return held_together(after);
+}
+
 }  // namespace sunder::fem

@@ -12,5 +12,7 @@ namespace sunder::fem {
 /// one rigid piece; nodes that pieces share and supports (not grips) must leave no motion. Also
 /// false where an unknown of the mesh has no element any more. Sorts all faces of the body.
 [[nodiscard]] bool held_together(const Forms& forms);
+/// The same after a change; what leaves keeps alpha, which holds it.
+[[nodiscard]] bool holds_together(const Forms& forms, const Event& change);
 
 }  // namespace sunder::fem

@@ -33,10 +33,11 @@ class RenewedUpdate {
 
   /// Remembers the load of a frame: a base that is made is checked by it.
   void loaded(const Load& load) { load_ = load; }
-  /// Follows an event; the body has destroyed the elements already. `anew`: a base of the body as
-  /// it is now costs less than following.
-  void destroy(std::span<const Index> elements, bool anew = false);
-  /// Waits for a base of the body as it is now. False: nothing can be destroyed.
+  /// Follows an event that the body has recorded already. `anew`: a base of the body as it is now
+  /// costs less than following. Throws UsageError where new unknowns would need a new base.
+  void follow(const fem::Event& event, bool anew = false);
+  /// Waits for a base of the body as it is now. False: nothing can be destroyed. Throws UsageError
+  /// where there are new unknowns.
   bool rebase();
 
   [[nodiscard]] Deferred& deferred() { return *based_.deferred; }
@@ -49,6 +50,7 @@ class RenewedUpdate {
   [[nodiscard]] double saved_ms() const { return saved_ms_ + based_.deferred->saved_ms(); }
 
  private:
+  [[nodiscard]] bool begins() const;
   void take_base();
   void renewed();
 

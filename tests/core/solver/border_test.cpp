@@ -304,8 +304,10 @@ TEST(Border, RefusesTwoElementsOnAHinge) {
   for (Index& c : form.corners) {
     if (c == 3) c = 5;
   }
-  EXPECT_FALSE(deferred.change({{}, {{1, form}}, {{3, Axes{}}}}));  // on the edge 1-2
-  EXPECT_TRUE(deferred.change({{}, {{1, form}}, {{3, Axes{5}}}}));  // node 5 follows 3 along y
+  const fem::Change on_an_edge{{}, {{1, form}}, {{3, Axes{}}}};  // 1-2
+  const fem::Change along_y{{}, {{1, form}}, {{3, Axes{5}}}};    // node 5 follows 3
+  EXPECT_FALSE(deferred.change(on_an_edge));
+  EXPECT_TRUE(deferred.change(along_y));
   EXPECT_EQ(deferred.offsets().size(), 2);
 }
 

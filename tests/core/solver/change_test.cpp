@@ -26,7 +26,7 @@ double error_at_once(const BodyOf& of, const Changing& body) {
   for (Index e = 0; e < body.problem.tet_count(); ++e) {
     if (forms.came().contains(e)) {
       change.come.push_back({e, forms.of(e)});
-    } else if (forms.left()[static_cast<std::size_t>(e)]) {
+    } else if (forms.destroyed()[static_cast<std::size_t>(e)]) {
       change.leave.push_back(e);
     }
   }
