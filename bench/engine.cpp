@@ -190,7 +190,7 @@ void route_row(benchmark::State& state, Index cells, std::size_t k, bool dense) 
       },
       [&] {
         body->destroy(elements);
-        route->destroy(elements);
+        route->follow({.leave = elements});
         route->solve(turning.load, f, u);
       });
   state.counters["new_bases"] = route->bases() - 1;

@@ -33,7 +33,7 @@ class ConjugateGradientRoute final : public InverseRoute {
     return {cg.iterations, cg.converged};
   }
 
-  void destroy(std::span<const Index>) override {}  // K u is computed element by element
+  void follow(const fem::Event&) override {}  // K u is computed element by element
 
   std::vector<BufferPlan> buffers() const override {
     return {{"conjugate gradient vectors (5 n)",

@@ -45,11 +45,10 @@ class CpuBackend final : public Backend {
              std::chrono::milliseconds rest)
       : Backend(problem, std::move(needs)),
         chosen_(std::move(chosen)),
-        body_(problem),
         intact_(intact_body(*problem, this->needs(), chosen_)),
-        fields_(body_, this->needs(), condensed_region(chosen_, *problem, this->needs())),
+        fields_(damaged_body(), this->needs(), condensed_region(chosen_, *problem, this->needs())),
         route_(make_route(rest)),
-        frame_(body_, *route_, fields_, yardstick(), fall_back()),
+        frame_(damaged_body(), *route_, fields_, yardstick(), fall_back()),
         solver_(*problem, frame_) {
     if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (this->needs().pristine) {  // so that the first time allocates no more than the next
@@ -155,18 +154,18 @@ class CpuBackend final : public Backend {
   std::unique_ptr<InverseRoute> make_route(std::chrono::milliseconds rest) {
     if (!intact_) {
       const auto preconditioner = incomplete_factor(problem());
-      if (needs().pristine) never_damaged_.emplace(body_.shared_problem(), preconditioner);
-      return incomplete_route(body_, preconditioner);
+      if (needs().pristine) never_damaged_.emplace(damaged_body().shared_problem(), preconditioner);
+      return incomplete_route(damaged_body(), preconditioner);
     }
-    if (chosen_.route == Route::cg) return conjugate_gradient_route(body_, *intact_);
+    if (chosen_.route == Route::cg) return conjugate_gradient_route(damaged_body(), *intact_);
     if (const solver::Region* region = fields_.region()) {
       // Without an owner: the intact body outlives the route.
-      return solver::condensed_route(body_, {std::shared_ptr<void>(), &intact_->factor},
+      return solver::condensed_route(damaged_body(), {std::shared_ptr<void>(), &intact_->factor},
                                      region->dofs, needs().damage, rest);
     }
-    if (chosen_.update == Update::eager) return dense_inverse_route(body_, *intact_);
+    if (chosen_.update == Update::eager) return dense_inverse_route(damaged_body(), *intact_);
     fields_.keep_forces();
-    return deferred_route(body_, *intact_, chosen_.route == Route::inverse, rest);
+    return deferred_route(damaged_body(), *intact_, chosen_.route == Route::inverse, rest);
   }
 
   /// The plain routes are what others are measured by.
@@ -178,7 +177,7 @@ class CpuBackend final : public Backend {
   /// Conjugate gradients on the intact body.
   solver::HostFrame::MakeRoute fall_back() {
     if (chosen_.route == Route::cg || !intact_) return {};
-    return [this] { return conjugate_gradient_route(body_, *intact_); };
+    return [this] { return conjugate_gradient_route(damaged_body(), *intact_); };
   }
 
   /// The solution in work holds.
@@ -221,7 +220,7 @@ class CpuBackend final : public Backend {
     prepared_.clear();
     reserve_prepared();
     for (Index e : elements) {
-      if (body_.destroyed()[e] || is_prepared_[e]) continue;
+      if (destroyed()[e] || is_prepared_[e]) continue;
       is_prepared_[e] = 1;
       prepared_.push_back(e);
     }
@@ -253,9 +252,8 @@ class CpuBackend final : public Backend {
       ++preparation_.destroyed;
       preparation_.predicted += is_prepared_[e];
     }
-    body_.destroy(elements);
     solver_.event();
-    route_->destroy(elements);
+    route_->follow({.leave = elements});
   }
 
   void do_exclude_candidates(std::span<const Index> elements) override {
@@ -291,7 +289,6 @@ class CpuBackend final : public Backend {
   }
 
   ChosenRoute chosen_;
-  DamagedBody body_;
   std::optional<IntactBody> intact_;           // empty: its factor does not fit the memory
   std::optional<NeverDamaged> never_damaged_;  // in its place, for the pristine field
   FrameFields fields_;

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <optional>
 
+#include "body/stiffness_factor.hpp"
 #include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/routes.hpp"
 #include "solver/factor_base.hpp"
@@ -71,8 +72,8 @@ class DeferredRoute final : public InverseRoute {
     return {};
   }
 
-  void destroy(std::span<const Index> elements) override {
-    update_->destroy(elements, takes_new_factor(all_.size(), elements.size()));
+  void follow(const fem::Event& event) override {
+    update_->follow(event, takes_new_factor(all_.size(), event.leave.size()));
   }
   bool rebase() override { return update_->rebase(); }
 
@@ -100,11 +101,16 @@ class DeferredRoute final : public InverseRoute {
   /// A factor of the body and an empty damage over it.
   solver::Based based_on(const DamagedBody& body, const linear_algebra::FactorWork& work,
                          Index columns) {
-    stiffness_->follow(body.scale());
     solver::Based based;
-    based.factor = std::make_shared<const linear_algebra::Factor>(stiffness_->factor(work));
+    if (body.others().empty()) {
+      stiffness_->follow(body);
+      based.factor = std::make_shared<const linear_algebra::Factor>(stiffness_->factor(work));
+    } else {  // entries that the intact body's stiffness has no place for
+      based.factor =
+          std::make_shared<const linear_algebra::Factor>(fem::factor_stiffness(body, work));
+    }
     based.deferred = std::make_unique<solver::Deferred>(
-        body.problem(), std::make_unique<solver::FactorBase>(*based.factor), true, columns);
+        body.forms(), std::make_unique<solver::FactorBase>(*based.factor), true, columns);
     // Room for predictions too: the frame that takes the base is to allocate nothing.
     if (body.problem().scene().solver.prepare) based.deferred->prepare({});
     return based;

@@ -29,17 +29,19 @@ class DenseInverseRoute final : public InverseRoute {
     return {};
   }
 
-  void destroy(std::span<const Index> elements) override {
-    update_.gather(body_.problem(), elements);
-    if (update_.apply(x_)) {
-      grips_.read(x_);
-    } else {  // rounding has made I - W^T X W indefinite
-      rebase();
+  void follow(const fem::Event& event) override {
+    if (body_.forms().came().empty()) {
+      update_.gather(body_.problem(), event.leave);
+      if (update_.apply(x_)) {
+        grips_.read(x_);
+        return;
+      }
     }
+    rebase();  // rounding has made I - W^T X W indefinite, or the update is of another kind
   }
 
   bool rebase() override {
-    x_ = fem::factor_stiffness(body_.problem(), body_.scale()).inverse();
+    x_ = fem::factor_stiffness(body_).inverse();
     grips_.read(x_);
     return true;
   }

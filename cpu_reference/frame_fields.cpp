@@ -26,7 +26,7 @@ FrameFields::FrameFields(const DamagedBody& body, const Needs& needs,
   std::vector<Index> elements;  // none: all
   if (region) {
     elements = region->elements;
-    condensed_.emplace(problem_, std::move(*region));
+    condensed_.emplace(body_, std::move(*region));
     if (row_of(problem_.scene().fracture.model).breaks) {
       condensed_->make_room(needs.stress);
     }
@@ -91,7 +91,6 @@ void FrameFields::publish_everywhere(const Eigen::VectorXd& u) {
 StressSummary FrameFields::publish_stress() {
   if (fresh_) std::swap(stress_, next_stress_);
   fresh_ = false;
-  stressed_ = true;
   if (condensed_) condensed_->publish_stress();
   if (!kernel_ || excluded_.empty()) return {};
   return kernel_->summarize(excluded_, stress_);
@@ -110,11 +109,6 @@ void FrameFields::exclude_candidates(std::span<const Index> elements) {
 }
 
 void FrameFields::destroy(std::span<const Index> elements) {
-  // What lies outside the region and has a stress keeps it, whatever it is scaled by from now on.
-  if (condensed_ && stressed_ &&
-      !std::ranges::all_of(elements, [this](Index e) { return place(e) != kNone; })) {
-    static_cast<void>(condensed_->stress(body_.scale()));
-  }
   if (kernel_) kernel_->destroy(elements);
 }
 
@@ -139,7 +133,7 @@ void FrameFields::read_stress(std::span<Voigt> stress) const {
     std::copy(stress_.begin(), stress_.end(), stress.begin());
     return;
   }
-  const auto whole = condensed_->stress(body_.scale());
+  const auto whole = condensed_->stress();
   std::copy(whole.begin(), whole.end(), stress.begin());
   const auto& elements = condensed_->region().elements;
   for (std::size_t i = 0; i < elements.size(); ++i) stress[elements[i]] = stress_[i];
@@ -148,7 +142,7 @@ void FrameFields::read_stress(std::span<Voigt> stress) const {
 Voigt FrameFields::read_stress(Index element) const {
   if (!condensed_) return stress_[element];
   const Index at = place(element);
-  return at != kNone ? stress_[at] : condensed_->stress(body_.scale())[element];
+  return at != kNone ? stress_[at] : condensed_->stress()[element];
 }
 
 const solver::Region* FrameFields::region() const {

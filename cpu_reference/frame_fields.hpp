@@ -40,7 +40,7 @@ class FrameFields final : public solver::HostFields {
   void cut_off(std::span<const Index> elements);
   /// Takes elements out of the summary's candidates.
   void exclude_candidates(std::span<const Index> elements);
-  /// Follows an event; the body has not destroyed the elements yet.
+  /// Follows an event.
   void destroy(std::span<const Index> elements);
 
   /// What is published, at all nodes and elements or some; outside a region at the price of a
@@ -69,7 +69,6 @@ class FrameFields final : public solver::HostFields {
   std::optional<solver::StressKernel> kernel_;
   std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
   bool fresh_ = false;                       // next_stress_ is that of nodal_
-  bool stressed_ = false;                    // some stress has been published
   std::vector<double> nodal_forces_;         // K u; also another displacement
   std::vector<std::uint8_t> excluded_;       // per element; empty: there is no summary
 };

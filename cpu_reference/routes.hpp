@@ -18,8 +18,8 @@
 
 namespace sunder::cpu_reference {
 
+using fem::DamagedBody;
 using solver::Applied;
-using solver::DamagedBody;
 using solver::InverseRoute;
 
 /// An incomplete factor of the intact stiffness, with as many entries as the stiffness has.

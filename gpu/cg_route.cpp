@@ -22,11 +22,11 @@ constexpr double kCorrection = 1e-4;
 
 }  // namespace
 
-CgRoute::CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields)
+CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fields& fields)
     : kernels_(kernels),
       fields_(fields),
       matrix_(fields.matrix()),
-      rigid_(kernels, problem),
+      rigid_(kernels, body),
       add_(kernels, fields),
       commands_(kernels.device()) {
   const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;

@@ -12,7 +12,8 @@ namespace sunder::gpu {
 
 class CgRoute final : public DeviceRoute {
  public:
-  CgRoute(const KernelFactory& kernels, const Problem& problem, Fields& fields);
+  /// The body must outlive it.
+  CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fields& fields);
 
   /// Device bytes of the route, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,

@@ -7,18 +7,17 @@
 
 namespace sunder::gpu {
 
-CondensedBody::CondensedBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
-                             const solver::Region& region)
-    : problem_(*problem),
-      damaged_(std::move(problem)),
+CondensedBody::CondensedBody(const DeviceSetup& setup, const solver::Region& region)
+    : problem_(setup.body.problem()),
+      damaged_(setup.body),
       part_(problem_, region),
       fields_(setup.kernels, *part_.problem(), setup.needs, {.residual = false}),
       commands_(setup.kernels.device()),
-      intact_(std::make_shared<const HostInverse>(problem_, std::span<const double>{}, false)),
+      intact_(std::make_shared<const HostInverse>(problem_, false)),
       route_(solver::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
                                      setup.needs.damage, {})),
       frame_(damaged_, *route_, *this),
-      outside_(problem_, region),
+      outside_(damaged_, region),
       nodal_(part_.problem()->dofs().size(), 0.0),
       next_nodal_(nodal_),
       whole_nodal_(problem_.dofs().size(), 0.0) {
@@ -71,19 +70,9 @@ void CondensedBody::publish(bool everywhere) {
   whole_known_ = true;
 }
 
-void CondensedBody::publish_stress() {
-  outside_.publish_stress();
-  stressed_ = true;
-}
-
 void CondensedBody::destroy(std::span<const Index> elements) {
-  // What lies outside the region and has a stress keeps it, whatever it is scaled by from now on.
-  if (stressed_ && on_device(elements).size() < elements.size()) {
-    static_cast<void>(outside_.stress(damaged_.scale()));
-  }
-  fields_.destroy(on_device(elements));
-  damaged_.destroy(elements);
-  route_->destroy(elements);
+  fields_.destroy(on_device(elements), {});  // it has no stiffness of its own
+  route_->follow({.leave = elements});
 }
 
 void CondensedBody::read_displacement(std::span<double> displacement) const {
@@ -113,7 +102,7 @@ void CondensedBody::read_displacement(std::span<const Index> nodes,
 }
 
 void CondensedBody::read_stress(std::span<Voigt> stress) const {
-  const auto whole = outside_.stress(damaged_.scale());
+  const auto whole = outside_.stress();
   std::copy(whole.begin(), whole.end(), stress.begin());
   std::vector<Voigt> of_part(part_.elements().size());
   fields_.read_stress(of_part);
@@ -122,7 +111,7 @@ void CondensedBody::read_stress(std::span<Voigt> stress) const {
 
 Voigt CondensedBody::read_stress(Index element) const {
   const Index e = part_.element(element);
-  return e != kNone ? fields_.read_stress(e) : outside_.stress(damaged_.scale())[element];
+  return e != kNone ? fields_.read_stress(e) : outside_.stress()[element];
 }
 
 void CondensedBody::read_reactions(std::span<double> reactions) const {

@@ -15,8 +15,7 @@ namespace sunder::gpu {
 
 class CondensedBody final : public DeviceBody, private solver::HostFields {
  public:
-  CondensedBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
-                const solver::Region& region);
+  CondensedBody(const DeviceSetup& setup, const solver::Region& region);
 
   const Problem& part() const override { return *part_.problem(); }
   Fields& fields() override { return fields_; }
@@ -30,7 +29,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void keep() override {}
   void restore() override;
   void publish(bool everywhere) override;
-  void publish_stress() override;
+  void publish_stress() override { outside_.publish_stress(); }
   void destroy(std::span<const Index> elements) override;
 
   void read_displacement(std::span<double> displacement) const override;
@@ -51,7 +50,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void show();
 
   const Problem& problem_;
-  solver::DamagedBody damaged_;
+  const fem::DamagedBody& damaged_;
   solver::RegionPart part_;
   Fields fields_;
   vulkan::Commands commands_;
@@ -65,7 +64,6 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   mutable std::vector<double> whole_nodal_;
   mutable bool whole_known_ = false;
   std::vector<Index> in_part_;
-  bool stressed_ = false;  // some stress has been published
 };
 
 }  // namespace sunder::gpu

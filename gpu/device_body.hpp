@@ -19,6 +19,7 @@ using IntactInverse = std::shared_ptr<const HostInverse>;
 
 /// What every body of a backend is made with; all of it outlives the body.
 struct DeviceSetup {
+  const fem::DamagedBody& body;
   const KernelFactory& kernels;
   const Plan& plan;
   const InverseOptions& inverse;
@@ -53,6 +54,7 @@ class DeviceBody {
   virtual void publish(bool everywhere) = 0;
   /// The stress of the published solution is what read_stress() says.
   virtual void publish_stress() {}
+  /// Follows an event that the body has recorded already.
   virtual void destroy(std::span<const Index> elements) = 0;
   virtual void cut_off(std::span<const Index> elements) { fields().cut_off(on_device(elements)); }
   /// Outside a region nothing is a candidate.

@@ -11,7 +11,7 @@ namespace sunder::gpu {
 class DeviceFrame final : public solver::FrameDevice {
  public:
   /// What it refers to must outlive it. `fp64`: storage precision of the inverse.
-  DeviceFrame(const solver::DamagedBody& body, Fields& fields, DeviceRoute& route, bool fp64)
+  DeviceFrame(const fem::DamagedBody& body, Fields& fields, DeviceRoute& route, bool fp64)
       : problem_(body.problem()), body_(body), fields_(fields), route_(route), fp64_(fp64) {}
 
   void set_load(const Load& load);
@@ -33,7 +33,7 @@ class DeviceFrame final : public solver::FrameDevice {
   void sum_residual();
 
   const Problem& problem_;
-  const solver::DamagedBody& body_;
+  const fem::DamagedBody& body_;
   Fields& fields_;
   DeviceRoute& route_;
   bool fp64_;

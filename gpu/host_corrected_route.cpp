@@ -14,9 +14,8 @@ std::size_t HostCorrectedRoute::planned_bytes(const KernelFactory& kernels, cons
   return base.bytes + std::size_t{base.chunks + base.panels} * rows * sizeof(double);
 }
 
-HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels,
-                                       const solver::DamagedBody& body, Fields& fields,
-                                       std::shared_ptr<const HostInverse> intact,
+HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels, const fem::DamagedBody& body,
+                                       Fields& fields, std::shared_ptr<const HostInverse> intact,
                                        std::size_t panel_bytes, bool damage)
     : problem_(body.problem()),
       fields_(fields),
@@ -116,7 +115,7 @@ void HostCorrectedRoute::add_correction() {
 }
 
 void HostCorrectedRoute::destroy(std::span<const Index> elements) {
-  update_->destroy(elements);
+  update_->follow({.leave = elements});
   follow_update();
 }
 

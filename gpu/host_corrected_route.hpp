@@ -15,7 +15,7 @@ namespace sunder::gpu {
 class HostCorrectedRoute final : public DeviceRoute {
  public:
   /// The body must outlive it. `damage`: something can be destroyed.
-  HostCorrectedRoute(const KernelFactory& kernels, const solver::DamagedBody& body, Fields& fields,
+  HostCorrectedRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fields& fields,
                      std::shared_ptr<const HostInverse> intact, std::size_t panel_bytes,
                      bool damage);
 

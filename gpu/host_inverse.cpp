@@ -17,10 +17,16 @@ constexpr Index kHostDense = 6000;
 
 }  // namespace
 
-HostInverse::HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense,
+HostInverse::HostInverse(const Problem& problem, bool keep_dense)
+    : HostInverse(fem::factor_stiffness(problem), keep_dense) {}
+
+HostInverse::HostInverse(const fem::DamagedBody& body, bool keep_dense,
                          const linear_algebra::FactorWork& work)
-    : factor_(fem::factor_stiffness(problem, scale, work)) {
-  if (keep_dense && problem.dof_count() <= kHostDense) dense_ = factor_.inverse();
+    : HostInverse(fem::factor_stiffness(body, work), keep_dense) {}
+
+HostInverse::HostInverse(linear_algebra::Factor factor, bool keep_dense)
+    : factor_(std::move(factor)) {
+  if (keep_dense && factor_.cholesky().size() <= kHostDense) dense_ = factor_.inverse();
 }
 
 Eigen::MatrixXd HostInverse::columns(std::span<const Index> dofs) const {

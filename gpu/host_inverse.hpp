@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "body/damaged_body.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "linear_algebra/factor.hpp"
 #include "solver/difference_basis.hpp"
@@ -14,10 +15,11 @@ namespace sunder::gpu {
 
 class HostInverse {
  public:
-  /// Of a body's stiffness, elements scaled as in assemble_lower. Throws linear_algebra::Stopped
-  /// when the work was given up.
-  HostInverse(const Problem& problem, std::span<const double> scale, bool keep_dense,
-              const linear_algebra::FactorWork& work = {});
+  /// Of the intact body's stiffness.
+  HostInverse(const Problem& problem, bool keep_dense);
+  /// Of a body's. Throws linear_algebra::Stopped when the work was given up.
+  HostInverse(const fem::DamagedBody& body, bool keep_dense,
+              const linear_algebra::FactorWork& work);
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
   /// The same for differences of unit vectors, into `to`, shape (n x vectors).
   void differences(std::span<const solver::Difference> vectors,
@@ -28,6 +30,8 @@ class HostInverse {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  HostInverse(linear_algebra::Factor factor, bool keep_dense);
+
   linear_algebra::Factor factor_;
   Eigen::MatrixXd dense_;  // empty: too large
 };

@@ -9,12 +9,12 @@ namespace {
 constexpr Index kColumnsPerBase = 256;
 constexpr int kEventsUntilNext = 24;
 
-solver::Based based_on(const Problem& problem, std::shared_ptr<const HostInverse> inverse,
+solver::Based based_on(const fem::Forms& in_base, std::shared_ptr<const HostInverse> inverse,
                        bool damage) {
   solver::Based based;
   based.factor = {inverse, &inverse->factor()};
   based.deferred = std::make_unique<solver::Deferred>(
-      problem, std::make_unique<HostBase>(std::move(inverse)), damage, kColumnsPerBase);
+      in_base, std::make_unique<HostBase>(std::move(inverse)), damage, kColumnsPerBase);
   return based;
 }
 
@@ -22,14 +22,14 @@ solver::Based based_on(const Problem& problem, std::shared_ptr<const HostInverse
 
 std::unique_ptr<solver::Deferred> intact_update(const Problem& problem,
                                                 std::shared_ptr<const HostInverse> intact) {
-  return std::move(based_on(problem, std::move(intact), false).deferred);
+  return std::move(based_on(fem::Forms(problem), std::move(intact), false).deferred);
 }
 
-std::unique_ptr<solver::RenewedUpdate> host_update(const solver::DamagedBody& body,
+std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
                                                    std::shared_ptr<const HostInverse> intact,
                                                    bool damage) {
   const bool dense = intact->is_dense();
-  solver::Based first = based_on(body.problem(), std::move(intact), damage);
+  solver::Based first = based_on(fem::Forms(body.problem()), std::move(intact), damage);
   if (!damage) return std::make_unique<solver::RenewedUpdate>(body, std::move(first));
   solver::Renewal renewal;
   if (dense) {
@@ -39,10 +39,8 @@ std::unique_ptr<solver::RenewedUpdate> host_update(const solver::DamagedBody& bo
   }
   return std::make_unique<solver::RenewedUpdate>(
       body, std::move(first), renewal,
-      [dense](const solver::DamagedBody& of, const linear_algebra::FactorWork& work) {
-        return based_on(of.problem(),
-                        std::make_shared<const HostInverse>(of.problem(), of.scale(), dense, work),
-                        true);
+      [dense](const fem::DamagedBody& of, const linear_algebra::FactorWork& work) {
+        return based_on(of.forms(), std::make_shared<const HostInverse>(of, dense, work), true);
       });
 }
 

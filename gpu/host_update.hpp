@@ -20,7 +20,7 @@ inline constexpr std::size_t kExactLoads = 64;
 
 /// The same for a body that can be damaged; a dense inverse is made anew beside the frames.
 [[nodiscard]] std::unique_ptr<solver::RenewedUpdate> host_update(
-    const solver::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage);
+    const fem::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage);
 
 /// The base that such an update has at present.
 [[nodiscard]] inline const HostBase& base_of(const solver::RenewedUpdate& update) {

@@ -33,7 +33,7 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
                   base.bytes + planned_inversion_bytes(kernels, n, rows, options.panel_bytes));
 }
 
-InverseRoute::InverseRoute(const KernelFactory& kernels, const solver::DamagedBody& body,
+InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody& body,
                            Fields& fields, std::shared_ptr<const HostInverse> intact,
                            const InverseOptions& options, bool damage)
     : kernels_(kernels),
@@ -55,7 +55,7 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const solver::DamagedBo
       checked_(kernels.device()) {
   all_.resize(load_place_.size());
   std::iota(all_.begin(), all_.end(), 0);
-  fill_base(*intact_, {});
+  fill_base(*intact_);
   if (eager_) {
     bind();
     factor_grips();
@@ -65,11 +65,11 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const solver::DamagedBo
   }
 }
 
-/// X of the body whose elements are scaled so; empty: intact.
-void InverseRoute::fill_base(const HostInverse& host, std::span<const double> scale) {
+/// X of the body as it was after base_events_.
+void InverseRoute::fill_base(const HostInverse& host) {
   base_stale_ = false;
   if (options_.on_device) {
-    invert_on_device(kernels_, fem::assemble_lower(problem_, scale), fields_.rows(),
+    invert_on_device(kernels_, body_.as_of(base_events_).stiffness(), fields_.rows(),
                      options_.panel_bytes, base_);
   } else {
     upload_inverse(host, base_);
@@ -78,7 +78,7 @@ void InverseRoute::fill_base(const HostInverse& host, std::span<const double> sc
 
 /// The base on the device, which a new one leaves behind until a load needs it.
 void InverseRoute::ensure_base() {
-  if (base_stale_) fill_base(base_of(*update_).inverse(), base_scale_);
+  if (base_stale_) fill_base(base_of(*update_).inverse());
 }
 
 void InverseRoute::bind() {
@@ -304,7 +304,7 @@ void InverseRoute::destroy(std::span<const Index> elements) {
   }
   constexpr std::size_t kUnknowns = 12;  // of an element: so many columns at most
   const auto most = static_cast<Index>(std::min(all_.size(), kUnknowns * elements.size()));
-  update_->destroy(elements, exact_.count() + most > exact_.most());
+  update_->follow({.leave = elements}, exact_.count() + most > exact_.most());
   follow_update();
 }
 
@@ -326,7 +326,7 @@ void InverseRoute::follow_update() {
     return;
   }
   base_stale_ = true;
-  if (options_.on_device) base_scale_.assign(body_.scale().begin(), body_.scale().end());
+  base_events_ = body_.events();  // where it is made on the device, nothing renews it beside
   new_base();
 }
 
@@ -348,16 +348,14 @@ bool InverseRoute::update_eager(std::span<const Index> elements) {
 void InverseRoute::defer() {
   eager_ = false;
   base_stale_ = true;  // events have been worked into it
-  base_scale_.clear();
+  base_events_ = 0;
   update_ = host_update(body_, intact_, damage_);
   std::vector<Index> destroyed;
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     if (body_.destroyed()[e]) destroyed.push_back(e);
   }
-  if (!destroyed.empty()) update_->destroy(destroyed);
-  if (options_.on_device && update_->bases() > 1) {
-    base_scale_.assign(body_.scale().begin(), body_.scale().end());
-  }
+  if (!destroyed.empty()) update_->follow({.leave = destroyed});
+  if (update_->bases() > 1) base_events_ = body_.events();
   new_base();
 }
 

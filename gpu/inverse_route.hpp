@@ -21,7 +21,7 @@ struct InverseOptions {
 class InverseRoute final : public DeviceRoute {
  public:
   /// The body must outlive it. `damage`: something can be destroyed.
-  InverseRoute(const KernelFactory& kernels, const solver::DamagedBody& body, Fields& fields,
+  InverseRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fields& fields,
                std::shared_ptr<const HostInverse> intact, const InverseOptions& options,
                bool damage);
 
@@ -45,7 +45,7 @@ class InverseRoute final : public DeviceRoute {
   std::vector<BufferPlan> buffers() const override;
 
  private:
-  void fill_base(const HostInverse& host, std::span<const double> scale);
+  void fill_base(const HostInverse& host);
   void ensure_base();
   void bind();
   void new_base();
@@ -65,7 +65,7 @@ class InverseRoute final : public DeviceRoute {
 
   const KernelFactory& kernels_;
   const Problem& problem_;
-  const solver::DamagedBody& body_;
+  const fem::DamagedBody& body_;
   Fields& fields_;
   std::shared_ptr<const HostInverse> intact_;
   InverseOptions options_;
@@ -73,7 +73,7 @@ class InverseRoute final : public DeviceRoute {
   std::unique_ptr<solver::RenewedUpdate> update_;  // empty while eager
   int bases_ = 0;                                  // of update_, whose columns are in exact_
   bool base_stale_ = false;                        // base_ is that of an earlier one
-  std::vector<double> base_scale_;                 // a_e of the body that base_ is to be made of
+  std::size_t base_events_ = 0;                    // of the body that base_ is to be made of
   DenseInverse base_;
   // The update's columns and those of loads, as they came: where each column is among them.
   ExactColumns exact_;

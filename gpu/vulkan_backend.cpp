@@ -27,9 +27,8 @@ std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int as
 /// On a thread of its own, while loader, device and pipelines are made ready.
 std::future<IntactInverse> start_inverse(const Problem& problem, const VulkanOptions& options) {
   if (options.invert_on_device.value_or(false) || !host_inverts_anyway(problem)) return {};
-  return std::async(std::launch::async, [&problem] {
-    return std::make_shared<const HostInverse>(problem, std::span<const double>{}, true);
-  });
+  return std::async(std::launch::async,
+                    [&problem] { return std::make_shared<const HostInverse>(problem, true); });
 }
 
 class VulkanBackend final : public Backend {
@@ -44,12 +43,12 @@ class VulkanBackend final : public Backend {
         inverse_{plan_.eager, options.panel_bytes,
                  options.invert_on_device.value_or(plan_.invert_on_device)} {
     device_->set_timing(false);
-    const DeviceSetup setup{kernels_, plan_, inverse_, this->needs()};
+    const DeviceSetup setup{damaged_body(), kernels_, plan_, inverse_, this->needs()};
     if (plan_.region) {
-      body_ = std::make_unique<CondensedBody>(setup, problem, *plan_.region);
+      body_ = std::make_unique<CondensedBody>(setup, *plan_.region);
       leave_out_the_rest();
     } else {
-      body_ = std::make_unique<WholeBody>(setup, problem, std::move(started_));
+      body_ = std::make_unique<WholeBody>(setup, std::move(started_));
     }
     solver_.emplace(*problem, body_->frame());
     if (options.lent) {

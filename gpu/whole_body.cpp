@@ -25,10 +25,9 @@ Fields::RouteNeeds route_needs(const DeviceSetup& setup, const Problem& problem)
 
 }  // namespace
 
-WholeBody::WholeBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
-                     std::future<IntactInverse> started)
-    : problem_(*problem),
-      damaged_(std::move(problem)),
+WholeBody::WholeBody(const DeviceSetup& setup, std::future<IntactInverse> started)
+    : problem_(setup.body.problem()),
+      damaged_(setup.body),
       fields_(setup.kernels, problem_, setup.needs, route_needs(setup, problem_)),
       force_(fields_.rows(), 0.0) {
   const bool cg = setup.plan.cg, pristine = setup.needs.pristine;
@@ -36,8 +35,7 @@ WholeBody::WholeBody(const DeviceSetup& setup, std::shared_ptr<const Problem> pr
   if (!cg || pristine) {
     intact = started.valid()
                  ? started.get()
-                 : std::make_shared<const HostInverse>(problem_, std::span<const double>{},
-                                                       !cg && !setup.inverse.on_device);
+                 : std::make_shared<const HostInverse>(problem_, !cg && !setup.inverse.on_device);
   }
   if (pristine) pristine_ = intact_update(problem_, intact);
   make_route(setup, std::move(intact));
@@ -48,7 +46,7 @@ void WholeBody::make_route(const DeviceSetup& setup, IntactInverse intact) {
   const KernelFactory& kernels = setup.kernels;
   const bool damage = setup.needs.damage;
   if (setup.plan.cg) {
-    route_ = std::make_unique<CgRoute>(kernels, problem_, fields_);
+    route_ = std::make_unique<CgRoute>(kernels, damaged_, fields_);
   } else if (kernels.single()) {
     route_ = std::make_unique<HostCorrectedRoute>(kernels, damaged_, fields_, std::move(intact),
                                                   setup.inverse.panel_bytes, damage);
@@ -67,8 +65,7 @@ void WholeBody::set_load(const Load& load) {
 }
 
 void WholeBody::destroy(std::span<const Index> elements) {
-  damaged_.destroy(elements);
-  fields_.destroy(elements);
+  fields_.destroy(elements, damaged_.scale());
   route_->destroy(elements);
 }
 

@@ -12,8 +12,7 @@ namespace sunder::gpu {
 class WholeBody final : public DeviceBody {
  public:
   /// `started`: the body's inverse where it is being computed already, else not valid.
-  WholeBody(const DeviceSetup& setup, std::shared_ptr<const Problem> problem,
-            std::future<IntactInverse> started);
+  WholeBody(const DeviceSetup& setup, std::future<IntactInverse> started);
 
   const Problem& part() const override { return problem_; }
   Fields& fields() override { return fields_; }
@@ -49,7 +48,7 @@ class WholeBody final : public DeviceBody {
   void make_route(const DeviceSetup& setup, IntactInverse intact);
 
   const Problem& problem_;
-  solver::DamagedBody damaged_;
+  const fem::DamagedBody& damaged_;
   Fields fields_;
   std::unique_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
   std::unique_ptr<DeviceRoute> route_;

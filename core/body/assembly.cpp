@@ -10,10 +10,10 @@
 namespace sunder::fem {
 namespace {
 
-void add_element(const Problem& problem, Index e, const ElementMatrix& k,
-                 std::vector<Eigen::Triplet<double, Index>>& triplets) {
+void add_element(const Problem& problem, const std::array<Index, 4>& corners,
+                 const ElementMatrix& k, std::vector<Eigen::Triplet<double, Index>>& triplets) {
   std::array<Index, 12> dofs;
-  for (int i = 0; i < 12; ++i) dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], i % 3);
+  for (int i = 0; i < 12; ++i) dofs[i] = problem.dof(corners[i / 3], i % 3);
   for (int j = 0; j < 12; ++j) {
     for (int i = 0; i < 12; ++i) {
       if (dofs[j] == kNone || dofs[i] < dofs[j]) continue;  // kNone < every dof
@@ -30,10 +30,21 @@ linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<co
   for (Index e = 0; e < problem.tet_count(); ++e) {
     ElementMatrix k = element_stiffness(problem, e);
     if (!scale.empty()) k *= scale[e];
-    add_element(problem, e, k, triplets);
+    add_element(problem, problem.mesh().tets[e], k, triplets);
   }
   for (Index dof : problem.anchored_dofs()) {
     triplets.emplace_back(dof, dof, problem.anchor_stiffness());
+  }
+  linear_algebra::SparseMatrix matrix(problem.dof_count(), problem.dof_count());
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  return matrix;
+}
+
+linear_algebra::SparseMatrix assemble_forms(const Problem& problem, std::span<const Form> forms) {
+  std::vector<Eigen::Triplet<double, Index>> triplets;
+  for (const Form& form : forms) {
+    const ElementMatrix k = form.share * element_stiffness(form.shape, elasticity(form.law));
+    add_element(problem, form.corners, k, triplets);
   }
   linear_algebra::SparseMatrix matrix(problem.dof_count(), problem.dof_count());
   matrix.setFromTriplets(triplets.begin(), triplets.end());

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "body/change.hpp"
 #include "linear_algebra/sparse_matrix.hpp"
 #include "sunder/problem.hpp"
 
@@ -15,6 +16,9 @@ namespace sunder::fem {
 /// included. `scale` multiplies each element's K_e (its a_e); empty: intact.
 [[nodiscard]] linear_algebra::SparseMatrix assemble_lower(const Problem& problem,
                                                           std::span<const double> scale);
+/// Of forms that are not the mesh's alone, their corners nodes of the mesh; anchors are left out.
+[[nodiscard]] linear_algebra::SparseMatrix assemble_forms(const Problem& problem,
+                                                          std::span<const Form> forms);
 
 /// y = K u over all 3 * node_count entries, supports included (there y is minus the support's
 /// force), anchors left out. Element by element, with `scale` as above: no

@@ -8,7 +8,7 @@
 
 #include "sunder/error.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 namespace {
 
 bool same(const SmallStrain& a, const SmallStrain& b) {
@@ -25,7 +25,7 @@ bool same(const Form& a, const Form& b) {
 }
 
 /// The forms that a change gives to elements.
-std::map<Index, Form> outcome(const Forms& forms, const Change& change) {
+std::map<Index, Form> outcome(const Forms& forms, const Event& change) {
   std::map<Index, Form> forms_after;
   for (Index e : change.leave) {
     Form form = forms.of(e);
@@ -63,15 +63,12 @@ void Damage::reserve(std::size_t elements, std::size_t events) {
   ends_.reserve(events);
 }
 
-void Damage::add(std::span<const Index> leave) {
-  leave_.insert(leave_.end(), leave.begin(), leave.end());
-  ends_.push_back({leave_.size(), come_.size(), nodes_.size()});
-}
-
-void Damage::add(const Change& change) {
-  come_.insert(come_.end(), change.come.begin(), change.come.end());
-  nodes_.insert(nodes_.end(), change.nodes.begin(), change.nodes.end());
-  add(change.leave);
+void Damage::add(const Event& event) {
+  leave_.insert(leave_.end(), event.leave.begin(), event.leave.end());
+  come_.insert(come_.end(), event.come.begin(), event.come.end());
+  nodes_.insert(nodes_.end(), event.nodes.begin(), event.nodes.end());
+  const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+  ends_.push_back({size(leave_), size(come_), size(nodes_)});
 }
 
 void Damage::take_back() {
@@ -82,7 +79,7 @@ void Damage::take_back() {
   nodes_.resize(end.nodes);
 }
 
-Damage::Event Damage::operator[](std::size_t i) const {
+Event Damage::operator[](std::size_t i) const {
   const End begin = i == 0 ? End{} : ends_[i - 1], end = ends_[i];
   const auto part = [](const auto& list, std::size_t from, std::size_t to) {
     return std::span(list).subspan(from, to - from);
@@ -92,53 +89,46 @@ Damage::Event Damage::operator[](std::size_t i) const {
 }
 
 Forms::Forms(const Problem& problem)
-    : problem_(problem), left_(static_cast<std::size_t>(problem.tet_count()), 0) {}
-
-void Forms::clear() {
-  std::fill(left_.begin(), left_.end(), std::uint8_t{0});
-  came_.clear();
-  nodes_.clear();
-}
+    : problem_(&problem), destroyed_(static_cast<std::size_t>(problem.tet_count()), 0) {}
 
 void Forms::add(std::span<const NewNode> nodes) {
   nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
 }
 
-void Forms::follow(const Damage::Event& event) {
+void Forms::follow(const Event& event) {
+  const double alpha = problem_->scene().fracture.alpha;
   for (Index e : event.leave) {
+    if (e < problem_->tet_count()) destroyed_[static_cast<std::size_t>(e)] = 1;
     const auto form = came_.find(e);
-    if (form == came_.end()) {
-      left_[static_cast<std::size_t>(e)] = 1;
-    } else {
-      form->second.share = problem_.scene().fracture.alpha;
-    }
+    if (form != came_.end()) form->second.share = alpha;
   }
   for (const Coming& c : event.come) {
     came_[c.element] = c.form;
-    if (c.element < problem_.tet_count()) left_[static_cast<std::size_t>(c.element)] = 0;
+    if (c.element >= problem_->tet_count()) continue;
+    destroyed_[static_cast<std::size_t>(c.element)] = c.form.share > alpha ? 0 : 1;
   }
 }
 
 Index Forms::element_count() const {
-  return came_.empty() ? problem_.tet_count()
-                       : std::max(problem_.tet_count(), came_.rbegin()->first + 1);
+  return came_.empty() ? problem_->tet_count()
+                       : std::max(problem_->tet_count(), came_.rbegin()->first + 1);
 }
 
 Index Forms::node_count() const {
-  return problem_.node_count() + static_cast<Index>(nodes_.size());
+  return problem_->node_count() + static_cast<Index>(nodes_.size());
 }
 
 double Forms::share(Index element) const {
   const auto form = came_.find(element);
   if (form != came_.end()) return form->second.share;
-  if (element >= problem_.tet_count()) return 0;
-  return left_[static_cast<std::size_t>(element)] ? problem_.scene().fracture.alpha : 1;
+  if (element >= problem_->tet_count()) return 0;
+  return destroyed_[static_cast<std::size_t>(element)] ? problem_->scene().fracture.alpha : 1;
 }
 
 Form Forms::of(Index element) const {
   const auto form = came_.find(element);
   if (form != came_.end()) return form->second;
-  Form in_mesh = form_in_mesh(problem_, element);
+  Form in_mesh = form_in_mesh(*problem_, element);
   in_mesh.share = share(element);
   return in_mesh;
 }
@@ -146,7 +136,7 @@ Form Forms::of(Index element) const {
 std::array<Index, 4> Forms::parents(const std::array<Index, 4>& corners) const {
   std::array<Index, 4> nodes = corners;
   for (Index& n : nodes) {
-    const Index added = n - problem_.node_count();
+    const Index added = n - problem_->node_count();
     if (added >= 0) n = nodes_[static_cast<std::size_t>(added)].parent;
   }
   return nodes;
@@ -162,7 +152,7 @@ bool same_matter(const Forms& forms, const Form& a, const Form& b) {
          same(a.law, b.law);
 }
 
-void check(const Forms& forms, const Change& change) {
+void check(const Forms& forms, const Event& change) {
   const double alpha = forms.problem().scene().fracture.alpha;
   std::set<Index> leaving, coming;
   for (Index e : change.leave) {
@@ -186,13 +176,12 @@ void check(const Forms& forms, const Change& change) {
   }
 }
 
-Change reverse(const Problem& problem, const Damage& damage, std::size_t i) {
-  Forms before(problem);
+Change reverse(Forms before, const Damage& damage, std::size_t i) {
   for (std::size_t j = 0; j < i; ++j) {
     before.add(damage[j].nodes);
     before.follow(damage[j]);
   }
-  const Damage::Event event = damage[i];
+  const Event event = damage[i];
   std::map<Index, Form> forms;
   for (const Coming& c : event.come) {
     Form form = c.form;
@@ -205,13 +194,14 @@ Change reverse(const Problem& problem, const Damage& damage, std::size_t i) {
   return change;
 }
 
-bool reverses_last(const Forms& forms, const Damage& damage, const Change& change) {
+bool reverses_last(const Forms& first, const Damage& damage, const Forms& forms,
+                   const Event& change) {
   if (damage.size() == 0 || !change.nodes.empty()) return false;
   const auto asked = outcome(forms, change);
-  const auto back = outcome(forms, reverse(forms.problem(), damage, damage.size() - 1));
+  const auto back = outcome(forms, reverse(first, damage, damage.size() - 1));
   return std::ranges::equal(asked, back, [](const auto& a, const auto& b) {
     return a.first == b.first && same(a.second, b.second);
   });
 }
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

@@ -12,7 +12,7 @@
 
 #include "sunder/problem.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 
 /// An element as it stands in a body.
 struct Form {
@@ -33,26 +33,26 @@ struct NewNode {
   Index parent = 0;
   Axes axes;
 };
+/// A change that somebody else holds.
+struct Event {
+  std::span<const Index> leave{};
+  std::span<const Coming> come{};
+  std::span<const NewNode> nodes{};
+};
 /// Elements in `leave` keep a share alpha of their stiffness.
 struct Change {
   std::vector<Index> leave;
   std::vector<Coming> come;
   std::vector<NewNode> nodes;
+  operator Event() const { return {leave, come, nodes}; }
 };
 
 /// The record of what has happened to a body, change by change.
 class Damage {
  public:
-  struct Event {
-    std::span<const Index> leave;
-    std::span<const Coming> come;
-    std::span<const NewNode> nodes;
-  };
-
   /// For so many events that leave so many elements: they allocate nothing.
   void reserve(std::size_t elements, std::size_t events);
-  void add(std::span<const Index> leave);
-  void add(const Change& change);
+  void add(const Event& event);
   /// Drops the last change.
   void take_back();
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
@@ -61,7 +61,7 @@ class Damage {
 
  private:
   struct End {
-    std::size_t leave = 0, come = 0, nodes = 0;
+    std::uint32_t leave = 0, come = 0, nodes = 0;
   };
   std::vector<End> ends_;  // of each event in the lists
   std::vector<Index> leave_;
@@ -74,12 +74,10 @@ class Forms {
  public:
   /// As the mesh has them. The problem must outlive it.
   explicit Forms(const Problem& problem);
-  /// Back to the mesh's.
-  void clear();
   /// The nodes of an event, before its elements are asked about or followed.
   void add(std::span<const NewNode> nodes);
   /// The elements of an event. Allocates nothing where elements of the mesh's form leave.
-  void follow(const Damage::Event& event);
+  void follow(const Event& event);
 
   [[nodiscard]] Index element_count() const;
   [[nodiscard]] Index node_count() const;
@@ -89,16 +87,17 @@ class Forms {
   /// Elements that have taken a form by coming, by id; the others are as the mesh has them, but
   /// that some have left.
   [[nodiscard]] const std::map<Index, Form>& came() const { return came_; }
-  [[nodiscard]] std::span<const std::uint8_t> left() const { return left_; }
+  /// 1 for elements of the mesh that have left: no more than alpha of their stiffness is there.
+  [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
   /// In the order of their ids, which begin after the mesh's.
   [[nodiscard]] std::span<const NewNode> new_nodes() const { return nodes_; }
   /// The corners' nodes of the mesh: a new node's is its parent.
   [[nodiscard]] std::array<Index, 4> parents(const std::array<Index, 4>& corners) const;
-  [[nodiscard]] const Problem& problem() const { return problem_; }
+  [[nodiscard]] const Problem& problem() const { return *problem_; }
 
  private:
-  const Problem& problem_;
-  std::vector<std::uint8_t> left_;  // per element of the mesh, while it has not come again
+  const Problem* problem_;
+  std::vector<std::uint8_t> destroyed_;  // per element of the mesh
   std::map<Index, Form> came_;
   std::vector<NewNode> nodes_;
 };
@@ -109,11 +108,16 @@ class Forms {
 [[nodiscard]] bool same_matter(const Forms& forms, const Form& a, const Form& b);
 
 /// Throws UsageError when the change does not fit a body of these forms.
-void check(const Forms& forms, const Change& change);
+void check(const Forms& forms, const Event& change);
 /// The change that gives the elements of event i the forms back that they had before it. Its new
-/// nodes stay, without elements.
-[[nodiscard]] Change reverse(const Problem& problem, const Damage& damage, std::size_t i);
-/// Whether a change does what the reverse of the last event does.
-[[nodiscard]] bool reverses_last(const Forms& forms, const Damage& damage, const Change& change);
+/// nodes stay, without elements. `before`: the forms before event 0.
+[[nodiscard]] Change reverse(Forms before, const Damage& damage, std::size_t i);
+/// The same of a body that was as the mesh has it.
+[[nodiscard]] inline Change reverse(const Problem& problem, const Damage& damage, std::size_t i) {
+  return reverse(Forms(problem), damage, i);
+}
+/// Whether a change of a body of these forms does what the reverse of the last event does.
+[[nodiscard]] bool reverses_last(const Forms& first, const Damage& damage, const Forms& forms,
+                                 const Event& change);
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

@@ -6,69 +6,175 @@
 
 #include "body/assembly.hpp"
 #include "body/element.hpp"
+#include "body/held_together.hpp"
+#include "sunder/error.hpp"
+#include "sunder/stress_measures.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 namespace {
 
-/// Square of the stress tensor's Frobenius norm.
-double squared_stress(const Problem& problem, Index e, std::span<const double> u) {
-  const Voigt s = fem::stress(problem, e, u);
-  return s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm();
+/// Square of a stress tensor's Frobenius norm.
+double squared(const Voigt& s) { return s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm(); }
+
+/// Of the displacement at all nodes of the mesh.
+Voigt stress_of(const Form& form, std::span<const double> u) {
+  Eigen::Matrix<double, 3, 4> displacement;
+  for (int a = 0; a < 4; ++a) displacement.col(a) = Vec3(&u[3 * form.corners[a]]);
+  return form.share * stress(form.shape, form.law, displacement);
 }
 
-/// Over the elements element(0) ... element(count - 1).
-template <class Element>
-double largest_of(const Problem& problem, std::span<const std::uint8_t> destroyed,
-                  std::span<const double> u, std::size_t count, Element&& element) {
-  double largest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Index e = element(i);
-    if (destroyed[e]) continue;
-    const double squared = squared_stress(problem, e, u);
-    if (!std::isfinite(squared)) return squared;
-    largest = std::max(largest, squared);
+/// Of the squared norms of stress; not finite when one of them is not.
+class Largest {
+ public:
+  void add(double value) {
+    if (!std::isfinite(largest_)) return;
+    largest_ = std::isfinite(value) ? std::max(largest_, value) : value;
   }
-  return std::sqrt(largest);
-}
+  [[nodiscard]] double norm() const {
+    return std::isfinite(largest_) ? std::sqrt(largest_) : largest_;
+  }
+
+ private:
+  double largest_ = 0;
+};
 
 }  // namespace
 
-DamagedBody::DamagedBody(std::shared_ptr<const Problem> problem) : problem_(std::move(problem)) {
-  scale_.assign(problem_->mesh().tets.size(), 1.0);
-  destroyed_.assign(scale_.size(), 0);
-  nodal_in_.resize(problem_->dofs().size());
-  nodal_out_.resize(nodal_in_.size());
+DamagedBody::DamagedBody(std::shared_ptr<const Problem> problem)
+    : problem_(std::move(problem)),
+      record_(std::make_shared<Record>()),
+      forms_(*problem_),
+      scale_(problem_->mesh().tets.size(), 1.0),
+      nodal_in_(problem_->dofs().size()),
+      nodal_out_(nodal_in_) {}
+
+void DamagedBody::reserve() {
+  const std::lock_guard lock(record_->mutex);
+  record_->damage.reserve(scale_.size(), scale_.size());
 }
 
-void DamagedBody::destroy(std::span<const Index> elements) {
-  for (Index e : elements) {
-    scale_[e] = problem_->scene().fracture.alpha;
-    destroyed_[e] = 1;
+void DamagedBody::destroy(std::span<const Index> elements) { record({.leave = elements}); }
+
+bool DamagedBody::change(const Change& change) {
+  check(forms_, change);
+  if (!holds_together(forms_, change)) return false;
+  record(change);
+  return true;
+}
+
+void DamagedBody::record(const Event& event) {
+  {
+    const std::lock_guard lock(record_->mutex);
+    if (events_ != record_->damage.size()) throw UsageError("a copy of a body records no events");
+    record_->damage.add(event);
+  }
+  follow(event);
+}
+
+void DamagedBody::follow(const Event& event) {
+  forms_.add(event.nodes);
+  forms_.follow(event);
+  ++events_;
+  for (Index e : event.leave) {
+    if (e < problem_->tet_count()) scale_[e] = problem_->scene().fracture.alpha;
+  }
+  if (forms_.came().empty()) return;
+  others_.clear();
+  for (const auto& [element, form] : forms_.came()) {
+    const bool other = element >= problem_->tet_count() ||
+                       !same_matter(forms_, form, form_in_mesh(*problem_, element));
+    if (other && form.share > 0) others_.push_back(form);
+    if (element < problem_->tet_count()) scale_[element] = other ? 0 : form.share;
   }
 }
 
+void DamagedBody::follow(std::size_t events) {
+  for (Change event; events_ < events;) {
+    read(events_, event);
+    follow(event);
+  }
+}
+
+DamagedBody DamagedBody::as_of(std::size_t events) const {
+  DamagedBody body(problem_);
+  body.record_ = record_;
+  body.follow(events);
+  return body;
+}
+
+void DamagedBody::read(std::size_t event, Change& change) const {
+  const std::lock_guard lock(record_->mutex);
+  const Event of = record_->damage[event];
+  change.leave.assign(of.leave.begin(), of.leave.end());
+  change.come.assign(of.come.begin(), of.come.end());
+  change.nodes.assign(of.nodes.begin(), of.nodes.end());
+}
+
+std::vector<Index> DamagedBody::changed(std::size_t begin, std::size_t end) const {
+  std::vector<Index> elements;
+  std::vector<std::uint8_t> seen;
+  const auto add = [&](Index e) {
+    const auto at = static_cast<std::size_t>(e);
+    seen.resize(std::max(seen.size(), at + 1), 0);
+    if (seen[at]) return;
+    seen[at] = 1;
+    elements.push_back(e);
+  };
+  const std::lock_guard lock(record_->mutex);
+  for (std::size_t i = begin; i < end; ++i) {
+    const Event event = record_->damage[i];
+    for (Index e : event.leave) add(e);
+    for (const Coming& c : event.come) add(c.element);
+  }
+  return elements;
+}
+
+void DamagedBody::refuse_new_unknowns() const {
+  if (!forms_.new_nodes().empty()) throw UsageError("a base cannot take new unknowns over");
+}
+
+linear_algebra::SparseMatrix DamagedBody::stiffness() const {
+  refuse_new_unknowns();
+  linear_algebra::SparseMatrix k = assemble_lower(*problem_, scale_);
+  if (!others_.empty()) k += assemble_forms(*problem_, others_);
+  return k;
+}
+
 void DamagedBody::scatter(const Eigen::VectorXd& x) const {
+  refuse_new_unknowns();
   fem::scatter(*problem_, {x.data(), static_cast<std::size_t>(x.size())}, nodal_in_);
 }
 
 void DamagedBody::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   scatter(x);
-  fem::apply_stiffness(*problem_, scale_, nodal_in_, nodal_out_);
+  apply_stiffness(*problem_, scale_, nodal_in_, nodal_out_);
+  for (const Form& form : others_) {
+    const Eigen::Matrix<double, 3, 4> force =
+        form.shape.volume * (tensor(stress_of(form, nodal_in_)) * form.shape.gradient);
+    for (int a = 0; a < 4; ++a) Eigen::Map<Vec3>(&nodal_out_[3 * form.corners[a]]) += force.col(a);
+  }
   y.resize(x.size());
-  fem::gather(*problem_, nodal_out_, {y.data(), static_cast<std::size_t>(y.size())});
+  gather(*problem_, nodal_out_, {y.data(), static_cast<std::size_t>(y.size())});
 }
 
 double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
   scatter(x);
-  return largest_of(*problem_, destroyed_, nodal_in_, destroyed_.size(),
-                    [](std::size_t i) { return static_cast<Index>(i); });
+  Largest largest;
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    if (!destroyed()[e]) largest.add(squared(scale_[e] * stress(*problem_, e, nodal_in_)));
+  }
+  for (const Form& form : others_) largest.add(squared(stress_of(form, nodal_in_)));
+  return largest.norm();
 }
 
 double DamagedBody::largest_stress(const Eigen::VectorXd& x,
                                    std::span<const Index> elements) const {
   scatter(x);
-  return largest_of(*problem_, destroyed_, nodal_in_, elements.size(),
-                    [&](std::size_t i) { return elements[i]; });
+  Largest largest;
+  for (Index e : elements) {
+    if (!destroyed()[e]) largest.add(squared(scale_[e] * stress(*problem_, e, nodal_in_)));
+  }
+  return largest.norm();
 }
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace sunder::solver {
+namespace sunder::fem {
 namespace {
 
 // Of the scaled Gram matrix of what holds the pieces, relative to its largest eigenvalue.
@@ -169,4 +169,12 @@ class Pieces {
 
 bool held_together(const Forms& forms) { return Pieces(forms).held(); }
 
-}  // namespace sunder::solver
+bool holds_together(const Forms& forms, const Event& change) {
+  if (change.come.empty()) return true;
+  Forms after = forms;
+  after.add(change.nodes);
+  after.follow(change);
+  return held_together(after);
+}
+
+}  // namespace sunder::fem

@@ -6,11 +6,13 @@
 
 #include "body/change.hpp"
 
-namespace sunder::solver {
+namespace sunder::fem {
 
 /// Every element with a share of its stiffness counts, alpha too. Elements joined by faces move as
 /// one rigid piece; nodes that pieces share and supports (not grips) must leave no motion. Also
 /// false where an unknown of the mesh has no element any more. Sorts all faces of the body.
 [[nodiscard]] bool held_together(const Forms& forms);
+/// The same after a change; what leaves keeps alpha, which holds it.
+[[nodiscard]] bool holds_together(const Forms& forms, const Event& change);
 
-}  // namespace sunder::solver
+}  // namespace sunder::fem

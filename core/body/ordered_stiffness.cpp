@@ -29,7 +29,6 @@ OrderedStiffness::OrderedStiffness(const Problem& problem,
     : problem_(problem),
       nodes_(std::move(nodes)),
       around_(problem.mesh()),
-      scale_(problem.mesh().tets.size(), 1.0),
       changed_(static_cast<std::size_t>(intact.nonZeros()), 0) {
   const linear_algebra::SparseMatrix upper = intact.transpose();  // a transpose sorts
   matrix_ = upper.transpose();
@@ -45,21 +44,21 @@ Index OrderedStiffness::entry(Index dof, Index other) const {
   return at != end && *at == row ? static_cast<Index>(at - rows) : kNone;
 }
 
-void OrderedStiffness::follow(std::span<const double> scale) {
+void OrderedStiffness::follow(const DamagedBody& body) {
   std::vector<Index> around;
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
-    if (scale[e] == scale_[e]) continue;
-    scale_[e] = scale[e];
+  for (Index e : body.changed(events_, body.events())) {
+    if (e >= problem_.tet_count()) continue;
     clear(e);
     for (Index n : problem_.mesh().tets[e]) {
       const auto elements = around_.of(n);
       around.insert(around.end(), elements.begin(), elements.end());
     }
   }
+  events_ = body.events();
   if (around.empty()) return;
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
-  for (Index e : around) add(e);
+  for (Index e : around) add(e, body.scale()[e]);
   add_anchors();
   for (Index i : entries_) changed_[i] = 0;
   entries_.clear();
@@ -75,9 +74,9 @@ void OrderedStiffness::clear(Index element) {
   });
 }
 
-void OrderedStiffness::add(Index element) {
+void OrderedStiffness::add(Index element, double scale) {
   ElementMatrix k = element_stiffness(problem_, element);
-  k *= scale_[element];
+  k *= scale;
   for_pairs(problem_, element, [&](int i, int j, Index dof, Index other) {
     const Index at = entry(dof, other);
     if (changed_[at]) matrix_.valuePtr()[at] += k(i, j);
@@ -97,7 +96,7 @@ linear_algebra::Factor OrderedStiffness::factor(const linear_algebra::FactorWork
 
 std::size_t OrderedStiffness::bytes() const {
   return static_cast<std::size_t>(matrix_.nonZeros()) * (sizeof(double) + sizeof(Index) + 1) +
-         scale_.size() * (sizeof(double) + 4 * sizeof(Index));
+         problem_.mesh().tets.size() * 4 * sizeof(Index);
 }
 
 }  // namespace sunder::fem

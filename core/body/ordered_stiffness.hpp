@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "body/damaged_body.hpp"
 #include "body/node_elements.hpp"
 #include "linear_algebra/factor.hpp"
 #include "sunder/problem.hpp"
@@ -21,9 +22,9 @@ class OrderedStiffness {
   OrderedStiffness(const Problem& problem, std::shared_ptr<const linear_algebra::Supernodes> nodes,
                    const linear_algebra::SparseMatrix& intact);
 
-  /// Takes a scale per element, as assemble_lower does. Entries that change are summed anew: there
-  /// is no difference between large numbers.
-  void follow(std::span<const double> scale);
+  /// Takes up the body's events since the last time; the body has no other matter than the mesh.
+  /// Entries that change are summed anew: there is no difference between large numbers.
+  void follow(const DamagedBody& body);
   /// Throws as linear_algebra::Factor's constructors do.
   [[nodiscard]] linear_algebra::Factor factor(const linear_algebra::FactorWork& work = {}) const;
   /// Lower triangle, rows in the order of the factor.
@@ -33,14 +34,14 @@ class OrderedStiffness {
  private:
   [[nodiscard]] Index entry(Index dof, Index other) const;
   void clear(Index element);
-  void add(Index element);
+  void add(Index element, double scale);
   void add_anchors();
 
   const Problem& problem_;
   std::shared_ptr<const linear_algebra::Supernodes> nodes_;
   NodeElements around_;
   linear_algebra::SparseMatrix matrix_;  // rows of a column ascending
-  std::vector<double> scale_;            // that matrix_ holds
+  std::size_t events_ = 0;               // of the body that matrix_ holds
   std::vector<std::uint8_t> changed_;    // per entry of matrix_; all zero between calls
   std::vector<Index> entries_;           // that have changed
 };

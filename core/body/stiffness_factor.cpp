@@ -21,4 +21,9 @@ linear_algebra::Factor factor_stiffness(const Problem& problem, std::span<const 
   return {assemble_lower(problem, scale), elimination_order(problem), work};
 }
 
+linear_algebra::Factor factor_stiffness(const DamagedBody& body,
+                                        const linear_algebra::FactorWork& work) {
+  return {body.stiffness(), elimination_order(body.problem()), work};
+}
+
 }  // namespace sunder::fem

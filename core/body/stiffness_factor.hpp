@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "body/damaged_body.hpp"
 #include "linear_algebra/factor.hpp"
 #include "sunder/problem.hpp"
 
@@ -16,6 +17,9 @@ namespace sunder::fem {
 /// Elements scaled as in assemble_lower. Throws as Factor's constructors do.
 [[nodiscard]] linear_algebra::Factor factor_stiffness(const Problem& problem,
                                                       std::span<const double> scale = {},
+                                                      const linear_algebra::FactorWork& work = {});
+/// Of a body as it is.
+[[nodiscard]] linear_algebra::Factor factor_stiffness(const DamagedBody& body,
                                                       const linear_algebra::FactorWork& work = {});
 
 }  // namespace sunder::fem

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/damaged_body.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder {
@@ -11,11 +12,15 @@ namespace sunder {
 Backend::Backend(std::shared_ptr<const Problem> problem, Needs needs)
     : problem_(std::move(problem)), needs_(std::move(needs)) {
   if (!problem_) throw UsageError("a backend needs a problem");
-  destroyed_.assign(static_cast<std::size_t>(problem_->tet_count()), 0);
-  if (needs_.damage) sorted_.reserve(std::min(destroyed_.size(), std::size_t{4096}));
+  damaged_body_ = std::make_unique<fem::DamagedBody>(problem_);
+  if (!needs_.damage) return;
+  damaged_body_->reserve();
+  sorted_.reserve(std::min(destroyed().size(), std::size_t{4096}));
 }
 
 Backend::~Backend() = default;
+
+std::span<const std::uint8_t> Backend::destroyed() const { return damaged_body_->destroyed(); }
 
 void Backend::require(bool condition, const char* what) const {
   if (!condition) throw UsageError(what);
@@ -79,10 +84,10 @@ void Backend::destroy(std::span<const Index> elements) {
     require(sorted[i] >= 0 && sorted[i] < problem_->tet_count(),
             "an element to be destroyed lies outside the mesh");
     require(i == 0 || sorted[i] != sorted[i - 1], "an element to be destroyed is named twice");
-    require(!destroyed_[sorted[i]], "an element to be destroyed is destroyed already");
+    require(!destroyed()[sorted[i]], "an element to be destroyed is destroyed already");
   }
+  damaged_body_->destroy(elements);
   do_destroy(elements);
-  for (Index e : elements) destroyed_[e] = 1;
   if (stage_ != Stage::created) stage_ = Stage::loaded;
 }
 

@@ -7,7 +7,7 @@
 
 namespace sunder::solver {
 
-void check_base(Based& based, const DamagedBody& body, const Load& load,
+void check_base(Based& based, const fem::DamagedBody& body, const Load& load,
                 const std::function<void(Eigen::VectorXd&)>& complete) {
   Deferred& deferred = *based.deferred;
   const Forces forces{load.force_dofs, load.forces};
@@ -27,15 +27,18 @@ void check_base(Based& based, const DamagedBody& body, const Load& load,
   deferred.solve(forces, load.displacements, u);
 }
 
-BackgroundRebase::BackgroundRebase(const DamagedBody& body, int events,
+BackgroundRebase::BackgroundRebase(const fem::DamagedBody& body, int events,
                                    std::chrono::milliseconds rest)
-    : events_(events), rest_(rest), body_(body) {
+    : of_(body),
+      events_(events),
+      rest_(rest),
+      body_(body),
+      recorded_(body.events()),
+      at_(body.events()) {
   const auto unknowns = static_cast<std::size_t>(body.problem().dof_count());
   load_.force_dofs.reserve(unknowns);
   load_.forces.reserve(unknowns);
   load_.displacements.reserve(body.problem().gripped_dofs().size());
-  elements_.reserve(body.scale().size());  // each is destroyed once
-  ends_.reserve(body.scale().size());
   thread_ = std::thread([this] { run(); });
 }
 
@@ -49,11 +52,10 @@ BackgroundRebase::~BackgroundRebase() {
   thread_.join();
 }
 
-void BackgroundRebase::follow(std::span<const Index> elements) {
+void BackgroundRebase::follow() {
   {
     const std::lock_guard lock(mutex_);
-    elements_.insert(elements_.end(), elements.begin(), elements.end());
-    ends_.push_back(elements_.size());
+    recorded_ = of_.events();
   }
   if (!making_) return;
   ++followed_;
@@ -68,7 +70,7 @@ void BackgroundRebase::start(const Load& load, MakeBase make) {
     load_ = load;
     make_ = std::move(make);
     phase_ = Phase::asked;
-    start_ = ends_.size();
+    start_ = recorded_;
   }
   asked_.notify_one();
 }
@@ -78,7 +80,7 @@ bool BackgroundRebase::take(Based& based) {
   const auto start = Clock::now();
   making_ = false;
   std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return phase_ == Phase::following && at_ == ends_.size(); });
+  done_.wait(lock, [this] { return phase_ == Phase::following && at_ == recorded_; });
   waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   phase_ = Phase::idle;
   if (!result_.deferred) return false;
@@ -103,7 +105,7 @@ void BackgroundRebase::give_up() {
 
 bool BackgroundRebase::work_waits() const {
   return quit_ || old_.deferred || phase_ == Phase::asked ||
-         (phase_ == Phase::following && at_ < ends_.size());
+         (phase_ == Phase::following && at_ < recorded_);
 }
 
 void BackgroundRebase::run() {
@@ -133,21 +135,11 @@ void BackgroundRebase::run() {
   }
 }
 
-/// Events from at_ to `end`, so that the lists may grow meanwhile.
-void BackgroundRebase::copy_events(std::size_t end) {
-  const auto begin = elements_.begin();
-  const auto at = [&](std::size_t event) {
-    return begin + static_cast<std::ptrdiff_t>(event == 0 ? 0 : ends_[event - 1]);
-  };
-  event_.assign(at(at_), at(end));
-  at_ = end;
-}
-
 void BackgroundRebase::make(std::unique_lock<std::mutex>& lock) {
-  copy_events(start_);
+  at_ = start_;
   const MakeBase make = std::move(make_);
   lock.unlock();
-  body_.destroy(event_);
+  body_.follow(start_);
   Based based;
   try {
     based = make(body_, load_, {.stop = &unwanted_});
@@ -161,11 +153,14 @@ void BackgroundRebase::make(std::unique_lock<std::mutex>& lock) {
 
 void BackgroundRebase::follow_next(std::unique_lock<std::mutex>& lock) {
   const std::size_t next = at_ + 1;
-  copy_events(next);
-  at_ = next - 1;  // not yet followed
   lock.unlock();
-  body_.destroy(event_);
-  if (result_.deferred && !result_.deferred->destroy(event_)) result_ = {};
+  body_.read(at_, event_);
+  body_.follow(next);
+  try {
+    if (result_.deferred && !result_.deferred->follow(event_)) result_ = {};
+  } catch (const std::exception&) {
+    result_ = {};  // as in make()
+  }
   lock.lock();
   at_ = next;
 }

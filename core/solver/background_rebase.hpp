@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // New bases computed while frames go on: a thread makes one of the body as it was when it was asked
-// and follows every event since. Taken at a fixed event, so what it returns depends on the events
-// alone, never on how long anything took.
+// and follows every event since, whatever it changes: it reads the body's own record. Taken at a
+// fixed event, so what it returns depends on the events alone, never on how long anything took.
 #pragma once
 
 #include <atomic>
@@ -31,22 +31,22 @@ struct Based {
 /// Makes a base of a body with no damage over it yet, and checks it by a load; `work` is for a
 /// factor on the way.
 using MakeBase =
-    std::function<Based(const DamagedBody&, const Load&, const linear_algebra::FactorWork&)>;
+    std::function<Based(const fem::DamagedBody&, const Load&, const linear_algebra::FactorWork&)>;
 
 /// Starting, following and taking a base allocate nothing on the frame's thread, but for what the
 /// caller's MakeBase holds.
 class BackgroundRebase {
  public:
-  /// `body` as it is now; a base is taken so many events after its start. The thread rests before
-  /// each thing that it does (CpuOptions::rest).
-  BackgroundRebase(const DamagedBody& body, int events, std::chrono::milliseconds rest);
+  /// The body must outlive it; a base is taken so many events after its start. The thread rests
+  /// before each thing that it does (CpuOptions::rest).
+  BackgroundRebase(const fem::DamagedBody& body, int events, std::chrono::milliseconds rest);
   /// Gives up what is being made.
   ~BackgroundRebase();
   BackgroundRebase(const BackgroundRebase&) = delete;
   BackgroundRebase& operator=(const BackgroundRebase&) = delete;
 
-  /// Tells it of an event, whether a base is being made or not.
-  void follow(std::span<const Index> elements);
+  /// The body has recorded an event; to be told whether a base is being made or not.
+  void follow();
   /// Starts a base of the body after all events so far. `load`: likely that of the frame that
   /// takes it.
   void start(const Load& load, MakeBase make);
@@ -66,17 +66,17 @@ class BackgroundRebase {
   void run();
   void make(std::unique_lock<std::mutex>& lock);
   void follow_next(std::unique_lock<std::mutex>& lock);
-  void copy_events(std::size_t end);
   [[nodiscard]] bool work_waits() const;
 
   // The frame's.
+  const fem::DamagedBody& of_;
   int events_, followed_ = 0;
   bool making_ = false;
   double waited_ms_ = 0;
   // The thread's.
   std::chrono::milliseconds rest_;
-  DamagedBody body_;  // after the events up to at_
-  std::vector<Index> event_;
+  fem::DamagedBody body_;  // after at_ events of the same record
+  fem::Change event_;
   // Guarded by mutex_.
   std::mutex mutex_;
   std::condition_variable asked_, done_;
@@ -85,10 +85,9 @@ class BackgroundRebase {
   Load load_;
   MakeBase make_;
   Based result_, old_;
-  std::vector<Index> elements_;    // of all events
-  std::vector<std::size_t> ends_;  // of each of them
-  std::size_t at_ = 0;             // events that the thread has followed
-  std::size_t start_ = 0;          // events before the base that is being made
+  std::size_t recorded_;   // events there are
+  std::size_t at_;         // events that the thread has followed
+  std::size_t start_ = 0;  // events before the base that is being made
   std::atomic<bool> unwanted_{false};
   std::thread thread_;  // last: it uses all above
 };
@@ -96,7 +95,7 @@ class BackgroundRebase {
 /// A full check of a new base (frame_check.hpp). It solves for the load once more at the end: the
 /// frame that takes the base finds its load known, and all memory touched. `complete` fills what a
 /// solution leaves out.
-void check_base(Based& based, const DamagedBody& body, const Load& load,
+void check_base(Based& based, const fem::DamagedBody& body, const Load& load,
                 const std::function<void(Eigen::VectorXd&)>& complete);
 
 }  // namespace sunder::solver

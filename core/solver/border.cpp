@@ -15,10 +15,10 @@ Index Border::unknown(Index added, int axis) const {
   return unknowns_[static_cast<std::size_t>(added)][static_cast<std::size_t>(axis)];
 }
 
-void Border::number(const Forms& forms) {
+void Border::number(const fem::Forms& forms) {
   unknowns_.clear();
   Index count = 0;
-  for (const NewNode& node : forms.new_nodes()) {
+  for (const fem::NewNode& node : forms.new_nodes()) {
     std::array<Index, 3>& own = unknowns_.emplace_back();
     for (int axis = 0; axis < 3; ++axis) {
       own[static_cast<std::size_t>(axis)] = node.axes.has(axis) ? count++ : kNone;
@@ -27,7 +27,7 @@ void Border::number(const Forms& forms) {
   for (Eigen::VectorXd* v : {&load_, &d_, &lack_, &step_}) v->setZero(count);
 }
 
-void Border::assemble(const Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
+void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
                       Eigen::Index columns) {
   number(forms);
   if (empty()) return;
@@ -41,7 +41,8 @@ void Border::assemble(const Forms& forms, DifferenceBasis& basis, Eigen::Index g
 }
 
 /// An element's K = W W^T, W = share^1/2 B^T L V^1/2, joins E and F.
-void Border::add(const Forms& forms, const Form& form, DifferenceBasis& basis, Eigen::Index grips) {
+void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
+                 Eigen::Index grips) {
   const fem::UpdateFactor w =
       fem::update_factor(form.shape, elasticity(form.law), 0) * std::sqrt(form.share);
   basis.coordinates(forms.parents(form.corners), w, rows_, y_);

@@ -28,7 +28,7 @@ class Border {
 
   /// E and F of the elements at new nodes, all of them in the basis; E has `columns` rows, the
   /// first `grips` of them zero.
-  void assemble(const Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
+  void assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
                 Eigen::Index columns);
   /// Reads the leading blocks of G and M; false where S is not positive definite in double
   /// precision.
@@ -54,8 +54,9 @@ class Border {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  void number(const Forms& forms);
-  void add(const Forms& forms, const Form& form, DifferenceBasis& basis, Eigen::Index grips);
+  void number(const fem::Forms& forms);
+  void add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
+           Eigen::Index grips);
 
   std::vector<std::array<Index, 3>> unknowns_;  // of each new node
   Eigen::MatrixXd e_, f_, n_, h_;

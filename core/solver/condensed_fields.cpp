@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/condensed_fields.hpp"
 
+#include <optional>
+
 #include "body/assembly.hpp"
 #include "body/element.hpp"
 
 namespace sunder::solver {
 
-CondensedFields::CondensedFields(const Problem& problem, Region region)
-    : problem_(problem), region_(std::move(region)) {
+CondensedFields::CondensedFields(const fem::DamagedBody& body, Region region)
+    : body_(body), problem_(body.problem()), region_(std::move(region)) {
   for (Solution* s : {&displacement_, &of_stress_}) {  // so that frames allocate nothing
     s->of.reserve(region_.dofs.size(), region_.dofs.size());
   }
@@ -32,6 +34,7 @@ void CondensedFields::take(std::span<const double> nodal) {
 
 void CondensedFields::publish_stress() {
   stress_known_ = false;
+  events_ = body_.events();
   of_stress_.everywhere = displacement_.everywhere;
   if (displacement_.everywhere) {
     of_stress_.nodal = displacement_.nodal;
@@ -56,9 +59,12 @@ void CondensedFields::complete(std::span<double> nodal) {
   }
 }
 
-std::span<const Voigt> CondensedFields::stress(std::span<const double> scale) {
+std::span<const Voigt> CondensedFields::stress() {
   if (stress_known_) return stress_;
   solve(of_stress_);
+  std::optional<fem::DamagedBody> published;
+  if (events_ != body_.events()) published = body_.as_of(events_);
+  const auto scale = published ? published->scale() : body_.scale();
   stress_.resize(scale.size());
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     stress_[e] = scale[e] * fem::stress(problem_, e, of_stress_.nodal);

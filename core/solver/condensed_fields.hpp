@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "body/damaged_body.hpp"
 #include "solver/inverse_route.hpp"
 #include "solver/region.hpp"
 #include "solver/whole_solution.hpp"
@@ -14,7 +15,8 @@ namespace sunder::solver {
 
 class CondensedFields {
  public:
-  CondensedFields(const Problem& problem, Region region);
+  /// The body must outlive it.
+  CondensedFields(const fem::DamagedBody& body, Region region);
   /// Makes room now: frames will ask, such as a criterion that looks around a tip.
   void make_room(bool stress);
   [[nodiscard]] const Region& region() const { return region_; }
@@ -28,8 +30,9 @@ class CondensedFields {
 
   /// Fills the entries outside the region.
   void complete(std::span<double> nodal);
-  /// Stress at all elements, a_e = scale[e]; inside the region a frame has its own, which counts.
-  [[nodiscard]] std::span<const Voigt> stress(std::span<const double> scale);
+  /// Stress at all elements, each scaled as the body was when it was published; inside the region a
+  /// frame has its own, which counts.
+  [[nodiscard]] std::span<const Voigt> stress();
 
   [[nodiscard]] std::size_t bytes() const;
 
@@ -41,11 +44,13 @@ class CondensedFields {
   };
   void solve(Solution& solution);
 
+  const fem::DamagedBody& body_;
   const Problem& problem_;
   Region region_;
   Solution displacement_, of_stress_;
   std::vector<Voigt> stress_;
   bool stress_known_ = false;
+  std::size_t events_ = 0;  // of the body when its stress was published
   WholeRoom room_;
   Eigen::VectorXd u_;
 };

@@ -57,23 +57,23 @@ CondensedBase& base_of(const Based& based) {
   return static_cast<CondensedBase&>(based.deferred->base());
 }
 
-Based lay_over(const Problem& problem, std::shared_ptr<const linear_algebra::Factor> factor,
+Based lay_over(const fem::Forms& in_base, std::shared_ptr<const linear_algebra::Factor> factor,
                std::unique_ptr<CondensedBase> base, bool damage) {
   Based based;
   based.factor = std::move(factor);
   const Index columns = columns_of_a_base(base->dofs().size());
-  based.deferred = std::make_unique<Deferred>(problem, std::move(base), damage, columns);
+  based.deferred = std::make_unique<Deferred>(in_base, std::move(base), damage, columns);
   return based;
 }
 
 /// X_SS by a factor.
-Based condensed_by(const Problem& problem, std::shared_ptr<const linear_algebra::Factor> factor,
+Based condensed_by(const fem::Forms& in_base, std::shared_ptr<const linear_algebra::Factor> factor,
                    std::span<const Index> dofs, bool damage) {
   auto base = std::make_unique<CondensedBase>(factor, dofs);
-  return lay_over(problem, std::move(factor), std::move(base), damage);
+  return lay_over(in_base, std::move(factor), std::move(base), damage);
 }
 
-void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
+void check_condensed(Based& based, const fem::DamagedBody& body, const Load& load) {
   Equilibrium whole;
   WholeRoom room;
   Eigen::VectorXd everywhere;
@@ -83,7 +83,7 @@ void check_condensed(Based& based, const DamagedBody& body, const Load& load) {
 
 /// A check of an updated X_SS by the factor's own: what it lacks, in elements within S. What lies
 /// outside follows from the forces on S by that factor, exactly. False: it cannot be had.
-bool check_updated(Based& based, const DamagedBody& body, const Load& load,
+bool check_updated(Based& based, const fem::DamagedBody& body, const Load& load,
                    std::span<const Index> elements) {
   if (elements.empty() || !base_of(based).inside(load.force_dofs)) return false;
   Eigen::VectorXd u, du;
@@ -126,7 +126,6 @@ class NextBase {
       : within_(elements_within(problem, dofs)) {
     const std::size_t columns = std::min(dofs.size(), threshold + kLargestEvent);
     state_.reserve(dofs.size(), columns);
-    lost_.reserve(static_cast<std::size_t>(problem.tet_count()));
     const auto room = static_cast<Eigen::Index>(columns),
                touched = static_cast<Eigen::Index>(std::min(columns, threshold + kUsualEvent));
     for (linear_algebra::RowMajor* a : {&damage_.compliance, &damage_.m, &damage_.d}) {
@@ -135,26 +134,26 @@ class NextBase {
     }
   }
 
-  /// Copies what the next base is to be made of; `lost`: elements destroyed since the factor.
-  void begin(const Based& last, std::span<const Index> lost) {
+  /// Copies what the next base is to be made of; `factored`: events that the factor holds.
+  void begin(const Based& last, std::size_t factored) {
     base_of(last).copy_state(state_);
     last.deferred->copy_damage(damage_);
-    lost_.assign(lost.begin(), lost.end());
+    factored_ = factored;
   }
 
   /// On another thread; holds nothing of the last base afterwards.
-  Based make(const DamagedBody& body, const Load& load, const linear_algebra::FactorWork& work) {
+  Based make(const fem::DamagedBody& body, const Load& load,
+             const linear_algebra::FactorWork& work) {
     const struct AtEnd {
       NextBase& next;
       ~AtEnd() { next.release(); }
     } at_end{*this};
-    Based based = updated(body.problem(), load);
+    Based based = updated(body, load);
     if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
     if (based.check.error <= kDrift) return based;
-    based = condensed_by(body.problem(),
-                         std::make_shared<linear_algebra::Factor>(
-                             fem::factor_stiffness(body.problem(), body.scale(), work)),
-                         state_.dofs, true);
+    based = condensed_by(
+        body.forms(), std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body, work)),
+        state_.dofs, true);
     check_condensed(based, body, load);
     return based;
   }
@@ -166,32 +165,31 @@ class NextBase {
   }
 
  private:
-  Based updated(const Problem& problem, const Load& load) const {
+  Based updated(const fem::DamagedBody& body, const Load& load) const {
     return lay_over(
-        problem, state_.factor,
+        body.forms(), state_.factor,
         std::make_unique<CondensedBase>(state_, updated_inverse(state_, damage_, load.force_dofs),
-                                        std::make_shared<const LostStiffness>(problem, lost_)),
+                                        std::make_shared<const LostStiffness>(body, factored_)),
         true);
   }
 
   CondensedState state_;
   DamageMatrices damage_;
-  std::vector<Index> lost_;    // elements destroyed since the factor
+  std::size_t factored_ = 0;   // events of the body that the factor holds
   std::vector<Index> within_;  // elements within S
 };
 
 /// Deferred update over X_SS.
 class CondensedRoute final : public InverseRoute {
  public:
-  CondensedRoute(const DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
+  CondensedRoute(const fem::DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
                  std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest)
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()) {
     std::iota(all_.begin(), all_.end(), 0);
-    based_ = condensed_by(body.problem(), std::move(intact), dofs_, damage);
+    based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage);
     intact_ = based_.factor.get();
     make_room(body.problem());
     if (!damage) return;
-    lost_.reserve(body.scale().size());
     next_.emplace(body.problem(), dofs_, threshold());
     coming_.emplace(body, static_cast<int>(events_of_a_base(dofs_.size())), rest);
   }
@@ -217,17 +215,15 @@ class CondensedRoute final : public InverseRoute {
     return true;
   }
 
-  void destroy(std::span<const Index> elements) override {
+  void follow(const fem::Event& event) override {
     if (coming_->due()) take_base();
-    coming_->follow(elements);
-    lost_.insert(lost_.end(), elements.begin(), elements.end());
-    if (!based_.deferred->destroy(elements)) {
+    coming_->follow();
+    if (!based_.deferred->follow(event)) {
       rebase();
-    } else if (!coming_->making() &&
-               static_cast<std::size_t>(based_.deferred->rank()) > threshold()) {
-      lost_at_start_ = lost_.size();
-      next_->begin(based_, lost_);
-      coming_->start(load_, [this](const DamagedBody& body, const Load& load,
+    } else if (begins()) {
+      started_ = body_.events();
+      next_->begin(based_, factored_);
+      coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
                                    const linear_algebra::FactorWork& work) {
         return next_->make(body, load, work);
       });
@@ -236,14 +232,14 @@ class CondensedRoute final : public InverseRoute {
 
   bool rebase() override {
     if (!coming_) return false;
+    body_.refuse_new_unknowns();
     coming_->give_up();
     next_->release();
     based_ = {};  // frees the old base first
-    based_ = condensed_by(body_.problem(),
-                          std::make_shared<linear_algebra::Factor>(
-                              fem::factor_stiffness(body_.problem(), body_.scale())),
+    based_ = condensed_by(body_.forms(),
+                          std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body_)),
                           dofs_, true);
-    lost_.clear();
+    factored_ = body_.events();
     ++bases_;
     return true;
   }
@@ -284,22 +280,24 @@ class CondensedRoute final : public InverseRoute {
            std::clamp(dofs_.size() / 8, kFewestColumns, kMostColumns);
   }
 
+  bool begins() const {
+    return !coming_->making() && static_cast<std::size_t>(based_.deferred->rank()) > threshold() &&
+           body_.forms().new_nodes().empty();
+  }
+
   void take_base() {
     const auto factor = based_.factor;
     if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
-    if (based_.factor != factor) {       // what was destroyed before it is in it
-      lost_.erase(lost_.begin(), lost_.begin() + static_cast<std::ptrdiff_t>(lost_at_start_));
-    }
+    if (based_.factor != factor) factored_ = started_;
     ++bases_;
   }
 
-  const DamagedBody& body_;
+  const fem::DamagedBody& body_;
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
   const linear_algebra::Factor* intact_ = nullptr;
   Load load_;  // of the last solution
   Based based_;
-  std::vector<Index> lost_;        // elements destroyed since based_.factor
-  std::size_t lost_at_start_ = 0;  // of them, when coming_ started
+  std::size_t factored_ = 0, started_ = 0;  // events in based_.factor; before coming_ started
   Equilibrium whole_;
   WholeRoom room_;
   Eigen::VectorXd everywhere_;
@@ -312,7 +310,7 @@ class CondensedRoute final : public InverseRoute {
 
 }  // namespace
 
-std::unique_ptr<InverseRoute> condensed_route(const DamagedBody& body,
+std::unique_ptr<InverseRoute> condensed_route(const fem::DamagedBody& body,
                                               std::shared_ptr<const linear_algebra::Factor> intact,
                                               std::span<const Index> dofs, bool damage,
                                               std::chrono::milliseconds rest) {

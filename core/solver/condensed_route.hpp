@@ -15,7 +15,7 @@ namespace sunder::solver {
 /// Over the unknowns S = `dofs` (ascending), by the intact body's factor. The body must outlive it.
 /// `rest`: of the thread that makes new bases (background_rebase.hpp).
 [[nodiscard]] std::unique_ptr<InverseRoute> condensed_route(
-    const DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
+    const fem::DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
     std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest);
 
 }  // namespace sunder::solver

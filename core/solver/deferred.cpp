@@ -37,13 +37,15 @@ void multiply(const linear_algebra::RowMajor& s, Eigen::Index n, const Eigen::Ve
 
 }  // namespace
 
-Deferred::Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage, Index columns)
-    : problem_(problem),
+Deferred::Deferred(const fem::Forms& in_base, std::unique_ptr<Base> base, bool damage,
+                   Index columns)
+    : problem_(in_base.problem()),
       base_(std::move(base)),
-      basis_(problem),
-      is_touched_(static_cast<std::size_t>(problem.dof_count()), 0),
-      forms_(problem) {
-  const auto gripped = problem.gripped_dofs();
+      basis_(problem_),
+      is_touched_(static_cast<std::size_t>(problem_.dof_count()), 0),
+      in_base_(in_base),
+      forms_(in_base) {
+  const auto gripped = problem_.gripped_dofs();
   grips_ = static_cast<Eigen::Index>(gripped.size());
   if (damage) reserve_for_fractures(columns + static_cast<Index>(grips_));
   if (grips_ == 0) return;
@@ -119,13 +121,17 @@ bool Deferred::factor_grips() {
   return grip_block_.info() == Eigen::Success && grip_block_.matrixLLT().allFinite();
 }
 
+bool Deferred::follow(const fem::Event& event) {
+  return event.come.empty() && event.nodes.empty() ? destroy(event.leave) : change(event);
+}
+
 bool Deferred::destroy(std::span<const Index> elements) {
-  damage_.add(elements);
+  damage_.add({.leave = elements});
   return follow_last();
 }
 
 bool Deferred::follow_last() {
-  const Damage::Event event = damage_.last();
+  const fem::Event event = damage_.last();
   forms_.add(event.nodes);
   push(event);
   if (apply(event) && set_border() && factor_grips()) return true;
@@ -150,10 +156,10 @@ void Deferred::connect(const std::array<Index, 4>& nodes) {
 }
 
 /// Brings the differences of an event to hand.
-void Deferred::push(const Damage::Event& event) {
+void Deferred::push(const fem::Event& event) {
   Before had{touched_.size(), basis_.differences().size(), false};
   for (Index e : event.leave) connect(glued(e));
-  for (const Coming& c : event.come) {
+  for (const fem::Coming& c : event.come) {
     if (c.element < forms_.element_count()) connect(glued(c.element));
     connect(forms_.parents(c.form.corners));
   }
@@ -220,7 +226,7 @@ void Deferred::clear() {
 /// Adds all events up again, in order: the same sums as the first time.
 void Deferred::replay() {
   clear();
-  forms_.clear();
+  forms_ = in_base_;
   for (std::size_t i = 0; i < damage_.size(); ++i) {
     forms_.add(damage_[i].nodes);
     static_cast<void>(apply(damage_[i]));
@@ -231,7 +237,7 @@ void Deferred::replay() {
 void Deferred::gather(std::span<const Part> parts) {
   rank_ = 6;
   if (parts.size() == 1) {
-    basis_.coordinates(parts[0].nodes, parts[0].factor, rows_, u_);
+    basis_.coordinates(parts[0].nodes, parts[0].u, rows_, u_);
   } else {
     gather_event(parts);
   }
@@ -244,7 +250,7 @@ void Deferred::gather_event(std::span<const Part> all) {
   parts.values.clear();
   parts.ends.clear();
   for (const Part& part : all) {
-    basis_.coordinates(part.nodes, part.factor, rows_, u_);
+    basis_.coordinates(part.nodes, part.u, rows_, u_);
     parts.rows.insert(parts.rows.end(), rows_.begin(), rows_.end());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const auto row = u_.row(static_cast<Eigen::Index>(i));

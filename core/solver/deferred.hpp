@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "body/change.hpp"
+#include "body/stiffness_difference.hpp"
 #include "solver/base.hpp"
 #include "solver/border.hpp"
 #include "solver/difference_basis.hpp"
@@ -38,15 +39,21 @@ class Deferred {
   /// The problem must outlive it. Without `damage` nothing will be destroyed, and there is no room
   /// for it. Room for `columns` of B is touched now, for later ones by the frames that need it.
   Deferred(const Problem& problem, std::unique_ptr<Base> base, bool damage = true,
+           Index columns = kReserved)
+      : Deferred(fem::Forms(problem), std::move(base), damage, columns) {}
+  /// Over the base of a body whose elements are of these forms.
+  Deferred(const fem::Forms& in_base, std::unique_ptr<Base> base, bool damage = true,
            Index columns = kReserved);
 
+  /// Follows an event: by destroy() where elements leave and none comes, else by change().
+  [[nodiscard]] bool follow(const fem::Event& event);
   /// Follows an event. Returns false and changes nothing when the damaged stiffness is not
   /// positive definite in double precision.
   [[nodiscard]] bool destroy(std::span<const Index> elements);
   /// Follows any change, as destroy() does where elements leave and none comes; the reverse of the
   /// last event takes that back. False also where a piece of the body would hang on nothing, for
   /// which a grip does not count. Throws UsageError when the change does not fit the body.
-  [[nodiscard]] bool change(const Change& change);
+  [[nodiscard]] bool change(const fem::Event& change);
   /// Prepares the base for the removal of live elements, each by itself.
   void prepare(std::span<const Index> elements);
   [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
@@ -82,9 +89,9 @@ class Deferred {
   [[nodiscard]] Base& base() { return *base_; }
   [[nodiscard]] const Base& base() const { return *base_; }
   [[nodiscard]] Index events() const { return static_cast<Index>(damage_.size()); }
-  /// What has happened since the base was made; its reverses are solver::reverse().
-  [[nodiscard]] const Damage& damage() const { return damage_; }
-  [[nodiscard]] const Forms& forms() const { return forms_; }
+  /// The events that the small matrices hold, in order; their reverses are fem::reverse().
+  [[nodiscard]] const fem::Damage& damage() const { return damage_; }
+  [[nodiscard]] const fem::Forms& forms() const { return forms_; }
   /// The unknown of a new node's offset: after the body's; kNone where it keeps to its parent.
   [[nodiscard]] Index unknown(Index node, int axis) const;
   /// d [mm] of the last solution or correction: the last unknowns.
@@ -94,7 +101,7 @@ class Deferred {
   /// Columns of B: what a frame pays for the damage.
   [[nodiscard]] Index rank() const { return count_; }
   /// Into the leading blocks of matrices that have room, or get it; throws UsageError where there
-  /// are new unknowns.
+  /// are new unknowns, which no base takes over.
   void copy_damage(DamageMatrices& to) const;
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 
@@ -104,24 +111,18 @@ class Deferred {
     std::size_t touched, differences;
     bool pushed;
   };
-  /// U of some stiffness U U^T between nodes of the mesh.
-  struct Part {
-    std::array<Index, 4> nodes;
-    fem::UpdateFactor factor;
-  };
+  using Part = fem::StiffnessPart;
 
   void reserve_for_fractures(Index columns);
   void reserve(Index columns);
   [[nodiscard]] bool follow_last();
-  void push(const Damage::Event& event);
+  void push(const fem::Event& event);
   [[nodiscard]] std::array<Index, 4> glued(Index element) const;
   void connect(const std::array<Index, 4>& nodes);
   void pop();
-  [[nodiscard]] bool apply(const Damage::Event& event);
-  void collect(const Damage::Event& event);
-  void collect(const Form& before, const Form& after, std::vector<Part>& less,
-               std::vector<Part>& more) const;
-  [[nodiscard]] Part part(const Form& form, double share) const;
+  [[nodiscard]] bool apply(const fem::Event& event);
+  void collect(const fem::Event& event);
+  void collect(const fem::StiffnessDifference& between);
   [[nodiscard]] bool update(std::span<const Part> parts, bool more);
   void gather(std::span<const Part> parts);
   void gather_event(std::span<const Part> parts);
@@ -150,8 +151,8 @@ class Deferred {
   std::vector<Index> touched_;            // gripped unknowns, then by event
   std::vector<std::uint8_t> is_touched_;  // per unknown
   std::vector<Before> before_;            // each event
-  Damage damage_;
-  Forms forms_;  // after them
+  fem::Damage damage_;                    // they themselves
+  fem::Forms in_base_, forms_;            // before and after them
   Border border_;
   std::vector<Difference> wanted_;  // by what is to be prepared
   linear_algebra::RowMajor compliance_, m_,

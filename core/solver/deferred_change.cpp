@@ -2,29 +2,22 @@
 // What a change takes from the stiffness between old unknowns and what it adds (method.md
 // "Changes").
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "body/element.hpp"
 #include "body/held_together.hpp"
-#include "material/linear.hpp"
 #include "solver/deferred.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
 
-bool Deferred::change(const Change& change) {
+bool Deferred::change(const fem::Event& change) {
   check(forms_, change);
-  if (reverses_last(forms_, damage_, change)) {
+  if (fem::reverses_last(in_base_, damage_, forms_, change)) {
     take_back();
     return true;
   }
-  if (!change.come.empty()) {  // what leaves keeps alpha, which holds it
-    Forms after = forms_;
-    after.add(change.nodes);
-    after.follow({change.leave, change.come, change.nodes});
-    if (!held_together(after)) return false;
-  }
+  if (!fem::holds_together(forms_, change)) return false;
   damage_.add(change);
   return follow_last();
 }
@@ -43,50 +36,37 @@ std::array<Index, 4> Deferred::glued(Index element) const {
   return forms_.parents(form->second.corners);
 }
 
-Deferred::Part Deferred::part(const Form& form, double share) const {
-  return {forms_.parents(form.corners),
-          fem::update_factor(form.shape, elasticity(form.law), 0) * std::sqrt(share)};
+void Deferred::collect(const fem::StiffnessDifference& between) {
+  if (between.less) less_.push_back(*between.less);
+  if (between.more) more_.push_back(*between.more);
 }
 
-/// The difference between two forms; where only the share differs, of that alone.
-void Deferred::collect(const Form& before, const Form& after, std::vector<Part>& less,
-                       std::vector<Part>& more) const {
-  if (same_matter(forms_, before, after)) {
-    const double grown = after.share - before.share;
-    if (grown > 0) more.push_back(part(after, grown));
-    if (grown < 0) less.push_back(part(after, -grown));
-    return;
-  }
-  if (before.share > 0) less.push_back(part(before, before.share));
-  if (after.share > 0) more.push_back(part(after, after.share));
-}
-
-void Deferred::collect(const Damage::Event& event) {
+void Deferred::collect(const fem::Event& event) {
   less_.clear();
   more_.clear();
   for (Index e : event.leave) {
-    const auto comes = [e](const Coming& c) { return c.element == e; };
+    const auto comes = [e](const fem::Coming& c) { return c.element == e; };
     if (std::ranges::any_of(event.come, comes)) continue;  // below
     if (!forms_.came().contains(e)) {
       less_.push_back(
           {problem_.mesh().tets[static_cast<std::size_t>(e)], fem::update_factor(problem_, e)});
       continue;
     }
-    Form gone = forms_.of(e);
+    fem::Form gone = forms_.of(e);
     gone.share = problem_.scene().fracture.alpha;
-    collect(forms_.of(e), gone, less_, more_);
+    collect(fem::difference(forms_, forms_.of(e), gone));
   }
-  for (const Coming& c : event.come) {
-    Form before = c.form;
+  for (const fem::Coming& c : event.come) {
+    fem::Form before = c.form;
     before.share = 0;
     if (c.element < forms_.element_count()) before = forms_.of(c.element);
-    collect(before, c.form, less_, more_);
+    collect(fem::difference(forms_, before, c.form));
   }
 }
 
 /// More stiffness first: then both small matrices are definite wherever the body is. Where the last
 /// digits of M decide otherwise, all changes so far are taken at once.
-bool Deferred::apply(const Damage::Event& event) {
+bool Deferred::apply(const fem::Event& event) {
   collect(event);
   const bool destroys = event.come.empty() && forms_.came().empty();
   const bool followed = update_both();
@@ -108,16 +88,10 @@ void Deferred::collect_all() {
   less_.clear();
   more_.clear();
   for (Index e = 0; e < problem_.tet_count(); ++e) {
-    if (forms_.left()[static_cast<std::size_t>(e)]) {
-      less_.push_back(
-          {problem_.mesh().tets[static_cast<std::size_t>(e)], fem::update_factor(problem_, e)});
-    }
+    if (!forms_.came().contains(e)) collect(fem::difference(in_base_, forms_, e));
   }
   for (const auto& [element, form] : forms_.came()) {
-    Form in_base = form;
-    in_base.share = 0;
-    if (element < problem_.tet_count()) in_base = form_in_mesh(problem_, element);
-    collect(in_base, form, less_, more_);
+    collect(fem::difference(in_base_, forms_, element));
   }
 }
 

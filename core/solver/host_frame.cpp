@@ -21,7 +21,7 @@ constexpr double kDamagedError = 1e-8, kEstimated = 5e-9;
 
 }  // namespace
 
-HostFrame::HostFrame(const DamagedBody& body, InverseRoute& route, HostFields& fields,
+HostFrame::HostFrame(const fem::DamagedBody& body, InverseRoute& route, HostFields& fields,
                      bool yardstick, MakeRoute fall_back)
     : body_(body),
       route_(route),

@@ -21,7 +21,7 @@ class HostFrame final : public FrameDevice {
 
   /// What it refers to must outlive it. `yardstick`: a plain route that others are measured by.
   /// `fall_back`: what has the word where the route fails; empty: nothing.
-  HostFrame(const DamagedBody& body, InverseRoute& route, HostFields& fields,
+  HostFrame(const fem::DamagedBody& body, InverseRoute& route, HostFields& fields,
             bool yardstick = false, MakeRoute fall_back = {});
 
   void set_load(const Load& load);
@@ -53,7 +53,7 @@ class HostFrame final : public FrameDevice {
   [[nodiscard]] InverseRoute& route() { return other_ ? *other_ : route_; }
   [[nodiscard]] double grip_force(std::size_t g) const;
 
-  const DamagedBody& body_;
+  const fem::DamagedBody& body_;
   InverseRoute& route_;
   HostFields& fields_;
   bool yardstick_;

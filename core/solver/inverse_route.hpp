@@ -29,8 +29,8 @@ class InverseRoute {
   virtual void complete(Eigen::VectorXd&) {}
   /// What complete() would need later on, for the last solve(); false: it left nothing out.
   virtual bool equilibrium(Equilibrium&) const { return false; }
-  /// Follows an event; the body has destroyed the elements already.
-  virtual void destroy(std::span<const Index> elements) = 0;
+  /// Follows an event that the body has recorded already.
+  virtual void follow(const fem::Event& event) = 0;
   /// Whether prepare() is worth calling.
   [[nodiscard]] virtual bool prepares() const { return false; }
   virtual void prepare(std::span<const Index>) {}

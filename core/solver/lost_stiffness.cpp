@@ -3,18 +3,43 @@
 
 #include <algorithm>
 
+#include "body/stiffness_difference.hpp"
+
 namespace sunder::solver {
 
 LostStiffness::LostStiffness(const Problem& problem, std::span<const Index> elements) {
   elements_.reserve(elements.size());
   for (Index e : elements) {
-    Element& lost = elements_.emplace_back();
-    lost.u = fem::update_factor(problem, e);
-    for (std::size_t i = 0; i < 12; ++i) {
-      lost.dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], static_cast<int>(i % 3));
-      if (lost.dofs[i] != kNone) dofs_.push_back(lost.dofs[i]);
-    }
+    add(problem, problem.mesh().tets[e], fem::update_factor(problem, e), false);
   }
+  number();
+}
+
+LostStiffness::LostStiffness(const fem::DamagedBody& body, std::size_t events) {
+  const fem::DamagedBody before = body.as_of(events);
+  const auto add_part = [&](const fem::StiffnessPart& part, bool came) {
+    add(body.problem(), part.nodes, part.u, came);
+  };
+  for (Index e : body.changed(events, body.events())) {
+    const fem::StiffnessDifference between = fem::difference(before.forms(), body.forms(), e);
+    if (between.less) add_part(*between.less, false);
+    if (between.more) add_part(*between.more, true);
+  }
+  number();
+}
+
+void LostStiffness::add(const Problem& problem, const std::array<Index, 4>& corners,
+                        const fem::UpdateFactor& u, bool came) {
+  Element& lost = elements_.emplace_back();
+  lost.u = u;
+  lost.came = came;
+  for (std::size_t i = 0; i < 12; ++i) {
+    lost.dofs[i] = problem.dof(corners[i / 3], static_cast<int>(i % 3));
+    if (lost.dofs[i] != kNone) dofs_.push_back(lost.dofs[i]);
+  }
+}
+
+void LostStiffness::number() {
   std::sort(dofs_.begin(), dofs_.end());
   dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
   for (Element& lost : elements_) {
@@ -38,6 +63,7 @@ void LostStiffness::multiply(std::span<const double> u, std::span<double> y) con
     corners.head<3>().setZero();
     const Eigen::Matrix<double, 6, 1> strain = lost.u.transpose() * corners;
     corners.noalias() = lost.u * strain;
+    if (lost.came) corners = -corners;
     for (std::size_t i = 0; i < 12; ++i) {
       if (lost.dofs[i] == kNone) continue;
       y[static_cast<std::size_t>(lost.dofs[i])] += corners[static_cast<Eigen::Index>(i)];

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stiffness D that destroyed elements have lost, element by element: K u = (K0 - D) u.
+// The stiffness D that elements have lost by leaving, or gained by coming, element by element:
+// K u = (K0 - D) u.
 #pragma once
 
 #include <array>
 #include <span>
 #include <vector>
 
+#include "body/damaged_body.hpp"
 #include "body/element.hpp"
 #include "sunder/problem.hpp"
 
@@ -13,7 +15,10 @@ namespace sunder::solver {
 
 class LostStiffness {
  public:
+  /// Of live elements of the mesh that leave.
   LostStiffness(const Problem& problem, std::span<const Index> elements);
+  /// Of what has changed since the body had so many events.
+  LostStiffness(const fem::DamagedBody& body, std::size_t events);
 
   /// Unknowns of the elements, ascending.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
@@ -24,8 +29,12 @@ class LostStiffness {
  private:
   struct Element {
     std::array<Index, 12> dofs;  // places in dofs_, kNone: held
-    fem::UpdateFactor u;         // D_e = u u^T
+    fem::UpdateFactor u;         // D_e = u u^T, or -u u^T of what came
+    bool came = false;
   };
+  void add(const Problem& problem, const std::array<Index, 4>& corners, const fem::UpdateFactor& u,
+           bool came);
+  void number();
   std::vector<Index> dofs_;
   std::vector<Element> elements_;
 };

@@ -5,12 +5,12 @@
 
 namespace sunder::solver {
 
-RenewedUpdate::RenewedUpdate(const DamagedBody& body, Based first)
+RenewedUpdate::RenewedUpdate(const fem::DamagedBody& body, Based first)
     : body_(body), based_(std::move(first)) {
   reserve(load_, body.problem());
 }
 
-RenewedUpdate::RenewedUpdate(const DamagedBody& body, Based first, const Renewal& renewal,
+RenewedUpdate::RenewedUpdate(const fem::DamagedBody& body, Based first, const Renewal& renewal,
                              Make make)
     : RenewedUpdate(body, std::move(first)) {
   renewal_ = renewal;
@@ -19,13 +19,13 @@ RenewedUpdate::RenewedUpdate(const DamagedBody& body, Based first, const Renewal
   coming_.emplace(body, renewal.events, renewal.rest);
 }
 
-void RenewedUpdate::destroy(std::span<const Index> elements, bool anew) {
+void RenewedUpdate::follow(const fem::Event& event, bool anew) {
   if (coming_->due()) take_base();
-  coming_->follow(elements);
-  if (anew || !based_.deferred->destroy(elements)) {
+  coming_->follow();
+  if (anew || !based_.deferred->follow(event)) {
     rebase();
-  } else if (!coming_->making() && static_cast<std::size_t>(based_.deferred->rank()) > threshold_) {
-    coming_->start(load_, [this](const DamagedBody& body, const Load& load,
+  } else if (begins()) {
+    coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
                                  const linear_algebra::FactorWork& work) {
       Based based = make_(body, work);
       check_base(based, body, load, [](Eigen::VectorXd&) {});
@@ -34,8 +34,14 @@ void RenewedUpdate::destroy(std::span<const Index> elements, bool anew) {
   }
 }
 
+bool RenewedUpdate::begins() const {
+  return !coming_->making() && static_cast<std::size_t>(based_.deferred->rank()) > threshold_ &&
+         body_.forms().new_nodes().empty();
+}
+
 bool RenewedUpdate::rebase() {
   if (!coming_) return false;
+  body_.refuse_new_unknowns();
   coming_->give_up();
   saved_ms_ = saved_ms();
   based_ = {};  // frees the old base first

@@ -24,19 +24,20 @@ struct Renewal {
 class RenewedUpdate {
  public:
   /// A base of the body with no damage over it yet; `work` is for a factor on the way.
-  using Make = std::function<Based(const DamagedBody&, const linear_algebra::FactorWork&)>;
+  using Make = std::function<Based(const fem::DamagedBody&, const linear_algebra::FactorWork&)>;
 
   /// Nothing will be destroyed.
-  RenewedUpdate(const DamagedBody& body, Based first);
+  RenewedUpdate(const fem::DamagedBody& body, Based first);
   /// The body must outlive it.
-  RenewedUpdate(const DamagedBody& body, Based first, const Renewal& renewal, Make make);
+  RenewedUpdate(const fem::DamagedBody& body, Based first, const Renewal& renewal, Make make);
 
   /// Remembers the load of a frame: a base that is made is checked by it.
   void loaded(const Load& load) { load_ = load; }
-  /// Follows an event; the body has destroyed the elements already. `anew`: a base of the body as
-  /// it is now costs less than following.
-  void destroy(std::span<const Index> elements, bool anew = false);
-  /// Waits for a base of the body as it is now. False: nothing can be destroyed.
+  /// Follows an event that the body has recorded already. `anew`: a base of the body as it is now
+  /// costs less than following. Throws UsageError where new unknowns would need a new base.
+  void follow(const fem::Event& event, bool anew = false);
+  /// Waits for a base of the body as it is now. False: nothing can be destroyed. Throws UsageError
+  /// where there are new unknowns.
   bool rebase();
 
   [[nodiscard]] Deferred& deferred() { return *based_.deferred; }
@@ -49,10 +50,11 @@ class RenewedUpdate {
   [[nodiscard]] double saved_ms() const { return saved_ms_ + based_.deferred->saved_ms(); }
 
  private:
+  [[nodiscard]] bool begins() const;
   void take_base();
   void renewed();
 
-  const DamagedBody& body_;
+  const fem::DamagedBody& body_;
   Load load_;
   Based based_;
   Renewal renewal_;

@@ -16,6 +16,10 @@
 
 namespace sunder {
 
+namespace fem {
+class DamagedBody;
+}
+
 /// What a scene asks of a backend; nothing else is allocated, built or computed. Asking for what
 /// was not planned is a UsageError.
 struct Needs {
@@ -189,10 +193,12 @@ class Backend {
   [[nodiscard]] const Problem& problem() const { return *problem_; }
   [[nodiscard]] const Needs& needs() const { return needs_; }
   /// 1 for destroyed elements, per element.
-  [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
+  [[nodiscard]] std::span<const std::uint8_t> destroyed() const;
 
  protected:
   Backend(std::shared_ptr<const Problem> problem, Needs needs);
+  /// The one record of what is destroyed; whoever computes reads it here.
+  [[nodiscard]] const fem::DamagedBody& damaged_body() const { return *damaged_body_; }
   /// Says of something more that this backend leaves out for this scene.
   void leave_out(std::string what) { needs_.left_out.push_back(std::move(what)); }
 
@@ -202,7 +208,7 @@ class Backend {
   virtual StressSummary do_stress() = 0;
   virtual Deformation do_deformation() = 0;
   virtual void do_cut_off(std::span<const Index> elements) = 0;
-  virtual void do_destroy(std::span<const Index> elements) = 0;  // destroyed() is updated after it
+  virtual void do_destroy(std::span<const Index> elements) = 0;  // damaged_body() knows them
   virtual void do_prepare(std::span<const Index>) {}
   virtual void do_exclude_candidates(std::span<const Index> elements) = 0;
   virtual void do_solve_pristine(const Load& load, std::span<double> displacement) = 0;
@@ -220,7 +226,7 @@ class Backend {
 
   std::shared_ptr<const Problem> problem_;
   Needs needs_;
-  std::vector<std::uint8_t> destroyed_;
+  std::unique_ptr<fem::DamagedBody> damaged_body_;
   Stage stage_ = Stage::created;
   bool stress_known_ = false;  // some stress() has succeeded
 };

@@ -24,7 +24,6 @@ BlockMatrix::BlockMatrix(const Problem& problem)
     : problem_(problem),
       groups_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup) /
               shaders::kGroup),
-      scale_(problem.mesh().tets.size(), 1.0),
       elements_of_(problem.mesh().nodes.size()),
       neighbours_(problem.mesh().nodes.size()) {
   build_pattern();
@@ -101,7 +100,7 @@ void BlockMatrix::build_pattern() {
 }
 
 /// Sum of a_e V (lambda g_i g_j^T + mu g_j g_i^T + mu g_i.g_j I) over the elements of both nodes.
-Mat3 BlockMatrix::block(Index row, Index column) const {
+Mat3 BlockMatrix::block(Index row, Index column, std::span<const double> scale) const {
   Mat3 sum = Mat3::Zero();
   for (Index e : elements_of_[row]) {
     const auto& tet = problem_.mesh().tets[e];
@@ -110,7 +109,7 @@ Mat3 BlockMatrix::block(Index row, Index column) const {
     const TetShape& shape = problem_.shape(e);
     const double mu = problem_.small_strain(e).mu, lambda = problem_.small_strain(e).lambda;
     const Vec3 gi = shape.gradient.col(corner_of(tet, row)), gj = shape.gradient.col(j);
-    sum += scale_[e] * shape.volume *
+    sum += (scale.empty() ? 1.0 : scale[e]) * shape.volume *
            (lambda * gi * gj.transpose() + mu * gj * gi.transpose() +
             mu * gi.dot(gj) * Mat3::Identity());
   }
@@ -148,10 +147,9 @@ Mat3 BlockMatrix::inverse_of_free(Index node, const Mat3& diagonal) const {
   return inverse;
 }
 
-void BlockMatrix::destroy(std::span<const Index> elements) {
+void BlockMatrix::destroy(std::span<const Index> elements, std::span<const double> scale) {
   std::set<std::pair<Index, Index>> touched;
   for (Index e : elements) {
-    scale_[e] = problem_.scene().fracture.alpha;
     for (Index i : problem_.mesh().tets[e]) {
       for (Index j : problem_.mesh().tets[e]) touched.insert({i, j});
     }
@@ -163,10 +161,10 @@ void BlockMatrix::destroy(std::span<const Index> elements) {
       const auto& row = neighbours_[i];
       const auto k =
           static_cast<std::size_t>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
-      pack(block(i, j), j, packed.data());
+      pack(block(i, j, scale), j, packed.data());
       blocks_.write(std::span<const double>(packed), place(n, k) * kBlockDoubles);
     } else if (preconditioner_.bytes() > 0) {
-      pack(inverse_of_free(i, block(i, i)), 0, packed.data());
+      pack(inverse_of_free(i, block(i, i, scale)), 0, packed.data());
       preconditioner_.write(std::span<const double>(packed), n * kBlockDoubles);
     }
   }

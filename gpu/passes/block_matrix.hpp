@@ -29,7 +29,8 @@ class BlockMatrix {
   /// Throws DeviceError when the device's buffers cannot hold it.
   void upload(const KernelFactory& kernels, bool preconditioner);
 
-  void destroy(std::span<const Index> elements);
+  /// Follows an event; `scale`: a_e after it.
+  void destroy(std::span<const Index> elements, std::span<const double> scale);
 
   [[nodiscard]] const vulkan::Buffer& blocks() const { return blocks_; }
   [[nodiscard]] const vulkan::Buffer& slices() const { return slices_; }
@@ -40,7 +41,8 @@ class BlockMatrix {
 
  private:
   void build_pattern();
-  [[nodiscard]] Mat3 block(Index row, Index column) const;
+  /// `scale` empty: intact.
+  [[nodiscard]] Mat3 block(Index row, Index column, std::span<const double> scale = {}) const;
   void pack(const Mat3& block, Index column, double* to) const;
   /// Of a row's k-th block, in blocks.
   [[nodiscard]] std::size_t place(std::size_t row, std::size_t k) const;
@@ -51,7 +53,6 @@ class BlockMatrix {
 
   const Problem& problem_;
   std::uint32_t groups_;
-  std::vector<double> scale_;                    // a_e
   std::vector<std::vector<Index>> elements_of_;  // per node, ascending
   std::vector<std::vector<Index>> neighbours_;   // per node, ascending
   std::vector<std::uint32_t> first_;             // of each slice, in rows of 64 blocks

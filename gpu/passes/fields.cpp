@@ -373,11 +373,11 @@ void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits)
   }
 }
 
-void Fields::destroy(std::span<const Index> elements) {
+void Fields::destroy(std::span<const Index> elements, std::span<const double> scale) {
   if (host_balance_) {
-    host_balance_->destroy(elements);
+    host_balance_->scale_by(scale);
   } else if (has_residual_) {
-    matrix_.destroy(elements);
+    matrix_.destroy(elements, scale);
   }
   set_state_bits(elements, shaders::kDestroyed);
 }

@@ -48,7 +48,8 @@ class Fields {
   [[nodiscard]] bool norms() const { return norms_; }
 
   void set_load(std::span<const double> force, std::span<const double> displacements);
-  void destroy(std::span<const Index> elements);
+  /// Follows an event; `scale`: a_e after it (fem::DamagedBody::scale()), which stays where it is.
+  void destroy(std::span<const Index> elements, std::span<const double> scale);
   void exclude(std::span<const Index> elements);
   /// Their deformation no longer counts, from the next record_state() on.
   void cut_off(std::span<const Index> elements);

@@ -10,7 +10,6 @@ namespace sunder::gpu {
 
 HostBalance::HostBalance(const Problem& problem)
     : problem_(problem),
-      scale_(problem.mesh().tets.size(), 1.0),
       k_u_(3 * problem.mesh().nodes.size()),
       load_(Eigen::VectorXd::Zero(problem.dof_count())),
       balance_(load_),
@@ -18,10 +17,6 @@ HostBalance::HostBalance(const Problem& problem)
 
 void HostBalance::set_load(std::span<const double> force) {
   load_ = Eigen::Map<const Eigen::VectorXd>(force.data(), problem_.dof_count());
-}
-
-void HostBalance::destroy(std::span<const Index> elements) {
-  for (Index e : elements) scale_[e] = problem_.scene().fracture.alpha;
 }
 
 void HostBalance::compute(std::span<const double> displacement) {

@@ -17,7 +17,8 @@ class HostBalance {
 
   /// Over the unknowns.
   void set_load(std::span<const double> force);
-  void destroy(std::span<const Index> elements);
+  /// a_e of the elements from now on, which stay where they are; empty: intact.
+  void scale_by(std::span<const double> scale) { scale_ = scale; }
 
   /// `displacement`: shape (3 * nodes).
   void compute(std::span<const double> displacement);
@@ -32,7 +33,8 @@ class HostBalance {
 
  private:
   const Problem& problem_;
-  std::vector<double> scale_, k_u_;  // a_e; K u at all nodes
+  std::span<const double> scale_;
+  std::vector<double> k_u_;  // K u at all nodes
   Eigen::VectorXd load_, balance_, residual_;
   double largest_u_ = 0;
 };

@@ -29,11 +29,12 @@ constexpr std::size_t kTexel = 4 * sizeof(std::uint32_t);
 
 }  // namespace
 
-RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem)
+RigidSpace::RigidSpace(const KernelFactory& kernels, const fem::DamagedBody& body)
     : kernels_(kernels),
-      problem_(problem),
-      destroyed_(problem.mesh().tets.size(), 0),
-      held_(problem.mesh().nodes.size(), 0) {
+      body_(body),
+      problem_(body.problem()),
+      held_(problem_.mesh().nodes.size(), 0) {
+  const Problem& problem = problem_;
   const auto gripped = problem.gripped_dofs();
   for (Index n = 0; n < problem.node_count(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -99,7 +100,6 @@ void RigidSpace::record_indirect(vulkan::Commands& commands, const shaders::CgPu
 
 void RigidSpace::destroy(std::span<const Index> elements) {
   for (Index e : elements) {
-    destroyed_[e] = 1;
     if (coarse_.size() > 0) add_element(e, problem_.scene().fracture.alpha - 1);
   }
   changed_ = true;
@@ -115,7 +115,7 @@ void RigidSpace::update() {
     const auto size = 6 * static_cast<Index>(groups_.size());
     coarse_.setZero(size, size);
     for (Index e = 0; e < problem_.tet_count(); ++e) {
-      add_element(e, destroyed_[e] ? problem_.scene().fracture.alpha : 1.0);
+      add_element(e, body_.scale()[e]);
     }
   }
   invert();
@@ -123,7 +123,7 @@ void RigidSpace::update() {
 
 /// The largest body by its extent in parts of some 64 nodes, every other body whole.
 std::vector<std::vector<Index>> RigidSpace::grouped() {
-  const auto bodies = fem::find_bodies(problem_.mesh(), destroyed_);
+  const auto bodies = fem::find_bodies(problem_.mesh(), body_.destroyed());
   std::vector<std::vector<Index>> nodes(static_cast<std::size_t>(bodies.count));
   for (Index n = 0; n < problem_.node_count(); ++n) {
     const Index body = bodies.body_of_node[n];

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "body/damaged_body.hpp"
 #include "gpu/kernels.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "sunder/problem.hpp"
@@ -20,12 +21,13 @@ namespace sunder::gpu {
 
 class RigidSpace {
  public:
-  RigidSpace(const KernelFactory& kernels, const Problem& problem);
+  /// The body must outlive it.
+  RigidSpace(const KernelFactory& kernels, const fem::DamagedBody& body);
 
   /// Device bytes, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
 
-  /// Follows an event.
+  /// Follows an event that the body has recorded already.
   void destroy(std::span<const Index> elements);
   /// Brings the device up to date with the damage; before what is recorded next.
   void update();
@@ -58,8 +60,8 @@ class RigidSpace {
   [[nodiscard]] Eigen::Matrix<double, 3, 6> motion(Index node) const;
 
   const KernelFactory& kernels_;
+  const fem::DamagedBody& body_;
   const Problem& problem_;
-  std::vector<std::uint8_t> destroyed_;
   bool changed_ = true;
   std::vector<std::vector<Index>> groups_;  // nodes of each, ascending
   std::vector<Index> group_of_;             // of every node, kNone: none

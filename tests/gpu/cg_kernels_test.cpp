@@ -129,8 +129,8 @@ TEST_P(CgKernels, MultiplyByTheDamagedStiffness) {
   const std::vector<Index> gone = {0, 17, 18, 19, 300, 629};
   for (const bool damaged : {false, true}) {
     if (damaged) {
-      matrix.destroy(gone);
       for (Index e : gone) scale[static_cast<std::size_t>(e)] = problem.scene().fracture.alpha;
+      matrix.destroy(gone, scale);
     }
     const auto padded = std::size_t{matrix.groups()} * shaders::kGroup * 4;
     std::vector<double> p(padded, 0.0);
@@ -171,9 +171,9 @@ TEST_P(CgKernels, DispatchesBeyondConvergenceAreEmpty) {
   scene.mesh = structured_board({7, 5, 1});
   scene.materials["board"] = {5, 0.4, 2.0};
   scene.supports.push_back({Box{Vec3(-1, 9.9, -1), Vec3(11, 11, 2)}, Axes{7}});
-  const Problem problem(scene);
-  gpu::Fields fields(*factory_, problem, all_needs(), {0, true});
-  gpu::CgRoute route(*factory_, problem, fields);
+  const fem::DamagedBody body(std::make_shared<const Problem>(scene));
+  gpu::Fields fields(*factory_, body.problem(), all_needs(), {0, true});
+  gpu::CgRoute route(*factory_, body, fields);
   std::vector<double> force(fields.rows(), 0.0);
   const Load load{{0}, {1e-3}, {}};
   force[0] = load.forces.front();

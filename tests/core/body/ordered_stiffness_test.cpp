@@ -22,18 +22,18 @@ Scene gripped_board() {
 }
 
 TEST(OrderedStiffness, FollowsDamageAsIfAssembledAnew) {
-  const Problem problem(gripped_board());
+  DamagedBody body(std::make_shared<const Problem>(gripped_board()));
+  const Problem& problem = body.problem();
   linear_algebra::SparseMatrix intact;
   const linear_algebra::Factor first = factor_stiffness(problem, {}, {.ordered = &intact});
   const auto& nodes = first.cholesky().shared_supernodes();
   OrderedStiffness ordered(problem, nodes, intact);
-  std::vector<double> scale(problem.mesh().tets.size(), 1.0);
   const auto sequence = test::crack_sequence(problem, 90, 8);
   for (std::size_t i = 0; i < sequence.size(); ++i) {
-    scale[sequence[i]] = problem.scene().fracture.alpha;
+    body.destroy({&sequence[i], 1});
     if (i % 30 != 29) continue;
-    ordered.follow(scale);
-    const linear_algebra::SparseMatrix anew = assemble_lower(problem, scale);
+    ordered.follow(body);
+    const linear_algebra::SparseMatrix anew = body.stiffness();
     ASSERT_EQ(ordered.matrix().nonZeros(), anew.nonZeros());
     for (Index j = 0; j < anew.cols(); ++j) {
       for (linear_algebra::SparseMatrix::InnerIterator it(anew, j); it; ++it) {
@@ -46,7 +46,7 @@ TEST(OrderedStiffness, FollowsDamageAsIfAssembledAnew) {
       }
     }
   }
-  const linear_algebra::Factor kept = ordered.factor(), fresh = factor_stiffness(problem, scale);
+  const linear_algebra::Factor kept = ordered.factor(), fresh = factor_stiffness(body);
   const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(problem.dof_count(), -1, 2);
   EXPECT_EQ(kept.entries(), first.entries());
   const Eigen::VectorXd x = fresh.solve(f);
@@ -54,16 +54,16 @@ TEST(OrderedStiffness, FollowsDamageAsIfAssembledAnew) {
 }
 
 TEST(OrderedStiffness, GivesTheSameBitsInOneStepAndInMany) {
-  const Problem problem(gripped_board());
+  DamagedBody body(std::make_shared<const Problem>(gripped_board()));
+  const Problem& problem = body.problem();
   linear_algebra::SparseMatrix intact;
   const linear_algebra::Factor first = factor_stiffness(problem, {}, {.ordered = &intact});
   OrderedStiffness once(problem, first.cholesky().shared_supernodes(), intact), often(once);
-  std::vector<double> scale(problem.mesh().tets.size(), 1.0);
   for (Index e : test::crack_sequence(problem, 40, 8)) {
-    scale[e] = problem.scene().fracture.alpha;
-    often.follow(scale);
+    body.destroy({&e, 1});
+    often.follow(body);
   }
-  once.follow(scale);
+  once.follow(body);
   for (Index i = 0; i < once.matrix().nonZeros(); ++i) {
     ASSERT_EQ(once.matrix().valuePtr()[i], often.matrix().valuePtr()[i]);
   }

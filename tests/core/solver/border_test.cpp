@@ -16,7 +16,7 @@ using test::Changing;
 
 constexpr double kTolerance = 1e-10;
 
-Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {}}; }
+fem::Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {}}; }
 
 /// Three cells wide and three high, a cell thick: 54 elements.
 BodyOf high(BodyOf body = {}) {
@@ -45,12 +45,12 @@ std::function<bool(Index)> side_of(const Changing& body, Index i) {
 }
 
 /// Splits the nodes (i, j).
-Change opened(const Changing& body, Index i, Index j, Axes axes = {}) {
+fem::Change opened(const Changing& body, Index i, Index j, Axes axes = {}) {
   return body.split(nodes_at(body, i, j), side_of(body, i), axes);
 }
 
 /// Opens (i, j) for all of some j at once.
-Change opened(const Changing& body, Index i, std::vector<Index> rows) {
+fem::Change opened(const Changing& body, Index i, std::vector<Index> rows) {
   std::vector<Index> nodes;
   for (Index j : rows) {
     for (Index n : nodes_at(body, i, j)) nodes.push_back(n);
@@ -104,7 +104,7 @@ TEST_P(Borders, SplitOneNodeThenTwoThenACrack) {
 TEST_P(Borders, FollowEverythingAfterASplitAndGoBackBitByBit) {
   Changing body(high(GetParam()));
   std::vector<Eigen::VectorXd> solutions{body.solution()};
-  const auto follow = [&](const Change& change) {
+  const auto follow = [&](const fem::Change& change) {
     SCOPED_TRACE("change " + std::to_string(solutions.size()));
     ASSERT_TRUE(body.change(change));
     body.compare(loose_tolerance(GetParam()));
@@ -118,7 +118,7 @@ TEST_P(Borders, FollowEverythingAfterASplitAndGoBackBitByBit) {
   follow(body.stiffened({hung(body), 30}, 4));
   follow(opened(body, 2, 3));
   follow(body.healed({first, 20}));
-  Change both = opened(body, 2, 2);
+  fem::Change both = opened(body, 2, 2);
   both.leave = {1};
   follow(both);
   follow(reverse(body.problem, body.deferred.damage(), 3));
@@ -135,13 +135,13 @@ TEST_P(Borders, AreRefusedWhereAPieceHangsOnNothing) {
   ASSERT_TRUE(body.change(opened(body, 1, 3)));
   ASSERT_TRUE(body.change(leaving({40})));
   const Eigen::VectorXd before = body.solution();
-  const Change cut_off = opened(body, 1, {2, 1, 0});
-  const Change hinged = opened(body, 1, {2, 1});  // on the line through two nodes
-  const Change at_one_node =
+  const fem::Change cut_off = opened(body, 1, {2, 1, 0});
+  const fem::Change hinged = opened(body, 1, {2, 1});  // on the line through two nodes
+  const fem::Change at_one_node =
       body.split({nodes_at(body, 1, 2)[0], nodes_at(body, 1, 2)[1], nodes_at(body, 1, 1)[0],
                   nodes_at(body, 1, 1)[1], nodes_at(body, 1, 0)[0]},
                  side_of(body, 1));
-  for (const Change& wrong : {cut_off, hinged, at_one_node}) {
+  for (const fem::Change& wrong : {cut_off, hinged, at_one_node}) {
     EXPECT_FALSE(body.deferred.change(wrong));
     EXPECT_EQ(body.deferred.events(), 2);
     EXPECT_EQ(body.deferred.offsets().size(), 6);
@@ -182,7 +182,7 @@ TEST(Border, SplitsANodeAgain) {
   // Those that are left of the old node's, and then the new node's own.
   ASSERT_TRUE(body.change(body.split({node}, [&](Index e) { return e >= around[2]; })));
   body.compare(kTolerance);
-  Change again;
+  fem::Change again;
   again.nodes = {{node, Axes{}}};
   again.come = {{around.back(), body.deferred.forms().of(around.back())}};
   for (Index& c : again.come[0].form.corners) {
@@ -300,12 +300,14 @@ TEST(Border, RefusesTwoElementsOnAHinge) {
   const Problem problem(std::move(scene));
   const linear_algebra::Factor factor(fem::assemble_lower(problem, {}));
   Deferred deferred(problem, std::make_unique<FactorBase>(factor));
-  Form form = form_in_mesh(problem, 1);
+  fem::Form form = fem::form_in_mesh(problem, 1);
   for (Index& c : form.corners) {
     if (c == 3) c = 5;
   }
-  EXPECT_FALSE(deferred.change({{}, {{1, form}}, {{3, Axes{}}}}));  // on the edge 1-2
-  EXPECT_TRUE(deferred.change({{}, {{1, form}}, {{3, Axes{5}}}}));  // node 5 follows 3 along y
+  const fem::Change on_an_edge{{}, {{1, form}}, {{3, Axes{}}}};  // 1-2
+  const fem::Change along_y{{}, {{1, form}}, {{3, Axes{5}}}};    // node 5 follows 3
+  EXPECT_FALSE(deferred.change(on_an_edge));
+  EXPECT_TRUE(deferred.change(along_y));
   EXPECT_EQ(deferred.offsets().size(), 2);
 }
 

@@ -99,7 +99,7 @@ class Changing {
         deferred(problem, base(body.base)),
         afresh(problem) {}
 
-  [[nodiscard]] bool change(const solver::Change& change) {
+  [[nodiscard]] bool change(const fem::Change& change) {
     const Index events = deferred.events();
     if (!deferred.change(change)) return false;
     if (deferred.events() < events) {
@@ -213,33 +213,32 @@ class Changing {
   }
 
   /// Elements that come with the form they have now but for what `alter` does to it.
-  [[nodiscard]] solver::Change again(std::vector<Index> elements,
-                                     const std::function<void(solver::Form&)>& alter) const {
-    solver::Change change;
+  [[nodiscard]] fem::Change again(std::vector<Index> elements,
+                                  const std::function<void(fem::Form&)>& alter) const {
+    fem::Change change;
     for (Index e : elements) {
       change.come.push_back({e, deferred.forms().of(e)});
       alter(change.come.back().form);
     }
     return change;
   }
-  [[nodiscard]] solver::Change healed(std::vector<Index> elements) const {
-    return again(std::move(elements), [](solver::Form& form) { form.share = 1; });
+  [[nodiscard]] fem::Change healed(std::vector<Index> elements) const {
+    return again(std::move(elements), [](fem::Form& form) { form.share = 1; });
   }
-  [[nodiscard]] solver::Change stiffened(std::vector<Index> elements, double times) const {
-    return again(std::move(elements), [times](solver::Form& form) {
+  [[nodiscard]] fem::Change stiffened(std::vector<Index> elements, double times) const {
+    return again(std::move(elements), [times](fem::Form& form) {
       form.law = small_strain({times * form.law.young, form.law.poisson, std::nullopt});
       form.share = 1;
     });
   }
 
   /// Doubles nodes; the elements that `moves` names take the new ones.
-  [[nodiscard]] solver::Change split(const std::vector<Index>& nodes,
-                                     const std::function<bool(Index)>& moves,
-                                     Axes axes = {}) const {
-    solver::Change change;
+  [[nodiscard]] fem::Change split(const std::vector<Index>& nodes,
+                                  const std::function<bool(Index)>& moves, Axes axes = {}) const {
+    fem::Change change;
     for (Index n : nodes) change.nodes.push_back({n, axes});
     for (Index e = 0; e < afresh.element_count(); ++e) {
-      solver::Form form = deferred.forms().of(e);
+      fem::Form form = deferred.forms().of(e);
       bool at = false;
       for (Index& c : form.corners) {
         const auto found = std::find(nodes.begin(), nodes.end(), c);

@@ -21,12 +21,12 @@ constexpr double kTolerance = 1e-10;
 /// All changes so far as one, from the intact body: what the base's rounding allows.
 double error_at_once(const BodyOf& of, const Changing& body) {
   Changing once(of);
-  Change change;
-  const Forms& forms = body.deferred.forms();
+  fem::Change change;
+  const fem::Forms& forms = body.deferred.forms();
   for (Index e = 0; e < body.problem.tet_count(); ++e) {
     if (forms.came().contains(e)) {
       change.come.push_back({e, forms.of(e)});
-    } else if (forms.left()[static_cast<std::size_t>(e)]) {
+    } else if (forms.destroyed()[static_cast<std::size_t>(e)]) {
       change.leave.push_back(e);
     }
   }
@@ -34,7 +34,7 @@ double error_at_once(const BodyOf& of, const Changing& body) {
   return once.errors().largest();
 }
 
-Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {}}; }
+fem::Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {}}; }
 
 class Bodies : public ::testing::TestWithParam<BodyOf> {};
 
@@ -74,7 +74,7 @@ TEST_P(Bodies, FollowElementsThatComeStiffer) {
 TEST_P(Bodies, FollowElementsOfAnotherLaw) {
   Changing body(GetParam());
   const auto to = [&](double young, double poisson) {
-    return body.again({2, 8}, [=](Form& f) {
+    return body.again({2, 8}, [=](fem::Form& f) {
       f.law = small_strain({young, poisson, std::nullopt});
     });
   };
@@ -85,7 +85,7 @@ TEST_P(Bodies, FollowElementsOfAnotherLaw) {
 }
 
 /// Three elements at most leave, come back or come stiffer.
-Change drawn(const Changing& body, std::mt19937& random) {
+fem::Change drawn(const Changing& body, std::mt19937& random) {
   std::vector<Index> live, gone;
   for (Index e = 0; e < body.afresh.element_count(); ++e) {
     (body.afresh.live(e) ? live : gone).push_back(e);
@@ -101,13 +101,13 @@ Change drawn(const Changing& body, std::mt19937& random) {
 }
 
 /// A change that leaves every part of the body held by live elements: nothing moves 1/alpha as far.
-Change drawn_and_held(const Changing& body, std::mt19937& random) {
+fem::Change drawn_and_held(const Changing& body, std::mt19937& random) {
   const auto moved = [&](const test::ChangedBody& afresh) {
     return afresh.solve(body.forces(), Changing::kGrip).u.cwiseAbs().maxCoeff();
   };
   const auto far = 20 * moved(test::ChangedBody(body.problem));
   for (;;) {
-    const Change change = drawn(body, random);
+    const fem::Change change = drawn(body, random);
     test::ChangedBody afresh = body.afresh;
     afresh.follow(change);
     if (moved(afresh) < far) return change;
@@ -121,7 +121,7 @@ TEST_P(Bodies, FollowFiftyChangesAndGoBackBitByBit) {
   int came = 0;
   double allowed = kTolerance;
   while (solutions.size() <= 50) {
-    const Change change = drawn_and_held(body, random);
+    const fem::Change change = drawn_and_held(body, random);
     const Index events = body.deferred.events();
     ASSERT_TRUE(body.change(change));
     if (body.deferred.events() < events) {  // it reversed the last one
@@ -162,8 +162,8 @@ TEST(Change, ReversedAtOnceRestoresEveryBit) {
   ASSERT_TRUE(body.change(leaving({7})));
   ASSERT_TRUE(body.change(leaving({10})));
   const Eigen::VectorXd before = body.solution();
-  for (const Change& change : {leaving({3, 9}), body.stiffened({5}, 3), body.healed({7}),
-                               body.split({5}, [](Index e) { return e % 2 == 0; })}) {
+  for (const fem::Change& change : {leaving({3, 9}), body.stiffened({5}, 3), body.healed({7}),
+                                    body.split({5}, [](Index e) { return e % 2 == 0; })}) {
     ASSERT_TRUE(body.change(change));
     EXPECT_EQ(body.deferred.events(), 3);
     const Eigen::VectorXd after = body.solution();  // longer where a node was split
@@ -208,7 +208,7 @@ TEST(Change, BringsAnElementBetweenOldNodes) {
   Changing body(BodyOf{});
   const Index id = body.problem.tet_count();
   // A bar from one end of the body to the other.
-  Form form{{0, 3, 4, 15}, {}, small_strain({50, 0.3, std::nullopt}), 1};
+  fem::Form form{{0, 3, 4, 15}, {}, small_strain({50, 0.3, std::nullopt}), 1};
   const auto& x = body.problem.mesh().nodes;
   form.shape = fem::tet_shape(x[0], x[3], x[4], x[15]);
   if (form.shape.volume < 0) {
@@ -241,7 +241,7 @@ TEST(Change, FollowsABodyOfTwoElements) {
   f[9] = f[10] = 1;
   const std::vector<Index> dofs{problem.dof(3, 0), problem.dof(3, 1)};
   const std::vector<double> values{1, 1};
-  const auto follow = [&](const Change& change) {
+  const auto follow = [&](const fem::Change& change) {
     ASSERT_TRUE(deferred.change(change));
     afresh.follow(change);
     Eigen::VectorXd u = Eigen::VectorXd::Zero(problem.dof_count());
@@ -254,14 +254,14 @@ TEST(Change, FollowsABodyOfTwoElements) {
       }
     }
   };
-  Form form = form_in_mesh(problem, 1);
+  fem::Form form = fem::form_in_mesh(problem, 1);
   form.law = small_strain({20, 0.2, std::nullopt});
   follow({{}, {{1, form}}, {}});
   follow(leaving({1}));
-  Form other = form_in_mesh(problem, 0);
+  fem::Form other = fem::form_in_mesh(problem, 0);
   other.law = small_strain({1, 0.1, std::nullopt});
   follow({{}, {{0, other}}, {}});
-  follow({{}, {{0, form_in_mesh(problem, 0)}, {1, form}}, {}});
+  follow({{}, {{0, fem::form_in_mesh(problem, 0)}, {1, form}}, {}});
 }
 
 TEST(Change, IsRefusedWhereItDoesNotFit) {
@@ -269,21 +269,23 @@ TEST(Change, IsRefusedWhereItDoesNotFit) {
   Deferred& deferred = body.deferred;
   ASSERT_TRUE(deferred.change(leaving({7})));
   const Eigen::VectorXd before = body.solution();
-  const Form form = form_in_mesh(body.problem, 3);
+  const fem::Form form = fem::form_in_mesh(body.problem, 3);
   const auto with = [&](auto alter) {
-    Coming coming{3, form};
+    fem::Coming coming{3, form};
     alter(coming);
-    return Change{{}, {coming}, {}};
+    return fem::Change{{}, {coming}, {}};
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Change& wrong :
+  for (const fem::Change& wrong :
        {leaving({7}), leaving({-1}), leaving({18}), leaving({2, 2}),
-        with([](Coming& c) { c.element = 19; }), with([](Coming& c) { c.element = -1; }),
-        with([](Coming& c) { c.form.corners[2] = 16; }),
-        with([](Coming& c) { c.form.corners[0] = -1; }),
-        with([&](Coming& c) { c.form.share = nan; }), with([](Coming& c) { c.form.share = -1; }),
-        with([](Coming& c) { c.form.shape.volume = -1; }), Change{{}, {{3, form}, {3, form}}, {}},
-        Change{{}, {}, {{16, Axes{}}}}, Change{{}, {}, {{-1, Axes{}}}}}) {
+        with([](fem::Coming& c) { c.element = 19; }), with([](fem::Coming& c) { c.element = -1; }),
+        with([](fem::Coming& c) { c.form.corners[2] = 16; }),
+        with([](fem::Coming& c) { c.form.corners[0] = -1; }),
+        with([&](fem::Coming& c) { c.form.share = nan; }),
+        with([](fem::Coming& c) { c.form.share = -1; }),
+        with([](fem::Coming& c) { c.form.shape.volume = -1; }),
+        fem::Change{{}, {{3, form}, {3, form}}, {}}, fem::Change{{}, {}, {{16, Axes{}}}},
+        fem::Change{{}, {}, {{-1, Axes{}}}}}) {
     EXPECT_THROW(static_cast<void>(deferred.change(wrong)), UsageError);
     EXPECT_EQ(deferred.events(), 1);
     EXPECT_EQ(body.solution(), before);

@@ -28,10 +28,10 @@ class ChangedBody {
     }
   }
 
-  void follow(const solver::Change& change) {
-    for (const solver::NewNode& n : change.nodes) nodes_.push_back(n);
+  void follow(const fem::Change& change) {
+    for (const fem::NewNode& n : change.nodes) nodes_.push_back(n);
     for (Index e : change.leave) elements_[e].share = problem_->scene().fracture.alpha;
-    for (const solver::Coming& c : change.come) {
+    for (const fem::Coming& c : change.come) {
       if (c.element == static_cast<Index>(elements_.size())) elements_.emplace_back();
       elements_[c.element] = {c.form.corners, c.form.law.young, c.form.law.poisson, c.form.share};
     }
@@ -43,7 +43,7 @@ class ChangedBody {
   [[nodiscard]] Index element_count() const { return static_cast<Index>(elements_.size()); }
   [[nodiscard]] const std::array<Index, 4>& corners(Index e) const { return elements_[e].corners; }
   [[nodiscard]] bool live(Index e) const { return elements_[e].share >= 1; }
-  [[nodiscard]] const std::vector<solver::NewNode>& new_nodes() const { return nodes_; }
+  [[nodiscard]] const std::vector<fem::NewNode>& new_nodes() const { return nodes_; }
   [[nodiscard]] Index parent(Index node) const {
     return node < problem_->node_count() ? node : nodes_[node - problem_->node_count()].parent;
   }
@@ -158,7 +158,7 @@ class ChangedBody {
     std::vector<Index> place;
     for (Index i = 0; i < 3 * problem_->node_count(); ++i) place.push_back(i);
     Index next = 3 * problem_->node_count();
-    for (const solver::NewNode& n : nodes_) {
+    for (const fem::NewNode& n : nodes_) {
       for (int axis = 0; axis < 3; ++axis) {
         place.push_back(n.axes.has(axis) ? next++ : 3 * n.parent + axis);
       }
@@ -168,7 +168,7 @@ class ChangedBody {
 
   const Problem* problem_;
   std::vector<Element> elements_;
-  std::vector<solver::NewNode> nodes_;
+  std::vector<fem::NewNode> nodes_;
 };
 
 }  // namespace sunder::test

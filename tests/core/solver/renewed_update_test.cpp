@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// New bases of a body whose elements leave, come back and come stiffer, against a solution that is
+// assembled afresh after every change.
+#include "solver/renewed_update.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "body/stiffness_factor.hpp"
+#include "change_support.hpp"
+#include "solver/condensed_route.hpp"
+#include "solver/factor_base.hpp"
+#include "solver/lost_stiffness.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::solver {
+namespace {
+
+/// A body with its record, its yardstick and a load that nothing orders.
+struct Recorded {
+  explicit Recorded(const test::BodyOf& of)
+      : body(std::make_shared<const Problem>(test::scene_of(of))), afresh(body.problem()) {
+    const Problem& problem = body.problem();
+    force.assign(problem.dofs().size(), 0.0);
+    for (Index d = 0; d < problem.dof_count(); ++d) {
+      load.force_dofs.push_back(d);
+      load.forces.push_back(0);
+    }
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      if (problem.dofs()[i] == kNone) continue;
+      force[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
+      load.forces[static_cast<std::size_t>(problem.dofs()[i])] = force[i];
+    }
+  }
+
+  void change(const fem::Change& change) {
+    ASSERT_TRUE(body.change(change));
+    afresh.follow(change);
+  }
+  [[nodiscard]] fem::Change come(std::vector<Index> elements, double stiffness) const {
+    fem::Change change;
+    for (Index e : elements) {
+      fem::Form form = fem::form_in_mesh(body.problem(), e);
+      form.law = small_strain({stiffness * form.law.young, form.law.poisson, std::nullopt});
+      change.come.push_back({e, form});
+    }
+    return change;
+  }
+  /// Of a displacement over the unknowns, relative.
+  [[nodiscard]] double error(const Eigen::VectorXd& u) const {
+    const auto fresh = afresh.solve(force, 0);
+    double off = 0, size = 0;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      const Index d = body.problem().dofs()[i];
+      if (d == kNone) continue;
+      const auto exact = static_cast<double>(fresh.u[static_cast<Eigen::Index>(i)]);
+      off += (u[d] - exact) * (u[d] - exact);
+      size += exact * exact;
+    }
+    return std::sqrt(off / size);
+  }
+
+  fem::DamagedBody body;
+  test::ChangedBody afresh;
+  Load load;
+  std::vector<double> force;  // at all nodes
+};
+
+Based on_a_factor(const fem::DamagedBody& body, const linear_algebra::FactorWork& work) {
+  Based based;
+  based.factor = std::make_shared<const linear_algebra::Factor>(fem::factor_stiffness(body, work));
+  based.deferred =
+      std::make_unique<Deferred>(body.forms(), std::make_unique<FactorBase>(*based.factor));
+  return based;
+}
+
+/// A new base begins as soon as there is damage over the one in place, and is taken two events on.
+constexpr Renewal kAtOnce{.columns = 0, .first_columns = 0, .events = 2};
+
+Eigen::VectorXd solution(RenewedUpdate& update, const Recorded& of) {
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(of.body.problem().dof_count());
+  update.loaded(of.load);
+  update.deferred().solve({of.load.force_dofs, of.load.forces}, {}, u);
+  return u;
+}
+
+TEST(RenewedUpdate, TakesEveryChangeOverToNewBases) {
+  Recorded of({});
+  RenewedUpdate update(of.body, on_a_factor(of.body, {}), kAtOnce, on_a_factor);
+  const auto follow = [&](const fem::Change& change) {
+    SCOPED_TRACE("event " + std::to_string(of.body.events()));
+    ASSERT_NO_FATAL_FAILURE(of.change(change));
+    update.follow(change);
+    EXPECT_LE(of.error(solution(update, of)), 1e-10);
+  };
+  follow({{7, 8}, {}, {}});
+  follow(of.come({4}, 10));
+  follow({{14}, {}, {}});
+  EXPECT_EQ(update.bases(), 1);
+  follow(of.come({8}, 1));  // it left before the base that is taken here
+  EXPECT_EQ(update.bases(), 2);
+  follow(of.come({4}, 1));
+  follow({{4}, {}, {}});
+  follow(of.come({7, 14}, 2));
+  EXPECT_GE(update.bases(), 3);
+  follow(of.come({4, 7, 14}, 1));  // as the mesh has them
+  follow({{3}, {}, {}});
+  follow(of.come({3}, 1));
+  follow({{9}, {}, {}});
+  EXPECT_GE(update.bases(), 4);
+}
+
+TEST(RenewedUpdate, MakesABaseOfWhatHasComeAtOnceToo) {
+  Recorded of({});
+  RenewedUpdate update(of.body, on_a_factor(of.body, {}), Renewal{}, on_a_factor);
+  for (const fem::Change& change :
+       {fem::Change{{7}, {}, {}}, of.come({4, 5}, 10), of.come({7}, 1)}) {
+    ASSERT_NO_FATAL_FAILURE(of.change(change));
+    update.follow(change);
+    ASSERT_TRUE(update.rebase());
+    EXPECT_EQ(update.deferred().events(), 0);
+    EXPECT_LE(of.error(solution(update, of)), 1e-10);
+  }
+  ASSERT_NO_FATAL_FAILURE(of.change({{4, 7}, {}, {}}));
+  update.follow({.leave = std::vector<Index>{4, 7}});
+  EXPECT_LE(of.error(solution(update, of)), 1e-10);
+}
+
+TEST(RenewedUpdate, KeepsItsBaseWhereThereAreNewUnknowns) {
+  Recorded of({});
+  RenewedUpdate update(of.body, on_a_factor(of.body, {}), kAtOnce, on_a_factor);
+  const Index node = of.body.problem().mesh().tets[5][0];
+  fem::Change split{{}, {}, {{node, Axes{}}}};
+  for (Index e = 0; e < of.body.problem().tet_count(); ++e) {
+    fem::Form form = of.body.forms().of(e);
+    const auto at = std::find(form.corners.begin(), form.corners.end(), node);
+    if (at == form.corners.end() || e % 2 == 1) continue;
+    *at = of.body.problem().node_count();
+    split.come.push_back({e, form});
+  }
+  ASSERT_NO_FATAL_FAILURE(of.change(split));
+  update.follow(split);
+  EXPECT_EQ(update.deferred().offsets().size(), 3);
+  for (Index e : {7, 14, 3}) {
+    ASSERT_NO_FATAL_FAILURE(of.change({{e}, {}, {}}));
+    update.follow({.leave = {&e, 1}});
+  }
+  EXPECT_EQ(update.bases(), 1);
+  try {
+    update.rebase();
+    ADD_FAILURE() << "a base has taken new unknowns over";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "a base cannot take new unknowns over");
+  }
+  EXPECT_EQ(update.deferred().offsets().size(), 3);
+}
+
+/// K u before less K u now.
+TEST(LostStiffness, IsSignedByWhatLeavesAndComes) {
+  Recorded of({});
+  of.body.destroy(std::vector<Index>{3});
+  const fem::DamagedBody before = of.body;
+  ASSERT_TRUE(of.body.change({{7, 8}, {}, {}}));
+  ASSERT_TRUE(of.body.change(of.come({4, 3}, 10)));
+  ASSERT_TRUE(of.body.change(of.come({7}, 1)));
+  const LostStiffness lost(of.body, before.events());
+  const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(of.body.problem().dof_count(), -1, 2);
+  Eigen::VectorXd first, last;
+  before.apply(u, first);
+  of.body.apply(u, last);
+  Eigen::VectorXd rest = first - last;
+  std::vector<double> at, forces(lost.dofs().size());
+  for (Index d : lost.dofs()) at.push_back(u[d]);
+  lost.multiply(at, forces);
+  for (std::size_t i = 0; i < forces.size(); ++i) rest[lost.dofs()[i]] -= forces[i];
+  EXPECT_LE(rest.norm(), 1e-13 * first.norm());
+}
+
+/// Bases updated from the one before, over many changes; a new factor nowhere needed.
+TEST(CondensedRoute, TakesEveryChangeOverToNewBases) {
+  Recorded of({.nx = 6, .ny = 2, .nz = 2});
+  const Problem& problem = of.body.problem();
+  std::vector<Index> dofs(static_cast<std::size_t>(problem.dof_count()));
+  std::iota(dofs.begin(), dofs.end(), 0);
+  const auto route = condensed_route(
+      of.body, std::make_shared<const linear_algebra::Factor>(fem::factor_stiffness(of.body)), dofs,
+      true, {});
+  std::mt19937 random(5);  // fixed
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(problem.dof_count()), f;
+  std::vector<Index> away;
+  for (int event = 0; event < 260; ++event) {
+    const auto e = static_cast<Index>(random() % static_cast<std::uint32_t>(problem.tet_count()));
+    fem::Change change{{e}, {}, {}};
+    if (of.body.destroyed()[e] || away.size() > 8) {
+      const Index back = of.body.destroyed()[e] ? e : away.front();
+      change = of.come({back}, random() % 2 == 0 ? 1.0 : 3.0);
+      std::erase(away, back);
+    } else {
+      away.push_back(e);
+    }
+    ASSERT_NO_FATAL_FAILURE(of.change(change));
+    route->follow(change);
+    if (event % 20 != 19) continue;
+    route->solve(of.load, f, u);
+    EXPECT_LE(of.error(u), 1e-8) << "after event " << event;
+  }
+  EXPECT_GE(route->bases(), 3);
+}
+
+}  // namespace
+}  // namespace sunder::solver
