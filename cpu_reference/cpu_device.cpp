@@ -3,7 +3,7 @@
 #include <fstream>
 #include <string>
 
-#include "cpu_reference/choose_route.hpp"
+#include "cpu_reference/available_memory.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 
 namespace sunder::cpu_reference {

@@ -3,9 +3,9 @@
 #include <numeric>
 #include <optional>
 
-#include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/routes.hpp"
 #include "solver/factor_base.hpp"
+#include "solver/frame_cost.hpp"
 #include "solver/inverse_base.hpp"
 #include "solver/renewed_update.hpp"
 
@@ -38,7 +38,7 @@ class DeferredRoute final : public InverseRoute {
       update_.emplace(body, std::move(first));
       return;
     }
-    const int frames = frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
+    const int frames = solver::frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
     solver::Renewal renewal;
     renewal.events = frames;
     renewal.rest = rest;
@@ -72,7 +72,7 @@ class DeferredRoute final : public InverseRoute {
   }
 
   void destroy(std::span<const Index> elements) override {
-    update_->destroy(elements, takes_new_factor(all_.size(), elements.size()));
+    update_->destroy(elements, solver::takes_new_factor(all_.size(), elements.size()));
   }
   bool rebase() override { return update_->rebase(); }
 
