@@ -62,10 +62,11 @@ class FrameWork {
   void passes(double dispatches, double bytes);
   /// Stress with its summary, and f - K u where it does not come with the stress.
   void fields(const FrameShape& shape, bool balance);
-  /// The same of a correction.
-  void correction(const FrameShape& shape);
+  /// Conjugate gradients there: a share of what a solution takes.
+  void iterate(const FrameShape& shape, double share);
+  /// Where no update estimates the error: a correction by them or the whole inverse, its stress.
+  void check(const FrameShape& shape);
 
-  [[nodiscard]] const FrameRates& rates() const { return rates_; }
   [[nodiscard]] double milliseconds() const { return 1e3 * seconds_; }
   [[nodiscard]] double bytes() const { return bytes_; }
 

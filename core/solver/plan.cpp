@@ -2,10 +2,11 @@
 #include "solver/plan.hpp"
 
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
 #include <utility>
 
 #include "solver/route_table.hpp"
-#include "solver/storage.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
@@ -16,6 +17,18 @@ namespace {
 constexpr std::size_t kAssembly = 78 * (16 + 12);
 // And then of all else that a frame holds: shapes, stress, the matrix and its incomplete factor.
 constexpr std::size_t kElement = 800;
+
+// What the mixed recipe holds with fp32 storage (docs/method.md "Stability"); below it only fp64.
+constexpr double kFp32Tolerance = 1e-4;
+// Past these the displacement handed out in fp32 alone costs a stiff element more than that
+// (bench_stability, verdict "rounded").
+constexpr double kFp32Contrast = 1e3, kFp32Poisson = 0.4999;
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
 
 /// The factor, and what exists beside it in a long tear: that of a damaged body while a newer one
 /// is made. The stiffness: in the factor's order, and once more on the way there.
@@ -42,22 +55,22 @@ void check_options(const SolverOptions& solver, const PlanDevice& device) {
     throw DeviceError("backend " + device.backend +
                       " computes in fp64 only; use precision fp64 or auto");
   }
+  if (solver.route != Route::automatic && !device.has(solver.route)) {
+    throw DeviceError("backend " + device.backend + " offers the routes " + list_of(device.routes) +
+                      "; choose one, auto or backend cpu");
+  }
+  using Updates = RouteRow::Updates;
+  const Updates updates =
+      solver.route == Route::automatic ? Updates::both : row_of(solver.route).updates;
+  if (updates == Updates::none && solver.update != Update::automatic) {
+    throw DeviceError("route " + name_of(solver.route) +
+                      " has no update to choose; use update auto, or route inverse");
+  }
   const bool eager = solver.update == Update::eager;
-  if (solver.route != Route::automatic) {
-    if (!device.has(solver.route)) {
-      throw DeviceError("backend " + device.backend + " offers the routes " +
-                        list_of(device.routes) + "; choose one, auto or backend cpu");
-    }
-    const RouteRow::Updates updates = row_of(solver.route).updates;
-    if (updates == RouteRow::Updates::none && solver.update != Update::automatic) {
-      throw DeviceError("route " + name_of(solver.route) +
-                        " has no update to choose; use update auto, or route inverse");
-    }
-    if (updates == RouteRow::Updates::deferred && eager) {
-      throw DeviceError("route " + name_of(solver.route) +
-                        " has the update deferred only; use update deferred or auto, or route "
-                        "inverse, which update eager writes over");
-    }
+  if (updates == Updates::deferred && eager) {
+    throw DeviceError("route " + name_of(solver.route) +
+                      " has the update deferred only; use update deferred or auto, or route "
+                      "inverse, which update eager writes over");
   }
   if (eager && solver.precision == Precision::fp32) {
     throw DeviceError(
@@ -111,6 +124,54 @@ const RouteRow& choose(const Question& q) {
   return *too_large;
 }
 
+/// What of the materials is past kFp32Contrast and kFp32Poisson; empty: nothing.
+std::string past_fp32(const Problem& problem) {
+  double softest = problem.small_strain(0).young, stiffest = softest, poisson = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    softest = std::min(softest, problem.small_strain(e).young);
+    stiffest = std::max(stiffest, problem.small_strain(e).young);
+    poisson = std::max(poisson, problem.small_strain(e).poisson);
+  }
+  if (stiffest / softest > kFp32Contrast) {
+    return "Young's moduli differ by a factor of " + number(stiffest / softest) + ", more than " +
+           number(kFp32Contrast);
+  }
+  if (poisson > kFp32Poisson) {
+    std::ostringstream out;
+    out << std::setprecision(8) << poisson;
+    return "Poisson's ratio is " + out.str() + ", more than " + number(kFp32Poisson);
+  }
+  return {};
+}
+
+/// In what precision a device stores that has fp32, with sums in fp64 or, without its own, on the
+/// host. Returns why.
+std::string choose_precision(const Problem& problem, const PlanDevice& device, Plan& plan) {
+  const SolverOptions& solver = problem.scene().solver;
+  const bool open = solver.precision == Precision::automatic;
+  plan.fp64 = plan.eager || solver.precision == Precision::fp64 ||
+              (open && !(solver.tolerance >= kFp32Tolerance));
+  const std::string past = plan.fp64 ? "" : past_fp32(problem);
+  const bool stiff = !past.empty() && open && device.fp64;
+  plan.fp64 = plan.fp64 || stiff;
+  if (!past.empty() && !plan.fp64) {
+    plan.warnings.push_back(
+        past + ": displacement handed out in fp32 alone can cost stress more than " +
+        number(kFp32Tolerance) + " of its largest value; use " +
+        (device.fp64 ? "precision fp64 or auto" : "a device with shaderFloat64 or backend cpu"));
+  }
+  if (!open) {
+    return std::string(plan.fp64 ? "fp64 was asked for" : "fp32 storage was asked for") +
+           (past.empty() ? "" : ", though these materials need fp64");
+  }
+  if (plan.eager) return "the update eager needs fp64";
+  if (stiff) {
+    return "these materials need fp64: contrast over 1000 or Poisson's ratio over 0.4999";
+  }
+  return "tolerance " + number(solver.tolerance) +
+         (plan.fp64 ? " needs fp64" : " is kept by fp32 storage with fp64 sums");
+}
+
 /// What a device cannot do that does not compute in fp64.
 void require_double(const Plan& plan, const SolverOptions& solver, const PlanDevice& device) {
   const auto refuse = [&](const std::string& what) {
@@ -135,10 +196,9 @@ bool PlanDevice::has(Route route) const { return std::ranges::find(routes, route
 Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& device) {
   const SolverOptions& solver = problem.scene().solver;
   check_options(solver, device);
-  const Storage storage = device.fp32 ? choose_storage(problem, device.fp64) : Storage{};
   Plan plan;
   plan.eager = solver.update == Update::eager;
-  plan.fp64 = storage.fp64;
+  const std::string precision = device.fp32 ? choose_precision(problem, device, plan) : "";
   Question q{problem, needs, device};
   q.real_bytes = plan.fp64 ? 8 : 4;
   q.asked = solver.route != Route::automatic || plan.eager;
@@ -158,8 +218,7 @@ Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& dev
     refuse("the factor of route " + name_of(plan.route), q.factor_bytes, q, "use route cg");
   }
   plan.why = row->why(q);
-  if (!storage.why.empty()) plan.why += "; " + storage.why;
-  if (!storage.warning.empty()) plan.warnings.push_back(storage.warning);
+  if (!precision.empty()) plan.why += "; " + precision;
   if (!device.fp64) {
     require_double(plan, solver, device);
     plan.why += "; the device lacks shaderFloat64, so the host corrects for the damage";

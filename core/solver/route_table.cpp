@@ -7,6 +7,10 @@
 namespace sunder::solver {
 namespace {
 
+// Above this many unknowns a dense inverse (8 n^2 bytes) is not chosen by itself: 288 MB and
+// seconds to prepare (n^2 nnz(L)), while the factor's frame is still within a millisecond of it.
+constexpr std::size_t kDenseLimit = 6000;
+
 constexpr double kTouched = 12;     // unknowns of a first fracture
 constexpr double kDifferences = 9;  // of them, that the element resists: columns of the damage
 // Iterations of conjugate gradients preconditioned by the intact body: none broken, one broken.
@@ -14,23 +18,13 @@ constexpr double kQuietIterations = 1, kFractureIterations = 6;
 // By an incomplete factor, for the cube root of the unknowns; a new crack hardly adds to them.
 constexpr double kIncompleteIterations = 8;
 constexpr double kStiffness = 22;  // entries of the stiffness for each unknown, lower triangle
-// On a device apart, from the last solution to one under a larger load or with an element less: 490
-// to 500 on boards with frames 100 times stiffer, 208 to 229 without.
-constexpr double kIterationsApart = 500;
-// Dispatches of one of these, and bytes a node of its 13 vectors of four values and two places.
-constexpr double kIterationDispatches = 7, kIterationBytes = 13 * 32 + 2 * 16;
-// Above this many unknowns a dense inverse (8 n^2 bytes) is not chosen by itself: 288 MB and
-// seconds to prepare (n^2 nnz(L)), while the factor's frame is still within a millisecond of it.
-constexpr std::size_t kDenseLimit = 6000;
 
 std::string megabytes(std::size_t bytes) {
   if (bytes < 10000000) return std::to_string(bytes / 1000) + " kB";
   return std::to_string(bytes / 1000000) + " MB";
 }
 
-/// On the host its elements are doubles, and there is to be room to make it.
 std::size_t inverse_bytes(std::size_t n) { return n * n * sizeof(double); }
-std::size_t host_bytes(std::size_t n) { return 2 * inverse_bytes(n); }
 
 double real(std::size_t count) { return static_cast<double>(count); }
 
@@ -55,7 +49,7 @@ std::string against_condensed(const Question& q) {
 }
 
 std::size_t condensed_bytes(const Question& q) {
-  return q.device.rates.apart() ? 0 : host_bytes(q.region().dofs.size());
+  return q.device.rates.apart() ? 0 : 2 * inverse_bytes(q.region().dofs.size());
 }
 
 bool condensed_pays(const Question& q) {
@@ -67,9 +61,7 @@ bool condensed_pays(const Question& q) {
 std::string why_condensed(const Question& q) {
   const std::size_t inside = q.region().dofs.size();
   const std::string held = " can break, are loaded or held by instruments";
-  if (q.asked) {
-    return asked_for(std::to_string(inside) + " of " + unknowns_of(q) + held);
-  }
+  if (q.asked) return asked_for(std::to_string(inside) + " of " + unknowns_of(q) + held);
   return unknowns_of(q) + ", of which " + std::to_string(inside) + held + ": their inverse takes " +
          megabytes(inverse_bytes(inside)) + ", and a frame computes nothing else";
 }
@@ -85,9 +77,11 @@ void small_update(FrameWork& work, const FrameShape&) {
 
 // inverse
 
+std::size_t stored_bytes(const Question& q) { return q.unknowns() * q.unknowns() * q.real_bytes; }
+
+/// On the host there is to be room to make it.
 std::size_t whole_inverse_bytes(const Question& q) {
-  const std::size_t n = q.unknowns();
-  return q.device.rates.apart() ? n * n * q.real_bytes : host_bytes(n);
+  return (q.device.rates.apart() ? 1 : 2) * stored_bytes(q);
 }
 
 /// The columns of the loads are more to read than two triangular solves (inverse_base.cpp).
@@ -105,14 +99,12 @@ std::string why_inverse(const Question& q) {
     return "update eager was asked for, which route inverse alone has";
   }
   if (q.asked) return asked_for();
-  return unknowns_of(q) + ": the dense inverse takes " +
-         megabytes(q.unknowns() * q.unknowns() * q.real_bytes) +
+  return unknowns_of(q) + ": the dense inverse takes " + megabytes(stored_bytes(q)) +
          ", and a frame reads only its loaded and torn columns";
 }
 
 std::string no_dense_inverse(const Question& q) {
-  return unknowns_of(q) + ": a dense inverse would take " +
-         std::to_string(q.unknowns() * q.unknowns() * q.real_bytes / 1000000) + " MB; ";
+  return unknowns_of(q) + ": a dense inverse would take " + megabytes(stored_bytes(q)) + "; ";
 }
 
 /// u = X f by the loaded columns, on a device apart as they are stored.
@@ -156,15 +148,6 @@ void inverse_update(FrameWork& work, const FrameShape& s) {
   } else {
     small_update(work, s);
   }
-}
-
-/// An eager update has no estimate: the whole inverse multiplies the residual.
-void inverse_check(FrameWork& work, const FrameShape& s) {
-  if (!s.apart || !s.eager) return;
-  work.submit();
-  work.pass(real(s.kept) * real(s.kept) * real(s.real_bytes));
-  work.pass(2 * real(s.kept) * sizeof(double));
-  work.correction(s);
 }
 
 // factor
@@ -211,16 +194,11 @@ std::string why_cg(const Question& q) {
   return q.asked ? asked_for(text) : text;
 }
 
-void iterate(FrameWork& work, const FrameShape& s, double iterations) {
-  const double bytes = real(s.stiffness_bytes) + kIterationBytes * real(s.kept) / 3;
-  work.passes(iterations * kIterationDispatches, iterations * bytes);
-}
-
 void cg_solution(FrameWork& work, const FrameShape& s, bool torn) {
   if (s.apart) {
     work.fields(s, true);
     work.submit();
-    iterate(work, s, kIterationsApart);
+    work.iterate(s, 1);
     work.submit();
     return;
   }
@@ -233,23 +211,15 @@ void cg_solution(FrameWork& work, const FrameShape& s, bool torn) {
 
 void no_update(FrameWork&, const FrameShape&) {}
 
-void cg_check(FrameWork& work, const FrameShape& s) {
-  if (!s.apart) return;
-  work.submit();
-  iterate(work, s, kIterationsApart / 5);  // to two digits of eleven
-  work.correction(s);
-}
-
 using Updates = RouteRow::Updates;
 constexpr std::array<RouteRow, 4> kRoutes = {{
     {Route::condensed, "condensed", Updates::deferred, against_condensed, condensed_bytes,
-     condensed_pays, why_condensed, condensed_solution, small_update, nullptr},
+     condensed_pays, why_condensed, condensed_solution, small_update},
     {Route::inverse, "inverse", Updates::both, nothing, whole_inverse_bytes, inverse_pays,
-     why_inverse, inverse_solution, inverse_update, inverse_check},
+     why_inverse, inverse_solution, inverse_update},
     {Route::factor, "factor", Updates::deferred, nothing, no_bytes, always, why_factor,
-     factor_solution, factor_update, nullptr},
-    {Route::cg, "cg", Updates::none, nothing, no_bytes, cg_pays, why_cg, cg_solution, no_update,
-     cg_check},
+     factor_solution, factor_update},
+    {Route::cg, "cg", Updates::none, nothing, no_bytes, cg_pays, why_cg, cg_solution, no_update},
 }};
 
 }  // namespace

@@ -37,11 +37,9 @@ struct RouteRow {
   /// Whether `auto` takes it where it fits, those above having been left out.
   bool (*pays)(const Question&);
   std::string (*why)(const Question&);
-  // What a frame does for it: the displacement; what follows an event; on a device apart, what
-  // estimates the error of a frame with an event (null: it has the update's own).
+  // What a frame does for it: the displacement; what follows an event.
   void (*solution)(FrameWork&, const FrameShape&, bool torn);
   void (*update)(FrameWork&, const FrameShape&);
-  void (*check)(FrameWork&, const FrameShape&);
 };
 
 /// In the order in which `auto` goes through them.
