@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine against CHOLMOD: one event of k connected elements and the solution after it, one
 // thread. The engine's load is new to every event; updown_solve keeps its own. An event that the
-// library takes a new factor for has one here (cost_model.hpp); rows "forced_" show the update that
-// it leaves. bench/run adds the ratios to the peers' rows when all have run (suite/ratios.py);
-// `error` is the difference to CHOLMOD's refactored solution.
+// library takes a new factor for has one here (core/solver/frame_cost.hpp); rows "forced_" show the
+// update that it leaves. bench/run adds the ratios to the peers' rows when all have run
+// (suite/ratios.py); `error` is the difference to CHOLMOD's refactored solution.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -21,14 +21,14 @@
 
 #include "body/assembly.hpp"
 #include "cholmod_peer.hpp"
-#include "cpu_reference/choose_route.hpp"
-#include "cpu_reference/cost_model.hpp"
+#include "cpu_reference/available_memory.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/routes.hpp"
 #include "cpu_reference/stress.hpp"
 #include "run_rows.hpp"
 #include "solver/deferred.hpp"
 #include "solver/factor_base.hpp"
+#include "solver/frame_cost.hpp"
 #include "solver/inverse_base.hpp"
 #include "solver/stress_kernel.hpp"
 
@@ -388,7 +388,7 @@ void add_event(const std::string& base, Index cells, std::size_t k) {
   const std::string name = row((base + "_deferred").c_str(), cells, k);
   const auto update = [=](auto& s) { engine_row(s, cells, k, dense); };
   const auto unknowns = static_cast<std::size_t>(board_of(cells).problem->dof_count());
-  if (cpu_reference::takes_new_factor(unknowns, k)) {
+  if (solver::takes_new_factor(unknowns, k)) {
     add("sunder_" + name, 0.1, [=](auto& s) { route_row(s, cells, k, dense); });
     add("forced_" + name, 0.1, update);
   } else {

@@ -17,12 +17,12 @@
 #include "body/stiffness_factor.hpp"
 
 #include "body/assembly.hpp"
-#include "cpu_reference/cost_model.hpp"
 #include "frame_cascades.hpp"
 #include "frame_measures.hpp"
 #include "run_rows.hpp"
 #include "solver/deferred.hpp"
 #include "solver/factor_base.hpp"
+#include "solver/frame_cost.hpp"
 #include "solver/inverse_base.hpp"
 #include "solver/stress_bounds.hpp"
 #include "solver/stress_kernel.hpp"
@@ -173,8 +173,8 @@ const TearingBoard& board_of(Index cells) {
 std::size_t frames_of_a_base(Index cells) {
   const TearingBoard& board = board_of(cells);
   const linear_algebra::Factor factor = fem::factor_stiffness(*board.problem);
-  return 2 * static_cast<std::size_t>(cpu_reference::frames_of_a_factor(
-                 factor.cholesky(), board.problem->mesh().tets.size()));
+  return 2 * static_cast<std::size_t>(
+                 solver::frames_of_a_factor(factor.cholesky(), board.problem->mesh().tets.size()));
 }
 
 /// Which frames: `before` fractures in the base, `over` it, and then `count` frames that are
@@ -247,7 +247,7 @@ void register_rows() {
     for (const auto& [name, elements] :
          {std::pair{"event_1", 1}, {"event_10", 10}, {"event_100", 100}}) {
       const auto count = static_cast<std::size_t>(elements);
-      if (!cpu_reference::takes_new_factor(unknowns, count)) {
+      if (!solver::takes_new_factor(unknowns, count)) {
         add(cells, {name, false, 0, 0, 1, count});
       }
     }

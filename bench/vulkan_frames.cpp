@@ -60,7 +60,7 @@ class Frames {
   }
   /// That a frame moves on its device at least; 0: there is none.
   [[nodiscard]] double bytes(bool fracture) const {
-    const gpu::FrameCost cost = gpu::predicted(*backend_);
+    const solver::FrameCost cost = gpu::predicted(*backend_);
     return fracture ? cost.fracture_bytes : cost.quiet_bytes;
   }
   void prepare_fracture() {

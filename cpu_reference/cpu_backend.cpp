@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "body/assembly.hpp"
-#include "cpu_reference/choose_route.hpp"
-#include "cpu_reference/cost_model.hpp"
+#include "cpu_reference/available_memory.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/frame_fields.hpp"
 #include "cpu_reference/frame_kernels.hpp"
@@ -18,35 +17,39 @@
 #include "solver/frame_solver.hpp"
 #include "solver/host_frame.hpp"
 #include "solver/instrument_block.hpp"
+#include "solver/plan.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
 
-std::optional<solver::Region> condensed_region(const ChosenRoute& chosen, const Problem& problem,
-                                               const Needs& needs) {
-  if (chosen.route != Route::condensed) return std::nullopt;
-  return solver::region_of(problem, needs);
+/// What plans are made for.
+solver::PlanDevice plan_device(std::size_t memory) {
+  solver::PlanDevice device;
+  device.backend = "cpu";
+  device.routes = {Route::inverse, Route::condensed, Route::factor, Route::cg};
+  device.memory = memory;
+  return device;
 }
 
 /// The factor of the intact body, where it fits the memory.
 std::optional<IntactBody> intact_body(const Problem& problem, const Needs& needs,
-                                      ChosenRoute& chosen) {
-  const auto analysis = std::move(chosen.analysis);
+                                      solver::Plan& plan) {
+  const auto analysis = std::move(plan.analysis);
   if (!analysis) return std::nullopt;
-  const bool rebases = needs.damage && chosen.update == Update::deferred &&
-                       chosen.route != Route::condensed && chosen.route != Route::cg;
+  const bool rebases =
+      needs.damage && !plan.eager && plan.route != Route::condensed && plan.route != Route::cg;
   return std::optional<IntactBody>(std::in_place, problem, rebases, *analysis);
 }
 
 class CpuBackend final : public Backend {
  public:
-  CpuBackend(std::shared_ptr<const Problem> problem, Needs needs, ChosenRoute chosen,
+  CpuBackend(std::shared_ptr<const Problem> problem, Needs needs, solver::Plan plan,
              std::chrono::milliseconds rest)
       : Backend(problem, std::move(needs)),
-        chosen_(std::move(chosen)),
-        intact_(intact_body(*problem, this->needs(), chosen_)),
-        fields_(damaged_body(), this->needs(), condensed_region(chosen_, *problem, this->needs())),
+        plan_(std::move(plan)),
+        intact_(intact_body(*problem, this->needs(), plan_)),
+        fields_(damaged_body(), this->needs(), plan_.region),
         route_(make_route(rest)),
         frame_(damaged_body(), *route_, fields_, yardstick(), fall_back()),
         solver_(*problem, frame_) {
@@ -56,10 +59,7 @@ class CpuBackend final : public Backend {
       if (intact_) intact_->solve(pristine_force_, {}, pristine_u_);
     }
     if (route_->deferred() && !problem->gripped_dofs().empty()) instruments_.emplace(*problem);
-    if (!fields_.region()) return;
-    for (std::string& what : solver::left_out_of(*problem, *fields_.region())) {
-      leave_out(std::move(what));
-    }
+    for (const std::string& what : plan_.left_out) leave_out(what);
   }
 
   BackendInfo info() const override {
@@ -69,11 +69,11 @@ class CpuBackend final : public Backend {
     info.device = cpu.name;
     info.driver = cpu.driver;
     info.precision = "fp64";
-    info.route = name_of(chosen_.route);
-    info.update = needs().damage ? name_of_update(chosen_) : "none";
-    info.why = chosen_.why;
+    info.route = solver::name_of(plan_.route);
+    info.update = needs().damage ? solver::name_of_update(plan_) : "none";
+    info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
-    const FrameCost cost = frame_cost(shape());
+    const solver::FrameCost cost = solver::frame_cost(shape(), {});
     info.quiet_ms = cost.quiet_ms;
     info.fracture_ms = cost.fracture_ms;
     return info;
@@ -92,27 +92,16 @@ class CpuBackend final : public Backend {
     return plan;
   }
 
-  std::vector<KernelPlan> kernels() const override {
-    return frame_kernels(shape(), needs(), problem().gripped_dofs().size());
-  }
+  std::vector<KernelPlan> kernels() const override { return frame_kernels(shape(), needs()); }
 
  private:
-  FrameShape shape() const {
-    FrameShape shape;
-    shape.route = chosen_.route;
-    shape.eager = chosen_.update == Update::eager;
-    shape.damage = needs().damage;
-    shape.unknowns = static_cast<std::size_t>(problem().dof_count());
-    shape.kept = fields_.region() ? fields_.region()->dofs.size() : shape.unknowns;
-    for (const InstrumentNodes& i : problem().instrument_nodes()) {
-      shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
-    }
+  solver::FrameShape shape() const {
+    solver::FrameShape shape = plan_.shape(problem(), needs());
     if (intact_) {
       shape.entries = intact_->factor.entries();
       shape.path = intact_->factor.path_entries(an_element_that_can_break());
       shape.load_path = intact_->factor.path_entries(loaded_by_instruments());
     }
-    shape.elements = problem().mesh().tets.size();
     shape.stressed = fields_.stressed();
     shape.threads = fields_.threads();
     return shape;
@@ -157,26 +146,25 @@ class CpuBackend final : public Backend {
       if (needs().pristine) never_damaged_.emplace(damaged_body().shared_problem(), preconditioner);
       return incomplete_route(damaged_body(), preconditioner);
     }
-    if (chosen_.route == Route::cg) return conjugate_gradient_route(damaged_body(), *intact_);
+    if (plan_.route == Route::cg) return conjugate_gradient_route(damaged_body(), *intact_);
     if (const solver::Region* region = fields_.region()) {
       // Without an owner: the intact body outlives the route.
       return solver::condensed_route(damaged_body(), {std::shared_ptr<void>(), &intact_->factor},
                                      region->dofs, needs().damage, rest);
     }
-    if (chosen_.update == Update::eager) return dense_inverse_route(damaged_body(), *intact_);
+    if (plan_.eager) return dense_inverse_route(damaged_body(), *intact_);
     fields_.keep_forces();
-    return deferred_route(damaged_body(), *intact_, chosen_.route == Route::inverse, rest);
+    return deferred_route(damaged_body(), *intact_, plan_.route == Route::inverse, rest);
   }
 
   /// The plain routes are what others are measured by.
   [[nodiscard]] bool yardstick() const {
-    return (chosen_.route == Route::cg && intact_) ||
-           (chosen_.route == Route::inverse && chosen_.update == Update::eager);
+    return (plan_.route == Route::cg && intact_) || (plan_.route == Route::inverse && plan_.eager);
   }
 
   /// Conjugate gradients on the intact body.
   solver::HostFrame::MakeRoute fall_back() {
-    if (chosen_.route == Route::cg || !intact_) return {};
+    if (plan_.route == Route::cg || !intact_) return {};
     return [this] { return conjugate_gradient_route(damaged_body(), *intact_); };
   }
 
@@ -288,7 +276,7 @@ class CpuBackend final : public Backend {
     std::ranges::copy(frame_.reactions(), reactions.begin());
   }
 
-  ChosenRoute chosen_;
+  solver::Plan plan_;
   std::optional<IntactBody> intact_;           // empty: its factor does not fit the memory
   std::optional<NeverDamaged> never_damaged_;  // in its place, for the pristine field
   FrameFields fields_;
@@ -325,9 +313,13 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
                                 const CpuOptions& options) {
   if (!problem) throw UsageError("a backend needs a problem");
-  ChosenRoute chosen =
-      choose_route(*problem, needs, options.memory > 0 ? options.memory : available_memory());
-  return std::make_unique<CpuBackend>(std::move(problem), std::move(needs), std::move(chosen),
+  if (problem->scene().solver.device > 0) {
+    throw DeviceError("backend cpu has device 0 only, not " +
+                      std::to_string(problem->scene().solver.device));
+  }
+  solver::Plan plan = solver::make_plan(
+      *problem, needs, plan_device(options.memory > 0 ? options.memory : available_memory()));
+  return std::make_unique<CpuBackend>(std::move(problem), std::move(needs), std::move(plan),
                                       options.rest);
 }
 

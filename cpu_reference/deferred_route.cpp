@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "body/stiffness_factor.hpp"
-#include "cpu_reference/cost_model.hpp"
 #include "cpu_reference/routes.hpp"
 #include "solver/factor_base.hpp"
+#include "solver/frame_cost.hpp"
 #include "solver/inverse_base.hpp"
 #include "solver/renewed_update.hpp"
 
@@ -39,7 +39,7 @@ class DeferredRoute final : public InverseRoute {
       update_.emplace(body, std::move(first));
       return;
     }
-    const int frames = frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
+    const int frames = solver::frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
     solver::Renewal renewal;
     renewal.events = frames;
     renewal.rest = rest;
@@ -73,7 +73,7 @@ class DeferredRoute final : public InverseRoute {
   }
 
   void follow(const fem::Event& event) override {
-    update_->follow(event, takes_new_factor(all_.size(), event.leave.size()));
+    update_->follow(event, solver::takes_new_factor(all_.size(), event.leave.size()));
   }
   bool rebase() override { return update_->rebase(); }
 

@@ -14,8 +14,7 @@ std::string square(std::size_t n) { return std::to_string(n) + " x " + std::to_s
 
 class Frame {
  public:
-  Frame(const FrameShape& shape, const Needs& needs, std::size_t grips)
-      : shape_(shape), needs_(needs), grips_(grips) {}
+  Frame(const solver::FrameShape& shape, const Needs& needs) : shape_(shape), needs_(needs) {}
 
   std::vector<KernelPlan> kernels() {
     if (shape_.route == Route::cg) {
@@ -45,13 +44,13 @@ class Frame {
     add("intact solve", "forward and backward through the intact factor, " +
                             values(2 * shape_.entries) +
                             ": first guess and preconditioner of conjugate gradients");
-    if (grips_ > 0) hold();
+    if (shape_.grips > 0) hold();
   }
 
   void eager() {
-    add("columns", "u = X f: " + std::to_string(shape_.loaded) +
+    add("columns", "u = X f: " + std::to_string(shape_.loaded + shape_.grips) +
                        " loaded columns of the inverse, " + square(shape_.kept));
-    if (grips_ > 0) hold();
+    if (shape_.grips > 0) hold();
     if (!shape_.damage) return;
     add("low-rank update", "of the inverse, rank 6 for each destroyed element, " +
                                values(shape_.kept * shape_.kept) + " read and written");
@@ -62,8 +61,8 @@ class Frame {
     if (factor) {
       add("forward solve", "of the load along its elimination path, " + values(shape_.load_path));
     } else {
-      add("load columns",
-          std::to_string(shape_.loaded) + " loaded columns of the inverse, " + square(shape_.kept));
+      add("load columns", std::to_string(shape_.loaded + shape_.grips) +
+                              " loaded columns of the inverse, " + square(shape_.kept));
     }
     if (shape_.damage) {
       add("small update",
@@ -72,7 +71,7 @@ class Frame {
                  : std::string("entries of the inverse at a destroyed element, then the small "
                                "matrix of the damage"));
     }
-    if (grips_ > 0) hold();
+    if (shape_.grips > 0) hold();
     if (shape_.damage) add("damage forces", "by the small matrix, refined");
     if (factor) {
       add("backward solve", "of load and damage through the factor, " + values(shape_.entries));
@@ -85,7 +84,8 @@ class Frame {
   }
 
   void hold() {
-    add("grips", "forces that hold " + std::to_string(grips_) + " unknowns, by their compliance");
+    add("grips",
+        "forces that hold " + std::to_string(shape_.grips) + " unknowns, by their compliance");
   }
 
   void fields() {
@@ -106,17 +106,15 @@ class Frame {
     }
   }
 
-  const FrameShape& shape_;
+  const solver::FrameShape& shape_;
   const Needs& needs_;
-  std::size_t grips_;
   std::vector<KernelPlan> list_;
 };
 
 }  // namespace
 
-std::vector<KernelPlan> frame_kernels(const FrameShape& shape, const Needs& needs,
-                                      std::size_t grips) {
-  return Frame(shape, needs, grips).kernels();
+std::vector<KernelPlan> frame_kernels(const solver::FrameShape& shape, const Needs& needs) {
+  return Frame(shape, needs).kernels();
 }
 
 }  // namespace sunder::cpu_reference

@@ -4,12 +4,11 @@
 
 #include <vector>
 
-#include "cpu_reference/cost_model.hpp"
-#include "sunder/backend.hpp"
+#include "solver/frame_cost.hpp"
 
 namespace sunder::cpu_reference {
 
-[[nodiscard]] std::vector<KernelPlan> frame_kernels(const FrameShape& shape, const Needs& needs,
-                                                    std::size_t grips);
+[[nodiscard]] std::vector<KernelPlan> frame_kernels(const solver::FrameShape& shape,
+                                                    const Needs& needs);
 
 }  // namespace sunder::cpu_reference

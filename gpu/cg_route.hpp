@@ -26,8 +26,6 @@ class CgRoute final : public DeviceRoute {
     rigid_.destroy(elements);  // Fields' matrix follows by itself
   }
 
-  std::string name() const override { return "cg"; }
-  std::string update_name() const override { return "matrix"; }
   std::vector<BufferPlan> buffers() const override;
 
   /// Sizes of the dispatches of an iteration, three words for each of kCgSizes kinds: the device

@@ -40,8 +40,6 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   const Eigen::MatrixXd* grip_factor() const override { return &route_->deferred()->grip_factor(); }
   void solve_pristine(const Load& load, std::span<double> displacement) override;
 
-  std::string route_name() const override { return "condensed"; }
-  std::string update_name() const override { return "deferred"; }
   std::vector<BufferPlan> buffers() const override;
   double waited_ms() const override { return route_->waited_ms(); }
 

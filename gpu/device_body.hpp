@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "gpu/inverse_route.hpp"
-#include "gpu/plan.hpp"
 #include "solver/frame_device.hpp"
+#include "solver/plan.hpp"
 
 namespace sunder::gpu {
 
@@ -21,7 +21,7 @@ using IntactInverse = std::shared_ptr<const HostInverse>;
 struct DeviceSetup {
   const fem::DamagedBody& body;
   const KernelFactory& kernels;
-  const Plan& plan;
+  const solver::Plan& plan;
   const InverseOptions& inverse;
   const Needs& needs;
 };
@@ -38,8 +38,6 @@ class DeviceBody {
   [[nodiscard]] virtual const Problem& part() const = 0;
   [[nodiscard]] virtual Fields& fields() = 0;
   [[nodiscard]] virtual const Fields& fields() const = 0;
-  /// Null: the whole is there.
-  [[nodiscard]] virtual const solver::Region* region() const { return nullptr; }
   /// Elements as the device numbers them, without those that are not there; until the next call.
   [[nodiscard]] virtual std::span<const Index> on_device(std::span<const Index> elements) = 0;
   [[nodiscard]] virtual Index of_whole(std::uint32_t on_device) const = 0;
@@ -71,9 +69,9 @@ class DeviceBody {
   /// Displacement of the intact body at all nodes; needs().pristine only.
   virtual void solve_pristine(const Load& load, std::span<double> displacement) = 0;
 
-  [[nodiscard]] virtual std::string route_name() const = 0;
-  [[nodiscard]] virtual std::string update_name() const = 0;
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// The deferred update of the whole body; null: it has another or none.
+  [[nodiscard]] virtual const solver::RenewedUpdate* update() const { return nullptr; }
   /// Milliseconds that frames have waited for a new base so far.
   [[nodiscard]] virtual double waited_ms() const = 0;
 };

@@ -30,8 +30,6 @@ class HostCorrectedRoute final : public DeviceRoute {
   bool rebase() override;
 
   const solver::RenewedUpdate* update() const override { return update_.get(); }
-  std::string name() const override { return "inverse"; }
-  std::string update_name() const override { return "deferred"; }
   std::vector<BufferPlan> buffers() const override;
 
  private:

@@ -40,8 +40,6 @@ class InverseRoute final : public DeviceRoute {
   const Eigen::MatrixXd* grip_factor() const override {
     return eager_ ? &grips_.matrixLLT() : DeviceRoute::grip_factor();
   }
-  std::string name() const override { return "inverse"; }
-  std::string update_name() const override { return eager_ ? "eager" : "deferred"; }
   std::vector<BufferPlan> buffers() const override;
 
  private:

@@ -40,8 +40,6 @@ class DeviceRoute {
     return update() ? &update()->deferred().grip_factor() : nullptr;
   }
 
-  [[nodiscard]] virtual std::string name() const = 0;
-  [[nodiscard]] virtual std::string update_name() const = 0;
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
 };
 

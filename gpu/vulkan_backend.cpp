@@ -9,6 +9,7 @@
 
 #include "gpu/choose_device.hpp"
 #include "gpu/condensed_body.hpp"
+#include "gpu/plan_device.hpp"
 #include "gpu/whole_body.hpp"
 #include "solver/frame_solver.hpp"
 #include "solver/instrument_block.hpp"
@@ -37,16 +38,17 @@ class VulkanBackend final : public Backend {
       : Backend(problem, std::move(needs)),
         started_(start_inverse(*problem, options)),
         device_(open_device(options, problem->scene().solver.device)),
-        plan_(make_plan(*problem, this->needs(), device_->physical(), options.lent.has_value())),
+        for_plan_(plan_device(device_->physical(), options.lent.has_value())),
+        plan_(solver::make_plan(*problem, this->needs(), for_plan_)),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
         inverse_{plan_.eager, options.panel_bytes,
                  options.invert_on_device.value_or(plan_.invert_on_device)} {
     device_->set_timing(false);
+    for (const std::string& what : plan_.left_out) leave_out(what);
     const DeviceSetup setup{damaged_body(), kernels_, plan_, inverse_, this->needs()};
     if (plan_.region) {
       body_ = std::make_unique<CondensedBody>(setup, *plan_.region);
-      leave_out_the_rest();
     } else {
       body_ = std::make_unique<WholeBody>(setup, std::move(started_));
     }
@@ -65,11 +67,12 @@ class VulkanBackend final : public Backend {
     info.device = device_->physical().name;
     info.driver = device_->physical().driver;
     info.precision = plan_.fp64 ? "fp64" : "fp32";
-    info.route = body_->route_name();
-    info.update = needs().damage ? body_->update_name() : "none";
+    info.route = solver::name_of(plan_.route);
+    info.update = needs().damage ? solver::name_of_update(plan_) : "none";
+    if (plan_.eager && body_->update()) info.update = "deferred";  // rounding has made it so
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
-    const FrameCost cost = predicted();
+    const solver::FrameCost cost = predicted();
     info.quiet_ms = cost.quiet_ms;
     info.fracture_ms = cost.fracture_ms;
     return info;
@@ -111,7 +114,7 @@ class VulkanBackend final : public Backend {
     return times;
   }
 
-  FrameCost predicted() const { return frame_cost(shape(), device_->physical()); }
+  solver::FrameCost predicted() const { return solver::frame_cost(shape(), for_plan_.rates); }
   DeviceUse device_use() const {
     return {device_->held_bytes(), device_->most_bytes(), device_->queue().submits(),
             device_->pipelines()};
@@ -126,35 +129,24 @@ class VulkanBackend final : public Backend {
   Display* display() { return display_.get(); }
 
  private:
-  [[nodiscard]] FrameShape shape() const {
-    FrameShape shape;
-    shape.cg = plan_.cg;
-    shape.eager = plan_.eager;
-    shape.host_corrects = kernels_.single() || body_->region() != nullptr;
-    shape.damage = needs().damage;
-    shape.real_bytes = kernels_.real_bytes();
-    shape.rows = body_->fields().rows();
-    shape.grips = problem().gripped_dofs().size();
-    for (const InstrumentNodes& i : problem().instrument_nodes()) {
-      shape.loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
-    }
-    shape.loaded -= std::min(shape.loaded, shape.grips);
+  [[nodiscard]] solver::FrameShape shape() const {
+    solver::FrameShape shape = plan_.shape(problem(), needs());
+    const bool whole = !plan_.region;
+    if (whole) shape.kept = body_->fields().rows();
     shape.elements = body_->part().mesh().tets.size();
-    shape.stiffness_bytes = body_->region() ? 0 : body_->fields().matrix().bytes();
+    shape.stressed = body_->fields().norms() ? shape.elements : 0;
+    shape.apart = whole;
+    shape.host_corrects = kernels_.single();
     shape.stress = needs().stress;
-    shape.norms = body_->fields().norms();
+    shape.real_bytes = kernels_.real_bytes();
+    shape.exact_loads = kExactLoads;
+    shape.stiffness_bytes = whole ? body_->fields().matrix().bytes() : 0;
     return shape;
   }
 
   /// What a host's submit still reads must not be written.
   void finish_display() {
     if (display_) display_->finish();
-  }
-
-  void leave_out_the_rest() {
-    for (std::string& what : solver::left_out_of(problem(), *body_->region())) {
-      leave_out(std::move(what));
-    }
   }
 
   void do_set_load(const Load& load) override {
@@ -260,7 +252,8 @@ class VulkanBackend final : public Backend {
 
   std::future<IntactInverse> started_;
   std::unique_ptr<vulkan::Device> device_;
-  Plan plan_;
+  solver::PlanDevice for_plan_;
+  solver::Plan plan_;
   KernelFactory kernels_;
   InverseOptions inverse_;  // of routes inverse and condensed
   std::unique_ptr<DeviceBody> body_;
@@ -298,9 +291,9 @@ DeviceUse device_use(const Backend& backend) {
   return vulkan_backend ? vulkan_backend->device_use() : DeviceUse{};
 }
 
-FrameCost predicted(const Backend& backend) {
+solver::FrameCost predicted(const Backend& backend) {
   const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
-  return vulkan_backend ? vulkan_backend->predicted() : FrameCost{};
+  return vulkan_backend ? vulkan_backend->predicted() : solver::FrameCost{};
 }
 
 std::vector<Index> over_yield(const Backend& backend) {

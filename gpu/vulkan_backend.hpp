@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "gpu/cost_model.hpp"
 #include "gpu/kernels.hpp"
 #include "gpu/passes/display.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "gpu/vulkan/lent_device.hpp"
+#include "solver/frame_cost.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::gpu {
@@ -63,7 +63,7 @@ struct DeviceUse {
 [[nodiscard]] DeviceUse device_use(const Backend& backend);
 
 /// What a frame of such a backend will take, and the bytes that its passes move; else nothing.
-[[nodiscard]] FrameCost predicted(const Backend& backend);
+[[nodiscard]] solver::FrameCost predicted(const Backend& backend);
 
 /// Live breakable elements at or over yield after the last solve, ascending, as the device listed
 /// them: only they cross to the host. Of a backend that create() returned; else empty.

@@ -13,7 +13,7 @@ constexpr std::size_t kFewNodes = 64;
 
 Fields::RouteNeeds route_needs(const DeviceSetup& setup, const Problem& problem) {
   const KernelFactory& kernels = setup.kernels;
-  if (setup.plan.cg) {
+  if (setup.plan.route == Route::cg) {
     return {.bytes = CgRoute::planned_bytes(kernels, problem), .preconditioner = true};
   }
   if (kernels.single()) {
@@ -30,7 +30,7 @@ WholeBody::WholeBody(const DeviceSetup& setup, std::future<IntactInverse> starte
       damaged_(setup.body),
       fields_(setup.kernels, problem_, setup.needs, route_needs(setup, problem_)),
       force_(fields_.rows(), 0.0) {
-  const bool cg = setup.plan.cg, pristine = setup.needs.pristine;
+  const bool cg = setup.plan.route == Route::cg, pristine = setup.needs.pristine;
   IntactInverse intact;
   if (!cg || pristine) {
     intact = started.valid()
@@ -45,7 +45,7 @@ WholeBody::WholeBody(const DeviceSetup& setup, std::future<IntactInverse> starte
 void WholeBody::make_route(const DeviceSetup& setup, IntactInverse intact) {
   const KernelFactory& kernels = setup.kernels;
   const bool damage = setup.needs.damage;
-  if (setup.plan.cg) {
+  if (setup.plan.route == Route::cg) {
     route_ = std::make_unique<CgRoute>(kernels, damaged_, fields_);
   } else if (kernels.single()) {
     route_ = std::make_unique<HostCorrectedRoute>(kernels, damaged_, fields_, std::move(intact),
@@ -90,11 +90,6 @@ std::vector<BufferPlan> WholeBody::buffers() const {
   std::vector<BufferPlan> plan = route_->buffers();
   for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
   return plan;
-}
-
-double WholeBody::waited_ms() const {
-  const solver::RenewedUpdate* update = route_->update();
-  return update ? update->waited_ms() : 0;
 }
 
 }  // namespace sunder::gpu

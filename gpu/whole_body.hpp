@@ -39,10 +39,9 @@ class WholeBody final : public DeviceBody {
   const Eigen::MatrixXd* grip_factor() const override { return route_->grip_factor(); }
   void solve_pristine(const Load& load, std::span<double> displacement) override;
 
-  std::string route_name() const override { return route_->name(); }
-  std::string update_name() const override { return route_->update_name(); }
   std::vector<BufferPlan> buffers() const override;
-  double waited_ms() const override;
+  const solver::RenewedUpdate* update() const override { return route_->update(); }
+  double waited_ms() const override { return update() ? update()->waited_ms() : 0; }
 
  private:
   void make_route(const DeviceSetup& setup, IntactInverse intact);

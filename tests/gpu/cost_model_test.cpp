@@ -1,28 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device's cost model orders frames as they are, and its terms are those of the passes.
-#include "gpu/cost_model.hpp"
-
 #include <gtest/gtest.h>
+
+#include "gpu/plan_device.hpp"
 
 namespace sunder::test {
 namespace {
 
-using gpu::FrameCost;
-using gpu::FrameShape;
+using solver::FrameCost;
+using solver::FrameShape;
 
-vulkan::PhysicalDevice device(VkPhysicalDeviceType type) {
+solver::FrameRates device(VkPhysicalDeviceType type) {
   vulkan::PhysicalDevice device;
   device.type = type;
-  return device;
+  return gpu::plan_device(device, false).rates;
 }
 
 /// A board of `n` unknowns.
 FrameShape board(std::size_t n) {
   FrameShape shape;
-  shape.damage = shape.stress = true;
-  shape.rows = n;
+  shape.apart = shape.damage = shape.stress = true;
+  shape.unknowns = shape.kept = n;
   shape.loaded = 6;
-  shape.elements = n;
+  shape.exact_loads = 64;
+  shape.elements = shape.stressed = n;
+  shape.real_bytes = 4;
   shape.stiffness_bytes = 500 * n;
   return shape;
 }
@@ -35,7 +37,7 @@ TEST(DeviceCostModel, OrdersFrames) {
   for (const VkPhysicalDeviceType kind : kKinds) {
     FrameShape eager = board(6000), cg = board(6000), organ = board(1000);
     eager.eager = true;
-    cg.cg = true;
+    cg.route = Route::cg;
     const FrameCost deferred = frame_cost(board(6000), device(kind));
     EXPECT_GT(deferred.quiet_ms, 0);
     EXPECT_GT(deferred.fracture_ms, deferred.quiet_ms);

@@ -48,7 +48,7 @@ class IncludeRule(unittest.TestCase):
 
     def test_every_room_refuses_what_lies_above_it(self):
         self.assertGreater(len(ROOMS), 15)
-        above = {room: "gpu/plan.hpp" if room.startswith("app") else "app/cli/options.hpp"
+        above = {room: "gpu/plan_device.hpp" if room.startswith("app") else "app/cli/options.hpp"
                  for room in ROOMS}
         said = self.refuse({f"{room}/intruder.hpp": header for room, header in above.items()})
         for room, header in above.items():
@@ -56,7 +56,7 @@ class IncludeRule(unittest.TestCase):
 
     def test_devices_program_and_interface_keep_apart(self):
         wrong = {"gpu/intruder.cpp": "cpu_reference/routes.hpp",
-                 "cpu_reference/intruder.cpp": "gpu/plan.hpp",
+                 "cpu_reference/intruder.cpp": "gpu/plan_device.hpp",
                  "cpu_reference/routes_intruder.cpp": "cpu_reference/plain/plain.hpp",
                  "app/input/intruder.cpp": "body/element.hpp",
                  "app/report/intruder.cpp": "solver/deferred.hpp"}

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/choose_route.hpp"
-
 #include <gtest/gtest.h>
 
 #include "sunder/error.hpp"

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The predicted milliseconds order scenes and routes as their work does.
-#include "cpu_reference/cost_model.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
 
 #include "cpu_reference/routes.hpp"
+#include "solver/frame_cost.hpp"
 #include "support/body.hpp"
 #include "support/table1_board.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
+
+using solver::FrameCost;
+using solver::FrameShape;
+using solver::takes_new_factor;
+
+FrameCost frame_cost(const FrameShape& shape) { return solver::frame_cost(shape, {}); }
 
 /// A board of 120,000 tetrahedra of which a patch of 1,000 unknowns can tear.
 FrameShape organ(Route route) {

@@ -6,7 +6,8 @@
 #include <cstdlib>
 
 #include "body/stiffness_factor.hpp"
-#include "cpu_reference/choose_route.hpp"
+#include "cpu_reference/cpu_reference.hpp"
+#include "solver/plan.hpp"
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
@@ -100,7 +101,7 @@ TEST(Memory, AutoTakesTheFactorWhereAnInverseDoesNotFit) {
 TEST(Memory, WhatIsAskedForIsRefusedWithBytes) {
   for (Route route : {Route::factor, Route::inverse, Route::condensed}) {
     const std::string message = refusal(problem_of(block(route)), kBetween);
-    EXPECT_TRUE(mentions(message, "route " + cpu_reference::name_of(route))) << message;
+    EXPECT_TRUE(mentions(message, "route " + solver::name_of(route))) << message;
     EXPECT_GT(bytes_in(message), kBetween) << message;
     EXPECT_TRUE(mentions(message, "50000000 are free")) << message;
     EXPECT_TRUE(mentions(message, "use route")) << message;

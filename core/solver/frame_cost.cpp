@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/frame_cost.hpp"
+
+#include <algorithm>
+
+#include "solver/route_table.hpp"
+
+namespace sunder::solver {
+namespace {
+
+// Nominal rates of one core of a 2.4 GHz server of 2021, the host of any device.
+constexpr double kCacheBytes = 16e6;        // sets up to here stay in the cache between frames
+constexpr double kFromCache = 30e9;         // bytes a second
+constexpr double kFromMemory = 10e9;        // bytes a second
+constexpr double kFlops = 10e9;             // of panels with a dozen columns
+constexpr double kProductSeconds = 120e-9;  // per element of a product K u
+constexpr double kFactorFlops = 26e9;       // of a factor's dense products
+constexpr double kCheckSeconds = 200e-9;    // per element of a full check by plain loops
+
+constexpr double kValue = sizeof(double);
+// On a device apart, from the last solution to one under a larger load or with an element less: 490
+// to 500 on boards with frames 100 times stiffer, 208 to 229 without.
+constexpr double kIterationsApart = 500;
+// Dispatches of one of these, and bytes a node of its 13 vectors of four values and two places.
+constexpr double kIterationDispatches = 7, kIterationBytes = 13 * 32 + 2 * 16;
+// Bytes of an element's stress there: shape, corners, state, displacement of four nodes.
+constexpr double kStressBytes = 96 + 16 + 16 + 128;
+
+double real(std::size_t count) { return static_cast<double>(count); }
+
+double host_seconds(double bytes) {
+  return bytes / (bytes > kCacheBytes ? kFromMemory : kFromCache);
+}
+
+/// Of a frame; `torn`: with an event before it.
+FrameWork work_of(const FrameShape& s, const FrameRates& rates, bool torn) {
+  const RouteRow& route = row_of(s.route);
+  FrameWork work(rates);
+  if (torn) {
+    work.seconds(rates.event);
+    route.update(work, s);
+  }
+  work.seconds(rates.frame);
+  work.submit();
+  route.solution(work, s, torn);
+  if (s.grips > 0) work.pass(0);
+  work.fields(s, torn || s.grips > 0 || s.route == Route::cg);
+  if (torn && s.apart && (s.eager || s.route == Route::cg)) work.check(s);
+  return work;
+}
+
+/// Multiply-adds of a factor: each column of a panel with those after it.
+double multiply_adds(const linear_algebra::Supernodes& nodes) {
+  double sum = 0;
+  for (Index s = 0; s < nodes.count(); ++s) {
+    const double width = nodes.width(s), below = nodes.height(s) - width;
+    sum += width * (below * below / 2 + width * below / 2 + width * width / 6);
+  }
+  return sum;
+}
+
+}  // namespace
+
+void FrameWork::host(double values, double times, double flops) {
+  seconds_ += times * std::max(host_seconds(kValue * values), flops / kFlops);
+}
+
+void FrameWork::product(double elements) { seconds_ += kProductSeconds * elements; }
+
+void FrameWork::passes(double dispatches, double bytes) {
+  if (!rates_.apart()) return;
+  seconds_ += dispatches * rates_.dispatch + bytes / rates_.bytes;
+  bytes_ += bytes;
+}
+
+void FrameWork::fields(const FrameShape& s, bool balance) {
+  const double stressed = real(s.stressed);
+  if (s.stressed > 0) {
+    pass((kStressBytes + (s.stress ? 8 * real(s.real_bytes) : 0)) * stressed);
+    seconds_ += stressed * rates_.stress / real(std::max<std::size_t>(s.threads, 1));
+  }
+  balance = balance || s.stressed == 0;
+  if (!s.apart) {
+    host(6 * real(s.route == Route::condensed ? s.kept : s.unknowns));
+    const bool deferred = s.route == Route::factor || (s.route == Route::inverse && !s.eager);
+    if (s.stressed == 0 && deferred) product(real(s.elements));
+  } else if (balance && s.host_corrects) {
+    product(real(s.elements));
+  } else if (balance) {
+    pass(real(s.stiffness_bytes));
+  }
+  pass(0);
+}
+
+void FrameWork::iterate(const FrameShape& s, double share) {
+  const double bytes = real(s.stiffness_bytes) + kIterationBytes * real(s.kept) / 3;
+  const double iterations = share * kIterationsApart;
+  passes(iterations * kIterationDispatches, iterations * bytes);
+}
+
+void FrameWork::check(const FrameShape& s) {
+  submit();
+  if (s.route == Route::cg) {
+    iterate(s, .2);  // to two digits of eleven
+  } else {
+    pass(real(s.kept) * real(s.kept) * real(s.real_bytes));
+    pass(2 * real(s.kept) * kValue);
+  }
+  pass(kStressBytes * real(s.elements));
+  seconds_ += real(s.elements) * rates_.stress;
+  pass(0);
+}
+
+FrameCost frame_cost(const FrameShape& shape, const FrameRates& rates) {
+  FrameCost cost;
+  const FrameWork quiet = work_of(shape, rates, false);
+  cost.quiet_ms = quiet.milliseconds();
+  cost.quiet_bytes = quiet.bytes();
+  if (!shape.damage) return cost;
+  const FrameWork torn = work_of(shape, rates, true);
+  cost.fracture_ms = torn.milliseconds();
+  cost.fracture_bytes = torn.bytes();
+  return cost;
+}
+
+std::size_t loaded_unknowns(const Problem& problem) {
+  std::size_t loaded = 0;
+  for (const InstrumentNodes& i : problem.instrument_nodes()) {
+    loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
+  }
+  return std::min(loaded, static_cast<std::size_t>(problem.dof_count()));
+}
+
+int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor, std::size_t elements) {
+  constexpr double kSolutions = 4;  // of the check, each forward and backward
+  constexpr double kUpdate = 3e-5;  // seconds of a frame with a fracture, whatever the size
+  // The thread follows meanwhile, and a busy machine takes twice as long: a frame is not to wait.
+  constexpr double kAllowance = 4;
+  const double solve = host_seconds(kValue * real(factor.entries()));
+  const double count = real(elements);
+  const double making = 2 * multiply_adds(factor.supernodes()) / kFactorFlops +
+                        kCheckSeconds * count + 2 * kSolutions * solve;
+  const double frame = 1.5 * solve + FrameRates{}.stress * count + kUpdate;
+  return std::clamp(static_cast<int>(kAllowance * making / frame), 48, 256);
+}
+
+bool takes_new_factor(std::size_t unknowns, std::size_t elements) {
+  // An event that touches more new unknowns than this costs more than a new factor: a share of all
+  // within limits. Boards of 486 to 30,246 elements (bench_reconstruction, bench_engine).
+  constexpr double kLargestShare = 0.125, kSmallBody = 64, kLargestEvent = 600;
+  constexpr double kTouchedByOne = 4;
+  return kTouchedByOne * real(elements) >
+         std::clamp(kLargestShare * real(unknowns), kSmallBody, kLargestEvent);
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a frame will take, from the values that it reads, the columns that an update carries through
+// the factor and, on a device apart from the host, the passes that it is made of. For `plan`: right
+// to a small factor, and in the right order between routes; `plan --measure` measures.
+#pragma once
+
+#include <cstddef>
+
+#include "linear_algebra/supernodal_cholesky.hpp"
+#include "sunder/backend.hpp"
+
+namespace sunder::solver {
+
+/// Nominal rates of what computes frames. A host computes all of one; a device apart from it the
+/// fields, and the products with its base.
+struct FrameRates {
+  double stress = 15e-9;  ///< [s] of an element: stress, with what is summed of it
+  double frame = 5e-6;    ///< [s] of a frame's small changes on the host
+  double event = 5e-6;    ///< [s] of an event's small matrices there
+  // Of a device apart from the host: bytes a second, from memory or, for small sets, the cache; [s]
+  // of a submit with its fence, of a dispatch with its barrier. 0 bytes a second: there is none.
+  double bytes = 0, submit = 0, dispatch = 0;
+  [[nodiscard]] bool apart() const { return bytes > 0; }
+};
+
+struct FrameShape {
+  Route route = Route::inverse;
+  bool eager = false;
+  bool damage = false;        ///< something can be destroyed
+  std::size_t unknowns = 0;   ///< of the body
+  std::size_t kept = 0;       ///< rows of the dense inverse: all, or those of a condensed region
+  std::size_t loaded = 0;     ///< unknowns with a force
+  std::size_t grips = 0;      ///< gripped unknowns
+  std::size_t entries = 0;    ///< of the host's factor L; 0: no frame reads one
+  std::size_t path = 0;       ///< of them on the elimination path of one element
+  std::size_t load_path = 0;  ///< of them on the elimination path of the loaded unknowns
+  std::size_t elements = 0;   ///< of the body
+  std::size_t stressed = 0;   ///< elements whose stress a frame computes
+  std::size_t threads = 1;    ///< that share the stress
+  // Of a device apart from the host.
+  bool apart = false;               ///< the base is there
+  bool host_corrects = false;       ///< it lacks shaderFloat64
+  bool stress = false;              ///< is kept there
+  std::size_t real_bytes = 8;       ///< of a value of the inverse and of stress
+  std::size_t exact_loads = 0;      ///< up to so many loads have columns in fp64
+  std::size_t stiffness_bytes = 0;  ///< that f - K u reads
+};
+
+/// A frame's work, added up as it comes.
+class FrameWork {
+ public:
+  explicit FrameWork(const FrameRates& rates) : rates_(rates) {}
+  void seconds(double s) { seconds_ += s; }
+  /// On the host: values of 8 bytes that it reads so many times, each time with so many flops of
+  /// panels.
+  void host(double values, double times = 1, double flops = 0);
+  /// The product K u there, by plain loops over so many elements.
+  void product(double elements);
+  // On a device apart from it; on the host nothing.
+  void submit() { seconds_ += rates_.submit; }
+  void pass(double bytes) { passes(1, bytes); }
+  void passes(double dispatches, double bytes);
+  /// Stress with its summary, and f - K u where it does not come with the stress.
+  void fields(const FrameShape& shape, bool balance);
+  /// Conjugate gradients there: a share of what a solution takes.
+  void iterate(const FrameShape& shape, double share);
+  /// Where no update estimates the error: a correction by them or the whole inverse, its stress.
+  void check(const FrameShape& shape);
+
+  [[nodiscard]] double milliseconds() const { return 1e3 * seconds_; }
+  [[nodiscard]] double bytes() const { return bytes_; }
+
+ private:
+  const FrameRates& rates_;
+  double seconds_ = 0, bytes_ = 0;
+};
+
+struct FrameCost {
+  double quiet_ms = 0;
+  double fracture_ms = 0;  ///< 0: nothing can be destroyed
+  // What the passes on a device apart from the host read and write at least.
+  double quiet_bytes = 0, fracture_bytes = 0;
+};
+
+[[nodiscard]] FrameCost frame_cost(const FrameShape& shape, const FrameRates& rates);
+
+/// Unknowns with a force or a grip that an instrument brings, at most.
+[[nodiscard]] std::size_t loaded_unknowns(const Problem& problem);
+
+/// Frames that follow one another without a pause while another thread makes a factor of the
+/// damaged body, checks it and follows them. From sizes alone: what is taken after so many frames
+/// must not depend on how long anything took.
+[[nodiscard]] int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor,
+                                     std::size_t elements);
+
+/// Whether an event of so many elements is worth a new factor of the body instead of an update.
+[[nodiscard]] bool takes_new_factor(std::size_t unknowns, std::size_t elements);
+
+}  // namespace sunder::solver

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/route_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunder::solver {
+namespace {
+
+// Above this many unknowns a dense inverse (8 n^2 bytes) is not chosen by itself: 288 MB and
+// seconds to prepare (n^2 nnz(L)), while the factor's frame is still within a millisecond of it.
+constexpr std::size_t kDenseLimit = 6000;
+
+constexpr double kTouched = 12;     // unknowns of a first fracture
+constexpr double kDifferences = 9;  // of them, that the element resists: columns of the damage
+// Iterations of conjugate gradients preconditioned by the intact body: none broken, one broken.
+constexpr double kQuietIterations = 1, kFractureIterations = 6;
+// By an incomplete factor, for the cube root of the unknowns; a new crack hardly adds to them.
+constexpr double kIncompleteIterations = 8;
+constexpr double kStiffness = 22;  // entries of the stiffness for each unknown, lower triangle
+
+std::string megabytes(std::size_t bytes) {
+  if (bytes < 10000000) return std::to_string(bytes / 1000) + " kB";
+  return std::to_string(bytes / 1000000) + " MB";
+}
+
+std::size_t inverse_bytes(std::size_t n) { return n * n * sizeof(double); }
+
+double real(std::size_t count) { return static_cast<double>(count); }
+
+std::string nothing(const Question&) { return {}; }
+std::size_t no_bytes(const Question&) { return 0; }
+bool always(const Question&) { return true; }
+
+std::string asked_for(const std::string& detail = {}) {
+  return "asked for" + (detail.empty() ? detail : "; " + detail);
+}
+
+// condensed: the inverse of a region, always on the host.
+
+std::string against_condensed(const Question& q) {
+  if (q.device.displayed) {
+    return "route condensed keeps a region's fields alone on the device, but the host draws those "
+           "of the whole body; use route inverse or cg";
+  }
+  if (!q.device.rates.apart() || !q.region().elements.empty()) return {};
+  return "route condensed needs elements that can break or be destroyed, of which this scene has "
+         "none; use route inverse or cg";
+}
+
+std::size_t condensed_bytes(const Question& q) {
+  return q.device.rates.apart() ? 0 : 2 * inverse_bytes(q.region().dofs.size());
+}
+
+bool condensed_pays(const Question& q) {
+  return q.needs.damage && q.region().tears &&
+         kRegionShare * q.region().dofs.size() <= q.unknowns() &&
+         q.region().dofs.size() <= kDenseLimit;
+}
+
+std::string why_condensed(const Question& q) {
+  const std::size_t inside = q.region().dofs.size();
+  const std::string held = " can break, are loaded or held by instruments";
+  if (q.asked) return asked_for(std::to_string(inside) + " of " + unknowns_of(q) + held);
+  return unknowns_of(q) + ", of which " + std::to_string(inside) + held + ": their inverse takes " +
+         megabytes(inverse_bytes(inside)) + ", and a frame computes nothing else";
+}
+
+void condensed_solution(FrameWork& work, const FrameShape& s, bool torn) {
+  work.host(real(s.kept) * (real(s.loaded + s.grips) + (torn ? kTouched : 0)));
+}
+
+/// The small matrix of the damage.
+void small_update(FrameWork& work, const FrameShape&) {
+  work.host(2 * kDifferences * kDifferences);
+}
+
+// inverse
+
+std::size_t stored_bytes(const Question& q) { return q.unknowns() * q.unknowns() * q.real_bytes; }
+
+/// On the host there is to be room to make it.
+std::size_t whole_inverse_bytes(const Question& q) {
+  return (q.device.rates.apart() ? 1 : 2) * stored_bytes(q);
+}
+
+/// The columns of the loads are more to read than two triangular solves (inverse_base.cpp).
+bool loads_favour_factor(const Question& q) {
+  return loaded_unknowns(q.problem) * q.unknowns() > 2 * q.factor_entries;
+}
+
+bool inverse_pays(const Question& q) {
+  if (q.unknowns() > kDenseLimit) return false;
+  return !q.device.has(Route::factor) || (q.needs.damage && !loads_favour_factor(q));
+}
+
+std::string why_inverse(const Question& q) {
+  if (q.asked && q.problem.scene().solver.route == Route::automatic) {
+    return "update eager was asked for, which route inverse alone has";
+  }
+  if (q.asked) return asked_for();
+  return unknowns_of(q) + ": the dense inverse takes " + megabytes(stored_bytes(q)) +
+         ", and a frame reads only its loaded and torn columns";
+}
+
+std::string no_dense_inverse(const Question& q) {
+  return unknowns_of(q) + ": a dense inverse would take " + megabytes(stored_bytes(q)) + "; ";
+}
+
+/// u = X f by the loaded columns, on a device apart as they are stored.
+void stored_columns(FrameWork& work, const FrameShape& s) {
+  work.pass(real(s.kept) * real(s.loaded) * real(s.real_bytes));
+  work.pass(2 * real(s.kept) * sizeof(double));
+}
+
+/// u = X f by the columns that loads, grips and damage multiply.
+void inverse_solution(FrameWork& work, const FrameShape& s, bool torn) {
+  const double n = real(s.kept), held = real(s.grips) + (torn && !s.eager ? kTouched : 0);
+  if (!s.apart) {  // where they are many two solves with the factor take their place
+    const double values = n * (real(s.loaded) + held);
+    work.host(s.eager ? values : std::min(values, 2 * real(s.entries)));
+  } else if (s.eager) {
+    stored_columns(work, s);
+  } else {
+    const bool exact = s.loaded <= s.exact_loads;
+    const double values = n * (held + (exact ? real(s.loaded) : 0));
+    if (s.host_corrects) {
+      work.host(values + 3 * n);
+    } else {
+      work.pass(values * sizeof(double));
+    }
+    if (!exact) stored_columns(work, s);
+  }
+}
+
+void inverse_update(FrameWork& work, const FrameShape& s) {
+  const double n = real(s.kept), bytes = real(s.real_bytes);
+  if (s.apart && s.eager) {
+    work.submit();  // the block that the event touches
+    work.pass(0);
+    work.submit();
+    work.pass(kTouched * n * bytes);
+    work.pass(n * n * bytes);  // half of them, read and written
+  } else if (s.apart) {
+    work.host(2 * kTouched * n);  // new exact columns
+  } else if (s.eager) {
+    work.host(2 * n * n);
+  } else {
+    small_update(work, s);
+  }
+}
+
+// factor
+
+std::string why_factor(const Question& q) {
+  if (q.asked) return asked_for();
+  if (!q.needs.damage) {
+    return unknowns_of(q) + " and nothing can be destroyed: two triangular solves a load";
+  }
+  if (loads_favour_factor(q)) {
+    return unknowns_of(q) + ", " + std::to_string(loaded_unknowns(q.problem)) +
+           " of them loaded: so many columns of an inverse are more to read than two triangular "
+           "solves";
+  }
+  return no_dense_inverse(q) + "a fracture updates the factor along its elimination path only";
+}
+
+/// Forward from the loaded unknowns along their path alone, backward through all of it.
+void factor_solution(FrameWork& work, const FrameShape& s, bool) {
+  work.host(real(s.load_path + s.entries));
+}
+
+void factor_update(FrameWork& work, const FrameShape& s) {
+  const double path = real(s.path);
+  work.host(path, 1, 2 * kDifferences * path);
+}
+
+// cg: with the host's factor the yardstick; apart from it some hundred iterations a frame.
+
+bool without_factor(const Question& q) { return q.factor_bytes > q.device.memory; }
+
+bool cg_pays(const Question& q) {
+  return q.device.has(Route::factor) ? without_factor(q) : q.unknowns() > kDenseLimit;
+}
+
+std::string why_cg(const Question& q) {
+  if (!without_factor(q)) {
+    return q.asked ? asked_for() : no_dense_inverse(q) + "conjugate gradients need none";
+  }
+  const std::string text = unknowns_of(q) + ": their factor needs " +
+                           std::to_string(q.factor_bytes) + " bytes, but " +
+                           std::to_string(q.device.memory) +
+                           " are free; an incomplete one preconditions conjugate gradients";
+  return q.asked ? asked_for(text) : text;
+}
+
+void cg_solution(FrameWork& work, const FrameShape& s, bool torn) {
+  if (s.apart) {
+    work.fields(s, true);
+    work.submit();
+    work.iterate(s, 1);
+    work.submit();
+    return;
+  }
+  const double iterations = s.entries == 0 ? kIncompleteIterations * std::cbrt(real(s.unknowns))
+                            : torn         ? kFractureIterations + 1
+                                           : kQuietIterations + 1;
+  work.product(iterations * real(s.elements));
+  work.host(2 * (s.entries == 0 ? kStiffness * real(s.unknowns) : real(s.entries)), iterations);
+}
+
+void no_update(FrameWork&, const FrameShape&) {}
+
+using Updates = RouteRow::Updates;
+constexpr std::array<RouteRow, 4> kRoutes = {{
+    {Route::condensed, "condensed", Updates::deferred, against_condensed, condensed_bytes,
+     condensed_pays, why_condensed, condensed_solution, small_update},
+    {Route::inverse, "inverse", Updates::both, nothing, whole_inverse_bytes, inverse_pays,
+     why_inverse, inverse_solution, inverse_update},
+    {Route::factor, "factor", Updates::deferred, nothing, no_bytes, always, why_factor,
+     factor_solution, factor_update},
+    {Route::cg, "cg", Updates::none, nothing, no_bytes, cg_pays, why_cg, cg_solution, no_update},
+}};
+
+}  // namespace
+
+std::size_t Question::unknowns() const { return static_cast<std::size_t>(problem.dof_count()); }
+
+const Region& Question::region() const {
+  if (!found) found = region_of(problem, needs);
+  return *found;
+}
+
+const std::array<RouteRow, 4>& routes() { return kRoutes; }
+
+const RouteRow& row_of(Route route) { return *std::ranges::find(kRoutes, route, &RouteRow::route); }
+
+std::string unknowns_of(const Question& question) {
+  return std::to_string(question.unknowns()) + " unknowns";
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/plan_device.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+// From so many unknowns on a GPU computes the inverse itself: the host's n^2 nnz(L) then takes more
+// than a second. Never on a processor that emulates a GPU, where the host is quicker at every size.
+constexpr Index kInvertOnDevice = 3000;
+
+/// Nominal, of a kind of device.
+solver::FrameRates rates(VkPhysicalDeviceType type) {
+  solver::FrameRates rates{.frame = 0, .event = 60e-6, .submit = 20e-6};
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:  // lavapipe on two cores
+      rates.stress = 10e-9, rates.bytes = 8e9, rates.dispatch = 15e-6;
+      break;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      rates.stress = .05e-9, rates.bytes = 400e9, rates.dispatch = 5e-6;
+      break;
+    default:
+      rates.stress = .5e-9, rates.bytes = 40e9, rates.dispatch = 5e-6;
+  }
+  return rates;
+}
+
+}  // namespace
+
+solver::PlanDevice plan_device(const vulkan::PhysicalDevice& device, bool displayed) {
+  solver::PlanDevice plan;
+  plan.backend = "vulkan";
+  plan.name = device.name;
+  plan.routes = {Route::inverse, Route::condensed, Route::cg};
+  plan.memory = device.memory;
+  plan.fp32 = true;
+  plan.fp64 = device.float64;
+  plan.displayed = displayed;
+  if (!device.is_cpu()) plan.inverts_from = kInvertOnDevice;
+  plan.rates = rates(device.type);
+  return plan;
+}
+
+bool host_inverts_anyway(const Problem& problem) {
+  const Route asked = problem.scene().solver.route;
+  return (asked == Route::automatic || asked == Route::inverse) &&
+         problem.dof_count() < kInvertOnDevice;
+}
+
+}  // namespace sunder::gpu

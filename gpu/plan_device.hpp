@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Vulkan device as plans (core/solver/plan.hpp) see it.
+#pragma once
+
+#include "gpu/vulkan/physical_device.hpp"
+#include "solver/plan.hpp"
+
+namespace sunder::gpu {
+
+/// `displayed`: a host draws the whole body's fields, which must be on the device then.
+[[nodiscard]] solver::PlanDevice plan_device(const vulkan::PhysicalDevice& device, bool displayed);
+
+/// Whatever the device, the host computes this problem's inverse: it may begin before there is one.
+[[nodiscard]] bool host_inverts_anyway(const Problem& problem);
+
+}  // namespace sunder::gpu
