@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmark programs and what each mode runs of them; a further one is one entry."""
+import concurrent.futures
 import dataclasses
 import json
 import os
@@ -189,33 +190,62 @@ def split_done(there, outcome):
     return [(p, s) for p, s in there if p.about not in done]
 
 
-def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None, commit=""):
-    """Adds to the outcome what of a mode it lacks, program by program, and saves it after each:
-    {"rows", "cells", "points", "meshes", "programs", "failures"}."""
+def run_and_time(build, program, share, repetitions):
+    """What run_program returns or None, and the program's entry. Processor seconds are those of all
+    programs that ran meanwhile."""
+    start, cpu = time.monotonic(), _cpu_seconds()
+    entry, made = {"name": program.name, "about": program.about}, None
+    try:
+        made = run_program(build, program, share, repetitions)
+    except results.BadResults as error:
+        entry["failed"] = str(error)
+    entry["seconds"] = round(time.monotonic() - start, 1)
+    entry["cpu_seconds"] = round(_cpu_seconds() - cpu, 1)
+    return made, entry
+
+
+def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None, commit="",
+            jobs=1):
+    """Adds to the outcome what of a mode it lacks, program by program in their order, and saves it
+    after each: {"rows", "cells", "points", "meshes", "programs", "failures"}. `jobs` of them run at
+    once."""
     outcome = outcome or nothing_yet()
     there, missing = split_present(build, mode)
     there = split_done(there, outcome)
     outcome["failures"] = [f"{name} is not built" for name in missing]
     progress = Progress(sum(share.seconds for _, share in there))
     readers = {file: (part, read) for part, (file, read) in results.PARTS.items()}
-    for program, share in there:
+
+    def run(planned):
+        program, share = planned
         progress.begin(f"{program.name}: {program.about}")
-        start, cpu = time.monotonic(), _cpu_seconds()
-        entry = {"name": program.name, "about": program.about, "commit": commit}
+        ran = run_and_time(build, program, share, repetitions)
+        progress.end(share.seconds)
+        return ran
+
+    def add(made, entry, file):
         try:
-            made = run_program(build, program, share, repetitions)
-            part, read = readers.get(program.file, ("rows", lambda rows: rows))
+            if "failed" in entry:
+                raise results.BadResults(entry["failed"])
+            part, read = readers.get(file, ("rows", lambda rows: rows))
             outcome[part] += read(made)
             conclude(outcome)
         except results.BadResults as error:
             entry["failed"] = True
             outcome["failures"].append(str(error))
             print(f"failed: {error}", file=sys.stderr)
-        entry["seconds"] = round(time.monotonic() - start, 1)
-        entry["cpu_seconds"] = round(_cpu_seconds() - cpu, 1)
+        entry["commit"] = commit
         outcome["programs"].append(entry)
         save(outcome)
-        progress.end(share.seconds)
+
+    pool = concurrent.futures.ThreadPoolExecutor(jobs)
+    try:
+        # One after the other without threads: what is measured has the machine to itself.
+        ran = pool.map(run, there) if jobs > 1 else map(run, there)
+        for (program, _), (made, entry) in zip(there, ran):
+            add(made, entry, program.file)
+    finally:
+        pool.shutdown(cancel_futures=True)
     return outcome
 
 

@@ -2,11 +2,13 @@
 """Runs every benchmark and the stability study, and draws the page.
 
     bench/run [--full] [--build DIR] [--out DIR] [--repetitions N] [--plan] [--resume]
+              [--jobs N]
 
 Installs what is missing of the Debian packages that this needs (scripts/install-packages bench; not
 with --plan and --draw) and builds in DIR (build-bench) unless the programs are there; what is still
 missing then, a peer's library above all, ends it before anything is measured. Quick by default: 5 to 10 minutes on two
-cores, as CI runs it; --full takes an hour and a quarter. Result:
+cores; --full takes an hour and a quarter. --jobs 2, as CI calls it, runs two programs at once: that
+shows that all of them run and are right, and its times are no measurement. Result:
 OUT/index.html with its figures as SVG files, results.json, results.csv, stability.csv, scenes.csv,
 convergence.csv. They are written after every program; --resume goes on with a run that was ended,
 on the same machine. bench/run --draw DIR takes the ratios of a results folder, judges its cells and
@@ -68,7 +70,8 @@ def measure(options, mode):
                else {"machine": about, **programs.nothing_yet()})
     outcome["peers"] = programs.peer_settings(options.build)
     return programs.run_all(options.build, mode, options.repetitions, outcome,
-                            lambda done: results.write(options.out, done), about["commit"])
+                            lambda done: results.write(options.out, done), about["commit"],
+                            options.jobs)
 
 
 def draw(folder, outcome):
@@ -87,12 +90,16 @@ def arguments():
     parser.add_argument("--build", default="build-bench", type=pathlib.Path)
     parser.add_argument("--out", default="bench-results", type=pathlib.Path)
     parser.add_argument("--repetitions", type=int, help="instead of each program's own number")
+    parser.add_argument("--jobs", type=int, default=1,
+                        help="programs at once; with more than 1 the times are no measurement")
     parser.add_argument("--resume", action="store_true", help="go on with a run that was ended")
     parser.add_argument("--plan", action="store_true", help="tell what would run and how long")
     parser.add_argument("--draw", type=pathlib.Path, metavar="DIR", help="draw DIR's page again")
     options = parser.parse_args()
     if options.repetitions is not None and options.repetitions < 1:
         parser.error("--repetitions must be 1 or more")
+    if options.jobs < 1:
+        parser.error("--jobs must be 1 or more")
     return options
 
 

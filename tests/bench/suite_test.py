@@ -490,6 +490,27 @@ class Modes(unittest.TestCase):
             made = programs.run_all(folder, "quick")
         self.assertIn("bench_engine is not built", made["failures"])
 
+    def test_two_run_at_once_and_their_results_stand_in_the_programs_order(self):
+        meet = """#!/bin/sh
+touch $(dirname $0)/here-%s
+n=0
+until [ -e $(dirname $0)/here-%s ]; do n=$((n+1)); [ $n -gt 200 ] && exit 3; sleep 0.05; done
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            bench = pathlib.Path(folder) / "bench"
+            bench.mkdir()
+            for name, other, more in (
+                    ("bench_stability", "bench_convergence", "sleep 0.3; exit 4\n"),
+                    ("bench_convergence", "bench_stability",
+                     "echo case,method,tets,value,error,ms > $1; echo Cook,cpu,500,23,0.01,7 >> $1\n")):
+                (bench / name).write_text(meet % (name, other) + more)
+                (bench / name).chmod(0o755)
+            made = programs.run_all(folder, "quick", jobs=2)
+        self.assertIn("bench_stability ended with 4: ", made["failures"])  # 3: it has met nobody
+        self.assertEqual([(p["name"], p.get("failed", False)) for p in made["programs"]],
+                         [("bench_stability", True), ("bench_convergence", False)])
+        self.assertEqual(len(made["meshes"]), 1)
+
     def test_a_run_that_was_ended_goes_on_where_it_was(self):
         saved = []
         with tempfile.TemporaryDirectory() as folder:
