@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
+#include "body/element.hpp"
 #include "linear_algebra/sparse_matrix.hpp"
 #include "sunder/problem.hpp"
 
@@ -15,6 +17,9 @@ namespace sunder::fem {
 /// included. `scale` multiplies each element's K_e (its a_e); empty: intact.
 [[nodiscard]] linear_algebra::SparseMatrix assemble_lower(const Problem& problem,
                                                           std::span<const double> scale);
+/// The same of any element matrices, symmetric; entries that are 0 have their place too.
+[[nodiscard]] linear_algebra::SparseMatrix assemble_elements(
+    const Problem& problem, const std::function<ElementMatrix(Index)>& matrix_of);
 
 /// y = K u over all 3 * node_count entries, supports included (there y is minus the support's
 /// force), anchors left out. Element by element, with `scale` as above: no
