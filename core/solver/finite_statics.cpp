@@ -11,13 +11,13 @@
 namespace sunder::solver {
 namespace {
 
-constexpr double kArmijo =
-    1e-4;  // share of the slope that a step must win (Nocedal and Wright 3.1)
+// Share of the slope that a step must win (Nocedal and Wright 2006, 3.1).
+constexpr double kArmijo = 1e-4;
 constexpr double kRounding = 1e-13;  // of an energy that is summed over all elements
 constexpr double kLeastPart = 1e-7;  // of a step, before the line search gives up
 constexpr double kProbe = 1e-6;      // of the grips' motion, to feel what it pulls on
 
-/// Gripped unknowns are known: uncoupled, as large as the largest entry.
+/// Known unknowns get equations of their own.
 void uncouple(linear_algebra::SparseMatrix& lower, std::span<const Index> unknowns) {
   std::vector<std::uint8_t> known(static_cast<std::size_t>(lower.cols()), 0);
   for (Index d : unknowns) known[d] = 1;

@@ -41,7 +41,8 @@ class FiniteStatics {
   /// At rest at u = 0. The body must outlive it.
   explicit FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOptions options = {});
 
-  /// From the last state at rest to the load.
+  /// From the last state at rest to the load. Whether the equilibrium is stable is not looked at: a
+  /// flat body that would buckle may stay flat.
   FiniteStaticsReport solve(const Load& load);
   /// (3 * nodes) [mm]
   [[nodiscard]] const std::vector<double>& displacement() const { return u_; }

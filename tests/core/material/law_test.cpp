@@ -7,13 +7,11 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include "core/material/random_gradients.hpp"
 #include "material/finite_stress.hpp"
 #include "material/linear.hpp"
-#include "material/neo_hookean.hpp"
 
 namespace sunder::test {
 namespace {
@@ -55,21 +53,24 @@ void expect_derivatives(const Law& law, const SmallStrain& of, const Mat3& f) {
   }
 }
 
-class EveryLaw : public testing::TestWithParam<const Law*> {
+class EveryLaw : public testing::TestWithParam<std::string> {
  protected:
-  const Law& law() const { return *GetParam(); }
-  bool linear() const { return GetParam() == &kLinear; }
-  bool takes_inverted() const { return GetParam() != &kNeoHookean; }
+  const Law& law() const { return *find_law(GetParam()); }
+  bool linear() const { return GetParam() == "linear"; }
+  bool takes_inverted() const { return GetParam() != "neo-hookean"; }
 };
-std::string name(const testing::TestParamInfo<const Law*>& info) {
-  std::string of(info.param->name);
-  std::erase(of, '-');
-  return of;
-}
-INSTANTIATE_TEST_SUITE_P(Laws, EveryLaw, testing::ValuesIn(laws().begin(), laws().end()), name);
+INSTANTIATE_TEST_SUITE_P(Laws, EveryLaw,
+                         testing::Values("linear", "corotated", "neo-hookean",
+                                         "saint-venant-kirchhoff"),
+                         [](const testing::TestParamInfo<std::string>& info) {
+                           std::string name = info.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
 
-TEST_P(EveryLaw, IsFoundByItsName) {
-  EXPECT_EQ(find_law(law().name), &law());
+TEST(Laws, AreFoundByTheirNames) {
+  EXPECT_EQ(laws().size(), 4u);  // each has its place in the tests of every law
+  for (const Law* law : laws()) EXPECT_EQ(find_law(law->name), law);
   EXPECT_EQ(find_law("mooney"), nullptr);
 }
 

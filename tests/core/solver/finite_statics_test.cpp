@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "cpu_reference/plain/finite.hpp"
 #include "material/corotated.hpp"
@@ -93,10 +95,11 @@ TEST(FiniteStatics, FollowsAGripAndReturns) {
   }
 }
 
-// finite.md's figures of the paper's board: linear theory within 5 % at 7 N, 51 % over at 84 N.
-TEST(FiniteStatics, OfThePapersBoard) {
+// A prototype in another language gave 28.9 mm by linear theory and 19.05 mm corotated at 84 N,
+// within 5 % of one another at 7 N. docs/limits.md quotes what is printed.
+TEST(FiniteStatics, LinearAndCorotatedTheoryPartOnThePapersBoard) {
   const Problem problem(test::held_board());
-  std::vector<double> corner[2];
+  std::vector<double> moved[2];
   for (int k = 0; k < 2; ++k) {
     const Law& law = k == 0 ? kLinear : kCorotated;
     const auto laws = fem::one_law(problem, law);
@@ -106,22 +109,61 @@ TEST(FiniteStatics, OfThePapersBoard) {
       const Load load = test::corner_pull(problem, Vec3(0, -force, 0));
       const FiniteStaticsReport report = statics.solve(load);
       ASSERT_TRUE(report.at_rest) << law.name << " " << force;
-      corner[k].push_back(largest(statics.displacement()));
-      std::printf("%-10s %4.0f N: %8.4f mm, residual %.1e, %d back-solves, %d factors, %d steps\n",
-                  law.name.data(), force, corner[k].back(), report.residual, report.back_solves,
-                  report.factors, report.load_steps);
-      if (k == 0) continue;
+      moved[k].push_back(largest(statics.displacement()));
+      std::printf("%-9s %2.0f N: %.4f mm; %d back-solves, %d factors\n", law.name.data(), force,
+                  moved[k].back(), report.back_solves, report.factors);
+      if (&law == &kLinear) continue;
       const plain::Solution s =
           plain::FiniteBody(problem, plain::kCorotated).solve(load, statics.displacement());
       EXPECT_LE(apart(statics.displacement(), s.displacement), 1e-5 * largest(s.displacement));
     }
+  }
+  EXPECT_GT(moved[0][0] / moved[1][0], 1.03);
+  EXPECT_LT(moved[0][0] / moved[1][0], 1.05);
+  EXPECT_NEAR(moved[0][2], 28.9, 0.05);
+  EXPECT_NEAR(moved[1][2], 19.05, 0.005);
+}
+
+// P L^2/(E I) = 1 and 2 bend the elastica by .30172 and .49346 of its length and draw its end in by
+// .05643 and .16064 (elliptic integrals). Linear tetrahedra are too stiff by 45, 17.6 and 8.7 % in
+// bending at small loads (docs/verification.md, Cantilever); the error falls with h^2, so that the
+// last two meshes extrapolate to the limit. The bar's shear adds .6 % to the elastica's deflection.
+TEST(FiniteStatics, BendsABarAsTheElasticaWhenElementsShrink) {
+  const double expected[2][2] = {{0.30172, 0.05643}, {0.49346, 0.16064}};
+  double deflection[2][3], draw_in[2][3];
+  for (int mesh = 0; mesh < 3; ++mesh) {
+    const Index cells = 2 * (mesh + 1);
+    const Problem problem(bar(10 * cells, cells, cells, 0));
+    const auto end = test::nodes_in(problem.mesh(), kEnd);
+    const auto laws = fem::one_law(problem, kCorotated);
+    const fem::HyperelasticBody body{problem, laws};
+    FiniteStatics statics(body, {.residual = 1e-6});
+    for (int k = 0; k < 2; ++k) {
+      const double force = (k + 1) * 5.0 / 12 / 100;
+      ASSERT_TRUE(statics.solve(test::pull(problem, end, Vec3(0, force, 0))).at_rest);
+      Vec3 mean = Vec3::Zero();
+      for (Index n : end) {
+        mean += Vec3(&statics.displacement()[3 * n]) / static_cast<double>(end.size());
+      }
+      deflection[k][mesh] = mean.y() / 10;
+      draw_in[k][mesh] = -mean.x() / 10;
+      std::printf("%d cells, P L^2/(E I) = %d: %.5f, %.5f\n", cells, k + 1, deflection[k][mesh],
+                  draw_in[k][mesh]);
+    }
+  }
+  const auto limit = [](const double(&of)[3]) { return (36 * of[2] - 16 * of[1]) / 20; };
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_LT(deflection[k][0], deflection[k][1]);
+    EXPECT_LT(deflection[k][1], deflection[k][2]);
+    EXPECT_LT(deflection[k][2], expected[k][0]);
+    EXPECT_NEAR(limit(deflection[k]) / expected[k][0], 1, 0.025);
+    EXPECT_NEAR(limit(draw_in[k]) / expected[k][1], 1, 0.05);
   }
 }
 
 TEST(FiniteStatics, ALoadThatNothingBearsLeavesTheLastStateAtRest) {
   const Problem problem(bar(6, 1, 1, 0.3));
   const auto end = test::nodes_in(problem.mesh(), kEnd);
-  // Saint Venant-Kirchhoff elasticity collapses when pressed beyond s = 1/sqrt(3).
   const auto laws = fem::one_law(problem, kSaintVenantKirchhoff);
   std::vector<std::uint8_t> destroyed(problem.mesh().tets.size(), 0);
   const fem::HyperelasticBody body{problem, laws, destroyed};
