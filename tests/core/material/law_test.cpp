@@ -59,14 +59,16 @@ class EveryLaw : public testing::TestWithParam<std::string> {
   bool linear() const { return GetParam() == "linear"; }
   bool takes_inverted() const { return GetParam() != "neo-hookean"; }
 };
+/// What a test's name may hold.
+std::string without_hyphens(const testing::TestParamInfo<std::string>& of) {
+  std::string name = of.param;
+  std::erase(name, '-');
+  return name;
+}
 INSTANTIATE_TEST_SUITE_P(Laws, EveryLaw,
                          testing::Values("linear", "corotated", "neo-hookean",
                                          "saint-venant-kirchhoff"),
-                         [](const testing::TestParamInfo<std::string>& info) {
-                           std::string name = info.param;
-                           std::erase(name, '-');
-                           return name;
-                         });
+                         without_hyphens);
 
 TEST(Laws, AreFoundByTheirNames) {
   EXPECT_EQ(laws().size(), 4u);  // each has its place in the tests of every law
