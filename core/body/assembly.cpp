@@ -24,13 +24,12 @@ void add_element(const Problem& problem, const std::array<Index, 4>& corners,
 
 }  // namespace
 
-linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale) {
+linear_algebra::SparseMatrix assemble_elements(
+    const Problem& problem, const std::function<ElementMatrix(Index)>& matrix_of) {
   std::vector<Eigen::Triplet<double, Index>> triplets;
   triplets.reserve(static_cast<std::size_t>(problem.tet_count()) * 78);
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    ElementMatrix k = element_stiffness(problem, e);
-    if (!scale.empty()) k *= scale[e];
-    add_element(problem, problem.mesh().tets[e], k, triplets);
+    add_element(problem, problem.mesh().tets[e], matrix_of(e), triplets);
   }
   for (Index dof : problem.anchored_dofs()) {
     triplets.emplace_back(dof, dof, problem.anchor_stiffness());
@@ -38,6 +37,14 @@ linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<co
   linear_algebra::SparseMatrix matrix(problem.dof_count(), problem.dof_count());
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   return matrix;
+}
+
+linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale) {
+  return assemble_elements(problem, [&](Index e) {
+    ElementMatrix k = element_stiffness(problem, e);
+    if (!scale.empty()) k *= scale[e];
+    return k;
+  });
 }
 
 linear_algebra::SparseMatrix assemble_forms(const Problem& problem, std::span<const Form> forms) {

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "body/change.hpp"
+#include "body/element.hpp"
 #include "linear_algebra/sparse_matrix.hpp"
 #include "sunder/problem.hpp"
 
@@ -16,6 +18,9 @@ namespace sunder::fem {
 /// included. `scale` multiplies each element's K_e (its a_e); empty: intact.
 [[nodiscard]] linear_algebra::SparseMatrix assemble_lower(const Problem& problem,
                                                           std::span<const double> scale);
+/// The same of any element matrices, symmetric; entries that are 0 have their place too.
+[[nodiscard]] linear_algebra::SparseMatrix assemble_elements(
+    const Problem& problem, const std::function<ElementMatrix(Index)>& matrix_of);
 /// Of forms that are not the mesh's alone, their corners nodes of the mesh; anchors are left out.
 [[nodiscard]] linear_algebra::SparseMatrix assemble_forms(const Problem& problem,
                                                           std::span<const Form> forms);

@@ -1,7 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/linear.hpp"
 
+#include "sunder/stress_measures.hpp"
+
 namespace sunder {
+namespace {
+
+Mat3 strain(const Mat3& f) { return (f + f.transpose()) / 2 - Mat3::Identity(); }
+
+double law_energy(const SmallStrain& law, const Mat3& f) {
+  const Mat3 e = strain(f);
+  const double trace = e.trace();
+  return law.mu * e.squaredNorm() + law.lambda / 2 * trace * trace;
+}
+
+Mat3 law_stress(const SmallStrain& law, const Mat3& f) {
+  return tensor(stress(law, f - Mat3::Identity()));
+}
+
+/// Flips are shear strains, twists are rotations, which meet nothing.
+SpectralTangent law_tangent(const SmallStrain& law, const Mat3&) {
+  PrincipalTangent at;
+  at.stretch = Mat3::Constant(law.lambda);
+  at.stretch.diagonal().array() += 2 * law.mu;
+  at.flip.setConstant(2 * law.mu);
+  at.twist.setZero();
+  return spectral_tangent({Mat3::Identity(), Vec3::Ones(), Mat3::Identity()}, at);
+}
+
+}  // namespace
+
+constinit const Law kLinear{"linear", law_energy, law_stress, law_tangent};
 
 SmallStrain small_strain(const Material& material) {
   const double e = material.young, nu = material.poisson;

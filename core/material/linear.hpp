@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "material/law.hpp"
 #include "sunder/scene.hpp"
 #include "sunder/small_strain.hpp"
 
@@ -19,5 +20,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Stress of a displacement gradient H_ij = du_i/dx_j [MPa].
 [[nodiscard]] Voigt stress(const SmallStrain& law, const Mat3& gradient);
+
+/// The same as a law of F: P = stress of F - I. It takes a rotation for strain.
+extern const Law kLinear;
 
 }  // namespace sunder

@@ -34,9 +34,7 @@ Element::Element(const Mesh& mesh, Index e, const Material& material) {
 
 Real3x3 Element::gradient(const Real12& u) const {
   Real3x3 h = Real3x3::Zero();
-  for (int a = 0; a < 12; a += 3) {
-    h += u.segment<3>(a) * Eigen::Matrix<Real, 1, 3>(b(0, a), b(3, a), b(5, a));
-  }
+  for (int a = 0; a < 4; ++a) h += u.segment<3>(3 * a) * slope(a);
   return h;
 }
 

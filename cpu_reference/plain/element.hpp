@@ -34,7 +34,10 @@ struct Element {
   [[nodiscard]] Real12 forces(const Real12& u) const {
     return volume * (b.transpose() * stress(u));
   }
-  [[nodiscard]] Real3x3 gradient(const Real12& u) const;  ///< row i: that of u_i
+  [[nodiscard]] Real3x3 gradient(const Real12& u) const;        ///< row i: that of u_i
+  [[nodiscard]] Eigen::Matrix<Real, 1, 3> slope(int a) const {  ///< of N_a
+    return {b(0, 3 * a), b(3, 3 * a), b(5, 3 * a)};
+  }
 
   std::array<std::size_t, 12> places;  ///< 3 * node + axis of its dofs
   Real volume = 0;                     ///< [mm^3]

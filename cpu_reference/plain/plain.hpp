@@ -39,7 +39,7 @@ class Body {
   [[nodiscard]] Deformation deformation(std::span<const double> u,
                                         std::span<const std::uint8_t> left_out) const;
 
- private:
+ protected:
   void factorise();
   [[nodiscard]] std::vector<Real> forces(const std::vector<Real>& u) const;  // K u
   void refine(const std::vector<Real>& f, std::vector<Real>& u, Solution& s) const;

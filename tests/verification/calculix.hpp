@@ -58,16 +58,28 @@ inline void write_mesh(std::ostream& deck, const Problem& problem, std::span<con
   deck << "*ELSET, ELSET=EALL, GENERATE\n1, " << problem.tet_count() << "\n";
 }
 
-inline void write_step(std::ostream& deck, const Problem& problem, std::span<const double> force) {
+/// Finite deformation: with NLGEOM *ELASTIC is Saint Venant-Kirchhoff elasticity. Its own bound on
+/// the residual is half a percent.
+enum class Theory { linear, finite };
+inline const char* step_of(Theory theory) {
+  return theory == Theory::linear
+             ? "*STEP\n*STATIC\n"
+             : "*STEP, NLGEOM, INC=1000\n*CONTROLS, PARAMETERS=FIELD\n1e-9, 1e-9\n*STATIC\n.1, 1\n";
+}
+
+inline void write_step(std::ostream& deck, const Problem& problem, std::span<const double> force,
+                       Theory theory) {
   deck << "*BOUNDARY\n";
   for (std::size_t i = 0; i < problem.dofs().size(); ++i) {
     if (problem.dofs()[i] == kNone) deck << i / 3 + 1 << ", " << i % 3 + 1 << "\n";
   }
-  deck << "*STEP\n*STATIC\n*CLOAD\n";
+  deck << step_of(theory) << "*CLOAD\n";
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (force[i] != 0) deck << i / 3 + 1 << ", " << i % 3 + 1 << ", " << number(force[i]) << "\n";
   }
-  deck << "*NODE PRINT, NSET=NALL\nU\n*EL PRINT, ELSET=EALL\nS\n*END STEP\n";
+  const char* last = theory == Theory::linear ? "" : ", FREQUENCY=1000";  // increment alone
+  deck << "*NODE PRINT, NSET=NALL" << last << "\nU\n*EL PRINT, ELSET=EALL" << last
+       << "\nS\n*END STEP\n";
 }
 
 inline CalculixResult read_dat(const std::string& file, const Problem& problem) {
@@ -108,13 +120,14 @@ inline bool calculix_installed() { return std::system("command -v ccx > /dev/nul
 /// `folder` is emptied first and removed afterwards.
 inline CalculixResult run_calculix(const Problem& problem, std::span<const double> scale,
                                    std::span<const double> force,
-                                   const std::filesystem::path& folder) {
+                                   const std::filesystem::path& folder,
+                                   calculix::Theory theory = calculix::Theory::linear) {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   {
     std::ofstream deck(folder / "deck.inp");
     calculix::write_mesh(deck, problem, scale);
-    calculix::write_step(deck, problem, force);
+    calculix::write_step(deck, problem, force, theory);
   }
   const std::string command = "cd '" + folder.string() + "' && ccx deck > log 2>&1";
   if (std::system(command.c_str()) != 0) {

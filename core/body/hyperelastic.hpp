@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Energy, internal forces and tangent stiffness of a body at finite deformation (method.md "Finite
+// deformation"): total Lagrangian, x = X + u. A destroyed element adds nothing, no share alpha.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "body/element.hpp"
+#include "linear_algebra/sparse_matrix.hpp"
+#include "material/law.hpp"
+
+namespace sunder::fem {
+
+/// What a body consists of; it holds none of it.
+struct HyperelasticBody {
+  const Problem& problem;
+  std::span<const Law* const> law_of_volume;     ///< of Mesh::volumes; may differ
+  std::span<const std::uint8_t> destroyed = {};  ///< per element 1: destroyed; empty: none
+
+  [[nodiscard]] bool live(Index e) const { return destroyed.empty() || !destroyed[e]; }
+  [[nodiscard]] const Law& law(Index e) const {
+    return *law_of_volume[problem.mesh().volume_of[e]];
+  }
+};
+
+/// One law for all volumes of a mesh.
+[[nodiscard]] std::vector<const Law*> one_law(const Problem& problem, const Law& law);
+
+/// Sum of V W [N mm] at the displacement u (3 * nodes); infinite where a law knows no such state.
+[[nodiscard]] double energy(const HyperelasticBody& body, std::span<const double> u);
+
+/// f = d energy/du over all 3 * node_count entries, supports included (there f is minus the
+/// support's force): sum of V P grad N. Element by element in their order. Returns the energy;
+/// where that is infinite, f lacks the elements that are in no state of their law.
+double internal_forces(const HyperelasticBody& body, std::span<const double> u,
+                       std::span<double> f);
+
+/// An element's tangent as W diag(sign) W^T [N/mm]: nine modes, of which a projected one keeps
+/// those of sign +1. At F = I three signs belong to columns of zeros.
+struct TangentFactor {
+  Eigen::Matrix<double, 12, 9> w;
+  Eigen::Matrix<double, 9, 1> sign;  ///< +1 or -1
+};
+[[nodiscard]] TangentFactor tangent_factor(const HyperelasticBody& body, Index e,
+                                           std::span<const double> u);
+
+enum class Tangent { exact, projected };
+/// 12 x 12, exact or the nearest positive semidefinite one by F.
+[[nodiscard]] ElementMatrix element_tangent(const HyperelasticBody& body, Index e,
+                                            std::span<const double> u, Tangent kind);
+
+/// df/du over the unknowns, lower triangle only, anchors included. Unknowns that no live element
+/// reaches are frozen: 1 N/mm on the diagonal.
+[[nodiscard]] linear_algebra::SparseMatrix assemble_tangent(const HyperelasticBody& body,
+                                                            std::span<const double> u,
+                                                            Tangent kind);
+
+}  // namespace sunder::fem

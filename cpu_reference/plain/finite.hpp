@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The yardstick at finite deformation: laws by their definitions in extended precision, and
+// Newton's method with a new factor each time. As plain.hpp it shares nothing with what it judges.
+#pragma once
+
+#include "cpu_reference/plain/plain.hpp"
+
+namespace sunder::plain {
+
+/// Energy W, first Piola-Kirchhoff stress P, and how P changes with F. `d` is the linear law's
+/// matrix: lambda = d(0, 1), mu = d(3, 3).
+struct Law {
+  using D = Eigen::Matrix<Real, 6, 6>;
+  Real (*energy)(const D& d, const Real3x3& f);
+  Real3x3 (*stress)(const D& d, const Real3x3& f);
+  Real3x3 (*change)(const D& d, const Real3x3& f, const Real3x3& df);
+};
+extern const Law kCorotated, kNeoHookean, kSaintVenantKirchhoff;
+
+/// Destroyed elements add nothing.
+class FiniteBody : public Body {
+ public:
+  FiniteBody(const Problem& problem, const Law& law, std::span<const std::uint8_t> destroyed = {})
+      : Body(problem, destroyed), law_(law) {}
+  /// From u = 0 or `start` (3 * nodes) to a residual of 1e-10: Newton, with a shift where the
+  /// tangent is indefinite, halved until the energy falls. No stress. Throws std::runtime_error.
+  [[nodiscard]] Solution solve(const Load& load, std::span<const double> start = {}) const;
+
+ private:
+  Real energy(const std::vector<Real>& u, const Eigen::VectorXd& load, Eigen::VectorXd& r) const;
+  Eigen::VectorXd step(const std::vector<Real>& u, const Eigen::VectorXd& r) const;
+  const Law& law_;
+};
+
+}  // namespace sunder::plain
