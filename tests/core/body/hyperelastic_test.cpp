@@ -224,7 +224,7 @@ TEST_F(Hyperelastic, TangentFactorsAreTheElementsTangents) {
       const ElementMatrix k = element_tangent(body, e, u, Tangent::exact);
       const double rounding = 1e-13 * k.norm();
       EXPECT_LE((factor.w * factor.sign.asDiagonal() * factor.w.transpose() - k).norm(), rounding);
-      const auto positive = factor.w * factor.sign.cwiseMax(0).asDiagonal();
+      const Eigen::Matrix<double, 12, 9> positive = factor.w * factor.sign.cwiseMax(0).asDiagonal();
       const ElementMatrix projected = element_tangent(body, e, u, Tangent::projected);
       EXPECT_LE((positive * factor.w.transpose() - projected).norm(), rounding);
       EXPECT_GE(Eigen::SelfAdjointEigenSolver<ElementMatrix>(projected).eigenvalues()[0],
