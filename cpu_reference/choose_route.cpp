@@ -10,6 +10,7 @@
 
 #include "solver/region.hpp"
 #include "sunder/error.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -60,9 +61,7 @@ std::size_t incomplete_bytes(const Problem& problem) {
   return static_cast<std::size_t>(problem.tet_count()) * (kAssembly + kElement);
 }
 
-std::string unknowns_of(const Problem& problem) {
-  return std::to_string(problem.dof_count()) + " unknowns";
-}
+std::string unknowns_of(const Problem& problem) { return count_of(problem.dof_count(), "unknown"); }
 
 [[noreturn]] void refuse(const std::string& what, std::size_t needed, const Problem& problem,
                          std::size_t memory, const std::string& instead) {
@@ -152,8 +151,8 @@ ChosenRoute asked_for(const Problem& problem, const Needs& needs) {
   std::string why = "asked for";
   if (solver.route == Route::condensed) {
     why += "; " + std::to_string(solver::region_of(problem, needs).dofs.size()) + " of " +
-           std::to_string(problem.dof_count()) +
-           " unknowns can break, are loaded or held by instruments";
+           count_of(problem.dof_count(), "unknown") +
+           " can break, are loaded or held by instruments";
   }
   return {solver.route, update_of(solver.route, solver.update), std::move(why), nullptr};
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "sunder/error.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::gpu {
 namespace {
@@ -85,7 +86,7 @@ void choose_route(const Problem& problem, const Needs& needs, const vulkan::Phys
   const std::size_t bytes = n * n * (plan.fp64 ? 8 : 4);
   plan.cg = asked == Route::cg ||
             (asked == Route::automatic && !plan.region && problem.dof_count() > kDenseLimit);
-  plan.why = std::to_string(all) + " unknowns";
+  plan.why = count_of(static_cast<long long>(all), "unknown");
   if (plan.region) {
     plan.why += ", of which " + std::to_string(n) + " can break, are loaded or held by instruments";
   }
@@ -96,8 +97,8 @@ void choose_route(const Problem& problem, const Needs& needs, const vulkan::Phys
     plan.why += "a dense inverse would take " + std::to_string(bytes / 1000000) + " MB";
   } else if (!plan.region && bytes > device.memory) {
     throw DeviceError("route inverse needs " + std::to_string(bytes) + " bytes for " +
-                      std::to_string(n) + " unknowns, but the device \"" + device.name + "\" has " +
-                      std::to_string(device.memory) + "; use route cg");
+                      count_of(static_cast<long long>(n), "unknown") + ", but the device \"" +
+                      device.name + "\" has " + std::to_string(device.memory) + "; use route cg");
   } else {
     plan.why +=
         std::string(plan.region ? "their" : "the") + " dense inverse takes " + megabytes(bytes);

@@ -55,7 +55,8 @@ std::vector<std::filesystem::path> make_result_folder(const std::filesystem::pat
        place = place.parent_path())
     missing.insert(missing.begin(), place);
   std::filesystem::create_directories(folder, error);
-  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+  std::error_code ignored;  // a name that is too long, say: `error` has it
+  if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored))
     refuse("it is a file");
   if (error) refuse(error.message());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));

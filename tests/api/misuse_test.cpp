@@ -453,6 +453,27 @@ std::vector<Misuse> scenes() {
            });
          });
        }},
+      {"dropped_condensed_eager", SUNDER_ERROR_DEVICE,
+       "use update deferred or auto, or route inverse",
+       [](World& w) {
+         return w.create_with([&] {
+           return w.set_solver([](sunder_solver_options& s) {
+             s.backend = SUNDER_BACKEND_CPU;
+             s.route = SUNDER_ROUTE_CONDENSED;
+             s.update = SUNDER_UPDATE_EAGER;
+           });
+         });
+       }},
+      {"dropped_eager_fp32", SUNDER_ERROR_DEVICE, "use precision fp64 or auto",
+       [](World& w) {
+         return w.create_with([&] {
+           return w.set_solver([](sunder_solver_options& s) {
+             s.backend = SUNDER_BACKEND_CPU;
+             s.precision = SUNDER_PRECISION_FP32;
+             s.update = SUNDER_UPDATE_EAGER;
+           });
+         });
+       }},
   };
 }
 
