@@ -260,7 +260,7 @@ void Run::compute() {
 
 int Run::carry_out() {
   observe();
-  const Expecting computing(interruption_, {"", [this] { writer_.folder().drop(); },
+  const Expecting computing(interruption_, {"", [this] { return writer_.folder().drop(); },
                                             [this] { return end_without_computing(); }, kGrace});
   begin();
   compute();
@@ -374,7 +374,7 @@ int run(const RunArguments& arguments, Interruption& interruption) {
       arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem()));
   const Expecting preparing(
       interruption, {"nothing was computed, and nothing written to " + folder.path().string(),
-                     [&folder] { folder.drop(); },
+                     [&folder] { return folder.drop(); },
                      {},
                      {}});
   Run run(arguments, scene, folder, interruption, start);

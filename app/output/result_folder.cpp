@@ -209,9 +209,9 @@ void ResultFolder::remove_one(const std::string& name) const {
                     " of an earlier run: " + std::strerror(errno));
 }
 
-void ResultFolder::drop() {
+bool ResultFolder::drop() {
   const std::lock_guard lock(mutex_);
-  if (released_) return;
+  if (released_) return false;
   dropped_ = true;
   try {
     if (cleared_) remove_results();
@@ -219,6 +219,7 @@ void ResultFolder::drop() {
     // What cannot be removed stays; there is nobody to tell.
   }
   give_back();
+  return true;
 }
 
 void ResultFolder::write(const std::string& name, std::string_view text) {
