@@ -4,6 +4,7 @@
 #include <string>
 
 #include "solver/stress_kernel.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -84,8 +85,8 @@ class Frame {
   }
 
   void hold() {
-    add("grips",
-        "forces that hold " + std::to_string(shape_.grips) + " unknowns, by their compliance");
+    add("grips", "forces that hold " + count_of(static_cast<long long>(shape_.grips), "unknown") +
+                     ", by their compliance");
   }
 
   void fields() {

@@ -19,6 +19,7 @@ namespace sunder::app {
 namespace {
 
 constexpr const char* kAgain = "interrupted again: the results so far are dropped";
+constexpr const char* kTooLate = "interrupted again: all results were written before, and stay";
 
 sigset_t watched() {
   sigset_t set;
@@ -183,8 +184,8 @@ void Interruption::write_without_it() {
 void Interruption::drop(const std::string& what) {
   const std::lock_guard lock(mutex_);  // never given back
   if (over_) std::_Exit(*over_);
-  if (duty_.drop) duty_.drop();
-  say(what);
+  const bool dropped = !duty_.drop || duty_.drop();
+  say(dropped ? what : kTooLate);
   std::_Exit(kInterruptedExit);
 }
 

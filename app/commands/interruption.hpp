@@ -28,8 +28,9 @@ class Interruption {
   struct Duty {
     std::string nothing;  ///< said where there are no results: "nothing was written"
     /// Takes back what lies on the disk: of a first signal where there are no results, of a second
-    /// one in any case. Called from another thread than the computing, which goes on.
-    std::function<void()> drop;
+    /// one in any case. Called from another thread than the computing, which goes on. False: all
+    /// was written before, and stays.
+    std::function<bool()> drop;
     /// Writes the results so far and returns the exit code; empty: there are none. Called once,
     /// from another thread than the computing, if that has not ended by itself after `grace`.
     std::function<int()> results;

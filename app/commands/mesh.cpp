@@ -8,7 +8,10 @@ namespace sunder::app {
 
 int mesh_board(const BoardArguments& arguments, Interruption& interruption) {
   interruption.expect({arguments.file.string() + " was not written",
-                       [file = arguments.file] { remove_half_written(file); },
+                       [file = arguments.file] {
+                         remove_half_written(file);
+                         return true;
+                       },
                        {},
                        {}});
   const BoardReport report = write_board(arguments.options, arguments.file);

@@ -108,7 +108,7 @@ void measure_steps(const OpenedScene& scene, std::unique_ptr<Backend> backend) {
 }
 
 CreatedBackend prepared_backend(const OpenedScene& scene) {
-  const Waiting waiting("preparing " + grouped(scene.problem->dof_count()) + " unknowns", true);
+  const Waiting waiting("preparing " + counted(scene.problem->dof_count(), "unknown"), true);
   return create_backend(scene.problem, needs_of(*scene.problem));
 }
 

@@ -48,7 +48,7 @@ int reproduce_paper(const ReproduceArguments& arguments, Interruption& interrupt
   const Expecting working(interruption, {"nothing was written to " + arguments.out.string(),
                                          [&folder] {
                                            reproduce::remove_temporary_files();
-                                           folder.drop();
+                                           return folder.drop();
                                          },
                                          {},
                                          {}});

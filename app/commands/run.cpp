@@ -117,7 +117,7 @@ class Run {
 
 std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene) {
   record_.warnings = scene.warnings;
-  const Waiting waiting("preparing " + grouped(problem_.dof_count()) + " unknowns", !quiet_);
+  const Waiting waiting("preparing " + counted(problem_.dof_count(), "unknown"), !quiet_);
   CreatedBackend created = create_backend(scene.problem, needs_of(problem_));
   record_.left_out = created.backend->needs().left_out;
   add_new(record_.warnings, created.warnings);
@@ -260,7 +260,7 @@ void Run::compute() {
 
 int Run::carry_out() {
   observe();
-  const Expecting computing(interruption_, {"", [this] { writer_.folder().drop(); },
+  const Expecting computing(interruption_, {"", [this] { return writer_.folder().drop(); },
                                             [this] { return end_without_computing(); }, kGrace});
   begin();
   compute();
@@ -345,8 +345,9 @@ void print_first_rupture(const RunRecord& run) {
 void Run::print_summary() const {
   const RunRecord& run = record_;
   const Problem& problem = problem_;
-  std::cout << problem.scene().title << "\n  " << grouped(problem.tet_count()) << " tetrahedra, "
-            << grouped(problem.dof_count()) << " unknowns, model "
+  std::cout << problem.scene().title << "\n  "
+            << counted(problem.tet_count(), "tetrahedron", "tetrahedra") << ", "
+            << counted(problem.dof_count(), "unknown") << ", model "
             << name_of(problem.scene().fracture.model) << ", " << run.backend.backend << " "
             << run.backend.precision << ", route " << run.backend.route << " ("
             << run.backend.update << ")\n  "
@@ -373,7 +374,7 @@ int run(const RunArguments& arguments, Interruption& interruption) {
       arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem()));
   const Expecting preparing(
       interruption, {"nothing was computed, and nothing written to " + folder.path().string(),
-                     [&folder] { folder.drop(); },
+                     [&folder] { return folder.drop(); },
                      {},
                      {}});
   Run run(arguments, scene, folder, interruption, start);

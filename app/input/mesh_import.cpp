@@ -8,6 +8,7 @@
 #include "app/input/end_check.hpp"
 #include "app/input/file_bytes.hpp"
 #include "app/input/gmsh_tasks.hpp"
+#include "app/input/msh_reader.hpp"
 #include "app/input/nearest.hpp"
 #include "app/input/raw_mesh.hpp"
 #include "app/input/vtk_check.hpp"
@@ -112,12 +113,11 @@ RawMesh read_in_child(const std::filesystem::path& path, const ChildLimits& limi
   return *std::move(mesh);
 }
 
-// What the checks before gmsh found.
-struct Checked {
+// What was found without gmsh.
+struct Found {
   std::size_t bytes = 0;
-  std::optional<RawMesh> vtu;  // read here, without gmsh
-  std::optional<MshContents> msh;
-  std::optional<VtkContents> vtk;
+  std::optional<RawMesh> mesh;     // of .msh and .vtu: all of it
+  std::optional<VtkContents> vtk;  // what gmsh does not hand over
 };
 
 VtkContents check_vtk_orders(std::string_view bytes, const std::string& name) {
@@ -134,34 +134,32 @@ VtkContents check_vtk_orders(std::string_view bytes, const std::string& name) {
           "linear tetrahedra (type 10)");
 }
 
-Checked check_file(const std::filesystem::path& path) {
+Found read_without_gmsh(const std::filesystem::path& path) {
   const std::string extension = checked_extension(path);
   const std::string bytes = read_file(path, kLargestMesh);
   const std::string name = path.string();
-  Checked checked{bytes.size(), std::nullopt, std::nullopt, std::nullopt};
+  Found found{bytes.size(), std::nullopt, std::nullopt};
   if (extension == ".msh")
-    checked.msh = check_msh(bytes, name);
+    found.mesh = read_msh(bytes, name);
   else if (extension == ".vtk")
-    checked.vtk = check_vtk_orders(bytes, name);
+    found.vtk = check_vtk_orders(bytes, name);
   else if (extension == ".vtu")
-    checked.vtu = read_vtu(bytes, name);
+    found.mesh = read_vtu(bytes, name);
   else
     check_end(bytes, extension, name);
-  const bool none = (checked.msh && checked.msh->tetrahedra == 0) ||
-                    (checked.vtk && checked.vtk->tetrahedra == 0);
-  if (none) throw InputError(InputFault::no_tetrahedra, name + ": has no tetrahedra");
-  return checked;
+  if (found.vtk && found.vtk->tetrahedra == 0)
+    throw InputError(InputFault::no_tetrahedra, name + ": has no tetrahedra");
+  return found;
 }
 
 }  // namespace
 
 Mesh import_mesh(const std::filesystem::path& path, std::vector<std::string>* warnings,
                  const ImportLimits& limits) {
-  const Checked checked = check_file(path);
-  if (checked.vtu) return to_mesh(*checked.vtu, nullptr, path.string(), warnings);
-  RawMesh raw = read_in_child(path, child_limits(limits, checked.bytes));
-  if (checked.vtk) set_groups_in_order(raw, checked.vtk->tet_tags);
-  return to_mesh(raw, checked.msh ? &*checked.msh : nullptr, path.string(), warnings);
+  Found found = read_without_gmsh(path);
+  if (!found.mesh) found.mesh = read_in_child(path, child_limits(limits, found.bytes));
+  if (found.vtk) set_groups_in_order(*found.mesh, found.vtk->tet_tags);
+  return to_mesh(*found.mesh, path.string(), warnings);
 }
 
 }  // namespace sunder::app

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes from files, through gmsh. gmsh may crash, hang or accept half a file, so it runs in a
-// child process with limits, and .msh files are checked for completeness before (mesh_check.hpp).
+// Meshes from files: .msh and .vtu by readers of our own (msh_reader.hpp, vtu_reader.hpp), the
+// others through gmsh. gmsh may crash, hang or accept half a file, so it runs in a child process
+// with limits, and what can be checked of a file is checked before.
 #pragma once
 
 #include <chrono>

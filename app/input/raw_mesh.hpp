@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh as gmsh hands it over, with the file's tags; and its way through a pipe.
+// A mesh as it was read, with the file's tags; and its way through the pipe from gmsh.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "app/input/mesh_check.hpp"
 #include "sunder/mesh.hpp"
 
 namespace sunder::app {
@@ -38,10 +37,9 @@ struct RawMesh {
 /// nullopt when the bytes are not those of a RawMesh.
 [[nodiscard]] std::optional<RawMesh> from_bytes(std::string_view bytes);
 
-/// Nodes and elements in the order of the file (`contents`, for .msh files; else as they come),
-/// volumes and surfaces by tag. Drops unused nodes, validates. Throws InputError; `name` begins
-/// messages.
-[[nodiscard]] Mesh to_mesh(const RawMesh& raw, const MshContents* contents, const std::string& name,
+/// Nodes and elements as they come, volumes and surfaces by tag. Drops unused nodes, validates.
+/// Throws InputError; `name` begins messages.
+[[nodiscard]] Mesh to_mesh(const RawMesh& raw, const std::string& name,
                            std::vector<std::string>* warnings);
 
 /// Groups of the tetrahedra from elsewhere: tags[i] is that of the one with the i-th smallest tag.

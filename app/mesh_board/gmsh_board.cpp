@@ -32,7 +32,7 @@ Mesh unstructured_board(long long tets, double thickness) {
       limits);
   const auto raw = from_bytes(answer(outcome, "mesh the board"));
   if (!raw) throw Error(1, "gmsh's answer is incomplete");
-  return to_mesh(*raw, nullptr, "board", nullptr);
+  return to_mesh(*raw, "board", nullptr);
 }
 
 void convert_with_gmsh(const std::filesystem::path& from, const std::filesystem::path& to) {

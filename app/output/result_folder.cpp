@@ -55,7 +55,8 @@ std::vector<std::filesystem::path> make_result_folder(const std::filesystem::pat
        place = place.parent_path())
     missing.insert(missing.begin(), place);
   std::filesystem::create_directories(folder, error);
-  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+  std::error_code ignored;  // a name that is too long, say: `error` has it
+  if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored))
     refuse("it is a file");
   if (error) refuse(error.message());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));
@@ -208,9 +209,9 @@ void ResultFolder::remove_one(const std::string& name) const {
                     " of an earlier run: " + std::strerror(errno));
 }
 
-void ResultFolder::drop() {
+bool ResultFolder::drop() {
   const std::lock_guard lock(mutex_);
-  if (released_) return;
+  if (released_) return false;
   dropped_ = true;
   try {
     if (cleared_) remove_results();
@@ -218,6 +219,7 @@ void ResultFolder::drop() {
     // What cannot be removed stays; there is nobody to tell.
   }
   give_back();
+  return true;
 }
 
 void ResultFolder::write(const std::string& name, std::string_view text) {

@@ -43,8 +43,9 @@ class ResultFolder {
   /// nothing is in it. From here on drop() does nothing.
   void release();
   /// Takes back everything that was written since clear(), and the folder if it was made here.
-  /// Files that another thread writes at that moment never appear.
-  void drop();
+  /// Files that another thread writes at that moment never appear. False: this run was done, and
+  /// what it wrote stays.
+  bool drop();
 
  private:
   friend class ResultFile;

@@ -39,8 +39,9 @@ std::string byte_size(double bytes) {
   return rounded(bytes, bytes >= 1000 ? 4 : 3) + " " + units[unit];
 }
 
-std::string counted(long long count, std::string_view noun) {
-  return grouped(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
+std::string counted(long long count, std::string_view noun, std::string_view many) {
+  if (count == 1) return "1 " + std::string(noun);
+  return grouped(count) + " " + (many.empty() ? std::string(noun) + "s" : std::string(many));
 }
 
 std::string escaped(std::string_view text) {

@@ -19,8 +19,9 @@ namespace sunder::app {
 /// Bytes with a binary unit: "3.7 MiB".
 [[nodiscard]] std::string byte_size(double bytes);
 
-/// "1 element", "2 elements".
-[[nodiscard]] std::string counted(long long count, std::string_view noun);
+/// "1 element", "2 elements"; `many` where the plural is another word.
+[[nodiscard]] std::string counted(long long count, std::string_view noun,
+                                  std::string_view many = {});
 
 /// Escapes text for XML and HTML, element content and attribute values alike; bytes that XML
 /// cannot hold become spaces.

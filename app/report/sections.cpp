@@ -149,8 +149,8 @@ std::string header(const RunRecord& run) {
                                              : "<span class=\"chip\">done</span>";
   const FractureModelRow& model = row_of(problem.scene().fracture.model);
   return "<header><h1>" + escaped(problem.scene().title) + chip + "</h1>\n<p>" +
-         escaped(grouped(problem.tet_count()) + " tetrahedra, " + grouped(problem.dof_count()) +
-                 " unknowns, " +
+         escaped(counted(problem.tet_count(), "tetrahedron", "tetrahedra") + ", " +
+                 counted(problem.dof_count(), "unknown") + ", " +
                  (model.breaks ? std::string("fracture model ") + model.name
                                : std::string("no fracture model")) +
                  ", " + std::to_string(run.steps.size()) + " of " +

@@ -8,7 +8,7 @@
 
 #include "app/input/child_process.hpp"
 #include "app/input/gmsh_tasks.hpp"
-#include "app/input/mesh_import.hpp"
+#include "app/input/msh_reader.hpp"
 #include "app/input/raw_mesh.hpp"
 #include "app/output/result_file.hpp"
 #include "app/output/text.hpp"
@@ -18,16 +18,15 @@
 namespace sunder::app::reproduce {
 namespace {
 
-std::filesystem::path temporary_file(const std::string& extension) {
+std::filesystem::path temporary_file() {
   return std::filesystem::temp_directory_path() /
-         ("sunder-reproduce-" + std::to_string(::getpid()) + extension);
+         ("sunder-reproduce-" + std::to_string(::getpid()) + ".geo");
 }
 
-/// A file that gmsh can open; gone with the object.
+/// A geometry that gmsh can open; gone with the object.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& extension, std::string_view text)
-      : path_(temporary_file(extension)) {
+  explicit TemporaryFile(std::string_view text) : path_(temporary_file()) {
     write_file(path_, text);
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -50,7 +49,7 @@ void replace_once(std::string& text, const std::string& from, const std::string&
 }
 
 std::shared_ptr<const Mesh> mesh_of_geometry(const std::string& text) {
-  const TemporaryFile geometry(".geo", text);
+  const TemporaryFile geometry(text);
   ChildLimits limits;
   limits.timeout = std::chrono::minutes(2);
   const ChildOutcome outcome =
@@ -61,7 +60,7 @@ std::shared_ptr<const Mesh> mesh_of_geometry(const std::string& text) {
   if (!raw)
     throw Error(1, "gmsh failed to mesh the board: " +
                        (outcome.result.empty() ? outcome.error_text : outcome.result.substr(1)));
-  return std::make_shared<const Mesh>(to_mesh(*raw, nullptr, "board", nullptr));
+  return std::make_shared<const Mesh>(to_mesh(*raw, "board", nullptr));
 }
 
 }  // namespace
@@ -93,16 +92,13 @@ std::shared_ptr<const Mesh> mesh_board(const BoardMesh& wanted) {
 
 void remove_temporary_files() {
   std::error_code ignored;
-  for (const char* extension : {".geo", ".msh"}) {
-    const std::string path = temporary_file(extension).string();
-    std::filesystem::remove(path, ignored);
-    std::filesystem::remove(temporary_name(path), ignored);
-  }
+  const std::string path = temporary_file().string();
+  std::filesystem::remove(path, ignored);
+  std::filesystem::remove(temporary_name(path), ignored);
 }
 
 Mesh read_embedded_mesh(const std::string& file) {
-  const TemporaryFile copy(".msh", paper_file(file));
-  return import_mesh(copy.path());
+  return to_mesh(read_msh(paper_file(file), file), file, nullptr);
 }
 
 }  // namespace sunder::app::reproduce

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 #include "body/element.hpp"
 #include "body/pieces.hpp"
@@ -14,10 +12,10 @@
 #include "fracture/finding.hpp"
 #include "frame/attribution.hpp"
 #include "frame/loads.hpp"
+#include "frame/needs.hpp"
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
-#include "sunder/words.hpp"
 
 namespace sunder {
 namespace {
@@ -48,62 +46,7 @@ class Shown {
   const StepReport*& place_;
 };
 
-bool any_breakable(const Problem& problem) {
-  const auto& volumes = problem.mesh().volume_of;
-  std::vector<std::uint8_t> seen(problem.mesh().volumes.size(), 0);
-  for (Index e = 0; e < static_cast<Index>(volumes.size()); ++e) {
-    if (seen[volumes[e]]) continue;
-    seen[volumes[e]] = 1;
-    if (problem.breakable(e)) return true;
-  }
-  return false;
-}
-
-void check_needs(const Needs& scene, const Needs& backend) {
-  const auto check = [](bool needed, bool offered, const char* what) {
-    if (needed && !offered) {
-      throw UsageError(std::string("the scene needs ") + what +
-                       ", which was left out of the backend's needs");
-    }
-  };
-  check(scene.stress, backend.stress, "stress");
-  check(scene.yield, backend.yield, "the yield summary");
-  check(scene.damage, backend.damage, "damage");
-  check(scene.pristine, backend.pristine, "the intact body's field");
-}
-
 }  // namespace
-
-Needs needs_of(const Problem& problem) {
-  const Scene& scene = problem.scene();
-  const FractureModelRow& model = row_of(scene.fracture.model);
-  const bool breaks = model.breaks && any_breakable(problem);
-  const bool presses =
-      std::any_of(scene.instruments.begin(), scene.instruments.end(),
-                  [](const Instrument& i) { return std::holds_alternative<Press>(i.action); });
-  Needs needs;
-  needs.stress = breaks || scene.output.stress;
-  needs.yield = needs.stress && any_breakable(problem);
-  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
-  needs.pristine = breaks && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
-  if (!needs.stress) {
-    needs.left_out.push_back(
-        "stress of each element: no fracture model and no output needs it; a frame's check "
-        "takes the largest alone");
-    needs.left_out.push_back(
-        "largest strain and rotation, and the warnings that rest on them: measured with the "
-        "stress");
-  }
-  if (!needs.yield) needs.left_out.push_back("yield summary: nothing breakable or no stress");
-  if (!needs.damage) needs.left_out.push_back("update of the inverse: nothing can be destroyed");
-  if (!needs.pristine)
-    needs.left_out.push_back("intact body's field: only model B reads it, not with sigma0 present");
-  if (!presses) needs.left_out.push_back("pressure terms K_b, K_c: no pressing instrument");
-  if (problem.gripped_dofs().empty()) {
-    needs.left_out.push_back("compliance block of grips: no prescribed displacement");
-  }
-  return needs;
-}
 
 Simulation::Simulation(std::shared_ptr<const Problem> problem, std::unique_ptr<Backend> backend)
     : problem_(std::move(problem)), backend_(std::move(backend)) {
@@ -423,87 +366,6 @@ void Simulation::measure_deformation(StepReport& report) {
   if (std::abs(d.strain) > kSmallStrain) strained_.add(next_step_, std::abs(d.strain));
   if (d.rotation_deg > kSmallRotationDeg) turned_.add(next_step_, d.rotation_deg);
   if (d.inverted > 0) inverted_.add(next_step_, d.inverted);
-}
-
-void Simulation::Beyond::add(int step, double value) {
-  steps.add(step);
-  if (!(value > most)) return;
-  most = value;
-  at = step;
-}
-
-void Simulation::Steps::add(int step) {
-  if (step == last) return;
-  if (count++ == 0) first = step;
-  last = step;
-}
-
-std::string Simulation::Steps::sentence(const std::string& what) const {
-  if (count == 1) return "step " + std::to_string(first) + " " + what;
-  return std::to_string(count) + " steps between " + std::to_string(first) + " and " +
-         std::to_string(last) + " " + what;
-}
-
-void Simulation::note(const Finding& finding) {
-  if (std::ranges::find(findings_, finding) == findings_.end()) findings_.push_back(finding);
-}
-
-std::vector<std::string> Simulation::warnings() const {
-  std::vector<std::string> all = problem_->warnings();
-  for (std::string& words : backend_->warnings()) all.push_back(std::move(words));
-  for (const Finding& found : findings_) {  // instruments may have the same name
-    std::string words = sentence(found, problem_->scene());
-    if (std::ranges::find(all, words) == all.end()) all.push_back(std::move(words));
-  }
-  if (capped_.count > 0) {
-    all.push_back(capped_.sentence("ended at fracture.max_events = " +
-                                   count_of(problem_->scene().fracture.max_events, "event") +
-                                   "; more may have been ready to break"));
-  }
-  if (polished_.count > 0) {
-    all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
-  }
-  add_deformation_warnings(all);
-  if (loose_nodes_ > 0) {
-    all.push_back(count_of(static_cast<long long>(loose_nodes_), "node is", "nodes are") +
-                  " held by destroyed elements only (since step " +
-                  std::to_string(loose_nodes_step_) + "); " +
-                  (loose_nodes_ == 1 ? "its" : "their") + " displacement has no meaning");
-  }
-  if (loose_pieces_ > 0) {
-    const bool one = loose_pieces_ == 1;
-    all.push_back(count_of(static_cast<long long>(loose_pieces_), "piece") + " with " +
-                  count_of(static_cast<long long>(loose_elements_), "element") +
-                  (one ? " is" : " are") + " cut off (since step " +
-                  std::to_string(loose_pieces_step_) + "); only destroyed elements hold " +
-                  (one ? "it and its" : "them and their") + " displacement has no meaning");
-  }
-  return all;
-}
-
-void Simulation::add_deformation_warnings(std::vector<std::string>& all) const {
-  const auto add = [&](const Beyond& beyond, const std::string& what, const std::string& most,
-                       const std::string& so) {
-    if (beyond.steps.count == 0) return;
-    const bool part = backend_->info().route == "condensed";
-    all.push_back(beyond.steps.sentence(
-        what + " (most in step " + std::to_string(beyond.at) + ": " + most +
-        (part ? ", in the region that a frame computes" : "") + "): " + so + " (docs/limits.md)"));
-  };
-  const auto three = [](double value) {
-    std::ostringstream out;
-    out << std::setprecision(3) << value;
-    return out.str();
-  };
-  const std::string verb = " live tissue by over ";
-  add(strained_, "strained" + verb + three(100 * kSmallStrain) + " %",
-      three(100 * strained_.most) + " %",
-      "the law is linear, for small strains, and the figures there are no longer those of tissue");
-  add(turned_, "turned" + verb + three(kSmallRotationDeg) + " deg", three(turned_.most) + " deg",
-      "the theory of small strains takes a rotation for strain");
-  add(inverted_, "turned live elements inside out",
-      three(inverted_.most) + (inverted_.most > 1 ? " elements" : " element"),
-      "with det(I + grad u) <= 0 no body has that shape");
 }
 
 const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }

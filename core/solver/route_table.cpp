@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sunder/words.hpp"
+
 namespace sunder::solver {
 namespace {
 
@@ -236,7 +238,7 @@ const std::array<RouteRow, 4>& routes() { return kRoutes; }
 const RouteRow& row_of(Route route) { return *std::ranges::find(kRoutes, route, &RouteRow::route); }
 
 std::string unknowns_of(const Question& question) {
-  return std::to_string(question.unknowns()) + " unknowns";
+  return count_of(static_cast<long long>(question.unknowns()), "unknown");
 }
 
 }  // namespace sunder::solver

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Half a file is never taken for a whole one.
 #include "app/input/input_support.hpp"
-#include "app/input/mesh_check.hpp"
 #include "app/input/mesh_import.hpp"
+#include "app/input/msh_reader.hpp"
 #include "app/input/msh_text.hpp"
 #include "app/input/vtk_check.hpp"
 #include "app/mesh_board/board.hpp"
@@ -59,10 +59,10 @@ TEST(MeshTruncated, AtEverySectionThroughTheWholeImport) {
 TEST(MeshTruncated, Version1AtEveryByte) {
   const std::string whole =
       "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n1\n1 4 7 1 4 1 2 3 4\n$ENDELM";
-  EXPECT_NO_THROW(static_cast<void>(app::check_msh(whole, "whole.msh")));
+  EXPECT_NO_THROW(static_cast<void>(app::read_msh(whole, "whole.msh")));
   for (std::size_t cut = 0; cut < whole.size(); ++cut) {
     SCOPED_TRACE(cut);
-    EXPECT_THROW(static_cast<void>(app::check_msh(whole.substr(0, cut), "cut.msh")), InputError);
+    EXPECT_THROW(static_cast<void>(app::read_msh(whole.substr(0, cut), "cut.msh")), InputError);
   }
 }
 
@@ -72,11 +72,11 @@ TEST(MeshTruncated, AtEveryByte) {
     const std::size_t whole = format.bytes.rfind("$EndElements") + 12;
     for (std::size_t cut = 0; cut < whole; ++cut) {
       ASSERT_THROW(
-          static_cast<void>(app::check_msh(std::string_view(format.bytes).substr(0, cut), "m")),
+          static_cast<void>(app::read_msh(std::string_view(format.bytes).substr(0, cut), "m")),
           InputError)
           << format.name << " cut at " << cut;
     }
-    EXPECT_EQ(app::check_msh(format.bytes, "m").tetrahedra, mesh.tets.size());
+    EXPECT_EQ(app::read_msh(format.bytes, "m").tet_tags.size(), mesh.tets.size());
   }
 }
 

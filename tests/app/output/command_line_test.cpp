@@ -141,6 +141,51 @@ TEST(CommandLine, OutMustBeAFolder) {
   EXPECT_EQ(read_file(folder / "file"), "x");
 }
 
+TEST(CommandLine, OutWithANameThatIsTooLong) {
+  const TempFolder folder;
+  const TearingBoard board(folder);
+  const std::string name(300, 'n'), deep = (folder / "made" / name / "below").string();
+  for (const std::string& out : {(folder / name).string(), deep}) {
+    const Outcome run = run_program({"run", board.scene.string(), "--out", out});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_NE(run.err.find("--out: results cannot go to " + out + ": File name too long"),
+              std::string::npos)
+        << run.err;
+  }
+}
+
+// What was dropped says what takes its place, whether a flag or the scene asks for it.
+TEST(CommandLine, DroppedWaysNameWhatTakesTheirPlace) {
+  const TempFolder folder;
+  const TearingBoard board(folder);
+  const std::string scene = board.scene.string(), out = (folder / "o").string();
+  const std::string condensed =
+      "route condensed has the update deferred only; use update deferred or auto, or route inverse";
+  const std::string single = "backend cpu computes in fp64 only; use precision fp64 or auto";
+  struct Dropped {
+    Arguments flags, keys;
+    std::string says;
+  };
+  for (const Dropped& dropped :
+       {Dropped{{"--route", "condensed", "--update", "eager"},
+                {"--set", "solver.route=\"condensed\"", "--set", "solver.update=\"eager\""},
+                condensed},
+        Dropped{{"--precision", "fp32", "--update", "eager"},
+                {"--set", "solver.precision=\"fp32\"", "--set", "solver.update=\"eager\""},
+                single}}) {
+    for (const Arguments& asked : {dropped.flags, dropped.keys}) {
+      for (const char* command : {"run", "plan"}) {
+        Arguments arguments = {command, scene, "--backend", "cpu", "--out", out};
+        arguments.insert(arguments.end(), asked.begin(), asked.end());
+        const Outcome refused = run_program(arguments);
+        EXPECT_EQ(refused.exit_code, 4) << refused.err;
+        EXPECT_NE(refused.err.find(dropped.says), std::string::npos) << refused.err;
+      }
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST(CommandLine, QuietSaysNothingOnStderr) {
   const TempFolder folder;
   const TearingBoard board(folder);

@@ -191,5 +191,31 @@ TEST(Plan, CountsGrips) {
   }
 }
 
+// One tetrahedron of which one node may move along one axis.
+TEST(Plan, SaysOneUnknown) {
+  const TempFolder folder;
+  write_text(folder / "one.msh",
+             "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n1\n1 4 0 1 4 1 2 3 4\n"
+             "$ENDELM\n");
+  write_text(folder / "one.toml",
+             "mesh = \"one.msh\"\n[material.volume]\nyoung = 1.0\npoisson = 0.3\n"
+             "[[fixed]]\nnodes = [0, 1, 2]\n[[fixed]]\nnodes = [3]\naxes = \"xy\"\n"
+             "[[instrument]]\nkind = \"expansion\"\nnodes = [3]\nforce = [0, 0, 0.001]\n");
+  const std::vector<std::string> scene = {(folder / "one.toml").string(), "--backend", "cpu"};
+  const std::string out = (folder / "o").string();
+  for (const auto& command :
+       std::vector<std::vector<std::string>>{{"plan"}, {"run", "--out", out}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), scene.begin(), scene.end());
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.out, "1 unknown")) << outcome.out;
+    for (const std::string& text : {outcome.out, outcome.err})
+      for (const char* wrong : {"1 unknowns", "1 tetrahedra"})
+        EXPECT_FALSE(contains(text, wrong)) << text;
+  }
+  EXPECT_FALSE(contains(read_file(folder / "o/index.html"), "1 unknowns"));
+}
+
 }  // namespace
 }  // namespace sunder::test

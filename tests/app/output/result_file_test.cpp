@@ -160,7 +160,7 @@ TEST(ResultFolder, DroppedResultsAreGoneAndNoneFollows) {
     ResultFile open(results, "frames.csv");
     open.write("x");
     open.flush();
-    results.drop();
+    EXPECT_TRUE(results.drop());
     EXPECT_FALSE(std::filesystem::exists(folder / "a"));
     EXPECT_THROW(open.commit(), OutputError);
     EXPECT_THROW(results.write("summary.json", "x"), OutputError);
@@ -174,7 +174,7 @@ TEST(ResultFolder, DroppedResultsAreGoneAndNoneFollows) {
     done.release();
     EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"summary.json"});
     const ResultFolder next(folder.path());
-    done.drop();
+    EXPECT_FALSE(done.drop());
   }
   EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"summary.json"});
   std::filesystem::remove(folder / "summary.json");

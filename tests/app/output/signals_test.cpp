@@ -19,6 +19,7 @@
 
 #include "app/commands/interruption.hpp"
 #include "app/output/program.hpp"
+#include "app/output/result_folder.hpp"
 #include "app/output/whole_results.hpp"
 
 namespace sunder::test {
@@ -365,7 +366,8 @@ TEST_F(InterruptionDeath, ASecondSignalEndsASlowWriter) {
       {
         app::Interruption interruption;
         const app::Expecting expecting(
-            interruption, {"", [] { fputs("dropped ", stderr); }, []() -> int { compute(); }, 1ms});
+            interruption,
+            {"", [] { return fputs("dropped ", stderr) >= 0; }, []() -> int { compute(); }, 1ms});
         kill(getpid(), SIGINT);
         std::this_thread::sleep_for(100ms);
         kill(getpid(), SIGINT);
@@ -374,12 +376,34 @@ TEST_F(InterruptionDeath, ASecondSignalEndsASlowWriter) {
       ::testing::ExitedWithCode(130), "^dropped sunder: interrupted again");
 }
 
+// The last file is written, and the program still tells of it.
+TEST_F(InterruptionDeath, ASecondSignalBehindTheLastFileSaysThatItStays) {
+  EXPECT_EXIT(
+      {
+        const TempFolder folder;
+        app::ResultFolder results(folder / "out");
+        app::Interruption interruption;
+        const app::Expecting expecting(interruption,
+                                       {"", [&results] { return results.drop(); }, {}, 60s});
+        interruption.claim();
+        results.clear();
+        results.write("summary.json", "{}");
+        results.release();
+        kill(getpid(), SIGINT);
+        while (!interruption.requested()) std::this_thread::sleep_for(1ms);
+        kill(getpid(), SIGINT);
+        compute();
+      },
+      ::testing::ExitedWithCode(130),
+      "^sunder: interrupted again: all results were written before, and stay\n$");
+}
+
 TEST_F(InterruptionDeath, AfterAllIsDoneASignalTakesNothingBack) {
   EXPECT_EXIT(
       {
         app::Interruption interruption;
         const app::Expecting expecting(interruption,
-                                       {"", [] { fputs("dropped ", stderr); }, {}, {}});
+                                       {"", [] { return fputs("dropped ", stderr) >= 0; }, {}, {}});
         interruption.over(5);
         kill(getpid(), SIGINT);
         compute();  // destructors that wait for threads

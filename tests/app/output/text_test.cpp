@@ -25,6 +25,8 @@ TEST(Text, ForPeople) {
   EXPECT_EQ(grouped(-1234), "-1,234");
   EXPECT_EQ(grouped(999), "999");
   EXPECT_EQ(counted(1, "event"), "1 event");
+  EXPECT_EQ(counted(1, "tetrahedron", "tetrahedra"), "1 tetrahedron");
+  EXPECT_EQ(counted(1954, "tetrahedron", "tetrahedra"), "1,954 tetrahedra");
   EXPECT_EQ(counted(1200, "event"), "1,200 events");
   EXPECT_EQ(byte_size(1023), "1023 B");
   EXPECT_EQ(byte_size(1536), "1.5 KiB");

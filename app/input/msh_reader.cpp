@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/input/mesh_check.hpp"
+#include "app/input/msh_reader.hpp"
 
 #include <map>
 #include <set>
+#include <utility>
 
+#include "app/input/msh_contents.hpp"
 #include "app/input/msh_sections.hpp"
 #include "sunder/in_quotes.hpp"
 
@@ -16,7 +18,9 @@ int read_format(MshCursor& cursor) {
   const std::string version(cursor.word());
   if (version != "2.2" && version != "2.1" && version != "2" && version != "2.0" &&
       version != "4.1")
-    cursor.fail("the version is " + in_quotes(version, 20) + "; allowed: 1, 2.2 and 4.1");
+    cursor.fail(
+        "the version is " + in_quotes(version, 20) +
+        "; allowed: 1, 2.2 and 4.1 (gmsh OLD.msh -save -format msh41 -o NEW.msh makes one)");
   const std::int64_t type = cursor.text_integer("the file type");
   if (type != 0 && type != 1)
     cursor.fail("the file type is " + std::to_string(type) + "; allowed: 0 (ascii), 1 (binary)");
@@ -36,14 +40,14 @@ int read_format(MshCursor& cursor) {
 // "name" with quotes, from the rest of a line.
 std::string quoted_name(const MshCursor& cursor, std::string_view rest) {
   const std::size_t begin = rest.find('"');
-  const std::size_t end = rest.rfind('"');
-  if (begin == std::string_view::npos || end == begin)
+  const std::size_t end = begin == std::string_view::npos ? begin : rest.find('"', begin + 1);
+  if (end == std::string_view::npos)
     cursor.fail("a physical name must stand in quotes: dimension tag \"name\"");
   return std::string(rest.substr(begin + 1, end - begin - 1));
 }
 
 // Always text, also in binary files.
-void read_physical_names(MshCursor& cursor) {
+void read_physical_names(MshCursor& cursor, std::vector<RawGroup>& groups) {
   const std::uint64_t count =
       cursor.check_count(cursor.text_integer("the number of names"), 2, "names");
   std::map<std::pair<std::int64_t, std::string>, std::int64_t> tags;
@@ -62,6 +66,8 @@ void read_physical_names(MshCursor& cursor) {
       cursor.fail(
           std::string("the ") + kind + " with tag " + std::to_string(tag) + " has two names",
           InputFault::duplicate_name);
+    if ((dimension == 2 || dimension == 3) && std::in_range<int>(tag))
+      groups.push_back({static_cast<int>(dimension), static_cast<int>(tag), name});
   }
 }
 
@@ -69,7 +75,7 @@ class MshReader {
  public:
   MshReader(std::string_view bytes, const std::string& name) : cursor_(bytes, name) {}
 
-  MshContents read() {
+  RawMesh read() {
     read_first_section();
     while (next_section()) read_section();
     cursor_.set_section("");
@@ -78,7 +84,8 @@ class MshReader {
         cursor_.fail("the section " + needed +
                      " is missing: the file is truncated or holds no mesh");
     }
-    return std::move(contents_);
+    contents_.finish();
+    return std::move(contents_.mesh);
   }
 
  private:
@@ -110,7 +117,8 @@ class MshReader {
       cursor_.fail("expected the begin of a section ($...)");
     cursor_.set_section(section_);
     static const std::set<std::string> once = {
-        "$MeshFormat", "$PhysicalNames", "$Entities", "$Nodes", "$Elements", "$NOD", "$ELM"};
+        "$MeshFormat", "$PhysicalNames", "$Entities", "$PartitionedEntities",
+        "$Nodes",      "$Elements",      "$NOD",      "$ELM"};
     if (once.contains(section_) && !seen_.insert(section_).second)
       cursor_.fail("the section occurs twice");
     return true;
@@ -128,9 +136,9 @@ class MshReader {
     } else if (version_ == 1 && section_ == "$ELM") {
       read_elements_1(cursor_, contents_);
     } else if (section_ == "$PhysicalNames") {
-      read_physical_names(cursor_);
-    } else if (section_ == "$Entities" && version_ == 4) {
-      skip_entities_4(cursor_);
+      read_physical_names(cursor_, contents_.mesh.groups);
+    } else if (version_ == 4 && (section_ == "$Entities" || section_ == "$PartitionedEntities")) {
+      read_entities();
     } else if (version_ != 1 && section_ == "$Nodes") {
       version_ == 4 ? read_nodes_4(cursor_, contents_) : read_nodes_2(cursor_, contents_);
     } else if (version_ != 1 && section_ == "$Elements") {
@@ -141,6 +149,12 @@ class MshReader {
       return;
     }
     close_section();
+  }
+
+  void read_entities() {
+    if (seen_.contains("$Elements")) cursor_.fail("stands behind $Elements");
+    section_ == "$Entities" ? read_entities_4(cursor_, contents_)
+                            : read_partitioned_entities_4(cursor_, contents_);
   }
 
   void close_section() {
@@ -165,7 +179,7 @@ class MshReader {
 
 }  // namespace
 
-MshContents check_msh(std::string_view bytes, const std::string& name) {
+RawMesh read_msh(std::string_view bytes, const std::string& name) {
   return MshReader(bytes, name).read();
 }
 

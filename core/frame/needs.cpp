@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame/needs.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder {
+namespace {
+
+bool any_breakable(const Problem& problem) {
+  const auto& volumes = problem.mesh().volume_of;
+  std::vector<std::uint8_t> seen(problem.mesh().volumes.size(), 0);
+  for (Index e = 0; e < static_cast<Index>(volumes.size()); ++e) {
+    if (seen[volumes[e]]) continue;
+    seen[volumes[e]] = 1;
+    if (problem.breakable(e)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void check_needs(const Needs& scene, const Needs& backend) {
+  const auto check = [](bool needed, bool offered, const char* what) {
+    if (needed && !offered) {
+      throw UsageError(std::string("the scene needs ") + what +
+                       ", which was left out of the backend's needs");
+    }
+  };
+  check(scene.stress, backend.stress, "stress");
+  check(scene.yield, backend.yield, "the yield summary");
+  check(scene.damage, backend.damage, "damage");
+  check(scene.pristine, backend.pristine, "the intact body's field");
+}
+
+Needs needs_of(const Problem& problem) {
+  const Scene& scene = problem.scene();
+  const FractureModelRow& model = row_of(scene.fracture.model);
+  const bool breaks = model.breaks && any_breakable(problem);
+  const bool presses =
+      std::any_of(scene.instruments.begin(), scene.instruments.end(),
+                  [](const Instrument& i) { return std::holds_alternative<Press>(i.action); });
+  Needs needs;
+  needs.stress = breaks || scene.output.stress;
+  needs.yield = needs.stress && any_breakable(problem);
+  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
+  needs.pristine = breaks && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
+  if (!needs.stress) {
+    needs.left_out.push_back(
+        "stress of each element: no fracture model and no output needs it; a frame's check "
+        "takes the largest alone");
+    needs.left_out.push_back(
+        "largest strain and rotation, and the warnings that rest on them: measured with the "
+        "stress");
+  }
+  if (!needs.yield) needs.left_out.push_back("yield summary: nothing breakable or no stress");
+  if (!needs.damage) needs.left_out.push_back("update of the inverse: nothing can be destroyed");
+  if (!needs.pristine)
+    needs.left_out.push_back("intact body's field: only model B reads it, not with sigma0 present");
+  if (!presses) needs.left_out.push_back("pressure terms K_b, K_c: no pressing instrument");
+  if (problem.gripped_dofs().empty()) {
+    needs.left_out.push_back("compliance block of grips: no prescribed displacement");
+  }
+  return needs;
+}
+
+}  // namespace sunder

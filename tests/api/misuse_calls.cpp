@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls that are wrong by themselves: handles, pointers, sizes.
+#include "api/misuse.hpp"
+
+namespace sunder::test {
+
+std::vector<Misuse> handles() {
+  return {
+      {"scene_null", SUNDER_ERROR_HANDLE, "scene", [](World&) { return sunder_scene_destroy({}); }},
+      {"scene_forged", SUNDER_ERROR_HANDLE, "scene",
+       [](World&) { return sunder_scene_destroy(forged<sunder_scene>(0xdeadbeef)); }},
+      {"scene_all_ones", SUNDER_ERROR_HANDLE, "scene",
+       [](World&) { return sunder_scene_set_steps(forged<sunder_scene>(UINTPTR_MAX), 1); }},
+      {"scene_destroyed_twice", SUNDER_ERROR_HANDLE, "destroyed",
+       [](World& w) { return sunder_scene_destroy(w.gone); }},
+      {"scene_used_after_destroy", SUNDER_ERROR_HANDLE, "destroyed",
+       [](World& w) { return w.create(w.gone); }},
+      {"simulation_for_scene", SUNDER_ERROR_HANDLE, "scene",
+       [](World& w) { return sunder_scene_destroy(reinterpret_cast<sunder_scene>(w.simulation)); }},
+      {"scene_for_simulation", SUNDER_ERROR_HANDLE, "simulation",
+       [](World& w) {
+         return sunder_simulation_step(reinterpret_cast<sunder_simulation>(w.scene), nullptr);
+       }},
+      {"scene_for_plan", SUNDER_ERROR_HANDLE, "plan",
+       [](World& w) { return sunder_plan_destroy(reinterpret_cast<sunder_plan>(w.scene)); }},
+      {"step_null", SUNDER_ERROR_HANDLE, "simulation",
+       [](World&) { return sunder_simulation_step(nullptr, nullptr); }},
+      {"cancel_null", SUNDER_ERROR_HANDLE, "simulation",
+       [](World&) { return sunder_simulation_cancel(nullptr); }},
+      {"error_of_null", SUNDER_ERROR_HANDLE, "handle",
+       [](World&) { return sunder_error_of(nullptr, nullptr, 0, nullptr); }},
+      {"grips_null", SUNDER_ERROR_HANDLE, "grips",
+       [](World& w) { return sunder_grips_forces(nullptr, w.values, w.values, 3); }},
+      {"simulation_for_grips", SUNDER_ERROR_HANDLE, "grips",
+       [](World& w) { return sunder_grips_destroy(reinterpret_cast<sunder_grips>(w.simulation)); }},
+      {"pointer_to_something_else", SUNDER_ERROR_HANDLE, "simulation",
+       [](World& w) { return sunder_simulation_destroy(reinterpret_cast<sunder_simulation>(&w)); }},
+  };
+}
+
+std::vector<Misuse> null_pointers() {
+  return {
+      {"scene_create_null", SUNDER_ERROR_NULL, "scene",
+       [](World&) { return sunder_scene_create(nullptr); }},
+      {"mesh_nodes_null", SUNDER_ERROR_NULL, "nodes",
+       [](World& w) {
+         return sunder_scene_set_mesh(w.scene, nullptr, 12, w.arrays.tets.data(), 4, nullptr, 0);
+       }},
+      {"mesh_tets_null", SUNDER_ERROR_NULL, "tets",
+       [](World& w) {
+         return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 12, nullptr, 4, nullptr, 0);
+       }},
+      {"material_null", SUNDER_ERROR_NULL, "material",
+       [](World& w) { return sunder_scene_add_material(w.scene, nullptr, nullptr); }},
+      {"support_null", SUNDER_ERROR_NULL, "support",
+       [](World& w) { return sunder_scene_add_support(w.scene, nullptr); }},
+      {"instrument_null", SUNDER_ERROR_NULL, "instrument",
+       [](World& w) { return sunder_scene_add_instrument(w.scene, nullptr, nullptr); }},
+      {"crack_null", SUNDER_ERROR_NULL, "crack",
+       [](World& w) { return sunder_scene_add_crack(w.scene, nullptr); }},
+      {"removal_null", SUNDER_ERROR_NULL, "elements",
+       [](World& w) { return sunder_scene_add_removal(w.scene, 0, nullptr); }},
+      {"fracture_null", SUNDER_ERROR_NULL, "fracture",
+       [](World& w) { return sunder_scene_set_fracture(w.scene, nullptr); }},
+      {"solver_null", SUNDER_ERROR_NULL, "solver",
+       [](World& w) { return sunder_scene_set_solver(w.scene, nullptr); }},
+      {"ids_null", SUNDER_ERROR_NULL, "ids",
+       [](World& w) {
+         return w.add_support([](sunder_support& s) {
+           s.nodes.kind = SUNDER_SELECT_IDS;
+           s.nodes.ids = nullptr;
+           s.nodes.id_count = 3;
+         });
+       }},
+      {"simulation_create_null", SUNDER_ERROR_NULL, "simulation",
+       [](World& w) { return sunder_simulation_create(w.scene, nullptr, nullptr); }},
+      {"plan_create_null", SUNDER_ERROR_NULL, "plan",
+       [](World& w) { return sunder_plan_create(w.scene, nullptr); }},
+      {"plan_engine_null", SUNDER_ERROR_NULL, "engine",
+       [](World& w) { return sunder_plan_engine(w.plan, nullptr); }},
+      {"engine_null", SUNDER_ERROR_NULL, "engine",
+       [](World& w) { return sunder_simulation_engine(w.simulation, nullptr); }},
+      {"displacement_null", SUNDER_ERROR_NULL, "values",
+       [](World& w) {
+         return sunder_simulation_displacement(w.simulation, nullptr, w.arrays.nodes.size());
+       }},
+      {"event_count_null", SUNDER_ERROR_NULL, "count",
+       [](World& w) { return sunder_simulation_event_count(w.simulation, nullptr); }},
+      {"warning_count_null", SUNDER_ERROR_NULL, "count",
+       [](World& w) { return sunder_simulation_warning_count(w.simulation, nullptr); }},
+      {"crack_count_null", SUNDER_ERROR_NULL, "count",
+       [](World& w) { return sunder_simulation_crack_count(w.simulation, nullptr); }},
+      {"drive_null", SUNDER_ERROR_NULL, "value",
+       [](World& w) { return sunder_simulation_drive(w.simulation, 0, nullptr); }},
+      {"grips_create_null", SUNDER_ERROR_NULL, "grips",
+       [](World& w) { return sunder_grips_create(w.simulation, nullptr); }},
+      {"device_count_null", SUNDER_ERROR_NULL, "count",
+       [](World&) { return sunder_device_count(nullptr); }},
+      {"device_null", SUNDER_ERROR_NULL, "device",
+       [](World&) { return sunder_device_at(0, nullptr); }},
+      {"text_buffer_null", SUNDER_ERROR_NULL, "text buffer",
+       [](World& w) { return sunder_plan_buffer(w.plan, 0, nullptr, nullptr, 10, nullptr); }},
+  };
+}
+
+std::vector<Misuse> sizes() {
+  return {
+      {"nodes_not_triples", SUNDER_ERROR_SIZE, "nodes has 13",
+       [](World& w) {
+         return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 13, w.arrays.tets.data(), 4,
+                                      nullptr, 0);
+       }},
+      {"tets_not_quadruples", SUNDER_ERROR_SIZE, "tets has 5",
+       [](World& w) {
+         return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 12, w.arrays.tets.data(), 5,
+                                      nullptr, 0);
+       }},
+      {"no_nodes", SUNDER_ERROR_SIZE, "nodes has 0",
+       [](World& w) {
+         return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 0, w.arrays.tets.data(), 4,
+                                      nullptr, 0);
+       }},
+      {"too_many_tets", SUNDER_ERROR_SIZE, "tets",
+       [](World& w) {
+         return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 12, w.arrays.tets.data(),
+                                      std::size_t{1} << 62, nullptr, 0);
+       }},
+      {"materials_of_too_few", SUNDER_ERROR_SIZE, "material_of has 1",
+       [](World& w) {
+         const std::int32_t zero = 0;
+         return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), w.arrays.nodes.size(),
+                                      w.arrays.tets.data(), w.arrays.tets.size(), &zero, 1);
+       }},
+      {"materials_of_null_with_size", SUNDER_ERROR_SIZE, "material_of (null)",
+       [](World& w) {
+         return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 12, w.arrays.tets.data(), 4,
+                                      nullptr, 1);
+       }},
+      {"ids_too_many", SUNDER_ERROR_SIZE, "32 bits",
+       [](World& w) {
+         const std::int32_t id = 0;
+         return w.add_support([&](sunder_support& s) {
+           s.nodes.kind = SUNDER_SELECT_IDS;
+           s.nodes.ids = &id;
+           s.nodes.id_count = std::size_t{1} << 40;
+         });
+       }},
+      {"displacement_too_short", SUNDER_ERROR_SIZE, "must have 150",
+       [](World& w) { return sunder_simulation_displacement(w.simulation, w.values, 3); }},
+      {"stress_too_short", SUNDER_ERROR_SIZE, "must have 576",
+       [](World& w) { return sunder_simulation_stress(w.simulation, w.values, 6); }},
+      {"max_shear_too_short", SUNDER_ERROR_SIZE, "must have 96",
+       [](World& w) { return sunder_simulation_max_shear(w.simulation, w.values, 8); }},
+      {"yield_ratio_too_short", SUNDER_ERROR_SIZE, "must have 96",
+       [](World& w) { return sunder_simulation_yield_ratio(w.simulation, w.values, 8); }},
+      {"destroyed_too_short", SUNDER_ERROR_SIZE, "must have 96",
+       [](World& w) {
+         std::uint8_t byte = 0;
+         return sunder_simulation_destroyed(w.simulation, &byte, 1);
+       }},
+      {"reactions_too_short", SUNDER_ERROR_SIZE, "must have 3",
+       [](World& w) { return sunder_simulation_reactions(w.simulation, w.values, 2); }},
+      {"support_reaction_too_long", SUNDER_ERROR_SIZE, "must have 3",
+       [](World& w) { return sunder_simulation_support_reaction(w.simulation, w.values, 8); }},
+      {"zero_size", SUNDER_ERROR_SIZE, "has 0",
+       [](World& w) { return sunder_simulation_displacement(w.simulation, w.values, 0); }},
+  };
+}
+
+std::vector<Misuse> struct_sizes() {
+  return {
+      {"material_size_unset", SUNDER_ERROR_STRUCT_SIZE, "struct_size = 0",
+       [](World& w) {
+         const sunder_material m{};
+         return sunder_scene_add_material(w.scene, &m, nullptr);
+       }},
+      {"instrument_size_short", SUNDER_ERROR_STRUCT_SIZE, "struct_size = 8",
+       [](World& w) { return w.add_instrument([](sunder_instrument& i) { i.struct_size = 8; }); }},
+      {"fracture_size_garbage", SUNDER_ERROR_STRUCT_SIZE, "struct_size",
+       [](World& w) {
+         return w.set_fracture([](sunder_fracture_options& f) { f.struct_size = 0xffffffff; });
+       }},
+      {"newer_members_set", SUNDER_ERROR_STRUCT_SIZE, "does not know",
+       [](World& w) {
+         struct Newer {
+           sunder_solver_options known;
+           double unknown;
+         } newer{on(SUNDER_BACKEND_CPU), 1.0};
+         newer.known.struct_size = sizeof newer;
+         return sunder_scene_set_solver(w.scene, &newer.known);
+       }},
+      {"step_size_unset", SUNDER_ERROR_STRUCT_SIZE, "step has struct_size = 0",
+       [](World& w) {
+         sunder_step step{};
+         return sunder_simulation_step(w.simulation, &step);
+       }},
+      {"engine_size_unset", SUNDER_ERROR_STRUCT_SIZE, "engine",
+       [](World& w) {
+         sunder_engine engine{};
+         return sunder_simulation_engine(w.simulation, &engine);
+       }},
+      {"device_size_unset", SUNDER_ERROR_STRUCT_SIZE, "device",
+       [](World&) {
+         sunder_device device{};
+         return sunder_device_at(0, &device);
+       }},
+      {"callbacks_size_unset", SUNDER_ERROR_STRUCT_SIZE, "callbacks",
+       [](World& w) {
+         const sunder_callbacks callbacks{};
+         return sunder_simulation_create(w.scene, &callbacks, &w.made);
+       }},
+  };
+}
+
+}  // namespace sunder::test
