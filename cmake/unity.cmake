@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Several source files compiled as one: the sanitizers' builds, where what Eigen's templates become is
-# most of the work, take two fifths less. Every other build compiles each file by itself.
+# Several source files compiled as one, so that what Eigen's templates become is compiled once for
+# all of them: most of the work of the sanitizers' builds. Other builds compile each file by itself.
 option(SUNDER_UNITY "Compile several source files of a library at once" OFF)
 if(SUNDER_UNITY)
   # Two files' names in anonymous namespaces then hide each other without harm.
