@@ -135,7 +135,7 @@ TEST_P(DeviceLost, LosesNothingWheneverItHappens) {
   int losses = 0, submits = 0;
   // Fibonacci's distances, until a run ends before its device is lost; a sanitizer, under which a
   // run takes ten times as long, gets every other of them.
-  const auto later = [next = 1](int now) mutable {
+  auto later = [next = 1](int now) mutable {
     for (int i = 0; i < (validated() ? 1 : 2); ++i) {
       std::swap(now, next);
       next += now;
