@@ -130,7 +130,7 @@ class Frames {
   [[nodiscard]] double megabytes() const { return 1e-6 * static_cast<double>(factor_->bytes()); }
 
  private:
-  void solve(double enough) {
+  void solve(double energy_tolerance) {
     const double base = times_[kProject] + times_[kBackward];
     times_[kRefine] += us_of([&] {
       deferred_->solve({board_.load_dofs, board_.load_values}, {}, u_, enough);

@@ -218,7 +218,9 @@ class CpuBackend final : public Backend {
   }
 
   SolveReport do_solve() override {
+    const double stress_before = frame_.stress_ms();
     SolveReport report = solver_.solve(frame_.load());
+    report.stress_ms = frame_.stress_ms() - stress_before;
     publish();
     report.waited_ms = route_->waited_ms() - waited_ms_;
     waited_ms_ = route_->waited_ms();

@@ -63,7 +63,8 @@ class DeferredRoute final : public InverseRoute {
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
     update_->loaded(load);
-    update_->deferred().solve({load.force_dofs, load.forces}, load.displacements, u, enough_);
+    update_->deferred().solve({load.force_dofs, load.forces}, load.displacements, u,
+                              energy_tolerance_);
     return {};
   }
 
@@ -83,7 +84,7 @@ class DeferredRoute final : public InverseRoute {
   double saved_ms() const override { return update_->saved_ms(); }
 
   const solver::Deferred* deferred() const override { return &update_->deferred(); }
-  void set_enough(double energy) override { enough_ = energy; }
+  void set_energy_tolerance(double energy) override { energy_tolerance_ = energy; }
   int bases() const override { return update_->bases(); }
   const solver::BaseCheck& base_check() const override { return update_->base_check(); }
   double waited_ms() const override { return update_->waited_ms(); }
@@ -118,7 +119,7 @@ class DeferredRoute final : public InverseRoute {
 
   bool dense_;              // the first base is an inverse
   std::vector<Index> all_;  // every unknown: the loads of a residual
-  double enough_ = 0;
+  double energy_tolerance_ = 0;
   std::unique_ptr<fem::OrderedStiffness> stiffness_;  // of whoever makes a base
   std::optional<solver::RenewedUpdate> update_;       // last: its thread uses what is above
 };

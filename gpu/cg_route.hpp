@@ -19,7 +19,7 @@ class CgRoute final : public DeviceRoute {
   [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
                                                  const Problem& problem);
 
-  int solve(const Load& load, double enough, bool balance) override;
+  int solve(const Load& load, double energy_tolerance, bool balance) override;
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements) override {

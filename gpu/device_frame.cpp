@@ -31,9 +31,9 @@ solver::Precision DeviceFrame::precision() const {
   return {std::min(kFp32Refined, tolerance / 2), tolerance, kFp32Refined};
 }
 
-int DeviceFrame::solve(double enough, bool residual) {
+int DeviceFrame::solve(double energy_tolerance, bool residual) {
   const bool reactions = !problem_.gripped_dofs().empty();
-  return route_.solve(load_, enough, residual || reactions);
+  return route_.solve(load_, energy_tolerance, residual || reactions);
 }
 
 solver::Balance DeviceFrame::balance() const {

@@ -18,7 +18,7 @@ class DeviceFrame final : public solver::FrameDevice {
 
   [[nodiscard]] solver::Precision precision() const override;
   [[nodiscard]] bool residual_costs() const override { return true; }
-  int solve(double enough, bool residual) override;
+  int solve(double energy_tolerance, bool residual) override;
   [[nodiscard]] solver::Balance balance() const override;
   [[nodiscard]] bool finite() const override { return fields_.finite(); }
   Correction correct() override;

@@ -61,11 +61,11 @@ void HostCorrectedRoute::write_exact(const Load& load, const Eigen::VectorXd& of
   fields_.write_unknowns(Field::displacement, exact_);
 }
 
-int HostCorrectedRoute::solve(const Load& load, double enough, bool balance) {
+int HostCorrectedRoute::solve(const Load& load, double energy_tolerance, bool balance) {
   update_->loaded(load);
   const bool few = load.force_dofs.size() <= kExactLoads;
-  const Eigen::VectorXd& c =
-      update_->deferred().coefficients({load.force_dofs, load.forces}, load.displacements, enough);
+  const Eigen::VectorXd& c = update_->deferred().coefficients({load.force_dofs, load.forces},
+                                                              load.displacements, energy_tolerance);
   if (fields_.keeps_next()) {  // before the host writes there
     commands_.begin();
     fields_.record_keep(commands_);

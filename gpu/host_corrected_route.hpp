@@ -23,7 +23,7 @@ class HostCorrectedRoute final : public DeviceRoute {
   [[nodiscard]] static std::size_t planned_bytes(const KernelFactory& kernels,
                                                  const Problem& problem, std::size_t panel_bytes);
 
-  int solve(const Load& load, double enough, bool balance) override;
+  int solve(const Load& load, double energy_tolerance, bool balance) override;
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements) override;

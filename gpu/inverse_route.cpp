@@ -133,11 +133,11 @@ void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) 
   commands_.barrier();
 }
 
-int InverseRoute::solve(const Load& load, double enough, bool balance) {
+int InverseRoute::solve(const Load& load, double energy_tolerance, bool balance) {
   if (eager_) {
     solve_eager(load, balance);
   } else {
-    solve_deferred(load, enough, balance);
+    solve_deferred(load, energy_tolerance, balance);
   }
   return 0;
 }
@@ -162,12 +162,12 @@ Loaded InverseRoute::set_coefficients(const Load& load, const Eigen::VectorXd& o
   return rest;
 }
 
-void InverseRoute::solve_deferred(const Load& load, double enough, bool balance) {
+void InverseRoute::solve_deferred(const Load& load, double energy_tolerance, bool balance) {
   update_->loaded(load);
   hold_loads(load);
   const Loaded loaded = set_coefficients(
-      load,
-      update_->deferred().coefficients({load.force_dofs, load.forces}, load.displacements, enough));
+      load, update_->deferred().coefficients({load.force_dofs, load.forces}, load.displacements,
+                                             energy_tolerance));
   if (loaded.dofs.empty() && exact_.whole_in_one()) {
     solve_on_exact(balance);
     return;

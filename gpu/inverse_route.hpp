@@ -30,7 +30,7 @@ class InverseRoute final : public DeviceRoute {
                                                  const Problem& problem,
                                                  const InverseOptions& options);
 
-  int solve(const Load& load, double enough, bool balance) override;
+  int solve(const Load& load, double energy_tolerance, bool balance) override;
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements) override;
@@ -50,7 +50,7 @@ class InverseRoute final : public DeviceRoute {
   void extend_exact();
   void hold_loads(const Load& load);
   void record_solution(Field field, std::uint32_t chunks, bool add);
-  void solve_deferred(const Load& load, double enough, bool balance);
+  void solve_deferred(const Load& load, double energy_tolerance, bool balance);
   [[nodiscard]] Loaded set_coefficients(const Load& load, const Eigen::VectorXd& of_damage);
   void solve_on_exact(bool balance);
   void solve_eager(const Load& load, bool balance);

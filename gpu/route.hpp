@@ -22,8 +22,8 @@ class DeviceRoute {
   DeviceRoute& operator=(const DeviceRoute&) = delete;
 
   /// Displacement under a load, and Fields' state of it, with f - K u if `balance`. The deferred
-  /// update may stop refining at `enough` [N mm]. Returns iterations.
-  virtual int solve(const Load& load, double enough, bool balance) = 0;
+  /// update may stop refining at `energy_tolerance` [N mm]. Returns iterations.
+  virtual int solve(const Load& load, double energy_tolerance, bool balance) = 0;
   /// Correction = A^-1 r with grips at 0, and Fields' summary of it. Returns iterations.
   virtual int correct() = 0;
   /// Displacement += correction, and Fields' state anew.

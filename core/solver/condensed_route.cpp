@@ -196,7 +196,8 @@ class CondensedRoute final : public InverseRoute {
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
     load_ = load;
-    based_.deferred->solve({load.force_dofs, load.forces}, load.displacements, u, enough_);
+    based_.deferred->solve({load.force_dofs, load.forces}, load.displacements, u,
+                           energy_tolerance_);
     return {};
   }
 
@@ -245,7 +246,7 @@ class CondensedRoute final : public InverseRoute {
   }
 
   const Deferred* deferred() const override { return based_.deferred.get(); }
-  void set_enough(double energy) override { enough_ = energy; }
+  void set_energy_tolerance(double energy) override { energy_tolerance_ = energy; }
   int bases() const override { return bases_; }
   const BaseCheck& base_check() const override { return based_.check; }
   double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
@@ -301,7 +302,7 @@ class CondensedRoute final : public InverseRoute {
   Equilibrium whole_;
   WholeRoom room_;
   Eigen::VectorXd everywhere_;
-  double enough_ = 0;
+  double energy_tolerance_ = 0;
   int bases_ = 1;
   // Where something can be destroyed.
   std::optional<NextBase> next_;

@@ -365,7 +365,8 @@ void Deferred::add_to_grips(Eigen::Index width, bool more) {
 }
 
 const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
-                                              std::span<const double> displacement, double enough) {
+                                              std::span<const double> displacement,
+                                              double energy_tolerance) {
   constexpr int kRefinements = 4;
   const Eigen::VectorXd& p = base_->load(on_body(forces));
   start(p, displacement);
@@ -374,14 +375,14 @@ const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
   for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
     const double before = defect_energy_;
     defect_energy_ = refine(p, displacement);
-    converged_ = defect_energy_ <= enough || (pass > 0 && !(defect_energy_ < before / 4));
+    converged_ = defect_energy_ <= energy_tolerance || (pass > 0 && !(defect_energy_ < before / 4));
   }
   return x_;
 }
 
 void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
-                     double enough) {
-  base_->expand(coefficients(forces, displacement, enough), u);
+                     double energy_tolerance) {
+  base_->expand(coefficients(forces, displacement, energy_tolerance), u);
   for (Eigen::Index i = 0; i < grips_; ++i) {  // free of rounding
     u[touched_[static_cast<std::size_t>(i)]] =
         displacement.empty() ? 0.0 : displacement[static_cast<std::size_t>(i)];

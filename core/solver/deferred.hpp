@@ -61,14 +61,14 @@ class Deferred {
   void take_back();
 
   /// u = A^-1 f with u_G = displacement (empty: 0). The forces of the damage are refined until
-  /// what they lack has no more energy than `enough` [N mm], or rounding. A force on a new node
-  /// acts on its parent's unknown and on its own (unknown()).
+  /// what they lack has no more energy than `energy_tolerance` [N mm], or rounding. A force on a
+  /// new node acts on its parent's unknown and on its own (unknown()).
   void solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
-             double enough = 0);
+             double energy_tolerance = 0);
   /// The x of solve() with u = X (f + B x), for a device that does that product itself: the first
   /// rank() entries, until the next call.
   const Eigen::VectorXd& coefficients(const Forces& forces, std::span<const double> displacement,
-                                      double enough = 0);
+                                      double energy_tolerance = 0);
   /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
   /// residual where damage acts, in the base's arithmetic.
   [[nodiscard]] double defect_energy() const { return defect_energy_; }
@@ -76,7 +76,7 @@ class Deferred {
   void correct(const Forces& residual, Eigen::VectorXd& du);
   /// The x of correct() for B^T X r.
   const Eigen::VectorXd& correction_coefficients(const Eigen::VectorXd& projection);
-  /// Whether the last solution was refined down to `enough` or to rounding.
+  /// Whether the last solution was refined down to `energy_tolerance` or to rounding.
   [[nodiscard]] bool converged() const { return converged_; }
   /// Forces of the grips on the base in the last solution, anchors included.
   [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType grip_forces() const {

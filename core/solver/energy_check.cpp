@@ -185,7 +185,7 @@ std::optional<EnergyCheck::Expected> EnergyCheck::expected(const Load& load, int
   return expected;
 }
 
-double EnergyCheck::enough(const Expected& expected) const {
+double EnergyCheck::energy_tolerance(const Expected& expected) const {
   const double e = kRefined * expected.largest / stress_of_energy_;
   return e * e;
 }

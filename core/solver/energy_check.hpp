@@ -42,7 +42,7 @@ class EnergyCheck {
   void event() { changed_ = true; }
 
   /// Energy [N mm] of a defect that needs no refinement.
-  [[nodiscard]] double enough(const Expected& expected) const;
+  [[nodiscard]] double energy_tolerance(const Expected& expected) const;
   /// What is known of a solution without a full check; nothing when that is needed. `energy`: of
   /// what the deferred update lacked (Deferred::defect_energy).
   [[nodiscard]] std::optional<SolveReport> known(const Expected& expected, double energy,

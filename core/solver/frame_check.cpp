@@ -52,7 +52,7 @@ std::optional<double> FrameCheck::scale_of(const Load& load, int bases) const {
   return multiple(load, load_);
 }
 
-double FrameCheck::enough(double scale) const {
+double FrameCheck::energy_tolerance(double scale) const {
   const double e = kUnrefined * scale * solution_.largest_stress / stress_of_energy_;
   return e * e;
 }

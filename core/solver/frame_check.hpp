@@ -36,7 +36,7 @@ class FrameCheck {
   }
 
   /// Energy [N mm] of a defect of the deferred update that needs no refinement.
-  [[nodiscard]] double enough(double scale) const;
+  [[nodiscard]] double energy_tolerance(double scale) const;
   /// Error estimate of a solution whose load is `scale` times that of the last full check; nothing
   /// when that is too long ago or the estimate does not vouch for double precision.
   [[nodiscard]] std::optional<double> error(double scale, const Solution& solution) const;

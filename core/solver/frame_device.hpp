@@ -37,8 +37,9 @@ class FrameDevice {
   [[nodiscard]] virtual bool residual_costs() const { return false; }
 
   /// Puts a solution in work, with its residual if wanted, and its stress. The deferred update may
-  /// stop refining at `enough` [N mm] (Deferred::solve). Returns iterations of conjugate gradients.
-  virtual int solve(double enough, bool residual) = 0;
+  /// stop refining at `energy_tolerance` [N mm] (Deferred::solve). Returns iterations of conjugate
+  /// gradients.
+  virtual int solve(double energy_tolerance, bool residual) = 0;
   /// Of the solution in work.
   [[nodiscard]] virtual Balance balance() const = 0;
   /// Whether the solution in work is made of numbers, where its residual was left out.
@@ -77,7 +78,7 @@ class FrameDevice {
     double largest_u = 0, largest_stress = 0;  ///< [mm], [MPa]
   };
   /// Puts the solution on the region in work.
-  virtual OnRegion solve_region(double /*enough*/) { return {}; }
+  virtual OnRegion solve_region(double /*energy_tolerance*/) { return {}; }
   /// Of a solution that solve() has put in work.
   virtual OnRegion on_region() { return {}; }
 };

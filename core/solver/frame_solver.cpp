@@ -35,7 +35,7 @@ FrameSolver::FrameSolver(const Problem& problem, FrameDevice& device)
     : problem_(problem),
       device_(device),
       precision_(device.precision()),
-      keeps_(std::min(precision_.kept, tolerance())) {
+      kept_error_(std::min(precision_.kept, tolerance())) {
   if (device.condensed()) {
     energy_checks_.emplace(problem);
   } else if (device.deferred()) {
@@ -81,7 +81,7 @@ SolveReport FrameSolver::solve_everywhere(const Load& load) {
   refined_ = false;
   check_ = check_of(load);
   const auto scale = check_ ? check_->scale_of(load, device_.bases()) : std::nullopt;
-  put_in_work(scale ? check_->enough(*scale) : 0, report);
+  solve_once(scale ? check_->energy_tolerance(*scale) : 0, report);
   const auto known =
       scale && device_.deferred()->converged() ? check_->error(*scale, solution()) : std::nullopt;
   if (known) {
@@ -108,7 +108,7 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
   EnergyCheck& check = energy_checks_->of(load, device_.bases());
   // The solution without a full check, where one like it has had its check.
   if (const auto expected = check.expected(load, device_.bases())) {
-    const auto [largest_u, largest] = device_.solve_region(check.enough(*expected));
+    const auto [largest_u, largest] = device_.solve_region(check.energy_tolerance(*expected));
     if (const auto known =
             check.known(*expected, device_.deferred()->defect_energy(), largest_u, largest)) {
       everywhere_ = false;
@@ -116,19 +116,19 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
     }
   }
   SolveReport report;
-  put_in_work(0, report);
+  solve_once(0, report);
   check_fully(report);
   const auto [largest_u, largest] = device_.on_region();
   check.checked(load, report, unrefined_, device_.bases(), largest_u, largest);
   return report;
 }
 
-void FrameSolver::put_in_work(double enough, SolveReport& report) {
-  report.iterations += device_.solve(enough, true);
-  look_at(report);
+void FrameSolver::solve_once(double energy_tolerance, SolveReport& report) {
+  report.iterations += device_.solve(energy_tolerance, true);
+  read_balance(report);
 }
 
-void FrameSolver::look_at(SolveReport& report) {
+void FrameSolver::read_balance(SolveReport& report) {
   balance_ = device_.balance();
   report.residual =
       balance_.load_squared > 0 ? balance_.residual / std::sqrt(balance_.load_squared) : 0.0;
@@ -141,7 +141,7 @@ void FrameSolver::check_fully(SolveReport& report) {
   if (!by_elements && !(report.error <= precision_.kept) && device_.sum_by_elements(true)) {
     refine(report, false);
   }
-  if (!(report.error <= tolerance()) || is_off(report.error)) polish(report);
+  if (!(report.error <= tolerance()) || misses_precision(report.error)) polish(report);
   device_.sum_by_elements(false);
   if (!(report.error <= tolerance())) fail(report);
 }
@@ -172,14 +172,14 @@ void FrameSolver::refine(SolveReport& report, bool by_base) {
     if (done || attempt == kRefinements || stalled) return;
     device_.add_correction();
     refined_ = true;
-    look_at(report);
+    read_balance(report);
   }
 }
 
 /// More than the precision promises, more than rounding explains, and more than a fresh base came
 /// to.
-bool FrameSolver::is_off(double error) const {
-  return error > keeps_ && error > error_of_rounding();
+bool FrameSolver::misses_precision(double error) const {
+  return error > kept_error_ && error > error_of_rounding();
 }
 
 /// What rounding of the displacement may cost the stress, with room.
@@ -191,15 +191,15 @@ double FrameSolver::error_of_rounding() const {
 /// computed anew, and if that is not enough conjugate gradients on the intact base have the word.
 void FrameSolver::polish(SolveReport& report) {
   if (device_.rebase()) {
-    put_in_work(0, report);
+    solve_once(0, report);
     refine(report, true);
   }
   if (!(report.error <= tolerance()) && device_.fall_back(true)) {
-    put_in_work(0, report);
+    solve_once(0, report);
     refine(report, false);
     device_.fall_back(false);
   }
-  keeps_ = std::max(keeps_, std::min(kLikeFresh * report.error, tolerance()));
+  kept_error_ = std::max(kept_error_, std::min(kLikeFresh * report.error, tolerance()));
 }
 
 FrameCheck::Solution FrameSolver::solution() const {

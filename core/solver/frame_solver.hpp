@@ -33,11 +33,11 @@ class FrameSolver {
   [[nodiscard]] std::optional<SolveReport> solve_known(const Load& load);
   [[nodiscard]] FrameCheck* check_of(const Load& load);
 
-  void put_in_work(double enough, SolveReport& report);
-  void look_at(SolveReport& report);
+  void solve_once(double energy_tolerance, SolveReport& report);
+  void read_balance(SolveReport& report);
   void check_fully(SolveReport& report);
   void refine(SolveReport& report, bool by_base);
-  [[nodiscard]] bool is_off(double error) const;
+  [[nodiscard]] bool misses_precision(double error) const;
   [[nodiscard]] double error_of_rounding() const;
   void polish(SolveReport& report);
 
@@ -52,7 +52,7 @@ class FrameSolver {
 
   // Stress error up to which a base is kept: what the precision promises, or somewhat above what a
   // fresh one came to where that is more.
-  double keeps_;
+  double kept_error_;
 
   const Load* load_ = nullptr;   // of the solve() in work
   FrameCheck* check_ = nullptr;  // of that load, of checks_

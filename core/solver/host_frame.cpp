@@ -2,6 +2,7 @@
 #include "solver/host_frame.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,8 @@
 
 namespace sunder::solver {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 // A full check refines silently down to these stress errors, for a yardstick and a region, whose
 // next frames rely on it, a tenth of what double precision promises for an intact body; only frames
@@ -45,18 +48,18 @@ Precision HostFrame::precision() const {
   return {yardstick_ || condensed() ? kReferenceError : kDeferredError, kDamagedError, kEstimated};
 }
 
-int HostFrame::solve(double enough, bool) {
-  route().set_enough(enough);
+int HostFrame::solve(double energy_tolerance, bool) {
+  route().set_energy_tolerance(energy_tolerance);
   const int iterations = route().solve(load_, force_, u_).iterations;
   route().complete(u_);
-  look_at();
+  compute_residual();
   return iterations;
 }
 
 /// Residual f - K u and reactions of the solution, and its largest stress.
-void HostFrame::look_at() {
+void HostFrame::compute_residual() {
   if (fields_.has_forces()) {
-    hand_out();
+    compute_stress();
     fields_.forces(product_);
   } else {
     body_.apply(u_, product_);
@@ -77,8 +80,10 @@ Balance HostFrame::balance() const {
 }
 
 /// Displacement at all nodes, and its stress.
-void HostFrame::hand_out() {
+void HostFrame::compute_stress() {
+  const auto start = Clock::now();
   if (const auto largest = fields_.take(u_)) largest_ = *largest;
+  stress_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 FrameDevice::Correction HostFrame::correct() {
@@ -90,7 +95,7 @@ FrameDevice::Correction HostFrame::correct() {
 
 void HostFrame::add_correction() {
   u_ += du_;
-  look_at();
+  compute_residual();
 }
 
 bool HostFrame::fall_back(bool on) {
@@ -99,8 +104,8 @@ bool HostFrame::fall_back(bool on) {
   return true;
 }
 
-FrameDevice::OnRegion HostFrame::solve_region(double enough) {
-  route_.set_enough(enough);
+FrameDevice::OnRegion HostFrame::solve_region(double energy_tolerance) {
+  route_.set_energy_tolerance(energy_tolerance);
   route_.solve(load_, force_, u_);
   const OnRegion found = on_region();
   const auto gripped = problem().gripped_dofs();
@@ -111,7 +116,7 @@ FrameDevice::OnRegion HostFrame::solve_region(double enough) {
 }
 
 FrameDevice::OnRegion HostFrame::on_region() {
-  hand_out();
+  compute_stress();
   OnRegion found;
   for (Index d : fields_.region()->dofs) {
     found.largest_u = std::max(found.largest_u, std::abs(u_[d]));

@@ -33,7 +33,7 @@ class HostFrame final : public FrameDevice {
 
   [[nodiscard]] Precision precision() const override;
   [[nodiscard]] bool yardstick() const override { return yardstick_; }
-  int solve(double enough, bool residual) override;
+  int solve(double energy_tolerance, bool residual) override;
   [[nodiscard]] Balance balance() const override;
   Correction correct() override;
   void add_correction() override;
@@ -43,12 +43,15 @@ class HostFrame final : public FrameDevice {
   [[nodiscard]] int bases() const override { return route_.bases(); }
   [[nodiscard]] const BaseCheck& base_check() const override { return route_.base_check(); }
   [[nodiscard]] bool condensed() const override { return fields_.region() != nullptr; }
-  OnRegion solve_region(double enough) override;
+  OnRegion solve_region(double energy_tolerance) override;
   OnRegion on_region() override;
 
+  /// Of computing the stress of solutions, all so far [ms].
+  [[nodiscard]] double stress_ms() const { return stress_ms_; }
+
  private:
-  void look_at();
-  void hand_out();
+  void compute_residual();
+  void compute_stress();
   [[nodiscard]] const Problem& problem() const { return body_.problem(); }
   [[nodiscard]] InverseRoute& route() { return other_ ? *other_ : route_; }
   [[nodiscard]] double grip_force(std::size_t g) const;
@@ -65,6 +68,7 @@ class HostFrame final : public FrameDevice {
   Eigen::VectorXd force_, u_, du_, product_, r_;
   std::vector<double> reactions_;
   double load_squared_ = 0, largest_ = 0;  // of the solution in work: its load, its stress
+  double stress_ms_ = 0;
 };
 
 }  // namespace sunder::solver

@@ -41,7 +41,7 @@ class InverseRoute {
   /// The deferred update, where there is one: it makes a frame's check cheap.
   [[nodiscard]] virtual const Deferred* deferred() const { return nullptr; }
   /// A deferred update may stop refining at this energy of the defect [N mm].
-  virtual void set_enough(double) {}
+  virtual void set_energy_tolerance(double) {}
   /// Bases there have been so far: another one needs a full check.
   [[nodiscard]] virtual int bases() const { return 1; }
   /// Of the newest base, if whoever made it has checked it.

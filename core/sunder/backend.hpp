@@ -44,6 +44,7 @@ struct SolveReport {
   int iterations = 0;   ///< of conjugate gradients, when they ran
   bool polished = false;  ///< the frame was over tolerance and was refined
   double waited_ms = 0;   ///< for a new base from another thread, since the last solve
+  double stress_ms = 0;   ///< of its time: the stress that it is checked by; 0: a device's own
 };
 
 struct Worst {

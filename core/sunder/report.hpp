@@ -31,7 +31,8 @@ struct DestroyedElement {
   double instrument_share = 0;
 };
 
-/// The stages of a frame, in order; milliseconds.
+/// The stages of a frame, in order; milliseconds. Stress that a device computes in one submit with
+/// the displacement counts as `solve`.
 struct StageTimes {
   double load = 0, solve = 0, stress = 0, decide = 0, update = 0, total = 0;
 };

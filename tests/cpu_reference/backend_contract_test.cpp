@@ -108,6 +108,13 @@ TEST(BackendContract, WhatIsLeftOutIsNeitherHeldNorOffered) {
   EXPECT_THROW(bare.backend->solve_pristine({}, u), UsageError);
 }
 
+TEST(BackendContract, TellsOfASolutionsTimeWhatItsStressTook) {
+  const Body full(small_board()), bare(small_board(), Needs{});
+  for (const Body* body : {&full, &bare}) body->load(zero(*body));
+  EXPECT_GT(full.backend->solve().stress_ms, 0);
+  EXPECT_EQ(bare.backend->solve().stress_ms, 0);
+}
+
 TEST(BackendContract, InfoAddsUpTheBuffers) {
   const Body body(small_board());
   std::size_t sum = 0;

@@ -65,6 +65,16 @@ TEST(Frame, ZeroLoadBreaksNothing) {
   }
 }
 
+TEST(Frame, StagesTakeTheirOwnTime) {
+  SceneRun torn(strip(0.6, 3, 3));  // solves several times a step
+  for (const StepReport& r : torn.all()) {
+    const StageTimes& t = r.times;
+    EXPECT_GT(t.solve, 0) << "without its stress";
+    EXPECT_GT(t.stress, 0);
+    EXPECT_LE(t.load + t.solve + t.stress + t.decide + t.update, t.total + 1e-9);
+  }
+}
+
 TEST(Frame, NoLoadAtAll) {
   Scene scene = strip(0.1, 0, 1);
   scene.instruments.clear();
