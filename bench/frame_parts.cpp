@@ -133,7 +133,7 @@ class Frames {
   void solve(double energy_tolerance) {
     const double base = times_[kProject] + times_[kBackward];
     times_[kRefine] += us_of([&] {
-      deferred_->solve({board_.load_dofs, board_.load_values}, {}, u_, enough);
+      deferred_->solve({board_.load_dofs, board_.load_values}, {}, u_, energy_tolerance);
     });
     times_[kRefine] -= times_[kProject] + times_[kBackward] - base;
     times_[kStress] += us_of([&] {
