@@ -3,6 +3,8 @@
 // allocated.
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "sunder/error.hpp"
 #include "support/body.hpp"
 #include "support/structured_board.hpp"
@@ -109,10 +111,16 @@ TEST(BackendContract, WhatIsLeftOutIsNeitherHeldNorOffered) {
 }
 
 TEST(BackendContract, TellsOfASolutionsTimeWhatItsStressTook) {
-  const Body full(small_board()), bare(small_board(), Needs{});
-  for (const Body* body : {&full, &bare}) body->load(zero(*body));
-  EXPECT_GT(full.backend->solve().stress_ms, 0);
-  EXPECT_EQ(bare.backend->solve().stress_ms, 0);
+  using Clock = std::chrono::steady_clock;
+  const Body body(small_board());
+  body.load(zero(body));
+  for (int solve = 0; solve < 3; ++solve) {
+    const auto start = Clock::now();
+    const SolveReport report = body.backend->solve();
+    const std::chrono::duration<double, std::milli> took = Clock::now() - start;
+    EXPECT_GT(report.stress_ms, 0);
+    EXPECT_LT(report.stress_ms, took.count()) << "of this solution alone";
+  }
 }
 
 TEST(BackendContract, InfoAddsUpTheBuffers) {
