@@ -7,7 +7,7 @@
 Installs what is missing of the Debian packages that this needs (scripts/install-packages bench; not
 with --plan and --draw) and builds in DIR (build-bench) unless the programs are there; what is still
 missing then, a peer's library above all, ends it before anything is measured. Quick by default: 5 to 10 minutes on two
-cores; --full takes an hour and a quarter. --jobs 2, as CI calls it, runs two programs at once: that
+cores; --full takes an hour and a quarter. --jobs 2 runs two programs at once: that
 shows that all of them run and are right, and its times are no measurement. Result:
 OUT/index.html with its figures as SVG files, results.json, results.csv, stability.csv, scenes.csv,
 convergence.csv. They are written after every program; --resume goes on with a run that was ended,
