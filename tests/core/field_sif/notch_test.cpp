@@ -241,14 +241,14 @@ TEST(Notch, FormulaIsLeftOutAndSaysSoOnce) {
   EXPECT_EQ(run.warnings_with("formula's K of crack 0 is left out"), 1);
 }
 
-/// The held strip with a V, 6 mm deep, in the place of its notch; 0 degrees: split nodes.
-Scene v_by_shape(double degrees) {
+/// The held strip with a V, so many mm deep, in the place of its notch; 0 degrees: split nodes.
+Scene v_by_shape(double degrees, double deep = 6) {
   Scene scene = HeldStrip{}.scene(SifSource::field, {0, 8, 0});
   Mesh& mesh = scene.mesh;
   std::map<Index, Index> copy;
   for (Index n = 0, count = mesh.node_count(); n < count; ++n) {
     const Vec3 x = mesh.nodes[n];
-    if (x.y() != 10 || x.x() >= 6) continue;
+    if (x.y() != 10 || x.x() >= deep) continue;
     copy[n] = mesh.node_count();
     mesh.nodes.push_back(x);
   }
@@ -265,13 +265,25 @@ Scene v_by_shape(double degrees) {
   const double slope = std::tan(degrees * std::numbers::pi / 360);
   for (Index n = 0; n < mesh.node_count(); ++n) {
     Vec3& x = mesh.nodes[n];
-    const double half = slope * std::max(6 - x.x(), 0.0) * (1 - std::abs(x.y() - 10) / 11);
+    const double half = slope * std::max(deep - x.x(), 0.0) * (1 - std::abs(x.y() - 10) / 11);
     if (x.y() > 0.5 && x.y() < 20.5) x.y() += upper[n] ? half : -half;
   }
   scene.cracks[0].elements = std::vector<Index>{};
   scene.cracks[0].mouth = Vec3(0, 10, 0.5);
-  scene.cracks[0].tips = {Vec3(6, 10, 0.5)};
+  scene.cracks[0].tips = {Vec3(deep, 10, 0.5)};
   return scene;
+}
+
+TEST(Notch, OneOfTooFewElementsIsNotMeasuredAndSaysSoOnce) {
+  FourSteps run(v_by_shape(60, 1));  // one element deep
+  const auto tips = run.simulation.tips();
+  ASSERT_EQ(tips.size(), 1u);
+  EXPECT_EQ(tips[0].field_note, "coarse");
+  EXPECT_FALSE(tips[0].k_1);
+  EXPECT_FALSE(tips[0].k);
+  EXPECT_EQ(run.warnings_with("the mesh is too coarse for K within 3 %"), 1);
+  for (const DestroyedElement& row : run.simulation.destroyed())
+    EXPECT_NE(row.cause, Cause::sif) << row.element;
 }
 
 TEST(Notch, SplitOneGoesOnAndSaysSoOnce) {
