@@ -89,6 +89,16 @@ inline Scene scene_of(const BodyOf& b) {
   return scene;
 }
 
+/// Two that share a face, held at x = 0.
+inline Scene two_elements() {
+  Scene scene = scene_of({});
+  scene.mesh.nodes = {{0, 0, 0}, {0, 3, 0}, {0, 0, 3}, {3, 1, 1}, {3, 3, 3}};
+  scene.mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  scene.mesh.volume_of = {0, 0};
+  scene.instruments.clear();
+  return scene;
+}
+
 /// A body as Deferred has it and as it is assembled afresh.
 class Changing {
  public:

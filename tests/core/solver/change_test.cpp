@@ -228,12 +228,7 @@ TEST(Change, BringsAnElementBetweenOldNodes) {
 }
 
 TEST(Change, FollowsABodyOfTwoElements) {
-  Scene scene = test::scene_of({});
-  scene.mesh.nodes = {{0, 0, 0}, {0, 3, 0}, {0, 0, 3}, {3, 1, 1}, {3, 3, 3}};
-  scene.mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
-  scene.mesh.volume_of = {0, 0};
-  scene.instruments.clear();
-  const Problem problem(std::move(scene));
+  const Problem problem(test::two_elements());
   const linear_algebra::Factor factor(fem::assemble_lower(problem, {}));
   Deferred deferred(problem, std::make_unique<FactorBase>(factor));
   test::ChangedBody afresh(problem);
