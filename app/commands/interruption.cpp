@@ -99,10 +99,10 @@ void Interruption::lower_priority_of_others() const {
   }
 }
 
-Interruption::Duty Interruption::expect(Duty duty) {
+Interruption::Duty Interruption::expect(const std::function<Duty()>& make) {
   std::unique_lock lock(mutex_);
   stay_unless_free(lock);
-  return std::exchange(duty_, std::move(duty));
+  return std::exchange(duty_, make());
 }
 
 void Interruption::claim() {

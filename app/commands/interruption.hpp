@@ -53,8 +53,9 @@ class Interruption {
   [[nodiscard]] Since since_signal() const;
 
   /// Replaces what a signal finds and returns what it would have found. Does not return where
-  /// that is under way.
-  Duty expect(Duty duty);
+  /// that is under way. What `make` makes or takes away a signal finds whole: one that comes
+  /// meanwhile waits. Passes on what `make` throws; nothing has changed then.
+  Duty expect(const std::function<Duty()>& make);
   /// The computing ends by itself and writes its results: nobody else will. What still computes
   /// on other threads after a signal makes way for it. Does not return where somebody else does
   /// already.
@@ -92,13 +93,25 @@ class Interruption {
 class Expecting {
  public:
   Expecting(Interruption& interruption, Interruption::Duty duty)
-      : interruption_(interruption), before_(interruption.expect(std::move(duty))) {}
-  ~Expecting() { static_cast<void>(interruption_.expect(std::move(before_))); }
+      : Expecting(interruption, [&] { return std::move(duty); }, {}) {}
+  /// `make` makes what the duty takes back, `release` ends it; a signal finds both done or neither.
+  Expecting(Interruption& interruption, const std::function<Interruption::Duty()>& make,
+            std::function<void()> release)
+      : interruption_(interruption),
+        release_(std::move(release)),
+        before_(interruption.expect(make)) {}
+  ~Expecting() {
+    static_cast<void>(interruption_.expect([this] {
+      if (release_) release_();
+      return std::move(before_);
+    }));
+  }
   Expecting(const Expecting&) = delete;
   Expecting& operator=(const Expecting&) = delete;
 
  private:
   Interruption& interruption_;
+  std::function<void()> release_;
   Interruption::Duty before_;
 };
 

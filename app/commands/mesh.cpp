@@ -7,13 +7,13 @@
 namespace sunder::app {
 
 int mesh_board(const BoardArguments& arguments, Interruption& interruption) {
-  interruption.expect({arguments.file.string() + " was not written",
-                       [file = arguments.file] {
-                         remove_half_written(file);
-                         return true;
-                       },
-                       {},
-                       {}});
+  const Expecting writing(interruption, {arguments.file.string() + " was not written",
+                                         [file = arguments.file] {
+                                           remove_half_written(file);
+                                           return true;
+                                         },
+                                         {},
+                                         {}});
   const BoardReport report = write_board(arguments.options, arguments.file);
   interruption.over(0);
   std::cout << arguments.file.string() << ": " << grouped(report.tets) << " tetrahedra"

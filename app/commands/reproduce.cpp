@@ -5,9 +5,10 @@
 
 #include <cstdio>
 #include <iostream>
+#include <optional>
 
 #include "app/commands/commands.hpp"
-#include "app/output/result_folder.hpp"
+#include "app/commands/in_folder.hpp"
 #include "app/output/text.hpp"
 #include "app/reproduce/notch_mesh.hpp"
 
@@ -44,15 +45,10 @@ void print_verdicts(const reproduce::Study& study) {
 }  // namespace
 
 int reproduce_paper(const ReproduceArguments& arguments, Interruption& interruption) {
-  ResultFolder folder(arguments.out);
-  const Expecting working(interruption, {"nothing was written to " + arguments.out.string(),
-                                         [&folder] {
-                                           reproduce::remove_temporary_files();
-                                           return folder.drop();
-                                         },
-                                         {},
-                                         {}});
-  if (folder.warning()) std::cerr << "sunder: warning: " << *folder.warning() << "\n";
+  std::optional<ResultFolder> folder;
+  const Expecting working = in_folder(interruption, folder, arguments.out,
+                                      "nothing was written to ", reproduce::remove_temporary_files);
+  if (folder->warning()) std::cerr << "sunder: warning: " << *folder->warning() << "\n";
   const TaskLine line(!arguments.quiet);
   const reproduce::Study study = reproduce::carry_out_study(
       {arguments.quick}, arguments.backend, [] { return false; },  // a signal does not ask
@@ -61,7 +57,7 @@ int reproduce_paper(const ReproduceArguments& arguments, Interruption& interrupt
       });
   line.finish();
   interruption.claim();
-  const auto files = reproduce::write_study(study, folder);
+  const auto files = reproduce::write_study(study, *folder);
   const bool signalled = interruption.requested();
   interruption.over(0);
   print_verdicts(study);

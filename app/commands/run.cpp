@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/commands/commands.hpp"
+#include "app/commands/in_folder.hpp"
 #include "app/commands/progress.hpp"
 #include "app/commands/results.hpp"
 #include "app/commands/waiting.hpp"
@@ -370,14 +371,12 @@ void Run::print_summary() const {
 int run(const RunArguments& arguments, Interruption& interruption) {
   const Clock::time_point start = Clock::now();
   const OpenedScene scene = open_scene(arguments.scene);
-  ResultFolder folder(
-      arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem()));
-  const Expecting preparing(
-      interruption, {"nothing was computed, and nothing written to " + folder.path().string(),
-                     [&folder] { return folder.drop(); },
-                     {},
-                     {}});
-  Run run(arguments, scene, folder, interruption, start);
+  std::optional<ResultFolder> folder;
+  const Expecting preparing =
+      in_folder(interruption, folder,
+                arguments.out.value_or(std::filesystem::path("out") / arguments.scene.scene.stem()),
+                "nothing was computed, and nothing written to ");
+  Run run(arguments, scene, *folder, interruption, start);
   const int exit_code = run.carry_out();
   // Destructors wait for threads that make what nobody wants any more.
   if (exit_code == kInterruptedExit) interruption.leave(exit_code);

@@ -24,7 +24,7 @@ std::shared_ptr<const Problem> tearing_board() {
   return std::make_shared<const Problem>(std::move(scene));
 }
 
-gpu::VulkanOptions on(const VulkanHost& host) {
+gpu::VulkanOptions options_of(const VulkanHost& host) {
   gpu::VulkanOptions options;
   const sunder_vulkan_host lent = host.lend();
   options.lent.emplace();
@@ -60,7 +60,7 @@ TEST(LostDevice, LeavesTheHostsDeviceAlone) {
   const VulkanHost host;
   const auto problem = tearing_board();
   int at = 0;
-  while (fails(problem, on(host), at)) {
+  while (fails(problem, options_of(host), at)) {
     host.run([](VkCommandBuffer) {});  // the host goes on
     ++at;
     ASSERT_LT(at, 2000);

@@ -17,13 +17,13 @@
 namespace sunder::test {
 namespace {
 
-struct Case {
+struct EquilibriumCase {
   const char* name;
   Route route;
   std::size_t fractures;
 };
 
-class Equilibrium : public ::testing::TestWithParam<Case> {
+class Equilibrium : public ::testing::TestWithParam<EquilibriumCase> {
  protected:
   static Body torn_board(double softer = 1) {
     Scene scene = held_board();
@@ -140,9 +140,9 @@ TEST_P(Equilibrium, ZeroLoadGivesZeroes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Routes, Equilibrium,
-                         ::testing::Values(Case{"InverseIntact", Route::inverse, 0},
-                                           Case{"InverseTorn", Route::inverse, 30},
-                                           Case{"CgTorn", Route::cg, 30}),
+                         ::testing::Values(EquilibriumCase{"InverseIntact", Route::inverse, 0},
+                                           EquilibriumCase{"InverseTorn", Route::inverse, 30},
+                                           EquilibriumCase{"CgTorn", Route::cg, 30}),
                          [](const auto& p) { return p.param.name; });
 
 TEST(Overflow, IsATypedError) {

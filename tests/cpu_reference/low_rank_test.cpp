@@ -30,14 +30,14 @@ void expect_accurate(Body& body, const std::vector<double>& force, double tolera
   EXPECT_TRUE(s_error <= tolerance) << when << ": stress " << s_error;
 }
 
-struct Case {
+struct LowRankCase {
   const char* name;
   Route route;
   bool crack;
   std::size_t batch;  // elements per event
 };
 
-class Damage : public ::testing::TestWithParam<Case> {};
+class Damage : public ::testing::TestWithParam<LowRankCase> {};
 
 TEST_P(Damage, FollowsAFreshFactorisation) {
   Scene scene = held_board();
@@ -68,15 +68,16 @@ TEST_P(Damage, FollowsAFreshFactorisation) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sequences, Damage,
-                         ::testing::Values(Case{"InverseScattered", Route::inverse, false, 1},
-                                           Case{"InverseCrack", Route::inverse, true, 1},
-                                           Case{"InverseCrackBy10", Route::inverse, true, 10},
-                                           Case{"InverseCrackBy100", Route::inverse, true, 100},
-                                           Case{"InverseCrackBy200", Route::inverse, true, 200},
-                                           Case{"CgScattered", Route::cg, false, 50},
-                                           Case{"CgCrack", Route::cg, true, 10}),
-                         [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Sequences, Damage,
+    ::testing::Values(LowRankCase{"InverseScattered", Route::inverse, false, 1},
+                      LowRankCase{"InverseCrack", Route::inverse, true, 1},
+                      LowRankCase{"InverseCrackBy10", Route::inverse, true, 10},
+                      LowRankCase{"InverseCrackBy100", Route::inverse, true, 100},
+                      LowRankCase{"InverseCrackBy200", Route::inverse, true, 200},
+                      LowRankCase{"CgScattered", Route::cg, false, 50},
+                      LowRankCase{"CgCrack", Route::cg, true, 10}),
+    [](const auto& p) { return p.param.name; });
 
 /// Pieces that nothing holds, and destroyed elements: what the promise leaves out.
 std::vector<std::uint8_t> detached(const Problem& problem,
@@ -88,7 +89,7 @@ std::vector<std::uint8_t> detached(const Problem& problem,
   return ignored;
 }
 
-class Cut : public ::testing::TestWithParam<Case> {};
+class Cut : public ::testing::TestWithParam<LowRankCase> {};
 
 // The whole width is cut at y = 26.5: the lower part with the loaded corner hangs on destroyed
 // elements only. A second force on the attached part makes its field one worth checking.
@@ -126,9 +127,9 @@ TEST_P(Cut, KeepsTheAttachedPartRight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sequences, Cut,
-                         ::testing::Values(Case{"InverseOneByOne", Route::inverse, true, 1},
-                                           Case{"InverseAtOnce", Route::inverse, true, 1000},
-                                           Case{"Cg", Route::cg, true, 1000}),
+                         ::testing::Values(LowRankCase{"InverseOneByOne", Route::inverse, true, 1},
+                                           LowRankCase{"InverseAtOnce", Route::inverse, true, 1000},
+                                           LowRankCase{"Cg", Route::cg, true, 1000}),
                          [](const auto& p) { return p.param.name; });
 
 struct Extreme {

@@ -11,9 +11,6 @@
 
 namespace sunder::test {
 
-// Fp32 storage by the mixed recipe, any damage (design of the accuracy table).
-inline constexpr double kFp32Tolerance = 1e-4;
-
 /// All ways of route inverse, and those of route cg.
 inline std::vector<Way> ways_of_every_route() {
   std::vector<Way> ways = all_ways();

@@ -12,8 +12,6 @@
 namespace sunder::test {
 namespace {
 
-constexpr double kFp32Tolerance = 1e-4;
-
 /// What is destroyed or has come loose.
 std::vector<std::uint8_t> ignore_loose(const Backend& backend) {
   std::vector<std::uint8_t> ignored(backend.destroyed().begin(), backend.destroyed().end());

@@ -47,7 +47,7 @@ Told tell(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backend
 struct Allowed {
   double ratio, compliance, stress;
 };
-constexpr Allowed kFp64{1e-6, 1e-7, kCrackTolerance}, kFp32{1e-3, 1e-4, 1e-4};
+constexpr Allowed kAllowedFp64{1e-6, 1e-7, kCrackTolerance}, kAllowedFp32{1e-3, 1e-4, 1e-4};
 
 void expect_same(const Told& told, const Told& reference, const Allowed& allowed) {
   ASSERT_EQ(told.destroyed.size(), reference.destroyed.size());
@@ -153,7 +153,7 @@ TEST_P(DeviceLost, LosesNothingWheneverItHappens) {
     SCOPED_TRACE("lost after " + std::to_string(submits) + " submits");
     const Told told =
         tell(watched.problem, with_failover(watched.problem, std::move(primary), create_cpu));
-    expect_same(told, reference, fp32 ? kFp32 : kFp64);
+    expect_same(told, reference, fp32 ? kAllowedFp32 : kAllowedFp64);
     expect_warned(told, reference);
     if (told.backend.backend == "vulkan") break;
     EXPECT_EQ(told.backend.backend, "cpu");

@@ -13,8 +13,6 @@
 namespace sunder::test {
 namespace {
 
-constexpr double kFp32Tolerance = 1e-4;
-
 /// A board of which the lower half can tear, 1,500 elements; gripped at its lower right corner.
 Scene gripped_board(bool supported = true) {
   Scene scene;

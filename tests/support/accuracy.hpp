@@ -52,5 +52,7 @@ inline double stress_error(std::span<const std::uint8_t> ignored, std::span<cons
 inline constexpr double kIntactTolerance = 1e-9;  ///< intact and scattered damage
 inline constexpr double kCrackTolerance = 1e-8;   ///< along a crack, up to 200 fractures
 inline constexpr double kCutTolerance = 1e-5;     ///< attached part after a cut
+// Fp32 storage by the mixed recipe, any damage.
+inline constexpr double kFp32Tolerance = 1e-4;
 
 }  // namespace sunder::test

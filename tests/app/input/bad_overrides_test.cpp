@@ -7,16 +7,16 @@ namespace {
 
 using F = InputFault;
 
-Scene parse(const std::vector<std::string>& overrides) {
+Scene with_overrides(const std::vector<std::string>& overrides) {
   return app::parse_scene(good_scene(), "bad.toml", overrides).scene;
 }
 
 TEST(Overrides, ReplaceAndAddAnyKey) {
   const Scene scene =
-      parse({"fracture.model=A", "instrument.0.force=[0,-50,0]", "time.steps=7",
-             "solver.tolerance=1e-5", "solver.prepare=false", "material.upper.yield=3",
-             "title=two words", "output.fields=[\"stress\"]", "fixed.0.axes=xy",
-             "instrument.0.force.1=-40", "solver.device=1"});
+      with_overrides({"fracture.model=A", "instrument.0.force=[0,-50,0]", "time.steps=7",
+                      "solver.tolerance=1e-5", "solver.prepare=false", "material.upper.yield=3",
+                      "title=two words", "output.fields=[\"stress\"]", "fixed.0.axes=xy",
+                      "instrument.0.force.1=-40", "solver.device=1"});
   EXPECT_EQ(scene.fracture.model, FractureModel::a);
   EXPECT_EQ(std::get<Pull>(scene.instruments[0].action).force, Vec3(0, -40, 0));
   EXPECT_EQ(scene.steps, 7);
@@ -30,8 +30,8 @@ TEST(Overrides, ReplaceAndAddAnyKey) {
 }
 
 TEST(Overrides, AddTablesAndQuotedNames) {
-  const Scene scene = parse({"material.\"a.b\".young=3", "material.\"a.b\".poisson=0.3",
-                             "fixed.1.nodes=[4]", "fixed.1.axes=z"});
+  const Scene scene = with_overrides({"material.\"a.b\".young=3", "material.\"a.b\".poisson=0.3",
+                                      "fixed.1.nodes=[4]", "fixed.1.axes=z"});
   EXPECT_EQ(scene.materials.at("a.b").young, 3.0);
   ASSERT_EQ(scene.supports.size(), 2U);
   EXPECT_EQ(std::get<std::vector<Index>>(scene.supports[1].nodes), std::vector<Index>{4});
@@ -84,7 +84,7 @@ TEST(Overrides, NameTheirTextWhenWrong) {
     // A missing key has no text of its own.
     const std::string shown = bad.text.substr(0, bad.text.find('\n'));
     if (bad.fault != F::missing_key) parts.push_back("--set " + shown);
-    expect_input_error([&] { static_cast<void>(parse({bad.text})); }, bad.fault, parts);
+    expect_input_error([&] { static_cast<void>(with_overrides({bad.text})); }, bad.fault, parts);
   }
 }
 

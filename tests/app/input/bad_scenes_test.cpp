@@ -10,24 +10,24 @@ namespace {
 
 using F = InputFault;
 
-struct Case {
+struct SceneCase {
   std::string from, to;  // one edit of good_scene()
   InputFault fault;
   std::vector<std::string> parts;  // of the message
 };
 
-void expect_all(const std::vector<Case>& cases,
+void expect_all(const std::vector<SceneCase>& cases,
                 const std::function<void(const std::string&)>& read) {
-  for (const Case& bad : cases) {
+  for (const SceneCase& bad : cases) {
     SCOPED_TRACE("\"" + bad.from + "\" -> \"" + bad.to + "\"");
     const std::string text = with(good_scene(), bad.from, bad.to);
     expect_input_error([&] { read(text); }, bad.fault, bad.parts);
   }
 }
 
-void parse(const std::string& text) { static_cast<void>(app::parse_scene(text, "bad.toml")); }
+void read(const std::string& text) { static_cast<void>(app::parse_scene(text, "bad.toml")); }
 
-TEST(BadScenes, TheBaseTextIsRight) { EXPECT_NO_THROW(parse(good_scene())); }
+TEST(BadScenes, TheBaseTextIsRight) { EXPECT_NO_THROW(read(good_scene())); }
 
 TEST(BadScenes, NotToml) {
   expect_all(
@@ -42,7 +42,7 @@ TEST(BadScenes, NotToml) {
           {"steps = 4", "steps = 4\u0262", F::syntax, {"bad.toml:73:", "not ASCII"}},
           {"title = \"A", std::string("title = \"\xff\xfe"), F::syntax, {"bad.toml:1:"}},
       },
-      parse);
+      read);
 }
 
 // What a message quotes stays one line and cannot end it early.
@@ -75,7 +75,7 @@ TEST(BadScenes, NamesWithControlCharacters) {
           {"\"stress\"]", R"("\r\u0085"])", F::unknown_key, {R"(contains "\r\u0085"; allowed)"}},
           {"poisson = 0.4", "poisson = n\n", F::syntax, {"bad.toml:6:", R"(saw 'n\n)"}},
       },
-      parse);
+      read);
 }
 
 TEST(BadScenes, UnknownKeys) {
@@ -137,7 +137,7 @@ TEST(BadScenes, UnknownKeys) {
            F::unknown_key,
            {"crack.0.mouth", "internal crack has no mouth"}},
       },
-      parse);
+      read);
 }
 
 TEST(BadScenes, MissingKeys) {
@@ -171,7 +171,7 @@ TEST(BadScenes, MissingKeys) {
            F::missing_key,
            {"destroy.0", "\"volume\", \"elements\" or \"box\""}},
       },
-      parse);
+      read);
 }
 
 TEST(BadScenes, WrongTypesAndLengths) {
@@ -252,7 +252,7 @@ TEST(BadScenes, WrongTypesAndLengths) {
            F::wrong_type,
            {"fracture.plane_normal", "a table"}},
       },
-      parse);
+      read);
 }
 
 TEST(BadScenes, ValuesThatAreNotAllowed) {
@@ -328,7 +328,7 @@ TEST(BadScenes, ValuesThatAreNotAllowed) {
            F::unknown_key,
            {"output.fields", "\"strain\"", "\"displacement\" and \"stress\""}},
       },
-      parse);
+      read);
 }
 
 // What only a mesh can tell, with the place in the scene's file in front.

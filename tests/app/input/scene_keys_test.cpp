@@ -8,6 +8,7 @@
 
 #include "app/input/input_support.hpp"
 #include "app/input/nearest.hpp"
+#include "app/input/parsed_scene.hpp"
 #include "app/input/scene_key_pages.hpp"
 #include "app/input/scene_toml.hpp"
 
@@ -15,8 +16,6 @@ namespace sunder::test {
 namespace {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;  // key, value
-
-Scene parse(const std::string& text) { return app::parse_scene(text, "scene.toml").scene; }
 
 /// What must stand beside a key so that it is the only thing wrong.
 Lines company(const std::string& table, const std::string& key) {

@@ -2,11 +2,10 @@
 #include "app/input/scene_toml.hpp"
 
 #include "app/input/input_support.hpp"
+#include "app/input/parsed_scene.hpp"
 
 namespace sunder::test {
 namespace {
-
-Scene parse(const std::string& text) { return app::parse_scene(text, "scene.toml").scene; }
 
 TEST(SceneToml, ReadsEveryKey) {
   const app::ParsedScene parsed = app::parse_scene(good_scene(), "scene.toml");

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/output/program.hpp"
+#include "support/text.hpp"
 
 namespace sunder::test {
 namespace {
@@ -69,10 +70,6 @@ class Plan {
   std::string text_;
 };
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(Plan, OfABoardThatTears) {
   const Plan plan({});
   EXPECT_EQ(plan.of("Problem", "nodes, tetrahedra"), "242, 500");
@@ -128,11 +125,11 @@ TEST(Plan, NamesTheKernelsOfTheRoute) {
     if (route != k.route) plan.emplace(std::vector{"solver.route=\"" + (route = k.route) + "\""});
     const std::string does = plan->of("Kernels of a frame", k.name);
     if (k.says) {
-      EXPECT_TRUE(contains(does, k.says)) << route << ", " << k.name << ": " << does;
+      EXPECT_TRUE(mentions(does, k.says)) << route << ", " << k.name << ": " << does;
     } else {
       EXPECT_EQ(does, "") << route << ", " << k.name;
     }
-    EXPECT_TRUE(contains(plan->of("Kernels of a frame", "stress"), "500 elements")) << route;
+    EXPECT_TRUE(mentions(plan->of("Kernels of a frame", "stress"), "500 elements")) << route;
     EXPECT_EQ(plan->of("Kernels of a frame", "grips"), "") << "nothing is gripped";
   }
 }
@@ -146,8 +143,8 @@ TEST(Plan, NamesNoKernelThatTheSceneDoesNotNeed) {
     return false;
   };
   const Plan b({});
-  EXPECT_TRUE(contains(b.of(title, "intact body's field"), "once a step that breaks"));
-  EXPECT_TRUE(contains(b.of(title, "yield summary"), "largest ratio"));
+  EXPECT_TRUE(mentions(b.of(title, "intact body's field"), "once a step that breaks"));
+  EXPECT_TRUE(mentions(b.of(title, "yield summary"), "largest ratio"));
   EXPECT_TRUE(left_out(b, "pressure terms K_b, K_c: no pressing instrument"));
   EXPECT_TRUE(left_out(b, "compliance block of grips"));
   EXPECT_FALSE(left_out(b, "update of the inverse"));
@@ -160,7 +157,7 @@ TEST(Plan, NamesNoKernelThatTheSceneDoesNotNeed) {
   const std::vector<std::string> quiet = {"fracture.model=\"none\"", "destroy=[]"};
   const Plan still(quiet);
   EXPECT_EQ(still.of("Engine", "route"), "factor, update none");
-  EXPECT_TRUE(contains(still.of("Engine", "why"), "nothing can be destroyed"));
+  EXPECT_TRUE(mentions(still.of("Engine", "why"), "nothing can be destroyed"));
   EXPECT_EQ(still.of("Engine", "predicted frame [ms]").find("with a fracture"), std::string::npos);
   for (const char* name : {"small update", "damage forces", "new base", "intact body's field"}) {
     EXPECT_EQ(still.of(title, name), "");
@@ -172,7 +169,7 @@ TEST(Plan, NamesNoKernelThatTheSceneDoesNotNeed) {
   std::vector<std::string> least = quiet;
   least.push_back("output.fields=[\"displacement\"]");
   const Plan moved(least);
-  EXPECT_TRUE(contains(moved.of(title, "stress"), "their norm alone, for the error estimate"));
+  EXPECT_TRUE(mentions(moved.of(title, "stress"), "their norm alone, for the error estimate"));
   EXPECT_EQ(moved.of(title, "yield summary"), "");
   EXPECT_EQ(moved.bytes("element stress"), -1);
   EXPECT_TRUE(left_out(moved, "stress of each element: no fracture model and no output needs it"));
@@ -184,10 +181,10 @@ TEST(Plan, CountsGrips) {
       {"instrument=[{ name = \"grip\", kind = \"expansion\", displacement = [0, -1, 0], "
        "box = [[49.999, -0.001, -1.0], [50.001, 0.001, 3.0]] }]"});
   EXPECT_EQ(plan.of("Problem", "unknowns"), "660 (66 held by supports, 6 driven by grips)");
-  EXPECT_TRUE(contains(plan.of("Kernels of a frame", "grips"), "hold 6 unknowns"));
+  EXPECT_TRUE(mentions(plan.of("Kernels of a frame", "grips"), "hold 6 unknowns"));
   EXPECT_EQ(plan.bytes("compliance columns of grips"), static_cast<long>(6 * kUnknowns * 8));
   for (const std::string& line : plan.under("Left out: this scene does not need it")) {
-    EXPECT_FALSE(contains(line, "grips")) << line;
+    EXPECT_FALSE(mentions(line, "grips")) << line;
   }
 }
 
@@ -209,12 +206,12 @@ TEST(Plan, SaysOneUnknown) {
     arguments.insert(arguments.end(), scene.begin(), scene.end());
     const Outcome outcome = run_program(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_TRUE(contains(outcome.out, "1 unknown")) << outcome.out;
+    EXPECT_TRUE(mentions(outcome.out, "1 unknown")) << outcome.out;
     for (const std::string& text : {outcome.out, outcome.err})
       for (const char* wrong : {"1 unknowns", "1 tetrahedra"})
-        EXPECT_FALSE(contains(text, wrong)) << text;
+        EXPECT_FALSE(mentions(text, wrong)) << text;
   }
-  EXPECT_FALSE(contains(read_file(folder / "o/index.html"), "1 unknowns"));
+  EXPECT_FALSE(mentions(read_file(folder / "o/index.html"), "1 unknowns"));
 }
 
 }  // namespace

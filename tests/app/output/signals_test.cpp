@@ -11,16 +11,17 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <functional>
 #include <optional>
 #include <random>
 #include <regex>
 #include <thread>
 
-#include "app/commands/interruption.hpp"
+#include "app/commands/in_folder.hpp"
 #include "app/output/program.hpp"
-#include "app/output/result_folder.hpp"
 #include "app/output/whole_results.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::test {
 namespace {
@@ -396,6 +397,69 @@ TEST_F(InterruptionDeath, ASecondSignalBehindTheLastFileSaysThatItStays) {
       },
       ::testing::ExitedWithCode(130),
       "^sunder: interrupted again: all results were written before, and stay\n$");
+}
+
+/// One folder for a test and for the process in which it dies.
+class SharedFolder {
+ public:
+  SharedFolder() {
+    const char* name = std::getenv(kName);
+    if (!name) setenv(kName, own_.emplace().path().c_str(), 1);
+    path_ = std::getenv(kName);
+  }
+  SharedFolder(const SharedFolder&) = delete;
+  SharedFolder& operator=(const SharedFolder&) = delete;
+  ~SharedFolder() {
+    if (own_) unsetenv(kName);
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  static constexpr const char* kName = "SUNDER_TEST_SHARED_FOLDER";
+  std::optional<TempFolder> own_;
+  std::filesystem::path path_;
+};
+
+// It comes when the folder is there and nobody has said yet what is to become of it.
+TEST_F(InterruptionDeath, ASignalWhileTheFolderIsMadeTakesItBack) {
+  const SharedFolder folder;
+  EXPECT_EXIT(
+      {
+        std::optional<app::ResultFolder> results;
+        app::Interruption interruption;
+        const app::Expecting expecting(
+            interruption,
+            [&] {
+              results.emplace(folder.path() / "out");
+              kill(getpid(), SIGINT);
+              std::this_thread::sleep_for(100ms);
+              return app::Interruption::Duty{"gone", [&] { return results->drop(); }, {}, {}};
+            },
+            {});
+        compute();
+      },
+      ::testing::ExitedWithCode(130), "^sunder: interrupted: gone\n$");
+  EXPECT_TRUE(names_in(folder.path()).empty());
+}
+
+TEST_F(InterruptionDeath, ASignalAtTheEndFindsTheFolderTakenBack) {
+  const SharedFolder folder;
+  EXPECT_EXIT(
+      {
+        std::optional<app::ResultFolder> results;
+        app::Interruption interruption;
+        try {
+          const auto expecting =
+              app::in_folder(interruption, results, folder.path() / "out",
+                             "not written: ", [] { fputs("never called", stderr); });
+          throw UsageError("as preparing does");
+        } catch (const UsageError&) {
+          kill(getpid(), SIGINT);
+          compute();
+        }
+      },
+      ::testing::ExitedWithCode(130), "^sunder: interrupted: nothing was written\n$");
+  EXPECT_TRUE(names_in(folder.path()).empty());
 }
 
 TEST_F(InterruptionDeath, AfterAllIsDoneASignalTakesNothingBack) {

@@ -10,8 +10,6 @@
 namespace sunder::test {
 namespace {
 
-constexpr double kClose = 1e-9;
-
 Index lines_count(const std::vector<double>& lines) { return static_cast<Index>(lines.size()); }
 
 Index grid_place(const GridLines& g, Index i, Index j, Index k) {

@@ -13,11 +13,7 @@
 #include "linear_algebra/factor.hpp"
 
 namespace sunder::test {
-namespace {
-
-constexpr double kClose = 1e-9;
-
-}  // namespace
+namespace {}  // namespace
 
 CrackedBody::CrackedBody(Scene scene) : problem_(std::make_unique<Problem>(std::move(scene))) {
   destroyed_.assign(problem_->mesh().tets.size(), 0);

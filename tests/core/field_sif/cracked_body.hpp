@@ -12,6 +12,8 @@
 
 namespace sunder::test {
 
+inline constexpr double kClose = 1e-9;  ///< mm: between coordinates that are one
+
 class CrackedBody {
  public:
   /// Cracks lie in the plane of x and y.

@@ -11,8 +11,6 @@
 namespace sunder::test {
 namespace {
 
-constexpr double kClose = 1e-9;
-
 GridLines strip_lines(int n) {
   return {even_lines(n, 1.0), graded_lines(1.0, 0.2 * n, 3.0 * n, 1.1), even_lines(1, 1.0)};
 }

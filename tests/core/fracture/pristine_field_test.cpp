@@ -60,7 +60,7 @@ TEST(PristineField, UniformStressStaysAsItIs) {
 }
 
 /// u_y = y^2/2: stress yy grows with y.
-std::vector<double> growing_field(const Mesh& mesh) {
+std::vector<double> stretched_along_y(const Mesh& mesh) {
   std::vector<double> u(3 * mesh.nodes.size(), 0.0);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     const double y = mesh.nodes[n].y();
@@ -72,7 +72,7 @@ std::vector<double> growing_field(const Mesh& mesh) {
 TEST(PristineField, IsTheVolumeWeightedMeanOverBreakableNeighbours) {
   const Problem problem(half_board());
   const Board board(problem.mesh(), std::nullopt);
-  const auto u = growing_field(problem.mesh());
+  const auto u = stretched_along_y(problem.mesh());
   const Vec2 p(4.2, 3.7);
   InPlane sum = InPlane::Zero();
   double volume = 0;
@@ -89,7 +89,7 @@ TEST(PristineField, IsTheVolumeWeightedMeanOverBreakableNeighbours) {
 TEST(PristineField, EmptyNeighbourhoodsAreSkipped) {
   const Problem problem(half_board());
   const Board board(problem.mesh(), std::nullopt);
-  const auto u = growing_field(problem.mesh());
+  const auto u = stretched_along_y(problem.mesh());
   const PristineField field(problem, board, u);
   EXPECT_FALSE(field.at(Vec2(4, 7)));
   EXPECT_FALSE(field.along(Vec2(2, 7), Vec2(6, 7)));

@@ -21,7 +21,7 @@ namespace sunder::fracture {
 namespace {
 
 /// The page prints ten digits.
-constexpr double kPrinted = 6e-10;  // relative
+constexpr double kRelativelyPrinted = 6e-10;  // relative
 
 /// What the page's section says: "| name | value | ..." rows and the list of elements.
 class Page {
@@ -108,7 +108,7 @@ Load corner_load(const Problem& problem, double t) {
 }
 
 void expect_printed(double value, double printed) {
-  EXPECT_NEAR(value, printed, kPrinted * std::abs(printed));
+  EXPECT_NEAR(value, printed, kRelativelyPrinted * std::abs(printed));
 }
 
 TEST(WorkedExample, StepByStep) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cpu_reference/cpu_reference.hpp"
+#include "strip.hpp"
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/simulation.hpp"
@@ -15,8 +16,6 @@
 
 namespace sunder::test {
 namespace {
-
-Box band(double low, double high) { return {Vec3(-1, low, -1), Vec3(99, high, 9)}; }
 
 /// 8 x 8 x 1 mm of `cells` x `cells` x 1 cells, soft below and strong above y = 4, held at y = 8,
 /// pulled at y = 0, with a slit of 4 mm from x = 0 below y = 4, half a millimetre high or a cell.

@@ -13,10 +13,8 @@ namespace {
 
 using test::BodyOf;
 using test::Changing;
-
-constexpr double kTolerance = 1e-10;
-
-fem::Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {}}; }
+using test::kTolerance;
+using test::leaving;
 
 /// Three cells wide and three high, a cell thick: 54 elements.
 BodyOf high(BodyOf body = {}) {

@@ -24,6 +24,9 @@
 
 namespace sunder::test {
 
+/// Of a solution after a change, against a fresh one.
+inline constexpr double kTolerance = 1e-10;
+
 /// A row of cells of six tetrahedra along x, held at x = 0, pulled or gripped at the other end.
 struct BodyOf {
   Index nx = 3, ny = 1, nz = 1;
@@ -314,5 +317,7 @@ class Changing {
     return applied;
   }
 };
+
+inline fem::Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {}}; }
 
 }  // namespace sunder::test

@@ -15,8 +15,8 @@ namespace {
 
 using test::BodyOf;
 using test::Changing;
-
-constexpr double kTolerance = 1e-10;
+using test::kTolerance;
+using test::leaving;
 
 /// All changes so far as one, from the intact body: what the base's rounding allows.
 double error_at_once(const BodyOf& of, const Changing& body) {
@@ -33,8 +33,6 @@ double error_at_once(const BodyOf& of, const Changing& body) {
   EXPECT_TRUE(once.change(change));
   return once.errors().largest();
 }
-
-fem::Change leaving(std::vector<Index> elements) { return {std::move(elements), {}, {}}; }
 
 class Bodies : public ::testing::TestWithParam<BodyOf> {};
 

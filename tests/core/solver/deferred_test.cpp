@@ -166,9 +166,9 @@ std::vector<Index> unknowns_of(const Board& board, std::span<const Index> elemen
 }
 
 /// A base, of the intact body or of one that has lost some elements: what a rebase makes.
-struct Based {
-  Based(const Board& board, const std::string& name, std::span<const Index> all,
-        std::span<const Index> lost)
+struct OnBase {
+  OnBase(const Board& board, const std::string& name, std::span<const Index> all,
+         std::span<const Index> lost)
       : factor(std::make_shared<linear_algebra::Factor>(fem::assemble_lower(
             board.problem, name == "condensed" ? Scale{} : scale(board, lost)))),
         deferred(board.problem, base(board, name, all, lost)) {}
@@ -232,7 +232,7 @@ TEST(Deferred, TakesEventsBackBitByBit) {
   for (const char* name : {"inverse", "factor", "condensed"}) {
     for (std::size_t batch : {std::size_t{1}, std::size_t{10}}) {
       SCOPED_TRACE(name + (" in batches of " + std::to_string(batch)));
-      Based based(board, name, crack, {});
+      OnBase based(board, name, crack, {});
       expect_the_way_back(board, based.deferred, crack, batch);
     }
   }
@@ -243,7 +243,7 @@ TEST(Deferred, TakesEventsBackToANewBaseBitByBit) {
   const std::vector<Index> crack = test::crack_sequence(board.problem, 100, 8);
   for (const char* name : {"inverse", "factor", "condensed"}) {
     SCOPED_TRACE(name);
-    Based based(board, name, crack, std::span(crack).first(40));
+    OnBase based(board, name, crack, std::span(crack).first(40));
     expect_the_way_back(board, based.deferred, std::span(crack).subspan(40), 1);
   }
 }

@@ -10,9 +10,12 @@
 #include "sunder/error.hpp"
 #include "support/loads.hpp"
 #include "support/structured_board.hpp"
+#include "support/text.hpp"
 
 namespace sunder::solver {
 namespace {
+
+using test::mentions;
 
 constexpr std::size_t kPlenty = std::size_t{1} << 34;
 
@@ -60,10 +63,6 @@ std::string refusal(const Scene& scene, const PlanDevice& device) {
     return error.what();
   }
   return "not refused";
-}
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
 }
 
 TEST(Plan, HasARowForEveryRoute) {

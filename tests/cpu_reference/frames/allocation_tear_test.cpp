@@ -98,7 +98,7 @@ TEST_P(TornFrames, AllocateNothingOnceTheyAreWarm) {
 INSTANTIATE_TEST_SUITE_P(Routes, TornFrames, every_way(),
                          [](const auto& p) { return p.param.name; });
 
-struct Tear {
+struct TornRoute {
   const char* name;
   Route route;
   FractureModel model = FractureModel::b;
@@ -111,7 +111,7 @@ constexpr int kMost = 80;              // elements torn; soon the board is in tw
 
 /// The notched board, held at its lower left corner. A scalpel takes an element in every step and
 /// widens a slit from the right edge; then the forceps pull the notch open.
-Scene slit_board(const Tear& tear) {
+Scene slit_board(const TornRoute& tear) {
   Scene scene = notch_board(tear.model);
   scene.instruments[0].ramp.reset();
   Instrument grip;
@@ -134,7 +134,7 @@ Scene slit_board(const Tear& tear) {
   return scene;
 }
 
-class TornSteps : public ::testing::TestWithParam<Tear> {};
+class TornSteps : public ::testing::TestWithParam<TornRoute> {};
 
 // All of a step, on two bases or more; the load turns while the slit is cut. Two steps are the
 // warm-up.
@@ -160,14 +160,15 @@ TEST_P(TornSteps, AllocateNothingOnceTheyAreWarm) {
   EXPECT_GE(bases.count(), 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Slit, TornSteps,
-    ::testing::Values(Tear{"Inverse", Route::inverse}, Tear{"Condensed", Route::condensed},
-                      Tear{"Factor", Route::factor, FractureModel::a},
-                      Tear{"CondensedByField", Route::condensed, FractureModel::b,
-                           SifSource::field},
-                      Tear{"CondensedByShear", Route::condensed, FractureModel::a}),
-    [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(Slit, TornSteps,
+                         ::testing::Values(TornRoute{"Inverse", Route::inverse},
+                                           TornRoute{"Condensed", Route::condensed},
+                                           TornRoute{"Factor", Route::factor, FractureModel::a},
+                                           TornRoute{"CondensedByField", Route::condensed,
+                                                     FractureModel::b, SifSource::field},
+                                           TornRoute{"CondensedByShear", Route::condensed,
+                                                     FractureModel::a}),
+                         [](const auto& p) { return p.param.name; });
 
 }  // namespace
 }  // namespace sunder::test

@@ -5,6 +5,7 @@
 #include "support/body.hpp"
 #include "support/structured_board.hpp"
 #include "support/table1_board.hpp"
+#include "support/text.hpp"
 
 namespace sunder::test {
 namespace {
@@ -21,10 +22,6 @@ Scene board(Index nx, Index ny) {
 
 BackendInfo info_of(Scene scene, Needs needs = all_needs()) {
   return Body(std::move(scene), std::move(needs)).backend->info();
-}
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
 }
 
 TEST(ChooseRoute, TakesADenseInverseForASmallBodyThatTears) {

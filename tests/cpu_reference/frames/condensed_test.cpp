@@ -17,7 +17,7 @@
 namespace sunder::test {
 namespace {
 
-struct Case {
+struct CondensedCase {
   const char* name;
   bool crack;
   std::size_t batch;
@@ -27,7 +27,7 @@ struct Case {
 
 /// 50 x 50 x 2.5 mm, 1680 elements; three rows of cells around y = 26 can tear, 360 of 1800
 /// unknowns.
-Scene organ(const Case& c) {
+Scene organ(const CondensedCase& c) {
   Scene scene;
   scene.mesh = structured_board({14, 20, 1, 50, 50, 2.5}, [](const Vec3& x) {
     return x.y() > 22.5 && x.y() < 30 ? "tissue" : "organ";
@@ -75,10 +75,10 @@ void expect_agreement(const Body& body, std::span<const double> force,
   EXPECT_LE(stress_error(ignored, body.stress(), right.stress), tolerance);
 }
 
-class Condensed : public ::testing::TestWithParam<Case> {};
+class Condensed : public ::testing::TestWithParam<CondensedCase> {};
 
 TEST_P(Condensed, StaysWithinTheTable) {
-  const Case& c = GetParam();
+  const CondensedCase& c = GetParam();
   const Body body(organ(c));
   EXPECT_EQ(body.backend->info().route, "condensed");
   EXPECT_EQ(body.backend->info().update, "deferred");
@@ -105,15 +105,16 @@ TEST_P(Condensed, StaysWithinTheTable) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sequences, Condensed,
-                         ::testing::Values(Case{"Scattered", false, 1}, Case{"Crack", true, 1},
-                                           Case{"CrackBy60", true, 60},
-                                           Case{"Contrast1e4", true, 10, 1e4},
-                                           Case{"Poisson499", true, 10, 1, 0.499},
-                                           Case{"Alpha1e9", true, 10, 1, 0.4, 1e-9},
-                                           Case{"LoadedOutside", true, 10, 1, 0.4, 1e-6, false},
-                                           Case{"Grips", true, 10, 1, 0.4, 1e-6, true, true}),
-                         [](const auto& p) { return p.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Sequences, Condensed,
+    ::testing::Values(CondensedCase{"Scattered", false, 1}, CondensedCase{"Crack", true, 1},
+                      CondensedCase{"CrackBy60", true, 60},
+                      CondensedCase{"Contrast1e4", true, 10, 1e4},
+                      CondensedCase{"Poisson499", true, 10, 1, 0.499},
+                      CondensedCase{"Alpha1e9", true, 10, 1, 0.4, 1e-9},
+                      CondensedCase{"LoadedOutside", true, 10, 1, 0.4, 1e-6, false},
+                      CondensedCase{"Grips", true, 10, 1, 0.4, 1e-6, true, true}),
+    [](const auto& p) { return p.param.name; });
 
 Scene torn_organ() { return organ({"", true, 1}); }
 

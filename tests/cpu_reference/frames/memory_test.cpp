@@ -13,6 +13,7 @@
 #include "support/body.hpp"
 #include "support/sequences.hpp"
 #include "support/structured_board.hpp"
+#include "support/text.hpp"
 
 namespace sunder::test {
 namespace {
@@ -43,10 +44,6 @@ std::unique_ptr<Backend> in_memory(const std::shared_ptr<const Problem>& problem
 
 std::shared_ptr<const Problem> problem_of(Scene scene) {
   return std::make_shared<const Problem>(std::move(scene));
-}
-
-bool mentions(const std::string& text, const std::string& word) {
-  return text.find(word) != std::string::npos;
 }
 
 bool holds(const Backend& backend, const std::string& name) {

@@ -14,13 +14,13 @@
 namespace sunder::test {
 namespace {
 
-struct Case {
+struct PromiseCase {
   const char* name;
   Route route;
   double contrast = 1, poisson = 0.4, alpha = 1e-6;
 };
 
-class Estimate : public ::testing::TestWithParam<Case> {};
+class Estimate : public ::testing::TestWithParam<PromiseCase> {};
 
 TEST_P(Estimate, IsNeverUnderTheErrorAlongACrack) {
   Scene scene = held_board();
@@ -55,15 +55,15 @@ TEST_P(Estimate, IsNeverUnderTheErrorAlongACrack) {
 
 INSTANTIATE_TEST_SUITE_P(
     Boards, Estimate,
-    ::testing::Values(Case{"Inverse", Route::inverse}, Case{"Factor", Route::factor},
-                      Case{"InverseContrast1e4", Route::inverse, 1e2},
-                      Case{"FactorContrast1e4", Route::factor, 1e2},
-                      Case{"FactorPoisson499", Route::factor, 1, 0.499},
+    ::testing::Values(PromiseCase{"Inverse", Route::inverse}, PromiseCase{"Factor", Route::factor},
+                      PromiseCase{"InverseContrast1e4", Route::inverse, 1e2},
+                      PromiseCase{"FactorContrast1e4", Route::factor, 1e2},
+                      PromiseCase{"FactorPoisson499", Route::factor, 1, 0.499},
                       // New bases hold remains so soft that no refinement
                       // corrects what the next events add.
-                      Case{"InverseAlpha1e8", Route::inverse, 1, 0.4, 1e-8},
-                      Case{"FactorAlpha1e8", Route::factor, 1, 0.4, 1e-8},
-                      Case{"CondensedAlpha1e8", Route::condensed, 1, 0.4, 1e-8}),
+                      PromiseCase{"InverseAlpha1e8", Route::inverse, 1, 0.4, 1e-8},
+                      PromiseCase{"FactorAlpha1e8", Route::factor, 1, 0.4, 1e-8},
+                      PromiseCase{"CondensedAlpha1e8", Route::condensed, 1, 0.4, 1e-8}),
     [](const auto& p) { return p.param.name; });
 
 /// A frame after 60 fractures along a crack, by a route and to a tolerance.
@@ -93,13 +93,13 @@ struct Frame {
   Body body;
 };
 
-struct Engine {
+struct PolishedRoute {
   const char* name;
   Route route;
   Update update = Update::deferred;
 };
 
-class Polish : public ::testing::TestWithParam<Engine> {};
+class Polish : public ::testing::TestWithParam<PolishedRoute> {};
 
 // The tolerance lies under what the route finds by itself, and above what rounding allows.
 TEST_P(Polish, BringsAFrameUnderTheToleranceAndSaysSo) {
@@ -131,8 +131,8 @@ TEST_P(Polish, RefusesWithTheReasonWhatRoundingForbids) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Routes, Polish,
-                         ::testing::Values(Engine{"Inverse", Route::inverse},
-                                           Engine{"Factor", Route::factor}),
+                         ::testing::Values(PolishedRoute{"Inverse", Route::inverse},
+                                           PolishedRoute{"Factor", Route::factor}),
                          [](const auto& p) { return p.param.name; });
 
 }  // namespace

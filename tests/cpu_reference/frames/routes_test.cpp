@@ -16,7 +16,7 @@
 namespace sunder::test {
 namespace {
 
-struct Case {
+struct RouteCase {
   const char* name;
   Route route;
   bool crack;
@@ -33,7 +33,7 @@ std::vector<double> pull(const Problem& problem) {
   return force;
 }
 
-Scene scene_of(const Case& c) {
+Scene scene_of(const RouteCase& c) {
   Scene scene = held_board();
   scene.solver.route = c.route;
   scene.fracture.alpha = c.alpha;
@@ -44,10 +44,10 @@ Scene scene_of(const Case& c) {
   return scene;
 }
 
-class EngineRoute : public ::testing::TestWithParam<Case> {};
+class EngineRoute : public ::testing::TestWithParam<RouteCase> {};
 
 TEST_P(EngineRoute, StaysWithinTheTable) {
-  const Case& c = GetParam();
+  const RouteCase& c = GetParam();
   Body body(scene_of(c));
   const std::vector<double> force = pull(*body.problem);
   const auto sequence =
@@ -76,24 +76,24 @@ TEST_P(EngineRoute, StaysWithinTheTable) {
 
 INSTANTIATE_TEST_SUITE_P(
     Sequences, EngineRoute,
-    ::testing::Values(Case{"InverseScattered", Route::inverse, false, 1},
-                      Case{"InverseCrack", Route::inverse, true, 1},
-                      Case{"InverseCrackBy10", Route::inverse, true, 10},
-                      Case{"FactorScattered", Route::factor, false, 1},
-                      Case{"FactorCrack", Route::factor, true, 1},
-                      Case{"FactorCrackBy100", Route::factor, true, 100},
-                      Case{"InverseContrast1e4", Route::inverse, true, 1, 1e2},
-                      Case{"FactorContrast1e4", Route::factor, true, 1, 1e2},
-                      Case{"InversePoisson499", Route::inverse, true, 10, 1, 0.499},
-                      Case{"FactorPoisson499", Route::factor, true, 10, 1, 0.499},
-                      Case{"InverseAlpha1e9", Route::inverse, true, 10, 1, 0.4, 1e-9},
-                      Case{"FactorAlpha1e9", Route::factor, true, 10, 1, 0.4, 1e-9}),
+    ::testing::Values(RouteCase{"InverseScattered", Route::inverse, false, 1},
+                      RouteCase{"InverseCrack", Route::inverse, true, 1},
+                      RouteCase{"InverseCrackBy10", Route::inverse, true, 10},
+                      RouteCase{"FactorScattered", Route::factor, false, 1},
+                      RouteCase{"FactorCrack", Route::factor, true, 1},
+                      RouteCase{"FactorCrackBy100", Route::factor, true, 100},
+                      RouteCase{"InverseContrast1e4", Route::inverse, true, 1, 1e2},
+                      RouteCase{"FactorContrast1e4", Route::factor, true, 1, 1e2},
+                      RouteCase{"InversePoisson499", Route::inverse, true, 10, 1, 0.499},
+                      RouteCase{"FactorPoisson499", Route::factor, true, 10, 1, 0.499},
+                      RouteCase{"InverseAlpha1e9", Route::inverse, true, 10, 1, 0.4, 1e-9},
+                      RouteCase{"FactorAlpha1e9", Route::factor, true, 10, 1, 0.4, 1e-9}),
     [](const auto& p) { return p.param.name; });
 
 // 300 fractures one by one: the rank would be 1800, and a new base or a compaction keeps it small.
 TEST(EngineRoutes, MemoryOfTheDamageStaysBounded) {
   for (Route route : {Route::inverse, Route::factor}) {
-    Case c{"", route, false, 1};
+    RouteCase c{"", route, false, 1};
     Body body(scene_of(c));
     const auto sequence = scattered_sequence(*body.problem, 300);
     for (Index e : sequence) body.backend->destroy(std::span(&e, 1));

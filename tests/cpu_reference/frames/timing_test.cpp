@@ -23,7 +23,7 @@ constexpr milliseconds kRest(4);
 constexpr int kFewestEvents = 48;
 
 /// Everything that a tear of 240 elements returns.
-struct Tear {
+struct TimedTear {
   std::vector<std::vector<double>> displacements, reactions;
   std::vector<Voigt> stress;
   std::vector<double> errors, residuals;
@@ -31,7 +31,7 @@ struct Tear {
   bool new_base = false;
 
   /// `rest`: of the thread, before each thing that it does; `pause`: after each frame.
-  Tear(const RebasingRoute& c, milliseconds rest, milliseconds pause) {
+  TimedTear(const RebasingRoute& c, milliseconds rest, milliseconds pause) {
     Scene scene = pulled_board();
     scene.solver.route = c.route;
     if (c.grips) {
@@ -64,7 +64,7 @@ struct Tear {
   }
 };
 
-void expect_same(const Tear& a, const Tear& b) {
+void expect_same(const TimedTear& a, const TimedTear& b) {
   ASSERT_EQ(a.displacements.size(), b.displacements.size());
   for (std::size_t i = 0; i < a.displacements.size(); ++i) {
     ASSERT_EQ(a.displacements[i], b.displacements[i]) << "frame " << i;
@@ -78,9 +78,9 @@ void expect_same(const Tear& a, const Tear& b) {
 class Timing : public ::testing::TestWithParam<RebasingRoute> {};
 
 TEST_P(Timing, ChangesNoBit) {
-  const Tear as_it_comes(GetParam(), milliseconds(0), milliseconds(0));
-  const Tear rushed(GetParam(), milliseconds(0), milliseconds(2));
-  const Tear delayed(GetParam(), kRest, milliseconds(0));
+  const TimedTear as_it_comes(GetParam(), milliseconds(0), milliseconds(0));
+  const TimedTear rushed(GetParam(), milliseconds(0), milliseconds(2));
+  const TimedTear delayed(GetParam(), kRest, milliseconds(0));
   EXPECT_TRUE(as_it_comes.new_base && rushed.new_base && delayed.new_base);
   EXPECT_GE(delayed.took, kFewestEvents * kRest) << "a frame waits for the base that it is to have";
   for (double error : as_it_comes.errors) EXPECT_LE(error, kCrackTolerance);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "cpu_reference/plain/plain.hpp"
+#include "plane.hpp"
 #include "sunder/error.hpp"
 #include "support/loads.hpp"
 #include "support/structured_board.hpp"
@@ -26,13 +27,6 @@ Scene bar() {
   }
   scene.materials["board"] = {5, 0.25, 2.0};
   return scene;
-}
-
-Box plane(int axis, double at) {
-  Box box{Vec3::Constant(-1), Vec3::Constant(9)};
-  box.min[axis] = at - 1e-6;
-  box.max[axis] = at + 1e-6;
-  return box;
 }
 
 /// Slides on the planes x = 0, y = 0 and z = 0.

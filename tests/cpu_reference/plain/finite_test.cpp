@@ -8,19 +8,13 @@
 #include <cmath>
 #include <random>
 
+#include "plane.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder::test {
 namespace {
 
 constexpr double kYoung = 5, kPoisson = 0.25, kLambda = 2, kMu = 2;
-
-Box plane(int axis, double at) {
-  Box box{Vec3::Constant(-9), Vec3::Constant(9)};
-  box.min[axis] = at - 1e-6;
-  box.max[axis] = at + 1e-6;
-  return box;
-}
 
 /// A bar of 4 x 2 x 1 mm that slides on the planes x = 0, y = 0 and z = 0 and is pulled at x = 4.
 Scene pulled_bar(double stretch) {
