@@ -22,6 +22,7 @@ BEGIN, END = "<!-- table of bench/signals -->", "<!-- end of table -->"
 POLL = 2e-4  # s between two looks
 PATIENCE = 300  # s until a moment must have come
 AGAIN = 0.02  # s from the first signal to the second
+LIMIT = 1.0  # s until the computing has stopped: what docs/interface.md promises
 
 SCENE = """title = "Signals"
 mesh = "{mesh}"
@@ -249,16 +250,16 @@ class Bench:
             if run.ended() or moment.end(run):  # quicker than the first
                 run.kill()
             else:
-                self.interrupt(run, row)
+                found = self.interrupt(run, row) + faults(run, moment)
                 row.faults += [f"{moment.name}, signal after {after:.3f} s: {fault}"
-                               for fault in faults(run, moment)]
+                               for fault in found]
             shutil.rmtree(run.out, ignore_errors=True)
         if row.signals == 0:
             row.faults.append(f"{moment.name}: no run was still there when its signal was due")
         return row
 
     def interrupt(self, run, row):
-        """The signal, and what is measured from it."""
+        """The signal, and what is measured from it; returns what should not be of the times."""
         before = run.computed()
         run.process.send_signal(signal.SIGINT)
         sent = time.monotonic()
@@ -279,6 +280,10 @@ class Bench:
         stopped, until = told(run.log.read_text(errors="replace")) or (took, computed)
         row.stopped = max(row.stopped, stopped)
         row.computed = max(row.computed, until)
+        if stopped <= LIMIT:
+            return []
+        return [f"stopped {stopped:.2f} s after it ({until:.2f} s of processor), over {LIMIT:g} s; "
+                "where other programs ran beside it, measure again without them"]
 
 
 def told(text):
@@ -301,6 +306,8 @@ def faults(run, moment):
         found += faults_of_results(run.out, names, moment)
     elif names:
         found.append(f"left {', '.join(names)}")
+    elif moment.tets and run.out.exists():  # else the folder was there before
+        found.append("left an empty folder")
     return found
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What bench/signals takes for a fault, reads from a run's log and watches a run by."""
+import dataclasses
 import json
 import pathlib
 import sys
@@ -84,8 +85,11 @@ class Faults(Folder):
             self.assertEqual(signals.faults(run, moment), ["left frames.csv, summary.json"])
             for path in run.out.iterdir():
                 path.unlink()
+        of_a_body = dataclasses.replace(IMPORT, tets=2000)
+        self.assertEqual(signals.faults(run, of_a_body), ["left an empty folder"])
         run.out.rmdir()
-        self.assertEqual(signals.faults(run, IMPORT), [])
+        for moment in (IMPORT, of_a_body):
+            self.assertEqual(signals.faults(run, moment), [])
 
 
 class Log(unittest.TestCase):
@@ -123,13 +127,21 @@ class Watching(Folder):
         sent, send = [], run.process.send_signal
         run.process.send_signal = lambda number: (sent.append(number), send(number))
         row = signals.Row(AGAIN, 1.0)
-        signals.Bench("none", self.folder).interrupt(run, row)
+        found = signals.Bench("none", self.folder).interrupt(run, row)
         self.assertEqual(run.process.returncode, 130)
+        self.assertEqual(len(found), 1)
+        self.assertRegex(found[0], r"stopped 1\.\d+ s after it \(.* s of processor\), over 1 s")
         self.assertEqual(len(sent), 2)
         self.assertEqual(row.signals, 1)
         self.assertGreaterEqual(row.ended, signals.AGAIN)
         # It told no time, so all until its end counts.
         self.assertEqual(row.stopped, row.ended)
+
+    def test_one_that_stops_in_time_is_right(self):
+        run = self.live_run(sys.executable, "-c", "import time; time.sleep(60)")
+        row = signals.Row(IMPORT, 1.0)
+        self.assertEqual(signals.Bench("none", self.folder).interrupt(run, row), [])
+        self.assertLessEqual(row.stopped, signals.LIMIT)
 
 
 class Table(unittest.TestCase):

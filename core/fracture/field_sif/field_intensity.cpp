@@ -74,8 +74,11 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
   const FractureOptions& fracture = problem.scene().fracture;
   const bool grows = row_of(fracture.model).grows_cracks;
-  // By the formula no tip of the mesh's own has a K of the field.
-  if (!grows || fracture.sif == SifSource::field) prepare_shifts();
+  // By the formula a notch of the mesh's shape has no K, a crack of split nodes has the field's
+  // too.
+  const bool of_split_nodes =
+      std::ranges::any_of(notches_, [](const Notch& notch) { return notch.closed; });
+  if (!grows || fracture.sif == SifSource::field || of_split_nodes) prepare_shifts();
   if (!grows) return;
   double radius = kDomainRadius * board.h();
   for (const Notch& notch : notches_) radius = std::max(radius, kDomainOfWidths * notch.width);

@@ -3,11 +3,26 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+
 #include "app/output/program.hpp"
 #include "app/output/result_folder.hpp"
+
+namespace {
+bool no_locks = false;
+}
+
+/// In place of the system's: as on a file system without locks where a test says so.
+extern "C" int flock(int descriptor, int operation) noexcept {
+  if (!no_locks) return static_cast<int>(::syscall(SYS_flock, descriptor, operation));
+  errno = ENOLCK;
+  return -1;
+}
 
 namespace sunder::app {
 namespace {
@@ -182,6 +197,21 @@ TEST(ResultFolder, DroppedResultsAreGoneAndNoneFollows) {
   test::write_text(folder / "events.csv", "x");
   ResultFolder(folder.path()).drop();
   EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"events.csv"});
+}
+
+TEST(ResultFolder, OnAFileSystemWithoutLocksWarns) {
+  const TempFolder folder;
+  {
+    const ResultFolder locked(folder / "a");
+    EXPECT_FALSE(locked.warning());
+  }
+  no_locks = true;
+  const ResultFolder results(folder / "b");
+  no_locks = false;
+  ASSERT_TRUE(results.warning());
+  EXPECT_NE(results.warning()->find("has no locks (No locks available): nothing keeps another run"),
+            std::string::npos)
+      << *results.warning();
 }
 
 TEST(ResultFolder, IsMadeWithItsParents) {

@@ -98,6 +98,42 @@ TEST(TipsTable, HasARowPerStepAndTip) {
   }
 }
 
+// A notch that rests under a load that grows: K in every step, in proportion to the load.
+TEST(TipsTable, HasTheKOfTipsThatRest) {
+  for (const std::string sif : {"formula", "field"}) {
+    const TempFolder folder;
+    const auto out = folder / "out";
+    const Outcome run = run_program({"run", SUNDER_SOURCE "/scenes/notch-b.toml", "--out",
+                                     out.string(), "--backend", "cpu", "--quiet", "--steps", "3",
+                                     "--set", "instrument.0.force=[0, -20, 0]", "--set",
+                                     "instrument.0.ramp=[0, 1]", "--set", "fracture.sif=" + sif});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto tips = read_csv(out / "tips.csv");
+    ASSERT_EQ(tips.size(), 4u) << "a row per step";
+    const auto frames = read_csv(out / "frames.csv");
+    for (std::size_t step = 0; step < 3; ++step) {
+      const Row& row = tips[step + 1];
+      EXPECT_EQ(row[0], std::to_string(step));
+      EXPECT_EQ(row[3], "45.96");  // it rests
+      for (std::size_t k : {6u, 8u, 9u, 10u}) {
+        if (sif == "formula" && k > 6) continue;
+        ASSERT_NE(row[k], "") << sif << " " << step << " " << k;
+        const double growth = value(frames[step + 1][1]) / value(frames[1][1]);  // of the load
+        EXPECT_NEAR(value(row[k]), growth * value(tips[1][k]), 1e-7 * value(row[6]))
+            << sif << " " << k;
+      }
+    }
+    // The board stands in x and y, its middle at z = 1: so do paths in the plane and in space.
+    const auto crack = read_json(out / "summary.json")["cracks"][0];
+    ASSERT_EQ(crack["path"].size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto& flat = crack["path"][i];
+      EXPECT_EQ(crack["path_xyz"][i], (nlohmann::ordered_json{flat[0], flat[1], 1}));
+    }
+    EXPECT_EQ(crack["mouth_xyz"], crack["path_xyz"][0]);
+  }
+}
+
 TEST(FramesTable, HasARowPerStepThatAgreesWithTheEvents) {
   const auto frames = read_csv(torn_board() / "frames.csv");
   const auto events = read_csv(torn_board() / "events.csv");
