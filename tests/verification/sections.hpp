@@ -17,6 +17,7 @@ void write_strips(std::ostream& out, Notch notch);
 void write_energy(std::ostream& out);
 void write_domains(std::ostream& out);
 void write_split(std::ostream& out);
+void write_shaped(std::ostream& out);
 void write_remaining_stiffness(std::ostream& out);
 void write_irregular(std::ostream& out);
 

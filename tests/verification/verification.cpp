@@ -31,6 +31,7 @@ void write(std::ostream& out) {
   write_domains(out);
   write_energy(out);
   write_split(out);
+  write_shaped(out);
   write_irregular(out);
   write_angled(out);
   write_grown(out);
