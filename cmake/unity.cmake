@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Several source files compiled as one, so that what Eigen's templates become is compiled once for
 # all of them: most of the work of a build. CI compiles so; `run`, `bench` and `develop` compile each
-# file by itself, and CI parses each by itself once.
+# file by itself, and `.ci/run parse` shows that each can be.
 option(SUNDER_UNITY "Compile several source files of a library or a test at once" OFF)
 if(SUNDER_UNITY)
   # Two files' names in anonymous namespaces then hide each other without harm.
