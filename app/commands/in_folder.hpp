@@ -11,9 +11,9 @@
 
 namespace sunder::app {
 
-/// Makes and locks the folder for results. A signal finds it, and takes it back, or finds that it
-/// does not exist: `nothing` and the path are said then, and `besides` is called first. Throws
-/// UsageError as ResultFolder does.
+/// Makes and locks the folder for results, which is released with what is returned. A signal in
+/// between calls `besides`, takes the folder back and says `nothing` and its path. There is no
+/// moment at which a signal would leave the folder behind. Throws UsageError as ResultFolder does.
 [[nodiscard]] Expecting in_folder(Interruption& interruption, std::optional<ResultFolder>& folder,
                                   const std::filesystem::path& path, const std::string& nothing,
                                   std::function<void()> besides = {});

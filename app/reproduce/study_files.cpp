@@ -103,8 +103,8 @@ std::string rules_of(const Study& study) {
       else if (same->second.find(s.id) == std::string::npos)
         same->second += ", " + s.id;
     }
-  std::string text = "\n## Rules of the verdicts\n\n";
-  for (const auto& [rule, ids] : rules) text += "- " + ids + ": " + rule + ".\n";
+  std::string text = "\n## Rules of the verdicts\n";
+  for (const auto& [rule, ids] : rules) text += "\n- " + ids + ": " + rule + ".\n";
   return text;
 }
 
@@ -146,8 +146,8 @@ std::string study_markdown(const Study& study) {
   text += rules_of(study);
   for (const Chapter& chapter : study.chapters) {
     if (chapter.findings.empty()) continue;
-    text += "\n## " + chapter.title + "\n" + chapter.setup + "\n\n";
-    for (const std::string& finding : chapter.findings) text += "- " + finding + "\n";
+    text += "\n## " + chapter.title + "\n" + chapter.setup + "\n";
+    for (const std::string& finding : chapter.findings) text += "\n- " + finding + "\n";
   }
   return text;
 }

@@ -280,10 +280,15 @@ class Bench:
         stopped, until = told(run.log.read_text(errors="replace")) or (took, computed)
         row.stopped = max(row.stopped, stopped)
         row.computed = max(row.computed, until)
-        if stopped <= LIMIT:
-            return []
-        return [f"stopped {stopped:.2f} s after it ({until:.2f} s of processor), over {LIMIT:g} s; "
-                "where other programs ran beside it, measure again without them"]
+        return too_late(stopped, until)
+
+
+def too_late(stopped, computed):
+    """What should not be of the times [s] from a signal until the computing had stopped."""
+    if stopped <= LIMIT:
+        return []
+    return [f"stopped {stopped:.2f} s after it ({computed:.2f} s of processor), over {LIMIT:g} s; "
+            "where other programs ran beside it, measure again without them"]
 
 
 def told(text):

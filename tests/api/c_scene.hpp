@@ -107,4 +107,18 @@ inline sunder_simulation board_simulation(sunder_backend backend = SUNDER_BACKEN
   return simulation;
 }
 
+/// All that is said of a simulation so far, a line each.
+inline std::string warnings_of(sunder_simulation simulation) {
+  std::int32_t count = 0;
+  EXPECT_OK(sunder_simulation_warning_count(simulation, &count));
+  std::string all;
+  for (std::int32_t i = 0; i < count; ++i) {
+    char text[1024];
+    std::size_t length = 0;
+    EXPECT_OK(sunder_simulation_warning_at(simulation, i, text, sizeof text, &length));
+    all += std::string(text) + "\n";
+  }
+  return all;
+}
+
 }  // namespace sunder::test

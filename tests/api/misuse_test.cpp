@@ -88,31 +88,23 @@ TEST(COddMesh, IsUsedWithAWarning) {
 }
 
 /// What is said of the body of a scene.
-std::string warnings_of(sunder_scene scene) {
+std::string warnings_of_body(sunder_scene scene) {
   sunder_simulation simulation = nullptr;
   EXPECT_OK(sunder_simulation_create(scene, nullptr, &simulation));
-  std::int32_t count = 0;
-  EXPECT_OK(sunder_simulation_warning_count(simulation, &count));
-  std::string all;
-  for (std::int32_t i = 0; i < count; ++i) {
-    char text[1024];
-    std::size_t length = 0;
-    EXPECT_OK(sunder_simulation_warning_at(simulation, i, text, sizeof text, &length));
-    all += std::string(text) + "\n";
-  }
+  const std::string all = warnings_of(simulation);
   EXPECT_OK(sunder_simulation_destroy(simulation));
   return all;
 }
 
 TEST(COddMesh, OfADuplicateAndOfALooseBodySaysWhereTheyAre) {
   World world;
-  EXPECT_EQ(warnings_of(world.scene), "");
+  EXPECT_EQ(warnings_of_body(world.scene), "");
   Arrays arrays = world.arrays;
   const auto count = arrays.tets.size() / 4;
   arrays.tets.insert(arrays.tets.end(),
                      {arrays.tets[0], arrays.tets[1], arrays.tets[2], arrays.tets[3]});
   EXPECT_OK(world.set_mesh(arrays));
-  const std::string twice = warnings_of(world.scene);
+  const std::string twice = warnings_of_body(world.scene);
   EXPECT_NE(twice.find("1 element"), std::string::npos) << twice;
   EXPECT_NE(twice.find("the same four nodes"), std::string::npos) << twice;
   EXPECT_NE(twice.find(std::to_string(count)), std::string::npos) << twice;
@@ -122,7 +114,7 @@ TEST(COddMesh, OfADuplicateAndOfALooseBodySaysWhereTheyAre) {
   arrays.nodes.insert(arrays.nodes.end(), {50, 50, 0, 51, 50, 0, 50, 51, 0, 50, 50, 1});
   arrays.tets.insert(arrays.tets.end(), {node, node + 1, node + 2, node + 3});
   EXPECT_OK(world.set_mesh(arrays));
-  const std::string loose = warnings_of(world.scene);
+  const std::string loose = warnings_of_body(world.scene);
   EXPECT_NE(loose.find("nothing holds or drives"), std::string::npos) << loose;
 }
 

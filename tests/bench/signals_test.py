@@ -127,21 +127,24 @@ class Watching(Folder):
         sent, send = [], run.process.send_signal
         run.process.send_signal = lambda number: (sent.append(number), send(number))
         row = signals.Row(AGAIN, 1.0)
-        found = signals.Bench("none", self.folder).interrupt(run, row)
+        signals.Bench("none", self.folder).interrupt(run, row)
         self.assertEqual(run.process.returncode, 130)
-        self.assertEqual(len(found), 1)
-        self.assertRegex(found[0], r"stopped 1\.\d+ s after it \(.* s of processor\), over 1 s")
         self.assertEqual(len(sent), 2)
         self.assertEqual(row.signals, 1)
         self.assertGreaterEqual(row.ended, signals.AGAIN)
         # It told no time, so all until its end counts.
         self.assertEqual(row.stopped, row.ended)
 
-    def test_one_that_stops_in_time_is_right(self):
+    def test_what_computes_over_a_second_is_a_fault(self):
+        self.assertEqual(signals.too_late(signals.LIMIT, 0.1), [])
+        self.assertEqual(len(signals.too_late(1.21, 0.1)), 1)
+        self.assertRegex(signals.too_late(1.21, 0.1)[0],
+                         r"^stopped 1\.21 s after it \(0\.10 s of processor\), over 1 s;")
+        # What a run took comes to it, whatever that was.
         run = self.live_run(sys.executable, "-c", "import time; time.sleep(60)")
         row = signals.Row(IMPORT, 1.0)
-        self.assertEqual(signals.Bench("none", self.folder).interrupt(run, row), [])
-        self.assertLessEqual(row.stopped, signals.LIMIT)
+        found = signals.Bench("none", self.folder).interrupt(run, row)
+        self.assertEqual(found, signals.too_late(row.stopped, row.computed))
 
 
 class Table(unittest.TestCase):

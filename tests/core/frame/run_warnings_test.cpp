@@ -41,6 +41,20 @@ TEST(SmallStrain, IsWarnedOfFromTenPercent) {
   EXPECT_TRUE(mentions(warnings, "strained live tissue"));
 }
 
+TEST(SmallStrain, OfRouteCondensedSpeaksOfItsRegion) {
+  Scene scene = strip(1e9, 0, 1);
+  scene.mesh = structured_board(
+      {4, 8, 1, 4, 8, 1}, [](const Vec3& x) { return std::string(x.y() < 4 ? "board" : "frame"); });
+  scene.materials["frame"] = {5, 0.3, std::nullopt};  // cannot break
+  scene.solver.route = Route::condensed;
+  scene.instruments[0].action = Grip{band(-1, 0.1), Vec3(0, -2, 0), Axes{7}};
+  SceneRun run(std::move(scene));
+  run.simulation.step();
+  EXPECT_TRUE(mentions(run.simulation.warnings(), "%, in the region that a frame computes)"));
+  EXPECT_TRUE(mentions(run.simulation.backend().needs().left_out,
+                       "largest strain and rotation of those elements"));
+}
+
 /// Simple shear turns by atan(shear / 2) and strains by half of it; the linear body has no say in
 /// it, as all its nodes are gripped but for one layer.
 StepReport turned(double degrees, std::vector<std::string>& warnings) {
