@@ -36,6 +36,15 @@ struct HyperelasticBody {
 double internal_forces(const HyperelasticBody& body, std::span<const double> u,
                        std::span<double> f);
 
+/// A stress by P and F: cauchy_stress or biot_stress (material/finite_stress.hpp).
+using StressFunction = Voigt (*)(const Mat3& p, const Mat3& f);
+/// internal_forces() with the stress of live elements on the way; others get 0.
+double internal_forces(const HyperelasticBody& body, std::span<const double> u, std::span<double> f,
+                       StressFunction stress, std::span<Voigt> stresses);
+/// The stress alone.
+void element_stresses(const HyperelasticBody& body, std::span<const double> u,
+                      StressFunction stress, std::span<Voigt> stresses);
+
 /// An element's tangent as W diag(sign) W^T [N/mm]: nine modes, of which a projected one keeps
 /// those of sign +1. At F = I three signs belong to columns of zeros.
 struct TangentFactor {

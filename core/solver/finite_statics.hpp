@@ -1,83 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 // Static equilibrium at finite deformation (method.md "Finite deformation"): minimum of the energy
-// less the work of the load, on a base that outlives the step.
+// less the work of the load, on a base that outlives the step and follows what is destroyed.
 //
 // The base is the factor of the projected tangent at a recent equilibrium. L-BFGS on top of it
-// finds the next one, with a line search on the energy; where that stalls Newton's method takes
-// over, a new factor an iteration; where that ends nowhere the load is approached in smaller steps.
+// finds the next one, with a line search on the energy; where that stalls a new factor is made at
+// the state reached; where that ends nowhere the load is approached in smaller steps.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "body/hyperelastic.hpp"
-#include "linear_algebra/factor.hpp"
-#include "sunder/backend.hpp"
+#include "material/finite_stress.hpp"
+#include "solver/finite_base.hpp"
+#include "solver/finite_minimiser.hpp"
+#include "solver/finite_potential.hpp"
 
 namespace sunder::solver {
 
 struct FiniteStaticsOptions {
-  /// |internal forces - load| of free unknowns over all forces that act at the step's begin or end,
-  /// whichever are larger.
-  double residual = 1e-8;
+  /// Bound of the relative error of stress: largest error of an element over the largest stress.
+  double tolerance = 1e-4;
+  /// The stress that is meant: cauchy_stress or biot_stress.
+  fem::StressFunction stress = cauchy_stress;
+  /// Beside it |internal forces - load| of free unknowns over all forces that act at the step's
+  /// begin or end, whichever are larger.
+  double residual = 1e-2;
   int pairs = 5;              ///< of L-BFGS
-  int most_back_solves = 40;  ///< of one approach, before Newton
-  int most_factors = 60;      ///< of one approach by Newton
+  int most_back_solves = 40;  ///< on one base
+  int most_factors = 20;      ///< of one approach, made where the base stalls
   int most_halvings = 12;     ///< of the load's increment
   int renew_after = 8;        ///< back-solves of a step after which the base is renewed
 };
 
-/// How a step ended. `share` of the load's increment was reached: 1 at rest, less where no
-/// equilibrium could be found beyond; the state is the last one at rest.
+/// How a step ended.
 struct FiniteStaticsReport {
   bool at_rest = false;
+  /// Of the load's increment: 1 at rest, less where no equilibrium could be found beyond; the state
+  /// is the last one at rest.
   double share = 0;
-  double residual = 0;
-  int back_solves = 0, factors = 0, load_steps = 0;
+  double residual = 0;     ///< as in the options
+  double error = 0;        ///< estimate of the relative error of stress
+  double contraction = 0;  ///< measured: how much of an error an iteration leaves
+  int back_solves = 0, factors = 0, load_steps = 0, damped_steps = 0;
+  FrozenParts frozen;
 };
 
 class FiniteStatics {
  public:
-  /// At rest at u = 0. The body must outlive it.
+  /// At rest at u = 0. The body must outlive it; what is destroyed is read live.
   explicit FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOptions options = {});
 
-  /// From the last state at rest to the load. Whether the equilibrium is stable is not looked at: a
-  /// flat body that would buckle may stay flat.
+  /// From the last state at rest to the load.
   FiniteStaticsReport solve(const Load& load);
   /// (3 * nodes) [mm]
   [[nodiscard]] const std::vector<double>& displacement() const { return u_; }
-  /// Elements of the body have been destroyed or its laws changed: what was at rest need not be.
-  void body_changed() { base_.reset(); }
+  /// (3 * nodes) [N] at displacement(); what is destroyed or frozen adds nothing.
+  [[nodiscard]] std::span<const double> internal_forces() const { return f_; }
+  /// Per element 1: destroyed, or of a piece that nothing holds, whose stress has no meaning.
+  [[nodiscard]] std::span<const std::uint8_t> out() const { return resting_.out(); }
+
+  /// These have just left; the body says so already.
+  void destroyed(std::span<const Index> elements);
+  /// Anything else about the body has changed: elements are back, laws are others.
+  void body_changed();
 
  private:
-  struct Target {
-    Eigen::VectorXd force;  // per unknown
-    std::vector<double> grips;
-  };
-  struct State {
-    std::vector<double> u;
-    Eigen::VectorXd r;                 // internal forces - load; 0 at gripped unknowns
-    double potential = 0, acting = 0;  // acting: |forces|, of the load and of what holds
-  };
-  [[nodiscard]] Target target(const Load& load) const;
-  void evaluate(const Target& target, State& state) const;
-  void move(const State& from, double part, const Eigen::VectorXd& du, State& to) const;
-  [[nodiscard]] bool line_search(const Target& target, const Eigen::VectorXd& du,
-                                 State& state) const;
-  [[nodiscard]] double residual(const State& state) const;
-  [[nodiscard]] bool renew(const State& state, fem::Tangent kind, FiniteStaticsReport& report);
-  [[nodiscard]] State predict(const Target& target) const;
-  [[nodiscard]] bool approach(const Target& target, FiniteStaticsReport& report);
-  [[nodiscard]] bool by_lbfgs(const Target& target, State& state, FiniteStaticsReport& report);
-  [[nodiscard]] bool by_newton(const Target& target, State& state, FiniteStaticsReport& report);
+  [[nodiscard]] bool renew(const std::vector<double>& u, fem::Tangent kind,
+                           FiniteStaticsReport& report);
+  void predict(const FiniteTarget& target);
+  [[nodiscard]] bool by_new_factors(const FiniteTarget& target, FiniteStaticsReport& report);
+  [[nodiscard]] bool minimise(const FiniteTarget& target, int most, FiniteStaticsReport& report);
+  [[nodiscard]] bool approach(const FiniteTarget& target, FiniteStaticsReport& report);
 
   const fem::HyperelasticBody& body_;
   FiniteStaticsOptions options_;
-  std::vector<double> u_;
-  Target reached_;
-  double floor_ = 0;          // forces that acted at the step's begin [N]
+  RestingBody resting_;
+  FinitePotential potential_;
+  std::vector<double> u_, f_;
+  FiniteTarget reached_;
   std::vector<Index> order_;  // of the factor
-  std::optional<linear_algebra::Factor> base_;
+  std::optional<FiniteBase> base_;
+  FiniteMinimiser minimiser_;
+  FiniteState state_, probe_;
+  Eigen::VectorXd motion_, following_;
 };
 
 }  // namespace sunder::solver

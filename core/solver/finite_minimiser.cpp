@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/finite_minimiser.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunder::solver {
+namespace {
+
+// Share of the slope that a step must win (Nocedal and Wright 2006, 3.1).
+constexpr double kArmijo = 1e-4;
+constexpr double kEnergyRounding = 1e-13;  // of an energy that is summed over all elements
+constexpr double kLeastPart = 1e-7;        // of a step, before the line search gives up
+constexpr double kForceRounding = 1e-14;   // of a residual: no iteration wins more
+// The error of stress is looked at where the residual is not far above the tolerance: on the
+// 1954-element board it is a tenth of the residual in the median.
+constexpr double kResidualPerStress = 100;
+constexpr double kMostContraction = 0.9;     // a measured one above it says nothing
+constexpr double kUnknownContraction = 0.5;  // of the first step
+
+}  // namespace
+
+double FiniteMinimiser::residual(const FiniteState& state) const {
+  const double left = state.r.norm();
+  return left == 0 ? 0 : left / std::max(state.acting, scale_.force);
+}
+
+/// Of `state`, if `next` were right.
+double FiniteMinimiser::stress_error(FiniteState& state, FiniteState& next) {
+  potential_.complete(state);
+  potential_.complete(next);
+  const auto [change, largest] = potential_.stress_change(next.stress, state.stress);
+  return change <= scale_.stress_rounding ? 0 : change / std::max(largest, scale_.stress);
+}
+
+/// Halves the step from `next_`, which is the whole of it, until the potential falls; false: it
+/// does not.
+bool FiniteMinimiser::line_search(const FiniteTarget& target, bool with_stress,
+                                  const FiniteState& state) {
+  const double slope = state.r.dot(du_);
+  if (!(slope < 0)) return false;
+  const double rounding = kEnergyRounding * std::abs(state.potential);
+  for (double part = 1; part > kLeastPart; part /= 2) {
+    if (part < 1) {
+      potential_.move(state.u, part, du_, next_.u);
+      potential_.evaluate(target, with_stress, next_);
+    }
+    if (next_.potential <= state.potential + kArmijo * part * slope + rounding) return true;
+  }
+  return false;
+}
+
+FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, FiniteBase& base,
+                                                  const Stop& stop, int most, FiniteState& state) {
+  hessian_.clear();
+  Result result;
+  double before = 0;  // error of the last state but one
+  for (;;) {
+    result.residual = residual(state);
+    if (!std::isfinite(result.residual)) return result;
+    if (result.residual <= kForceRounding ||
+        (stop.tolerance == 0 && result.residual <= stop.residual)) {
+      result.at_rest = true;
+      return result;
+    }
+    if (result.back_solves == most) return result;
+    hessian_.direction(
+        state.r,
+        [&](const Eigen::VectorXd& q, Eigen::VectorXd& x) {
+          base.solve(q, x);
+          potential_.hold(x);
+        },
+        du_);
+    ++result.back_solves;
+    const bool near =
+        stop.tolerance > 0 && result.residual <= std::min(1.0, kResidualPerStress * stop.tolerance);
+    potential_.move(state.u, 1, du_, next_.u);
+    potential_.evaluate(target, near, next_);
+    if (near) {
+      const double change = stress_error(state, next_);
+      const double measured = before > 0 ? change / before : kUnknownContraction;
+      result.contraction = std::min(measured, kMostContraction);
+      result.error = change / (1 - result.contraction);
+      before = change;
+      if (result.error <= stop.tolerance && result.residual <= stop.residual) {
+        result.at_rest = true;
+        return result;
+      }
+    }
+    if (!line_search(target, near, state)) return result;
+    potential_.difference(next_.u, state.u, s_);
+    y_ = next_.r - state.r;
+    hessian_.learn(s_, y_);
+    std::swap(state, next_);
+  }
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// L-BFGS on a base, with a line search on the energy and the estimate of the stress error by which
+// it stops (method.md "Finite deformation").
+#pragma once
+
+#include "solver/finite_base.hpp"
+#include "solver/finite_potential.hpp"
+#include "solver/lbfgs.hpp"
+
+namespace sunder::solver {
+
+/// By what is compared; the larger of a state's own and of what acted before.
+struct FiniteScale {
+  double force = 0;            ///< [N]; else a body that returns to rest would never be at rest
+  double stress = 0;           ///< [MPa]: as good as none
+  double stress_rounding = 0;  ///< [MPa]: what a stress cannot be told from
+};
+
+class FiniteMinimiser {
+ public:
+  struct Stop {
+    double tolerance;  ///< of stress; 0: only the residual counts
+    double residual;
+  };
+  struct Result {
+    bool at_rest = false;
+    double residual = 0, error = 0, contraction = 0;
+    int back_solves = 0;
+  };
+
+  FiniteMinimiser(const FinitePotential& potential, int pairs)
+      : potential_(potential), hessian_(pairs) {}
+
+  void set_scale(const FiniteScale& scale) { scale_ = scale; }
+  /// |r| over the forces that act.
+  [[nodiscard]] double residual(const FiniteState& state) const;
+  /// From an evaluated state, at most so many applications of the base. Not at rest: they did not
+  /// do, or the energy falls no more; the state is the best one.
+  Result minimise(const FiniteTarget& target, FiniteBase& base, const Stop& stop, int most,
+                  FiniteState& state);
+
+ private:
+  [[nodiscard]] double stress_error(FiniteState& state, FiniteState& next);
+  [[nodiscard]] bool line_search(const FiniteTarget& target, bool with_stress,
+                                 const FiniteState& state);
+
+  const FinitePotential& potential_;
+  Lbfgs hessian_;
+  FiniteScale scale_;
+  FiniteState next_;
+  Eigen::VectorXd du_, s_, y_;
+};
+
+}  // namespace sunder::solver

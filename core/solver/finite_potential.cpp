@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/finite_potential.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunder::solver {
+namespace {
+
+double frobenius(const Voigt& s) {
+  return std::sqrt(s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm());
+}
+
+}  // namespace
+
+FinitePotential::FinitePotential(const RestingBody& body, fem::StressFunction stress)
+    : body_(body), stress_(stress) {}
+
+FiniteTarget FinitePotential::target(const Load& load) const {
+  FiniteTarget of{Eigen::VectorXd::Zero(problem().dof_count()), load.displacements};
+  of.grips.resize(problem().gripped_dofs().size(), 0.0);
+  for (std::size_t i = 0; i < load.forces.size(); ++i)
+    of.force[load.force_dofs[i]] = load.forces[i];
+  return of;
+}
+
+void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
+                               FiniteState& state) const {
+  const fem::HyperelasticBody& body = body_.body();
+  state.f.resize(state.u.size());
+  state.stress.resize(with_stress ? body.problem.mesh().tets.size() : 0);
+  const double energy =
+      fem::internal_forces(body, state.u, state.f, with_stress ? stress_ : nullptr, state.stress);
+  state.r = -target.force;
+  double work = 0, held = 0, loaded = 0;
+  for (std::size_t i = 0; i < state.f.size(); ++i) {
+    const Index d = body.problem.dofs()[i];
+    if (d == kNone) {
+      held += state.f[i] * state.f[i];
+      continue;
+    }
+    state.r[d] += state.f[i];
+    if (body_.frozen()[d]) continue;
+    work += target.force[d] * state.u[i];
+    loaded += target.force[d] * target.force[d];
+  }
+  for (Index d : body.problem.gripped_dofs()) {
+    if (!body_.frozen()[d]) held += state.r[d] * state.r[d];
+  }
+  hold(state.r);
+  state.acting = std::sqrt(loaded + held);
+  state.potential = energy - work;
+}
+
+void FinitePotential::complete(FiniteState& state) const {
+  if (!state.stress.empty()) return;
+  state.stress.resize(problem().mesh().tets.size());
+  fem::element_stresses(body_.body(), state.u, stress_, state.stress);
+}
+
+void FinitePotential::move(std::span<const double> from, double part, const Eigen::VectorXd& du,
+                           std::vector<double>& to) const {
+  to.assign(from.begin(), from.end());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Index d = problem().dofs()[i];
+    if (d != kNone) to[i] += part * du[d];
+  }
+}
+
+void FinitePotential::difference(std::span<const double> to, std::span<const double> from,
+                                 Eigen::VectorXd& s) const {
+  s.resize(problem().dof_count());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Index d = problem().dofs()[i];
+    if (d != kNone) s[d] = to[i] - from[i];
+  }
+}
+
+void FinitePotential::hold(Eigen::VectorXd& of_unknowns) const {
+  for (Index d : problem().gripped_dofs()) of_unknowns[d] = 0;
+  const auto frozen = body_.frozen();
+  for (Index d = 0; d < of_unknowns.size(); ++d) {
+    if (frozen[d]) of_unknowns[d] = 0;
+  }
+}
+
+FinitePotential::StressChange FinitePotential::stress_change(std::span<const Voigt> stress,
+                                                             std::span<const Voigt> before) const {
+  StressChange of;
+  for (std::size_t e = 0; e < stress.size(); ++e) {
+    if (body_.out()[e]) continue;
+    const double change = frobenius(stress[e] - before[e]);
+    if (!(change <= of.change)) of.change = change;  // NaN stays
+    of.largest = std::max(of.largest, frobenius(before[e]));
+  }
+  return of;
+}
+
+}  // namespace sunder::solver

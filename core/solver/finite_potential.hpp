@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What statics at finite deformation minimises: the energy of a body less the work of its load
+// (method.md "Finite deformation"), with the forces and stresses of a state on the way.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "solver/resting_body.hpp"
+#include "sunder/backend.hpp"
+
+namespace sunder::solver {
+
+/// Force per unknown, displacement per gripped dof.
+struct FiniteTarget {
+  Eigen::VectorXd force;
+  std::vector<double> grips;
+};
+
+/// A displacement and what belongs to it.
+struct FiniteState {
+  std::vector<double> u, f;          // (3 * nodes): displacement, internal forces
+  Eigen::VectorXd r;                 // internal forces - load; 0 at gripped and frozen unknowns
+  double potential = 0, acting = 0;  // acting: |forces|, of the load and of what holds
+  std::vector<Voigt> stress;         // per element; empty: not asked for
+};
+
+class FinitePotential {
+ public:
+  /// The body must outlive it.
+  FinitePotential(const RestingBody& body, fem::StressFunction stress);
+
+  [[nodiscard]] FiniteTarget target(const Load& load) const;
+  /// All of a state by its displacement.
+  void evaluate(const FiniteTarget& target, bool with_stress, FiniteState& state) const;
+  /// Its stress, where that has been left out.
+  void complete(FiniteState& state) const;
+  /// to.u = from + part * du.
+  void move(std::span<const double> from, double part, const Eigen::VectorXd& du,
+            std::vector<double>& to) const;
+  /// (to - from) of the unknowns.
+  void difference(std::span<const double> to, std::span<const double> from,
+                  Eigen::VectorXd& s) const;
+  /// 0 at gripped and frozen unknowns.
+  void hold(Eigen::VectorXd& of_unknowns) const;
+
+  /// The largest |stress - before| of an element that counts, and the largest |stress|: Frobenius
+  /// norms of the tensors.
+  struct StressChange {
+    double change = 0, largest = 0;
+  };
+  [[nodiscard]] StressChange stress_change(std::span<const Voigt> stress,
+                                           std::span<const Voigt> before) const;
+
+  [[nodiscard]] const RestingBody& resting() const { return body_; }
+  [[nodiscard]] const Problem& problem() const { return body_.body().problem; }
+
+ private:
+  const RestingBody& body_;
+  fem::StressFunction stress_;
+};
+
+}  // namespace sunder::solver

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/resting_body.hpp"
+
+#include <algorithm>
+
+namespace sunder::solver {
+
+RestingBody::RestingBody(const fem::HyperelasticBody& body)
+    : body_(body),
+      search_(body.problem),
+      out_(static_cast<std::size_t>(body.problem.tet_count()), 0),
+      frozen_(static_cast<std::size_t>(body.problem.dof_count())),
+      resting_{body.problem, body.law_of_volume, out_} {
+  look();
+}
+
+void RestingBody::look() {
+  const Problem& problem = body_.problem;
+  std::ranges::fill(out_, std::uint8_t{0});
+  std::ranges::copy(body_.destroyed, out_.begin());
+  search_.look(out_);
+  parts_ = {search_.isolated_nodes(), search_.pieces(), search_.elements_cut_off()};
+  std::ranges::fill(frozen_, std::uint8_t{1});
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (out_[e]) continue;
+    if (search_.piece_of(e) != kNone) {
+      out_[e] = 1;
+      continue;
+    }
+    for (Index n : problem.mesh().tets[e]) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem.dof(n, axis);
+        if (d != kNone) frozen_[d] = 0;
+      }
+    }
+  }
+}
+
+}  // namespace sunder::solver

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of a damaged body statics can speak of: the live elements that something holds. A node that
+// no live element reaches and a piece that nothing holds have no equilibrium; they are frozen where
+// they are, and their elements carry no force.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "body/hyperelastic.hpp"
+#include "body/pieces.hpp"
+
+namespace sunder::solver {
+
+struct FrozenParts {
+  std::size_t nodes = 0;     ///< that no live element reaches
+  std::size_t pieces = 0;    ///< that nothing holds
+  std::size_t elements = 0;  ///< of those pieces, live
+};
+
+class RestingBody {
+ public:
+  /// Reads what is destroyed now. The body must outlive it.
+  explicit RestingBody(const fem::HyperelasticBody& body);
+  RestingBody(const RestingBody&) = delete;  // body() reads its lists
+  RestingBody& operator=(const RestingBody&) = delete;
+
+  /// Reads what is destroyed anew.
+  void look();
+  /// The body without what is frozen.
+  [[nodiscard]] const fem::HyperelasticBody& body() const { return resting_; }
+  /// Per element 1: destroyed, or of a frozen piece.
+  [[nodiscard]] std::span<const std::uint8_t> out() const { return out_; }
+  /// Per unknown 1: no element of body() reaches it.
+  [[nodiscard]] std::span<const std::uint8_t> frozen() const { return frozen_; }
+  [[nodiscard]] const FrozenParts& parts() const { return parts_; }
+
+ private:
+  const fem::HyperelasticBody& body_;
+  LooseSearch search_;
+  std::vector<std::uint8_t> out_, frozen_;
+  fem::HyperelasticBody resting_;
+  FrozenParts parts_;
+};
+
+}  // namespace sunder::solver
