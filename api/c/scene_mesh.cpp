@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "c/scene.hpp"
+#include "c/scene_words.hpp"
 #include "c/structs.hpp"
 
 namespace {
@@ -59,7 +60,8 @@ sunder_status sunder_scene_add_material(sunder_scene scene, const sunder_materia
     require_finite(given.poisson, "poisson");
     require_finite(given.yield, "yield");
     const std::size_t number = object.materials.size();
-    sunder::Material m{given.young, given.poisson, {}};
+    sunder::Material m{
+        given.young, given.poisson, {}, word<sunder::MaterialLaw>(given.law, "material", "law")};
     if (given.yield != 0) m.yield = given.yield;
     object.materials.push_back(m);
     object.scene.mesh.volumes.push_back(

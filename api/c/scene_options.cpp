@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "c/names.hpp"
 #include "c/scene.hpp"
+#include "c/scene_words.hpp"
 #include "c/structs.hpp"
-#include "sunder/scene_keys.hpp"
 
 namespace {
 
 using namespace sunder::c;
-
-/// A value of an enumeration that has as many as the scene's key has words.
-template <class Enum>
-Enum word(std::int32_t value, const char* table, const char* key, const char* what = nullptr) {
-  const auto count = static_cast<std::int32_t>(sunder::key_words(table, key).size());
-  return choice<Enum>(value, count, what ? what : key);
-}
 
 sunder_fracture_options fracture_defaults() {
   const sunder::FractureOptions defaults;
@@ -45,6 +38,7 @@ sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   f.max_events = given.max_events;
   require_finite(given.averaging, "averaging");
   f.averaging = given.averaging;
+  f.stress = word<sunder::StressMeasure>(given.stress, "fracture", "stress");
   if (given.has_plane_normal) {
     require_finite(given.plane_normal, 3, "plane_normal");
     f.plane_normal = sunder::Vec3(given.plane_normal);

@@ -25,7 +25,9 @@ sunder::Instrument to_instrument(const sunder_instrument& given) {
       tool.action = sunder::Pull{to_nodes(given.nodes, "instrument"), value};
       break;
     case SUNDER_DISPLACEMENT:
-      tool.action = sunder::Grip{to_nodes(given.nodes, "instrument"), value, to_axes(given.axes)};
+      require_finite(given.turn, 3, "turn");
+      tool.action = sunder::Grip{to_nodes(given.nodes, "instrument"), value, to_axes(given.axes),
+                                 given.rigid != 0, Vec3(given.turn)};
       break;
     default:
       require_finite(given.at, 3, "at");

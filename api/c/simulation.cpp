@@ -102,4 +102,21 @@ sunder_status sunder_simulation_drive(sunder_simulation simulation, int32_t inst
   });
 }
 
+sunder_status sunder_simulation_turn(sunder_simulation simulation, int32_t instrument,
+                                     const double turn[3]) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    require(turn, "turn");
+    const auto& instruments = object.problem().scene().instruments;
+    require_index(instrument, static_cast<std::int64_t>(instruments.size()), "instrument");
+    require_finite(turn, 3, "turn");
+    const auto i = static_cast<std::size_t>(instrument);
+    const auto* grip = std::get_if<sunder::Grip>(&instruments[i].action);
+    if (!grip || !grip->rigid) {
+      throw Failure(SUNDER_ERROR_VALUE, "instrument " + std::to_string(instrument) +
+                                            " is no rigid grip and does not turn");
+    }
+    object.simulation().turn(i, sunder::Vec3(turn));
+  });
+}
+
 }  // extern "C"

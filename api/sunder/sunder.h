@@ -123,6 +123,14 @@ SUNDER_API sunder_status sunder_scene_set_mesh(sunder_scene scene, const double*
                                                size_t tets_size, const int32_t* material_of,
                                                size_t material_of_size);
 
+/// linear: theory of small strains; the others at any deformation (docs/method.md).
+enum {
+  SUNDER_LAW_LINEAR = 0,
+  SUNDER_LAW_COROTATED = 1,
+  SUNDER_LAW_NEO_HOOKEAN = 2,
+  SUNDER_LAW_SAINT_VENANT_KIRCHHOFF = 3
+};
+
 typedef struct sunder_material {
   uint32_t struct_size;
   uint32_t reserved;
@@ -130,10 +138,12 @@ typedef struct sunder_material {
   double poisson;    ///< nu, above -1 and below 0.5
   double yield;      ///< [MPa]; 0: unbreakable (a keyword of Python: yield_stress in board.py)
   const char* name;  ///< for messages; null: its index
+  int32_t law;       ///< SUNDER_LAW_*
+  int32_t reserved2;
 } sunder_material;
 
 #define SUNDER_MATERIAL_INIT \
-  { sizeof(sunder_material), 0, 0, 0, 0, NULL }
+  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0 }
 
 SUNDER_API void sunder_material_init(sunder_material* material);
 /// `index` (may be null) receives 0, 1, ... in the order of calls.
@@ -195,14 +205,15 @@ typedef struct sunder_instrument {
   int32_t has_ramp;        ///< 0: acts fully from the start
   double at[3];            ///< SUNDER_PRESSURE: the pressed place [mm]
   double ramp[2];          ///< scene times of no and full action; time of step i of N is (i + 1)/N
+  double turn[3];          ///< of a rigid grip: rotation vector about its nodes' centroid [deg]
+  int32_t rigid;           ///< SUNDER_DISPLACEMENT: 1: its nodes move as one solid
+  int32_t reserved;
 } sunder_instrument;
 
 #define SUNDER_INSTRUMENT_INIT                                                       \
   {                                                                                  \
     sizeof(sunder_instrument), SUNDER_FORCE, NULL, SUNDER_SELECTION_INIT, {0, 0, 0}, \
-        SUNDER_AXES_ALL, SUNDER_SIDE_UPPER, 0, 0, {0, 0, 0}, {                       \
-      0, 0                                                                           \
-    }                                                                                \
+        SUNDER_AXES_ALL, SUNDER_SIDE_UPPER, 0, 0, {0, 0, 0}, {0, 0}, {0, 0, 0}, 0, 0 \
   }
 
 SUNDER_API void sunder_instrument_init(sunder_instrument* instrument);
@@ -245,6 +256,7 @@ enum { SUNDER_SIGMA0_LINE = 0, SUNDER_SIGMA0_TIP = 1, SUNDER_SIGMA0_PRESENT = 2 
 enum { SUNDER_LENGTH_PATH = 0, SUNDER_LENGTH_TOOL = 1 };
 enum { SUNDER_BIRTH_ELEMENT = 0, SUNDER_BIRTH_THROUGH = 1 };
 enum { SUNDER_SIF_FORMULA = 0, SUNDER_SIF_FIELD = 1 };
+enum { SUNDER_STRESS_CAUCHY = 0, SUNDER_STRESS_BIOT = 1 };
 
 /// docs/method.md says what each reading means.
 typedef struct sunder_fracture_options {
@@ -262,13 +274,15 @@ typedef struct sunder_fracture_options {
   int32_t attribution;  ///< 1: say which instrument broke an element; one more solve an event
   double plane_normal[3];
   double averaging;  ///< radius of the mean that strength is judged by [mm], 0: by element
+  int32_t stress;    ///< SUNDER_STRESS_*: what laws but linear call stress
+  int32_t reserved;
 } sunder_fracture_options;
 
 #define SUNDER_FRACTURE_OPTIONS_INIT                                                             \
   {                                                                                              \
     sizeof(sunder_fracture_options), SUNDER_FRACTURE_NONE, 1e-6, SUNDER_YIELD_MAX_SHEAR,         \
         SUNDER_SIGMA0_LINE, SUNDER_LENGTH_PATH, SUNDER_BIRTH_ELEMENT, SUNDER_SIF_FORMULA, 10000, \
-        0, 0, {0, 0, 0}, 0                                                                       \
+        0, 0, {0, 0, 0}, 0, SUNDER_STRESS_CAUCHY, 0                                              \
   }
 
 SUNDER_API void sunder_fracture_options_init(sunder_fracture_options* options);
@@ -418,6 +432,11 @@ SUNDER_API sunder_status sunder_simulation_cancel(sunder_simulation simulation);
 /// its value and ramp.
 SUNDER_API sunder_status sunder_simulation_drive(sunder_simulation simulation, int32_t instrument,
                                                  const double value[3]);
+/// Turns a rigid grip by hand from the next step on: rotation vector about the centroid of its
+/// undeformed nodes [deg], in place of its turn and ramp. SUNDER_ERROR_VALUE for any other
+/// instrument.
+SUNDER_API sunder_status sunder_simulation_turn(sunder_simulation simulation, int32_t instrument,
+                                                const double turn[3]);
 
 /* Fields of the last solve. Zero before the first step. */
 

@@ -80,7 +80,7 @@ void forbid(const TomlTable& table, const std::vector<std::string>& keys, const 
 }
 
 Press read_press(const TomlTable& table) {
-  forbid(table, {"displacement", "axes"},
+  forbid(table, {"displacement", "axes", "rigid", "turn"},
          "does not go with kind = \"pressure\": pressure takes a force");
   forbid(table, key_names("nodes"),
          "does not go with kind = \"pressure\": its nodes follow from \"at\", \"side\" and "
@@ -98,9 +98,13 @@ std::variant<Pull, Grip, Press> read_expansion(const TomlTable& table) {
   const std::string key = require_one(table, {"force", "displacement"});
   if (key == "displacement") {
     const Vec3 displacement = *table.vec3("displacement");
-    return Grip{read_nodes(table), displacement, read_axes(table)};
+    Grip grip{read_nodes(table), displacement, read_axes(table)};
+    grip.rigid = table.boolean("rigid").value_or(false);
+    if (!grip.rigid) forbid(table, {"turn"}, "goes with \"rigid = true\" only");
+    if (const auto turn = table.vec3("turn")) grip.turn = *turn;
+    return grip;
   }
-  forbid(table, {"axes"}, "goes with \"displacement\" only, not with \"force\"");
+  forbid(table, {"axes", "rigid", "turn"}, "goes with \"displacement\" only, not with \"force\"");
   const Vec3 force = *table.vec3("force");
   return Pull{read_nodes(table), force};
 }

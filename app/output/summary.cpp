@@ -7,6 +7,7 @@
 
 #include "app/output/text.hpp"
 #include "sunder/board_plane.hpp"
+#include "sunder/scene_keys.hpp"
 
 namespace sunder::app {
 namespace {
@@ -54,6 +55,12 @@ Json first_rupture(const RunRecord& run) {
     out["rotation_deg"] = d ? Json(d->rotation_deg) : Json(nullptr);
   }
   return out;
+}
+
+/// What this run calls stress; null: at small strain all are one.
+Json stress_measure(const Problem& problem) {
+  if (!problem.finite()) return nullptr;
+  return key_words("fracture", "stress")[static_cast<std::size_t>(problem.scene().fracture.stress)];
 }
 
 Json largest(const RunRecord& run) {
@@ -141,7 +148,8 @@ Json tree(const RunRecord& run) {
   out["failure"] = run.failure ? Json(*run.failure) : Json(nullptr);
   out["largest"] = largest(run);
   out["volume_lost"] = run.volume_lost();
-  out["law"] = "linear";
+  out["law"] = problem.law();
+  out["stress_measure"] = stress_measure(problem);
   return out;
 }
 

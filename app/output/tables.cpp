@@ -73,7 +73,7 @@ std::string frames_header() {
       "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
       "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations";
   for (const char* pass : kPasses) line += std::string(",ms_gpu_") + pass;
-  return line + ",strain_max,rotation_max_deg,inverted\n";
+  return line + ",strain_max,rotation_max_deg,inverted,back_solves\n";
 }
 
 std::string frames_row(const StepReport& report) {
@@ -90,7 +90,7 @@ std::string frames_row(const StepReport& report) {
   line += d ? "," + number(d->strain) + "," + number(d->rotation_deg) + "," +
                   std::to_string(d->inverted)
             : ",,,";
-  return line + "\n";
+  return line + "," + std::to_string(report.back_solves) + "\n";
 }
 
 std::string tips_header() {

@@ -179,6 +179,7 @@ namespace {
 
 /// Small strain left behind: for who looks at the picture before the warnings.
 std::string beyond_theory(const RunRecord& run) {
+  if (run.problem.finite()) return {};
   const auto d = run.largest();
   if (!d || (std::abs(d->strain) <= kSmallStrain && d->rotation_deg <= kSmallRotationDeg &&
              d->inverted == 0))

@@ -6,6 +6,8 @@
 
 #include "body/assembly.hpp"
 #include "body/deformation.hpp"
+#include "body/law_stress.hpp"
+#include "material/linear.hpp"
 
 namespace sunder::fem {
 namespace {
@@ -33,6 +35,14 @@ void freeze(linear_algebra::SparseMatrix& lower) {
 }
 
 }  // namespace
+
+std::vector<const Law*> laws_of(const Problem& problem) {
+  std::vector<const Law*> laws = one_law(problem, kLinear);
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    laws[problem.mesh().volume_of[e]] = &law_of(problem, e);
+  }
+  return laws;
+}
 
 std::vector<const Law*> one_law(const Problem& problem, const Law& law) {
   return std::vector<const Law*>(problem.mesh().volumes.size(), &law);

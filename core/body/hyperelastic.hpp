@@ -24,6 +24,8 @@ struct HyperelasticBody {
   }
 };
 
+/// Of each volume of a mesh, as the scene says; of one without elements: "linear".
+[[nodiscard]] std::vector<const Law*> laws_of(const Problem& problem);
 /// One law for all volumes of a mesh.
 [[nodiscard]] std::vector<const Law*> one_law(const Problem& problem, const Law& law);
 

@@ -13,6 +13,7 @@
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/scene_keys.hpp"
 #include "sunder/words.hpp"
 
 namespace sunder {
@@ -193,7 +194,22 @@ void Problem::resolve_materials() {
     const Material* material = it == scene_.materials.end() ? nullptr : &it->second;
     material_of_volume_.push_back(material);
     small_strain_of_volume_.push_back(material ? sunder::small_strain(*material) : SmallStrain{});
+    finite_ = finite_ || (elements[v] > 0 && material->law != MaterialLaw::linear);
   }
+  if (!finite_ && scene_.fracture.stress != FractureOptions{}.stress) {
+    warnings_.push_back("fracture.stress is not read: at law \"linear\" all stresses are one");
+  }
+}
+
+std::string Problem::law() const {
+  const auto& names = key_words("material", "law");
+  std::vector<std::uint8_t> used(names.size(), 0);
+  for (Index v : mesh().volume_of) used[static_cast<std::size_t>(material_of_volume_[v]->law)] = 1;
+  std::string all;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (used[i]) all += (all.empty() ? "" : ", ") + names[i];
+  }
+  return all;
 }
 
 void Problem::build_shapes() {

@@ -43,6 +43,18 @@ void check_axes(Axes axes, const std::string& what) {
   }
 }
 
+void check_turn(const Grip& grip, const std::string& what) {
+  check_finite(grip.turn, what, "turn");
+  if (grip.rigid && grip.axes.bits != kAllAxes) {
+    throw InputError(InputFault::out_of_range,
+                     what + " is rigid and must hold the axes \"xyz\", not some of them");
+  }
+  if (!grip.rigid && !grip.turn.isZero(0)) {
+    throw InputError(InputFault::out_of_range,
+                     what + " turns without being rigid; add rigid = true");
+  }
+}
+
 const NodeSelection* nodes_of(const Instrument& instrument) {
   if (const auto* grip = std::get_if<Grip>(&instrument.action)) return &grip->nodes;
   if (const auto* pull = std::get_if<Pull>(&instrument.action)) return &pull->nodes;
@@ -189,6 +201,7 @@ void Problem::resolve_grips() {
     const std::string what = instrument_name(instruments[i], i);
     check_finite(grip->displacement, what, "displacement");
     check_axes(grip->axes, what);
+    check_turn(*grip, what);
     for (Index n : instrument_nodes_[i].nodes) {
       for (int axis = 0; axis < 3; ++axis) {
         if (!grip->axes.has(axis)) continue;

@@ -17,6 +17,7 @@ struct Finding {
     field_fixed,       ///< crack, tip
     field_material,    ///< crack, tip
     field_damage,      ///< crack, tip
+    field_strain,      ///< crack, tip
     field_notch,       ///< crack, tip
     field_coarse,      ///< crack, tip
     field_split,       ///< crack, tip

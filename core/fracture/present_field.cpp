@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "body/element.hpp"
+#include "body/law_stress.hpp"
 
 namespace sunder::fracture {
 
@@ -33,7 +33,7 @@ std::optional<InPlane> PresentField::at(const Vec2& p) const {
     Eigen::Matrix<double, 3, 4> u;
     for (int corner = 0; corner < 4; ++corner)
       u.col(corner) = moved_[4 * i + static_cast<std::size_t>(corner)];
-    sum += shape.volume * fem::stress(shape, problem_.small_strain(near_[i]), u);
+    sum += shape.volume * fem::material_stress(problem_, near_[i], u);
     volume += shape.volume;
   }
   return in_plane(sum / volume, board_.plane());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fracture/pristine_field.hpp"
 
-#include "body/element.hpp"
+#include "body/law_stress.hpp"
 
 namespace sunder::fracture {
 
@@ -13,7 +13,7 @@ std::optional<InPlane> PristineField::at(const Vec2& p) const {
     if (!problem_.breakable(e)) continue;
     const TetShape& shape = problem_.shape(e);
     const auto u = fem::corner_displacement(problem_.mesh(), e, displacement_);
-    sum += shape.volume * fem::stress(shape, problem_.small_strain(e), u);
+    sum += shape.volume * fem::material_stress(problem_, e, u);
     volume += shape.volume;
   }
   if (!(volume > 0)) return std::nullopt;

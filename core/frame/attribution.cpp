@@ -72,7 +72,7 @@ void choose(Attribution& result) {
 
 }  // namespace
 
-Attribution attribution(Backend& backend, const Loads& loads, double time, Index element) {
+Attribution attribution(Backend& backend, const Loads& loads, Index element) {
   const Problem& problem = backend.problem();
   const auto gradient = corner_gradient(problem, backend.read_stress(element), element);
   backend.set_load(adjoint_load(problem, element, gradient));
@@ -97,9 +97,9 @@ Attribution attribution(Backend& backend, const Loads& loads, double time, Index
   std::vector<double> reactions(gripped.size());
   if (!gripped.empty()) backend.read_reactions(reactions);
   for (std::size_t g = 0; g < gripped.size(); ++g) {
-    const auto [instrument, axis] = loads.gripped()[g];
     const double direct = gradient_at(problem, element, gradient, gripped[g]);
-    result.terms[instrument] += (direct - reactions[g]) * loads.value(instrument, time)[axis];
+    result.terms[loads.gripped()[g].instrument] +=
+        (direct - reactions[g]) * loads.load().displacements[g];
   }
   choose(result);
   return result;

@@ -19,7 +19,6 @@ struct Attribution {
 
 /// Of a live element, under the load that `loads` holds and the backend has solved with stress.
 /// Leaves the backend with another load and solution.
-[[nodiscard]] Attribution attribution(Backend& backend, const Loads& loads, double time,
-                                      Index element);
+[[nodiscard]] Attribution attribution(Backend& backend, const Loads& loads, Index element);
 
 }  // namespace sunder

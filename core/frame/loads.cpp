@@ -2,12 +2,31 @@
 #include "frame/loads.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace sunder {
 namespace {
 
 bool is_press(const Instrument& instrument) {
   return std::holds_alternative<Press>(instrument.action);
+}
+
+Vec3 centroid(const Mesh& mesh, std::span<const Index> nodes) {
+  Vec3 sum = Vec3::Zero();
+  for (Index n : nodes) sum += mesh.nodes[n];
+  return sum / static_cast<double>(nodes.size());
+}
+
+/// R - I of a rotation vector [deg], by Rodrigues' formula.
+Mat3 turn_of(const Vec3& degrees) {
+  const double angle = degrees.norm() * std::numbers::pi / 180;
+  if (angle == 0) return Mat3::Zero();
+  const Vec3 n = degrees.normalized();
+  Mat3 cross;
+  cross << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
+  const double half = std::sin(angle / 2);
+  return std::sin(angle) * cross + 2 * half * half * cross * cross;
 }
 
 }  // namespace
@@ -20,6 +39,8 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   pressed_.resize(instruments.size());
   forces_.assign(instruments.size(), Vec3::Zero());
   driven_.resize(instruments.size());
+  turned_.resize(instruments.size());
+  turn_.assign(instruments.size(), Mat3::Zero());
   const auto gripped = problem.gripped_dofs();
   gripped_.resize(gripped.size());
   expansion_.displacements.assign(gripped.size(), 0.0);
@@ -27,11 +48,14 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* grip = std::get_if<Grip>(&instruments[i].action);
     if (!grip) continue;
-    for (Index n : problem.instrument_nodes()[i].nodes) {
+    const auto& nodes = problem.instrument_nodes()[i].nodes;
+    const Vec3 centre = grip->rigid ? centroid(problem.mesh(), nodes) : Vec3::Zero();
+    for (Index n : nodes) {
+      const Vec3 arm = grip->rigid ? Vec3(problem.mesh().nodes[n] - centre) : Vec3::Zero();
       for (int axis = 0; axis < 3; ++axis) {
         if (!grip->axes.has(axis)) continue;
         const auto it = std::lower_bound(gripped.begin(), gripped.end(), problem.dof(n, axis));
-        gripped_[it - gripped.begin()] = {i, axis};
+        gripped_[it - gripped.begin()] = {i, axis, arm};
       }
     }
   }
@@ -130,6 +154,15 @@ void Loads::sum_into(Load& load) {
   }
 }
 
+void Loads::take_turns(double time) {
+  for (std::size_t i = 0; i < turn_.size(); ++i) {
+    const Instrument& tool = problem_.scene().instruments[i];
+    const auto* grip = std::get_if<Grip>(&tool.action);
+    if (!grip || !grip->rigid) continue;
+    turn_[i] = turn_of(turned_[i].value_or(tool.factor(time) * grip->turn));
+  }
+}
+
 void Loads::update(double time, const FractureCriterion& criterion,
                    std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings) {
   const auto& instruments = problem_.scene().instruments;
@@ -141,8 +174,12 @@ void Loads::update(double time, const FractureCriterion& criterion,
     add(i);
   }
   sum_into(expansion_);
+  take_turns(time);
   for (std::size_t g = 0; g < gripped_.size(); ++g) {
-    expansion_.displacements[g] = value(gripped_[g].instrument, time)[gripped_[g].axis];
+    const auto& [instrument, axis, arm] = gripped_[g];
+    double& moved = expansion_.displacements[g];
+    moved = value(instrument, time)[axis];
+    if (!turn_[instrument].isZero(0)) moved += turn_[instrument].row(axis).dot(arm);
   }
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* press = std::get_if<Press>(&instruments[i].action);

@@ -23,7 +23,9 @@ class Loads {
 
   /// Instrument i has this force or displacement from the next update on, whatever the scene says.
   void drive(std::size_t instrument, const Vec3& value) { driven_[instrument] = value; }
-  /// Force or displacement of instrument i at a scene time.
+  /// A rigid grip has turned so far from the next update on [deg].
+  void turn(std::size_t instrument, const Vec3& rotation) { turned_[instrument] = rotation; }
+  /// Force or displacement of instrument i at a scene time, its turn left out.
   [[nodiscard]] Vec3 value(std::size_t instrument, double time) const;
 
   [[nodiscard]] const Load& load() const { return all_; }
@@ -41,6 +43,7 @@ class Loads {
   struct Gripped {
     std::size_t instrument;
     int axis;
+    Vec3 arm = Vec3::Zero();  ///< of a rigid grip: of the node from the nodes' centroid [mm]
   };
   [[nodiscard]] const std::vector<Gripped>& gripped() const { return gripped_; }
 
@@ -49,6 +52,7 @@ class Loads {
                             std::span<const std::uint8_t> destroyed,
                             std::vector<Finding>& findings);
   void reserve();
+  void take_turns(double time);
   void add(std::size_t instrument);
   void sum_into(Load& load);
 
@@ -63,7 +67,8 @@ class Loads {
   std::optional<NodeElements> elements_of_node_;  // only where something presses
   std::vector<std::vector<Index>> pressed_;       // per instrument
   std::vector<Gripped> gripped_;
-  std::vector<std::optional<Vec3>> driven_;
+  std::vector<std::optional<Vec3>> driven_, turned_;
+  std::vector<Mat3> turn_;  // per instrument, of the update in work: R - I
   std::vector<Vec3> forces_;
   std::vector<ActingPress> acting_;
   Load all_, expansion_;

@@ -47,12 +47,19 @@ std::vector<std::string> Simulation::warnings() const {
   if (polished_.count > 0) {
     all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
   }
+  if (unfinished_.count > 0) {
+    all.push_back(unfinished_.sentence(
+        "ended before the body was at rest: nothing was decided there, the next step went on from "
+        "it"));
+  }
   add_deformation_warnings(all);
+  const std::string so =
+      problem_->finite() ? " displacement stays as it was" : " displacement has no meaning";
   if (loose_nodes_ > 0) {
     all.push_back(count_of(static_cast<long long>(loose_nodes_), "node is", "nodes are") +
                   " held by destroyed elements only (since step " +
                   std::to_string(loose_nodes_step_) + "); " +
-                  (loose_nodes_ == 1 ? "its" : "their") + " displacement has no meaning");
+                  (loose_nodes_ == 1 ? "its" : "their") + so);
   }
   if (loose_pieces_ > 0) {
     const bool one = loose_pieces_ == 1;
@@ -60,7 +67,7 @@ std::vector<std::string> Simulation::warnings() const {
                   count_of(static_cast<long long>(loose_elements_), "element") +
                   (one ? " is" : " are") + " cut off (since step " +
                   std::to_string(loose_pieces_step_) + "); only destroyed elements hold " +
-                  (one ? "it and its" : "them and their") + " displacement has no meaning");
+                  (one ? "it and its" : "them and their") + so);
   }
   return all;
 }

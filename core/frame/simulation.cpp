@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "body/element.hpp"
+#include "body/law_stress.hpp"
 #include "body/pieces.hpp"
 #include "fracture/averaged_strength.hpp"
 #include "fracture/criterion.hpp"
@@ -15,7 +15,7 @@
 #include "frame/needs.hpp"
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
-#include "sunder/stress_measures.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder {
 namespace {
@@ -121,7 +121,7 @@ StepReport Simulation::step() {
       }
       {
         const Timer timer(times.solve);
-        const SolveReport solved = backend_->solve();
+        const SolveReport solved = solve();
         times.solve -= solved.stress_ms;
         times.stress += solved.stress_ms;
         record_solve(solved, report);
@@ -133,6 +133,7 @@ StepReport Simulation::step() {
       }
       report.max_yield_ratio = summary.any.ratio;
       if (frame_observer_) frame_observer_();
+      if (report.unfinished) break;  // a body on its way: nothing is decided
       {
         const Timer timer(times.decide);
         decide(summary);
@@ -158,6 +159,24 @@ StepReport Simulation::step() {
   return report;
 }
 
+/// The last step has nobody to go on from it: it is finished.
+SolveReport Simulation::solve() {
+  constexpr int kMost = 200;
+  SolveReport report = backend_->solve();
+  if (next_step_ + 1 < problem_->scene().steps) return report;
+  for (int more = 0; report.unfinished; ++more) {
+    if (more == kMost || interrupted_) {
+      throw NumericalError("step " + std::to_string(next_step_) +
+                           ", the last one, does not come to rest under its load; take more or "
+                           "smaller steps, or a smaller load");
+    }
+    const int before = report.back_solves;
+    report = backend_->solve();
+    report.back_solves += before;
+  }
+  return report;
+}
+
 StepReport Simulation::so_far() {
   if (!in_work_) return {};
   StepReport report = *in_work_;
@@ -172,8 +191,11 @@ void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
   report.residual = solve.residual;
   report.error = solve.error;
   report.iterations += solve.iterations;
+  report.back_solves += solve.back_solves;
+  report.unfinished = solve.unfinished;
   report.polished = report.polished || solve.polished;
   if (solve.polished) polished_.add(next_step_);
+  if (solve.unfinished) unfinished_.add(next_step_);
 }
 
 FractureState Simulation::fracture_state(const StressSummary& summary) {
@@ -273,11 +295,31 @@ void Simulation::drive(std::size_t instrument, const Vec3& value) {
   loads_->drive(instrument, value);
 }
 
+void Simulation::turn(std::size_t instrument, const Vec3& rotation) {
+  const auto& instruments = problem_->scene().instruments;
+  const auto* grip = instrument < instruments.size()
+                         ? std::get_if<Grip>(&instruments[instrument].action)
+                         : nullptr;
+  if (!grip || !grip->rigid) {
+    throw UsageError("instrument " + std::to_string(instrument) + " is no rigid grip");
+  }
+  if (!rotation.allFinite()) throw UsageError("a grip's turn must be finite");
+  loads_->turn(instrument, rotation);
+}
+
+void Simulation::attribute_events(bool wanted) {
+  if (wanted && problem_->finite()) {
+    throw UsageError("which instrument broke an element cannot be said by law " +
+                     in_quotes(problem_->law()) +
+                     ": it rests on superposition; leave attribution out, or take law \"linear\"");
+  }
+  attribute_ = wanted;
+}
+
 /// The instrument behind a decision; the backend holds the same solution before and after.
 void Simulation::attribute_event() {
   if (decision_->elements.empty()) return;
-  const double time = (next_step_ + 1.0) / problem_->scene().steps;
-  const Attribution a = attribution(*backend_, *loads_, time, decision_->elements.front().element);
+  const Attribution a = attribution(*backend_, *loads_, decision_->elements.front().element);
   backend_->set_load(loads_->load());
   backend_->solve();
   backend_->stress();
@@ -366,9 +408,10 @@ void Simulation::leave_out_loose() {
 void Simulation::measure_deformation(StepReport& report) {
   const Deformation d = backend_->deformation();
   report.deformation = d;
+  if (d.inverted > 0) inverted_.add(next_step_, d.inverted);
+  if (problem_->finite()) return;  // strains and rotations may be large
   if (std::abs(d.strain) > kSmallStrain) strained_.add(next_step_, std::abs(d.strain));
   if (d.rotation_deg > kSmallRotationDeg) turned_.add(next_step_, d.rotation_deg);
-  if (d.inverted > 0) inverted_.add(next_step_, d.inverted);
 }
 
 const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
@@ -397,7 +440,7 @@ void Simulation::read(Reactions& r) const {
   if (r.grips.empty()) return;
   backend_->read_reactions(r.grips);
   for (std::size_t g = 0; g < r.grips.size(); ++g) {
-    const auto [instrument, axis] = loads_->gripped()[g];
+    const auto& [instrument, axis, arm] = loads_->gripped()[g];
     r.forces[instrument][axis] += r.grips[g];
   }
 }
@@ -409,14 +452,15 @@ Vec3 Simulation::support_reaction() const {
   Vec3 sum = -loads_->force_on_supports();
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     const auto& tet = problem_->mesh().tets[e];
+    const auto held = [&](int a, int axis) { return problem_->dof(tet[a], axis) == kNone; };
+    Eigen::Matrix<double, 3, 4> forces;
+    bool known = false;
     for (int a = 0; a < 4; ++a) {
       for (int axis = 0; axis < 3; ++axis) {
-        if (problem_->dof(tet[a], axis) != kNone) continue;
-        const double scale = destroyed[e] ? problem_->scene().fracture.alpha : 1.0;
-        const TetShape& shape = problem_->shape(e);
-        const Voigt s = fem::stress(shape, problem_->small_strain(e),
-                                    fem::corner_displacement(problem_->mesh(), e, u));
-        sum[axis] += scale * shape.volume * (tensor(s) * shape.gradient.col(a))[axis];
+        if (!held(a, axis)) continue;
+        if (!known) forces = fem::corner_forces(*problem_, e, u, destroyed[e] != 0);
+        known = true;
+        sum[axis] += forces(axis, a);
       }
     }
   }
@@ -426,6 +470,17 @@ Vec3 Simulation::support_reaction() const {
 std::vector<Index> Simulation::acting_nodes(std::size_t instrument) const {
   const auto nodes = loads_->nodes(instrument);
   return {nodes.begin(), nodes.end()};
+}
+
+/// Of a rigid grip: what its forces do beyond their resultant.
+double Simulation::work_of_turn(std::size_t instrument, const Vec3& displacement) const {
+  double work = 0;
+  for (std::size_t g = 0; g < loads_->gripped().size(); ++g) {
+    const auto& [of, axis, arm] = loads_->gripped()[g];
+    if (of != instrument) continue;
+    work += reactions_.grips[g] * (loads_->load().displacements[g] - displacement[axis]);
+  }
+  return work;
 }
 
 double Simulation::compliance() {
@@ -442,6 +497,7 @@ double Simulation::compliance() {
       for (int axis = 0; axis < 3; ++axis) {
         if (grip->axes.has(axis)) work += forces[i][axis] * displacement[axis];
       }
+      if (grip->rigid) work += work_of_turn(i, displacement);
       continue;
     }
     const auto nodes = loads_->nodes(i);

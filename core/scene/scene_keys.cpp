@@ -170,6 +170,13 @@ std::vector<SceneKey> body_rows() {
           "beside `force`, or of a held node: error"),
       row("instrument", "axes", text, "\"xyz\"", "axes that a grip holds",
           "without `displacement`: error"),
+      row("instrument", "rigid", boolean, "false",
+          "a grip whose nodes move as one solid, which may turn",
+          "without `displacement`, or with some `axes` only: error"),
+      row("instrument", "turn", vector, "",
+          "of a rigid grip: rotation vector about the centroid of its nodes [deg]; the ramp scales "
+          "it with the displacement",
+          "without `rigid`: error"),
       row("instrument", "ramp", range, "",
           "[t0, t1]: scene times of no and of full action; t0 = t1 is a step; left out: fully from "
           "the start",
@@ -230,6 +237,12 @@ std::span<const MemberKey<Material>> material_keys() {
                               "not above -1 and below 0.5: error", kRequired),
       row<&Material::yield>("material", "yield", "yield stress [MPa]; left out: unbreakable",
                             "0 or below: error"),
+      row<&Material::law>(
+          "material", "law",
+          "stress by deformation: the paper's theory of small strains, or a law of "
+          "finite deformation (method.md \"Finite deformation\")",
+          "a device that cannot: exit code 4",
+          {.words = {"linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"}}),
   };
   return keys;
 }
@@ -271,6 +284,11 @@ std::span<const MemberKey<FractureOptions>> fracture_keys() {
                          "radius of the mean stress that strength is judged by [mm]; 0: by element "
                          "(method.md \"Averaged strength\")",
                          "below 0: error"),
+      row<&F::stress>("fracture", "stress",
+                      "laws but linear: what criteria and results call stress, the true one or the "
+                      "nominal one in the material's frame",
+                      "law linear alone: not read, with a warning where it is not \"cauchy\"",
+                      {.words = {"cauchy", "biot"}}),
   };
   return keys;
 }

@@ -196,6 +196,7 @@ std::optional<SolveReport> EnergyCheck::known(const Expected& expected, double e
   SolveReport report = report_;
   report.polished = false;
   report.iterations = 0;
+  report.back_solves = 1;
   const double tolerance = problem_.scene().solver.tolerance;
   if (!changed_ && expected.alone) {  // the solution of that check, before it was refined
     report.error = std::max(report.error, expected.worst);

@@ -72,6 +72,7 @@ std::optional<SolveReport> FrameSolver::solve_known(const Load& load) {
   if (!known(load)) return std::nullopt;
   SolveReport report = last_.report;
   report.iterations = device_.solve(0, false);
+  report.back_solves = 1;
   if (!device_.finite()) return std::nullopt;
   return report;
 }
@@ -125,6 +126,7 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
 
 void FrameSolver::solve_once(double energy_tolerance, SolveReport& report) {
   report.iterations += device_.solve(energy_tolerance, true);
+  ++report.back_solves;
   read_balance(report);
 }
 
@@ -154,6 +156,7 @@ void FrameSolver::refine(SolveReport& report, bool by_base) {
     if (std::isfinite(report.residual) && std::isfinite(balance_.largest_stress)) {
       const FrameDevice::Correction correction = device_.correct();
       report.iterations += correction.iterations;
+      ++report.back_solves;
       stress = correction.stress;
     }
     const double error = stress == 0             ? 0.0

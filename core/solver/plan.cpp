@@ -8,6 +8,7 @@
 
 #include "solver/route_table.hpp"
 #include "sunder/error.hpp"
+#include "sunder/in_quotes.hpp"
 
 namespace sunder::solver {
 namespace {
@@ -195,6 +196,10 @@ bool PlanDevice::has(Route route) const { return std::ranges::find(routes, route
 
 Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& device) {
   const SolverOptions& solver = problem.scene().solver;
+  if (problem.finite()) {
+    throw DeviceError("backend " + device.backend + " computes law \"linear\" alone, not " +
+                      in_quotes(problem.law()) + "; use backend cpu or auto");
+  }
   check_options(solver, device);
   Plan plan;
   plan.eager = solver.update == Update::eager;

@@ -60,6 +60,10 @@ class Problem {
   [[nodiscard]] const SmallStrain& small_strain(Index e) const {
     return small_strain_of_volume_[mesh().volume_of[e]];
   }
+  /// Whether a law of its elements is one of finite deformation.
+  [[nodiscard]] bool finite() const { return finite_; }
+  /// As a scene names it; of several ", " between, in the order of MaterialLaw.
+  [[nodiscard]] std::string law() const;
   /// Yield stress of element e [MPa]; 0: unbreakable.
   [[nodiscard]] double yield(Index e) const { return material(e).yield.value_or(0.0); }
   [[nodiscard]] bool breakable(Index e) const { return material(e).yield.has_value(); }
@@ -116,6 +120,7 @@ class Problem {
   std::vector<TetShape> shapes_;
   std::vector<const Material*> material_of_volume_;
   std::vector<SmallStrain> small_strain_of_volume_;
+  bool finite_ = false;
   std::vector<Index> dof_;
   Index dof_count_ = 0;
   std::vector<Index> gripped_dofs_, anchored_dofs_;

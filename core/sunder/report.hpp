@@ -48,6 +48,8 @@ struct StepReport {
   double error = 0;
   double max_yield_ratio = 0;  ///< over live breakable elements, at the end of the step
   int iterations = 0;
+  int back_solves = 0;      ///< applications of the base, those of conjugate gradients left out
+  bool unfinished = false;  ///< not at rest: nothing was decided, the next step goes on from it
   bool polished = false;
   StageTimes times;
   /// Device time per pass of all solves and updates of the step; empty without a device clock

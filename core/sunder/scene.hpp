@@ -13,11 +13,16 @@
 
 namespace sunder {
 
-/// Isotropic linear elasticity; without yield the material is unbreakable (method.md "Elasticity").
+/// linear: theory of small strains, as in the paper; the others at any deformation (method.md
+/// "Finite deformation"). A body whose materials are not all linear is computed by the latter.
+enum class MaterialLaw { linear, corotated, neo_hookean, saint_venant_kirchhoff };
+
+/// Isotropic elasticity; without yield the material is unbreakable (method.md "Elasticity").
 struct Material {
-  double young = 0;             ///< E [MPa], finite and > 0
-  double poisson = 0;           ///< nu in (-1, 0.5)
+  double young = 0;             ///< E [MPa] at small strain, finite and > 0
+  double poisson = 0;           ///< nu in (-1, 0.5), likewise
   std::optional<double> yield;  ///< yield stress [MPa], finite and > 0
+  MaterialLaw law = MaterialLaw::linear;
 };
 
 struct Box {
@@ -56,11 +61,14 @@ struct Pull {
   Vec3 force;
 };
 /// Grips: a prescribed displacement of the held axes of its nodes (expansion by a stiff tool).
-/// A grip holds its nodes from the start; the ramp scales the displacement.
+/// A grip holds its nodes from the start; the ramp scales the displacement and the turn.
 struct Grip {
   NodeSelection nodes;
   Vec3 displacement;
   Axes axes;
+  /// All its nodes move as one solid, which may turn; it holds all axes.
+  bool rigid = false;
+  Vec3 turn = Vec3::Zero();  ///< rotation vector about the nodes' centroid [deg]
 };
 enum class CrackSide { upper, lower };
 /// Presses on one face of a crack at the nodes nearest to `at` ("pressure", f2; method.md 7).
@@ -93,6 +101,8 @@ struct ScriptedRemoval {
 };
 
 enum class FractureModel { none, a, b, p };
+/// At finite deformation: the true stress, or the nominal one in the material's frame.
+enum class StressMeasure { cauchy, biot };
 enum class YieldMeasure { max_shear, tresca, principal };  ///< principal: model P's own
 /// present: the line mean of the current, damaged field (method.md 5).
 enum class RemoteStress { line, tip, present };
@@ -113,6 +123,8 @@ struct FractureOptions {
   int max_events = 10000;            ///< of one step
   std::optional<Vec3> plane_normal;  ///< overrides the third axis of the bounding box
   double averaging = 0;  ///< radius of the mean that strength is judged by [mm], 0: by element
+  StressMeasure stress =
+      StressMeasure::cauchy;  ///< that criteria and results mean, laws but linear
 };
 
 enum class Route { automatic, inverse, condensed, factor, cg };

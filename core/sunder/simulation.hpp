@@ -50,10 +50,13 @@ class Simulation {
   /// Drives an instrument by hand from the next step on: its force [N] or displacement [mm], in
   /// place of the scene's value and ramp. Throws UsageError for a value that is not finite.
   void drive(std::size_t instrument, const Vec3& value);
+  /// Turns a rigid grip likewise: rotation vector about its nodes' centroid [deg]. Throws
+  /// UsageError for any other instrument.
+  void turn(std::size_t instrument, const Vec3& rotation);
 
   /// Says of each rupture which instrument caused it (DestroyedElement::instrument). Two more
-  /// solves an event.
-  void attribute_events(bool wanted) { attribute_ = wanted; }
+  /// solves an event. Throws UsageError for a law of finite deformation: it rests on superposition.
+  void attribute_events(bool wanted);
 
   /// Computes the next step. Throws NumericalError when the promise cannot be kept and UsageError
   /// when all steps are done.
@@ -97,6 +100,7 @@ class Simulation {
  private:
   void apply_presets();
   void apply_removals();
+  SolveReport solve();
   void record_solve(const SolveReport& solve, StepReport& report);
   [[nodiscard]] FractureState fracture_state(const StressSummary& summary);
   void reserve();
@@ -113,6 +117,7 @@ class Simulation {
   [[nodiscard]] std::span<const NodalForce> instrument_forces();
   void add_grip_forces();
   [[nodiscard]] double compliance();
+  [[nodiscard]] double work_of_turn(std::size_t instrument, const Vec3& displacement) const;
 
   /// What the instruments exert, with room that frames share.
   struct Reactions {
@@ -162,7 +167,7 @@ class Simulation {
   const StepReport* in_work_ = nullptr;  // of step()
   bool interrupted_ = false;
   bool attribute_ = false;
-  Steps capped_, polished_;
+  Steps capped_, polished_, unfinished_;
   Beyond strained_, turned_, inverted_;
   std::vector<std::uint8_t> cut_off_;  // per element; empty: none yet
   std::vector<Index> newly_cut_off_;

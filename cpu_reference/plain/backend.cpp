@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cpu_reference/plain/plain.hpp"
+#include "cpu_reference/plain/finite.hpp"
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 
@@ -34,11 +34,19 @@ class PlainBackend final : public Backend {
  private:
   void do_set_load(const Load& load) override { load_ = load; }
   SolveReport do_solve() override {
+    if (problem().finite()) return solve_finite();
     solution_ = body_.solve(load_);
     if (!(solution_.error <= problem().scene().solver.tolerance)) {
       throw NumericalError("the yardstick cannot be refined under the tolerance");
     }
     return {.residual = solution_.residual, .error = solution_.error};
+  }
+  /// From the last solution on.
+  SolveReport solve_finite() {
+    const FiniteBody body(problem(), destroyed());
+    solution_ = body.solve(load_, solution_.displacement);
+    solution_.stress = body.stress(solution_.displacement, problem().scene().fracture.stress);
+    return {.residual = solution_.residual};
   }
   StressSummary do_stress() override {
     stress_ = solution_.stress;
@@ -54,7 +62,9 @@ class PlainBackend final : public Backend {
     return summary;
   }
   Deformation do_deformation() override {
-    return body_.deformation(solution_.displacement, cut_off_);
+    return problem().finite()
+               ? FiniteBody(problem(), destroyed()).deformation(solution_.displacement, cut_off_)
+               : body_.deformation(solution_.displacement, cut_off_);
   }
   void do_cut_off(std::span<const Index> elements) override {
     for (Index e : elements) cut_off_[e] = 1;
@@ -64,7 +74,12 @@ class PlainBackend final : public Backend {
     for (Index e : elements) excluded_[e] = 1;
   }
   void do_solve_pristine(const Load& load, std::span<double> u) override {
-    std::ranges::copy(Body(problem()).solve(load).displacement, u.begin());
+    if (problem().finite()) {
+      pristine_ = FiniteBody(problem()).solve(load, pristine_).displacement;
+    } else {
+      pristine_ = Body(problem()).solve(load).displacement;
+    }
+    std::ranges::copy(pristine_, u.begin());
   }
   void do_read_displacement(std::span<double> u) const override {
     std::ranges::copy(solution_.displacement, u.begin());
@@ -82,7 +97,8 @@ class PlainBackend final : public Backend {
   Body body_;
   Load load_;
   Solution solution_;
-  std::vector<Voigt> stress_;  // of the last stress()
+  std::vector<double> pristine_;  // of the last solve_pristine()
+  std::vector<Voigt> stress_;     // of the last stress()
   std::vector<std::uint8_t> excluded_, cut_off_;
 };
 

@@ -15,21 +15,30 @@ struct Law {
   Real3x3 (*stress)(const D& d, const Real3x3& f);
   Real3x3 (*change)(const D& d, const Real3x3& f, const Real3x3& df);
 };
-extern const Law kCorotated, kNeoHookean, kSaintVenantKirchhoff;
+extern const Law kLinear, kCorotated, kNeoHookean, kSaintVenantKirchhoff;
+/// R of F = R S with det R = 1.
+[[nodiscard]] Real3x3 rotation(const Real3x3& f);
 
 /// Destroyed elements add nothing.
 class FiniteBody : public Body {
  public:
   FiniteBody(const Problem& problem, const Law& law, std::span<const std::uint8_t> destroyed = {})
-      : Body(problem, destroyed), law_(law) {}
+      : Body(problem, destroyed), laws_(elements_.size(), &law) {}
+  /// By the laws of its materials.
+  explicit FiniteBody(const Problem& problem, std::span<const std::uint8_t> destroyed = {});
   /// From u = 0 or `start` (3 * nodes) to a residual of 1e-10: Newton, with a shift where the
   /// tangent is indefinite, halved until the energy falls. No stress. Throws std::runtime_error.
   [[nodiscard]] Solution solve(const Load& load, std::span<const double> start = {}) const;
+  /// Of live elements, in Voigt order; P itself where the law is linear.
+  [[nodiscard]] std::vector<Voigt> stress(std::span<const double> u, StressMeasure measure) const;
+  /// Strain U - I; over live elements that are not left out.
+  [[nodiscard]] Deformation deformation(std::span<const double> u,
+                                        std::span<const std::uint8_t> left_out) const;
 
  private:
   Real energy(const std::vector<Real>& u, const Eigen::VectorXd& load, Eigen::VectorXd& r) const;
   Eigen::VectorXd step(const std::vector<Real>& u, const Eigen::VectorXd& r) const;
-  const Law& law_;
+  std::vector<const Law*> laws_;  // per element
 };
 
 }  // namespace sunder::plain

@@ -15,12 +15,15 @@ const Real3x3 kOne = Real3x3::Identity();
 Real3x3 hooke(const D& d, const Real3x3& e) { return 2 * d(3, 3) * e + d(0, 1) * e.trace() * kOne; }
 Real half_product(const Real3x3& a, const Real3x3& b) { return a.cwiseProduct(b).sum() / 2; }
 
-/// F = R S with det R = 1.
-Real3x3 rotation(const Real3x3& f) {
-  const Eigen::JacobiSVD<Real3x3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Real sign = svd.matrixU().determinant() * svd.matrixV().determinant();
-  return svd.matrixU() * Real3(1, 1, sign < 0 ? -1 : 1).asDiagonal() * svd.matrixV().transpose();
+Real3x3 small_strain(const Real3x3& f) { return (f + f.transpose()) / 2 - kOne; }
+Real linear_energy(const D& d, const Real3x3& f) {
+  return half_product(hooke(d, small_strain(f)), small_strain(f));
 }
+Real3x3 linear_stress(const D& d, const Real3x3& f) { return hooke(d, small_strain(f)); }
+Real3x3 linear_change(const D& d, const Real3x3&, const Real3x3& df) {
+  return hooke(d, (df + df.transpose()) / 2);
+}
+
 Real corotated_energy(const D& d, const Real3x3& f) {
   const Real3x3 e = rotation(f).transpose() * f - kOne;
   return half_product(hooke(d, e), e);
@@ -61,6 +64,13 @@ Real3x3 svk_change(const D& d, const Real3x3& f, const Real3x3& df) {
 
 }  // namespace
 
+Real3x3 rotation(const Real3x3& f) {
+  const Eigen::JacobiSVD<Real3x3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Real sign = svd.matrixU().determinant() * svd.matrixV().determinant();
+  return svd.matrixU() * Real3(1, 1, sign < 0 ? -1 : 1).asDiagonal() * svd.matrixV().transpose();
+}
+
+constinit const Law kLinear{linear_energy, linear_stress, linear_change};
 constinit const Law kCorotated{corotated_energy, corotated_stress, corotated_change};
 constinit const Law kNeoHookean{neo_hookean_energy, neo_hookean_stress, neo_hookean_change};
 constinit const Law kSaintVenantKirchhoff{svk_energy, svk_stress, svk_change};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -12,11 +14,12 @@ Real FiniteBody::energy(const std::vector<Real>& u, const Eigen::VectorXd& load,
                         Eigen::VectorXd& r) const {
   std::vector<Real> forces(u.size(), 0);
   Real sum = 0;
-  for (const Element& e : elements_) {
+  for (std::size_t id = 0; id < elements_.size(); ++id) {
+    const Element& e = elements_[id];
     if (e.share < 1) continue;
     const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
-    sum += e.volume * law_.energy(e.d, f);
-    const Real3x3 p = law_.stress(e.d, f);
+    sum += e.volume * laws_[id]->energy(e.d, f);
+    const Real3x3 p = laws_[id]->stress(e.d, f);
     for (Index i = 0; i < 12; ++i)
       forces[e.places[i]] += e.volume * p.row(i % 3).dot(e.slope(i / 3));
   }
@@ -30,12 +33,14 @@ Real FiniteBody::energy(const std::vector<Real>& u, const Eigen::VectorXd& load,
 /// -K^-1 r of free dofs, of K + shift where K is indefinite; what no live element holds rests.
 Eigen::VectorXd FiniteBody::step(const std::vector<Real>& u, const Eigen::VectorXd& r) const {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Element& e : elements_) {
+  for (std::size_t id = 0; id < elements_.size(); ++id) {
+    const Element& e = elements_[id];
     for (Index j = 0; j < 12 && e.share == 1; ++j) {
       const Index column = problem_.dofs()[e.places[j]];
       Real3x3 df = Real3x3::Zero();
       df.row(j % 3) = e.slope(j / 3);
-      const Real3x3 dp = law_.change(e.d, Real3x3::Identity() + e.gradient(e.corners(u)), df);
+      const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
+      const Real3x3 dp = laws_[id]->change(e.d, f, df);
       for (Index i = 0; i < 12; ++i) {
         const Index row = problem_.dofs()[e.places[i]];
         if (column == kNone || row < column || !free_[row] || !free_[column]) continue;
@@ -84,6 +89,52 @@ Solution FiniteBody::solve(const Load& load, std::span<const double> start) cons
     } while (!(w <= before + 1e-4 * part * slope + 1e-16 * std::abs(before)));
   }
   throw std::runtime_error("the yardstick does not come to rest");
+}
+
+FiniteBody::FiniteBody(const Problem& problem, std::span<const std::uint8_t> destroyed)
+    : Body(problem, destroyed) {
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const MaterialLaw law = problem.material(e).law;
+    laws_.push_back(law == MaterialLaw::linear        ? &kLinear
+                    : law == MaterialLaw::corotated   ? &kCorotated
+                    : law == MaterialLaw::neo_hookean ? &kNeoHookean
+                                                      : &kSaintVenantKirchhoff);
+  }
+}
+
+std::vector<Voigt> FiniteBody::stress(std::span<const double> u, StressMeasure measure) const {
+  std::vector<Voigt> all(elements_.size(), Voigt::Zero());
+  for (std::size_t id = 0; id < elements_.size(); ++id) {
+    const Element& e = elements_[id];
+    if (e.share < 1) continue;
+    const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
+    Real3x3 s = laws_[id]->stress(e.d, f);
+    if (laws_[id] != &kLinear && measure == StressMeasure::biot) s = rotation(f).transpose() * s;
+    if (laws_[id] != &kLinear && measure == StressMeasure::cauchy)
+      s = s * f.transpose() / f.determinant();
+    s = (s + s.transpose()).eval() / 2;
+    const Real6 voigt{s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
+    all[id] = voigt.cast<double>();
+  }
+  return all;
+}
+
+Deformation FiniteBody::deformation(std::span<const double> u,
+                                    std::span<const std::uint8_t> left_out) const {
+  Deformation most;
+  for (std::size_t id = 0; id < elements_.size(); ++id) {
+    const Element& e = elements_[id];
+    if (e.share < 1 || left_out[id]) continue;
+    const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
+    for (const Real stretch : principal_values(rotation(f).transpose() * f)) {
+      const auto strain = static_cast<double>(stretch - 1);
+      if (std::abs(strain) > std::abs(most.strain)) most.strain = strain;
+    }
+    most.rotation_deg =
+        std::max(most.rotation_deg, static_cast<double>(rotation_deg(e.gradient(e.corners(u)))));
+    most.inverted += f.determinant() <= 0;
+  }
+  return most;
 }
 
 }  // namespace sunder::plain

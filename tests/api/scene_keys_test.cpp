@@ -30,6 +30,7 @@ const std::map<std::string, Member<sunder_fracture_options>>& fracture_members()
       {"plane_normal", &O::has_plane_normal},  // none: 0
       {"birth", &O::birth},
       {"averaging", &O::averaging},
+      {"stress", &O::stress},
   };
   return members;
 }
@@ -106,6 +107,21 @@ void expect_words(std::span<const MemberKey<Owner>> keys,
     value = words;
     EXPECT_EQ(set(scene.get(), &options), SUNDER_ERROR_VALUE);
   }
+}
+
+TEST(SceneKeys, LawsHaveTheirWordsInC) {
+  const auto& laws = key_words("material", "law");
+  EXPECT_EQ(laws.at(SUNDER_LAW_LINEAR), "linear");
+  EXPECT_EQ(laws.at(SUNDER_LAW_COROTATED), "corotated");
+  EXPECT_EQ(laws.at(SUNDER_LAW_NEO_HOOKEAN), "neo-hookean");
+  EXPECT_EQ(laws.at(SUNDER_LAW_SAINT_VENANT_KIRCHHOFF), "saint-venant-kirchhoff");
+  const CScene scene;
+  sunder_material material = SUNDER_MATERIAL_INIT;
+  material.young = 5;
+  material.law = SUNDER_LAW_SAINT_VENANT_KIRCHHOFF;
+  EXPECT_EQ(sunder_scene_add_material(scene.get(), &material, nullptr), SUNDER_OK);
+  material.law = static_cast<int32_t>(laws.size());
+  EXPECT_EQ(sunder_scene_add_material(scene.get(), &material, nullptr), SUNDER_ERROR_VALUE);
 }
 
 TEST(SceneKeys, HaveTheirWordsInC) {

@@ -18,6 +18,7 @@ void add_findings(const Disturbances& disturbed, const Crack& crack, std::size_t
   add(disturbed.fixed, Finding::Kind::field_fixed);
   add(disturbed.material, Finding::Kind::field_material);
   add(disturbed.damage, Finding::Kind::field_damage);
+  add(disturbed.strain, Finding::Kind::field_strain);
   add(disturbed.notch, Finding::Kind::field_notch);
   add(disturbed.coarse && disturbed.left_out, Finding::Kind::field_coarse);
   add(disturbed.coarse && !disturbed.left_out, Finding::Kind::field_split);

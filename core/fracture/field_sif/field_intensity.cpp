@@ -8,8 +8,10 @@
 #include <limits>
 
 #include "fracture/crack_path.hpp"
+#include "fracture/field_sif/turned_back.hpp"
 #include "fracture/stress_intensity.hpp"
 #include "sunder/fracture_model.hpp"
+#include "sunder/report.hpp"
 
 namespace sunder::fracture {
 namespace {
@@ -90,6 +92,7 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
 }
 
 std::string_view FieldIntensity::note() const {
+  if (disturbed.strain) return "strain";
   if (disturbed.notch) return "notch";
   if (disturbed.coarse) return "coarse";
   constexpr std::array<std::string_view, 8> kNotes{
@@ -189,6 +192,7 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
   const double chosen = std::clamp(around.nearest(), kSmallestDomainRadius * board_.h(), wanted);
   if (chosen < clear_of_notch(crack, tip)) return left_out(crack, tip, &Disturbances::notch);
   FieldIntensity result = measure(crack, tip, view, chosen);
+  if (result.disturbed.left_out) return result;
   result.disturbed.material = around.other_material < chosen;
   result.disturbed.damage = around.other_damage < chosen;
   if (chosen == wanted) mend(crack, tip, view, result);
@@ -224,6 +228,14 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   view.displacement(domain.nodes, displacement_);
   IntegralInput input{problem_,      board_,      surface_, result.frame, domain,
                       displacement_, view.forces, {},       crack.id};
+  if (problem_.finite() && !view.small) {
+    const TurnedBack back = turn_back(problem_, domain, displacement_);
+    if (!(back.strain <= kSmallStrain && back.rotation_deg <= kSmallRotationDeg))
+      return left_out(crack, tip, &Disturbances::strain);
+    turned_forces_.assign(view.forces.begin(), view.forces.end());
+    for (NodalForce& at : turned_forces_) at.force = back.rotation.transpose() * at.force;
+    input.forces = turned_forces_;
+  }
   const auto tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;
   result.factors = interaction_integral(input, result.material);

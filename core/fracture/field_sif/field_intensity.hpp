@@ -27,6 +27,7 @@ struct FieldView {
   /// Displacement of some nodes [mm].
   std::function<void(std::span<const Index>, std::span<Vec3>)> displacement;
   std::span<const NodalForce> forces;  ///< of pulling and pressing instruments
+  bool small = false;                  ///< a field of small strain, whatever the body's laws
 };
 
 /// What disturbs the field around a tip.
@@ -36,6 +37,7 @@ struct Disturbances {
   bool damage = false;    ///< it reaches elements destroyed by something else
   bool notch = false;     ///< the crack is a notch too blunt for K, which is left out
   bool coarse = false;    ///< the mesh at its tip is too coarse; of a notch K is left out
+  bool strain = false;    ///< it is strained or turned in itself beyond small strain: no K
   bool left_out = false;  ///< there is no K
 };
 
@@ -110,6 +112,7 @@ class FieldIntensityMeter {
   std::vector<Index> near_;
   TipDomain domain_;
   std::vector<Vec2> tail_;
+  std::vector<NodalForce> turned_forces_;
   std::vector<Vec3> displacement_;
 };
 

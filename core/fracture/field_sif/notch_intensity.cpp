@@ -22,7 +22,8 @@ FieldView view_of(std::span<const double> displacement, std::span<const std::uin
             for (std::size_t i = 0; i < nodes.size(); ++i)
               u[i] = Eigen::Map<const Vec3>(displacement.data() + 3 * nodes[i]);
           },
-          {}};
+          {},
+          true};
 }
 
 }  // namespace

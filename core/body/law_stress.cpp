@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "body/law_stress.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "material/finite_stress.hpp"
+#include "sunder/stress_measures.hpp"
+
+namespace sunder::fem {
+namespace {
+
+/// F. From differences to corner 0: a translation costs no accuracy.
+Mat3 gradient(const TetShape& shape, const Eigen::Matrix<double, 3, 4>& displacement) {
+  const Eigen::Matrix<double, 3, 4> moved = displacement.colwise() - displacement.col(0);
+  return Mat3::Identity() + moved * shape.gradient.transpose();
+}
+
+Voigt stress_by(const Problem& problem, Index e, const Eigen::Matrix<double, 3, 4>& displacement,
+                StressMeasure measure) {
+  if (problem.material(e).law == MaterialLaw::linear)  // knows but one
+    return stress(problem.shape(e), problem.small_strain(e), displacement);
+  const Mat3 f = gradient(problem.shape(e), displacement);
+  const Law& law = law_of(problem, e);
+  if (!std::isfinite(law.energy(problem.small_strain(e), f))) {
+    return Voigt::Constant(std::numeric_limits<double>::infinity());
+  }
+  const Mat3 p = law.stress(problem.small_strain(e), f);
+  return measure == StressMeasure::biot ? biot_stress(p, f) : cauchy_stress(p, f);
+}
+
+}  // namespace
+
+const Law& law_of(const Problem& problem, Index e) {
+  return *laws()[static_cast<std::size_t>(problem.material(e).law)];
+}
+
+Voigt named_stress(const Problem& problem, Index e,
+                   const Eigen::Matrix<double, 3, 4>& displacement) {
+  return stress_by(problem, e, displacement, problem.scene().fracture.stress);
+}
+
+Voigt material_stress(const Problem& problem, Index e,
+                      const Eigen::Matrix<double, 3, 4>& displacement) {
+  return stress_by(problem, e, displacement, StressMeasure::biot);
+}
+
+Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e,
+                                          std::span<const double> u, bool destroyed) {
+  const TetShape& shape = problem.shape(e);
+  const auto displacement = corner_displacement(problem.mesh(), e, u);
+  if (!problem.finite()) {
+    const double scale = destroyed ? problem.scene().fracture.alpha : 1.0;
+    const Voigt s = stress(shape, problem.small_strain(e), displacement);
+    return scale * shape.volume * (tensor(s) * shape.gradient).eval();
+  }
+  if (destroyed) return Eigen::Matrix<double, 3, 4>::Zero();
+  const Mat3 p = law_of(problem, e).stress(problem.small_strain(e), gradient(shape, displacement));
+  return shape.volume * (p * shape.gradient).eval();
+}
+
+}  // namespace sunder::fem
