@@ -39,6 +39,8 @@ class FinitePotential {
   /// to.u = from + part * du.
   void move(std::span<const double> from, double part, const Eigen::VectorXd& du,
             std::vector<double>& to) const;
+  /// Gripped nodes where the grips want them; frozen ones stay.
+  void put_grips(const FiniteTarget& target, std::vector<double>& u) const;
   /// (to - from) of the unknowns.
   void difference(std::span<const double> to, std::span<const double> from,
                   Eigen::VectorXd& s) const;
@@ -58,6 +60,7 @@ class FinitePotential {
 
  private:
   const RestingBody& body_;
+  std::vector<std::size_t> grip_places_;  // of gripped dofs in u
   fem::StressFunction stress_;
 };
 

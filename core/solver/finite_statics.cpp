@@ -15,13 +15,19 @@ constexpr double kProbe = 1e-6;  // of the grips' motion, to feel what it pulls 
 constexpr int kBackSolvesPerFactor = 10;
 // Of the largest shear modulus: stress that is as good as none, and rounding.
 constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
+// Of the sum of shear modulus and volume: an energy is what terms of that size leave.
+constexpr double kSumRounding = 2e-16;
 
-double largest_modulus(const Problem& problem) {
-  double stiffest = 0;
+FiniteScale scale_of(const Problem& problem) {
+  double stiffest = 0, sum = 0, volume = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     stiffest = std::max(stiffest, problem.small_strain(e).mu);
+    volume += problem.shape(e).volume;
+    sum += problem.small_strain(e).mu * problem.shape(e).volume;
   }
-  return stiffest;
+  const double face = std::pow(volume / std::max(1, problem.tet_count()), 2.0 / 3);
+  return {kNoStress * stiffest * face, kNoStress * stiffest, kStressRounding * stiffest * face,
+          kStressRounding * stiffest, kSumRounding * sum};
 }
 
 }  // namespace
@@ -35,12 +41,17 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       f_(u_.size(), 0.0),
       reached_(potential_.target({})),
       order_(fem::elimination_order(body.problem)),
-      minimiser_(potential_, options.pairs) {}
+      minimiser_(potential_, options.pairs),
+      scale_(scale_of(body.problem)) {}
 
-void FiniteStatics::destroyed(std::span<const Index>) { body_changed(); }
+void FiniteStatics::destroyed(std::span<const Index>) {
+  resting_.look();
+  before_.clear();
+}
 
 void FiniteStatics::body_changed() {
   resting_.look();
+  before_.clear();
   base_.reset();
 }
 
@@ -49,31 +60,48 @@ bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind,
                           FiniteStaticsReport& report) {
   ++report.factors;
   try {
-    base_.emplace(resting_, u, kind, order_);
+    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, order_);
   } catch (const NumericalError&) {
     base_.reset();
   }
-  return base_.has_value();
+  return base_ != nullptr;
 }
 
-/// The last state, its grips moved and the rest following as the base says: what a small share of
-/// that motion adds to the forces tells what the whole would.
+/// state_ <- where to begin: the last state, turned as a whole with its grips, those moved and the
+/// rest following as the base says; or the last step once more, where its energy is less.
 void FiniteStatics::predict(const FiniteTarget& target) {
-  const auto gripped = body_.problem.gripped_dofs();
   state_.u = u_;
-  potential_.evaluate(target, false, state_);
-  if (target.grips == reached_.grips) return;
-  motion_.setZero(state_.r.size());
-  for (std::size_t g = 0; g < gripped.size(); ++g) {
-    if (resting_.frozen()[gripped[g]]) continue;
-    motion_[gripped[g]] = target.grips[g] - reached_.grips[g];
+  if (target.grips != reached_.grips) {
+    const auto turned = follow_grips_rigidly(body_.problem, u_, target.grips);
+    if (!turned.empty()) state_.u = turned;
   }
-  potential_.move(u_, kProbe, motion_, probe_.u);
+  if (options_.turn) base_->turn(resting_, state_.u);
+  potential_.evaluate(target, false, state_);
+  if (target.grips != reached_.grips) move_grips(target);
+  const double times = before_.empty() ? 0 : continuation(begin_, reached_, target);
+  if (times == 0) return;
+  probe_.u = u_;
+  for (std::size_t i = 0; i < u_.size(); ++i) probe_.u[i] += times * (u_[i] - before_[i]);
+  potential_.put_grips(target, probe_.u);
+  potential_.evaluate(target, false, probe_);
+  if (probe_.potential < state_.potential) std::swap(state_, probe_);
+}
+
+/// What a small share of the grips' motion adds to the forces tells what the whole would.
+void FiniteStatics::move_grips(const FiniteTarget& target) {
+  following_.setZero(state_.r.size());
+  probe_.u = state_.u;
+  potential_.put_grips(target, probe_.u);
+  potential_.difference(probe_.u, state_.u, motion_);
+  if (motion_.cwiseAbs().maxCoeff() == 0) return;
+  potential_.move(state_.u, kProbe, motion_, probe_.u);
   potential_.evaluate(target, false, probe_);
   const Eigen::VectorXd pulled = -(state_.r + (probe_.r - state_.r) / kProbe);
   base_->solve(pulled, following_);
   potential_.hold(following_);
-  potential_.move(u_, 1, motion_ + following_, state_.u);
+  potential_.move(state_.u, 1, motion_ + following_, probe_.u);
+  potential_.put_grips(target, probe_.u);
+  std::swap(state_.u, probe_.u);
   potential_.evaluate(target, false, state_);
 }
 
@@ -101,14 +129,19 @@ bool FiniteStatics::by_new_factors(const FiniteTarget& target, FiniteStaticsRepo
 
 bool FiniteStatics::approach(const FiniteTarget& target, FiniteStaticsReport& report) {
   const int before = report.back_solves;
+  if (base_ && !base_->follow(resting_, options_.most_rank)) base_.reset();
   if (!base_ && !renew(u_, fem::Tangent::projected, report)) return false;
+  report.rank = base_->rank();
   predict(target);
   if (!std::isfinite(state_.potential)) return false;
   if (!minimise(target, options_.most_back_solves, report) && !by_new_factors(target, report)) {
     return false;
   }
+  before_ = std::move(u_);
+  begin_ = std::move(reached_);
   u_ = state_.u;
   f_ = state_.f;
+  reached_ = target;
   if (report.back_solves - before > options_.renew_after) base_.reset();
   return true;
 }
@@ -119,8 +152,9 @@ FiniteStaticsReport FiniteStatics::solve(const Load& load) {
   const FiniteTarget begin = reached_, end = potential_.target(load);
   state_.u = u_;
   potential_.evaluate(begin, false, state_);
-  const double modulus = largest_modulus(body_.problem);
-  minimiser_.set_scale({state_.acting, kNoStress * modulus, kStressRounding * modulus});
+  FiniteScale scale = scale_;
+  scale.force = std::max(scale.force, state_.acting);
+  minimiser_.set_scale(scale);
   double step = 1;
   const double least = std::ldexp(1.0, -options_.most_halvings);
   while (report.share < 1) {
@@ -132,7 +166,6 @@ FiniteStaticsReport FiniteStatics::solve(const Load& load) {
     ++report.load_steps;
     if (approach(next, report)) {
       report.share = share;
-      reached_ = std::move(next);
       continue;
     }
     base_.reset();  // of the last state at rest

@@ -7,13 +7,14 @@
 // the state reached; where that ends nowhere the load is approached in smaller steps.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "material/finite_stress.hpp"
 #include "solver/finite_base.hpp"
 #include "solver/finite_minimiser.hpp"
 #include "solver/finite_potential.hpp"
+#include "solver/finite_start.hpp"
 
 namespace sunder::solver {
 
@@ -26,9 +27,11 @@ struct FiniteStaticsOptions {
   /// begin or end, whichever are larger.
   double residual = 1e-2;
   int pairs = 5;              ///< of L-BFGS
-  int most_back_solves = 40;  ///< on one base
+  int most_back_solves = 25;  ///< on one base
   int most_factors = 20;      ///< of one approach, made where the base stalls
   int most_halvings = 12;     ///< of the load's increment
+  bool turn = true;           ///< the base by the nodes' rotations
+  Index most_rank = 300;      ///< unknowns that what has left touches, before a new base is made
   int renew_after = 8;        ///< back-solves of a step after which the base is renewed
 };
 
@@ -42,6 +45,7 @@ struct FiniteStaticsReport {
   double error = 0;        ///< estimate of the relative error of stress
   double contraction = 0;  ///< measured: how much of an error an iteration leaves
   int back_solves = 0, factors = 0, load_steps = 0, damped_steps = 0;
+  Index rank = 0;  ///< unknowns by which the base differs from the body
   FrozenParts frozen;
 };
 
@@ -68,6 +72,7 @@ class FiniteStatics {
   [[nodiscard]] bool renew(const std::vector<double>& u, fem::Tangent kind,
                            FiniteStaticsReport& report);
   void predict(const FiniteTarget& target);
+  void move_grips(const FiniteTarget& target);
   [[nodiscard]] bool by_new_factors(const FiniteTarget& target, FiniteStaticsReport& report);
   [[nodiscard]] bool minimise(const FiniteTarget& target, int most, FiniteStaticsReport& report);
   [[nodiscard]] bool approach(const FiniteTarget& target, FiniteStaticsReport& report);
@@ -76,11 +81,13 @@ class FiniteStatics {
   FiniteStaticsOptions options_;
   RestingBody resting_;
   FinitePotential potential_;
-  std::vector<double> u_, f_;
-  FiniteTarget reached_;
-  std::vector<Index> order_;  // of the factor
-  std::optional<FiniteBase> base_;
+  std::vector<double> u_, f_;     // of the last state at rest
+  std::vector<double> before_;    // the one before it; empty: the body has changed since
+  FiniteTarget reached_, begin_;  // their loads
+  std::vector<Index> order_;      // of the factor
+  std::unique_ptr<FiniteBase> base_;
   FiniteMinimiser minimiser_;
+  FiniteScale scale_;
   FiniteState state_, probe_;
   Eigen::VectorXd motion_, following_;
 };
