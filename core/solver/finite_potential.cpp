@@ -62,9 +62,17 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
   for (Index d : body.problem.gripped_dofs()) {
     if (!body_.frozen()[d]) held += state.r[d] * state.r[d];
   }
+  double springs = 0;
+  for (std::size_t i = 0; target.inertia > 0 && i < state.u.size(); ++i) {
+    const Index d = body.problem.dofs()[i];
+    if (d == kNone || body_.frozen()[d]) continue;
+    const double from = state.u[i] - (*target.ahead)[i];
+    state.r[d] += target.inertia * from;
+    springs += target.inertia / 2 * from * from;
+  }
   hold(state.r);
   state.acting = std::sqrt(loaded + held);
-  state.potential = energy - work;
+  state.potential = energy - work + springs;
 }
 
 void FinitePotential::complete(FiniteState& state) const {

@@ -12,10 +12,13 @@
 
 namespace sunder::solver {
 
-/// Force per unknown, displacement per gripped dof.
+/// Force per unknown, displacement per gripped dof; on a damped path a fictitious inertia besides:
+/// springs [N/mm] of every free unknown to where it would go by itself.
 struct FiniteTarget {
   Eigen::VectorXd force;
   std::vector<double> grips;
+  double inertia = 0;
+  const std::vector<double>* ahead = nullptr;  ///< (3 * nodes)
 };
 
 /// A displacement and what belongs to it.
