@@ -1,33 +1,252 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/finite_base.hpp"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "body/deformation.hpp"
+#include "material/linear.hpp"
+#include "material/singular_values.hpp"
+
 namespace sunder::solver {
 namespace {
 
-/// Known unknowns get equations of their own.
-void uncouple(linear_algebra::SparseMatrix& lower, std::span<const Index> unknowns) {
-  std::vector<std::uint8_t> known(static_cast<std::size_t>(lower.cols()), 0);
-  for (Index d : unknowns) known[d] = 1;
-  for (Index column = 0; column < lower.cols(); ++column) {
-    for (linear_algebra::SparseMatrix::InnerIterator it(lower, column); it; ++it) {
-      if (known[it.row()] || known[column]) it.valueRef() = it.row() == column ? 1 : 0;
-    }
-  }
-}
+// Columns that go through the factor together.
+constexpr Index kColumnGroup = 32;
+// Of S, squared diagonal of its factor: what is left holds by rounding alone.
+constexpr double kLeastLeft = 1e-10;
+// Under this angle [rad] turning costs more than it wins.
+constexpr double kLeastTurn = 0.01;
 
 linear_algebra::SparseMatrix tangent(const fem::HyperelasticBody& body, std::span<const double> u,
-                                     fem::Tangent kind) {
+                                     fem::Tangent kind, double inertia) {
   linear_algebra::SparseMatrix lower = fem::assemble_tangent(body, u, kind);
-  uncouple(lower, body.problem.gripped_dofs());
+  std::vector<std::uint8_t> known(static_cast<std::size_t>(lower.cols()), 0);
+  for (Index d : body.problem.gripped_dofs()) known[d] = 1;
+  for (Index column = 0; column < lower.cols(); ++column) {
+    for (linear_algebra::SparseMatrix::InnerIterator it(lower, column); it; ++it) {
+      const bool diagonal = it.row() == column;
+      if (known[it.row()] || known[column]) {
+        it.valueRef() = diagonal ? 1 : 0;
+      } else if (diagonal) {
+        it.valueRef() += inertia;
+      }
+    }
+  }
   return lower;
 }
 
+Index full_vectors(Index columns) { return (columns + 7) / 8 * 8; }
+
 }  // namespace
 
-FiniteBase::FiniteBase(const RestingBody& body, std::vector<double> u, fem::Tangent kind,
-                       const std::vector<Index>& order)
-    : u_(std::move(u)), factor_(tangent(body.body(), u_, kind), order) {}
+FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
+                       const std::vector<Index>& order, double inertia,
+                       const linear_algebra::FactorWork& work)
+    : problem_(body.problem),
+      laws_(body.law_of_volume.begin(), body.law_of_volume.end()),
+      out_(problem_.mesh().tets.size(), 0),
+      u_(std::move(u)),
+      kind_(kind),
+      inertia_(inertia),
+      factor_(tangent(body, u_, kind, inertia), order, work),
+      columns_(factor_.cholesky().supernodes()),
+      column_(static_cast<std::size_t>(problem_.dof_count()), kNone),
+      coupled_(column_.size(), 0) {
+  std::ranges::copy(body.destroyed, out_.begin());
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (out_[e]) continue;
+    for (Index n : problem_.mesh().tets[e]) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (problem_.dof(n, axis) != kNone) coupled_[problem_.dof(n, axis)] = 1;
+      }
+    }
+  }
+  for (Index d : problem_.gripped_dofs()) coupled_[d] = 0;
+}
 
-void FiniteBase::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) { factor_.solve(b, x, work_); }
+bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
+  std::vector<Index> lost, fresh;
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (now.out()[e] == out_[e]) continue;
+    if (!now.out()[e]) return false;
+    lost.push_back(e);
+    for (Index n : problem_.mesh().tets[e]) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem_.dof(n, axis);
+        if (d == kNone || !coupled_[d] || column_[d] != kNone) continue;
+        column_[d] = static_cast<Index>(touched_.size() + fresh.size());
+        fresh.push_back(d);
+      }
+    }
+  }
+  if (lost.empty()) return true;
+  if (touched_.size() + fresh.size() > static_cast<std::size_t>(most_rank)) return false;
+  touch(fresh);
+  for (Index e : lost) lose(e);
+  return correct(now);
+}
+
+/// Appends columns of L^-1 E_T, and of G.
+void FiniteBase::touch(std::span<const Index> unknowns) {
+  const auto before = static_cast<Index>(touched_.size()),
+             after = before + static_cast<Index>(unknowns.size());
+  g_.conservativeResize(after, after);
+  d_.conservativeResize(after, after);
+  d_.rightCols(after - before).setZero();
+  d_.bottomRows(after - before).setZero();
+  if (rows_.rows() == 0) {
+    rows_.setZero(factor_.cholesky().size(), kColumnGroup);
+    factor_.cholesky().make_room(kColumnGroup, work_);
+    columns_.make_room();
+  }
+  for (std::size_t begin = 0; begin < unknowns.size(); begin += kColumnGroup) {
+    push_group(
+        unknowns.subspan(begin, std::min<std::size_t>(kColumnGroup, unknowns.size() - begin)));
+  }
+}
+
+void FiniteBase::push_group(std::span<const Index> unknowns) {
+  const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
+  const auto& nodes = l.supernodes();
+  const auto count = static_cast<Index>(unknowns.size()), first = rank();
+  places_.clear();
+  for (Index i = 0; i < count; ++i) {
+    places_.push_back(nodes.place[unknowns[i]]);
+    rows_(places_.back(), i) = 1;
+  }
+  l.reach(places_, path_, work_);
+  l.forward(path_, rows_.leftCols(full_vectors(count)), work_);
+  columns_.append(path_, rows_, count);
+  touched_.insert(touched_.end(), unknowns.begin(), unknowns.end());
+  block_.resize(columns_.size(), kColumnGroup);
+  columns_.multiply(path_, rows_, full_vectors(count), block_);
+  g_.block(0, first, rank(), count) = block_.topLeftCorner(rank(), count);
+  g_.block(first, 0, count, rank()) = g_.block(0, first, rank(), count).transpose();
+  for (Index s : path_) rows_.middleRows(nodes.first[s], nodes.width(s)).setZero();
+}
+
+/// Adds an element's tangent to D.
+void FiniteBase::lose(Index element) {
+  const fem::ElementMatrix k = fem::element_tangent({problem_, laws_}, element, u_, kind_);
+  std::array<Index, 12> at;
+  for (int i = 0; i < 12; ++i) {
+    const Index d = problem_.dof(problem_.mesh().tets[element][i / 3], i % 3);
+    at[i] = d == kNone ? kNone : column_[d];
+  }
+  for (int j = 0; j < 12; ++j) {
+    for (int i = 0; i < 12; ++i) {
+      if (at[i] != kNone && at[j] != kNone) d_(at[i], at[j]) += k(i, j);
+    }
+  }
+  out_[element] = 1;
+}
+
+/// M of the head comment, unknowns that are held still first.
+bool FiniteBase::correct(const RestingBody& now) {
+  std::vector<Index> in_order, moving;
+  for (Index i = 0; i < rank(); ++i) {
+    (now.frozen()[touched_[i]] ? in_order : moving).push_back(i);
+  }
+  const auto held = static_cast<Eigen::Index>(in_order.size()),
+             free = static_cast<Eigen::Index>(moving.size());
+  in_order.insert(in_order.end(), moving.begin(), moving.end());
+  const Eigen::LLT<Eigen::MatrixXd> g(g_(in_order, in_order));
+  if (g.info() != Eigen::Success) return false;
+  const Eigen::MatrixXd root = g.matrixL();
+  const Eigen::MatrixXd r = root.bottomRightCorner(free, free);
+  const Eigen::MatrixXd d = d_(moving, moving);
+  Eigen::MatrixXd rd = r.triangularView<Eigen::Lower>().transpose() * d;
+  Eigen::MatrixXd s = -rd * r.triangularView<Eigen::Lower>();
+  s.diagonal().array() += 1;
+  const Eigen::LLT<Eigen::MatrixXd> left(s);
+  if (free > 0 && (left.info() != Eigen::Success ||
+                   !(left.matrixLLT().diagonal().minCoeff() > std::sqrt(kLeastLeft)))) {
+    return false;
+  }
+  left.matrixL().solveInPlace(rd);
+  Eigen::MatrixXd of_moving = d;
+  of_moving.noalias() += rd.transpose() * rd;
+  // c = G_ZZ^-1 G_ZF.
+  const auto corner = root.topLeftCorner(held, held).triangularView<Eigen::Lower>();
+  Eigen::MatrixXd c = root.bottomLeftCorner(free, held).transpose();
+  corner.transpose().solveInPlace(c);
+  Eigen::MatrixXd whole(rank(), rank());
+  whole.bottomRightCorner(free, free) = of_moving;
+  whole.topRightCorner(held, free) = -c * of_moving;
+  whole.bottomLeftCorner(free, held) = whole.topRightCorner(held, free).transpose();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(held, held);
+  corner.solveInPlace(inverse);
+  whole.topLeftCorner(held, held) =
+      -(inverse.transpose() * inverse) - whole.topRightCorner(held, free) * c.transpose();
+  m_.resize(rank(), rank());
+  m_(in_order, in_order) = whole;
+  return true;
+}
+
+void FiniteBase::turn(const RestingBody& now, std::span<const double> u) {
+  turned_.clear();
+  largest_turn_ = 0;
+  const Mesh& mesh = problem_.mesh();
+  std::vector<Mat3> sum(mesh.nodes.size(), Mat3::Zero());
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (now.out()[e]) continue;
+    const double volume = problem_.shape(e).volume;
+    const Mat3 from = Mat3::Identity() + fem::displacement_gradient(problem_, e, u_),
+               to = Mat3::Identity() + fem::displacement_gradient(problem_, e, u);
+    // The linear law's stiffness does not turn.
+    const bool turns = laws_[problem_.mesh().volume_of[e]] != &kLinear;
+    const Mat3 both = volume * (turns ? Mat3(to * from.transpose()) : Mat3::Identity());
+    for (Index n : mesh.tets[e]) sum[n] += both;
+  }
+  for (Index n = 0; n < mesh.node_count(); ++n) {
+    std::array<Index, 3> at;
+    bool free = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      at[axis] = problem_.dof(n, axis);
+      free = free && at[axis] != kNone && coupled_[at[axis]] && !now.frozen()[at[axis]];
+    }
+    if (!free) continue;
+    const Mat3 q = polar(sum[n]).rotation;
+    largest_turn_ = std::max(largest_turn_, std::acos(std::clamp((q.trace() - 1) / 2, -1.0, 1.0)));
+    turned_.push_back({at, q});
+  }
+  if (largest_turn_ < kLeastTurn) turned_.clear();
+}
+
+void FiniteBase::rotate(const Eigen::VectorXd& from, bool back, Eigen::VectorXd& to) const {
+  to = from;
+  for (const Turned& t : turned_) {
+    const Vec3 v(from[t.unknowns[0]], from[t.unknowns[1]], from[t.unknowns[2]]);
+    const Vec3 w = back ? Vec3(t.q.transpose() * v) : Vec3(t.q * v);
+    for (int axis = 0; axis < 3; ++axis) to[t.unknowns[axis]] = w[axis];
+  }
+}
+
+void FiniteBase::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
+  const auto& place = l.supernodes().place;
+  const Eigen::VectorXd* of = &b;
+  if (!turned_.empty()) {
+    rotate(b, true, back_);
+    of = &back_;
+  }
+  y_.resize(b.size());
+  for (std::size_t i = 0; i < place.size(); ++i) y_[place[i]] = (*of)[static_cast<Eigen::Index>(i)];
+  l.forward(y_, work_);
+  if (rank() > 0) {
+    columns_.project(y_, 0, p_);
+    c_.noalias() = m_ * p_.head(rank());
+    columns_.add(c_, y_);
+  }
+  l.backward(y_, work_);
+  x.resize(b.size());
+  for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y_[place[i]];
+  if (!turned_.empty()) {
+    back_ = x;
+    rotate(back_, false, x);
+  }
+}
 
 }  // namespace sunder::solver

@@ -1,27 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
-// The base of statics at finite deformation: the factor of the tangent of a recent state.
+// The base of statics at finite deformation: the factor of the tangent of a recent state, which
+// follows what is destroyed since by the Woodbury identity and what has turned since by the nodes'
+// rotations (method.md "Finite deformation").
+//
+// With T the unknowns of elements that have left, G = (A^-1)_TT and D the sum of their tangents at
+// the base's state, (A - D)^-1 = A^-1 + A^-1 E_T M E_T^T A^-1, where M = D + D R S^-1 R^T D,
+// G = R R^T, S = I - R^T D R: the tangent without them is positive definite where S is. Unknowns Z
+// that nothing reaches any more are held still: G without them is their Schur complement.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "linear_algebra/factor.hpp"
+#include "solver/path_columns.hpp"
 #include "solver/resting_body.hpp"
 
 namespace sunder::solver {
 
 class FiniteBase {
  public:
-  /// Of the tangent at u. Gripped and frozen unknowns have equations of their own. Throws
-  /// NumericalError where the tangent is not positive definite.
-  FiniteBase(const RestingBody& body, std::vector<double> u, fem::Tangent kind,
-             const std::vector<Index>& order);
+  /// Of the tangent at u, with `inertia` [N/mm] added to every unknown. Gripped and frozen unknowns
+  /// have equations of their own. Throws NumericalError where the tangent is not positive definite.
+  /// What the body refers to must outlive it, its `destroyed` need not.
+  FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
+             const std::vector<Index>& order, double inertia = 0,
+             const linear_algebra::FactorWork& work = {});
+
+  /// Takes up what is out since the base was made or has followed last. False: an element is back,
+  /// more than `most_rank` unknowns are touched, or the tangent without what left is not positive
+  /// definite; then another base is needed.
+  [[nodiscard]] bool follow(const RestingBody& now, Index most_rank);
+  /// From now on x = Q A^-1 Q^T b, Q the rotations of the nodes from the base's state to u.
+  void turn(const RestingBody& now, std::span<const double> u);
   /// x = A^-1 b.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
+  /// Unknowns that what has left touches.
+  [[nodiscard]] Index rank() const { return static_cast<Index>(touched_.size()); }
+  [[nodiscard]] double inertia() const { return inertia_; }
+  [[nodiscard]] double largest_turn() const { return largest_turn_; }  ///< [rad]
+
  private:
-  std::vector<double> u_;
+  void touch(std::span<const Index> unknowns);
+  void push_group(std::span<const Index> unknowns);
+  void lose(Index element);
+  [[nodiscard]] bool correct(const RestingBody& now);
+  void rotate(const Eigen::VectorXd& from, bool back, Eigen::VectorXd& to) const;
+
+  const Problem& problem_;
+  std::vector<const Law*> laws_;
+  std::vector<std::uint8_t> out_;  // per element: not in the base
+  std::vector<double> u_;          // of the base
+  fem::Tangent kind_;
+  double inertia_;
   linear_algebra::Factor factor_;
+  PathColumns columns_;                // L^-1 E_T
+  std::vector<Index> touched_;         // T
+  std::vector<Index> column_;          // of each unknown in T; kNone
+  std::vector<std::uint8_t> coupled_;  // per unknown: it has an equation of the tangent
+  Eigen::MatrixXd g_, d_, m_;
+  linear_algebra::RowMajor rows_, block_;  // rows of L, all zero between calls; part of G
+  std::vector<Index> path_, places_;
+  struct Turned {
+    std::array<Index, 3> unknowns;
+    Mat3 q;
+  };
+  std::vector<Turned> turned_;
+  double largest_turn_ = 0;
+  Eigen::VectorXd y_, p_, c_, back_;
   linear_algebra::SolveWork work_;
 };
 

@@ -22,7 +22,7 @@ constexpr double kUnknownContraction = 0.5;  // of the first step
 
 double FiniteMinimiser::residual(const FiniteState& state) const {
   const double left = state.r.norm();
-  return left == 0 ? 0 : left / std::max(state.acting, scale_.force);
+  return left <= scale_.force_rounding ? 0 : left / std::max(state.acting, scale_.force);
 }
 
 /// Of `state`, if `next` were right.
@@ -39,7 +39,7 @@ bool FiniteMinimiser::line_search(const FiniteTarget& target, bool with_stress,
                                   const FiniteState& state) {
   const double slope = state.r.dot(du_);
   if (!(slope < 0)) return false;
-  const double rounding = kEnergyRounding * std::abs(state.potential);
+  const double rounding = scale_.energy_rounding + kEnergyRounding * std::abs(state.potential);
   for (double part = 1; part > kLeastPart; part /= 2) {
     if (part < 1) {
       potential_.move(state.u, part, du_, next_.u);

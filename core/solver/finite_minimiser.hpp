@@ -9,11 +9,12 @@
 
 namespace sunder::solver {
 
-/// By what is compared; the larger of a state's own and of what acted before.
+/// What forces, stresses and energies are measured by.
 struct FiniteScale {
-  double force = 0;            ///< [N]; else a body that returns to rest would never be at rest
-  double stress = 0;           ///< [MPa]: as good as none
-  double stress_rounding = 0;  ///< [MPa]: what a stress cannot be told from
+  double force = 0;   ///< [N] that acted before; else a body that returns to rest is never there
+  double stress = 0;  ///< [MPa] as good as none
+  // What rounding leaves of none:
+  double force_rounding = 0, stress_rounding = 0, energy_rounding = 0;
 };
 
 class FiniteMinimiser {

@@ -14,7 +14,22 @@ double frobenius(const Voigt& s) {
 }  // namespace
 
 FinitePotential::FinitePotential(const RestingBody& body, fem::StressFunction stress)
-    : body_(body), stress_(stress) {}
+    : body_(body), grip_places_(body.body().problem.gripped_dofs().size()), stress_(stress) {
+  const auto gripped = problem().gripped_dofs();
+  for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
+    const auto at = std::ranges::lower_bound(gripped, problem().dofs()[i]);
+    if (at != gripped.end() && *at == problem().dofs()[i]) {
+      grip_places_[static_cast<std::size_t>(at - gripped.begin())] = i;
+    }
+  }
+}
+
+void FinitePotential::put_grips(const FiniteTarget& target, std::vector<double>& u) const {
+  const auto gripped = problem().gripped_dofs();
+  for (std::size_t g = 0; g < gripped.size(); ++g) {
+    if (!body_.frozen()[gripped[g]]) u[grip_places_[g]] = target.grips[g];
+  }
+}
 
 FiniteTarget FinitePotential::target(const Load& load) const {
   FiniteTarget of{Eigen::VectorXd::Zero(problem().dof_count()), load.displacements};
@@ -47,9 +62,17 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
   for (Index d : body.problem.gripped_dofs()) {
     if (!body_.frozen()[d]) held += state.r[d] * state.r[d];
   }
+  double springs = 0;
+  for (std::size_t i = 0; target.inertia > 0 && i < state.u.size(); ++i) {
+    const Index d = body.problem.dofs()[i];
+    if (d == kNone || body_.frozen()[d]) continue;
+    const double from = state.u[i] - (*target.ahead)[i];
+    state.r[d] += target.inertia * from;
+    springs += target.inertia / 2 * from * from;
+  }
   hold(state.r);
   state.acting = std::sqrt(loaded + held);
-  state.potential = energy - work;
+  state.potential = energy - work + springs;
 }
 
 void FinitePotential::complete(FiniteState& state) const {

@@ -12,10 +12,13 @@
 
 namespace sunder::solver {
 
-/// Force per unknown, displacement per gripped dof.
+/// Force per unknown, displacement per gripped dof; on a damped path a fictitious inertia besides:
+/// springs [N/mm] of every free unknown to where it would go by itself.
 struct FiniteTarget {
   Eigen::VectorXd force;
   std::vector<double> grips;
+  double inertia = 0;
+  const std::vector<double>* ahead = nullptr;  ///< (3 * nodes)
 };
 
 /// A displacement and what belongs to it.
@@ -39,6 +42,8 @@ class FinitePotential {
   /// to.u = from + part * du.
   void move(std::span<const double> from, double part, const Eigen::VectorXd& du,
             std::vector<double>& to) const;
+  /// Gripped nodes where the grips want them; frozen ones stay.
+  void put_grips(const FiniteTarget& target, std::vector<double>& u) const;
   /// (to - from) of the unknowns.
   void difference(std::span<const double> to, std::span<const double> from,
                   Eigen::VectorXd& s) const;
@@ -58,6 +63,7 @@ class FinitePotential {
 
  private:
   const RestingBody& body_;
+  std::vector<std::size_t> grip_places_;  // of gripped dofs in u
   fem::StressFunction stress_;
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "body/stiffness_factor.hpp"
+#include "solver/finite_start.hpp"
+#include "solver/lowest_mode.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
@@ -13,15 +15,38 @@ namespace {
 constexpr double kProbe = 1e-6;  // of the grips' motion, to feel what it pulls on
 // Back-solves on a factor that was made where the one before stalled.
 constexpr int kBackSolvesPerFactor = 10;
+// A push out of an unstable rest: of the body's size the first, each next one so many times larger
+// while the energy falls.
+constexpr double kFirstPush = 1e-5, kPushGrowth = 2, kLastPush = 0.1;
+constexpr int kMostPushes = 4;  // modes that are left one after the other
+// On a damped path, of the residual: an equilibrium may be near.
+constexpr double kNearRest = 0.02;
+constexpr int kFactorsToFinish = 3;  // of a damped path
 // Of the largest shear modulus: stress that is as good as none, and rounding.
 constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
+// Of the sum of shear modulus and volume: an energy is what terms of that size leave.
+constexpr double kSumRounding = 2e-16;
 
-double largest_modulus(const Problem& problem) {
-  double stiffest = 0;
+FiniteScale scale_of(const Problem& problem) {
+  double stiffest = 0, sum = 0, volume = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     stiffest = std::max(stiffest, problem.small_strain(e).mu);
+    volume += problem.shape(e).volume;
+    sum += problem.small_strain(e).mu * problem.shape(e).volume;
   }
-  return stiffest;
+  const double face = std::pow(volume / std::max(1, problem.tet_count()), 2.0 / 3);
+  return {kNoStress * stiffest * face, kNoStress * stiffest, kStressRounding * stiffest * face,
+          kStressRounding * stiffest, kSumRounding * sum};
+}
+
+/// Of the bounding box: its diagonal.
+double size_of(const Problem& problem) {
+  Vec3 low = problem.mesh().nodes.front(), high = low;
+  for (const Vec3& x : problem.mesh().nodes) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  return (high - low).norm();
 }
 
 }  // namespace
@@ -31,53 +56,89 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       options_(options),
       resting_(body),
       potential_(resting_, options.stress),
-      u_(body.problem.dofs().size(), 0.0),
-      f_(u_.size(), 0.0),
-      reached_(potential_.target({})),
+      minimiser_(potential_, options.pairs),
+      scale_(scale_of(body.problem)),
       order_(fem::elimination_order(body.problem)),
-      minimiser_(potential_, options.pairs) {}
+      u_(body.problem.dofs().size(), 0.0),
+      reached_(potential_.target({})),
+      path_(potential_, minimiser_, order_),
+      renewal_(options.rest) {
+  shown_.u = u_;
+  shown_.f.assign(u_.size(), 0.0);
+}
 
-void FiniteStatics::destroyed(std::span<const Index>) { body_changed(); }
+void FiniteStatics::look_again() {
+  resting_.look();
+  before_.clear();
+  path_.body_changed();
+}
+
+void FiniteStatics::destroyed(std::span<const Index>) { look_again(); }
 
 void FiniteStatics::body_changed() {
-  resting_.look();
+  look_again();
+  renewal_.give_up();
   base_.reset();
 }
 
 /// Makes a base; false: the tangent is not positive definite.
-bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind,
-                          FiniteStaticsReport& report) {
+bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Report& report) {
   ++report.factors;
   try {
-    base_.emplace(resting_, u, kind, order_);
+    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, order_);
   } catch (const NumericalError&) {
     base_.reset();
   }
-  return base_.has_value();
+  return base_ != nullptr;
 }
 
-/// The last state, its grips moved and the rest following as the base says: what a small share of
-/// that motion adds to the forces tells what the whole would.
+/// One that knows what is destroyed.
+bool FiniteStatics::have_base(const std::vector<double>& u, Report& report) {
+  if (base_ && !base_->follow(resting_, options_.most_rank)) base_.reset();
+  if (!base_ && !renew(u, fem::Tangent::projected, report)) return false;
+  report.rank = std::max(report.rank, base_->rank());
+  return true;
+}
+
+/// state_ <- where to begin: the last state, turned as a whole with its grips, those moved and the
+/// rest following as the base says; or the last step once more, where its energy is less.
 void FiniteStatics::predict(const FiniteTarget& target) {
-  const auto gripped = body_.problem.gripped_dofs();
   state_.u = u_;
-  potential_.evaluate(target, false, state_);
-  if (target.grips == reached_.grips) return;
-  motion_.setZero(state_.r.size());
-  for (std::size_t g = 0; g < gripped.size(); ++g) {
-    if (resting_.frozen()[gripped[g]]) continue;
-    motion_[gripped[g]] = target.grips[g] - reached_.grips[g];
+  if (target.grips != reached_.grips) {
+    const auto turned = follow_grips_rigidly(body_.problem, u_, target.grips);
+    if (!turned.empty()) state_.u = turned;
   }
-  potential_.move(u_, kProbe, motion_, probe_.u);
+  if (options_.turn) base_->turn(resting_, state_.u);
+  potential_.evaluate(target, false, state_);
+  if (target.grips != reached_.grips) move_grips(target);
+  const double times = before_.empty() ? 0 : continuation(begin_, reached_, target);
+  if (times == 0) return;
+  probe_.u = u_;
+  for (std::size_t i = 0; i < u_.size(); ++i) probe_.u[i] += times * (u_[i] - before_[i]);
+  potential_.put_grips(target, probe_.u);
+  potential_.evaluate(target, false, probe_);
+  if (probe_.potential < state_.potential) std::swap(state_, probe_);
+}
+
+/// What a small share of the grips' motion adds to the forces tells what the whole would.
+void FiniteStatics::move_grips(const FiniteTarget& target) {
+  following_.setZero(state_.r.size());
+  probe_.u = state_.u;
+  potential_.put_grips(target, probe_.u);
+  potential_.difference(probe_.u, state_.u, motion_);
+  if (motion_.cwiseAbs().maxCoeff() == 0) return;
+  potential_.move(state_.u, kProbe, motion_, probe_.u);
   potential_.evaluate(target, false, probe_);
   const Eigen::VectorXd pulled = -(state_.r + (probe_.r - state_.r) / kProbe);
   base_->solve(pulled, following_);
   potential_.hold(following_);
-  potential_.move(u_, 1, motion_ + following_, state_.u);
+  potential_.move(state_.u, 1, motion_ + following_, probe_.u);
+  potential_.put_grips(target, probe_.u);
+  std::swap(state_.u, probe_.u);
   potential_.evaluate(target, false, state_);
 }
 
-bool FiniteStatics::minimise(const FiniteTarget& target, int most, FiniteStaticsReport& report) {
+bool FiniteStatics::minimise(const FiniteTarget& target, int most, Report& report) {
   const auto result =
       minimiser_.minimise(target, *base_, {options_.tolerance, options_.residual}, most, state_);
   report.back_solves += result.back_solves;
@@ -88,39 +149,75 @@ bool FiniteStatics::minimise(const FiniteTarget& target, int most, FiniteStatics
 }
 
 /// Of the exact tangent where it is positive definite, else of the projected one.
-bool FiniteStatics::by_new_factors(const FiniteTarget& target, FiniteStaticsReport& report) {
-  for (int i = 0; i < options_.most_factors; ++i) {
-    if (!renew(state_.u, fem::Tangent::exact, report) &&
-        !renew(state_.u, fem::Tangent::projected, report)) {
-      return false;
-    }
+bool FiniteStatics::by_new_factors(const FiniteTarget& target, int most, Report& report) {
+  for (int i = 0; i < most; ++i) {
+    suspected_ = !renew(state_.u, fem::Tangent::exact, report);
+    if (suspected_ && !renew(state_.u, fem::Tangent::projected, report)) return false;
     if (minimise(target, kBackSolvesPerFactor, report)) return true;
   }
   return false;
 }
 
-bool FiniteStatics::approach(const FiniteTarget& target, FiniteStaticsReport& report) {
-  const int before = report.back_solves;
-  if (!base_ && !renew(u_, fem::Tangent::projected, report)) return false;
+/// From the last state at rest; false: not found, and that state stays.
+bool FiniteStatics::approach(const FiniteTarget& target, Report& report) {
+  if (!have_base(u_, report)) return false;
   predict(target);
   if (!std::isfinite(state_.potential)) return false;
-  if (!minimise(target, options_.most_back_solves, report) && !by_new_factors(target, report)) {
+  if (!minimise(target, options_.most_back_solves, report) &&
+      !by_new_factors(target, options_.most_factors, report)) {
     return false;
   }
-  u_ = state_.u;
-  f_ = state_.f;
-  if (report.back_solves - before > options_.renew_after) base_.reset();
+  if (suspected_ && !leave_saddle(target, report)) return false;
+  rest_at(target);
   return true;
 }
 
-FiniteStaticsReport FiniteStatics::solve(const Load& load) {
-  FiniteStaticsReport report;
-  report.frozen = resting_.parts();
-  const FiniteTarget begin = reached_, end = potential_.target(load);
-  state_.u = u_;
-  potential_.evaluate(begin, false, state_);
-  const double modulus = largest_modulus(body_.problem);
-  minimiser_.set_scale({state_.acting, kNoStress * modulus, kStressRounding * modulus});
+/// state_ is at rest under the target.
+void FiniteStatics::rest_at(const FiniteTarget& target) {
+  before_ = std::move(u_);
+  begin_ = std::move(reached_);
+  u_ = state_.u;
+  reached_ = target;
+  std::swap(shown_, state_);
+}
+
+/// From state_, at rest, to a stable one. The lowest mode decides to which side: that on which its
+/// largest component is positive.
+bool FiniteStatics::leave_saddle(const FiniteTarget& target, Report& report) {
+  suspected_ = false;
+  for (int i = 0; i < kMostPushes; ++i) {
+    const LowestMode mode = lowest_mode(resting_, state_.u, order_);
+    report.factors += mode.factors;
+    if (!(mode.stiffness < 0) || !push(target, mode.shape)) return true;
+    ++report.buckled;
+    if (!renew(state_.u, fem::Tangent::projected, report)) return false;
+    if (!minimise(target, options_.most_back_solves, report) &&
+        !by_new_factors(target, options_.most_factors, report)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// As far along the mode as the energy falls; false: it does not.
+bool FiniteStatics::push(const FiniteTarget& target, const Eigen::VectorXd& mode) {
+  const double unit = size_of(body_.problem) / mode.cwiseAbs().maxCoeff();
+  potential_.evaluate(target, false, state_);
+  const std::vector<double> from = state_.u;
+  bool falls = false;
+  for (double part = kFirstPush; part <= kLastPush; part *= kPushGrowth) {
+    potential_.move(from, part * unit, mode, probe_.u);
+    potential_.evaluate(target, false, probe_);
+    if (!(probe_.potential < state_.potential)) break;
+    std::swap(state_, probe_);
+    falls = true;
+  }
+  return falls;
+}
+
+/// In steps of the load; false: no equilibrium is near.
+bool FiniteStatics::climb(const FiniteTarget& end, Report& report) {
+  const FiniteTarget begin = reached_;
   double step = 1;
   const double least = std::ldexp(1.0, -options_.most_halvings);
   while (report.share < 1) {
@@ -132,15 +229,96 @@ FiniteStaticsReport FiniteStatics::solve(const Load& load) {
     ++report.load_steps;
     if (approach(next, report)) {
       report.share = share;
-      reached_ = std::move(next);
       continue;
     }
     base_.reset();  // of the last state at rest
+    suspected_ = false;
     step /= 2;
-    if (step < least) return report;
+    const bool same = begin.grips == end.grips && begin.force == end.force;
+    if (step < least || same) return false;
   }
-  report.at_rest = true;
+  return true;
+}
+
+void FiniteStatics::follow_path(const FiniteTarget& end, Report& report) {
+  DampedPath::Cost cost;
+  report.unfinished = true;
+  while (report.damped_steps < options_.most_damped_steps) {
+    if (path_.steps() == options_.most_path_steps || !path_.step(end, cost)) {
+      path_.end();
+      report.unfinished = false;
+      break;
+    }
+    ++report.damped_steps;
+    report.residual = minimiser_.residual(path_.state());
+    if (!(report.residual <= kNearRest)) continue;
+    state_ = path_.state();
+    if ((renew(state_.u, fem::Tangent::projected, report) &&
+         minimise(end, options_.most_back_solves, report)) ||
+        by_new_factors(end, kFactorsToFinish, report)) {
+      if (suspected_ && !leave_saddle(end, report)) continue;
+      path_.end();
+      rest_at(end);
+      report.at_rest = true;
+      report.unfinished = false;
+      report.share = 1;
+      break;
+    }
+  }
+  report.back_solves += cost.back_solves;
+  report.factors += cost.factors;
+  if (!report.at_rest) base_.reset();
+}
+
+FiniteStaticsReport FiniteStatics::solve(const Load& load) {
+  Report report;
+  report.frozen = resting_.parts();
+  const FiniteTarget end = potential_.target(load);
+  state_.u = u_;
+  potential_.evaluate(reached_, false, state_);
+  FiniteScale scale = scale_;
+  scale.force = std::max(scale.force, state_.acting);
+  minimiser_.set_scale(scale);
+  take_renewed();
+  if (!path_.running()) {
+    report.at_rest = climb(end, report);
+    if (!report.at_rest) path_.begin(u_);
+  }
+  if (path_.running()) follow_path(end, report);
+  if (report.at_rest) {
+    think_of_renewal(end, report);
+  } else {
+    shown_.u = report.unfinished ? path_.state().u : u_;
+    potential_.evaluate(end, false, shown_);
+  }
   return report;
+}
+
+/// At its count, not when it is ready.
+void FiniteStatics::take_renewed() {
+  if (!renewal_.asked() || ++since_asked_ < options_.taken_after) return;
+  RenewedBase made = renewal_.take();
+  if (made.base) base_ = std::move(made.base);
+  if (!made.stable) suspected_ = true;
+}
+
+/// After a step that came to rest: a base of that state, and whether the rest is stable.
+void FiniteStatics::think_of_renewal(const FiniteTarget& end, Report& report) {
+  ++since_check_;
+  const bool hard = report.back_solves > options_.renew_after || report.rank > options_.most_rank;
+  if (renewal_.asked() || !(hard || first_ || since_check_ >= options_.check_after)) return;
+  since_check_ = since_asked_ = 0;
+  if (options_.taken_after > 0 && !first_) {
+    renewal_.ask(resting_.body(), u_, order_);
+    return;
+  }
+  first_ = false;
+  RenewedBase made = make_base(resting_.body(), u_, order_);
+  report.factors += made.factors;
+  if (made.base) base_ = std::move(made.base);
+  if (made.stable) return;
+  state_ = shown_;
+  if (leave_saddle(end, report)) rest_at(end);
 }
 
 }  // namespace sunder::solver

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Static equilibrium at finite deformation (method.md "Finite deformation"): minimum of the energy
-// less the work of the load, on a base that outlives the step and follows what is destroyed.
+// less the work of the load, on a base that outlives the step, follows what is destroyed and is
+// renewed beside the steps.
 //
-// The base is the factor of the projected tangent at a recent equilibrium. L-BFGS on top of it
-// finds the next one, with a line search on the energy; where that stalls a new factor is made at
-// the state reached; where that ends nowhere the load is approached in smaller steps.
+// In this order: L-BFGS on the base; new factors at the states reached; smaller steps of the load;
+// a damped path, spread over several calls; a report that nothing was found, with the last state at
+// rest kept.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "material/finite_stress.hpp"
-#include "solver/finite_base.hpp"
+#include "solver/damped_path.hpp"
 #include "solver/finite_minimiser.hpp"
-#include "solver/finite_potential.hpp"
+#include "solver/finite_renewal.hpp"
 
 namespace sunder::solver {
 
@@ -26,22 +27,33 @@ struct FiniteStaticsOptions {
   /// begin or end, whichever are larger.
   double residual = 1e-2;
   int pairs = 5;              ///< of L-BFGS
-  int most_back_solves = 40;  ///< on one base
-  int most_factors = 20;      ///< of one approach, made where the base stalls
-  int most_halvings = 12;     ///< of the load's increment
+  int most_back_solves = 25;  ///< on one base
+  int most_factors = 12;      ///< of one approach, made where the base stalls
+  int most_halvings = 3;      ///< of the load's increment, before the damped path
+  bool turn = true;           ///< the base by the nodes' rotations
+  Index most_rank = 300;      ///< unknowns that what has left touches, before a new base is made
   int renew_after = 8;        ///< back-solves of a step after which the base is renewed
+  int check_after = 4;        ///< steps after which it is looked whether the rest is stable
+  /// Renewals and checks are made by a thread and taken so many calls of solve() later; 0: they are
+  /// made at once.
+  int taken_after = 2;
+  std::chrono::milliseconds rest{0};  ///< the thread's, before it begins
+  int most_damped_steps = 10;         ///< of a call
+  int most_path_steps = 600;          ///< of a damped path, before it is given up
 };
 
-/// How a step ended.
+/// How a step ended: at rest, unfinished, or neither: then the state is the last one at rest.
 struct FiniteStaticsReport {
   bool at_rest = false;
-  /// Of the load's increment: 1 at rest, less where no equilibrium could be found beyond; the state
-  /// is the last one at rest.
-  double share = 0;
+  /// A damped path is on its way: the state is no equilibrium, the next call goes on from it.
+  bool unfinished = false;
+  double share = 0;        ///< of the load's increment at which the last rest is: 1 at rest
   double residual = 0;     ///< as in the options
   double error = 0;        ///< estimate of the relative error of stress
-  double contraction = 0;  ///< measured: how much of an error an iteration leaves
+  double contraction = 0;  ///< measured: what an iteration leaves of an error
   int back_solves = 0, factors = 0, load_steps = 0, damped_steps = 0;
+  int buckled = 0;  ///< how often an unstable rest was left
+  Index rank = 0;   ///< unknowns by which the base differed from the body
   FrozenParts frozen;
 };
 
@@ -50,12 +62,12 @@ class FiniteStatics {
   /// At rest at u = 0. The body must outlive it; what is destroyed is read live.
   explicit FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOptions options = {});
 
-  /// From the last state at rest to the load.
+  /// From the last state at rest, or on a damped path from the present one, to the load.
   FiniteStaticsReport solve(const Load& load);
   /// (3 * nodes) [mm]
-  [[nodiscard]] const std::vector<double>& displacement() const { return u_; }
+  [[nodiscard]] const std::vector<double>& displacement() const { return shown_.u; }
   /// (3 * nodes) [N] at displacement(); what is destroyed or frozen adds nothing.
-  [[nodiscard]] std::span<const double> internal_forces() const { return f_; }
+  [[nodiscard]] std::span<const double> internal_forces() const { return shown_.f; }
   /// Per element 1: destroyed, or of a piece that nothing holds, whose stress has no meaning.
   [[nodiscard]] std::span<const std::uint8_t> out() const { return resting_.out(); }
 
@@ -65,24 +77,41 @@ class FiniteStatics {
   void body_changed();
 
  private:
-  [[nodiscard]] bool renew(const std::vector<double>& u, fem::Tangent kind,
-                           FiniteStaticsReport& report);
+  using Report = FiniteStaticsReport;
+  void look_again();
+  [[nodiscard]] bool climb(const FiniteTarget& end, Report& report);
+  [[nodiscard]] bool approach(const FiniteTarget& target, Report& report);
+  [[nodiscard]] bool have_base(const std::vector<double>& u, Report& report);
+  [[nodiscard]] bool renew(const std::vector<double>& u, fem::Tangent kind, Report& report);
   void predict(const FiniteTarget& target);
-  [[nodiscard]] bool by_new_factors(const FiniteTarget& target, FiniteStaticsReport& report);
-  [[nodiscard]] bool minimise(const FiniteTarget& target, int most, FiniteStaticsReport& report);
-  [[nodiscard]] bool approach(const FiniteTarget& target, FiniteStaticsReport& report);
+  void move_grips(const FiniteTarget& target);
+  [[nodiscard]] bool minimise(const FiniteTarget& target, int most, Report& report);
+  [[nodiscard]] bool by_new_factors(const FiniteTarget& target, int most, Report& report);
+  [[nodiscard]] bool leave_saddle(const FiniteTarget& target, Report& report);
+  [[nodiscard]] bool push(const FiniteTarget& target, const Eigen::VectorXd& mode);
+  void follow_path(const FiniteTarget& end, Report& report);
+  void rest_at(const FiniteTarget& target);
+  void take_renewed();
+  void think_of_renewal(const FiniteTarget& end, Report& report);
 
   const fem::HyperelasticBody& body_;
   FiniteStaticsOptions options_;
   RestingBody resting_;
   FinitePotential potential_;
-  std::vector<double> u_, f_;
-  FiniteTarget reached_;
-  std::vector<Index> order_;  // of the factor
-  std::optional<FiniteBase> base_;
   FiniteMinimiser minimiser_;
-  FiniteState state_, probe_;
+  FiniteScale scale_;
+  std::vector<Index> order_;      // of the factor
+  std::vector<double> u_;         // the last state at rest
+  std::vector<double> before_;    // the one before it; empty: the body has changed since
+  FiniteTarget reached_, begin_;  // their loads
+  FiniteState shown_, state_, probe_;
   Eigen::VectorXd motion_, following_;
+  std::unique_ptr<FiniteBase> base_;
+  bool suspected_ = false;  // the last state at rest may be unstable
+  bool first_ = true;       // nothing has come to rest so far
+  int since_check_ = 0, since_asked_ = 0;
+  DampedPath path_;
+  FiniteRenewal renewal_;  // last: its thread reads order_
 };
 
 }  // namespace sunder::solver
