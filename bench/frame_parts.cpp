@@ -4,7 +4,7 @@
 // frames before a new base, which have the most columns; and those after so many fractures that the
 // base is a factor of the damaged body. The parts of the engine are called as the backend calls
 // them, on one thread with nothing beside it. Rows "frame_cascade" are frame_cascades.hpp's, rows
-// "measures" frame_measures.hpp's.
+// "measures" frame_measures.hpp's, rows "passes" frame_passes.hpp's.
 // bench/frames makes the tables of docs/frames.md of all this.
 #include <benchmark/benchmark.h>
 
@@ -19,6 +19,7 @@
 #include "body/assembly.hpp"
 #include "frame_cascades.hpp"
 #include "frame_measures.hpp"
+#include "frame_passes.hpp"
 #include "run_rows.hpp"
 #include "solver/deferred.hpp"
 #include "solver/factor_base.hpp"
@@ -261,5 +262,6 @@ int main(int argc, char** argv) {
   sunder::bench::register_rows();
   sunder::bench::register_cascades();
   sunder::bench::register_measures();
+  sunder::bench::register_passes();
   return sunder::bench::run_rows(argc, argv);
 }

@@ -8,8 +8,7 @@
 
 #include "body/analysis.hpp"
 #include "body/damaged_body.hpp"
-#include "body/finite_deformation.hpp"
-#include "body/law_stress.hpp"
+#include "body/hyperelastic_pass.hpp"
 #include "cpu_reference/available_memory.hpp"
 #include "cpu_reference/stress.hpp"
 #include "material/finite_stress.hpp"
@@ -36,12 +35,12 @@ class FiniteBackend final : public Backend {
         laws_(fem::laws_of(*shared)),
         body_{*shared, laws_, destroyed()},
         statics_(body_, options_of(*shared)),
+        pass_(body_),
         factor_entries_(factor_entries),
         u_(shared->dofs().size(), 0.0) {
     const std::size_t elements = shared->mesh().tets.size();
     if (this->needs().stress) stress_.assign(elements, Voigt::Zero());
     if (this->needs().yield) excluded_.assign(elements, 0);
-    cut_off_.assign(elements, 0);
     if (this->needs().pristine) {
       intact_.emplace(fem::HyperelasticBody{*shared, laws_});
       pristine_.emplace(*intact_, options_of(*shared));
@@ -112,7 +111,8 @@ class FiniteBackend final : public Backend {
     report.residual = found.residual;
     report.error = found.error;
     report.back_solves = found.back_solves;
-    if (!found.at_rest) fail(found, "the body");
+    report.unfinished = found.unfinished;
+    if (!found.at_rest && !found.unfinished) fail(found, "the body");
     u_ = statics_.displacement();
     return report;
   }
@@ -127,32 +127,37 @@ class FiniteBackend final : public Backend {
   }
 
   StressSummary do_stress() override {
-    const auto out = statics_.out();  // a piece that hangs on nothing has no stress to speak of
+    fem::HyperelasticPass::Wanted wanted;
+    wanted.stress = stress_;
+    wanted.measure = problem().scene().fracture.stress;
+    pass_.run(u_, wanted);
+    // A piece that hangs on nothing has no stress to speak of.
     for (Index e = 0; e < problem().tet_count(); ++e) {
-      stress_[e] = out[e] ? Voigt::Zero()
-                          : fem::named_stress(problem(), e,
-                                              fem::corner_displacement(problem().mesh(), e, u_));
+      if (statics_.out()[e]) stress_[e].setZero();
     }
     return needs().yield ? summarize(problem(), destroyed(), excluded_, stress_) : StressSummary{};
   }
 
   Deformation do_deformation() override {
-    return fem::finite_deformation(
-        problem(), u_, [this](Index e) { return destroyed()[e] == 0 && cut_off_[e] == 0; });
+    fem::HyperelasticPass::Wanted wanted;
+    wanted.deformation = true;
+    return pass_.run(u_, wanted).deformation;
   }
 
-  void do_cut_off(std::span<const Index> elements) override {
-    for (Index e : elements) cut_off_[e] = 1;
-  }
+  void do_cut_off(std::span<const Index> elements) override { pass_.cut_off(elements); }
 
-  void do_destroy(std::span<const Index> elements) override { statics_.destroyed(elements); }
+  void do_destroy(std::span<const Index> elements) override {
+    statics_.destroyed(elements);
+    pass_.destroy(elements);
+  }
 
   void do_exclude_candidates(std::span<const Index> elements) override {
     for (Index e : elements) excluded_[e] = 1;
   }
 
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
-    const solver::FiniteStaticsReport found = pristine_->solve(load);
+    solver::FiniteStaticsReport found = pristine_->solve(load);
+    while (found.unfinished) found = pristine_->solve(load);
     if (!found.at_rest) fail(found, "the intact body");
     std::ranges::copy(pristine_->displacement(), displacement.begin());
   }
@@ -185,13 +190,14 @@ class FiniteBackend final : public Backend {
   std::vector<const Law*> laws_;
   fem::HyperelasticBody body_;
   solver::FiniteStatics statics_;
+  fem::HyperelasticPass pass_;
   std::optional<fem::HyperelasticBody> intact_;
   std::optional<solver::FiniteStatics> pristine_;
   std::size_t factor_entries_ = 0;
   Load load_;
   std::vector<double> u_;  // of the last solve that ended at rest
   std::vector<Voigt> stress_;
-  std::vector<std::uint8_t> excluded_, cut_off_;
+  std::vector<std::uint8_t> excluded_;
 };
 
 /// What the options ask for that finite deformation has not.
