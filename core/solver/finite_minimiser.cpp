@@ -15,8 +15,10 @@ constexpr double kForceRounding = 1e-14;   // of a residual: no iteration wins m
 // The error of stress is looked at where the residual is not far above the tolerance: on the
 // 1954-element board it is a tenth of the residual in the median.
 constexpr double kResidualPerStress = 100;
-constexpr double kMostContraction = 0.9;     // a measured one above it says nothing
-constexpr double kUnknownContraction = 0.5;  // of the first step
+constexpr double kMostContraction = 0.9;  // a measured one above it says nothing
+// The first iterations take the quick modes away; what the slow ones leave is measured later.
+constexpr int kFewIterations = 5;
+constexpr double kSlowContraction = 0.8;
 
 }  // namespace
 
@@ -78,8 +80,11 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
     potential_.evaluate(target, near, next_);
     if (near) {
       const double change = stress_error(state, next_);
-      const double measured = before > 0 ? change / before : kUnknownContraction;
+      const double measured = before > 0 ? change / before : kSlowContraction;
       result.contraction = std::min(measured, kMostContraction);
+      if (result.back_solves < kFewIterations && change > 0) {
+        result.contraction = std::max(result.contraction, kSlowContraction);
+      }
       result.error = change / (1 - result.contraction);
       before = change;
       if (result.error <= stop.tolerance && result.residual <= stop.residual) {

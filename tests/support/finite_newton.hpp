@@ -53,7 +53,8 @@ inline NewtonRest newton(const fem::HyperelasticBody& body, const Load& load,
       if (still[d]) r[d] = 0;
     }
     rest.residual = r.norm() / std::sqrt(acting);
-    if (rest.residual < 1e-13 || !(rest.residual < 0.5 * least) || rest.factors == 12) return rest;
+    const bool stalls = least < 1e-10 && !(rest.residual < 0.5 * least);  // at rounding
+    if (rest.residual < 1e-13 || stalls || rest.factors == 12) return rest;
     least = rest.residual;
     for (Index c = 0; c < k.cols(); ++c) {
       for (linear_algebra::SparseMatrix::InnerIterator it(k, c); it; ++it) {
