@@ -11,8 +11,9 @@ namespace {
 
 // Shares of the body's longest side: below the first, displacements are magnified to the second;
 // above the third they are reduced to the fourth; a cut-off piece is drawn at most the last away.
+// Below kRounding nothing moves.
 constexpr double kInvisible = 0.004, kMagnified = 0.06, kAbsurd = 1, kReduced = 0.6,
-                 kLooseShift = 0.12;
+                 kLooseShift = 0.12, kRounding = 1e-10;
 constexpr int kSmoothing = 30;  // sweeps; isolated nodes lie a few elements deep at most
 
 /// Per node: held by the body, part of a cut-off piece, or held by destroyed elements only.
@@ -45,7 +46,7 @@ double round_125(double x) {
 
 double scale_for(double largest, double side) {
   const double share = largest / side;
-  if (!(share > 0) || !std::isfinite(share)) return 1;
+  if (!(share > kRounding) || !std::isfinite(share)) return 1;
   if (share < kInvisible) return round_125(kMagnified / share);
   return share > kAbsurd ? round_125(kReduced / share) : 1;
 }

@@ -44,7 +44,8 @@ class HyperelasticPass {
 
   /// As energy(body, u).
   [[nodiscard]] double energy(std::span<const double> u) { return run(u, {}).energy; }
-  /// As internal_forces(body, u, f): the same sums, of terms that differ by rounding.
+  /// As internal_forces(body, u, f): the same sums, of terms that differ by rounding. The one with
+  /// stresses, and element_stresses(), are run().
   double internal_forces(std::span<const double> u, std::span<double> f) {
     return run(u, {.forces = f}).energy;
   }
@@ -59,8 +60,7 @@ class HyperelasticPass {
   void cut_off(std::span<const Index> elements);
 
   [[nodiscard]] int threads() const { return workers_->count(); }
-  /// Elements of the last run that took the scalar way to their rotation, and of those of a law
-  /// that is not made for lanes.
+  /// Elements of the last run that took the scalar way to their rotation.
   [[nodiscard]] std::size_t repaired() const { return repaired_; }
   [[nodiscard]] std::size_t bytes() const;
 
