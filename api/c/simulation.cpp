@@ -16,6 +16,8 @@ sunder_step to_step(const sunder::StepReport& report) {
   step.events = report.events;
   step.destroyed = report.destroyed;
   step.iterations = report.iterations;
+  step.back_solves = report.back_solves;
+  step.unfinished = report.unfinished ? 1 : 0;
   step.polished = report.polished ? 1 : 0;
   step.compliance = report.compliance;
   step.residual = report.residual;

@@ -415,10 +415,12 @@ typedef struct sunder_step {
   double rotation_max_deg;  ///< largest rotation of live tissue [deg]
   int32_t inverted;         ///< live elements turned inside out
   int32_t measured;         ///< 1: these three are; 0: stress was left out
+  int32_t back_solves;      ///< applications of the base, those of conjugate gradients left out
+  int32_t unfinished;       ///< 1: not at rest: nothing was decided, the next step goes on from it
 } sunder_step;
 
 #define SUNDER_STEP_INIT \
-  { sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
 /// `step` may be null. SUNDER_ERROR_ORDER when all steps are done. SUNDER_ERROR_CANCELLED: the step
