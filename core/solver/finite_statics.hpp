@@ -38,8 +38,8 @@ struct FiniteStaticsOptions {
   /// made at once.
   int taken_after = 2;
   std::chrono::milliseconds rest{0};  ///< the thread's, before it begins
-  int most_damped_steps = 10;         ///< of a call
-  int most_path_steps = 600;          ///< of a damped path, before it is given up
+  int most_damped_steps = 5;          ///< of a call
+  int most_path_steps = 120;          ///< of a damped path, before it is given up
 };
 
 /// How a step ended: at rest, unfinished, or neither: then the state is the last one at rest.
