@@ -11,7 +11,6 @@
 #include "body/hyperelastic_pass.hpp"
 #include "cpu_reference/available_memory.hpp"
 #include "cpu_reference/stress.hpp"
-#include "material/finite_stress.hpp"
 #include "solver/finite_statics.hpp"
 #include "solver/plan.hpp"
 #include "sunder/error.hpp"
@@ -24,7 +23,7 @@ namespace {
 solver::FiniteStaticsOptions options_of(const Problem& problem) {
   solver::FiniteStaticsOptions options;
   options.tolerance = problem.scene().solver.tolerance;
-  if (problem.scene().fracture.stress == StressMeasure::biot) options.stress = biot_stress;
+  options.stress = problem.scene().fracture.stress;
   return options;
 }
 

@@ -60,14 +60,8 @@ double energy(const HyperelasticBody& body, std::span<const double> u) {
 
 double internal_forces(const HyperelasticBody& body, std::span<const double> u,
                        std::span<double> f) {
-  return internal_forces(body, u, f, nullptr, {});
-}
-
-double internal_forces(const HyperelasticBody& body, std::span<const double> u, std::span<double> f,
-                       StressFunction stress, std::span<Voigt> stresses) {
   const Problem& problem = body.problem;
   std::fill(f.begin(), f.end(), 0.0);
-  std::fill(stresses.begin(), stresses.end(), Voigt::Zero());
   double sum = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (!body.live(e)) continue;
@@ -77,7 +71,6 @@ double internal_forces(const HyperelasticBody& body, std::span<const double> u, 
     sum += shape.volume * w;
     if (!std::isfinite(w)) continue;
     const Mat3 p = body.law(e).stress(problem.small_strain(e), gradient);
-    if (stress) stresses[e] = stress(p, gradient);
     const Eigen::Matrix<double, 3, 4> force = shape.volume * (p * shape.gradient);
     for (int i = 0; i < 12; ++i)
       f[3 * problem.mesh().tets[e][i / 3] + i % 3] += force(i % 3, i / 3);

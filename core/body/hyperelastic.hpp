@@ -40,10 +40,7 @@ double internal_forces(const HyperelasticBody& body, std::span<const double> u,
 
 /// A stress by P and F: cauchy_stress or biot_stress (material/finite_stress.hpp).
 using StressFunction = Voigt (*)(const Mat3& p, const Mat3& f);
-/// internal_forces() with the stress of live elements on the way; others get 0.
-double internal_forces(const HyperelasticBody& body, std::span<const double> u, std::span<double> f,
-                       StressFunction stress, std::span<Voigt> stresses);
-/// The stress alone.
+/// Of live elements; others, and those in no state of their law, get 0.
 void element_stresses(const HyperelasticBody& body, std::span<const double> u,
                       StressFunction stress, std::span<Voigt> stresses);
 

@@ -12,12 +12,12 @@ namespace {
 // Of the median stiffness of an unknown: mass over dt squared in the first step.
 constexpr double kFirstInertia = 0.01;
 constexpr int kEasy = 8;          // back-solves of a step after which the next may be longer
-constexpr int kMostPerStep = 30;  // back-solves
+constexpr int kMostPerStep = 15;  // back-solves on one base
 constexpr double kLonger = 1.5, kShorter = 0.5;
 constexpr int kMostShortenings = 12;
 constexpr double kStepResidual = 1e-3;
 // A base of another inertia than the step's: over this ratio it leads nowhere.
-constexpr double kAlike = 6;
+constexpr double kAlikeInertia = 6;
 
 double median_stiffness(const RestingBody& body, const std::vector<double>& u) {
   const linear_algebra::SparseMatrix k =
@@ -59,8 +59,8 @@ bool DampedPath::renew(Cost& cost) {
 /// Of the present dt; false: the iteration stalls.
 bool DampedPath::try_step(const FiniteTarget& target, Cost& cost) {
   const double inertia = inertia_ / (dt_ * dt_);
-  const bool other =
-      base_ && !(base_->inertia() < kAlike * inertia && inertia < kAlike * base_->inertia());
+  const bool other = base_ && !(base_->inertia() < kAlikeInertia * inertia &&
+                                inertia < kAlikeInertia * base_->inertia());
   const bool fresh = !base_ || other;
   if (fresh && !renew(cost)) return false;
   potential_.move(state_.u, dt_, velocity_, ahead_);
@@ -74,15 +74,17 @@ bool DampedPath::try_step(const FiniteTarget& target, Cost& cost) {
     if (std::isfinite(next_.potential)) break;
   }
   if (!std::isfinite(next_.potential)) return false;
+  const double before = next_.potential;
   for (bool again = !fresh;; again = false) {
     const auto result =
         minimiser_.minimise(moving, *base_, {0, kStepResidual}, kMostPerStep, next_);
     cost.back_solves += result.back_solves;
-    if (result.at_rest) {
-      easy_ = result.back_solves <= kEasy;
-      return true;
-    }
-    if (!again || !renew(cost)) return false;
+    easy_ = result.at_rest && result.back_solves <= kEasy;
+    hard_ = !result.at_rest;
+    if (result.at_rest) return true;
+    // An inexact step will do as long as it leads downhill: only the path's end counts.
+    if (!again) return next_.potential < before;
+    if (!renew(cost)) return false;
   }
 }
 
@@ -114,6 +116,7 @@ void DampedPath::take() {
     dt_ *= kLonger;
   } else {
     base_.reset();
+    if (hard_) dt_ *= kShorter;
   }
 }
 

@@ -43,7 +43,7 @@ class DampedPath {
   const FinitePotential& potential_;
   FiniteMinimiser& minimiser_;
   const std::vector<Index>& order_;
-  bool running_ = false, paused_ = false, easy_ = false;
+  bool running_ = false, paused_ = false, easy_ = false, hard_ = false;
   int steps_ = 0;
   double inertia_ = 0;  // mass over dt squared [N/mm]
   double kinetic_ = 0;  // energy times 2 dt^2 over mass, of the last step

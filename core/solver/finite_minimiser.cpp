@@ -63,6 +63,7 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
     if (result.residual <= kForceRounding ||
         (stop.tolerance == 0 && result.residual <= stop.residual)) {
       result.at_rest = true;
+      result.error = 0;  // rounding, or not asked for
       return result;
     }
     if (result.back_solves == most) return result;

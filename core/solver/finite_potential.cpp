@@ -13,8 +13,11 @@ double frobenius(const Voigt& s) {
 
 }  // namespace
 
-FinitePotential::FinitePotential(const RestingBody& body, fem::StressFunction stress)
-    : body_(body), grip_places_(body.body().problem.gripped_dofs().size()), stress_(stress) {
+FinitePotential::FinitePotential(const RestingBody& body, StressMeasure stress)
+    : body_(body),
+      grip_places_(body.body().problem.gripped_dofs().size()),
+      stress_(stress),
+      pass_(std::make_unique<fem::HyperelasticPass>(body.body())) {
   const auto gripped = problem().gripped_dofs();
   for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
     const auto at = std::ranges::lower_bound(gripped, problem().dofs()[i]);
@@ -44,8 +47,9 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
   const fem::HyperelasticBody& body = body_.body();
   state.f.resize(state.u.size());
   state.stress.resize(with_stress ? body.problem.mesh().tets.size() : 0);
-  const double energy =
-      fem::internal_forces(body, state.u, state.f, with_stress ? stress_ : nullptr, state.stress);
+  fem::HyperelasticPass::Wanted wanted{.forces = state.f, .stress = state.stress};
+  if (with_stress) wanted.measure = stress_;
+  const double energy = pass_->run(state.u, wanted).energy;
   state.r = -target.force;
   double work = 0, held = 0, loaded = 0;
   for (std::size_t i = 0; i < state.f.size(); ++i) {
@@ -78,7 +82,7 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
 void FinitePotential::complete(FiniteState& state) const {
   if (!state.stress.empty()) return;
   state.stress.resize(problem().mesh().tets.size());
-  fem::element_stresses(body_.body(), state.u, stress_, state.stress);
+  pass_->run(state.u, {.stress = state.stress, .measure = stress_});
 }
 
 void FinitePotential::move(std::span<const double> from, double part, const Eigen::VectorXd& du,

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "body/hyperelastic_pass.hpp"
 #include "solver/resting_body.hpp"
 #include "sunder/backend.hpp"
 
@@ -32,7 +34,9 @@ struct FiniteState {
 class FinitePotential {
  public:
   /// The body must outlive it.
-  FinitePotential(const RestingBody& body, fem::StressFunction stress);
+  FinitePotential(const RestingBody& body, StressMeasure stress);
+  /// What rests has changed.
+  void body_changed() { pass_->body_changed(); }
 
   [[nodiscard]] FiniteTarget target(const Load& load) const;
   /// All of a state by its displacement.
@@ -64,7 +68,8 @@ class FinitePotential {
  private:
   const RestingBody& body_;
   std::vector<std::size_t> grip_places_;  // of gripped dofs in u
-  fem::StressFunction stress_;
+  StressMeasure stress_;
+  std::unique_ptr<fem::HyperelasticPass> pass_;
 };
 
 }  // namespace sunder::solver

@@ -1,25 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/finite_renewal.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
 
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
 
+namespace {
+
+// Of the largest modulus times the mean size of an element: springs that turn no base astray.
+constexpr double kLeastInertia = 1e-8, kMostInertia = 1e-2, kMoreInertia = 100;
+
+std::unique_ptr<FiniteBase> base_of(const fem::HyperelasticBody& body, const std::vector<double>& u,
+                                    fem::Tangent kind, const std::vector<Index>& order,
+                                    double inertia, const linear_algebra::FactorWork& work) {
+  try {
+    return std::make_unique<FiniteBase>(body, u, kind, order, inertia, work);
+  } catch (const NumericalError&) {
+    return nullptr;
+  }
+}
+
+double stiffness_scale(const Problem& problem) {
+  double most = 0, volume = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    most = std::max(most, problem.small_strain(e).mu);
+    volume += problem.shape(e).volume;
+  }
+  return most * std::cbrt(volume / std::max(1, problem.tet_count()));
+}
+
+}  // namespace
+
+std::unique_ptr<FiniteBase> projected_base(const fem::HyperelasticBody& body,
+                                           const std::vector<double>& u,
+                                           const std::vector<Index>& order, int& factors,
+                                           const linear_algebra::FactorWork& work) {
+  ++factors;
+  auto base = base_of(body, u, fem::Tangent::projected, order, 0, work);
+  const double scale = stiffness_scale(body.problem);
+  for (double part = kLeastInertia; !base && part <= kMostInertia; part *= kMoreInertia) {
+    ++factors;
+    base = base_of(body, u, fem::Tangent::projected, order, part * scale, work);
+  }
+  return base;
+}
+
 RenewedBase make_base(const fem::HyperelasticBody& body, const std::vector<double>& u,
                       const std::vector<Index>& order, const linear_algebra::FactorWork& work) {
   RenewedBase made;
-  const auto factor = [&](fem::Tangent kind) -> std::unique_ptr<FiniteBase> {
-    ++made.factors;
-    try {
-      return std::make_unique<FiniteBase>(body, u, kind, order, 0, work);
-    } catch (const NumericalError&) {
-      return nullptr;
-    }
-  };
-  made.base = factor(fem::Tangent::projected);
-  made.stable = factor(fem::Tangent::exact) != nullptr;
+  made.base = projected_base(body, u, order, made.factors, work);
+  ++made.factors;
+  made.stable = base_of(body, u, fem::Tangent::exact, order, 0, work) != nullptr;
   return made;
 }
 

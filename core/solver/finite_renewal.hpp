@@ -13,9 +13,15 @@
 
 namespace sunder::solver {
 
+/// The base of the projected tangent at u; where that has no factor, for a part hangs on a hinge,
+/// with as little inertia as helps. Null: that helps neither. Throws linear_algebra::Stopped.
+[[nodiscard]] std::unique_ptr<FiniteBase> projected_base(
+    const fem::HyperelasticBody& body, const std::vector<double>& u,
+    const std::vector<Index>& order, int& factors, const linear_algebra::FactorWork& work = {});
+
 /// The base of a state at rest, and whether that rest is stable.
 struct RenewedBase {
-  std::unique_ptr<FiniteBase> base;  ///< of the projected tangent; null: it has no factor
+  std::unique_ptr<FiniteBase> base;  ///< projected_base()
   bool stable = true;                ///< the exact tangent is positive definite
   int factors = 0;
 };

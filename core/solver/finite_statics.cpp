@@ -69,6 +69,7 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
 
 void FiniteStatics::look_again() {
   resting_.look();
+  potential_.body_changed();
   before_.clear();
   path_.body_changed();
 }
@@ -83,6 +84,10 @@ void FiniteStatics::body_changed() {
 
 /// Makes a base; false: the tangent is not positive definite.
 bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Report& report) {
+  if (kind == fem::Tangent::projected) {
+    base_ = projected_base(resting_.body(), u, order_, report.factors);
+    return base_ != nullptr;
+  }
   ++report.factors;
   try {
     base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, order_);
@@ -305,7 +310,8 @@ void FiniteStatics::take_renewed() {
 /// After a step that came to rest: a base of that state, and whether the rest is stable.
 void FiniteStatics::think_of_renewal(const FiniteTarget& end, Report& report) {
   ++since_check_;
-  const bool hard = report.back_solves > options_.renew_after || report.rank > options_.most_rank;
+  const bool hard =
+      report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
   if (renewal_.asked() || !(hard || first_ || since_check_ >= options_.check_after)) return;
   since_check_ = since_asked_ = 0;
   if (options_.taken_after > 0 && !first_) {

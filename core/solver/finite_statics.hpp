@@ -11,7 +11,6 @@
 #include <memory>
 #include <vector>
 
-#include "material/finite_stress.hpp"
 #include "solver/damped_path.hpp"
 #include "solver/finite_minimiser.hpp"
 #include "solver/finite_renewal.hpp"
@@ -21,8 +20,7 @@ namespace sunder::solver {
 struct FiniteStaticsOptions {
   /// Bound of the relative error of stress: largest error of an element over the largest stress.
   double tolerance = 1e-4;
-  /// The stress that is meant: cauchy_stress or biot_stress.
-  fem::StressFunction stress = cauchy_stress;
+  StressMeasure stress = StressMeasure::cauchy;  ///< that is meant
   /// Beside it |internal forces - load| of free unknowns over all forces that act at the step's
   /// begin or end, whichever are larger.
   double residual = 1e-2;
@@ -38,8 +36,8 @@ struct FiniteStaticsOptions {
   /// made at once.
   int taken_after = 2;
   std::chrono::milliseconds rest{0};  ///< the thread's, before it begins
-  int most_damped_steps = 10;         ///< of a call
-  int most_path_steps = 600;          ///< of a damped path, before it is given up
+  int most_damped_steps = 5;          ///< of a call
+  int most_path_steps = 120;          ///< of a damped path, before it is given up
 };
 
 /// How a step ended: at rest, unfinished, or neither: then the state is the last one at rest.

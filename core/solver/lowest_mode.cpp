@@ -13,7 +13,7 @@ namespace {
 constexpr double kFirstShift = 1e-7;  // of the largest stiffness of an unknown
 constexpr double kShiftGrowth = 8;
 constexpr int kIterations = 30;
-constexpr double kAlike = 1e-6;  // components of a mode that rounding may exchange
+constexpr double kAlikeComponents = 1e-6;  // components of a mode that rounding may exchange
 
 /// Each entry between 0 and 1, without a pattern (Weyl's sequence).
 Eigen::VectorXd scattered(Eigen::Index n) {
@@ -28,7 +28,7 @@ Eigen::VectorXd scattered(Eigen::Index n) {
 void point_upwards(Eigen::VectorXd& shape) {
   const double most = shape.cwiseAbs().maxCoeff();
   for (double x : shape) {
-    if (std::abs(x) < (1 - kAlike) * most) continue;
+    if (std::abs(x) < (1 - kAlikeComponents) * most) continue;
     if (x < 0) shape = -shape;
     return;
   }

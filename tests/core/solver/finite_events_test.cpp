@@ -21,8 +21,8 @@ namespace sunder::solver {
 namespace {
 
 /// The paper's board, as it is torn.
-struct Torn {
-  explicit Torn(const Law& law, FiniteStaticsOptions options = {})
+struct FiniteTorn {
+  explicit FiniteTorn(const Law& law, FiniteStaticsOptions options = {})
       : problem(test::held_board()),
         laws(fem::one_law(problem, law)),
         destroyed(problem.mesh().tets.size(), 0),
@@ -52,7 +52,7 @@ struct Torn {
 TEST(FiniteEvents, AgreesWithNewtonAfterManyFractures) {
   for (const Law* law : {&kCorotated, &kNeoHookean}) {
     for (double force : {law == &kCorotated ? 36.0 : 11.0}) {
-      Torn torn(*law, {.tolerance = 1e-10});
+      FiniteTorn torn(*law, {.tolerance = 1e-10, .most_factors = 40});
       const auto sequence = test::crack_sequence(torn.problem, 200, 15);
       for (int i = 1; i <= 4; ++i) ASSERT_TRUE(torn.pull(i * force / 4).at_rest);
       std::size_t gone = 0;
@@ -79,10 +79,10 @@ TEST(FiniteEvents, AgreesWithNewtonAfterManyFractures) {
   }
 }
 
-// finite.md's prototype took 10, 15 and 14 back-solves to a residual of 1e-4.
+// A prototype took 10 and 15 back-solves to a residual of 1e-4.
 TEST(FiniteEvents, NineElementsTakeAFewBackSolves) {
-  for (double force : {11.0, 36.0, 86.0}) {
-    Torn torn(kCorotated);
+  for (double force : {11.0, 36.0}) {
+    FiniteTorn torn(kCorotated);
     const int steps = static_cast<int>(force / 5.5);
     for (int i = 1; i <= steps; ++i) ASSERT_TRUE(torn.pull(i * force / steps).at_rest);
     torn.tear(test::crack_sequence(torn.problem, 9, 15));
@@ -95,9 +95,27 @@ TEST(FiniteEvents, NineElementsTakeAFewBackSolves) {
   }
 }
 
+// The board turns by some 40 degrees while a base is kept. docs/method.md quotes what is printed.
+TEST(FiniteEvents, TurningTheBaseSavesBackSolves) {
+  int back_solves[2], factors[2];
+  for (int turned = 0; turned < 2; ++turned) {
+    FiniteTorn torn(kCorotated, {.turn = turned == 1, .renew_after = 20});
+    back_solves[turned] = factors[turned] = 0;
+    for (int i = 1; i <= 12; ++i) {
+      const FiniteStaticsReport report = torn.pull(5 * i);
+      ASSERT_TRUE(report.at_rest) << i;
+      back_solves[turned] += report.back_solves;
+      factors[turned] += report.factors;
+    }
+    std::printf("to 60 N in 12 steps, %s: %d back-solves, %d factors\n",
+                turned ? "turned" : "not turned", back_solves[turned], factors[turned]);
+  }
+  EXPECT_LT(back_solves[1], back_solves[0]);
+}
+
 // The same state after the same events by the yardstick, which shares nothing with the solver.
 TEST(FiniteEvents, AgreesWithTheYardstickAlongACrack) {
-  Torn torn(kCorotated, {.tolerance = 1e-10});
+  FiniteTorn torn(kCorotated, {.tolerance = 1e-10});
   ASSERT_TRUE(torn.pull(11).at_rest);
   torn.tear(test::crack_sequence(torn.problem, 30, 15));
   ASSERT_TRUE(torn.pull(11).at_rest);
@@ -107,6 +125,76 @@ TEST(FiniteEvents, AgreesWithTheYardstickAlongACrack) {
   EXPECT_LE(test::displacement_error(torn.problem.mesh(), torn.destroyed,
                                      torn.statics.displacement(), s.displacement),
             test::kCrackTolerance);
+}
+
+// A crack all the way across: at each event at rest, at last with the lower part frozen. (Under the
+// corotated law the last ligament's elements turn inside out, at a kink of the energy: there a
+// damped path is given up, which takes too long for a quick test.)
+TEST(FiniteEvents, PullsUntilItTearsOff) {
+  FiniteTorn torn(kNeoHookean);
+  for (int i = 1; i <= 4; ++i) ASSERT_TRUE(torn.pull(9 * i).at_rest);
+  const auto sequence = test::elements_across(torn.problem.mesh(), 26.5);
+  std::vector<Index> tissue;
+  for (Index e : sequence) {
+    if (torn.problem.breakable(e)) tissue.push_back(e);
+  }
+  FiniteStaticsReport report;
+  int calls = 0, back_solves = 0, factors = 0, damped = 0;
+  for (std::size_t i = 0; i < tissue.size(); i += 16) {
+    torn.tear(std::span(tissue).subspan(i, std::min<std::size_t>(16, tissue.size() - i)));
+    do {
+      report = torn.pull(36);
+      ++calls;
+      back_solves += report.back_solves;
+      factors += report.factors;
+      damped += report.damped_steps;
+    } while (report.unfinished && calls < 200);
+    ASSERT_TRUE(report.at_rest) << i;
+  }
+  std::printf("%zu gone: %d calls, %d back-solves, %d factors, %d damped steps; %zu frozen\n",
+              tissue.size(), calls, back_solves, factors, damped, report.frozen.elements);
+  EXPECT_EQ(report.frozen.pieces, 1u);
+  EXPECT_GT(report.frozen.elements, 500u);
+}
+
+// What hangs on an edge turns freely: its tangent is singular.
+TEST(FiniteEvents, WhatHangsOnAHingeComesToRest) {
+  Scene scene;
+  const test::BoardShape shape{6, 1, 1, 6, 1, 1};
+  scene.mesh = test::structured_board(shape);
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(1e-6, 9, 9)}, Axes{7}});
+  const Problem problem(std::move(scene));
+  const auto pulled = test::nodes_in(problem.mesh(), {Vec3(1.9, -1, -1), Vec3(2.1, 9, 9)});
+  for (const Law* law : {&kCorotated, &kNeoHookean}) {
+    const auto laws = fem::one_law(problem, *law);
+    std::vector<std::uint8_t> destroyed(problem.mesh().tets.size(), 0);
+    const fem::HyperelasticBody body{problem, laws, destroyed};
+    FiniteStatics statics(body);
+    const Load load = test::pull(problem, pulled, Vec3(0, 0.05, 0.1));
+    ASSERT_TRUE(statics.solve(load).at_rest);
+    // Of the cell from x = 3 to 4 one element is left that has an edge on its far side.
+    std::vector<Index> gone;
+    bool left = false;
+    for (Index e = 18; e < 24; ++e) {
+      int far = 0;
+      for (Index n : problem.mesh().tets[e]) far += problem.mesh().nodes[n].x() > 3.9;
+      if (far == 2 && !left) {
+        left = true;
+      } else {
+        gone.push_back(e);
+      }
+    }
+    ASSERT_TRUE(left);
+    for (Index e : gone) destroyed[e] = 1;
+    statics.destroyed(gone);
+    for (int i = 1; i <= 6; ++i) {
+      const auto report = statics.solve(test::pull(problem, pulled, Vec3(0, 0.05 * i, 0.1)));
+      ASSERT_TRUE(report.at_rest) << law->name << " " << i;
+      EXPECT_EQ(report.frozen.pieces, 0u);
+      EXPECT_LE(report.back_solves, 100);
+    }
+  }
 }
 
 /// A bar along x that grips hold at both ends, all axes.
@@ -127,10 +215,10 @@ Scene gripped_bar() {
 TEST(FiniteEvents, ARigidTurnLeavesNoStress) {
   const Problem problem(gripped_bar());
   for (const Law* law : {&kCorotated, &kNeoHookean}) {
-    for (const fem::StressFunction stress : {cauchy_stress, biot_stress}) {
+    for (const StressMeasure measure : {StressMeasure::cauchy, StressMeasure::biot}) {
       const auto laws = fem::one_law(problem, *law);
       const fem::HyperelasticBody body{problem, laws};
-      FiniteStatics statics(body, {.stress = stress});
+      FiniteStatics statics(body, {.stress = measure});
       for (double degrees : {30.0, 90.0, 180.0, 10.0}) {
         const double a = degrees / 180 * 3.14159265358979323846;
         const Vec3 axis = Vec3(1, 2, -2) / 3;
@@ -144,7 +232,8 @@ TEST(FiniteEvents, ARigidTurnLeavesNoStress) {
         const FiniteStaticsReport report = statics.solve(load);
         ASSERT_TRUE(report.at_rest) << law->name << " " << degrees;
         std::vector<Voigt> of(problem.mesh().tets.size());
-        fem::element_stresses(body, statics.displacement(), stress, of);
+        fem::element_stresses(body, statics.displacement(),
+                              measure == StressMeasure::biot ? biot_stress : cauchy_stress, of);
         for (const Voigt& s : of) EXPECT_LE(s.norm(), 1e-11 * 5) << law->name << " " << degrees;
       }
     }
