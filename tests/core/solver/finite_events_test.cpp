@@ -9,6 +9,7 @@
 
 #include "cpu_reference/plain/finite.hpp"
 #include "material/corotated.hpp"
+#include "material/finite_stress.hpp"
 #include "material/neo_hookean.hpp"
 #include "solver/finite_statics.hpp"
 #include "support/accuracy.hpp"

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "material/corotated.hpp"
+#include "material/finite_stress.hpp"
 #include "material/neo_hookean.hpp"
 #include "solver/finite_statics.hpp"
 #include "support/accuracy.hpp"
