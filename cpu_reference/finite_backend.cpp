@@ -20,10 +20,19 @@
 namespace sunder::cpu_reference {
 namespace {
 
+bool by_inverse(const Problem& problem) { return problem.scene().solver.route == Route::inverse; }
+
+/// Of a dense inverse, where the route is that.
+std::size_t inverse_bytes(const Problem& problem) {
+  const auto unknowns = static_cast<std::size_t>(problem.dof_count());
+  return by_inverse(problem) ? unknowns * unknowns * sizeof(double) : 0;
+}
+
 solver::FiniteStaticsOptions options_of(const Problem& problem) {
   solver::FiniteStaticsOptions options;
   options.tolerance = problem.scene().solver.tolerance;
   options.stress = problem.scene().fracture.stress;
+  options.inverse = by_inverse(problem);
   return options;
 }
 
@@ -60,11 +69,10 @@ class FiniteBackend final : public Backend {
     info.device = cpu.name;
     info.driver = cpu.driver;
     info.precision = "fp64";
-    info.route = solver::name_of(Route::factor);
+    info.route = solver::name_of(by_inverse(problem()) ? Route::inverse : Route::factor);
     info.update = needs().damage ? "deferred" : "none";
-    info.why =
-        "a law of finite deformation, which backend cpu computes: by the factor of a recent "
-        "tangent";
+    info.why = std::string("a law of finite deformation, which backend cpu computes: by the ") +
+               (by_inverse(problem()) ? "dense inverse" : "factor") + " of a recent tangent";
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
     return info;
   }
@@ -73,6 +81,9 @@ class FiniteBackend final : public Backend {
     std::vector<BufferPlan> plan{
         {"factor of a recent tangent (sparse Cholesky)", factor_entries_ * sizeof(double)},
         {"displacement and forces", u_.size() * 4 * sizeof(double)}};
+    if (by_inverse(problem())) {
+      plan.push_back({"dense inverse of it", inverse_bytes(problem())});
+    }
     if (pristine_) {
       plan.push_back({"factor of the intact body's tangent", factor_entries_ * sizeof(double)});
     }
@@ -84,8 +95,11 @@ class FiniteBackend final : public Backend {
     const auto elements = std::to_string(problem().tet_count());
     std::vector<KernelPlan> list{
         {"internal forces", "energy and forces of " + elements + " elements by their laws"},
-        {"base", "forward and backward through the factor of a recent tangent, " +
-                     std::to_string(factor_entries_) + " values, once an iteration of L-BFGS"},
+        {"base",
+         (by_inverse(problem()) ? "product with the dense inverse of a recent tangent"
+                                : "forward and backward through the factor of a recent tangent, " +
+                                      std::to_string(factor_entries_) + " values") +
+             std::string(", once an iteration of L-BFGS")},
         {"line search", "on the energy, a pass over the elements for each length that it tries"},
         {"check", "one base application to what is left, and the stress that it would change"}};
     if (needs().damage) {
@@ -233,10 +247,11 @@ std::unique_ptr<Backend> create_finite(std::shared_ptr<const Problem> problem, N
   const auto analysis = fem::analyse(*problem);
   // The factor, that of a newer base beside it, and the intact body's.
   const std::size_t factors = needs.pristine ? 4 : 2;
-  const std::size_t needed = factors * analysis->entries() * sizeof(double);
+  const std::size_t needed =
+      factors * (analysis->entries() * sizeof(double) + inverse_bytes(*problem));
   if (needed > free) {
     throw InputError(InputFault::too_large,
-                     "the factors of a tangent need " + std::to_string(needed) + " bytes for " +
+                     "the bases of a tangent need " + std::to_string(needed) + " bytes for " +
                          count_of(problem->dof_count(), "unknown") + ", but " +
                          std::to_string(free) + " are free; use a coarser mesh or law \"linear\"");
   }

@@ -225,15 +225,23 @@ void FiniteBase::rotate(const Eigen::VectorXd& from, bool back, Eigen::VectorXd&
 }
 
 void FiniteBase::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
-  const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
-  const auto& place = l.supernodes().place;
   const Eigen::VectorXd* of = &b;
   if (!turned_.empty()) {
     rotate(b, true, back_);
     of = &back_;
   }
+  inverse_.size() > 0 ? solve_by_inverse(*of, x) : solve_by_factor(*of, x);
+  if (!turned_.empty()) {
+    back_ = x;
+    rotate(back_, false, x);
+  }
+}
+
+void FiniteBase::solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
+  const auto& place = l.supernodes().place;
   y_.resize(b.size());
-  for (std::size_t i = 0; i < place.size(); ++i) y_[place[i]] = (*of)[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < place.size(); ++i) y_[place[i]] = b[static_cast<Eigen::Index>(i)];
   l.forward(y_, work_);
   if (rank() > 0) {
     columns_.project(y_, 0, p_);
@@ -243,10 +251,14 @@ void FiniteBase::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   l.backward(y_, work_);
   x.resize(b.size());
   for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y_[place[i]];
-  if (!turned_.empty()) {
-    back_ = x;
-    rotate(back_, false, x);
-  }
+}
+
+void FiniteBase::solve_by_inverse(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  x.noalias() = inverse_ * b;
+  if (rank() == 0) return;
+  p_ = x(touched_);
+  c_.noalias() = m_ * p_;
+  for (Index i = 0; i < rank(); ++i) x += c_[i] * inverse_.col(touched_[i]);
 }
 
 }  // namespace sunder::solver

@@ -33,6 +33,8 @@ class FiniteBase {
   [[nodiscard]] bool follow(const RestingBody& now, Index most_rank);
   /// From now on x = Q A^-1 Q^T b, Q the rotations of the nodes from the base's state to u.
   void turn(const RestingBody& now, std::span<const double> u);
+  /// Computes A^-1, dense: from now on solve() multiplies by it. What follows is the same.
+  void keep_inverse() { inverse_ = factor_.inverse(); }
   /// x = A^-1 b.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
@@ -46,6 +48,8 @@ class FiniteBase {
   void push_group(std::span<const Index> unknowns);
   void lose(Index element);
   [[nodiscard]] bool correct(const RestingBody& now);
+  void solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+  void solve_by_inverse(const Eigen::VectorXd& b, Eigen::VectorXd& x);
   void rotate(const Eigen::VectorXd& from, bool back, Eigen::VectorXd& to) const;
 
   const Problem& problem_;
@@ -55,6 +59,7 @@ class FiniteBase {
   fem::Tangent kind_;
   double inertia_;
   linear_algebra::Factor factor_;
+  Eigen::MatrixXd inverse_;            // empty: the factor solves
   PathColumns columns_;                // L^-1 E_T
   std::vector<Index> touched_;         // T
   std::vector<Index> column_;          // of each unknown in T; kNone

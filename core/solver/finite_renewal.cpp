@@ -70,6 +70,7 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
         if (rest_.count() > 0) std::this_thread::sleep_for(rest_);
         try {
           made_ = make_base(of, u_, order, {.stop = &unwanted_});
+          if (inverse_ && made_.base) made_.base->keep_inverse();
         } catch (const std::exception&) {
           made_ = {};  // out of memory or unwanted: the old base goes on
         }

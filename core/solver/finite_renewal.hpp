@@ -32,8 +32,8 @@ struct RenewedBase {
 
 class FiniteRenewal {
  public:
-  /// The thread sleeps for `rest` before it begins.
-  explicit FiniteRenewal(std::chrono::milliseconds rest) : rest_(rest) {}
+  /// The thread sleeps for `rest` before it begins; `inverse`: its bases keep one.
+  FiniteRenewal(std::chrono::milliseconds rest, bool inverse) : rest_(rest), inverse_(inverse) {}
   ~FiniteRenewal() { give_up(); }
   FiniteRenewal(const FiniteRenewal&) = delete;
   FiniteRenewal& operator=(const FiniteRenewal&) = delete;
@@ -48,6 +48,7 @@ class FiniteRenewal {
 
  private:
   std::chrono::milliseconds rest_;
+  bool inverse_;
   std::vector<std::uint8_t> out_;
   std::vector<double> u_;
   RenewedBase made_;

@@ -62,7 +62,7 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       u_(body.problem.dofs().size(), 0.0),
       reached_(potential_.target({})),
       path_(potential_, minimiser_, order_),
-      renewal_(options.rest) {
+      renewal_(options.rest, options.inverse) {
   shown_.u = u_;
   shown_.f.assign(u_.size(), 0.0);
 }
@@ -100,7 +100,10 @@ bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Repor
 /// One that knows what is destroyed.
 bool FiniteStatics::have_base(const std::vector<double>& u, Report& report) {
   if (base_ && !base_->follow(resting_, options_.most_rank)) base_.reset();
-  if (!base_ && !renew(u, fem::Tangent::projected, report)) return false;
+  if (!base_) {
+    if (!renew(u, fem::Tangent::projected, report)) return false;
+    if (options_.inverse) base_->keep_inverse();
+  }
   report.rank = std::max(report.rank, base_->rank());
   return true;
 }
@@ -321,6 +324,7 @@ void FiniteStatics::think_of_renewal(const FiniteTarget& end, Report& report) {
   first_ = false;
   RenewedBase made = make_base(resting_.body(), u_, order_);
   report.factors += made.factors;
+  if (options_.inverse && made.base) made.base->keep_inverse();
   if (made.base) base_ = std::move(made.base);
   if (made.stable) return;
   state_ = shown_;

@@ -28,6 +28,7 @@ struct FiniteStaticsOptions {
   int most_back_solves = 25;  ///< on one base
   int most_factors = 12;      ///< of one approach, made where the base stalls
   int most_halvings = 3;      ///< of the load's increment, before the damped path
+  bool inverse = false;       ///< bases that outlive a step are kept as dense inverses
   bool turn = true;           ///< the base by the nodes' rotations
   Index most_rank = 300;      ///< unknowns that what has left touches, before a new base is made
   int renew_after = 8;        ///< back-solves of a step after which the base is renewed

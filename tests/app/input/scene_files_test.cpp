@@ -10,7 +10,7 @@ namespace {
 
 std::set<std::filesystem::path> scene_files() {
   std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(SUNDER_SCENES))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(SUNDER_SCENES))
     if (entry.path().extension() == ".toml") files.insert(entry.path());
   return files;
 }
@@ -18,11 +18,26 @@ std::set<std::filesystem::path> scene_files() {
 TEST(SceneFiles, AllAreThere) {
   std::set<std::string> names;
   for (const auto& file : scene_files()) names.insert(file.stem());
-  for (const char* name :
-       {"board-grip-b", "board-pull-a", "board-pull-b", "board-pull-two-points-a",
-        "board-pull-two-points-b", "notch-a", "notch-b", "pressure-near", "pressure-far",
-        "pressure-upper", "pressure-balanced", "pressure-under", "two-instruments", "cantilever",
-        "stiff-contrast", "nearly-incompressible", "scripted-cut"})
+  for (const char* name : {"board-grip-b",
+                           "board-pull-a",
+                           "board-pull-b",
+                           "board-pull-two-points-a",
+                           "board-pull-two-points-b",
+                           "notch-a",
+                           "notch-b",
+                           "pressure-near",
+                           "pressure-far",
+                           "pressure-upper",
+                           "pressure-balanced",
+                           "pressure-under",
+                           "two-instruments",
+                           "cantilever",
+                           "stiff-contrast",
+                           "nearly-incompressible",
+                           "scripted-cut",
+                           "board-grip",
+                           "liver",
+                           "peel"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 

@@ -3,7 +3,9 @@
 // what is refused.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "cpu_reference/cpu_reference.hpp"
@@ -149,6 +151,37 @@ TEST(FiniteLaws, RefuseWhatTheyCannot) {
   Scene scene = solid(MaterialLaw::neo_hookean);
   scene.instruments.push_back(rigid_grip(0, Vec3::Zero(), Vec3::Zero()));
   EXPECT_THROW(simulation_of(scene)->attribute_events(true), UsageError);
+}
+
+// Route inverse is the same base, applied as a product: the same elements break, the same stress.
+TEST(FiniteLaws, RouteInverseFindsWhatRouteFactorFinds) {
+  std::vector<std::vector<Voigt>> stress;
+  std::vector<std::vector<DestroyedElement>> broken;
+  for (const Route route : {Route::factor, Route::inverse}) {
+    Scene scene = solid(MaterialLaw::neo_hookean);
+    scene.instruments.push_back(rigid_grip(0, Vec3::Zero(), Vec3::Zero()));
+    scene.instruments.push_back(rigid_grip(8, Vec3(4, 1, 0), Vec3(40, 0, 0)));
+    scene.fracture.model = FractureModel::a;
+    scene.fracture.max_events = 4;
+    scene.steps = 6;
+    scene.solver.route = route;
+    scene.solver.tolerance = 1e-9;
+    const auto simulation = simulation_of(scene);
+    const auto& words = key_words("solver", "route");
+    EXPECT_EQ(simulation->backend().info().route, words.at(static_cast<std::size_t>(route)));
+    while (simulation->steps_done() < 4) simulation->step();
+    stress.push_back(simulation->stress());
+    broken.push_back(simulation->destroyed());
+  }
+  ASSERT_FALSE(broken[0].empty());
+  ASSERT_EQ(broken[0].size(), broken[1].size());
+  for (std::size_t i = 0; i < broken[0].size(); ++i) {
+    EXPECT_EQ(broken[0][i].element, broken[1][i].element);
+  }
+  const double most = largest(stress[0]);
+  for (std::size_t e = 0; e < stress[0].size(); ++e) {
+    EXPECT_LT((stress[0][e] - stress[1][e]).cwiseAbs().maxCoeff(), 1e-7 * most);
+  }
 }
 
 TEST(FiniteLaws, AMixedBodyNamesThemAll) {
