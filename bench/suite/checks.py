@@ -15,7 +15,9 @@ def _bad_numbers(row):
 
 def _row_problems(row):
     failure = row.get("failure", "")
-    if failure.startswith("refused: "):
+    # A peer that comes to no end is shown, and is no fault of the run.
+    if failure.startswith("refused: ") or (failure.startswith("not in ") and
+                                           style.is_peer(row["name"].split("/")[-1])):
         return []
     if failure:
         return [f"{row['name']} fails: {failure}"]
@@ -59,6 +61,9 @@ def problems(outcome, every_peer=True):
         if point["verdict"] == "WRONG":
             found.append(f"scene {point['scene']}, {point['method']}, tolerance "
                          f"{point['tolerance']:g}: WRONG, stress error {error:.3g}")
+    found += [f"finite stability, {s['study']}, {s['law']}, {s['motion']} {s['amount']:g}: WRONG, "
+              f"stress error {s['stress_error']:.3g}" + (f", {s['reason']}" if s["reason"] else "")
+              for s in outcome.get("steps", []) if s["verdict"] == "WRONG"]
     found += [f"{m['case']}, {m['tets']:g} tetrahedra: error is {m['error']}"
               for m in outcome["meshes"] if not math.isfinite(m["error"])]
     if not outcome["peers"]:

@@ -64,6 +64,20 @@ def scenes(points):
     return _figure(groups, 4, "frame [ms], median of the steps", "stress error of the last frame")
 
 
+def finite_laws(rows):
+    """A panel for each law: worst stress error of the steps, a point for each tolerance."""
+    groups = {}
+    for row in rows:
+        parts = row["name"].split("/")
+        if parts[0] == "finite_error" and len(parts) == 4 and row["samples_ms"]:
+            counters = row["counters"]
+            groups.setdefault(parts[1], []).append(
+                (parts[3], counters["median_ms"], max(counters["error_stress"], FLOOR)))
+    if not groups:
+        return None
+    return _figure(groups, 3, "event [ms], median", "largest stress error against Newton's end")
+
+
 def convergence(meshes):
     """Discretisation error against tetrahedra, and against time."""
     if not meshes:

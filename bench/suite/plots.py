@@ -115,3 +115,32 @@ def inversion(rows):
     style.logarithmic(axis, "", "unknowns", "inverse [ms]")
     style.shared_legend(figure, 3)
     return style.svg(figure)
+
+
+def finite_rows(rows):
+    """[(tetrahedra, "frame" or "event", tolerance, threads, method, row)] of bench_finite."""
+    found = []
+    for row in rows:
+        parts = row["name"].split("/")
+        if parts[0] == "finite" and len(parts) == 6:
+            found.append((int(parts[1]), parts[2], float(parts[3]), int(parts[4]), parts[5], row))
+    return found
+
+
+def finite(rows):
+    """A frame and an event at finite deformation against the size of the board, residual 1e-4."""
+    ran = [r for r in finite_rows(rows) if r[5]["samples_ms"] and r[2] == 1e-4]
+    groups = sorted({(r[3], r[1]) for r in ran}, key=lambda g: (g[0], g[1] == "event"))
+    if not groups:
+        return None
+    figure, axes = style.panels(len(groups), 2, 5.2, 3.6, sharey=True)
+    for axis, (threads, what) in zip(axes, groups):
+        own = [r for r in ran if (r[3], r[1]) == (threads, what)]
+        for method in dict.fromkeys(r[4] for r in own):
+            axis.plot(*zip(*sorted((r[0], r[5]["counters"]["median_ms"]) for r in own
+                                   if r[4] == method)), **style.look(method))
+        style.logarithmic(axis, f"{what}, {threads} thread{'s' if threads > 1 else ''}",
+                          "tetrahedra", "median [ms]")
+        style.sizes_as_ticks(axis, sorted({r[0] for r in own}))
+    style.shared_legend(figure, 4)
+    return style.svg(figure)

@@ -58,6 +58,9 @@ PROGRAMS = [
                   "|1944/to640/(chol.*up|cpu.*def)", 3),
             Share(800, "board (486|1944)/(k|to640/([^v]|vulkan (i|con)))"
                   "|(7776|7986)/(to640/|.*(deferred| cg |chol|eigen|openblas|PCG))", 3)),
+    Program("bench_finite", "finite deformation beside Newton's method and others",
+            Share(25, "finite/1944/.*/1e-04/2/|finite_error/corotated/1e-0(2|6)/", 1),
+            Share(600, "finite/(1944|7776)/|finite_error/", 3)),
     Program("bench_needs", "what a scene saves that needs less",
             Share(3, "/1944/", 1), Share(200, repetitions=3)),
     Program("bench_scaling", "sizes against frames and memory",
@@ -67,6 +70,8 @@ PROGRAMS = [
             Share(25, "board", 1), Share(120, repetitions=1)),
     Program("bench_stability", "stability of every method",
             Share(75, words=("quick",)), Share(420, words=("full",)), file="stability.csv"),
+    Program("bench_finite_stability", "stability at finite deformation, every law",
+            Share(15, words=("quick",)), Share(180, words=("full",)), file="finite-stability.csv"),
     Program("bench_scenes", "error against run time on scenes",
             Share(38, words=("--seconds=2", "--tolerances=1e-4,1e-8", *SCENES)), Share(500),
             file="scenes.csv"),
@@ -77,6 +82,8 @@ PROGRAMS = [
 LARGE = [
     Program("bench_stability", "stability after 640 fractures",
             Share(0), Share(120, words=("many",)), file="stability.csv"),
+    Program("bench_finite", "finite deformation, 30,246 and 119,286 tetrahedra",
+            Share(0), Share(3000, "finite/(30246|119286)/", 1)),
     Program("bench_engine", "deferred updates over the dense inverse of 30,246 tetrahedra",
             Share(0), Share(60, "inverse_deferred/30246/", 1)),
     Program("bench_reconstruction", "inverse reconstruction where an event takes seconds",
@@ -155,7 +162,7 @@ def run_program(build, program, share, repetitions=None):
     with tempfile.TemporaryDirectory() as temporary:
         if program.file:
             file = pathlib.Path(temporary) / program.file
-            # Exit code 1 of the stability study: a cell is WRONG, which the page shows.
+            # Exit code 1 of the stability studies: a cell is WRONG, which the page shows.
             _run([path, str(file), *share.words], limit, (0, 1))
             return file.read_text()
         out = pathlib.Path(temporary) / "out.json"
@@ -171,7 +178,8 @@ def run_program(build, program, share, repetitions=None):
 
 
 def nothing_yet():
-    return {"rows": [], "cells": [], "points": [], "meshes": [], "alone": [], "programs": [],
+    return {"rows": [], "cells": [], "points": [], "meshes": [], "alone": [], "steps": [],
+            "programs": [],
             "failures": []}
 
 
@@ -207,7 +215,8 @@ def run_and_time(build, program, share, repetitions):
 def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None, commit="",
             jobs=1):
     """Adds to the outcome what of a mode it lacks, program by program in their order, and saves it
-    after each: {"rows", "cells", "points", "meshes", "programs", "failures"}. `jobs` of them run at
+    after each: {"rows", "cells", "points", "meshes", "steps", "programs",
+    "failures"}. `jobs` of them run at
     once."""
     outcome = outcome or nothing_yet()
     there, missing = split_present(build, mode)
@@ -251,7 +260,16 @@ def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: No
 
 def peer_settings(build):
     """What `bench_reconstruction --peers` says of each peer."""
-    path = pathlib.Path(build) / "bench" / "bench_reconstruction"
+    return _settings(build, "bench_reconstruction")
+
+
+def finite_settings(build):
+    """What `bench_finite --peers` says of each method."""
+    return _settings(build, "bench_finite")
+
+
+def _settings(build, name):
+    path = pathlib.Path(build) / "bench" / name
     if not path.is_file():
         return {}
     lines = _run([str(path), "--peers"], 60).splitlines()

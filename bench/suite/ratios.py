@@ -52,6 +52,22 @@ def _over_peers(methods, column):
             row["counters"].update({f"over_{key}": ms / peer for key, peer in peers.items()})
 
 
+def _finite(rows):
+    """Shares of the best peer's median, by the clock and in processor time: the quickest frame of a
+    sequence that foresees the next one says little."""
+    events = collections.defaultdict(list)
+    for *what, method, row in plots.finite_rows(rows):
+        if row["samples_ms"]:
+            events[tuple(what)].append((method, row["counters"]))
+    for methods in events.values():
+        for key, counter in (("over_best", "median_ms"), ("over_best_cpu", "cpu_ms")):
+            best = min((c[counter] for m, c in methods if style.is_peer(m) and counter in c),
+                       default=0)
+            for _, counters in methods:
+                if best > 0 and counter in counters:
+                    counters[key] = counters[counter] / best
+
+
 # Of a row's own counters, by the name of the ratio: (above, below).
 _OWN = {"over_reference": ("min_ms", "reference_ms"),
         "last_over_first_ms": ("last_ms", "first_ms"),
@@ -82,4 +98,5 @@ def add(rows):
     for events, column in (_engine(rows), _reconstruction(rows)):
         for methods in events:
             _over_peers(methods, column)
+    _finite(rows)
     return rows

@@ -4,7 +4,8 @@
 results.json  {"machine": {...}, "rows": [row], "peers": {name: settings}, "programs": [...],
                "failures": [sentence]}
 results.csv   one line per row: program, name, minimum, median, CPU time [ms], samples, counters
-stability.csv, scenes.csv, convergence.csv   as the programs write them: cells, points, meshes
+stability.csv, scenes.csv, convergence.csv, finite-stability.csv   as the programs write them:
+               cells, points, meshes, steps
 peers-alone.csv   of bench/peers-alone: each peer beside the others and alone
 """
 import csv
@@ -111,6 +112,16 @@ def meshes_of(text):
     return meshes
 
 
+def steps_of(text):
+    """Steps of the stability study at finite deformation."""
+    words = {"study", "law", "motion", "verdict", "reason"}
+    steps = list(csv.DictReader(io.StringIO(text)))
+    for step in steps:
+        for key in step.keys() - words:
+            step[key] = float(step[key])
+    return steps
+
+
 def alone_of(text):
     """Peers beside the others and alone, as suite/alone.py judges them."""
     entries = list(csv.DictReader(io.StringIO(text)))
@@ -152,7 +163,8 @@ def rows_csv(rows):
 
 # Parts of the results that lie beside results.json: file and reader.
 PARTS = {"cells": ("stability.csv", cells_of), "points": ("scenes.csv", points_of),
-         "meshes": ("convergence.csv", meshes_of), "alone": ("peers-alone.csv", alone_of)}
+         "meshes": ("convergence.csv", meshes_of), "alone": ("peers-alone.csv", alone_of),
+         "steps": ("finite-stability.csv", steps_of)}
 
 
 def _text(path):
@@ -173,7 +185,7 @@ def read(folder):
         raise BadResults(f"{path} cannot be read: {error}") from None
     if not isinstance(results, dict) or not {"machine", "rows"} <= results.keys():
         raise BadResults(f"{path} is not a results file of bench/run")
-    results = {"programs": [], "failures": [], "peers": {}, **results}
+    results = {"programs": [], "failures": [], "peers": {}, "finite_peers": {}, **results}
     for part, (name, reader) in PARTS.items():
         file = path.with_name(name)
         try:
@@ -196,7 +208,7 @@ def write(folder, results):
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for part, (name, _) in PARTS.items():
-        if results[part]:
+        if results.get(part):
             write_text(folder / name, table_csv(results[part]))
         else:  # of an earlier run
             (folder / name).unlink(missing_ok=True)

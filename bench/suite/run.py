@@ -69,6 +69,7 @@ def measure(options, mode):
     outcome = (earlier(options.out, about) if options.resume
                else {"machine": about, **programs.nothing_yet()})
     outcome["peers"] = programs.peer_settings(options.build)
+    outcome["finite_peers"] = programs.finite_settings(options.build)
     return programs.run_all(options.build, mode, options.repetitions, outcome,
                             lambda done: results.write(options.out, done), about["commit"],
                             options.jobs)

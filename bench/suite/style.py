@@ -30,11 +30,16 @@ _PEERS = {"cholmod updown_solve": ("v", "#222222"), "cholmod updown": ("^", "#55
           "eigen SimplicialLDLT inverse": ("h", "#aaaaaa"),
           "openblas potrf potri": ("X", "#222222"), "eigen LLT inverse": ("P", "#888888"),
           "eigen PartialPivLU inverse": ("*", "#aaaaaa"), "stale-factor PCG": (">", "#666666"),
-          "Jacobi PCG": ("<", "#aaaaaa")}
+          "Jacobi PCG": ("<", "#aaaaaa"),
+          "newton cholmod": ("s", "#222222"), "newton pcg jacobi": ("<", "#aaaaaa"),
+          "newton pcg ichol": (">", "#888888"), "projective lbfgs": ("D", "#555555"),
+          "warped stiffness": ("^", "#777777")}
+# At finite deformation; with "promise" it ends by its own estimate of the error.
+_FINITE = {"sunder": ("o", "#009E73"), "sunder promise": ("*", "#0072B2")}
 
 
 def is_peer(method):
-    return not method.startswith(("cpu", "vulkan"))
+    return not method.startswith(("cpu", "vulkan", "sunder"))
 
 
 def look(method):
@@ -42,6 +47,10 @@ def look(method):
     if is_peer(method):
         marker, colour = _PEERS.get(method, ("x", "#888888"))
         return {"color": colour, "marker": marker, "linestyle": (0, (4, 2)), "linewidth": 0.9,
+                "markersize": 4.5, "label": method}
+    if method in _FINITE:
+        marker, colour = _FINITE[method]
+        return {"color": colour, "marker": marker, "linestyle": "-", "linewidth": 1.5,
                 "markersize": 4.5, "label": method}
     device, *base, precision = method.split()
     marker, line = _DEVICES.get(f"{device} {precision}", ("d", "-."))

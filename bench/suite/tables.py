@@ -59,6 +59,34 @@ def reconstruction(rows):
     return tables
 
 
+def finite(rows):
+    """[(title, head, lines)]: a table per size, tolerance and number of threads."""
+    groups = collections.defaultdict(lambda: collections.defaultdict(dict))
+    for tets, what, tolerance, threads, method, row in plots.finite_rows(rows):
+        groups[tets, tolerance, threads][method][what] = row
+    columns = (("min_ms", "least"), ("median_ms", "median"), ("cpu_ms", "CPU"), ("p99_ms", "p99"),
+               ("back_solves", "back-solves"), ("p99_back_solves", "p99"), ("factors", "factors"),
+               ("over_best", "/ best peer"))
+    head = ["", *(f"{what}: {title}" for what in ("frame", "event") for _, title in columns),
+            "not found"]
+    tables = []
+    for (tets, tolerance, threads), methods in sorted(groups.items()):
+        lines = []
+        for method, kinds in methods.items():
+            line, missed = [method], []
+            for what in ("frame", "event"):
+                row = kinds.get(what, {"counters": {}})
+                c, failure = row["counters"], row.get("failure")
+                line += [failure or number(c.get(columns[0][0])),
+                         *("" if failure else number(c.get(k)) for k, _ in columns[1:])]
+                if c.get("missed", 0) > 0:
+                    missed.append(f"{what}s {c['missed']:g} of {c['steps']:g}")
+            lines.append([*line, ", ".join(missed)])
+        tables.append((f"{tets:,} tetrahedra, residual {tolerance:g}, {threads} "
+                       f"thread{'s' if threads > 1 else ''} [ms]", head, lines))
+    return tables
+
+
 # Tables 2 and 3 of the paper [s], 3.2 GHz Xeon: columns A; B expansion; B expansion and pressure.
 PAPER_2 = {"stiffness matrix": ("1.43", "1.40", "1.41"),
            "stress-displacement matrix": ("9.37", "9.33", "9.70"),
@@ -143,6 +171,31 @@ def beyond(cells):
               f"{c['fractures']:g} by {c['batch']:g}", c["method"], c["accuracy_reason"]]
              for c in cells if c["accuracy"] == "beyond"]
     return ["study", "difficulty", "fractures", "method", "why"], lines
+
+
+STEP_VERDICTS = ("right", "unfinished", "refused", "no yardstick", "WRONG")
+
+
+def finite_verdicts(steps):
+    """Head and lines: verdicts of the steps by difficulty, motion and law."""
+    groups = collections.defaultdict(list)
+    for s in steps:
+        groups[s["study"], s["motion"], s["law"]].append(s)
+    lines = []
+    for key, own in groups.items():
+        errors = [s["stress_error"] for s in own if s["verdict"] == "right"]
+        lines.append([*key, *(sum(s["verdict"] == v for s in own) for v in STEP_VERDICTS),
+                      number(max(errors, default=None), 2)])
+    return ["difficulty", "motion", "law", *STEP_VERDICTS, "largest stress error of those right"], \
+        lines
+
+
+def finite_refusals(steps):
+    """Head and lines: every step that is not right, and why."""
+    return (["difficulty", "law", "contrast, nu, sliver", "motion", "amount", "verdict", "reason"],
+            [[s["study"], s["law"], f"{s['contrast']:g}, {s['nu']:g}, {s['sliver']:g}",
+              s["motion"], f"{s['amount']:g}", s["verdict"], s["reason"]]
+             for s in steps if s["verdict"] != "right"])
 
 
 def scene_verdicts(points):

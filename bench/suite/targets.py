@@ -119,6 +119,40 @@ def _lavapipe(ran):
                    unit=" ms")
 
 
+_FINITE_COMMAND = "bench_finite --benchmark_filter='finite/(1944|30246)/.*/1e-04/2/'"
+
+
+def _of_finite(rows, method, threads=2):
+    """{(tetrahedra, "frame" or "event"): counters} at residual 1e-4; none of a method that missed
+    every step."""
+    return {(tets, what): row["counters"]
+            for tets, what, tolerance, n, name, row in plots.finite_rows(rows)
+            if (tolerance, n, name) == (1e-4, threads, method) and row["samples_ms"]}
+
+
+def _finite(rows):
+    """Lines of the aims at finite deformation."""
+    promise, equal = _of_finite(rows, "sunder promise"), _of_finite(rows, "sunder")
+    aims = {(1944, "frame"): 0.6, (30246, "frame"): 20, (1944, "event"): 1.5, (30246, "event"): 45}
+    there = [key for key in aims if key in promise]
+    names = [f"{tets:,} {what}" for tets, what in there]
+    titles = ", ".join(names)
+    yield _judged(f"finite deformation, promise 1e-4, 2 threads, median ({titles})",
+                  [(n, promise[k].get("median_ms"), aims[k]) for n, k in zip(names, there)],
+                  _FINITE_COMMAND, unit=" ms")
+    for what, column, aim in (("median", "back_solves", 8),
+                              ("99th percentile", "p99_back_solves", 16)):
+        yield _judged(f"finite deformation, back-solves of a step, {what} ({titles})",
+                      [(n, promise[k].get(column), aim) for n, k in zip(names, there)],
+                      _FINITE_COMMAND)
+    there = sorted(equal)
+    names = [f"{tets:,} {what}" for tets, what in there]
+    yield _judged("finite deformation at equal residuals of 1e-4, 2 threads: share of the best "
+                  f"peer's median ({', '.join(names)})",
+                  [(n, equal[k].get("over_best"), 0.2) for n, k in zip(names, there)],
+                  _FINITE_COMMAND)
+
+
 def _accuracy(cells):
     if not cells:
         return None
@@ -145,5 +179,5 @@ def targets(outcome):
                for n in (200, 640)),
              _patch_cascade(_ran(rows, "bench_needs")),
              _instruments(engine), _stress(engine), _board_frame(rows),
-             _lavapipe(_ran(rows, "bench_vulkan")), _accuracy(outcome["cells"])]
+             _lavapipe(_ran(rows, "bench_vulkan")), *_finite(rows), _accuracy(outcome["cells"])]
     return [t for t in found if t is not None]

@@ -51,6 +51,26 @@ def torn(method, event="k1", scale=1.0, body="board 1944"):
     return made
 
 
+def finite(method, what="frame", tets=1944, ms=1.0, **counters):
+    """A row of bench_finite, two threads, residual 1e-4."""
+    made = row(f"finite/{tets}/{what}/1e-04/2/{method}", ms)
+    own = {"min_ms": 0.5 * ms, "median_ms": ms, "cpu_ms": ms, "back_solves": 6.0,
+           "p99_back_solves": 20.0, "factors": 0.5, "missed": 0.0, "steps": 24.0}
+    return dict(made, program="bench_finite", counters=dict(own, **counters))
+
+
+def finite_error(method):
+    made = row(f"finite_error/corotated/1e-04/{method}")
+    return dict(made, program="bench_finite", counters={"median_ms": 1.0, "error_stress": 1e-5})
+
+
+def finite_step(verdict="right", reason=""):
+    return {"study": "nu", "law": "corotated", "contrast": 1.0, "nu": 0.499, "sliver": 1.0,
+            "motion": "twist", "amount": 90.0, "verdict": verdict, "u_error": 1e-6,
+            "stress_error": 1e-5, "estimate": 1e-5, "back_solves": 9.0, "calls": 0.0,
+            "strain": 0.4, "rotation_deg": 92.0, "inverted": 0.0, "reason": reason}
+
+
 def every_part():
     """One row, cell or point for every figure of the page."""
     study = dict(cell(), study="contrast x nu")
@@ -59,7 +79,8 @@ def every_part():
                           "unknowns": 2166.0})
     inverse = dict(row("inversion/sunder/486"), counters={"unknowns": 600.0, "error": 1e-12})
     rows = [torn("cholmod updown_solve", scale=4.0), torn("cpu factor deferred fp64"),
-            torn("cpu factor deferred fp64", "to640"), size, inverse]
+            torn("cpu factor deferred fp64", "to640"), size, inverse, finite("sunder"),
+            finite("newton cholmod", ms=6.0), finite_error("sunder")]
     points = [{"scene": "notch-b", "method": "cpu cg fp64", "tolerance": 1e-4, "frame_ms": 2.5,
                "u_error": 1e-9, "stress_error": 1e-8, "fractures": 51.0, "verdict": "ok",
                "reason": ""}]
@@ -363,6 +384,48 @@ class Checks(unittest.TestCase):
         self.assertEqual(self.bad(rows=[peer, told]), [])
 
 
+class FiniteDeformation(unittest.TestCase):
+    def test_shares_are_of_the_median_by_the_clock_and_in_processor_time(self):
+        rows = [finite("sunder", ms=2.0, cpu_ms=3.0), finite("newton cholmod", ms=8.0, cpu_ms=6.0),
+                finite("projective lbfgs", ms=10.0, cpu_ms=5.0),
+                finite("newton cholmod", tets=7776, ms=1.0)]
+        own, best, *_ = [r["counters"] for r in ratios.add(rows)]
+        self.assertEqual((own["over_best"], own["over_best_cpu"]), (0.25, 0.6))
+        self.assertEqual(best["over_best"], 1)
+
+    def test_a_peer_that_finds_no_end_is_shown_and_is_no_fault(self):
+        lost = dict(finite("newton pcg jacobi"), samples_ms=[], failure="not in 50 iterations")
+        lost["counters"] = {"missed": 2.0, "steps": 2.0}
+        ours = dict(lost, name=finite("sunder")["name"])
+        self.assertEqual(checks._row_problems(lost), [])
+        self.assertEqual(len(checks._row_problems(ours)), 1)
+        ((_, head, lines),) = tables.finite([finite("sunder"), lost])
+        self.assertEqual([len(line) for line in lines], [len(head)] * 2)
+        self.assertEqual((lines[1][1], lines[1][-1]), ("not in 50 iterations", "frames 2 of 2"))
+        self.assertIn("sunder", plots.finite([finite("sunder"), lost]))
+
+    def test_aims(self):
+        rows = ratios.add([finite("sunder", ms=2.0), finite("newton cholmod", ms=8.0),
+                           finite("sunder promise", ms=1.0), finite("sunder promise", "event"),
+                           finite("sunder promise", tets=7776, ms=99.0)])
+        said = {t[0]: t[1:4] for t in targets.targets(outcome(rows))}
+        promise, median, worst, share = said.values()
+        self.assertEqual(promise, ("0.6 / 1.5 ms", "1 / 1 ms", "1,944 frame"))
+        self.assertEqual(median, ("8", "6 / 6", ""))
+        self.assertEqual(worst, ("16", "20 / 20", "1,944 frame, 1,944 event"))
+        self.assertEqual(share, ("0.2", "0.25", "1,944 frame"))
+
+    def test_a_wrong_step_is_a_problem_and_one_that_is_refused_says_why(self):
+        steps = [finite_step(), finite_step("refused", "no equilibrium"), finite_step("WRONG")]
+        (found,) = checks.problems(dict(every_part(), steps=steps))
+        self.assertIn("twist 90: WRONG", found)
+        self.assertEqual(tables.finite_verdicts(steps)[1],
+                         [["nu", "twist", "corotated", 1, 0, 1, 0, 1, "1.0e-05"]])
+        self.assertIn("no equilibrium", page.page(dict(every_part(), steps=steps))[0])
+        read = results.steps_of(results.table_csv(steps))
+        self.assertEqual(read, steps)
+
+
 class FreshMachine(unittest.TestCase):
     """A machine without the peers' packages: programs that stand for its own come first in PATH and
     write down how they were called."""
@@ -594,7 +657,8 @@ class Page(unittest.TestCase):
         text, figures = self.text, self.figures
         self.assertEqual(set(figures), {"reconstruction", "accumulated", "inversion", "error-board",
                                         "error-scenes", "mesh-size", "stability",
-                                        "stability-pairs", "scaling"})
+                                        "stability-pairs", "scaling", "finite",
+                                        "finite-error"})
         self.assertEqual(text.count("<svg"), len(figures))
         self.assertIn("&lt;test&gt;", text)
         for tag in ("<script src", "<link", "<img src=\"http"):

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stability study at finite deformation: one body, two hands, every law with one difficulty
+// after the other and then all of them together; each step judged by the yardstick's Newton
+// (cpu_reference/plain), which starts where the step ended and must stay there.
+//   bench_finite_stability FILE [quick|full]
+// A step is right, unfinished (its path to rest goes on), refused with the reason and the state
+// before it usable, "no yardstick" where that finds no rest from there either, or WRONG: a number
+// that is off by more than the tolerance, no number, or a lost state. Exit code 1 where one is.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <numbers>
+#include <stdexcept>
+
+#include "cpu_reference/cpu_reference.hpp"
+#include "cpu_reference/plain/finite.hpp"
+#include "fracture/criterion.hpp"
+#include "frame/loads.hpp"
+#include "sunder/error.hpp"
+#include "support/accuracy.hpp"
+#include "support/sequences.hpp"
+#include "support/sliver.hpp"
+#include "support/structured_board.hpp"
+
+namespace sunder::bench {
+namespace {
+
+constexpr double kSide = 50, kDepth = 5;
+constexpr int kMostCalls = 400;      // of a step whose path goes on
+constexpr double kSameState = 1e-2;  // of the tolerance's own scale: a state found again
+
+struct Cell {
+  std::string study;
+  MaterialLaw law = MaterialLaw::corotated;
+  double contrast = 1, poisson = 0.45, sliver = 1;
+  std::string motion;
+};
+
+/// Where the lower hand is, and the upper one where it moves too.
+struct Hands {
+  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
+  Vec3 lower_turn = Vec3::Zero(), upper_turn = Vec3::Zero();  // [deg]
+};
+struct Step {
+  double amount;  ///< as the motion counts it
+  Hands hands;
+  std::vector<Index> destroyed;  ///< before it
+};
+
+Scene scene_of(const Cell& cell) {
+  Scene scene;
+  scene.title = "board of the stability study at finite deformation";
+  scene.mesh = test::structured_board({6, 6, 1, kSide, kSide, kDepth}, [](const Vec3& x) {
+    return x.y() > 41 || x.y() < 9 ? "frame" : x.y() > 25 ? "upper" : "lower";
+  });
+  if (cell.sliver < 1) test::make_sliver(scene.mesh, Vec3(25, 33, 2.5), 9, cell.sliver);
+  scene.materials = {{"upper", {5, cell.poisson, 2.0, cell.law}},
+                     {"lower", {8, cell.poisson, 4.0, cell.law}},
+                     {"frame", {5 * cell.contrast, cell.poisson, std::nullopt, cell.law}}};
+  for (const double y : {0.0, kSide}) {
+    Instrument hand;
+    hand.name = y == 0 ? "lower" : "upper";
+    hand.action = Grip{Box{Vec3(-1, y - .01, -1), Vec3(51, y + .01, 6)}, Vec3(0, 0, 0), Axes{7},
+                       true, Vec3(0, 0, 0)};
+    scene.instruments.push_back(hand);
+  }
+  return scene;
+}
+
+/// Both hands turned about the board's middle as one.
+Hands turned_as_one(double degrees) {
+  const Vec3 axis = Vec3(1, 2, -2) / 3;
+  const Mat3 r = Eigen::AngleAxisd(degrees / 180 * std::numbers::pi, axis).toRotationMatrix();
+  const Vec3 arm(0, kSide / 2, 0);
+  Hands hands;
+  hands.lower_turn = hands.upper_turn = degrees * axis;
+  hands.upper = r * arm - arm;
+  hands.lower = -hands.upper;
+  return hands;
+}
+
+std::vector<Step> steps_of(const std::string& motion, const Problem& problem) {
+  std::vector<Step> steps;
+  const auto lower_to = [&](double amount, const Vec3& at, const Vec3& turn = Vec3::Zero()) {
+    Hands hands;
+    hands.lower = at;
+    hands.lower_turn = turn;
+    steps.push_back({amount, hands, {}});
+  };
+  const auto stretch = [&](double strain) { lower_to(strain, Vec3(0, -strain * kSide, 0)); };
+  if (motion == "stretch") {
+    for (double strain : {.1, .2, .4, .6, .8, 1.0}) stretch(strain);
+  } else if (motion == "turn") {
+    for (double degrees = 30; degrees <= 180; degrees += 30)
+      steps.push_back({degrees, turned_as_one(degrees), {}});
+  } else if (motion == "twist") {
+    for (double degrees = 30; degrees <= 180; degrees += 30)
+      lower_to(degrees, Vec3(0, 0, 0), Vec3(0, degrees, 0));
+  } else if (motion == "fold") {
+    // About the board's own width: the lower edge comes over to the other side.
+    for (double degrees = 30; degrees <= 180; degrees += 30) {
+      const double a = degrees / 180 * std::numbers::pi;
+      const double radius = kSide / 2;
+      lower_to(degrees, Vec3(0, radius * (1 - std::cos(a)), radius * std::sin(a)),
+               Vec3(degrees, 0, 0));
+    }
+  } else if (motion == "jump") {
+    stretch(.1);
+    stretch(10);
+    stretch(.1);
+  } else if (motion == "through") {
+    // In one step through the upper hand: what follows linearly is inside out.
+    stretch(-2.0);
+    stretch(-1.0);
+    stretch(0);
+    stretch(.1);
+  } else if (motion == "tear") {
+    stretch(.1);
+    stretch(.2);
+    const auto crack = test::elements_across(problem.mesh(), 27);
+    for (std::size_t i = 0; i < 3; ++i) {
+      stretch(.2);
+      steps.back().destroyed.assign(crack.begin() + 4 * static_cast<long>(i),
+                                    crack.begin() + 4 * static_cast<long>(i + 1));
+    }
+    stretch(.3);
+  } else {
+    throw std::invalid_argument("unknown motion " + motion);
+  }
+  return steps;
+}
+
+struct Outcome {
+  std::string verdict, reason;
+  double u_error = NAN, stress_error = NAN, estimate = NAN;
+  int back_solves = 0, calls = 0;
+  Deformation deformation;
+};
+
+class Body {
+ public:
+  explicit Body(const Cell& cell)
+      : problem_(std::make_shared<Problem>(scene_of(cell))),
+        criterion_(make_criterion(*problem_)),
+        loads_(*problem_),
+        backend_(cpu_reference::create(problem_, needs())) {
+    at_ = load_of({});
+  }
+  [[nodiscard]] const Problem& problem() const { return *problem_; }
+
+  Outcome take(const Step& step) {
+    Outcome outcome;
+    if (!step.destroyed.empty()) backend_->destroy(step.destroyed);
+    const Load load = load_of(step.hands);
+    const std::vector<double> before = displacement();
+    try {
+      SolveReport report = solve(load, outcome);
+      outcome.estimate = report.error;
+      if (report.unfinished) {
+        outcome.verdict = "unfinished";
+        return outcome;
+      }
+      at_ = load;
+      judge(load, outcome);
+    } catch (const NumericalError& error) {
+      outcome.verdict = "refused";
+      outcome.reason = error.what();
+      if (!usable(before, step.destroyed.empty())) {
+        outcome.verdict = "WRONG";
+        outcome.reason = "the state before is lost after: " + outcome.reason;
+      }
+    }
+    return outcome;
+  }
+
+ private:
+  static Needs needs() {
+    Needs needs;
+    needs.stress = needs.damage = true;
+    return needs;
+  }
+  Load load_of(const Hands& hands) {
+    loads_.drive(0, hands.lower);
+    loads_.turn(0, hands.lower_turn);
+    loads_.drive(1, hands.upper);
+    loads_.turn(1, hands.upper_turn);
+    std::vector<Finding> findings;
+    loads_.update(0, *criterion_, backend_->destroyed(), findings);
+    return loads_.load();
+  }
+  std::vector<double> displacement() const {
+    std::vector<double> u(problem_->dofs().size());
+    backend_->read_displacement(u);
+    return u;
+  }
+  SolveReport solve(const Load& load, Outcome& outcome) {
+    backend_->set_load(load);
+    SolveReport report;
+    do {
+      report = backend_->solve();
+      outcome.back_solves += report.back_solves;
+    } while (report.unfinished && ++outcome.calls < kMostCalls);
+    return report;
+  }
+  /// The load before can be solved again, and where nothing has left that leads back.
+  bool usable(const std::vector<double>& before, bool same_body) {
+    if (displacement() != before) return false;
+    Outcome again;
+    try {
+      if (solve(at_, again).unfinished) return true;
+    } catch (const NumericalError&) {
+      return !same_body;
+    }
+    double apart = 0, most = 0;
+    const std::vector<double> u = displacement();
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      if (!std::isfinite(u[i])) return false;
+      apart = std::max(apart, std::abs(u[i] - before[i]));
+      most = std::max(most, std::abs(before[i]));
+    }
+    return !same_body || apart <= kSameState * std::max(most, 1e-3 * kSide);
+  }
+  void judge(const Load& load, Outcome& outcome) {
+    backend_->stress();
+    const std::vector<double> u = displacement();
+    std::vector<Voigt> stress(problem_->mesh().tets.size());
+    backend_->read_stress(stress);
+    outcome.deformation = backend_->deformation();
+    const std::vector<std::uint8_t> destroyed(backend_->destroyed().begin(),
+                                              backend_->destroyed().end());
+    const plain::FiniteBody yardstick(*problem_, destroyed);
+    if (!std::all_of(u.begin(), u.end(), [](double x) { return std::isfinite(x); })) {
+      outcome.verdict = "WRONG";
+      outcome.reason = "not a number";
+      return;
+    }
+    try {
+      const plain::Solution s = yardstick.solve(load, u);
+      const auto exact = yardstick.stress(s.displacement, StressMeasure::cauchy);
+      outcome.u_error = test::displacement_error(problem_->mesh(), destroyed, u, s.displacement);
+      outcome.stress_error = stress_error(destroyed, stress, exact);
+    } catch (const std::runtime_error& error) {
+      outcome.verdict = "no yardstick";
+      outcome.reason = error.what();
+      return;
+    }
+    const bool right = outcome.stress_error <= problem_->scene().solver.tolerance;
+    outcome.verdict = right ? "right" : "WRONG";
+  }
+  /// Where there is none, as after a rigid motion, a millionth of the material's modulus is as
+  /// good.
+  static double stress_error(std::span<const std::uint8_t> destroyed, std::span<const Voigt> found,
+                             std::span<const Voigt> exact) {
+    double apart = 0, most = 1e-6 * 5;
+    for (std::size_t e = 0; e < found.size(); ++e) {
+      if (destroyed[e]) continue;
+      const double d = test::tensor_norm(found[e] - exact[e]);
+      if (!std::isfinite(d)) return d;
+      apart = std::max(apart, d);
+      most = std::max(most, test::tensor_norm(exact[e]));
+    }
+    return apart / most;
+  }
+
+  std::shared_ptr<const Problem> problem_;
+  std::unique_ptr<FractureCriterion> criterion_;
+  Loads loads_;
+  std::unique_ptr<Backend> backend_;
+  Load at_;  // of the last step at rest
+};
+
+const char* const kMotions[] = {"stretch", "turn", "twist", "fold", "jump", "through", "tear"};
+const char* const kFew[] = {"stretch", "twist", "tear"};
+
+std::vector<Cell> cells_of(bool full) {
+  std::vector<Cell> cells;
+  for (const MaterialLaw law : {MaterialLaw::corotated, MaterialLaw::neo_hookean}) {
+    for (const char* motion : kMotions) cells.push_back({motion, law, 1, .45, 1, motion});
+    if (!full) continue;
+    for (const char* motion : kFew) {
+      for (const double contrast : {1e3, 1e6})
+        cells.push_back({"contrast", law, contrast, .45, 1, motion});
+      for (const double nu : {.3, .49, .499}) cells.push_back({"nu", law, 1, nu, 1, motion});
+      for (const double sliver : {1e-1, 1e-2, 1e-3})
+        cells.push_back({"sliver", law, 1, .45, sliver, motion});
+      for (const double contrast : {1e3, 1e6}) {
+        for (const double nu : {.3, .49, .499})
+          cells.push_back({"contrast x nu", law, contrast, nu, 1, motion});
+      }
+      for (const double nu : {.49, .499})
+        cells.push_back({"nu x sliver", law, 1, nu, 1e-2, motion});
+    }
+  }
+  return cells;
+}
+
+std::string quoted(std::string text) {
+  std::replace(text.begin(), text.end(), '"', '\'');
+  return '"' + text + '"';
+}
+
+/// Returns the number of steps that are WRONG.
+int run(std::ostream& out, const std::vector<Cell>& cells) {
+  out << "study,law,contrast,nu,sliver,motion,amount,verdict,u_error,stress_error,estimate,"
+         "back_solves,calls,strain,rotation_deg,inverted,reason\n";
+  int wrong = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Cell& cell = cells[i];
+    Body body(cell);
+    for (const Step& step : steps_of(cell.motion, body.problem())) {
+      const Outcome o = body.take(step);
+      wrong += o.verdict == "WRONG";
+      out << cell.study << ',' << body.problem().law() << ',' << cell.contrast << ','
+          << cell.poisson << ',' << cell.sliver << ',' << cell.motion << ',' << step.amount << ','
+          << o.verdict << ',' << o.u_error << ',' << o.stress_error << ',' << o.estimate << ','
+          << o.back_solves << ',' << o.calls << ',' << o.deformation.strain << ','
+          << o.deformation.rotation_deg << ',' << o.deformation.inverted << ',' << quoted(o.reason)
+          << '\n';
+      out.flush();
+      if (o.verdict == "unfinished") break;  // the next step would go on from no equilibrium
+    }
+    std::fprintf(stderr, "\rcell %zu of %zu, wrong %d ", i + 1, cells.size(), wrong);
+  }
+  std::fputc('\n', stderr);
+  return wrong;
+}
+
+}  // namespace
+}  // namespace sunder::bench
+
+int main(int argc, char** argv) {
+  using namespace sunder::bench;
+  const std::string mode = argc > 2 ? argv[2] : "full";
+  if (argc < 2 || argc > 3 || (mode != "quick" && mode != "full")) {
+    std::cerr << "usage: bench_finite_stability FILE [quick|full]\n";
+    return 2;
+  }
+  std::ofstream out(argv[1]);
+  const int wrong = run(out, cells_of(mode == "full"));
+  out.close();
+  if (!out) {
+    std::cerr << "cannot write " << argv[1] << '\n';
+    return 3;
+  }
+  return wrong > 0;
+}
