@@ -31,5 +31,6 @@ struct KChoice {
 [[nodiscard]] Chapter notch_length(const Laboratory& lab, const Effort& effort);
 [[nodiscard]] Chapter pressure_position(const Laboratory& lab, const Effort& effort);
 [[nodiscard]] Chapter pressure_angle(const Laboratory& lab, const Effort& effort);
+[[nodiscard]] Chapter two_laws(const Laboratory& lab, const Effort& effort);
 
 }  // namespace sunder::app::reproduce

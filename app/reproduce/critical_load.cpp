@@ -9,6 +9,9 @@ namespace sunder::app::reproduce {
 namespace {
 
 constexpr double kMostLoad = 4096, kRaise = 4;
+// Where loads are tried.
+constexpr double kRise = 1.25, kMostOfLinear = 2.5, kApart = 1.02, kJustAbove = 1.01;
+constexpr int kMostTries = 10;
 constexpr double kRadians = std::numbers::pi / 180;
 
 void scale(SifTerms& terms, double factor) {
@@ -33,25 +36,88 @@ double rise(const Laboratory& lab, const RunPlan& plan, const BoardPlane& plane,
   return std::asin(std::clamp(std::sin(angle), -1.0, 1.0)) / kRadians;
 }
 
+Vec3 centroid(const RunResult& result, Index e) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index node : result.problem->mesh().tets[e])
+    sum += result.problem->mesh().nodes[node] / 4;
+  return sum;
+}
+
+/// One step under `factor` times the plan's forces.
+struct Trial {
+  RunResult result;
+  std::optional<CriticalLoad> found;  ///< where ratios say that it begins; none: nothing broke
+};
+
+Trial try_load(const Laboratory& lab, RunPlan plan, double factor, bool growth) {
+  plan.load *= factor;
+  Trial trial{lab.run(plan), std::nullopt};
+  const std::vector<DestroyedElement> rows = trial.result.fractures();
+  if (rows.empty() || (growth && rows.front().cause != Cause::sif)) return trial;
+  const DestroyedElement& first = rows.front();
+  const double less = first.cause == Cause::sif ? 1 / std::sqrt(*first.ratio) : 1 / *first.ratio;
+  const BoardPlane& plane = trial.result.plane;
+  trial.found = CriticalLoad{factor * less,
+                             first.cause,
+                             first.sif,
+                             0,
+                             plane.edge_length,
+                             first.element,
+                             centroid(trial.result, first.element)};
+  if (first.sif) {
+    scale(*trial.found->sif, less);
+    trial.found->rise_deg = rise(lab, plan, plane, first.crack, first.sif->theta);
+  }
+  return trial;
+}
+
+std::optional<CriticalLoad> raised(const Laboratory& lab, const RunPlan& plan, bool growth) {
+  for (double raise = 1; raise <= kMostLoad; raise *= kRaise)
+    if (Trial trial = try_load(lab, plan, raise, growth); trial.found) return trial.found;
+  return std::nullopt;
+}
+
+/// Loads, in units of the plan's forces, between which something breaks first.
+struct Bracket {
+  double rests = 0;
+  std::optional<double> breaks;  ///< or bears no equilibrium
+  std::optional<CriticalLoad> best;
+
+  [[nodiscard]] bool closed() const {
+    return breaks && (*breaks <= kApart * rests || (best && *breaks <= kApart * best->factor));
+  }
+  /// Just above where the last ratios say, or half way.
+  [[nodiscard]] double next() const {
+    const double guess = best ? kJustAbove * best->factor : 0;
+    return guess > rests && guess < *breaks ? guess : 0.5 * (rests + *breaks);
+  }
+};
+
+std::optional<CriticalLoad> searched(const Laboratory& lab, const RunPlan& plan, bool growth) {
+  const auto linear = raised(lab.with_law(MaterialLaw::linear), plan, growth);
+  if (!linear) return std::nullopt;
+  Bracket bracket;
+  double load = kRise * linear->factor;
+  for (int i = 0; i < kMostTries && load <= kMostOfLinear * linear->factor; ++i) {
+    const Trial trial = try_load(lab, plan, load, growth);
+    if (trial.found) bracket.best = trial.found;
+    const bool broke = trial.found || !trial.result.failure.empty();
+    if (!broke && lab.notes().back().no_k) break;  // more load brings no K back
+    if (broke)
+      bracket.breaks = load;
+    else
+      bracket.rests = load;
+    if (bracket.closed()) break;
+    load = bracket.breaks ? bracket.next() : kRise * load;
+  }
+  if (bracket.best) bracket.best->factor = std::max(bracket.best->factor, bracket.rests);
+  return bracket.best;
+}
+
 std::optional<CriticalLoad> first_rupture(const Laboratory& lab, RunPlan plan, bool growth) {
   plan.overrides.insert(plan.overrides.end(), {"time.steps=1", "fracture.max_events=1"});
   plan.snapshots.clear();
-  const double begin = plan.load;
-  for (double raise = 1; raise <= kMostLoad; raise *= kRaise) {
-    plan.load = begin * raise;
-    const RunResult result = lab.run(plan);
-    const std::vector<DestroyedElement> rows = result.fractures();
-    if (rows.empty() || (growth && rows.front().cause != Cause::sif)) continue;
-    const DestroyedElement& first = rows.front();
-    const double less = first.cause == Cause::sif ? 1 / std::sqrt(*first.ratio) : 1 / *first.ratio;
-    CriticalLoad critical{raise * less, first.cause, first.sif, 0, result.plane.edge_length};
-    if (critical.sif) {
-      scale(*critical.sif, less);
-      critical.rise_deg = rise(lab, plan, result.plane, first.crack, critical.sif->theta);
-    }
-    return critical;
-  }
-  return std::nullopt;
+  return lab.linear() ? raised(lab, plan, growth) : searched(lab, plan, growth);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "app/reproduce/chapters.hpp"
 #include "app/reproduce/critical_load.hpp"
 #include "app/reproduce/models.hpp"
+#include "app/reproduce/statements.hpp"
 
 namespace sunder::app::reproduce {
 
@@ -29,6 +30,13 @@ std::string notch_turns(const KChoice& k, const RunResult& run) {
 
 }  // namespace
 
+Statement tears_before_a(const Laboratory& lab, const KChoice& k, const std::optional<double>& a) {
+  return {"2b", "On the notched board B starts to tear at a lower load than A.", k.name,
+          judge_lower_force(critical_force(lab, "notch-b", {k.override}, true), a,
+                            "critical force, B", "critical force, A"),
+          "crack progression in a silicon rubber"};
+}
+
 Chapter notched_board(const Laboratory& lab) {
   lab.tell("experiment 2: notched board");
   const std::vector<Model> models = run_models(lab, "notch");
@@ -43,11 +51,7 @@ Chapter notched_board(const Laboratory& lab) {
   const auto a = critical_force(lab, "notch-a", {}, false);
   for (std::size_t i = 1; i < models.size(); ++i) {
     const KChoice& k = both_k()[i - 1];
-    chapter.statements.push_back(
-        {"2b", "On the notched board B starts to tear at a lower load than A.", k.name,
-         judge_lower_force(critical_force(lab, "notch-b", {k.override}, true), a,
-                           "critical force, B", "critical force, A"),
-         "crack progression in a silicon rubber"});
+    chapter.statements.push_back(tears_before_a(lab, k, a));
     chapter.findings.push_back(notch_turns(k, models[i].run));
   }
   const std::vector<Model> cracks(models.begin() + 1, models.end());
@@ -63,6 +67,39 @@ Chapter notched_board(const Laboratory& lab) {
   return chapter;
 }
 
+std::vector<Statement> side_statements(const Laboratory& lab, const KChoice& k) {
+  const std::string words = "the effect of rupture direction related to pressures";
+  std::vector<Statement> statements;
+  const std::vector<std::string> by = {k.override};
+  const auto critical = [&](const std::string& scene) {
+    return critical_growth(lab, {scene, by, nullptr, 1, {}});
+  };
+  const auto upper = critical("pressure-upper"), balanced = critical("pressure-balanced"),
+             under = critical("pressure-under"), none = critical("notch-b");
+  const auto angle = [](const std::optional<CriticalLoad>& c) {
+    return c ? std::optional<double>(c->rise_deg) : std::nullopt;
+  };
+  const auto force = [&](const std::optional<CriticalLoad>& c, const std::string& scene) {
+    return c ? std::optional<double>(c->factor * pull_of(lab, scene)) : std::nullopt;
+  };
+  const auto f_none = force(none, "notch-b");
+  statements.push_back(
+      {"4a",
+       "The crack goes up, straight and down with pressure on the upper face, on both and "
+       "on the under face.",
+       k.name, judge_sides({angle(upper), angle(balanced), angle(under)}), words});
+  statements.push_back(
+      {"4b", "Balanced pressure tears earlier than none.", k.name,
+       judge_lower_force(force(balanced, "pressure-balanced"), f_none,
+                         "critical pull, balanced pressure", "critical pull, no pressure"),
+       words});
+  statements.push_back(
+      {"4c", "Pressure with the expansion raises the stress, against it lowers it.", k.name,
+       judge_side_forces({force(under, "pressure-under"), f_none, force(upper, "pressure-upper")}),
+       words});
+  return statements;
+}
+
 Chapter pressure_side(const Laboratory& lab) {
   lab.tell("experiment 4: pressure on one face and on both");
   Chapter chapter{
@@ -74,39 +111,13 @@ Chapter pressure_side(const Laboratory& lab) {
       {},
       {},
       {}};
-  const std::string words = "the effect of rupture direction related to pressures";
   const std::vector<std::string> sides = {"upper", "balanced", "under"};
   std::vector<Model> models;
   for (const KChoice& k : both_k()) {
-    const std::vector<std::string> by = {k.override};
-    const auto critical = [&](const std::string& scene) {
-      return critical_growth(lab, {scene, by, nullptr, 1, {}});
-    };
-    const auto upper = critical("pressure-upper"), balanced = critical("pressure-balanced"),
-               under = critical("pressure-under"), none = critical("notch-b");
-    const auto angle = [](const std::optional<CriticalLoad>& c) {
-      return c ? std::optional<double>(c->rise_deg) : std::nullopt;
-    };
-    const auto force = [&](const std::optional<CriticalLoad>& c, const std::string& scene) {
-      return c ? std::optional<double>(c->factor * pull_of(lab, scene)) : std::nullopt;
-    };
-    const auto f_none = force(none, "notch-b");
-    chapter.statements.push_back(
-        {"4a",
-         "The crack goes up, straight and down with pressure on the upper face, on both and "
-         "on the under face.",
-         k.name, judge_sides({angle(upper), angle(balanced), angle(under)}), words});
-    chapter.statements.push_back(
-        {"4b", "Balanced pressure tears earlier than none.", k.name,
-         judge_lower_force(force(balanced, "pressure-balanced"), f_none,
-                           "critical pull, balanced pressure", "critical pull, no pressure"),
-         words});
-    chapter.statements.push_back(
-        {"4c", "Pressure with the expansion raises the stress, against it lowers it.", k.name,
-         judge_side_forces(
-             {force(under, "pressure-under"), f_none, force(upper, "pressure-upper")}),
-         words});
-    const auto f_upper = force(upper, "pressure-upper");
+    const std::vector<Statement> statements = side_statements(lab, k);
+    chapter.statements.insert(chapter.statements.end(), statements.begin(), statements.end());
+    const std::vector<Figure>& forces = statements.back().judgement.numbers;
+    const auto f_none = forces.at(1).value, f_upper = forces.at(2).value;
     if (f_upper && f_none && *f_upper < *f_none)
       chapter.findings.push_back(k.name +
                                  ": a push on the upper face lowers the critical pull from " +
@@ -114,8 +125,8 @@ Chapter pressure_side(const Laboratory& lab) {
                                  " N: against the expansion as it is, it opens the crack. Eq. 2 "
                                  "takes it off by its sign.");
     for (const std::string& side : sides)
-      models.push_back(
-          {side + ", " + k.name, lab.run({"pressure-" + side, by, nullptr, 1, kSnapshots})});
+      models.push_back({side + ", " + k.name,
+                        lab.run({"pressure-" + side, {k.override}, nullptr, 1, kSnapshots})});
   }
   chapter.tables = {path_table("experiment-4-paths", models),
                     events_table("experiment-4-fractures", models)};

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/reproduce/laboratory.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "app/input/scene_toml.hpp"
 #include "app/reproduce/paper_files.hpp"
 #include "sunder/backends.hpp"
+#include "sunder/error.hpp"
 #include "sunder/simulation.hpp"
 
 namespace sunder::app::reproduce {
@@ -33,6 +35,12 @@ void grip_instead(Scene& scene, double way) {
   }
 }
 
+int count_fractures(const Simulation& simulation) {
+  const auto& rows = simulation.destroyed();
+  return static_cast<int>(std::count_if(
+      rows.begin(), rows.end(), [](const auto& row) { return row.cause != Cause::preset; }));
+}
+
 /// Takes the snapshots of one run.
 struct Snapshooter {
   const Simulation& simulation;
@@ -42,9 +50,7 @@ struct Snapshooter {
 
   void operator()() {
     ++frames;
-    int fractures = 0;
-    for (const DestroyedElement& row : simulation.destroyed())
-      fractures += row.cause == Cause::preset ? 0 : 1;
+    const int fractures = count_fractures(simulation);
     bool reached = false;
     while (!wanted.empty() && wanted.front() <= fractures) {
       wanted.erase(wanted.begin());
@@ -67,6 +73,14 @@ std::vector<DestroyedElement> RunResult::fractures() const {
 Laboratory::Laboratory(std::string backend, std::function<bool()> stop,
                        std::function<void(const std::string&)> tell)
     : backend_(std::move(backend)), stop_(std::move(stop)), tell_(std::move(tell)) {}
+
+Laboratory Laboratory::with_law(MaterialLaw law) const {
+  Laboratory other = *this;
+  other.law_ = law;
+  if (law != MaterialLaw::linear) other.backend_ = "cpu";
+  other.notes_.clear();
+  return other;
+}
 
 void Laboratory::check_interrupt() const {
   if (stop_()) throw Interrupted();
@@ -98,6 +112,7 @@ Scene Laboratory::scene(const RunPlan& plan) const {
   parsed.scene.mesh = plan.mesh ? *plan.mesh : mesh_of(parsed.mesh_path);
   scale_forces(parsed.scene, plan.load);
   if (plan.grip) grip_instead(parsed.scene, *plan.grip);
+  for (auto& [name, material] : parsed.scene.materials) material.law = law_;
   return std::move(parsed.scene);
 }
 
@@ -113,21 +128,53 @@ RunResult Laboratory::run(const RunPlan& plan) const {
   result.prepare_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 
   Simulation simulation(result.problem, std::move(created.backend));
+  result.last = undeformed(problem);
   int frames = 0;
   simulation.observe_frames(Snapshooter{simulation, frames, plan.snapshots, result.snapshots});
   simulation.observe_events([this](std::span<const DestroyedElement>) { return !stop_(); });
-  while (!simulation.done()) {
-    result.steps.push_back(simulation.step());
-    result.frames.push_back(std::exchange(frames, 0));
-    check_interrupt();
+  try {
+    while (!simulation.done() && !(plan.until > 0 && count_fractures(simulation) >= plan.until)) {
+      result.steps.push_back(simulation.step());
+      result.frames.push_back(std::exchange(frames, 0));
+      if (plan.tips) result.tips.push_back(simulation.tips());
+      if (!linear()) result.last = capture(simulation, simulation.steps_done() - 1);
+      check_interrupt();
+    }
+  } catch (const NumericalError& error) {
+    if (linear()) throw;
+    result.failure = error.what();
   }
-  result.last = capture(simulation, simulation.steps_done() - 1);
   result.destroyed = simulation.destroyed();
   result.cracks = simulation.cracks();
   result.backend = simulation.backend().info();
   result.warnings = std::move(created.warnings);
   for (std::string& text : simulation.warnings()) result.warnings.push_back(std::move(text));
+  if (linear()) {
+    result.last = capture(simulation, simulation.steps_done() - 1);
+  } else {
+    note(plan, result);
+  }
   return result;
+}
+
+void Laboratory::note(const RunPlan& plan, const RunResult& result) const {
+  RunNote note;
+  note.scene = plan.scene;
+  for (const std::string& text : plan.overrides) {
+    if (text == "fracture.sif=formula") note.k = "formula K";
+    if (text == "fracture.sif=field") note.k = "field K";
+  }
+  note.load = result.steps.empty() ? 0 : plan.load * result.steps.back().load_factor;
+  note.steps = static_cast<int>(result.steps.size());
+  note.all = result.problem->scene().steps;
+  note.fractures = static_cast<int>(result.fractures().size());
+  for (const StepReport& step : result.steps) note.unfinished += step.unfinished ? 1 : 0;
+  note.no_k =
+      std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& text) {
+        return text.find("stress intensity has no meaning") != std::string::npos;
+      });
+  note.failure = result.failure;
+  notes_.push_back(std::move(note));
 }
 
 }  // namespace sunder::app::reproduce

@@ -5,6 +5,7 @@
 #include "app/output/text.hpp"
 #include "app/reproduce/chapters.hpp"
 #include "app/reproduce/critical_load.hpp"
+#include "app/reproduce/statements.hpp"
 
 namespace sunder::app::reproduce {
 namespace {
@@ -12,16 +13,7 @@ namespace {
 constexpr double kNotchPull = 42;            // N, of scene notch-b
 constexpr double kHold = 20;                 // N: a pull under which a short notch rests
 constexpr double kRight = 50, kMiddle = 25;  // mm, of the notched board
-constexpr double kSize = 3.939;              // mm, of elements
 constexpr double kFineSize = 1.6;            // mm: a notch of 8 mm is more than a few of them
-
-RunPlan notched(const Laboratory& lab, double size, double length,
-                const std::vector<std::string>& overrides) {
-  RunPlan plan{"notch-b", overrides, lab.notch({size, length, 5}), 1, {}};
-  plan.overrides.push_back("crack.0.tip=[" + number(kRight - length) + "," + number(kMiddle) +
-                           ",1]");
-  return plan;
-}
 
 struct Reading {
   std::string name;
@@ -46,9 +38,10 @@ struct OfLength {
 
 OfLength measure(const Laboratory& lab, double length) {
   lab.tell("notch length " + rounded(length, 3) + " mm");
-  OfLength row{length, lab.notch({kSize, length, 5})->tet_count(), {}};
+  OfLength row{length, lab.notch({kCoarseNotch, length, 5})->tet_count(), {}};
   for (const Reading& reading : readings())
-    row.by_reading.push_back(critical_growth(lab, notched(lab, kSize, length, reading.overrides)));
+    row.by_reading.push_back(
+        critical_growth(lab, notched(lab, kCoarseNotch, length, reading.overrides)));
   return row;
 }
 
@@ -118,27 +111,15 @@ std::string reading_finding(const std::vector<OfLength>& rows, std::size_t readi
 
 /// 7a, with its table.
 void judge_final(const Laboratory& lab, const Effort& effort, Chapter& chapter) {
-  const double size = effort.quick ? kSize : kFineSize;
+  const double size = effort.quick ? kCoarseNotch : kFineSize;
   DataTable table{"notch-length-final",
                   "Length at the end of scene notch-b with a pull of 20 N, in elements of " +
                       rounded(size, 3) + " mm.",
                   {"preset length [mm]", "K", "final length [mm]", "grown [mm]"},
                   {},
                   true};
-  for (const KChoice& k : both_k()) {
-    std::vector<FinalLength> lengths;
-    for (const double length : {4.04, 8.0, 16.0}) {
-      RunPlan plan = notched(lab, size, length, {k.override, "fracture.max_events=2"});
-      plan.load = kHold / kNotchPull;
-      const double final = lab.run(plan).cracks.at(0).length;
-      lengths.push_back({length, final});
-      table.rows.push_back({cell(length), k.name, cell(final), cell(final - length)});
-    }
-    chapter.statements.push_back({"7a", "The final length depends on the preset crack's length.",
-                                  k.name, judge_final_length(lengths),
-                                  "final crack length is strongly affected by the preset crack "
-                                  "length"});
-  }
+  for (const KChoice& k : both_k())
+    chapter.statements.push_back(final_lengths(lab, k, size, table.rows));
   chapter.tables.push_back(table);
 }
 
@@ -156,6 +137,29 @@ std::vector<ChartSeries> series(
 }
 
 }  // namespace
+
+RunPlan notched(const Laboratory& lab, double size, double length,
+                const std::vector<std::string>& overrides) {
+  RunPlan plan{"notch-b", overrides, lab.notch({size, length, 5}), 1, {}};
+  plan.overrides.push_back("crack.0.tip=[" + number(kRight - length) + "," + number(kMiddle) +
+                           ",1]");
+  return plan;
+}
+
+Statement final_lengths(const Laboratory& lab, const KChoice& k, double size,
+                        std::vector<std::vector<std::string>>& rows) {
+  std::vector<FinalLength> lengths;
+  for (const double length : {4.04, 8.0, 16.0}) {
+    RunPlan plan = notched(lab, size, length, {k.override, "fracture.max_events=2"});
+    plan.load = kHold / kNotchPull;
+    const double final = lab.run(plan).cracks.at(0).length;
+    lengths.push_back({length, final});
+    rows.push_back({cell(length), k.name, cell(final), cell(final - length)});
+  }
+  return {"7a", "The final length depends on the preset crack's length.", k.name,
+          judge_final_length(lengths),
+          "final crack length is strongly affected by the preset crack length"};
+}
 
 Chapter notch_length(const Laboratory& lab, const Effort& effort) {
   const std::vector<double> lengths = effort.quick

@@ -9,6 +9,7 @@
 #include "app/reproduce/chapters.hpp"
 #include "app/reproduce/critical_load.hpp"
 #include "app/reproduce/models.hpp"
+#include "app/reproduce/statements.hpp"
 #include "app/reproduce/tada_pair.hpp"
 
 namespace sunder::app::reproduce {
@@ -22,7 +23,7 @@ constexpr double kNear = 1.6;      // mm from the tip: the nearest pair of nodes
 constexpr double kMore = 1.05;     // of the force that both need: both tears go on
 
 /// Of elements [mm].
-double fine(const Effort& effort) { return effort.quick ? 2.6 : 1.6; }
+double fine(const Effort& effort) { return effort.quick ? kPressedNotch : 1.6; }
 
 std::string triple(double x, double y, double z) {
   return "[" + number(x) + "," + number(y) + "," + number(z) + "]";
@@ -56,27 +57,6 @@ NextRupture next_rupture(const Laboratory& lab, RunPlan plan, std::optional<doub
   for (const DestroyedElement& row : run.fractures())
     if (row.sif) next.reach = std::max(next.reach.value_or(0), row.sif->reach);
   return next;
-}
-
-/// 3a and 3b on a notch of several h.
-void judge_next_rupture(const Laboratory& lab, const KChoice& k, double size, Chapter& chapter) {
-  const RunPlan near = pressed(lab, k, size, kNotch, kNear),
-                far = pressed(lab, k, size, kNotch, kNotch);
-  const auto of_near = critical_growth(lab, near), of_far = critical_growth(lab, far);
-  const std::string words =
-      "the length of rupture progression resulting from the same force applied to different "
-      "positions";
-  chapter.statements.push_back(
-      {"3a", "Pressed nearer to the tip, the next rupture needs a lower force.", k.name,
-       judge_lower_force(force_of(of_near), force_of(of_far),
-                         "force on each face at the next rupture, near the tip",
-                         "force on each face at the next rupture, far from it"),
-       words});
-  std::optional<double> both;
-  if (of_near && of_far) both = kMore * std::max(of_near->factor, of_far->factor);
-  chapter.statements.push_back(
-      {"3b", "Pressed nearer to the tip with the same force, the next rupture is longer.", k.name,
-       judge_goes_further(next_rupture(lab, near, both), next_rupture(lab, far, both)), words});
 }
 
 /// The paper's picture: a short notch, 1.5 h, torn on to the end of the scenes.
@@ -171,6 +151,29 @@ std::vector<double> places(double length, bool quick) {
 
 }  // namespace
 
+std::vector<Statement> next_rupture_statements(const Laboratory& lab, const KChoice& k,
+                                               double size) {
+  std::vector<Statement> statements;
+  const RunPlan near = pressed(lab, k, size, kNotch, kNear),
+                far = pressed(lab, k, size, kNotch, kNotch);
+  const auto of_near = critical_growth(lab, near), of_far = critical_growth(lab, far);
+  const std::string words =
+      "the length of rupture progression resulting from the same force applied to different "
+      "positions";
+  statements.push_back({"3a", "Pressed nearer to the tip, the next rupture needs a lower force.",
+                        k.name,
+                        judge_lower_force(force_of(of_near), force_of(of_far),
+                                          "force on each face at the next rupture, near the tip",
+                                          "force on each face at the next rupture, far from it"),
+                        words});
+  std::optional<double> both;
+  if (of_near && of_far) both = kMore * std::max(of_near->factor, of_far->factor);
+  statements.push_back(
+      {"3b", "Pressed nearer to the tip with the same force, the next rupture is longer.", k.name,
+       judge_goes_further(next_rupture(lab, near, both), next_rupture(lab, far, both)), words});
+  return statements;
+}
+
 Chapter pressure_distance(const Laboratory& lab, const Effort& effort) {
   lab.tell("experiment 3: pressure near the tip and far from it");
   const double h = board_plane(*lab.notch({fine(effort), kNotch, 5}), std::nullopt).edge_length;
@@ -193,7 +196,8 @@ Chapter pressure_distance(const Laboratory& lab, const Effort& effort) {
     for (const std::string place : {"near", "far"})
       models.push_back({place + ", " + k.name,
                         lab.run({"pressure-" + place, {k.override}, nullptr, 1, kSnapshots})});
-    judge_next_rupture(lab, k, fine(effort), chapter);
+    const auto statements = next_rupture_statements(lab, k, fine(effort));
+    chapter.statements.insert(chapter.statements.end(), statements.begin(), statements.end());
   }
   chapter.tables = {short_notch(lab, models), path_table("experiment-3-paths", models),
                     events_table("experiment-3-fractures", models)};

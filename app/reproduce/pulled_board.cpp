@@ -6,6 +6,7 @@
 #include "app/reproduce/chapters.hpp"
 #include "app/reproduce/critical_load.hpp"
 #include "app/reproduce/models.hpp"
+#include "app/reproduce/statements.hpp"
 
 namespace sunder::app::reproduce {
 namespace {
@@ -115,9 +116,7 @@ void judge_turns(const Laboratory& lab, const Effort& effort, const std::vector<
   for (std::size_t i = 0; i < both_k().size(); ++i) {
     const KChoice& k = both_k()[i];
     const RunResult& scene = models[i + 1].run;
-    chapter.statements.push_back({"2a", kUpThenDown, k.name,
-                                  judge_up_then_down(turns_of_born(scene), scene.plane.edge_length),
-                                  "the simulated crack progression"});
+    chapter.statements.push_back(up_then_down(scene, k));
     table.rows.push_back(turns_row("98 N, the scene", k, scene));
     std::string text = k.name + ", up then down: the scene " + turns_text(scene);
     int meshes = 0, seen = 0;
@@ -157,6 +156,37 @@ DataTable first_ruptures(const Laboratory& lab) {
 
 }  // namespace
 
+std::vector<Statement> pulled_statements(const std::vector<Model>& models) {
+  const std::string words = "dynamic definition of the direction of rupture progression";
+  const auto a = models[0].run.fractures();
+  std::vector<Statement> statements;
+  statements.push_back(
+      {"1b", "The stress concentrates where the tissue is torn.", "model A",
+       judge_peak_at_tip(peaks(models[0].run, peak_to_damage), "the nearest destroyed element"),
+       words});
+  for (std::size_t i = 1; i < models.size(); ++i) {
+    const RunResult& run = models[i].run;
+    const auto rows = run.fractures();
+    const std::string by = both_k()[i - 1].name;
+    statements.push_back(
+        {"1a", "With B a rupture becomes a crack, and the fractures that follow belong to it.", by,
+         judge_one_crack({connected(run), share_of_growth(rows)}), words});
+    statements.push_back({"1b", "With B the stress concentrates at the crack's tip.", by,
+                          judge_peak_at_tip(peaks(run, peak_to_tip)), words});
+    const std::size_t count = std::min({a.size(), rows.size(), std::size_t{40}});
+    statements.push_back(
+        {"1c", "A and B destroy different elements.", by,
+         judge_models_differ(count == 0 ? std::optional<double>() : overlap(a, rows, count)),
+         words});
+  }
+  return statements;
+}
+
+Statement up_then_down(const RunResult& run, const KChoice& k) {
+  return {"2a", kUpThenDown, k.name, judge_up_then_down(turns_of_born(run), run.plane.edge_length),
+          "the simulated crack progression"};
+}
+
 Chapter pulled_board(const Laboratory& lab, const Effort& effort) {
   lab.tell("experiment 1: board pulled at its corner");
   const std::vector<Model> models = run_models(lab, "board-pull");
@@ -171,27 +201,7 @@ Chapter pulled_board(const Laboratory& lab, const Effort& effort) {
       {},
       {},
       {}};
-  const std::string words = "dynamic definition of the direction of rupture progression";
-  const auto a = models[0].run.fractures();
-  chapter.statements.push_back(
-      {"1b", "The stress concentrates where the tissue is torn.", "model A",
-       judge_peak_at_tip(peaks(models[0].run, peak_to_damage), "the nearest destroyed element"),
-       words});
-  for (std::size_t i = 1; i < models.size(); ++i) {
-    const RunResult& run = models[i].run;
-    const auto rows = run.fractures();
-    const std::string by = both_k()[i - 1].name;
-    chapter.statements.push_back(
-        {"1a", "With B a rupture becomes a crack, and the fractures that follow belong to it.", by,
-         judge_one_crack({connected(run), share_of_growth(rows)}), words});
-    chapter.statements.push_back({"1b", "With B the stress concentrates at the crack's tip.", by,
-                                  judge_peak_at_tip(peaks(run, peak_to_tip)), words});
-    const std::size_t count = std::min({a.size(), rows.size(), std::size_t{40}});
-    chapter.statements.push_back(
-        {"1c", "A and B destroy different elements.", by,
-         judge_models_differ(count == 0 ? std::optional<double>() : overlap(a, rows, count)),
-         words});
-  }
+  chapter.statements = pulled_statements(models);
   judge_turns(lab, effort, models, chapter);
   chapter.tables.push_back(first_ruptures(lab));
   chapter.tables.push_back(events_table("experiment-1-fractures", models));

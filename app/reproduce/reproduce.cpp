@@ -18,17 +18,10 @@ ChapterFunction plain(Chapter (*chapter)(const Laboratory&)) {
 }
 
 const std::vector<ChapterFunction>& all_chapters() {
-  static const std::vector<ChapterFunction> chapters = {pulled_board,
-                                                        plain(notched_board),
-                                                        pressure_distance,
-                                                        plain(pressure_side),
-                                                        plain(paper_times),
-                                                        plain(several_cracks),
-                                                        plain(k_along_crack),
-                                                        notch_length,
-                                                        pressure_position,
-                                                        pressure_angle,
-                                                        mesh_study};
+  static const std::vector<ChapterFunction> chapters = {
+      pulled_board,       plain(notched_board),  pressure_distance,    plain(pressure_side),
+      plain(paper_times), plain(several_cracks), plain(k_along_crack), notch_length,
+      pressure_position,  pressure_angle,        mesh_study,           two_laws};
   return chapters;
 }
 

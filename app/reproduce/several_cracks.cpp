@@ -8,6 +8,7 @@
 
 #include "app/reproduce/chapters.hpp"
 #include "app/reproduce/models.hpp"
+#include "app/reproduce/statements.hpp"
 
 namespace sunder::app::reproduce {
 namespace {
@@ -88,6 +89,16 @@ Several several_of(const RunResult& run) {
 
 }  // namespace
 
+Statement growth_first(const Laboratory& lab, const KChoice& k) {
+  return {"6a", "A crack that can grow does so before a new rupture starts.", k.name,
+          judge_propagation_first(order_on_notch(lab, k)), "a combination of multiple hypotheses"};
+}
+
+Statement several_at_once(const RunResult& run, const KChoice& k) {
+  return {"6b", "Several instruments tear at several places at once.", k.name,
+          judge_several(several_of(run)), "two or more hands working on the tissue simultaneously"};
+}
+
 Chapter several_cracks(const Laboratory& lab) {
   lab.tell("several cracks and instruments");
   Chapter chapter{"several-cracks",
@@ -101,13 +112,9 @@ Chapter several_cracks(const Laboratory& lab) {
                   {}};
   std::vector<Model> models;
   for (const KChoice& k : both_k()) {
-    chapter.statements.push_back(
-        {"6a", "A crack that can grow does so before a new rupture starts.", k.name,
-         judge_propagation_first(order_on_notch(lab, k)), "a combination of multiple hypotheses"});
+    chapter.statements.push_back(growth_first(lab, k));
     models.push_back({k.name, lab.run({"two-instruments", {k.override}, nullptr, 1, kSnapshots})});
-    chapter.statements.push_back({"6b", "Several instruments tear at several places at once.",
-                                  k.name, judge_several(several_of(models.back().run)),
-                                  "two or more hands working on the tissue simultaneously"});
+    chapter.statements.push_back(several_at_once(models.back().run, k));
   }
   chapter.tables = {events_table("several-cracks-fractures", models)};
   chapter.drawings.push_back({"several-cracks",

@@ -33,6 +33,7 @@ struct DataTable {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;  ///< shortest round-trip decimals or words
   bool on_page = true;
+  bool in_markdown = false;  ///< stands in reproduction.md too
 };
 
 struct Chapter {

@@ -108,6 +108,27 @@ std::string rules_of(const Study& study) {
   return text;
 }
 
+/// A number with four digits, a word as it is.
+std::string markdown_cell(const std::string& text) {
+  const Json value = json_cell(text);
+  return value.is_number() ? rounded(value.get<double>(), 4) : text;
+}
+
+std::string markdown_table(const DataTable& table) {
+  std::string text = "\n" + table.caption + "\n\n|", line = "\n|";
+  for (const std::string& head : table.head) {
+    text += " " + head + " |";
+    line += "---|";
+  }
+  text += line + "\n";
+  for (const auto& row : table.rows) {
+    text += "|";
+    for (const std::string& one : row) text += " " + markdown_cell(one) + " |";
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string study_json(const Study& study) {
@@ -145,9 +166,14 @@ std::string study_markdown(const Study& study) {
               to_string(s.judgement.verdict) + "** | " + numbers_of(s.judgement) + " |\n";
   text += rules_of(study);
   for (const Chapter& chapter : study.chapters) {
-    if (chapter.findings.empty()) continue;
+    const auto& tables = chapter.tables;
+    const bool tabled = std::any_of(tables.begin(), tables.end(),
+                                    [](const DataTable& table) { return table.in_markdown; });
+    if (chapter.findings.empty() && !tabled) continue;
     text += "\n## " + chapter.title + "\n" + chapter.setup + "\n";
     for (const std::string& finding : chapter.findings) text += "\n- " + finding + "\n";
+    for (const DataTable& table : tables)
+      if (table.in_markdown) text += markdown_table(table);
   }
   return text;
 }

@@ -43,6 +43,23 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CriticalLoads,
                                            std::pair{"pressure-near", "fracture.sif=formula"},
                                            std::pair{"notch-a", "fracture.model=A"}));
 
+TEST(CriticalLoad, OfAnotherLawLiesBetweenWhatHoldsAndWhatGrows) {
+  const Laboratory lab = laboratory().with_law(MaterialLaw::corotated);
+  const RunPlan plan{"notch-b", {"fracture.sif=formula"}, nullptr, 1, {}};
+  const auto critical = critical_growth(lab, plan);
+  ASSERT_TRUE(critical.has_value());
+  EXPECT_EQ(broken_at(lab, plan, critical->factor * 0.98), 0);
+  EXPECT_GT(broken_at(lab, plan, critical->factor * 1.02), 0);
+  for (const RunNote& note : lab.notes()) EXPECT_EQ(note.failure, "") << note.load;
+}
+
+TEST(CriticalLoad, OfAnotherLawEndsWhereTheFieldHasNoK) {
+  const Laboratory lab = laboratory().with_law(MaterialLaw::corotated);
+  EXPECT_FALSE(critical_growth(lab, {"notch-b", {"fracture.sif=field"}, nullptr, 1, {}}));
+  ASSERT_EQ(lab.notes().size(), 1U) << "more load brings none back";
+  EXPECT_TRUE(lab.notes()[0].no_k);
+}
+
 TEST(CriticalLoad, ScalesTheTermsToItself) {
   const Laboratory lab = laboratory();
   const RunPlan plan{"notch-b", {}, nullptr, 1, {}};
@@ -73,6 +90,43 @@ TEST(Laboratory, AGripMovesAlongThePullAndIsFreeAcrossIt) {
   ASSERT_NE(grip, nullptr);
   EXPECT_EQ(grip->displacement, Vec3(0, -36, 0));
   EXPECT_EQ(grip->axes, Axes{2});
+}
+
+TEST(Laboratory, AnotherLawIsThatOfAllMaterialsAndStaysOnTheCpu) {
+  const Laboratory any(
+      "auto", [] { return false; }, [](const std::string&) {});
+  const Laboratory lab = any.with_law(MaterialLaw::corotated);
+  const Scene scene = lab.scene({"notch-b", {}, nullptr, 1, {}});
+  EXPECT_EQ(scene.solver.backend, "cpu");
+  for (const auto& [name, material] : scene.materials)
+    EXPECT_EQ(material.law, MaterialLaw::corotated) << name;
+  EXPECT_EQ(any.scene({"notch-b", {}, nullptr, 1, {}}).solver.backend, "auto");
+}
+
+TEST(Laboratory, ARunThatFindsNoEquilibriumKeepsWhatCameBefore) {
+  // Far beyond any load that the board bears, on a mesh that is soon done with.
+  const Laboratory lab = laboratory().with_law(MaterialLaw::corotated);
+  RunPlan plan{"notch-b",
+               {"time.steps=2", "instrument.0.ramp=[0.5,0.5]", "fracture.model=A"},
+               lab.notch({16, 10, 5}),
+               1e6,
+               {}};
+  const RunResult run = lab.run(plan);
+  EXPECT_FALSE(run.failure.empty());
+  ASSERT_EQ(lab.notes().size(), 1U);
+  EXPECT_EQ(lab.notes()[0].failure, run.failure);
+  EXPECT_EQ(lab.notes()[0].steps, static_cast<int>(run.steps.size()));
+  EXPECT_EQ(run.last.displacement.size(), run.problem->mesh().nodes.size());
+}
+
+TEST(Laboratory, AnEndAtSoManyBrokenElementsIsKept) {
+  RunPlan plan{"notch-b", {"fracture.sif=formula"}, nullptr, 1, {}};
+  plan.until = 5;
+  const RunResult run = laboratory().run(plan);
+  EXPECT_GE(run.fractures().size(), 5U);
+  EXPECT_LT(run.steps.size(), 50U);
+  EXPECT_LT(run.fractures().size(),
+            laboratory().run({"notch-b", {}, nullptr, 1, {}}).fractures().size());
 }
 
 TEST(Laboratory, LargestFreeRatioLeavesOutWhatTouchesACrack) {

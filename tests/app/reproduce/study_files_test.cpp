@@ -55,6 +55,20 @@ TEST(StudyFiles, PageAndMarkdownQuoteThePaperAndStateTheRule) {
   EXPECT_NE(study_page(study, {}).find("<q>the &lt;paper"), std::string::npos);
 }
 
+TEST(StudyFiles, MarkdownHasTheTablesThatAskForIt) {
+  Study study = small_study(10);
+  study.chapters[0].findings.clear();
+  EXPECT_EQ(study_markdown(study).find("## Three"), std::string::npos);
+  DataTable& table = study.chapters[0].tables[0];
+  table.in_markdown = true;
+  table.rows = {{"word", "1.23456789"}, {"", "none"}};
+  EXPECT_NE(study_markdown(study).find(
+                "## Three\nSet up & run.\n\nA table.\n\n| name, unit | value |\n|---|---|\n"
+                "| word | 1.235 |\n|  | none |\n"),
+            std::string::npos)
+      << study_markdown(study);
+}
+
 TEST(StudyFiles, CsvQuotesWhatItMust) {
   EXPECT_EQ(csv(small_study(1).chapters[0].tables[0]),
             "\"name, unit\",value\n\"a \"\"b\"\"\",1.5\nc,\n");
