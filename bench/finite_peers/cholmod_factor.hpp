@@ -7,9 +7,13 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <chrono>
+#include <limits>
 #include <stdexcept>
 
 #include "linear_algebra/sparse_matrix.hpp"
+
+extern "C" void openblas_set_num_threads(int);
 
 namespace sunder::bench {
 
@@ -35,6 +39,24 @@ class CholmodFactor {
     cholmod_factorize(&a, l_, &common_);
     if (common_.status < CHOLMOD_OK) throw std::runtime_error("CHOLMOD failed");
     return common_.status == CHOLMOD_OK && l_->minor >= l_->n;
+  }
+  /// OpenBLAS gets the number of threads, at most `most`, with which it factors quicker: on small
+  /// supernodes, and where others use the machine too, several wait for one another.
+  void choose_threads(const linear_algebra::SparseMatrix& lower, int most) {
+    double least = std::numeric_limits<double>::infinity();
+    int best = 1;
+    for (int threads = 1; threads <= most; ++threads) {
+      openblas_set_num_threads(threads);
+      for (int i = 0; i < 3; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        factor(lower);
+        const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+        if (l_->minor < l_->n || time.count() >= least || (i == 0 && threads == 1)) continue;
+        least = time.count();
+        best = threads;
+      }
+    }
+    openblas_set_num_threads(best);
   }
   /// For all columns of b.
   void solve(const Eigen::MatrixXd& b, Eigen::MatrixXd& x) {

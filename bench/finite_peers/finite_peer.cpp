@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 namespace sunder::bench {
 namespace {
@@ -10,6 +11,13 @@ namespace {
 // As in solver/finite_minimiser.cpp and solver/finite_statics.cpp.
 constexpr double kArmijo = 1e-4, kEnergyRounding = 1e-13, kLeastPart = 1e-7;
 constexpr double kSumRounding = 2e-16, kForceRounding = 1e-14;
+constexpr double kMostSeconds = 60;  // of all threads, in a step: on the largest bodies
+
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 }  // namespace
 
@@ -102,6 +110,7 @@ bool FinitePeer::line_search() {
 
 FiniteSolved FinitePeer::solve(double newtons) {
   found_ = {};
+  const double until = processor_seconds() + kMostSeconds;
   for (Index d : load_dofs_) force_[d] = -newtons / static_cast<double>(load_dofs_.size());
   evaluate(state_);
   const double scale = state_.acting;
@@ -112,6 +121,7 @@ FiniteSolved FinitePeer::solve(double newtons) {
     const double residual = state_.r.norm() / std::max(scale, state_.acting);
     found_.at_rest = residual <= std::max(tolerance_, kForceRounding);
     if (found_.at_rest || !std::isfinite(residual) || found_.iterations == most_) break;
+    if (processor_seconds() > until) break;
     ++found_.iterations;
     if (!direction(state_.u, state_.r, residual, du_)) break;
     for (Index d = 0; d < du_.size(); ++d) {

@@ -14,7 +14,8 @@ namespace sunder::bench {
 
 class FinitePeer : public FiniteSolver {
  public:
-  /// `most`: iterations of a step, before it counts as not found.
+  /// `most`: iterations of a step, before it counts as not found; a minute of the processors ends
+  /// it too.
   FinitePeer(const FiniteSetting& setting, int most);
 
   void destroy(std::span<const Index> elements) final;

@@ -15,14 +15,19 @@ class NewtonCholmod : public FinitePeer {
  public:
   explicit NewtonCholmod(const FiniteSetting& setting)
       : FinitePeer(setting, kMost),
-        tangent_(problem(), TangentMatrix::Stored::lower, setting.threads) {}
+        tangent_(problem(), TangentMatrix::Stored::lower, setting.threads) {
+    factor_.choose_threads(fill(setting.start.u, fem::Tangent::projected), setting.threads);
+  }
 
  private:
+  const linear_algebra::SparseMatrix& fill(const std::vector<double>& u, fem::Tangent kind) {
+    return tangent_.fill(body(), [&](Index e, fem::ElementMatrix& k) {
+      k = fem::element_tangent(body(), e, u, kind);
+    });
+  }
   bool factor(const std::vector<double>& u, fem::Tangent kind) {
     ++found_.factors;
-    return factor_.factor(tangent_.fill(body(), [&](Index e, fem::ElementMatrix& k) {
-      k = fem::element_tangent(body(), e, u, kind);
-    }));
+    return factor_.factor(fill(u, kind));
   }
   bool direction(const std::vector<double>& u, const Eigen::VectorXd& r, double,
                  Eigen::VectorXd& du) override {
@@ -43,7 +48,8 @@ class NewtonCholmod : public FinitePeer {
 FiniteKind newton_cholmod() {
   return {"newton cholmod",
           "Newton with a line search; each iteration a numeric factorisation by CHOLMOD (analysed "
-          "once, supernodal or simplicial as it chooses, OpenBLAS) of the exact tangent, or of the "
+          "once, supernodal or simplicial as it chooses, OpenBLAS with the "
+          "number of threads that is quicker) of the exact tangent, or of the "
           "projected one where that is indefinite; at most 50 iterations",
           false, [](const FiniteSetting& s) { return std::make_unique<NewtonCholmod>(s); }};
 }

@@ -22,6 +22,7 @@ class WarpedStiffness : public FinitePeer {
     for (Index e = 0; e < problem().tet_count(); ++e) {
       intact_.push_back(fem::element_stiffness(problem(), e));
     }
+    factor_.choose_threads(fill(setting.start.u), setting.threads);
   }
 
  private:
@@ -35,13 +36,14 @@ class WarpedStiffness : public FinitePeer {
       }
     }
   }
+  const linear_algebra::SparseMatrix& fill(const std::vector<double>& u) {
+    return stiffness_.fill(body(), [&](Index e, fem::ElementMatrix& of) { turned(e, u, of); });
+  }
   bool direction(const std::vector<double>& u, const Eigen::VectorXd& r, double,
                  Eigen::VectorXd& du) override {
     ++found_.factors;
     ++found_.back_solves;
-    const auto& k =
-        stiffness_.fill(body(), [&](Index e, fem::ElementMatrix& of) { turned(e, u, of); });
-    if (!factor_.factor(k)) return false;
+    if (!factor_.factor(fill(u))) return false;
     factor_.solve(-r, x_);
     du = x_;
     return true;

@@ -173,7 +173,7 @@ def beyond(cells):
     return ["study", "difficulty", "fractures", "method", "why"], lines
 
 
-STEP_VERDICTS = ("right", "unfinished", "refused", "no yardstick", "WRONG")
+STEP_VERDICTS = ("right", "over", "unfinished", "refused", "no yardstick", "WRONG")
 
 
 def finite_verdicts(steps):

@@ -420,7 +420,7 @@ class FiniteDeformation(unittest.TestCase):
         (found,) = checks.problems(dict(every_part(), steps=steps))
         self.assertIn("twist 90: WRONG", found)
         self.assertEqual(tables.finite_verdicts(steps)[1],
-                         [["nu", "twist", "corotated", 1, 0, 1, 0, 1, "1.0e-05"]])
+                         [["nu", "twist", "corotated", 1, 0, 0, 1, 0, 1, "1.0e-05"]])
         self.assertIn("no equilibrium", page.page(dict(every_part(), steps=steps))[0])
         read = results.steps_of(results.table_csv(steps))
         self.assertEqual(read, steps)
