@@ -23,7 +23,7 @@ std::set<Index> first_elements(std::span<const DestroyedElement> rows, std::size
   return ids;
 }
 
-Vec2 centroid(const RunResult& run, Index e) {
+Vec2 centroid_in_plane(const RunResult& run, Index e) {
   const Mesh& mesh = run.problem->mesh();
   Vec3 sum = Vec3::Zero();
   for (const Index node : mesh.tets[e]) sum += mesh.nodes[node] / 4;
@@ -35,7 +35,7 @@ std::optional<Vec2> place_of_peak(const RunResult& run, const State& state) {
   const std::vector<double> ratios = yield_ratios(*run.problem, state);
   const auto peak = std::max_element(ratios.begin(), ratios.end());
   if (peak == ratios.end() || !(*peak > 0)) return std::nullopt;
-  return centroid(run, static_cast<Index>(peak - ratios.begin()));
+  return centroid_in_plane(run, static_cast<Index>(peak - ratios.begin()));
 }
 
 double nearer(const std::optional<double>& known, double found) {
@@ -159,7 +159,7 @@ std::optional<double> peak_to_damage(const RunResult& run, const State& state) {
   std::optional<double> nearest;
   for (Index e = 0; e < run.problem->tet_count(); ++e)
     if (state.destroyed[e])
-      nearest = nearer(nearest, (*peak - centroid(run, e)).norm() / run.plane.edge_length);
+      nearest = nearer(nearest, (*peak - centroid_in_plane(run, e)).norm() / run.plane.edge_length);
   return nearest;
 }
 

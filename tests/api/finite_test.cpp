@@ -14,7 +14,9 @@ namespace {
 class CFinite : public testing::Test {
  protected:
   ~CFinite() override {
-    EXPECT_OK(sunder_simulation_destroy(simulation));
+    if (simulation) {
+      EXPECT_OK(sunder_simulation_destroy(simulation));
+    }
     EXPECT_OK(sunder_scene_destroy(scene));
   }
   /// The board held at its top, its lower edge in a rigid grip.

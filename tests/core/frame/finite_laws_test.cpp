@@ -162,6 +162,7 @@ TEST(FiniteLaws, RouteInverseFindsWhatRouteFactorFinds) {
     scene.instruments.push_back(rigid_grip(0, Vec3::Zero(), Vec3::Zero()));
     scene.instruments.push_back(rigid_grip(8, Vec3(4, 1, 0), Vec3(40, 0, 0)));
     scene.fracture.model = FractureModel::a;
+    scene.materials["board"].yield = 0.7;
     scene.fracture.max_events = 4;
     scene.steps = 6;
     scene.solver.route = route;
