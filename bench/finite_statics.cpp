@@ -294,7 +294,14 @@ void error_row(benchmark::State& state, const FiniteKind& kind, const Law& law, 
 }
 
 void add(const std::string& name, const std::function<void(benchmark::State&)>& run) {
-  benchmark::RegisterBenchmark(name.c_str(), run)
+  const auto guarded = [run](benchmark::State& state) {
+    try {
+      run(state);
+    } catch (const std::runtime_error& error) {
+      state.SkipWithError(error.what());
+    }
+  };
+  benchmark::RegisterBenchmark(name.c_str(), guarded)
       ->UseManualTime()
       ->Iterations(1)
       ->Unit(benchmark::kMillisecond);

@@ -2,7 +2,7 @@
 // The stability study at finite deformation: one body, two hands, every law with one difficulty
 // after the other and then all of them together; each step judged by the yardstick's Newton
 // (cpu_reference/plain), which starts where the step ended and must stay there.
-//   bench_finite_stability FILE [quick|full]
+//   bench_finite_stability FILE [quick|full [LAW]]
 // A step is right, over (off by more than the tolerance, but not by more than twice that),
 // unfinished (its path to rest goes on), refused with the reason and the state before it usable,
 // "no yardstick" where that finds no rest from there, or WRONG: a number that is off by more than
@@ -32,7 +32,7 @@ namespace {
 
 constexpr double kSide = 50, kDepth = 5;
 constexpr int kMostCalls = 400;  // of a step whose path goes on
-constexpr double kMostContrast = 1e4, kNewtonResidual = 1e-9;
+constexpr double kMostContrast = 1e4, kNewtonResidual = 1e-7;
 // What is reported may be half of the error in one frame of a hundred (docs/method.md).
 constexpr double kBand = 2;
 constexpr double kSameState = 1e-2;  // of the tolerance's own scale: a state found again
@@ -319,9 +319,12 @@ const char* const kQuick[] = {"stretch", "turn", "twist", "tear"};
 const char* const kFar[] = {"fold", "jump", "through"};
 const char* const kFew[] = {"stretch", "twist", "tear"};
 
-std::vector<Cell> cells_of(bool full) {
+/// `only`: of that law; empty: of both.
+std::vector<Cell> cells_of(bool full, const std::string& only) {
   std::vector<Cell> cells;
-  for (const MaterialLaw law : {MaterialLaw::corotated, MaterialLaw::neo_hookean}) {
+  for (const auto& [law, name] : {std::pair(MaterialLaw::corotated, "corotated"),
+                                  std::pair(MaterialLaw::neo_hookean, "neo-hookean")}) {
+    if (!only.empty() && only != name) continue;
     for (const char* motion : kQuick) cells.push_back({"motion", law, 1, .45, 1, motion});
     if (!full) continue;
     for (const char* motion : kFar) cells.push_back({"motion", law, 1, .45, 1, motion});
@@ -332,7 +335,7 @@ std::vector<Cell> cells_of(bool full) {
       for (const double sliver : {1e-1, 1e-2, 1e-3})
         cells.push_back({"sliver", law, 1, .45, sliver, motion});
       for (const double contrast : {1e3, 1e6}) {
-        for (const double nu : {.3, .49, .499})
+        for (const double nu : {.49, .499})
           cells.push_back({"contrast x nu", law, contrast, nu, 1, motion});
       }
       for (const double nu : {.49, .499})
@@ -379,12 +382,12 @@ int run(std::ostream& out, const std::vector<Cell>& cells) {
 int main(int argc, char** argv) {
   using namespace sunder::bench;
   const std::string mode = argc > 2 ? argv[2] : "full";
-  if (argc < 2 || argc > 3 || (mode != "quick" && mode != "full")) {
-    std::cerr << "usage: bench_finite_stability FILE [quick|full]\n";
+  if (argc < 2 || argc > 4 || (mode != "quick" && mode != "full")) {
+    std::cerr << "usage: bench_finite_stability FILE [quick|full [LAW]]\n";
     return 2;
   }
   std::ofstream out(argv[1]);
-  const int wrong = run(out, cells_of(mode == "full"));
+  const int wrong = run(out, cells_of(mode == "full", argc > 3 ? argv[3] : ""));
   out.close();
   if (!out) {
     std::cerr << "cannot write " << argv[1] << '\n';
