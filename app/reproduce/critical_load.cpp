@@ -11,7 +11,8 @@ namespace {
 constexpr double kMostLoad = 4096, kRaise = 4;
 // Where loads are tried.
 constexpr double kRise = 1.25, kMostOfLinear = 2.5, kApart = 1.02, kJustAbove = 1.01;
-constexpr int kMostTries = 10;
+constexpr int kMostTries = 10, kMostFailures = 2;
+constexpr int kPatience = 1;  // steps on a way to rest
 constexpr double kRadians = std::numbers::pi / 180;
 
 void scale(SifTerms& terms, double factor) {
@@ -51,7 +52,7 @@ struct Trial {
 
 Trial try_load(const Laboratory& lab, RunPlan plan, double factor, bool growth) {
   plan.load *= factor;
-  Trial trial{lab.run(plan), std::nullopt};
+  Trial trial{lab.run(one_event(lab, plan)), std::nullopt};
   const std::vector<DestroyedElement> rows = trial.result.fractures();
   if (rows.empty() || (growth && rows.front().cause != Cause::sif)) return trial;
   const DestroyedElement& first = rows.front();
@@ -97,7 +98,8 @@ std::optional<CriticalLoad> searched(const Laboratory& lab, const RunPlan& plan,
   const auto linear = raised(lab.with_law(MaterialLaw::linear), plan, growth);
   if (!linear) return std::nullopt;
   Bracket bracket;
-  double load = kRise * linear->factor;
+  double load = linear->factor;
+  int failures = 0;
   for (int i = 0; i < kMostTries && load <= kMostOfLinear * linear->factor; ++i) {
     const Trial trial = try_load(lab, plan, load, growth);
     if (trial.found) bracket.best = trial.found;
@@ -107,7 +109,8 @@ std::optional<CriticalLoad> searched(const Laboratory& lab, const RunPlan& plan,
       bracket.breaks = load;
     else
       bracket.rests = load;
-    if (bracket.closed()) break;
+    failures += trial.result.failure.empty() ? 0 : 1;
+    if (bracket.closed() || failures == kMostFailures) break;
     load = bracket.breaks ? bracket.next() : kRise * load;
   }
   if (bracket.best) bracket.best->factor = std::max(bracket.best->factor, bracket.rests);
@@ -115,12 +118,27 @@ std::optional<CriticalLoad> searched(const Laboratory& lab, const RunPlan& plan,
 }
 
 std::optional<CriticalLoad> first_rupture(const Laboratory& lab, RunPlan plan, bool growth) {
-  plan.overrides.insert(plan.overrides.end(), {"time.steps=1", "fracture.max_events=1"});
   plan.snapshots.clear();
   return lab.linear() ? raised(lab, plan, growth) : searched(lab, plan, growth);
 }
 
 }  // namespace
+
+RunPlan one_event(const Laboratory& lab, RunPlan plan) {
+  plan.overrides.emplace_back("fracture.max_events=1");
+  if (lab.linear()) {
+    plan.overrides.emplace_back("time.steps=1");
+    return plan;
+  }
+  // The last step of a scene would wait for rest far longer.
+  plan.patience = kPatience;
+  plan.until = 1;
+  plan.overrides.push_back("time.steps=" + std::to_string(kPatience + 1));
+  const std::size_t tools = lab.scene(plan).instruments.size();
+  for (std::size_t i = 0; i < tools; ++i)
+    plan.overrides.push_back("instrument." + std::to_string(i) + ".ramp=[0,0]");
+  return plan;
+}
 
 std::optional<CriticalLoad> critical_load(const Laboratory& lab, RunPlan plan) {
   return first_rupture(lab, std::move(plan), false);

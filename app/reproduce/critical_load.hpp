@@ -24,15 +24,20 @@ struct CriticalLoad {
 /// under 4,096 times the plan's forces.
 ///
 /// By a law of finite deformation neither is so: loads are tried, each on the body as it was in the
-/// beginning, from a quarter above the linear law's on; of the least that breaks something and the
-/// largest that does not, 2 % apart, the same rule tells what lies between. None: nothing breaks
-/// under 2.5 times the linear law's load, no equilibrium is found (Laboratory::notes()), or K by
-/// the field, which was to drive the tip, ended where strains are too large for it.
+/// beginning, from the linear law's on, a quarter more each; of the least that breaks something and
+/// the largest that does not, 2 % apart, the same rule tells what lies between. None: nothing
+/// breaks under 2.5 times the linear law's load, twice no equilibrium is found
+/// (Laboratory::notes()), or K by the field, which was to drive the tip, ended where strains are
+/// too large for it.
 [[nodiscard]] std::optional<CriticalLoad> critical_load(const Laboratory& lab, RunPlan plan);
 
 /// The load at which a crack grows first, whatever ruptures elsewhere under less: growth goes
 /// before rupture (method.md 11), so that a load high enough always shows it. None: no growth under
 /// 4,096 times the plan's forces.
 [[nodiscard]] std::optional<CriticalLoad> critical_growth(const Laboratory& lab, RunPlan plan);
+
+/// All forces at once, and at most one event. By another law a body that does not come to rest soon
+/// is a failure.
+[[nodiscard]] RunPlan one_event(const Laboratory& lab, RunPlan plan);
 
 }  // namespace sunder::app::reproduce

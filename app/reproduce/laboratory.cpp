@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/input/scene_toml.hpp"
+#include "app/output/text.hpp"
 #include "app/reproduce/paper_files.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
@@ -39,6 +40,13 @@ int count_fractures(const Simulation& simulation) {
   const auto& rows = simulation.destroyed();
   return static_cast<int>(std::count_if(
       rows.begin(), rows.end(), [](const auto& row) { return row.cause != Cause::preset; }));
+}
+
+/// What the plan wants is there.
+bool over(const RunPlan& plan, const RunResult& so_far, int fractures) {
+  if (plan.until > 0 && fractures >= plan.until) return true;
+  if (plan.patience == 0 || so_far.steps.empty()) return false;
+  return !so_far.steps.back().unfinished || static_cast<int>(so_far.steps.size()) == plan.patience;
 }
 
 /// Takes the snapshots of one run.
@@ -133,7 +141,7 @@ RunResult Laboratory::run(const RunPlan& plan) const {
   simulation.observe_frames(Snapshooter{simulation, frames, plan.snapshots, result.snapshots});
   simulation.observe_events([this](std::span<const DestroyedElement>) { return !stop_(); });
   try {
-    while (!simulation.done() && !(plan.until > 0 && count_fractures(simulation) >= plan.until)) {
+    while (!simulation.done() && !over(plan, result, count_fractures(simulation))) {
       result.steps.push_back(simulation.step());
       result.frames.push_back(std::exchange(frames, 0));
       if (plan.tips) result.tips.push_back(simulation.tips());
@@ -144,6 +152,10 @@ RunResult Laboratory::run(const RunPlan& plan) const {
     if (linear()) throw;
     result.failure = error.what();
   }
+  const auto steps = static_cast<int>(result.steps.size());
+  const bool enough = plan.until > 0 && count_fractures(simulation) >= plan.until;
+  if (plan.patience > 0 && steps == plan.patience && result.steps.back().unfinished && !enough)
+    result.failure = "the body does not come to rest within " + counted(steps, "step");
   result.destroyed = simulation.destroyed();
   result.cracks = simulation.cracks();
   result.backend = simulation.backend().info();
@@ -164,7 +176,8 @@ void Laboratory::note(const RunPlan& plan, const RunResult& result) const {
     if (text == "fracture.sif=formula") note.k = "formula K";
     if (text == "fracture.sif=field") note.k = "field K";
   }
-  note.load = result.steps.empty() ? 0 : plan.load * result.steps.back().load_factor;
+  if (!result.steps.empty())
+    note.load = plan.load * (plan.patience > 0 ? 1 : result.steps.back().load_factor);
   note.steps = static_cast<int>(result.steps.size());
   note.all = result.problem->scene().steps;
   note.fractures = static_cast<int>(result.fractures().size());

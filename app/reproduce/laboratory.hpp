@@ -30,6 +30,8 @@ struct RunPlan {
   std::optional<double> grip = std::nullopt;
   bool tips = false;  ///< keeps the state of all tips
   int until = 0;  ///< steps end once so many elements broke, presets not counted; 0: no such end
+  /// Ends with the first step at rest, or with so many that were not: a failure; 0: neither.
+  int patience = 0;
 };
 
 /// One run by a law of finite deformation, as it ended.

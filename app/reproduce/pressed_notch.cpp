@@ -51,8 +51,7 @@ std::optional<double> force_of(const std::optional<CriticalLoad>& critical) {
 NextRupture next_rupture(const Laboratory& lab, RunPlan plan, std::optional<double> factor) {
   if (!factor) return {};
   plan.load = *factor;
-  plan.overrides.insert(plan.overrides.end(), {"time.steps=1", "fracture.max_events=1"});
-  const RunResult run = lab.run(plan);
+  const RunResult run = lab.run(one_event(lab, std::move(plan)));
   NextRupture next{preset_path(run).advance(), std::nullopt};
   for (const DestroyedElement& row : run.fractures())
     if (row.sif) next.reach = std::max(next.reach.value_or(0), row.sif->reach);

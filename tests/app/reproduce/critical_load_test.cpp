@@ -20,9 +20,8 @@ Laboratory laboratory() {
 }
 
 int broken_at(const Laboratory& lab, RunPlan plan, double load) {
-  plan.overrides.insert(plan.overrides.end(), {"time.steps=1", "fracture.max_events=1"});
   plan.load = load;
-  return static_cast<int>(lab.run(plan).fractures().size());
+  return static_cast<int>(lab.run(one_event(lab, plan)).fractures().size());
 }
 
 class CriticalLoads : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
