@@ -125,8 +125,8 @@ class FiniteBackend final : public Backend {
     report.error = found.error;
     report.back_solves = found.back_solves;
     report.unfinished = found.unfinished;
+    u_ = statics_.displacement();  // after a refusal the last state at rest
     if (!found.at_rest && !found.unfinished) fail(found, "the body");
-    u_ = statics_.displacement();
     return report;
   }
 
