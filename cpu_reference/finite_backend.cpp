@@ -120,22 +120,31 @@ class FiniteBackend final : public Backend {
 
   SolveReport do_solve() override {
     const solver::FiniteStaticsReport found = statics_.solve(load_);
+    spent_.back_solves += found.back_solves;
+    spent_.factors += found.factors;
     SolveReport report;
     report.residual = found.residual;
     report.error = found.error;
     report.back_solves = found.back_solves;
     report.unfinished = found.unfinished;
     u_ = statics_.displacement();  // after a refusal the last state at rest
-    if (!found.at_rest && !found.unfinished) fail(found, "the body");
+    const Spent spent = spent_;
+    if (!found.unfinished) spent_ = {};
+    if (!found.at_rest && !found.unfinished) fail(found.share, spent, "the body");
     return report;
   }
 
-  [[noreturn]] void fail(const solver::FiniteStaticsReport& found, const std::string& what) const {
+  /// Since the last rest.
+  struct Spent {
+    int back_solves = 0, factors = 0;
+  };
+
+  [[noreturn]] static void fail(double share, const Spent& spent, const std::string& what) {
     std::ostringstream out;
-    out << what << " finds no equilibrium beyond " << 100 * found.share
-        << " % of this step's load after " << found.back_solves << " iterations and "
-        << found.factors << " factors of its tangent; take smaller steps or a smaller load, or "
-        << "raise solver.tolerance";
+    out << what << " finds no equilibrium beyond " << 100 * share << " % of this step's load after "
+        << spent.back_solves << " iterations and " << spent.factors
+        << " factors of its tangent; take smaller steps or a smaller load, or raise "
+           "solver.tolerance";
     throw NumericalError(out.str());
   }
 
@@ -170,8 +179,13 @@ class FiniteBackend final : public Backend {
 
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
     solver::FiniteStaticsReport found = pristine_->solve(load);
-    while (found.unfinished) found = pristine_->solve(load);
-    if (!found.at_rest) fail(found, "the intact body");
+    Spent spent{found.back_solves, found.factors};
+    while (found.unfinished) {
+      found = pristine_->solve(load);
+      spent.back_solves += found.back_solves;
+      spent.factors += found.factors;
+    }
+    if (!found.at_rest) fail(found.share, spent, "the intact body");
     std::ranges::copy(pristine_->displacement(), displacement.begin());
   }
 
@@ -208,6 +222,7 @@ class FiniteBackend final : public Backend {
   std::optional<solver::FiniteStatics> pristine_;
   std::size_t factor_entries_ = 0;
   Load load_;
+  Spent spent_;
   std::vector<double> u_;  // of the last solve that ended at rest
   std::vector<Voigt> stress_;
   std::vector<std::uint8_t> excluded_;

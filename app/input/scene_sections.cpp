@@ -95,13 +95,15 @@ Press read_press(const TomlTable& table) {
 
 std::variant<Pull, Grip, Press> read_expansion(const TomlTable& table) {
   forbid(table, {"at", "side", "crack"}, "goes with kind = \"pressure\" only");
+  const bool rigid = table.boolean("rigid").value_or(false);
+  const Vec3 turn = table.vec3("turn").value_or(Vec3::Zero());
   const std::string key = require_one(table, {"force", "displacement"});
   if (key == "displacement") {
     const Vec3 displacement = *table.vec3("displacement");
     Grip grip{read_nodes(table), displacement, read_axes(table)};
-    grip.rigid = table.boolean("rigid").value_or(false);
-    if (!grip.rigid) forbid(table, {"turn"}, "goes with \"rigid = true\" only");
-    if (const auto turn = table.vec3("turn")) grip.turn = *turn;
+    if (!rigid) forbid(table, {"turn"}, "goes with \"rigid = true\" only");
+    grip.rigid = rigid;
+    grip.turn = turn;
     return grip;
   }
   forbid(table, {"axes", "rigid", "turn"}, "goes with \"displacement\" only, not with \"force\"");

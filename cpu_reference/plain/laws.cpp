@@ -15,11 +15,11 @@ const Real3x3 kOne = Real3x3::Identity();
 Real3x3 hooke(const D& d, const Real3x3& e) { return 2 * d(3, 3) * e + d(0, 1) * e.trace() * kOne; }
 Real half_product(const Real3x3& a, const Real3x3& b) { return a.cwiseProduct(b).sum() / 2; }
 
-Real3x3 small_strain(const Real3x3& f) { return (f + f.transpose()) / 2 - kOne; }
+Real3x3 infinitesimal(const Real3x3& f) { return (f + f.transpose()) / 2 - kOne; }
 Real linear_energy(const D& d, const Real3x3& f) {
-  return half_product(hooke(d, small_strain(f)), small_strain(f));
+  return half_product(hooke(d, infinitesimal(f)), infinitesimal(f));
 }
-Real3x3 linear_stress(const D& d, const Real3x3& f) { return hooke(d, small_strain(f)); }
+Real3x3 linear_stress(const D& d, const Real3x3& f) { return hooke(d, infinitesimal(f)); }
 Real3x3 linear_change(const D& d, const Real3x3&, const Real3x3& df) {
   return hooke(d, (df + df.transpose()) / 2);
 }

@@ -66,8 +66,10 @@ TEST(Summary, DescribesTheBoard) {
 
 TEST(Summary, SaysHowFarTheBodyIsDeformed) {
   const Keys keys = keys_of(summary());
-  EXPECT_EQ(Keys(keys.end() - 3, keys.end()), (Keys{"largest", "volume_lost", "law"}));
+  EXPECT_EQ(Keys(keys.end() - 4, keys.end()),
+            (Keys{"largest", "volume_lost", "law", "stress_measure"}));
   EXPECT_EQ(summary()["law"], "linear");
+  EXPECT_TRUE(summary()["stress_measure"].is_null());
   EXPECT_EQ(keys_of(summary()["largest"]), (Keys{"strain", "rotation_deg", "inverted"}));
   const auto frames = read_csv(torn_board() / "frames.csv");
   const auto column =

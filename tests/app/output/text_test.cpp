@@ -106,17 +106,18 @@ TEST(Tables, FrameRowsFollowTheirHeader) {
   report.max_yield_ratio = 7;
   report.times = {8, 9, 10, 11, 12, 13};
   report.iterations = 14;
+  report.back_solves = 15;
   EXPECT_EQ(frames_header(),
             "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
             "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations,"
             "ms_gpu_solve,ms_gpu_stress,ms_gpu_residual,ms_gpu_estimate,ms_gpu_refine,"
             "ms_gpu_update,strain_max,rotation_max_deg,inverted,back_solves\n");
-  EXPECT_EQ(frames_row(report), "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,,,\n");
+  EXPECT_EQ(frames_row(report), "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,,,,15\n");
   report.deformation = Deformation{-0.125, 12.5, 3};
-  EXPECT_EQ(frames_row(report), "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,-0.125,12.5,3\n");
+  EXPECT_EQ(frames_row(report), "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,-0.125,12.5,3,15\n");
   report.passes = {{"stress", 0.25}, {"solve", 0.5}};
   EXPECT_EQ(frames_row(report),
-            "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,0.5,0.25,0,0,0,0,-0.125,12.5,3\n");
+            "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,0.5,0.25,0,0,0,0,-0.125,12.5,3,15\n");
 }
 
 }  // namespace

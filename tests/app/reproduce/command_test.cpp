@@ -148,20 +148,24 @@ TEST(Reproduce, LinearAndCorotatedTheoryPart) {
   EXPECT_NEAR(value(5, 3), 51, 1);
   for (std::size_t i = 1; i < rows.size(); ++i) {
     EXPECT_NEAR(value(i, 1) / value(i, 0), value(0, 1) / value(0, 0), 1e-6) << "linear";
-    for (const std::size_t column : {3U, 4U, 5U, 6U, 7U})
+    for (const std::size_t column : {4U, 5U, 6U, 7U})
       EXPECT_GT(value(i, column), value(i - 1, column)) << i << " " << column;
   }
+  // By 36 N the board has buckled out of its plane, which linear theory knows nothing of.
+  EXPECT_LT(value(3, 3), 0);
 }
 
 TEST(Reproduce, ARowForEveryStatementThatWasTriedByAnotherLaw) {
   const auto& rows = table("two-laws-statements");
   ASSERT_EQ(rows.size(), 1U) << "the quick version tries 2b by formula K";
   EXPECT_EQ(rows[0][0], "2b");
-  EXPECT_EQ(rows[0][5], "survives");
+  EXPECT_EQ(rows[0][3], "reproduced");
+  const std::string survival = rows[0][5];
+  EXPECT_EQ(survival, rows[0][4] == "reproduced" ? "survives" : "in part");
   EXPECT_FALSE(table("two-laws-runs").empty());
   const std::string markdown = read_file(reproduced() / "reproduction.md");
   EXPECT_NE(markdown.find("| 84 | 28.9"), std::string::npos);
-  EXPECT_NE(markdown.find("| survives |"), std::string::npos);
+  EXPECT_NE(markdown.find("| " + survival + " |"), std::string::npos);
 }
 
 TEST(Reproduce, CriticalForcesAgreeWithTheScenes) {
