@@ -123,7 +123,7 @@ void FiniteBase::push_group(std::span<const Index> unknowns) {
   block_.resize(columns_.size(), kColumnGroup);
   columns_.multiply(path_, rows_, full_vectors(count), block_);
   g_.block(0, first, rank(), count) = block_.topLeftCorner(rank(), count);
-  g_.block(first, 0, count, rank()) = g_.block(0, first, rank(), count).transpose();
+  g_.block(first, 0, count, rank()) = block_.topLeftCorner(rank(), count).transpose();
   for (Index s : path_) rows_.middleRows(nodes.first[s], nodes.width(s)).setZero();
 }
 
@@ -174,12 +174,12 @@ bool FiniteBase::correct(const RestingBody& now) {
   corner.transpose().solveInPlace(c);
   Eigen::MatrixXd whole(rank(), rank());
   whole.bottomRightCorner(free, free) = of_moving;
-  whole.topRightCorner(held, free) = -c * of_moving;
-  whole.bottomLeftCorner(free, held) = whole.topRightCorner(held, free).transpose();
+  const Eigen::MatrixXd between = -c * of_moving;
+  whole.topRightCorner(held, free) = between;
+  whole.bottomLeftCorner(free, held) = between.transpose();
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(held, held);
   corner.solveInPlace(inverse);
-  whole.topLeftCorner(held, held) =
-      -(inverse.transpose() * inverse) - whole.topRightCorner(held, free) * c.transpose();
+  whole.topLeftCorner(held, held) = -(inverse.transpose() * inverse) - between * c.transpose();
   m_.resize(rank(), rank());
   m_(in_order, in_order) = whole;
   return true;
