@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/field_sif/verification_cases.hpp"
 #include "core/field_sif/williams.hpp"
@@ -47,6 +49,54 @@ class ExactField : public ::testing::Test {
   }
   CrackedBoard board_{test::notched_strip(test::Notch::edge, 40, 0.5, split())};
 };
+
+/// The same field with the whole body turned by 70 degrees.
+FieldView turned(const CrackedBoard& board, const FieldView& view) {
+  FieldView of = view;
+  const Mat3 r =
+      Eigen::AngleAxisd(70 * std::numbers::pi / 180, Vec3(1, -2, 2) / 3).toRotationMatrix();
+  of.displacement = [&board, r, before = view.displacement](std::span<const Index> ids,
+                                                            std::span<Vec3> u) {
+    before(ids, u);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const Vec3& x = board.problem().mesh().nodes[ids[i]];
+      u[i] = r * (x + u[i]) - x;
+    }
+  };
+  return of;
+}
+
+// By a law of finite deformation a domain of small strain gives the same K however it has turned.
+TEST_F(ExactField, ATurnedTipHasTheKOfItsDomain) {
+  CrackedBoardOptions options = split();
+  options.law = MaterialLaw::corotated;
+  CrackedBoard board(test::notched_strip(test::Notch::edge, 40, 0.5, options));
+  const Vec3 k(0.03, 0.01, 0.02);
+  const auto still = board_.meter().at(board_.crack(), 0, williams_view(board_, k, {5, 0.3, 0}), 8);
+  const auto view = williams_view(board, k, {5, 0.3, 0});
+  for (const FieldView& seen : {view, turned(board, view)}) {
+    const auto found = board.meter().at(board.crack(), 0, seen, 8);
+    EXPECT_EQ(found.note(), "");
+    const double tolerance = 0.01 * k.norm();  // strain here: .1 %
+    EXPECT_NEAR(found.factors.k_1, still.factors.k_1, tolerance);
+    EXPECT_NEAR(found.factors.k_2, still.factors.k_2, tolerance);
+    EXPECT_NEAR(found.factors.k_3, still.factors.k_3, tolerance);
+  }
+  // At law linear the same turn is taken for strain.
+  const auto wrong = board_.meter().at(board_.crack(), 0,
+                                       turned(board_, williams_view(board_, k, {5, 0.3, 0})), 8);
+  EXPECT_GT(std::abs(wrong.factors.k_1 - still.factors.k_1), k.norm());
+}
+
+TEST_F(ExactField, BeyondSmallStrainThereIsNoK) {
+  CrackedBoardOptions options = split();
+  options.law = MaterialLaw::corotated;
+  CrackedBoard board(test::notched_strip(test::Notch::edge, 40, 0.5, options));
+  const auto found =
+      board.meter().at(board.crack(), 0, williams_view(board, Vec3(8, 0, 0), {5, 0.3, 0}), 8);
+  EXPECT_TRUE(found.disturbed.left_out);
+  EXPECT_EQ(found.note(), "strain");
+}
 
 TEST_F(ExactField, EachModeIsMeasuredAlone) {
   for (int mode = 0; mode < kModes; ++mode) {
