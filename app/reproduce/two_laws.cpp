@@ -263,8 +263,8 @@ Chapter two_laws(const Laboratory& lab, const Effort& effort) {
       "own rotation), stress cauchy, on backend cpu. Statements 1 and 6b: the scene's forces rise "
       "to their double in 45 steps, until as many elements broke as by the linear law, at most 40. "
       "2 to 4: the load of the first rupture or growth, found by trials. 3 and 7a in elements of "
-      "3.939 "
-      "mm, by both laws. 5 asks for times, not for a law. Quick version: 2b by formula K alone.",
+      "3.939 mm, by both laws; by formula K 3 knows no law: Eq. 4 is made of forces and the "
+      "undeformed crack. 5 asks for times, not for a law. Quick version: 2b by formula K alone.",
       {},
       {},
       {},
