@@ -118,17 +118,32 @@ nlohmann::ordered_json read_json(const std::filesystem::path& path) {
   return nlohmann::ordered_json::parse(read_file(path));
 }
 
+namespace {
+
+/// A comma in quotes is part of its cell; two quotes there are one.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      const bool twice = quoted && i + 1 < line.size() && line[i + 1] == '"';
+      if (twice) cells.back() += line[i++];
+      if (!twice) quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
 std::vector<std::vector<std::string>> read_csv(const std::filesystem::path& path) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(read_file(path));
-  for (std::string line; std::getline(lines, line);) {
-    rows.emplace_back();
-    for (std::size_t begin = 0; begin <= line.size();) {
-      const std::size_t end = std::min(line.find(',', begin), line.size());
-      rows.back().push_back(line.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  }
+  for (std::string line; std::getline(lines, line);) rows.push_back(cells_of(line));
   return rows;
 }
 
