@@ -96,7 +96,7 @@ DataTable survival_table(std::span<const TwoVerdicts> all) {
                   "The statements by law linear / corotated. At finite rotations: a verdict as "
                   "good as the linear law's survives.",
                   {"", "statement", "K", "linear", "corotated", "at finite rotations",
-                   "figures, linear / corotated", "why"},
+                   "figures by linear / corotated", "why"},
                   {},
                   true,
                   true};

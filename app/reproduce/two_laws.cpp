@@ -75,9 +75,9 @@ DataTable displacement_table(const TwoLabs& labs) {
                   "The board of experiment 1, intact, pulled at its corner: where small strain and "
                   "finite rotations part. Strain: largest stretch less 1 (linear: of the strain "
                   "tensor).",
-                  {"pull [N]", "largest displacement, linear [mm]", "corotated [mm]",
-                   "linear over corotated [%]", "largest strain, linear [%]", "corotated [%]",
-                   "largest rotation, linear [deg]", "corotated [deg]"},
+                  {"pull [N]", "largest displacement by linear [mm]", "corotated [mm]",
+                   "linear over corotated [%]", "largest strain by linear [%]", "corotated [%]",
+                   "largest rotation by linear [deg]", "corotated [deg]"},
                   {},
                   true,
                   true};
@@ -111,8 +111,8 @@ void add_first(const TwoLabs& labs, const std::string& what, const std::string& 
 DataTable first_table(const TwoLabs& labs, bool quick) {
   DataTable table{"two-laws-first-rupture",
                   "What breaks first, under which pull, and where (its centroid, mm).",
-                  {"", "scene", "pull, linear [N]", "corotated [N]", "element, linear", "corotated",
-                   "place, linear", "corotated"},
+                  {"", "scene", "pull by linear [N]", "corotated [N]", "element by linear",
+                   "corotated", "place by linear", "corotated"},
                   {},
                   true,
                   true};
@@ -148,8 +148,8 @@ DataTable k_table(const TwoLabs& labs) {
                   "K of the notch at rest [MPa sqrt(mm)] by load and by the notch's length, "
                   "elements of 3.939 mm. \"strain\": none by the field, what surrounds the tip is "
                   "beyond small strain.",
-                  {"notch [mm]", "pull [N]", "formula, linear", "formula, corotated",
-                   "field, linear", "field, corotated"},
+                  {"notch [mm]", "pull [N]", "formula K by linear", "formula K by corotated",
+                   "field K by linear", "field K by corotated"},
                   {},
                   true,
                   true};
