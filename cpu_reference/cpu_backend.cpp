@@ -64,12 +64,7 @@ class CpuBackend final : public Backend {
   }
 
   BackendInfo info() const override {
-    BackendInfo info;
-    const DeviceInfo cpu = device();
-    info.backend = cpu.backend;
-    info.device = cpu.name;
-    info.driver = cpu.driver;
-    info.precision = "fp64";
+    BackendInfo info = info_of_device();
     info.route = solver::name_of(plan_.route);
     info.update = needs().damage ? solver::name_of_update(plan_) : "none";
     info.why = plan_.why;

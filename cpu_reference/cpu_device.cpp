@@ -73,4 +73,14 @@ DeviceInfo device() {
   return info;
 }
 
+BackendInfo info_of_device() {
+  const DeviceInfo cpu = device();
+  BackendInfo info;
+  info.backend = cpu.backend;
+  info.device = cpu.name;
+  info.driver = cpu.driver;
+  info.precision = cpu.precisions;
+  return info;
+}
+
 }  // namespace sunder::cpu_reference

@@ -12,6 +12,8 @@ namespace sunder::cpu_reference {
 
 /// The processor, as `sunder devices` lists it.
 [[nodiscard]] DeviceInfo device();
+/// What every backend on it says of itself; route, update and the rest are still to come.
+[[nodiscard]] BackendInfo info_of_device();
 
 /// What a test sets beside the scene's options.
 struct CpuOptions {

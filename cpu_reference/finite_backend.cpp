@@ -63,12 +63,7 @@ class FiniteBackend final : public Backend {
   }
 
   BackendInfo info() const override {
-    BackendInfo info;
-    const DeviceInfo cpu = device();
-    info.backend = cpu.backend;
-    info.device = cpu.name;
-    info.driver = cpu.driver;
-    info.precision = "fp64";
+    BackendInfo info = info_of_device();
     info.route = solver::name_of(by_inverse(problem()) ? Route::inverse : Route::factor);
     info.update = needs().damage ? "deferred" : "none";
     info.why = std::string("a law of finite deformation, which backend cpu computes: by the ") +
@@ -131,6 +126,14 @@ class FiniteBackend final : public Backend {
     const Spent spent = spent_;
     if (!found.unfinished) spent_ = {};
     if (!found.at_rest && !found.unfinished) fail(found.share, spent, "the body");
+    const double tolerance = problem().scene().solver.tolerance;
+    if (found.at_rest && !(found.error <= tolerance)) {
+      throw NumericalError(
+          "the body's rest cannot be brought under the tolerance: estimated stress "
+          "error " +
+          in_digits(found.error) +
+          "; raise solver.tolerance or ease contrast, Poisson's ratio or slivers");
+    }
     return report;
   }
 
@@ -223,7 +226,7 @@ class FiniteBackend final : public Backend {
   std::size_t factor_entries_ = 0;
   Load load_;
   Spent spent_;
-  std::vector<double> u_;  // of the last solve that ended at rest
+  std::vector<double> u_;  // at rest, or on the way there
   std::vector<Voigt> stress_;
   std::vector<std::uint8_t> excluded_;
 };

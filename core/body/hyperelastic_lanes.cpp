@@ -205,6 +205,15 @@ SUNDER_IN_LANES void corner_forces(const ElementBlock& b, const Lanes<9>& p,
   }
 }
 
+SUNDER_IN_LANES void store(const lanes::Symmetric& of, Lanes<6>& s, int l) {
+  s[0][l] = of.xx;
+  s[1][l] = of.yy;
+  s[2][l] = of.zz;
+  s[3][l] = of.xy;
+  s[4][l] = of.yz;
+  s[5][l] = of.zx;
+}
+
 /// By the chosen measure; of what is in no state of its law no number, of what is gone 0.
 SUNDER_IN_LANES void stresses(const ElementBlock& b, const Lanes<9>& f, const Lanes<9>& r,
                               const Lanes<9>& p, const double (&energy)[kLanes],
@@ -215,23 +224,13 @@ SUNDER_IN_LANES void stresses(const ElementBlock& b, const Lanes<9>& f, const La
     for (int l = 0; l < kLanes; ++l) {
       const Matrix at = at_lane(f, l);
       const lanes::Symmetric of = lanes::symmetric_product_by_rows(at_lane(p, l), at);
-      s[0][l] = of.xx;
-      s[1][l] = of.yy;
-      s[2][l] = of.zz;
-      s[3][l] = of.xy;
-      s[4][l] = of.yz;
-      s[5][l] = of.zx;
+      store(of, s, l);
       one_over[l] = 1 / lanes::determinant(at, lanes::cofactor(at));
     }
   } else {
     for (int l = 0; l < kLanes; ++l) {
       const lanes::Symmetric of = lanes::symmetric_product(at_lane(r, l), at_lane(p, l));
-      s[0][l] = of.xx;
-      s[1][l] = of.yy;
-      s[2][l] = of.zz;
-      s[3][l] = of.xy;
-      s[4][l] = of.yz;
-      s[5][l] = of.zx;
+      store(of, s, l);
       one_over[l] = 1;
     }
   }

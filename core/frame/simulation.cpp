@@ -159,17 +159,11 @@ StepReport Simulation::step() {
   return report;
 }
 
-/// The last step has nobody to go on from it: it is finished.
+/// The last step has nobody to go on from it: it is finished, or the backend refuses it.
 SolveReport Simulation::solve() {
-  constexpr int kMost = 200;
   SolveReport report = backend_->solve();
-  if (next_step_ + 1 < problem_->scene().steps) return report;
-  for (int more = 0; report.unfinished; ++more) {
-    if (more == kMost || interrupted_) {
-      throw NumericalError("step " + std::to_string(next_step_) +
-                           ", the last one, does not come to rest under its load; take more or "
-                           "smaller steps, or a smaller load");
-    }
+  const bool last = next_step_ + 1 == problem_->scene().steps;
+  while (last && report.unfinished) {
     const int before = report.back_solves;
     report = backend_->solve();
     report.back_solves += before;

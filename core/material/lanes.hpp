@@ -56,17 +56,15 @@ SUNDER_IN_LANES Symmetric symmetric_product(const Matrix& a, const Matrix& b) {
           0.5 * (dot(2, 0) + dot(0, 2))};
 }
 
+SUNDER_IN_LANES Matrix transposed(const Matrix& a) {
+  return {{{a.at[0][0], a.at[1][0], a.at[2][0]},
+           {a.at[0][1], a.at[1][1], a.at[2][1]},
+           {a.at[0][2], a.at[1][2], a.at[2][2]}}};
+}
+
 /// sym(A B^T).
 SUNDER_IN_LANES Symmetric symmetric_product_by_rows(const Matrix& a, const Matrix& b) {
-  const auto dot = [&](int i, int j) __attribute__((always_inline)) {
-    return a.at[i][0] * b.at[j][0] + a.at[i][1] * b.at[j][1] + a.at[i][2] * b.at[j][2];
-  };
-  return {dot(0, 0),
-          dot(1, 1),
-          dot(2, 2),
-          0.5 * (dot(0, 1) + dot(1, 0)),
-          0.5 * (dot(1, 2) + dot(2, 1)),
-          0.5 * (dot(2, 0) + dot(0, 2))};
+  return symmetric_product(transposed(a), transposed(b));
 }
 
 /// F^T F.

@@ -328,7 +328,14 @@ void FiniteStatics::think_of_renewal(const FiniteTarget& end, Report& report) {
   if (made.base) base_ = std::move(made.base);
   if (made.stable) return;
   state_ = shown_;
-  if (leave_saddle(end, report)) rest_at(end);
+  const Report at_rest = report;
+  if (leave_saddle(end, report)) {
+    rest_at(end);
+    return;
+  }
+  report.residual = at_rest.residual;  // the rest stays: what was tried beyond it is not its error
+  report.error = at_rest.error;
+  report.contraction = at_rest.contraction;
 }
 
 }  // namespace sunder::solver

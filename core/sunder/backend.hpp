@@ -43,7 +43,7 @@ struct SolveReport {
   double error = 0;     ///< estimate: largest |stress(du)| / largest |stress(u)| over live elements
   int iterations = 0;   ///< of conjugate gradients, when they ran
   int back_solves = 0;  ///< applications of the base, those of conjugate gradients left out
-  bool unfinished = false;  ///< the body moves on towards rest with the next solve()
+  bool unfinished = false;  ///< the next solve() goes on towards rest; never without end
   bool polished = false;    ///< the frame was over tolerance and was refined
   double waited_ms = 0;     ///< for a new base from another thread, since the last solve
   double stress_ms = 0;     ///< of its time: the stress that it is checked by; 0: a device's own
