@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "body/assembly.hpp"
 #include "body/deformation.hpp"
 #include "body/law_stress.hpp"
 #include "material/linear.hpp"
@@ -25,13 +24,6 @@ Eigen::Matrix<double, 12, 9> corner_forces(const TetShape& shape, const Matrix9&
     w.col(k) = Eigen::Map<const Eigen::Matrix<double, 12, 1>>(of.data());
   }
   return w;
-}
-
-/// Of unknowns without an entry.
-void freeze(linear_algebra::SparseMatrix& lower) {
-  for (Index d = 0; d < lower.cols(); ++d) {
-    if (lower.coeff(d, d) == 0) lower.coeffRef(d, d) = 1;
-  }
 }
 
 }  // namespace
@@ -90,15 +82,6 @@ void element_stresses(const HyperelasticBody& body, std::span<const double> u,
   }
 }
 
-TangentFactor tangent_factor(const HyperelasticBody& body, Index e, std::span<const double> u) {
-  const SpectralTangent tangent =
-      body.law(e).tangent(body.problem.small_strain(e), deformation_gradient(body, e, u));
-  const TetShape& shape = body.problem.shape(e);
-  const Vector9 root = (shape.volume * tangent.values.cwiseAbs()).cwiseSqrt();
-  return {corner_forces(shape, tangent.modes) * root.asDiagonal(),
-          tangent.values.unaryExpr([](double value) { return value < 0 ? -1.0 : 1.0; })};
-}
-
 ElementMatrix element_tangent(const HyperelasticBody& body, Index e, std::span<const double> u,
                               Tangent kind) {
   const SpectralTangent tangent =
@@ -108,16 +91,6 @@ ElementMatrix element_tangent(const HyperelasticBody& body, Index e, std::span<c
   if (kind == Tangent::projected) values = values.cwiseMax(0);
   const auto w = corner_forces(shape, tangent.modes);
   return w * values.asDiagonal() * w.transpose();
-}
-
-linear_algebra::SparseMatrix assemble_tangent(const HyperelasticBody& body,
-                                              std::span<const double> u, Tangent kind) {
-  linear_algebra::SparseMatrix lower =
-      assemble_elements(body.problem, [&](Index e) -> ElementMatrix {
-        return body.live(e) ? element_tangent(body, e, u, kind) : ElementMatrix::Zero();
-      });
-  freeze(lower);
-  return lower;
 }
 
 }  // namespace sunder::fem

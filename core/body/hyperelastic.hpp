@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Energy, internal forces and tangent stiffness of a body at finite deformation (method.md "Finite
+// Energy, internal forces and tangents of a body at finite deformation (method.md "Finite
 // deformation"): total Lagrangian, x = X + u. A destroyed element adds nothing, no share alpha.
 #pragma once
 
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "body/element.hpp"
-#include "linear_algebra/sparse_matrix.hpp"
 #include "material/law.hpp"
 
 namespace sunder::fem {
@@ -44,24 +43,9 @@ using StressFunction = Voigt (*)(const Mat3& p, const Mat3& f);
 void element_stresses(const HyperelasticBody& body, std::span<const double> u,
                       StressFunction stress, std::span<Voigt> stresses);
 
-/// An element's tangent as W diag(sign) W^T [N/mm]: nine modes, of which a projected one keeps
-/// those of sign +1. At F = I three signs belong to columns of zeros.
-struct TangentFactor {
-  Eigen::Matrix<double, 12, 9> w;
-  Eigen::Matrix<double, 9, 1> sign;  ///< +1 or -1
-};
-[[nodiscard]] TangentFactor tangent_factor(const HyperelasticBody& body, Index e,
-                                           std::span<const double> u);
-
 enum class Tangent { exact, projected };
 /// 12 x 12, exact or the nearest positive semidefinite one by F.
 [[nodiscard]] ElementMatrix element_tangent(const HyperelasticBody& body, Index e,
                                             std::span<const double> u, Tangent kind);
-
-/// df/du over the unknowns, lower triangle only, anchors included. Unknowns that no live element
-/// reaches are frozen: 1 N/mm on the diagonal.
-[[nodiscard]] linear_algebra::SparseMatrix assemble_tangent(const HyperelasticBody& body,
-                                                            std::span<const double> u,
-                                                            Tangent kind);
 
 }  // namespace sunder::fem

@@ -41,6 +41,11 @@ void sort(Mat3& b, Mat3& v, int p, int q) {
   }
 }
 
+// Newton's iteration for the rotation: of |F|^3 the least determinant that it begins with, and the
+// change after which the next one would be rounding, for its error is squared each time.
+constexpr double kLeastVolume = 1e-3, kLastChange = 1e-8;
+constexpr int kMostNewton = 12;
+
 Vec3 without(const Vec3& x, const Vec3& unit) { return x - unit * unit.dot(x); }
 
 }  // namespace
@@ -72,6 +77,24 @@ SingularValues singular_values(const Mat3& f) {
 Polar polar(const Mat3& f) {
   const SingularValues of = singular_values(f);
   return {of.u * of.v.transpose(), of.v * of.s.asDiagonal() * of.v.transpose()};
+}
+
+Mat3 nearest_rotation(const Mat3& f) {
+  double volume = f.col(0).dot(f.col(1).cross(f.col(2)));
+  const double size = f.norm();
+  if (volume > kLeastVolume * size * size * size) {
+    Mat3 x = f / std::cbrt(volume);
+    for (int i = 0; i < kMostNewton; ++i) {
+      Mat3 cofactor;
+      cofactor << x.col(1).cross(x.col(2)), x.col(2).cross(x.col(0)), x.col(0).cross(x.col(1));
+      volume = x.col(0).dot(cofactor.col(0));
+      const Mat3 next = 0.5 * (x + cofactor / volume);
+      const double change = (next - x).norm();
+      x = next;
+      if (change < kLastChange) return x;
+    }
+  }
+  return polar(f).rotation;
 }
 
 }  // namespace sunder

@@ -19,12 +19,13 @@ constexpr double kStepResidual = 1e-3;
 // A base of another inertia than the step's: over this ratio it leads nowhere.
 constexpr double kAlikeInertia = 6;
 
-double median_stiffness(const RestingBody& body, const std::vector<double>& u) {
-  const linear_algebra::SparseMatrix k =
-      fem::assemble_tangent(body.body(), u, fem::Tangent::projected);
+double median_stiffness(const RestingBody& body, const std::vector<double>& u,
+                        const fem::TangentPattern& pattern) {
+  const Eigen::VectorXd diagonal =
+      pattern.diagonal(pattern.tangent(body.body(), u, fem::Tangent::projected));
   std::vector<double> of;
-  for (Index d = 0; d < k.cols(); ++d) {
-    if (!body.frozen()[d]) of.push_back(k.coeff(d, d));
+  for (Index d = 0; d < diagonal.size(); ++d) {
+    if (!body.frozen()[d] && diagonal[d] > 0) of.push_back(diagonal[d]);
   }
   if (of.empty()) return 1;
   std::ranges::nth_element(of, of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2));
@@ -39,7 +40,7 @@ void DampedPath::begin(const std::vector<double>& u) {
   steps_ = 0;
   kinetic_ = 0;
   dt_ = 1;
-  inertia_ = kFirstInertia * median_stiffness(potential_.resting(), u);
+  inertia_ = kFirstInertia * median_stiffness(potential_.resting(), u, pattern_);
   velocity_.setZero(potential_.problem().dof_count());
   state_.u = u;
   base_.reset();
@@ -49,7 +50,7 @@ bool DampedPath::renew(Cost& cost) {
   ++cost.factors;
   try {
     base_ = std::make_unique<FiniteBase>(potential_.resting().body(), state_.u,
-                                         fem::Tangent::projected, order_, inertia_ / (dt_ * dt_));
+                                         fem::Tangent::projected, pattern_, inertia_ / (dt_ * dt_));
   } catch (const NumericalError&) {
     base_.reset();
   }

@@ -15,8 +15,8 @@ namespace sunder::solver {
 class DampedPath {
  public:
   DampedPath(const FinitePotential& potential, FiniteMinimiser& minimiser,
-             const std::vector<Index>& order)
-      : potential_(potential), minimiser_(minimiser), order_(order) {}
+             const fem::TangentPattern& pattern)
+      : potential_(potential), minimiser_(minimiser), pattern_(pattern) {}
 
   struct Cost {
     int back_solves = 0, factors = 0;
@@ -42,7 +42,7 @@ class DampedPath {
 
   const FinitePotential& potential_;
   FiniteMinimiser& minimiser_;
-  const std::vector<Index>& order_;
+  const fem::TangentPattern& pattern_;
   bool running_ = false, paused_ = false, easy_ = false, hard_ = false;
   int steps_ = 0;
   double inertia_ = 0;  // mass over dt squared [N/mm]

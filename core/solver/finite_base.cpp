@@ -16,33 +16,16 @@ namespace {
 constexpr Index kColumnGroup = 32;
 // Of S, squared diagonal of its factor: what is left holds by rounding alone.
 constexpr double kLeastLeft = 1e-10;
-// Under this angle [rad] turning costs more than it wins.
-constexpr double kLeastTurn = 0.01;
-
-linear_algebra::SparseMatrix tangent(const fem::HyperelasticBody& body, std::span<const double> u,
-                                     fem::Tangent kind, double inertia) {
-  linear_algebra::SparseMatrix lower = fem::assemble_tangent(body, u, kind);
-  std::vector<std::uint8_t> known(static_cast<std::size_t>(lower.cols()), 0);
-  for (Index d : body.problem.gripped_dofs()) known[d] = 1;
-  for (Index column = 0; column < lower.cols(); ++column) {
-    for (linear_algebra::SparseMatrix::InnerIterator it(lower, column); it; ++it) {
-      const bool diagonal = it.row() == column;
-      if (known[it.row()] || known[column]) {
-        it.valueRef() = diagonal ? 1 : 0;
-      } else if (diagonal) {
-        it.valueRef() += inertia;
-      }
-    }
-  }
-  return lower;
-}
+// Under this angle [rad] turning wins nothing. A hundredth is too much where parts are stiff: on
+// the board with its frame a frame took 5 instead of 3 back-solves.
+constexpr double kLeastTurn = 1e-4;
 
 Index full_vectors(Index columns) { return (columns + 7) / 8 * 8; }
 
 }  // namespace
 
 FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
-                       const std::vector<Index>& order, double inertia,
+                       const fem::TangentPattern& pattern, double inertia,
                        const linear_algebra::FactorWork& work)
     : problem_(body.problem),
       laws_(body.law_of_volume.begin(), body.law_of_volume.end()),
@@ -50,7 +33,7 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
       u_(std::move(u)),
       kind_(kind),
       inertia_(inertia),
-      factor_(tangent(body, u_, kind, inertia), order, work),
+      factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
       columns_(factor_.cholesky().supernodes()),
       column_(static_cast<std::size_t>(problem_.dof_count()), kNone),
       coupled_(column_.size(), 0) {
@@ -208,7 +191,7 @@ void FiniteBase::turn(const RestingBody& now, std::span<const double> u) {
       free = free && at[axis] != kNone && coupled_[at[axis]] && !now.frozen()[at[axis]];
     }
     if (!free) continue;
-    const Mat3 q = polar(sum[n]).rotation;
+    const Mat3 q = nearest_rotation(sum[n]);
     largest_turn_ = std::max(largest_turn_, std::acos(std::clamp((q.trace() - 1) / 2, -1.0, 1.0)));
     turned_.push_back({at, q});
   }

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "body/tangent_pattern.hpp"
 #include "linear_algebra/factor.hpp"
 #include "solver/path_columns.hpp"
 #include "solver/resting_body.hpp"
@@ -20,11 +21,11 @@ namespace sunder::solver {
 
 class FiniteBase {
  public:
-  /// Of the tangent at u, with `inertia` [N/mm] added to every unknown. Gripped and frozen unknowns
-  /// have equations of their own. Throws NumericalError where the tangent is not positive definite.
+  /// Of the tangent at u, as the pattern of the problem says. Throws NumericalError where it is not
+  /// positive definite.
   /// What the body refers to must outlive it, its `destroyed` need not.
   FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
-             const std::vector<Index>& order, double inertia = 0,
+             const fem::TangentPattern& pattern, double inertia = 0,
              const linear_algebra::FactorWork& work = {});
 
   /// Takes up what is out since the base was made or has followed last. False: an element is back,

@@ -15,10 +15,9 @@ constexpr double kForceRounding = 1e-14;   // of a residual: no iteration wins m
 // The error of stress is looked at where the residual is not far above the tolerance: on the
 // 1954-element board it is a tenth of the residual in the median.
 constexpr double kResidualPerStress = 100;
-constexpr double kMostContraction = 0.9;  // a measured one above it says nothing
-// The first iterations take the quick modes away; what the slow ones leave is measured later.
-constexpr int kFewIterations = 5;
-constexpr double kSlowContraction = 0.8;
+// A measured contraction above the most says nothing, one below the least is luck: the next one is
+// not (bench_finite_stability prints what reported errors are worth).
+constexpr double kLeastContraction = 0.4, kMostContraction = 0.9;
 
 }  // namespace
 
@@ -56,7 +55,8 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
                                                   const Stop& stop, int most, FiniteState& state) {
   hessian_.clear();
   Result result;
-  double before = 0;  // error of the last state but one
+  double before = 0;        // error of the last state but one
+  double ratio_before = 0;  // of that to the one before
   for (;;) {
     result.residual = residual(state);
     if (!std::isfinite(result.residual)) return result;
@@ -81,13 +81,12 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
     potential_.evaluate(target, near, next_);
     if (near) {
       const double change = stress_error(state, next_);
-      const double measured = before > 0 ? change / before : kSlowContraction;
-      result.contraction = std::min(measured, kMostContraction);
-      if (result.back_solves < kFewIterations && change > 0) {
-        result.contraction = std::max(result.contraction, kSlowContraction);
-      }
+      const double ratio = before > 0 ? change / before : kLeastContraction;
+      result.contraction =
+          std::clamp(std::max(ratio, ratio_before), kLeastContraction, kMostContraction);
       result.error = change / (1 - result.contraction);
       before = change;
+      ratio_before = ratio;
       if (result.error <= stop.tolerance && result.residual <= stop.residual) {
         result.at_rest = true;
         return result;

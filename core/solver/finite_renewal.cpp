@@ -15,10 +15,10 @@ namespace {
 constexpr double kLeastInertia = 1e-8, kMostInertia = 1e-2, kMoreInertia = 100;
 
 std::unique_ptr<FiniteBase> base_of(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                                    fem::Tangent kind, const std::vector<Index>& order,
+                                    fem::Tangent kind, const fem::TangentPattern& pattern,
                                     double inertia, const linear_algebra::FactorWork& work) {
   try {
-    return std::make_unique<FiniteBase>(body, u, kind, order, inertia, work);
+    return std::make_unique<FiniteBase>(body, u, kind, pattern, inertia, work);
   } catch (const NumericalError&) {
     return nullptr;
   }
@@ -37,39 +37,40 @@ double stiffness_scale(const Problem& problem) {
 
 std::unique_ptr<FiniteBase> projected_base(const fem::HyperelasticBody& body,
                                            const std::vector<double>& u,
-                                           const std::vector<Index>& order, int& factors,
+                                           const fem::TangentPattern& pattern, int& factors,
                                            const linear_algebra::FactorWork& work) {
   ++factors;
-  auto base = base_of(body, u, fem::Tangent::projected, order, 0, work);
+  auto base = base_of(body, u, fem::Tangent::projected, pattern, 0, work);
   const double scale = stiffness_scale(body.problem);
   for (double part = kLeastInertia; !base && part <= kMostInertia; part *= kMoreInertia) {
     ++factors;
-    base = base_of(body, u, fem::Tangent::projected, order, part * scale, work);
+    base = base_of(body, u, fem::Tangent::projected, pattern, part * scale, work);
   }
   return base;
 }
 
 RenewedBase make_base(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                      const std::vector<Index>& order, const linear_algebra::FactorWork& work) {
+                      const fem::TangentPattern& pattern, const linear_algebra::FactorWork& work) {
   RenewedBase made;
-  made.base = projected_base(body, u, order, made.factors, work);
   ++made.factors;
-  made.stable = base_of(body, u, fem::Tangent::exact, order, 0, work) != nullptr;
+  made.base = base_of(body, u, fem::Tangent::exact, pattern, 0, work);
+  made.stable = made.base != nullptr;
+  if (!made.base) made.base = projected_base(body, u, pattern, made.factors, work);
   return made;
 }
 
 void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                        const std::vector<Index>& order) {
+                        const fem::TangentPattern& pattern) {
   give_up();
   unwanted_ = false;
   u_ = u;
   out_.assign(body.destroyed.begin(), body.destroyed.end());
   made_ = {};
   thread_ = std::thread(
-      [this, of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}, &order] {
+      [this, of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}, &pattern] {
         if (rest_.count() > 0) std::this_thread::sleep_for(rest_);
         try {
-          made_ = make_base(of, u_, order, {.stop = &unwanted_});
+          made_ = make_base(of, u_, pattern, {.stop = &unwanted_});
           if (inverse_ && made_.base) made_.base->keep_inverse();
         } catch (const std::exception&) {
           made_ = {};  // out of memory or unwanted: the old base goes on

@@ -17,17 +17,17 @@ namespace sunder::solver {
 /// with as little inertia as helps. Null: that helps neither. Throws linear_algebra::Stopped.
 [[nodiscard]] std::unique_ptr<FiniteBase> projected_base(
     const fem::HyperelasticBody& body, const std::vector<double>& u,
-    const std::vector<Index>& order, int& factors, const linear_algebra::FactorWork& work = {});
+    const fem::TangentPattern& pattern, int& factors, const linear_algebra::FactorWork& work = {});
 
 /// The base of a state at rest, and whether that rest is stable.
 struct RenewedBase {
-  std::unique_ptr<FiniteBase> base;  ///< projected_base()
+  std::unique_ptr<FiniteBase> base;  ///< of the exact tangent, else projected_base()
   bool stable = true;                ///< the exact tangent is positive definite
   int factors = 0;
 };
 /// Throws linear_algebra::Stopped.
 [[nodiscard]] RenewedBase make_base(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                                    const std::vector<Index>& order,
+                                    const fem::TangentPattern& pattern,
                                     const linear_algebra::FactorWork& work = {});
 
 class FiniteRenewal {
@@ -40,7 +40,7 @@ class FiniteRenewal {
 
   /// Begins a base of the body as it is now; problem, laws and order must outlive it.
   void ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-           const std::vector<Index>& order);
+           const fem::TangentPattern& pattern);
   [[nodiscard]] bool asked() const { return thread_.joinable(); }
   /// Waits for it.
   [[nodiscard]] RenewedBase take();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "body/stiffness_factor.hpp"
 #include "solver/finite_start.hpp"
 #include "solver/lowest_mode.hpp"
 #include "sunder/error.hpp"
@@ -58,10 +57,10 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       potential_(resting_, options.stress),
       minimiser_(potential_, options.pairs),
       scale_(scale_of(body.problem)),
-      order_(fem::elimination_order(body.problem)),
+      pattern_(body.problem),
       u_(body.problem.dofs().size(), 0.0),
       reached_(potential_.target({})),
-      path_(potential_, minimiser_, order_),
+      path_(potential_, minimiser_, pattern_),
       renewal_(options.rest, options.inverse) {
   shown_.u = u_;
   shown_.f.assign(u_.size(), 0.0);
@@ -85,12 +84,12 @@ void FiniteStatics::body_changed() {
 /// Makes a base; false: the tangent is not positive definite.
 bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Report& report) {
   if (kind == fem::Tangent::projected) {
-    base_ = projected_base(resting_.body(), u, order_, report.factors);
+    base_ = projected_base(resting_.body(), u, pattern_, report.factors);
     return base_ != nullptr;
   }
   ++report.factors;
   try {
-    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, order_);
+    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, pattern_);
   } catch (const NumericalError&) {
     base_.reset();
   }
@@ -109,16 +108,23 @@ bool FiniteStatics::have_base(const std::vector<double>& u, Report& report) {
 }
 
 /// state_ <- where to begin: the last state, turned as a whole with its grips, those moved and the
-/// rest following as the base says; or the last step once more, where its energy is less.
+/// rest following as the base says; or the last step once more, where its energy is less. The base
+/// is turned to there.
 void FiniteStatics::predict(const FiniteTarget& target) {
+  const bool pulled = target.grips != reached_.grips;
   state_.u = u_;
-  if (target.grips != reached_.grips) {
+  if (pulled) {
     const auto turned = follow_grips_rigidly(body_.problem, u_, target.grips);
     if (!turned.empty()) state_.u = turned;
+    if (options_.turn) base_->turn(resting_, state_.u);
   }
-  if (options_.turn) base_->turn(resting_, state_.u);
   potential_.evaluate(target, false, state_);
-  if (target.grips != reached_.grips) move_grips(target);
+  if (pulled) move_grips(target);
+  go_on_as_before(target);
+  if (options_.turn) base_->turn(resting_, state_.u);
+}
+
+void FiniteStatics::go_on_as_before(const FiniteTarget& target) {
   const double times = before_.empty() ? 0 : continuation(begin_, reached_, target);
   if (times == 0) return;
   probe_.u = u_;
@@ -186,6 +192,7 @@ void FiniteStatics::rest_at(const FiniteTarget& target) {
   begin_ = std::move(reached_);
   u_ = state_.u;
   reached_ = target;
+  acting_ = state_.acting;
   std::swap(shown_, state_);
 }
 
@@ -194,7 +201,7 @@ void FiniteStatics::rest_at(const FiniteTarget& target) {
 bool FiniteStatics::leave_saddle(const FiniteTarget& target, Report& report) {
   suspected_ = false;
   for (int i = 0; i < kMostPushes; ++i) {
-    const LowestMode mode = lowest_mode(resting_, state_.u, order_);
+    const LowestMode mode = lowest_mode(resting_, state_.u, pattern_);
     report.factors += mode.factors;
     if (!(mode.stiffness < 0) || !push(target, mode.shape)) return true;
     ++report.buckled;
@@ -282,24 +289,39 @@ FiniteStaticsReport FiniteStatics::solve(const Load& load) {
   Report report;
   report.frozen = resting_.parts();
   const FiniteTarget end = potential_.target(load);
-  state_.u = u_;
-  potential_.evaluate(reached_, false, state_);
+  if (before_.empty()) {  // the body has changed, and what acts with it
+    state_.u = u_;
+    potential_.evaluate(reached_, false, state_);
+    acting_ = state_.acting;
+  }
   FiniteScale scale = scale_;
-  scale.force = std::max(scale.force, state_.acting);
+  scale.force = std::max(scale.force, acting_);
   minimiser_.set_scale(scale);
   take_renewed();
   if (!path_.running()) {
+    step_begin_ = u_;
+    step_begin_target_ = reached_;
     report.at_rest = climb(end, report);
+    climbed_ = report.share;
     if (!report.at_rest) path_.begin(u_);
   }
   if (path_.running()) follow_path(end, report);
   if (report.at_rest) {
     think_of_renewal(end, report);
-  } else {
-    shown_.u = report.unfinished ? path_.state().u : u_;
-    potential_.evaluate(end, false, shown_);
+    return report;
   }
+  report.share = climbed_;
+  if (!report.unfinished) go_back();
+  shown_.u = report.unfinished ? path_.state().u : u_;
+  potential_.evaluate(end, false, shown_);
   return report;
+}
+
+/// To the rest before the step, whatever was found on its way.
+void FiniteStatics::go_back() {
+  u_ = step_begin_;
+  reached_ = step_begin_target_;
+  before_.clear();
 }
 
 /// At its count, not when it is ready.
@@ -318,11 +340,11 @@ void FiniteStatics::think_of_renewal(const FiniteTarget& end, Report& report) {
   if (renewal_.asked() || !(hard || first_ || since_check_ >= options_.check_after)) return;
   since_check_ = since_asked_ = 0;
   if (options_.taken_after > 0 && !first_) {
-    renewal_.ask(resting_.body(), u_, order_);
+    renewal_.ask(resting_.body(), u_, pattern_);
     return;
   }
   first_ = false;
-  RenewedBase made = make_base(resting_.body(), u_, order_);
+  RenewedBase made = make_base(resting_.body(), u_, pattern_);
   report.factors += made.factors;
   if (options_.inverse && made.base) made.base->keep_inverse();
   if (made.base) base_ = std::move(made.base);

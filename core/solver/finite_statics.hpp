@@ -41,12 +41,12 @@ struct FiniteStaticsOptions {
   int most_path_steps = 120;          ///< of a damped path, before it is given up
 };
 
-/// How a step ended: at rest, unfinished, or neither: then the state is the last one at rest.
+/// How a step ended: at rest, unfinished, or neither: then the state is the rest before the step.
 struct FiniteStaticsReport {
   bool at_rest = false;
   /// A damped path is on its way: the state is no equilibrium, the next call goes on from it.
   bool unfinished = false;
-  double share = 0;        ///< of the load's increment at which the last rest is: 1 at rest
+  double share = 0;        ///< of the load's increment up to which rests were found: 1 at rest
   double residual = 0;     ///< as in the options
   double error = 0;        ///< estimate of the relative error of stress
   double contraction = 0;  ///< measured: what an iteration leaves of an error
@@ -83,6 +83,7 @@ class FiniteStatics {
   [[nodiscard]] bool have_base(const std::vector<double>& u, Report& report);
   [[nodiscard]] bool renew(const std::vector<double>& u, fem::Tangent kind, Report& report);
   void predict(const FiniteTarget& target);
+  void go_on_as_before(const FiniteTarget& target);
   void move_grips(const FiniteTarget& target);
   [[nodiscard]] bool minimise(const FiniteTarget& target, int most, Report& report);
   [[nodiscard]] bool by_new_factors(const FiniteTarget& target, int most, Report& report);
@@ -90,6 +91,7 @@ class FiniteStatics {
   [[nodiscard]] bool push(const FiniteTarget& target, const Eigen::VectorXd& mode);
   void follow_path(const FiniteTarget& end, Report& report);
   void rest_at(const FiniteTarget& target);
+  void go_back();
   void take_renewed();
   void think_of_renewal(const FiniteTarget& end, Report& report);
 
@@ -99,10 +101,14 @@ class FiniteStatics {
   FinitePotential potential_;
   FiniteMinimiser minimiser_;
   FiniteScale scale_;
-  std::vector<Index> order_;      // of the factor
-  std::vector<double> u_;         // the last state at rest
-  std::vector<double> before_;    // the one before it; empty: the body has changed since
-  FiniteTarget reached_, begin_;  // their loads
+  fem::TangentPattern pattern_;
+  std::vector<double> u_;           // the last state at rest
+  std::vector<double> before_;      // the one before it; empty: the body has changed since
+  FiniteTarget reached_, begin_;    // their loads
+  double acting_ = 0;               // forces at the last state at rest
+  std::vector<double> step_begin_;  // the last state at rest before the step that is on its way
+  FiniteTarget step_begin_target_;
+  double climbed_ = 0;  // share of its load at which a rest was found
   FiniteState shown_, state_, probe_;
   Eigen::VectorXd motion_, following_;
   std::unique_ptr<FiniteBase> base_;
@@ -110,7 +116,7 @@ class FiniteStatics {
   bool first_ = true;       // nothing has come to rest so far
   int since_check_ = 0, since_asked_ = 0;
   DampedPath path_;
-  FiniteRenewal renewal_;  // last: its thread reads order_
+  FiniteRenewal renewal_;  // last: its thread reads pattern_
 };
 
 }  // namespace sunder::solver

@@ -44,21 +44,22 @@ void hold_still(const RestingBody& body, Eigen::VectorXd& v) {
 }  // namespace
 
 LowestMode lowest_mode(const RestingBody& body, const std::vector<double>& u,
-                       const std::vector<Index>& order) {
+                       const fem::TangentPattern& pattern) {
   LowestMode mode;
-  const linear_algebra::SparseMatrix k = fem::assemble_tangent(body.body(), u, fem::Tangent::exact);
-  const double stiffest = k.diagonal().cwiseAbs().maxCoeff();
+  const Eigen::VectorXd diagonal =
+      pattern.diagonal(pattern.tangent(body.body(), u, fem::Tangent::exact));
+  const double stiffest = diagonal.cwiseAbs().maxCoeff();
   std::unique_ptr<FiniteBase> base;
   double shift = 0;
   while (!base && !(shift > stiffest)) {
     shift = shift == 0 ? kFirstShift * stiffest : kShiftGrowth * shift;
     ++mode.factors;
     try {
-      base = std::make_unique<FiniteBase>(body.body(), u, fem::Tangent::exact, order, shift);
+      base = std::make_unique<FiniteBase>(body.body(), u, fem::Tangent::exact, pattern, shift);
     } catch (const NumericalError&) {
     }
   }
-  mode.shape = scattered(k.cols());
+  mode.shape = scattered(diagonal.size());
   if (!base) return mode;
   hold_still(body, mode.shape);
   mode.shape.normalize();

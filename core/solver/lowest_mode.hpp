@@ -4,8 +4,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
+#include "body/tangent_pattern.hpp"
 #include "solver/resting_body.hpp"
 
 namespace sunder::solver {
@@ -19,6 +19,6 @@ struct LowestMode {
 /// Gripped and frozen unknowns stay. By inverse iteration on the tangent with a shift that makes it
 /// positive definite, from a fixed start.
 [[nodiscard]] LowestMode lowest_mode(const RestingBody& body, const std::vector<double>& u,
-                                     const std::vector<Index>& order);
+                                     const fem::TangentPattern& pattern);
 
 }  // namespace sunder::solver

@@ -9,6 +9,7 @@
 #include "body/hyperelastic.hpp"
 #include "body/stiffness_factor.hpp"
 #include "sunder/backend.hpp"
+#include "support/assembled_tangent.hpp"
 
 namespace sunder::test {
 
@@ -33,7 +34,7 @@ inline NewtonRest newton(const fem::HyperelasticBody& body, const Load& load,
     Eigen::VectorXd r = Eigen::VectorXd::Zero(problem.dof_count());
     for (std::size_t i = 0; i < load.forces.size(); ++i) r[load.force_dofs[i]] -= load.forces[i];
     double acting = 0;
-    linear_algebra::SparseMatrix k = fem::assemble_tangent(body, rest.u, fem::Tangent::exact);
+    linear_algebra::SparseMatrix k = assemble_tangent(body, rest.u, fem::Tangent::exact);
     for (std::size_t i = 0; i < f.size(); ++i) {
       acting += f[i] * f[i];
       if (problem.dofs()[i] != kNone) r[problem.dofs()[i]] += f[i];

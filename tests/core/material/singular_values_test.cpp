@@ -66,6 +66,26 @@ TEST(SingularValues, KeepTheDigitsOfSmallOnes) {
   }
 }
 
+// Turned ones of all stretches, flat, inverted and without rank too.
+TEST(NearestRotation, IsThatOfThePolarDecomposition) {
+  RandomGradients any(5);
+  const auto expect_same = [](const Mat3& f) {
+    const Mat3 r = nearest_rotation(f);
+    expect_rotation(r, f);
+    const SingularValues of = singular_values(f);
+    if (of.s[1] + of.s[2] > 1e-3 * of.s[0]) {  // else many are about as near
+      EXPECT_LE((r - polar(f).rotation).norm(), 1e-11) << f;
+    }
+  };
+  for (int i = 0; i < 100000; ++i) {
+    expect_same(any.matrix());
+    expect_same(any.turned({any.number(0.1, 3), any.number(0.1, 3), any.number(-3, 3)}));
+    expect_same(1e-6 * any.rotation());
+    expect_same(1e6 * any.turned({1, 1, any.number(0, 0.01)}));
+  }
+  EXPECT_EQ(nearest_rotation(Mat3::Zero()), Mat3::Identity());
+}
+
 TEST(Polar, OfAProductOfARotationAndAStretch) {
   RandomGradients any(4);
   for (int i = 0; i < 10000; ++i) {

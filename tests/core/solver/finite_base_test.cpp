@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "body/stiffness_factor.hpp"
 #include "material/corotated.hpp"
 #include "material/neo_hookean.hpp"
 #include "support/sequences.hpp"
@@ -27,7 +26,7 @@ struct Bent {
     grip.action = Grip{Box{Vec3(-1, -1, -1), Vec3(0.01, 0.01, 3)}, Vec3(0, 0, 0), Axes{7}};
     scene.instruments.push_back(grip);
     problem = std::make_unique<Problem>(std::move(scene));
-    order = fem::elimination_order(*problem);
+    pattern = std::make_unique<fem::TangentPattern>(*problem);
     for (const Vec3& x : problem->mesh().nodes) {
       const double s = (10 - x.y()) / 10;
       for (double c : {0.4 * s * s, -0.8 * s, 2.0 * s * s * (1 + 0.02 * x.x())}) u.push_back(c);
@@ -46,7 +45,7 @@ struct Bent {
   }
 
   std::unique_ptr<Problem> problem;
-  std::vector<Index> order;
+  std::unique_ptr<fem::TangentPattern> pattern;
   std::vector<double> u, force;
 };
 
@@ -58,14 +57,14 @@ TEST(FiniteBase, FollowsWhatLeaves) {
     std::vector<std::uint8_t> destroyed(bent.problem->mesh().tets.size(), 0);
     const fem::HyperelasticBody body{*bent.problem, laws, destroyed};
     RestingBody resting(body);
-    FiniteBase base(body, bent.u, fem::Tangent::projected, bent.order);
+    FiniteBase base(body, bent.u, fem::Tangent::projected, *bent.pattern);
     std::vector<Index> cut = test::elements_across(bent.problem->mesh(), 4.0);
     for (std::size_t i = 0; i < cut.size() - 12; ++i) {
       destroyed[cut[i]] = 1;
       if (i % 7 != 0) continue;
       resting.look();
       ASSERT_TRUE(base.follow(resting, 1000)) << i;
-      FiniteBase fresh(resting.body(), bent.u, fem::Tangent::projected, bent.order);
+      FiniteBase fresh(resting.body(), bent.u, fem::Tangent::projected, *bent.pattern);
       Eigen::VectorXd x, expected;
       base.solve(bent.load(resting), x);
       fresh.solve(bent.load(resting), expected);
@@ -101,9 +100,9 @@ TEST(FiniteBase, TurnsWithTheBody) {
       to.push_back(turned[axis] - x[axis]);
     }
   }
-  const auto order = fem::elimination_order(problem);
-  FiniteBase base(body, from, fem::Tangent::projected, order);
-  FiniteBase expected(body, to, fem::Tangent::projected, order);
+  const fem::TangentPattern pattern(problem);
+  FiniteBase base(body, from, fem::Tangent::projected, pattern);
+  FiniteBase expected(body, to, fem::Tangent::projected, pattern);
   Eigen::VectorXd b(problem.dof_count()), x, y;
   for (Index d = 0; d < b.size(); ++d) b[d] = std::cos(2.3 * d);
   for (Index d : problem.gripped_dofs()) b[d] = 0;

@@ -51,13 +51,12 @@ std::vector<double> reported_over_true(const Law& law, double tolerance) {
 
 class FinitePromise : public ::testing::TestWithParam<const Law*> {};
 
-// Of 24 frames one may be under half; docs/method.md has the figures of a larger sample.
+// bench_finite_stability has a larger sample, of extreme cases.
 TEST_P(FinitePromise, IsSeldomUnderHalfAndInTheMedianWithinTwo) {
   const std::vector<double> of = reported_over_true(*GetParam(), 1e-4);
   std::printf("%s: reported over true error: least %.2f, median %.2f, most %.2f\n",
               GetParam()->name.data(), of.front(), of[of.size() / 2], of.back());
-  EXPECT_GE(of[1], 0.5);
-  EXPECT_GE(of.front(), 0.1);
+  EXPECT_GE(of.front(), 0.5);
   EXPECT_GE(of[of.size() / 2], 0.5);
   EXPECT_LE(of[of.size() / 2], 2);
 }
