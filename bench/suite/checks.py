@@ -64,6 +64,9 @@ def problems(outcome, every_peer=True):
     found += [f"finite stability, {s['study']}, {s['law']}, {s['motion']} {s['amount']:g}: WRONG, "
               f"stress error {s['stress_error']:.3g}" + (f", {s['reason']}" if s["reason"] else "")
               for s in outcome.get("steps", []) if s["verdict"] == "WRONG"]
+    found += [f"finite {f['part']}, {f['law']}, {f['degrees']:.0f} degrees, {f['gone']:g} gone: WRONG, "
+              f"stress error {f['stress_error']:.3g}"
+              for f in outcome.get("fractures", []) if f["verdict"] == "WRONG"]
     found += [f"{m['case']}, {m['tets']:g} tetrahedra: error is {m['error']}"
               for m in outcome["meshes"] if not math.isfinite(m["error"])]
     if not outcome["peers"]:

@@ -72,6 +72,8 @@ PROGRAMS = [
             Share(75, words=("quick",)), Share(420, words=("full",)), file="stability.csv"),
     Program("bench_finite_stability", "stability at finite deformation, every law",
             Share(15, words=("quick",)), Share(180, words=("full",)), file="finite-stability.csv"),
+    Program("bench_finite_fractures", "finite deformation along fractures, against Newton's method",
+            Share(3, words=("quick",)), Share(60, words=("full",)), file="finite-fractures.csv"),
     Program("bench_scenes", "error against run time on scenes",
             Share(38, words=("--seconds=2", "--tolerances=1e-4,1e-8", *SCENES)), Share(500),
             file="scenes.csv"),
@@ -179,8 +181,7 @@ def run_program(build, program, share, repetitions=None):
 
 def nothing_yet():
     return {"rows": [], "cells": [], "points": [], "meshes": [], "alone": [], "steps": [],
-            "programs": [],
-            "failures": []}
+            "fractures": [], "programs": [], "failures": []}
 
 
 def conclude(outcome):
@@ -215,9 +216,8 @@ def run_and_time(build, program, share, repetitions):
 def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None, commit="",
             jobs=1):
     """Adds to the outcome what of a mode it lacks, program by program in their order, and saves it
-    after each: {"rows", "cells", "points", "meshes", "steps", "programs",
-    "failures"}. `jobs` of them run at
-    once."""
+    after each: {"rows", "cells", "points", "meshes", "steps", "fractures",
+    "programs", "failures"}. `jobs` of them run at once."""
     outcome = outcome or nothing_yet()
     there, missing = split_present(build, mode)
     there = split_done(there, outcome)

@@ -4,8 +4,8 @@
 results.json  {"machine": {...}, "rows": [row], "peers": {name: settings}, "programs": [...],
                "failures": [sentence]}
 results.csv   one line per row: program, name, minimum, median, CPU time [ms], samples, counters
-stability.csv, scenes.csv, convergence.csv, finite-stability.csv   as the programs write them:
-               cells, points, meshes, steps
+stability.csv, scenes.csv, convergence.csv, finite-stability.csv, finite-fractures.csv   as the programs write them:
+               cells, points, meshes, steps, fractures
 peers-alone.csv   of bench/peers-alone: each peer beside the others and alone
 """
 import csv
@@ -122,6 +122,16 @@ def steps_of(text):
     return steps
 
 
+def fractures_of(text):
+    """States and sequences of fractures at finite deformation."""
+    words = {"part", "law", "how", "verdict"}
+    rows = list(csv.DictReader(io.StringIO(text)))
+    for row in rows:
+        for key in row.keys() - words:
+            row[key] = float(row[key])
+    return rows
+
+
 def alone_of(text):
     """Peers beside the others and alone, as suite/alone.py judges them."""
     entries = list(csv.DictReader(io.StringIO(text)))
@@ -164,7 +174,8 @@ def rows_csv(rows):
 # Parts of the results that lie beside results.json: file and reader.
 PARTS = {"cells": ("stability.csv", cells_of), "points": ("scenes.csv", points_of),
          "meshes": ("convergence.csv", meshes_of), "alone": ("peers-alone.csv", alone_of),
-         "steps": ("finite-stability.csv", steps_of)}
+         "steps": ("finite-stability.csv", steps_of),
+         "fractures": ("finite-fractures.csv", fractures_of)}
 
 
 def _text(path):

@@ -10,7 +10,7 @@ missing then, a peer's library above all, ends it before anything is measured. Q
 cores; --full takes two hours and a half. --jobs 2 runs two programs at once: that
 shows that all of them run and are right, and its times are no measurement. Result:
 OUT/index.html with its figures as SVG files, results.json, results.csv, stability.csv, scenes.csv,
-convergence.csv, finite-stability.csv. They are written after every program; --resume goes on with a run that was ended,
+convergence.csv, finite-stability.csv, finite-fractures.csv. They are written after every program; --resume goes on with a run that was ended,
 on the same machine. bench/run --draw DIR takes the ratios of a results folder, judges its cells and
 draws its page again.
 Exit code 1: something is WRONG, no number, failed or missing (said on stderr and on the page);

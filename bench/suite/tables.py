@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of the page: lines of words, made of rows, cells and meshes."""
 import collections
+import math
 
 from . import plots, results, style
 
@@ -196,6 +197,24 @@ def finite_refusals(steps):
             [[s["study"], s["law"], f"{s['contrast']:g}, {s['nu']:g}, {s['sliver']:g}",
               s["motion"], f"{s['amount']:g}", s["verdict"], s["reason"]]
              for s in steps if s["verdict"] != "right"])
+
+
+def fracture_verdicts(rows):
+    """Head and lines: states and sequences of fractures by law and rotation."""
+    words = ["right", "refused", "no reference", "WRONG"]
+    groups = collections.defaultdict(list)
+    for row in rows:
+        groups[row["part"], row["law"], row["degrees"]].append(row)
+    lines = []
+    for (part, law, degrees), own in groups.items():
+        lines.append([part, law, number(degrees, 3), number(own[0]["newtons"], 3),
+                      number(max(r["gone"] for r in own), 3),
+                      *(sum(r["verdict"] == w for r in own) for w in words),
+                      *(number(max((r[e] for r in own if r["verdict"] == "right"
+                                    and not math.isnan(r[e])), default=None), 2)
+                        for e in ("u_error", "stress_error"))])
+    return (["what", "law", "largest rotation [deg]", "force [N]", "gone", *words,
+             "largest error of u", "of stress"], lines)
 
 
 def scene_verdicts(points):

@@ -426,6 +426,22 @@ class FiniteDeformation(unittest.TestCase):
         self.assertEqual(read, steps)
 
 
+    def test_fractures_are_counted_and_a_wrong_one_is_a_problem(self):
+        def fracture(verdict, stress_error):
+            return {"part": "state", "law": "corotated", "how": "batches", "verdict": verdict,
+                    "degrees": 30.0, "newtons": 42.0, "gone": 10.0, "u_error": 1e-10,
+                    "stress_error": stress_error, "back_solves": 29.0, "factors": 1.0}
+        rows = [fracture("right", 2e-10), fracture("WRONG", 0.5)]
+        (found,) = checks.problems(dict(every_part(), fractures=rows))
+        self.assertIn("30 degrees, 10 gone: WRONG", found)
+        self.assertEqual(tables.fracture_verdicts(rows)[1],
+                         [["state", "corotated", "30", "42", "10", 1, 0, 0, 1, "1.0e-10",
+                           "2.0e-10"]])
+        self.assertIn("Fractures at finite deformation",
+                      page.page(dict(every_part(), fractures=rows))[0])
+        self.assertEqual(results.fractures_of(results.table_csv(rows)), rows)
+
+
 class FreshMachine(unittest.TestCase):
     """A machine without the peers' packages: programs that stand for its own come first in PATH and
     write down how they were called."""

@@ -35,6 +35,10 @@ struct FiniteTorn {
     for (Index e : elements) destroyed[e] = 1;
     statics.destroyed(elements);
   }
+  void take_back(std::span<const Index> elements) {
+    for (Index e : elements) destroyed[e] = 0;
+    statics.body_changed();
+  }
   std::vector<Voigt> stress(std::span<const double> u) const {
     std::vector<Voigt> of(destroyed.size());
     fem::element_stresses(body, u, cauchy_stress, of);
@@ -112,6 +116,36 @@ TEST(FiniteEvents, TurningTheBaseSavesBackSolves) {
                 turned ? "turned" : "not turned", back_solves[turned], factors[turned]);
   }
   EXPECT_LT(back_solves[1], back_solves[0]);
+}
+
+// Each state on the way back is the one on the way there, though every other step has a new base.
+TEST(FiniteEvents, TakesEventsBackAcrossRenewedBases) {
+  for (const Law* law : {&kCorotated, &kNeoHookean}) {
+    FiniteTorn torn(*law, {.tolerance = 1e-10, .renew_after = 2, .check_after = 1});
+    for (int i = 1; i <= 4; ++i) ASSERT_TRUE(torn.pull(3 * i).at_rest);
+    constexpr std::size_t kEvents = 8, kElements = 3;
+    const auto sequence = test::crack_sequence(torn.problem, kEvents * kElements, 15);
+    const auto event = [&](std::size_t i) {
+      return std::span(sequence).subspan(i * kElements, kElements);
+    };
+    std::vector<std::vector<double>> there{torn.statics.displacement()};
+    for (std::size_t i = 0; i < kEvents; ++i) {
+      torn.tear(event(i));
+      ASSERT_TRUE(torn.pull(12).at_rest) << i;
+      there.push_back(torn.statics.displacement());
+    }
+    for (std::size_t i = kEvents; i-- > 0;) {
+      torn.take_back(event(i));
+      ASSERT_TRUE(torn.pull(12).at_rest) << i;
+      EXPECT_LE(test::displacement_error(torn.problem.mesh(), torn.destroyed,
+                                         torn.statics.displacement(), there[i]),
+                test::kCrackTolerance)
+          << law->name << " " << i;
+    }
+    EXPECT_GT(
+        test::displacement_error(torn.problem.mesh(), torn.destroyed, there[kEvents], there[0]),
+        0.01);
+  }
 }
 
 // The same state after the same events by the yardstick, which shares nothing with the solver.
