@@ -421,7 +421,7 @@ class FiniteDeformation(unittest.TestCase):
         self.assertIn("twist 90: WRONG", found)
         self.assertEqual(tables.finite_verdicts(steps)[1],
                          [["nu", "twist", "corotated", 1, 0, 0, 1, 0, 1, "1.0e-05"]])
-        self.assertIn("no equilibrium", page.page(dict(every_part(), steps=steps))[0])
+        self.assertIn("no equilibrium", page.page(dict(outcome([]), steps=steps))[0])
         read = results.steps_of(results.table_csv(steps))
         self.assertEqual(read, steps)
 
@@ -438,7 +438,7 @@ class FiniteDeformation(unittest.TestCase):
                          [["state", "corotated", "30", "42", "10", 1, 0, 0, 1, "1.0e-10",
                            "2.0e-10"]])
         self.assertIn("Fractures at finite deformation",
-                      page.page(dict(every_part(), fractures=rows))[0])
+                      page.page(dict(outcome([]), fractures=rows))[0])
         self.assertEqual(results.fractures_of(results.table_csv(rows)), rows)
 
 
