@@ -98,22 +98,23 @@ LARGE = [
 ]
 
 
-def planned(mode):
-    """The programs of a mode, with their shares."""
-    return [(p, getattr(p, mode)) for p in PROGRAMS + (LARGE if mode == "full" else [])]
+def planned(mode, only=()):
+    """The programs of a mode, with their shares; `only`: those of these names."""
+    every = PROGRAMS + (LARGE if mode == "full" else [])
+    return [(p, getattr(p, mode)) for p in every if not only or p.name in only]
 
 
-def split_present(build, mode):
+def split_present(build, mode, only=()):
     """What is built here, and the names of what is not."""
-    there = [(p, s) for p, s in planned(mode) if (pathlib.Path(build) / "bench" / p.name).is_file()]
+    there = [(p, s) for p, s in planned(mode, only) if (pathlib.Path(build) / "bench" / p.name).is_file()]
     names = [p.name for p, _ in there]
-    return there, sorted({p.name for p, _ in planned(mode)} - set(names))
+    return there, sorted({p.name for p, _ in planned(mode, only)} - set(names))
 
 
-def expect_all(build, mode):
+def expect_all(build, mode, only=()):
     """Raises results.BadResults where a program of the mode is not built: what it measures would be
     missing in the end."""
-    _, missing = split_present(build, mode)
+    _, missing = split_present(build, mode, only)
     if missing:
         raise results.BadResults(f"{', '.join(missing)}: not built in {build}, so nothing is "
                                  "measured; a build folder without the program or Vulkan "
@@ -214,12 +215,12 @@ def run_and_time(build, program, share, repetitions):
 
 
 def run_all(build, mode, repetitions=None, outcome=None, save=lambda outcome: None, commit="",
-            jobs=1):
+            jobs=1, only=()):
     """Adds to the outcome what of a mode it lacks, program by program in their order, and saves it
     after each: {"rows", "cells", "points", "meshes", "steps", "fractures",
     "programs", "failures"}. `jobs` of them run at once."""
     outcome = outcome or nothing_yet()
-    there, missing = split_present(build, mode)
+    there, missing = split_present(build, mode, only)
     there = split_done(there, outcome)
     outcome["failures"] = [f"{name} is not built" for name in missing]
     progress = Progress(sum(share.seconds for _, share in there))

@@ -561,6 +561,14 @@ class Modes(unittest.TestCase):
         self.assertEqual({p.name for p, _ in programs.planned("quick")},
                          {p.name for p, _ in programs.planned("full")})
 
+    def test_some_programs_alone_are_no_run_without_peers(self):
+        self.assertEqual([p.name for p, _ in programs.planned("full", ["bench_finite"])],
+                         ["bench_finite", "bench_finite"])
+        part = outcome([row("a")])
+        part["machine"]["only"] = ["bench_finite"]
+        part["peers"] = {}
+        self.assertEqual(checks.problems(part), [])
+
     def test_quick_is_planned_under_five_minutes(self):
         self.assertLess(sum(s.seconds for _, s in programs.planned("quick")), 300)
 
