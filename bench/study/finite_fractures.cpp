@@ -113,7 +113,6 @@ struct Row {
   double degrees, newtons;
   std::size_t gone = 0;
   double u_error = NAN, stress_error = NAN;
-  int back_solves = 0, factors = 0;
 };
 
 class Study {
@@ -138,7 +137,7 @@ class Study {
         at_rest = board.pull(row.newtons);
       }
       if (!at_rest) {
-        refuse(board, row);
+        add(board, row, "refused");
         return;
       }
       judge(board, row);
@@ -163,7 +162,7 @@ class Study {
       board.tear({&mine, 1});
       ++row.gone;
       if (!board.pull(row.newtons)) {
-        refuse(board, row);
+        add(board, row, "refused");
         return;
       }
     }
@@ -182,7 +181,7 @@ class Study {
     while (board.rotation_deg() < row.degrees && row.newtons < kMostNewtons) {
       row.newtons += kNewtonsMore;
       if (!board.pull(row.newtons)) {
-        refuse(board, row);
+        add(board, row, "refused");
         return false;
       }
     }
@@ -205,7 +204,6 @@ class Study {
     }
     add(board, row, right ? "right" : "WRONG");
   }
-  void refuse(const Board& board, Row& row) { add(board, row, "refused"); }
   void add(const Board& board, Row& row, const std::string& verdict) {
     ++verdicts_[verdict];
     out_ << row.part << ',' << row.law << ',' << row.how << ',' << row.degrees << ',' << row.newtons

@@ -70,7 +70,7 @@ PROGRAMS = [
             Share(25, "board", 1), Share(120, repetitions=1)),
     Program("bench_stability", "stability of every method",
             Share(75, words=("quick",)), Share(420, words=("full",)), file="stability.csv"),
-    Program("bench_finite_stability", "stability at finite deformation, every law",
+    Program("bench_finite_stability", "stability at finite deformation, two laws",
             Share(15, words=("quick",)), Share(180, words=("full",)), file="finite-stability.csv"),
     Program("bench_finite_fractures", "finite deformation along fractures, against Newton's method",
             Share(3, words=("quick",)), Share(60, words=("full",)), file="finite-fractures.csv"),

@@ -27,8 +27,8 @@ struct Polar {
   Mat3 rotation, stretch;
 };
 [[nodiscard]] Polar polar(const Mat3& f);
-/// polar(f).rotation to rounding, in a fifth of the time where F is far from flat and from
-/// inverted: Newton's iteration X <- (X + X^-T)/2 (Higham 1986).
+/// polar(f).rotation to rounding, quicker where F is far from flat and from inverted: Newton's
+/// iteration X <- (X + X^-T)/2 (Higham 1986).
 [[nodiscard]] Mat3 nearest_rotation(const Mat3& f);
 
 }  // namespace sunder

@@ -97,7 +97,7 @@ std::string with_key_table(const std::string& page) {
                              std::string(kBegin, 0, kBegin.size() - 1) + "\" and \"" +
                              std::string(kEnd, 0, kEnd.size() - 1) + "\"");
   }
-  return page.substr(0, begin + kBegin.size()) + key_table() + page.substr(end);
+  return page.substr(0, begin + kBegin.size()) + '\n' + key_table() + '\n' + page.substr(end);
 }
 
 std::string scene_dictionary() {
