@@ -21,14 +21,12 @@
 
 #include "body/hyperelastic_pass.hpp"
 #include "material/corotated.hpp"
-#include "material/finite_stress.hpp"
 #include "material/neo_hookean.hpp"
-#include "solver/finite_statics.hpp"
 #include "sunder/error.hpp"
 #include "sunder/stress_measures.hpp"
 #include "support/accuracy.hpp"
 #include "support/finite_newton.hpp"
-#include "support/loads.hpp"
+#include "support/finite_torn.hpp"
 #include "support/sequences.hpp"
 
 namespace sunder::bench {
@@ -43,39 +41,32 @@ constexpr int kMostCalls = 200;
 class Board {
  public:
   Board(const Law& law, double tolerance)
-      : laws_(fem::one_law(problem_, law)),
-        destroyed_(problem_.mesh().tets.size(), 0),
-        statics_(body_, {.tolerance = tolerance, .most_factors = 40}) {}
+      : torn_(law, {.tolerance = tolerance, .most_factors = 40}) {}
 
   /// False: no rest.
   bool pull(double newtons) {
     back_solves_ = factors_ = 0;
     newtons_ = newtons;
     for (int i = 0; i < kMostCalls; ++i) {
-      const auto report = statics_.solve(load());
+      const auto report = torn_.pull(newtons);
       back_solves_ += report.back_solves;
       factors_ += report.factors;
       if (!report.unfinished) return report.at_rest;
     }
     return false;
   }
-  void tear(std::span<const Index> elements) {
-    for (Index e : elements) destroyed_[e] = 1;
-    statics_.destroyed(elements);
-  }
+  void tear(std::span<const Index> elements) { torn_.tear(elements); }
   [[nodiscard]] double rotation_deg() {
-    fem::HyperelasticPass pass(body_);
-    return pass.run(statics_.displacement(), {.deformation = true}).deformation.rotation_deg;
+    fem::HyperelasticPass pass(torn_.body);
+    return pass.run(u(), {.deformation = true}).deformation.rotation_deg;
   }
-  [[nodiscard]] std::vector<Voigt> stress(std::span<const double> u) const {
-    std::vector<Voigt> of(destroyed_.size());
-    fem::element_stresses({problem_, laws_, statics_.out()}, u, cauchy_stress, of);
-    return of;
+  [[nodiscard]] std::vector<Voigt> stress(std::span<const double> of) const {
+    return torn_.stress(of);
   }
   /// From here; empty: Newton's method does not end.
   [[nodiscard]] std::vector<double> newton() const {
     try {
-      auto rest = test::newton({problem_, laws_, statics_.out()}, load(), u());
+      auto rest = test::newton({problem(), torn_.laws, out()}, torn_.load(newtons_), u());
       if (rest.residual <= kNewtonResidual) return std::move(rest.u);
     } catch (const NumericalError&) {
     }
@@ -84,26 +75,20 @@ class Board {
   /// The breakable element of the largest maximum shear stress.
   [[nodiscard]] Index weakest(std::span<const Voigt> stress) const {
     Index worst = kNone;
-    for (Index e = 0; e < problem_.tet_count(); ++e) {
-      if (statics_.out()[e] || !problem_.breakable(e)) continue;
+    for (Index e = 0; e < problem().tet_count(); ++e) {
+      if (out()[e] || !problem().breakable(e)) continue;
       if (worst == kNone || max_shear(stress[e]) > max_shear(stress[worst])) worst = e;
     }
     return worst;
   }
-  [[nodiscard]] const std::vector<double>& u() const { return statics_.displacement(); }
-  [[nodiscard]] std::span<const std::uint8_t> out() const { return statics_.out(); }
-  [[nodiscard]] const Problem& problem() const { return problem_; }
+  [[nodiscard]] const std::vector<double>& u() const { return torn_.statics.displacement(); }
+  [[nodiscard]] std::span<const std::uint8_t> out() const { return torn_.statics.out(); }
+  [[nodiscard]] const Problem& problem() const { return torn_.problem; }
   [[nodiscard]] int back_solves() const { return back_solves_; }
   [[nodiscard]] int factors() const { return factors_; }
 
  private:
-  [[nodiscard]] Load load() const { return test::corner_pull(problem_, Vec3(0, -newtons_, 0)); }
-
-  Problem problem_{test::held_board()};
-  std::vector<const Law*> laws_;
-  std::vector<std::uint8_t> destroyed_;
-  fem::HyperelasticBody body_{problem_, laws_, destroyed_};
-  solver::FiniteStatics statics_;
+  test::FiniteTorn torn_;
   double newtons_ = 0;
   int back_solves_ = 0, factors_ = 0;
 };

@@ -14,6 +14,7 @@
 #include "solver/finite_statics.hpp"
 #include "support/accuracy.hpp"
 #include "support/finite_newton.hpp"
+#include "support/finite_torn.hpp"
 #include "support/loads.hpp"
 #include "support/sequences.hpp"
 #include "support/structured_board.hpp"
@@ -21,43 +22,12 @@
 namespace sunder::solver {
 namespace {
 
-/// The paper's board, as it is torn.
-struct FiniteTorn {
-  explicit FiniteTorn(const Law& law, FiniteStaticsOptions options = {})
-      : problem(test::held_board()),
-        laws(fem::one_law(problem, law)),
-        destroyed(problem.mesh().tets.size(), 0),
-        statics(body, options) {}
-  FiniteStaticsReport pull(double force) {
-    return statics.solve(test::corner_pull(problem, Vec3(0, -force, 0)));
-  }
-  void tear(std::span<const Index> elements) {
-    for (Index e : elements) destroyed[e] = 1;
-    statics.destroyed(elements);
-  }
-  void take_back(std::span<const Index> elements) {
-    for (Index e : elements) destroyed[e] = 0;
-    statics.body_changed();
-  }
-  std::vector<Voigt> stress(std::span<const double> u) const {
-    std::vector<Voigt> of(destroyed.size());
-    fem::element_stresses(body, u, cauchy_stress, of);
-    return of;
-  }
-
-  Problem problem;
-  std::vector<const Law*> laws;
-  std::vector<std::uint8_t> destroyed;
-  fem::HyperelasticBody body{problem, laws, destroyed};
-  FiniteStatics statics;
-};
-
 // A crack from the right edge, in one event more and more; then one by one. What both converge to
 // is the same; how far the solver is from Newton's end follows its tolerance.
 TEST(FiniteEvents, AgreesWithNewtonAfterManyFractures) {
   for (const Law* law : {&kCorotated, &kNeoHookean}) {
     for (double force : {law == &kCorotated ? 36.0 : 11.0}) {
-      FiniteTorn torn(*law, {.tolerance = 1e-10, .most_factors = 40});
+      test::FiniteTorn torn(*law, {.tolerance = 1e-10, .most_factors = 40});
       const auto sequence = test::crack_sequence(torn.problem, 200, 15);
       for (int i = 1; i <= 4; ++i) ASSERT_TRUE(torn.pull(i * force / 4).at_rest);
       std::size_t gone = 0;
@@ -87,7 +57,7 @@ TEST(FiniteEvents, AgreesWithNewtonAfterManyFractures) {
 // A prototype took 10 and 15 back-solves to a residual of 1e-4.
 TEST(FiniteEvents, NineElementsTakeAFewBackSolves) {
   for (double force : {11.0, 36.0}) {
-    FiniteTorn torn(kCorotated);
+    test::FiniteTorn torn(kCorotated);
     const int steps = static_cast<int>(force / 5.5);
     for (int i = 1; i <= steps; ++i) ASSERT_TRUE(torn.pull(i * force / steps).at_rest);
     torn.tear(test::crack_sequence(torn.problem, 9, 15));
@@ -104,7 +74,7 @@ TEST(FiniteEvents, NineElementsTakeAFewBackSolves) {
 TEST(FiniteEvents, TurningTheBaseSavesBackSolves) {
   int back_solves[2], factors[2];
   for (int turned = 0; turned < 2; ++turned) {
-    FiniteTorn torn(kCorotated, {.turn = turned == 1, .renew_after = 20});
+    test::FiniteTorn torn(kCorotated, {.turn = turned == 1, .renew_after = 20});
     back_solves[turned] = factors[turned] = 0;
     for (int i = 1; i <= 12; ++i) {
       const FiniteStaticsReport report = torn.pull(5 * i);
@@ -121,7 +91,7 @@ TEST(FiniteEvents, TurningTheBaseSavesBackSolves) {
 // Each state on the way back is the one on the way there, though every other step has a new base.
 TEST(FiniteEvents, TakesEventsBackAcrossRenewedBases) {
   for (const Law* law : {&kCorotated, &kNeoHookean}) {
-    FiniteTorn torn(*law, {.tolerance = 1e-10, .renew_after = 2, .check_after = 1});
+    test::FiniteTorn torn(*law, {.tolerance = 1e-10, .renew_after = 2, .check_after = 1});
     for (int i = 1; i <= 4; ++i) ASSERT_TRUE(torn.pull(3 * i).at_rest);
     constexpr std::size_t kEvents = 8, kElements = 3;
     const auto sequence = test::crack_sequence(torn.problem, kEvents * kElements, 15);
@@ -150,7 +120,7 @@ TEST(FiniteEvents, TakesEventsBackAcrossRenewedBases) {
 
 // The same state after the same events by the yardstick, which shares nothing with the solver.
 TEST(FiniteEvents, AgreesWithTheYardstickAlongACrack) {
-  FiniteTorn torn(kCorotated, {.tolerance = 1e-10});
+  test::FiniteTorn torn(kCorotated, {.tolerance = 1e-10});
   ASSERT_TRUE(torn.pull(11).at_rest);
   torn.tear(test::crack_sequence(torn.problem, 30, 15));
   ASSERT_TRUE(torn.pull(11).at_rest);
@@ -166,7 +136,7 @@ TEST(FiniteEvents, AgreesWithTheYardstickAlongACrack) {
 // corotated law the last ligament's elements turn inside out, at a kink of the energy: there a
 // damped path is given up, which takes too long for a quick test.)
 TEST(FiniteEvents, PullsUntilItTearsOff) {
-  FiniteTorn torn(kNeoHookean);
+  test::FiniteTorn torn(kNeoHookean);
   for (int i = 1; i <= 4; ++i) ASSERT_TRUE(torn.pull(9 * i).at_rest);
   const auto sequence = test::elements_across(torn.problem.mesh(), 26.5);
   std::vector<Index> tissue;

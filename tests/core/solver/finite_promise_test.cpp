@@ -7,12 +7,10 @@
 #include <cstdio>
 
 #include "material/corotated.hpp"
-#include "material/finite_stress.hpp"
 #include "material/neo_hookean.hpp"
-#include "solver/finite_statics.hpp"
 #include "support/accuracy.hpp"
 #include "support/finite_newton.hpp"
-#include "support/loads.hpp"
+#include "support/finite_torn.hpp"
 #include "support/sequences.hpp"
 
 namespace sunder::solver {
@@ -20,28 +18,21 @@ namespace {
 
 /// The paper's board: pulled, torn one by one, pulled farther.
 std::vector<double> reported_over_true(const Law& law, double tolerance) {
-  const Problem problem(test::held_board());
-  const auto laws = fem::one_law(problem, law);
-  std::vector<std::uint8_t> destroyed(problem.mesh().tets.size(), 0);
-  const fem::HyperelasticBody body{problem, laws, destroyed};
-  FiniteStatics statics(body, {.tolerance = tolerance});
+  test::FiniteTorn torn(law, {.tolerance = tolerance});
   std::vector<double> ratios;
   const auto look_at = [&](double force) {
-    const Load load = test::corner_pull(problem, Vec3(0, -force, 0));
-    const FiniteStaticsReport report = statics.solve(load);
+    const FiniteStaticsReport report = torn.pull(force);
     EXPECT_TRUE(report.at_rest) << force;
     EXPECT_LE(report.error, tolerance);
-    std::vector<Voigt> found(destroyed.size()), exact(destroyed.size());
-    fem::element_stresses(body, statics.displacement(), cauchy_stress, found);
-    const auto rest = test::newton(body, load, statics.displacement());
+    const auto& u = torn.statics.displacement();
+    const auto rest = test::newton(torn.body, torn.load(force), u);
     EXPECT_LE(rest.residual, 1e-11);
-    fem::element_stresses(body, rest.u, cauchy_stress, exact);
-    ratios.push_back(report.error / test::stress_error(destroyed, found, exact));
+    ratios.push_back(report.error /
+                     test::stress_error(torn.destroyed, torn.stress(u), torn.stress(rest.u)));
   };
   for (int i = 1; i <= 8; ++i) look_at(5.0 * i);
-  for (Index e : test::crack_sequence(problem, 12, 15)) {
-    destroyed[e] = 1;
-    statics.destroyed({&e, 1});
+  for (Index e : test::crack_sequence(torn.problem, 12, 15)) {
+    torn.tear({&e, 1});
     look_at(40);
   }
   for (int i = 1; i <= 4; ++i) look_at(40 + 2.5 * i);
