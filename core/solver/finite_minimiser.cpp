@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sunder::solver {
 namespace {
@@ -18,6 +19,10 @@ constexpr double kResidualPerStress = 100;
 // A measured contraction above the most says nothing, one below the least is luck: the next one is
 // not (bench_finite_stability prints what reported errors are worth).
 constexpr double kLeastContraction = 0.4, kMostContraction = 0.9;
+// One good estimate ends a step of so few iterations; later ones, whose contraction wanders, have
+// to be good twice in a row.
+constexpr int kFewBackSolves = 2;
+constexpr double kLeaving = 2;  // times the residual, against a negative stiffness
 
 }  // namespace
 
@@ -55,8 +60,9 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
                                                   const Stop& stop, int most, FiniteState& state) {
   hessian_.clear();
   Result result;
-  double before = 0;        // error of the last state but one
-  double ratio_before = 0;  // of that to the one before
+  double before = 0;                       // error of the last state but one
+  double ratio_before = 0;                 // of that to the one before
+  bool good = false, good_before = false;  // the last two estimates
   for (;;) {
     result.residual = residual(state);
     if (!std::isfinite(result.residual)) return result;
@@ -66,7 +72,10 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
       result.error = 0;  // rounding, or not asked for
       return result;
     }
-    if (result.back_solves == most) return result;
+    if (result.back_solves == most) {
+      result.at_rest = good && result.residual <= stop.residual;
+      return result;
+    }
     hessian_.direction(
         state.r,
         [&](const Eigen::VectorXd& q, Eigen::VectorXd& x) {
@@ -87,14 +96,23 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
       result.error = change / (1 - result.contraction);
       before = change;
       ratio_before = ratio;
-      if (result.error <= stop.tolerance && result.residual <= stop.residual) {
+      good_before =
+          std::exchange(good, result.error <= stop.tolerance && result.residual <= stop.residual);
+      if (good && (good_before || result.back_solves <= kFewBackSolves)) {
         result.at_rest = true;
         return result;
       }
     }
-    if (!line_search(target, near, state)) return result;
+    if (!line_search(target, near, state)) {
+      result.at_rest = near && good;
+      return result;
+    }
     potential_.difference(next_.u, state.u, s_);
     y_ = next_.r - state.r;
+    // An unstable rest is left by what rounding has put into it: let who calls choose the side.
+    if ((good || good_before) && s_.dot(y_) < 0 && next_.r.norm() > kLeaving * state.r.norm()) {
+      return result;
+    }
     hessian_.learn(s_, y_);
     std::swap(state, next_);
   }

@@ -52,10 +52,9 @@ std::unique_ptr<FiniteBase> projected_base(const fem::HyperelasticBody& body,
 RenewedBase make_base(const fem::HyperelasticBody& body, const std::vector<double>& u,
                       const fem::TangentPattern& pattern, const linear_algebra::FactorWork& work) {
   RenewedBase made;
+  made.base = projected_base(body, u, pattern, made.factors, work);
   ++made.factors;
-  made.base = base_of(body, u, fem::Tangent::exact, pattern, 0, work);
-  made.stable = made.base != nullptr;
-  if (!made.base) made.base = projected_base(body, u, pattern, made.factors, work);
+  made.stable = base_of(body, u, fem::Tangent::exact, pattern, 0, work) != nullptr;
   return made;
 }
 

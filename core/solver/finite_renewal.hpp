@@ -21,7 +21,7 @@ namespace sunder::solver {
 
 /// The base of a state at rest, and whether that rest is stable.
 struct RenewedBase {
-  std::unique_ptr<FiniteBase> base;  ///< of the exact tangent, else projected_base()
+  std::unique_ptr<FiniteBase> base;  ///< projected_base()
   bool stable = true;                ///< the exact tangent is positive definite
   int factors = 0;
 };
