@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -291,21 +288,8 @@ class CpuBackend final : public Backend {
 
 }  // namespace
 
-CpuOptions options_from_environment() {
-  CpuOptions options;
-  const char* memory = std::getenv("SUNDER_CPU_MEMORY");
-  if (!memory || !*memory) return options;
-  const char* end = memory + std::strlen(memory);
-  const auto [rest, error] = std::from_chars(memory, end, options.memory);
-  if (error != std::errc() || rest != end || options.memory == 0) {
-    throw UsageError("SUNDER_CPU_MEMORY is \"" + std::string(memory) +
-                     "\"; it may be a number of bytes");
-  }
-  return options;
-}
-
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs) {
-  return create(std::move(problem), std::move(needs), options_from_environment());
+  return create(std::move(problem), std::move(needs), CpuOptions{});
 }
 
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,

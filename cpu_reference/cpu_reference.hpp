@@ -23,9 +23,6 @@ struct CpuOptions {
   std::chrono::milliseconds rest{0};
 };
 
-/// SUNDER_CPU_MEMORY=bytes (for tests). Throws UsageError for another value.
-[[nodiscard]] CpuOptions options_from_environment();
-
 /// Creates it for a problem. Throws DeviceError for a route or precision that it does not offer,
 /// InputError when the route asked for needs more memory than there is, or any does.
 [[nodiscard]] std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs);

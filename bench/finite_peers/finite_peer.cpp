@@ -82,7 +82,7 @@ void FinitePeer::move(const State& from, double part, State& to) const {
 }
 
 /// The last step once more, where its energy is less.
-void FinitePeer::go_on_as_before(double newtons) {
+void FinitePeer::extrapolate(double newtons) {
   const double times = step_ != 0 ? (newtons - newtons_) / step_ : 0;
   if (before_.empty() || !(times > 0)) return;
   next_.u = state_.u;
@@ -115,7 +115,7 @@ FiniteSolved FinitePeer::solve(double newtons) {
   evaluate(state_);
   const double scale = state_.acting;
   std::vector<double> from = state_.u;
-  go_on_as_before(newtons);
+  extrapolate(newtons);
   begin();
   for (;;) {
     const double residual = state_.r.norm() / std::max(scale, state_.acting);

@@ -47,7 +47,7 @@ class FinitePeer : public FiniteSolver {
   };
   void evaluate(State& state);
   void move(const State& from, double part, State& to) const;
-  void go_on_as_before(double newtons);
+  void extrapolate(double newtons);
   [[nodiscard]] bool line_search();
 
   TornBody torn_;

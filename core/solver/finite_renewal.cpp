@@ -49,37 +49,59 @@ std::unique_ptr<FiniteBase> projected_base(const fem::HyperelasticBody& body,
   return base;
 }
 
-RenewedBase make_base(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                      const fem::TangentPattern& pattern, const linear_algebra::FactorWork& work) {
-  RenewedBase made;
-  made.base = projected_base(body, u, pattern, made.factors, work);
-  ++made.factors;
-  made.stable = base_of(body, u, fem::Tangent::exact, pattern, 0, work) != nullptr;
-  return made;
+bool is_stable(const fem::HyperelasticBody& body, const std::vector<double>& u,
+               const fem::TangentPattern& pattern, const linear_algebra::FactorWork& work) {
+  return base_of(body, u, fem::Tangent::exact, pattern, 0, work) != nullptr;
 }
 
 void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                        const fem::TangentPattern& pattern) {
+                        const fem::TangentPattern& pattern, bool judge) {
   give_up();
   unwanted_ = false;
+  judge_ = judge;
   u_ = u;
   out_.assign(body.destroyed.begin(), body.destroyed.end());
-  made_ = {};
-  thread_ = std::thread(
-      [this, of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}, &pattern] {
-        if (rest_.count() > 0) std::this_thread::sleep_for(rest_);
-        try {
-          made_ = make_base(of, u_, pattern, {.stop = &unwanted_});
-          if (inverse_ && made_.base) made_.base->keep_inverse();
-        } catch (const std::exception&) {
-          made_ = {};  // out of memory or unwanted: the old base goes on
-        }
+  std::promise<std::unique_ptr<FiniteBase>> base;
+  std::promise<bool> stable;
+  base_ = base.get_future();
+  stable_ = stable.get_future();
+  thread_ =
+      std::thread([this, &pattern, base = std::move(base), stable = std::move(stable),
+                   of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}]() mutable {
+        const linear_algebra::FactorWork work{.stop = &unwanted_};
+        // Out of memory or unwanted: the old base goes on.
+        const auto either = [&](auto& promise, auto make, auto otherwise) {
+          if (rest_.count() > 0) std::this_thread::sleep_for(rest_);
+          try {
+            promise.set_value(make());
+          } catch (const std::exception&) {
+            promise.set_value(std::move(otherwise));
+          }
+        };
+        int factors = 0;
+        either(
+            base,
+            [&] {
+              auto made = projected_base(of, u_, pattern, factors, work);
+              if (inverse_ && made) made->keep_inverse();
+              return made;
+            },
+            std::unique_ptr<FiniteBase>());
+        if (judge_)
+          either(
+              stable, [&] { return is_stable(of, u_, pattern, work); }, true);
       });
 }
 
-RenewedBase FiniteRenewal::take() {
+std::unique_ptr<FiniteBase> FiniteRenewal::take_base() {
+  auto base = base_.get();
+  if (!judge_) thread_.join();
+  return base;
+}
+
+bool FiniteRenewal::take_stable() {
   thread_.join();
-  return std::move(made_);
+  return stable_.get();
 }
 
 void FiniteRenewal::give_up() {

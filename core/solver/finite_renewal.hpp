@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A base of the tangent at a given state, made by a thread beside the steps. Who asks takes it at a
-// count of steps and waits where it is not ready: what comes of it does not depend on the clock.
+// A base of the tangent at a given state, made by a thread beside the steps, and whether that state
+// is stable. Who asks takes them at a count of steps and waits where they are not ready: what comes
+// of it does not depend on the clock.
 #pragma once
 
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -19,39 +21,39 @@ namespace sunder::solver {
     const fem::HyperelasticBody& body, const std::vector<double>& u,
     const fem::TangentPattern& pattern, int& factors, const linear_algebra::FactorWork& work = {});
 
-/// The base of a state at rest, and whether that rest is stable.
-struct RenewedBase {
-  std::unique_ptr<FiniteBase> base;  ///< projected_base()
-  bool stable = true;                ///< the exact tangent is positive definite
-  int factors = 0;
-};
-/// Throws linear_algebra::Stopped.
-[[nodiscard]] RenewedBase make_base(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                                    const fem::TangentPattern& pattern,
-                                    const linear_algebra::FactorWork& work = {});
+/// Whether a rest is stable: the exact tangent is positive definite. Throws
+/// linear_algebra::Stopped.
+[[nodiscard]] bool is_stable(const fem::HyperelasticBody& body, const std::vector<double>& u,
+                             const fem::TangentPattern& pattern,
+                             const linear_algebra::FactorWork& work = {});
 
 class FiniteRenewal {
  public:
-  /// The thread sleeps for `rest` before it begins; `inverse`: its bases keep one.
+  /// The thread sleeps for `rest` before each thing that it does; `inverse`: its bases keep one.
   FiniteRenewal(std::chrono::milliseconds rest, bool inverse) : rest_(rest), inverse_(inverse) {}
   ~FiniteRenewal() { give_up(); }
   FiniteRenewal(const FiniteRenewal&) = delete;
   FiniteRenewal& operator=(const FiniteRenewal&) = delete;
 
-  /// Begins a base of the body as it is now; problem, laws and order must outlive it.
+  /// Begins projected_base() of the body as it is now, and then, where it is to `judge`,
+  /// is_stable(); problem, laws and order must outlive it.
   void ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-           const fem::TangentPattern& pattern);
+           const fem::TangentPattern& pattern, bool judge);
+  /// Something is still to be taken.
   [[nodiscard]] bool asked() const { return thread_.joinable(); }
-  /// Waits for it.
-  [[nodiscard]] RenewedBase take();
+  /// Waits for the base; null: there is none.
+  [[nodiscard]] std::unique_ptr<FiniteBase> take_base();
+  /// Waits for the judgement, where one was asked for; taken after the base.
+  [[nodiscard]] bool take_stable();
   void give_up();
 
  private:
   std::chrono::milliseconds rest_;
-  bool inverse_;
+  bool inverse_, judge_ = false;
   std::vector<std::uint8_t> out_;
   std::vector<double> u_;
-  RenewedBase made_;
+  std::future<std::unique_ptr<FiniteBase>> base_;
+  std::future<bool> stable_;
   std::atomic<bool> unwanted_{false};
   std::thread thread_;  // last: it uses all above
 };

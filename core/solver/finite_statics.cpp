@@ -66,17 +66,17 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
   shown_.f.assign(u_.size(), 0.0);
 }
 
-void FiniteStatics::look_again() {
+void FiniteStatics::update_parts() {
   resting_.look();
   potential_.body_changed();
   before_.clear();
   path_.body_changed();
 }
 
-void FiniteStatics::destroyed(std::span<const Index>) { look_again(); }
+void FiniteStatics::destroyed(std::span<const Index>) { update_parts(); }
 
 void FiniteStatics::body_changed() {
-  look_again();
+  update_parts();
   renewal_.give_up();
   base_.reset();
 }
@@ -97,7 +97,7 @@ bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Repor
 }
 
 /// One that knows what is destroyed.
-bool FiniteStatics::have_base(const std::vector<double>& u, Report& report) {
+bool FiniteStatics::ensure_base(const std::vector<double>& u, Report& report) {
   if (base_ && !base_->follow(resting_, options_.most_rank)) base_.reset();
   if (!base_) {
     if (!renew(u, fem::Tangent::projected, report)) return false;
@@ -120,11 +120,11 @@ void FiniteStatics::predict(const FiniteTarget& target) {
   }
   potential_.evaluate(target, false, state_);
   if (pulled) move_grips(target);
-  go_on_as_before(target);
+  extrapolate(target);
   if (options_.turn) base_->turn(resting_, state_.u);
 }
 
-void FiniteStatics::go_on_as_before(const FiniteTarget& target) {
+void FiniteStatics::extrapolate(const FiniteTarget& target) {
   const double times = before_.empty() ? 0 : continuation(begin_, reached_, target);
   if (times == 0) return;
   probe_.u = u_;
@@ -174,7 +174,7 @@ bool FiniteStatics::by_new_factors(const FiniteTarget& target, int most, Report&
 
 /// From the last state at rest; false: not found, and that state stays.
 bool FiniteStatics::approach(const FiniteTarget& target, Report& report) {
-  if (!have_base(u_, report)) return false;
+  if (!ensure_base(u_, report)) return false;
   predict(target);
   if (!std::isfinite(state_.potential)) return false;
   if (!minimise(target, options_.most_back_solves, report) &&
@@ -307,7 +307,7 @@ FiniteStaticsReport FiniteStatics::solve(const Load& load) {
   }
   if (path_.running()) follow_path(end, report);
   if (report.at_rest) {
-    think_of_renewal(end, report);
+    renew_if_due(end, report);
     return report;
   }
   report.share = climbed_;
@@ -324,31 +324,40 @@ void FiniteStatics::go_back() {
   before_.clear();
 }
 
-/// At its count, not when it is ready.
+/// At their counts, not when they are ready: the base, and as many steps later whether the rest
+/// that it was made of is stable.
 void FiniteStatics::take_renewed() {
-  if (!renewal_.asked() || ++since_asked_ < options_.taken_after) return;
-  RenewedBase made = renewal_.take();
-  if (made.base) base_ = std::move(made.base);
-  if (!made.stable) suspected_ = true;
+  if (!renewal_.asked()) return;
+  ++since_asked_;
+  if (since_asked_ == options_.taken_after) {
+    if (auto base = renewal_.take_base()) base_ = std::move(base);
+  } else if (since_asked_ == 2 * options_.taken_after) {
+    if (!renewal_.take_stable()) suspected_ = true;
+  }
 }
 
-/// After a step that came to rest: a base of that state, and whether the rest is stable.
-void FiniteStatics::think_of_renewal(const FiniteTarget& end, Report& report) {
+/// After a step that came to rest: a base of that state where the step was hard, at times also
+/// whether that rest is stable.
+void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   ++since_check_;
   const bool hard =
       report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
-  if (renewal_.asked() || !(hard || first_ || since_check_ >= options_.check_after)) return;
-  since_check_ = since_asked_ = 0;
+  const bool judge = first_ || since_check_ >= options_.check_after;
+  if (renewal_.asked() || !(hard || judge)) return;
+  since_asked_ = 0;
+  if (judge) since_check_ = 0;
   if (options_.taken_after > 0 && !first_) {
-    renewal_.ask(resting_.body(), u_, pattern_);
+    renewal_.ask(resting_.body(), u_, pattern_, judge);
     return;
   }
   first_ = false;
-  RenewedBase made = make_base(resting_.body(), u_, pattern_);
-  report.factors += made.factors;
-  if (options_.inverse && made.base) made.base->keep_inverse();
-  if (made.base) base_ = std::move(made.base);
-  if (made.stable) return;
+  if (auto base = projected_base(resting_.body(), u_, pattern_, report.factors)) {
+    if (options_.inverse) base->keep_inverse();
+    base_ = std::move(base);
+  }
+  if (!judge) return;
+  ++report.factors;
+  if (is_stable(resting_.body(), u_, pattern_)) return;
   state_ = shown_;
   const Report at_rest = report;
   if (leave_saddle(end, report)) {

@@ -33,8 +33,8 @@ struct FiniteStaticsOptions {
   Index most_rank = 300;      ///< unknowns that what has left touches, before a new base is made
   int renew_after = 8;        ///< back-solves of a step after which the base is renewed
   int check_after = 4;        ///< steps after which it is looked whether the rest is stable
-  /// Renewals and checks are made by a thread and taken so many calls of solve() later; 0: they are
-  /// made at once.
+  /// Renewals are made by a thread and taken so many calls of solve() later, what it says of
+  /// stability twice as many; 0: they are made at once.
   int taken_after = 2;
   std::chrono::milliseconds rest{0};  ///< the thread's, before it begins
   int most_damped_steps = 5;          ///< of a call
@@ -77,13 +77,13 @@ class FiniteStatics {
 
  private:
   using Report = FiniteStaticsReport;
-  void look_again();
+  void update_parts();
   [[nodiscard]] bool climb(const FiniteTarget& end, Report& report);
   [[nodiscard]] bool approach(const FiniteTarget& target, Report& report);
-  [[nodiscard]] bool have_base(const std::vector<double>& u, Report& report);
+  [[nodiscard]] bool ensure_base(const std::vector<double>& u, Report& report);
   [[nodiscard]] bool renew(const std::vector<double>& u, fem::Tangent kind, Report& report);
   void predict(const FiniteTarget& target);
-  void go_on_as_before(const FiniteTarget& target);
+  void extrapolate(const FiniteTarget& target);
   void move_grips(const FiniteTarget& target);
   [[nodiscard]] bool minimise(const FiniteTarget& target, int most, Report& report);
   [[nodiscard]] bool by_new_factors(const FiniteTarget& target, int most, Report& report);
@@ -93,7 +93,7 @@ class FiniteStatics {
   void rest_at(const FiniteTarget& target);
   void go_back();
   void take_renewed();
-  void think_of_renewal(const FiniteTarget& end, Report& report);
+  void renew_if_due(const FiniteTarget& end, Report& report);
 
   const fem::HyperelasticBody& body_;
   FiniteStaticsOptions options_;

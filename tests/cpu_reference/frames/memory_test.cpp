@@ -3,8 +3,6 @@
 // conjugate gradients do without, within the same accuracy.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "body/stiffness_factor.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "solver/plan.hpp"
@@ -113,18 +111,6 @@ TEST(Memory, NothingFitsIsAnErrorWithBytes) {
     EXPECT_GT(bytes_in(message), 13182u * 1000) << message;
     EXPECT_TRUE(mentions(message, "1000000 are free")) << message;
   }
-}
-
-TEST(Memory, IsThatOfTheEnvironmentForTheProgram) {
-  setenv("SUNDER_CPU_MEMORY", "50000000", 1);
-  const auto backend = cpu_reference::create(problem_of(block(Route::automatic)), all_needs());
-  unsetenv("SUNDER_CPU_MEMORY");
-  EXPECT_EQ(backend->info().route, "cg");
-  setenv("SUNDER_CPU_MEMORY", "much", 1);
-  EXPECT_THROW(
-      static_cast<void>(cpu_reference::create(problem_of(block(Route::automatic)), all_needs())),
-      UsageError);
-  unsetenv("SUNDER_CPU_MEMORY");
 }
 
 class WithoutFactor : public ::testing::TestWithParam<bool> {};
