@@ -55,22 +55,21 @@ bool is_stable(const fem::HyperelasticBody& body, const std::vector<double>& u,
 }
 
 void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                        const fem::TangentPattern& pattern, bool judge) {
+                        const fem::TangentPattern& pattern, bool base, bool judgement) {
   give_up();
   unwanted_ = false;
-  judge_ = judge;
   u_ = u;
   out_.assign(body.destroyed.begin(), body.destroyed.end());
-  std::promise<std::unique_ptr<FiniteBase>> base;
+  std::promise<std::unique_ptr<FiniteBase>> made;
   std::promise<bool> stable;
-  base_ = base.get_future();
-  stable_ = stable.get_future();
-  thread_ =
-      std::thread([this, &pattern, base = std::move(base), stable = std::move(stable),
-                   of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}]() mutable {
+  if (base) base_ = made.get_future();
+  if (judgement) stable_ = stable.get_future();
+  thread_ = std::thread(
+      [this, &pattern, base, judgement, made = std::move(made), stable = std::move(stable),
+       of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}]() mutable {
         const linear_algebra::FactorWork work{.stop = &unwanted_};
         // Out of memory or unwanted: the old base goes on.
-        const auto either = [&](auto& promise, auto make, auto otherwise) {
+        const auto keep = [&](auto& promise, auto make, auto otherwise) {
           if (rest_.count() > 0) std::this_thread::sleep_for(rest_);
           try {
             promise.set_value(make());
@@ -78,35 +77,24 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
             promise.set_value(std::move(otherwise));
           }
         };
-        int factors = 0;
-        either(
-            base,
-            [&] {
-              auto made = projected_base(of, u_, pattern, factors, work);
-              if (inverse_ && made) made->keep_inverse();
-              return made;
-            },
-            std::unique_ptr<FiniteBase>());
-        if (judge_)
-          either(
+        const auto make_base = [&] {
+          int factors = 0;
+          auto one = projected_base(of, u_, pattern, factors, work);
+          if (inverse_ && one) one->keep_inverse();
+          return one;
+        };
+        if (base) keep(made, make_base, std::unique_ptr<FiniteBase>());
+        if (judgement)
+          keep(
               stable, [&] { return is_stable(of, u_, pattern, work); }, true);
       });
-}
-
-std::unique_ptr<FiniteBase> FiniteRenewal::take_base() {
-  auto base = base_.get();
-  if (!judge_) thread_.join();
-  return base;
-}
-
-bool FiniteRenewal::take_stable() {
-  thread_.join();
-  return stable_.get();
 }
 
 void FiniteRenewal::give_up() {
   unwanted_ = true;
   if (thread_.joinable()) thread_.join();
+  base_ = {};
+  stable_ = {};
 }
 
 }  // namespace sunder::solver

@@ -35,21 +35,21 @@ class FiniteRenewal {
   FiniteRenewal(const FiniteRenewal&) = delete;
   FiniteRenewal& operator=(const FiniteRenewal&) = delete;
 
-  /// Begins projected_base() of the body as it is now, and then, where it is to `judge`,
-  /// is_stable(); problem, laws and order must outlive it.
+  /// Begins projected_base() of the body as it is now, is_stable(), or the one and then the other;
+  /// problem, laws and order must outlive it. What was asked before is given up.
   void ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-           const fem::TangentPattern& pattern, bool judge);
-  /// Something is still to be taken.
-  [[nodiscard]] bool asked() const { return thread_.joinable(); }
-  /// Waits for the base; null: there is none.
-  [[nodiscard]] std::unique_ptr<FiniteBase> take_base();
-  /// Waits for the judgement, where one was asked for; taken after the base.
-  [[nodiscard]] bool take_stable();
+           const fem::TangentPattern& pattern, bool base, bool judgement);
+  [[nodiscard]] bool base_asked() const { return base_.valid(); }
+  [[nodiscard]] bool judgement_asked() const { return stable_.valid(); }
+  /// Waits for the base that was asked for; null: there is none.
+  [[nodiscard]] std::unique_ptr<FiniteBase> take_base() { return base_.get(); }
+  /// Waits for the judgement that was asked for.
+  [[nodiscard]] bool take_stable() { return stable_.get(); }
   void give_up();
 
  private:
   std::chrono::milliseconds rest_;
-  bool inverse_, judge_ = false;
+  bool inverse_;
   std::vector<std::uint8_t> out_;
   std::vector<double> u_;
   std::future<std::unique_ptr<FiniteBase>> base_;

@@ -21,6 +21,7 @@ constexpr int kMostPushes = 4;  // modes that are left one after the other
 // On a damped path, of the residual: an equilibrium may be near.
 constexpr double kNearRest = 0.02;
 constexpr int kFactorsToFinish = 3;  // of a damped path
+constexpr int kOfAGoodBase = 2;      // back-solves of a step
 // Of the largest shear modulus: stress that is as good as none, and rounding.
 constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
 // Of the sum of shear modulus and volume: an energy is what terms of that size leave.
@@ -60,6 +61,7 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       pattern_(body.problem),
       u_(body.problem.dofs().size(), 0.0),
       reached_(potential_.target({})),
+      check_after_(options.check_after),
       path_(potential_, minimiser_, pattern_),
       renewal_(options.rest, options.inverse) {
   shown_.u = u_;
@@ -324,40 +326,58 @@ void FiniteStatics::go_back() {
   before_.clear();
 }
 
-/// At their counts, not when they are ready: the base, and as many steps later whether the rest
-/// that it was made of is stable.
+/// At their counts, not when they are ready.
 void FiniteStatics::take_renewed() {
-  if (!renewal_.asked()) return;
   ++since_asked_;
-  if (since_asked_ == options_.taken_after) {
+  if (renewal_.base_asked() && since_asked_ >= options_.taken_after) {
     if (auto base = renewal_.take_base()) base_ = std::move(base);
-  } else if (since_asked_ == 2 * options_.taken_after) {
-    if (!renewal_.take_stable()) suspected_ = true;
+  }
+  if (renewal_.judgement_asked() && since_asked_ >= 2 * options_.taken_after) {
+    judged(renewal_.take_stable());
   }
 }
 
-/// After a step that came to rest: a base of that state where the step was hard, at times also
+void FiniteStatics::judged(bool stable) {
+  since_check_ = 0;
+  check_after_ =
+      stable ? std::min(2 * check_after_, options_.check_after_most) : options_.check_after;
+  if (!stable) suspected_ = true;
+}
+
+/// A judgement that is on its way alone makes room for a base.
+void FiniteStatics::ask(bool base, bool judgement) {
+  const bool on_its_way =
+      renewal_.base_asked() || (renewal_.judgement_asked() && !(base && judged_alone_));
+  if (on_its_way || !(base || judgement)) return;
+  since_asked_ = 0;
+  judged_alone_ = !base;
+  if (base) worn_ = 0;
+  renewal_.ask(resting_.body(), u_, pattern_, base, judgement);
+}
+
+/// After a step that came to rest: a base of that state where steps have become hard, and at times
 /// whether that rest is stable.
 void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   ++since_check_;
-  const bool hard =
-      report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
-  const bool judge = first_ || since_check_ >= options_.check_after;
-  if (renewal_.asked() || !(hard || judge)) return;
-  since_asked_ = 0;
-  if (judge) since_check_ = 0;
+  worn_ += std::max(0, report.back_solves - kOfAGoodBase);
+  const bool hard = worn_ > options_.renew_after || report.rank > options_.most_rank / 2;
+  if (hard) check_after_ = options_.check_after;
+  const bool check = first_ || since_check_ >= check_after_;
   if (options_.taken_after > 0 && !first_) {
-    renewal_.ask(resting_.body(), u_, pattern_, judge);
+    ask(hard, check);
     return;
   }
+  if (!hard && !check) return;
   first_ = false;
+  worn_ = 0;
   if (auto base = projected_base(resting_.body(), u_, pattern_, report.factors)) {
     if (options_.inverse) base->keep_inverse();
     base_ = std::move(base);
   }
-  if (!judge) return;
+  if (!check) return;
   ++report.factors;
-  if (is_stable(resting_.body(), u_, pattern_)) return;
+  judged(is_stable(resting_.body(), u_, pattern_));
+  if (!suspected_) return;
   state_ = shown_;
   const Report at_rest = report;
   if (leave_saddle(end, report)) {

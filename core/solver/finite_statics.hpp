@@ -31,8 +31,10 @@ struct FiniteStaticsOptions {
   bool inverse = false;       ///< bases that outlive a step are kept as dense inverses
   bool turn = true;           ///< the base by the nodes' rotations
   Index most_rank = 300;      ///< unknowns that what has left touches, before a new base is made
-  int renew_after = 8;        ///< back-solves of a step after which the base is renewed
-  int check_after = 4;        ///< steps after which it is looked whether the rest is stable
+  int renew_after = 4;        ///< back-solves beyond two a step, after which the base is renewed
+  /// Steps after which it is looked whether the rest is stable; twice as many each time that it is
+  /// and the base has not been renewed.
+  int check_after = 4, check_after_most = 32;
   /// Renewals are made by a thread and taken so many calls of solve() later, what it says of
   /// stability twice as many; 0: they are made at once.
   int taken_after = 2;
@@ -93,6 +95,8 @@ class FiniteStatics {
   void rest_at(const FiniteTarget& target);
   void go_back();
   void take_renewed();
+  void judged(bool stable);
+  void ask(bool base, bool judgement);
   void renew_if_due(const FiniteTarget& end, Report& report);
 
   const fem::HyperelasticBody& body_;
@@ -114,7 +118,9 @@ class FiniteStatics {
   std::unique_ptr<FiniteBase> base_;
   bool suspected_ = false;  // the last state at rest may be unstable
   bool first_ = true;       // nothing has come to rest so far
-  int since_check_ = 0, since_asked_ = 0;
+  int worn_ = 0;            // back-solves beyond a few a step since the base was made or asked for
+  int since_check_ = 0, since_asked_ = 0, check_after_;
+  bool judged_alone_ = false;  // what is asked for is no base
   DampedPath path_;
   FiniteRenewal renewal_;  // last: its thread reads pattern_
 };
