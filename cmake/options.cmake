@@ -23,4 +23,8 @@ if(SUNDER_SANITIZE)
   target_compile_options(sunder_options INTERFACE
     -fsanitize=${SUNDER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(sunder_options INTERFACE -fsanitize=${SUNDER_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(sunder_options INTERFACE
+      -fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignore.txt)
+  endif()
 endif()

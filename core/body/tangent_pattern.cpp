@@ -56,7 +56,7 @@ TangentPattern::TangentPattern(const Problem& problem)
 
 linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
-                                                     double inertia) const {
+                                                     const Inertia& inertia) const {
   linear_algebra::SparseMatrix of = zero_;
   double* values = of.valuePtr();
   for (Index e = 0; e < problem_.tet_count(); ++e) {
@@ -74,8 +74,8 @@ linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& bod
   for (Index d : problem_.anchored_dofs()) diagonal(d) += problem_.anchor_stiffness();
   for (Index d = 0; d < problem_.dof_count(); ++d) {
     double& entry = diagonal(d);
-    if (gripped_[d] || entry == 0) entry = 1;  // the others are frozen
-    if (!gripped_[d]) entry += inertia;
+    if (gripped_[d] || (entry == 0 && inertia.mass.empty())) entry = 1;  // the others are frozen
+    if (!gripped_[d]) entry += inertia.of(d);
   }
   return of;
 }

@@ -13,16 +13,26 @@
 
 namespace sunder::fem {
 
+/// What the inertia of a step of time adds to the tangent's diagonal [N/mm].
+struct Inertia {
+  double factor = 0;                  ///< [N/mm], with masses [1/s^2]
+  std::span<const double> mass = {};  ///< per unknown [t]; empty: 1
+
+  [[nodiscard]] double of(Index unknown) const {
+    return mass.empty() ? factor : factor * mass[static_cast<std::size_t>(unknown)];
+  }
+};
+
 class TangentPattern {
  public:
   explicit TangentPattern(const Problem& problem);
 
   /// df/du over the unknowns in the order of supernodes(), lower triangle, anchors included, with
-  /// `inertia` [N/mm] added to every diagonal entry. Equations of gripped unknowns are x = b;
-  /// unknowns that no live element reaches are frozen: 1 N/mm on the diagonal.
+  /// `inertia` added to the diagonal. Equations of gripped unknowns are x = b; unknowns that no
+  /// live element reaches have their inertia alone, without masses 1 N/mm besides: they are frozen.
   [[nodiscard]] linear_algebra::SparseMatrix tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
-                                                     double inertia = 0) const;
+                                                     const Inertia& inertia = {}) const;
   [[nodiscard]] const std::shared_ptr<const linear_algebra::Supernodes>& supernodes() const {
     return supernodes_;
   }

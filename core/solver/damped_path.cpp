@@ -49,8 +49,9 @@ void DampedPath::begin(const std::vector<double>& u) {
 bool DampedPath::renew(Cost& cost) {
   ++cost.factors;
   try {
-    base_ = std::make_unique<FiniteBase>(potential_.resting().body(), state_.u,
-                                         fem::Tangent::projected, pattern_, inertia_ / (dt_ * dt_));
+    base_ =
+        std::make_unique<FiniteBase>(potential_.resting().body(), state_.u, fem::Tangent::projected,
+                                     pattern_, fem::Inertia{inertia_ / (dt_ * dt_)});
   } catch (const NumericalError&) {
     base_.reset();
   }
@@ -66,7 +67,7 @@ bool DampedPath::try_step(const FiniteTarget& target, Cost& cost) {
   if (fresh && !renew(cost)) return false;
   potential_.move(state_.u, dt_, velocity_, ahead_);
   FiniteTarget moving = target;
-  moving.inertia = inertia;
+  moving.inertia = {inertia};
   moving.ahead = &ahead_;
   for (const std::vector<double>& start : {ahead_, state_.u}) {
     next_.u = start;

@@ -25,14 +25,14 @@ Index full_vectors(Index columns) { return (columns + 7) / 8 * 8; }
 }  // namespace
 
 FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
-                       const fem::TangentPattern& pattern, double inertia,
+                       const fem::TangentPattern& pattern, const fem::Inertia& inertia,
                        const linear_algebra::FactorWork& work)
     : problem_(body.problem),
       laws_(body.law_of_volume.begin(), body.law_of_volume.end()),
       out_(problem_.mesh().tets.size(), 0),
       u_(std::move(u)),
       kind_(kind),
-      inertia_(inertia),
+      inertia_(inertia.factor),
       factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
       columns_(factor_.cholesky().supernodes()),
       column_(static_cast<std::size_t>(problem_.dof_count()), kNone),
@@ -190,7 +190,7 @@ void FiniteBase::turn(const RestingBody& now, std::span<const double> u) {
       at[axis] = problem_.dof(n, axis);
       free = free && at[axis] != kNone && coupled_[at[axis]] && !now.frozen()[at[axis]];
     }
-    if (!free) continue;
+    if (!free || sum[n].isZero()) continue;  // none left around it: nothing to turn
     const Mat3 q = nearest_rotation(sum[n]);
     largest_turn_ = std::max(largest_turn_, std::acos(std::clamp((q.trace() - 1) / 2, -1.0, 1.0)));
     turned_.push_back({at, q});

@@ -25,7 +25,7 @@ class FiniteBase {
   /// positive definite.
   /// What the body refers to must outlive it, its `destroyed` need not.
   FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
-             const fem::TangentPattern& pattern, double inertia = 0,
+             const fem::TangentPattern& pattern, const fem::Inertia& inertia = {},
              const linear_algebra::FactorWork& work = {});
 
   /// Takes up what is out since the base was made or has followed last. False: an element is back,
@@ -41,7 +41,7 @@ class FiniteBase {
 
   /// Unknowns that what has left touches.
   [[nodiscard]] Index rank() const { return static_cast<Index>(touched_.size()); }
-  [[nodiscard]] double inertia() const { return inertia_; }
+  [[nodiscard]] double inertia() const { return inertia_; }            ///< its factor
   [[nodiscard]] double largest_turn() const { return largest_turn_; }  ///< [rad]
 
  private:

@@ -24,7 +24,24 @@ constexpr double kLeastContraction = 0.4, kMostContraction = 0.9;
 constexpr int kFewBackSolves = 2;
 constexpr double kLeaving = 2;  // times the residual, against a negative stiffness
 
+// Of the largest shear modulus: stress that is as good as none, and rounding.
+constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
+// Of the sum of shear modulus and volume: an energy is what terms of that size leave.
+constexpr double kSumRounding = 2e-16;
+
 }  // namespace
+
+FiniteScale finite_scale(const Problem& problem) {
+  double stiffest = 0, sum = 0, volume = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    stiffest = std::max(stiffest, problem.small_strain(e).mu);
+    volume += problem.shape(e).volume;
+    sum += problem.small_strain(e).mu * problem.shape(e).volume;
+  }
+  const double face = std::pow(volume / std::max(1, problem.tet_count()), 2.0 / 3);
+  return {kNoStress * stiffest * face, kNoStress * stiffest, kStressRounding * stiffest * face,
+          kStressRounding * stiffest, kSumRounding * sum};
+}
 
 double FiniteMinimiser::residual(const FiniteState& state) const {
   const double left = state.r.norm();

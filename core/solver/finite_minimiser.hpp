@@ -17,6 +17,9 @@ struct FiniteScale {
   double force_rounding = 0, stress_rounding = 0, energy_rounding = 0;
 };
 
+/// Of a body, whatever acts on it.
+[[nodiscard]] FiniteScale finite_scale(const Problem& problem);
+
 class FiniteMinimiser {
  public:
   struct Stop {

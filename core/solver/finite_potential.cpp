@@ -49,7 +49,7 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
   state.stress.resize(with_stress ? body.problem.mesh().tets.size() : 0);
   fem::HyperelasticPass::Wanted wanted{.forces = state.f, .stress = state.stress};
   if (with_stress) wanted.measure = stress_;
-  const double energy = pass_->run(state.u, wanted).energy;
+  state.energy = pass_->run(state.u, wanted).energy;
   state.r = -target.force;
   double work = 0, held = 0, loaded = 0;
   for (std::size_t i = 0; i < state.f.size(); ++i) {
@@ -66,17 +66,19 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
   for (Index d : body.problem.gripped_dofs()) {
     if (!body_.frozen()[d]) held += state.r[d] * state.r[d];
   }
-  double springs = 0;
-  for (std::size_t i = 0; target.inertia > 0 && i < state.u.size(); ++i) {
+  double springs = 0, accelerates = 0;
+  for (std::size_t i = 0; target.ahead && i < state.u.size(); ++i) {
     const Index d = body.problem.dofs()[i];
     if (d == kNone || body_.frozen()[d]) continue;
-    const double from = state.u[i] - (*target.ahead)[i];
-    state.r[d] += target.inertia * from;
-    springs += target.inertia / 2 * from * from;
+    const double from = state.u[i] - (*target.ahead)[i], force = target.inertia.of(d) * from;
+    state.r[d] += force;
+    springs += force * from / 2;
+    accelerates += force * force;
   }
   hold(state.r);
-  state.acting = std::sqrt(loaded + held);
-  state.potential = energy - work + springs;
+  // A fictitious mass is no force that acts.
+  state.acting = std::sqrt(loaded + held + (target.inertia.mass.empty() ? 0 : accelerates));
+  state.potential = state.energy - work + springs;
 }
 
 void FinitePotential::complete(FiniteState& state) const {

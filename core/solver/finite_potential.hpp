@@ -9,17 +9,18 @@
 #include <vector>
 
 #include "body/hyperelastic_pass.hpp"
+#include "body/tangent_pattern.hpp"
 #include "solver/resting_body.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::solver {
 
-/// Force per unknown, displacement per gripped dof; on a damped path a fictitious inertia besides:
-/// springs [N/mm] of every free unknown to where it would go by itself.
+/// Force per unknown, displacement per gripped dof; in motion inertia besides: springs of every
+/// free unknown to where it would go by itself.
 struct FiniteTarget {
   Eigen::VectorXd force;
   std::vector<double> grips;
-  double inertia = 0;
+  fem::Inertia inertia = {};
   const std::vector<double>* ahead = nullptr;  ///< (3 * nodes)
 };
 
@@ -27,7 +28,8 @@ struct FiniteTarget {
 struct FiniteState {
   std::vector<double> u, f;          // (3 * nodes): displacement, internal forces
   Eigen::VectorXd r;                 // internal forces - load; 0 at gripped and frozen unknowns
-  double potential = 0, acting = 0;  // acting: |forces|, of the load and of what holds
+  double energy = 0, potential = 0;  // of the elements; less the load's work, with the inertia's
+  double acting = 0;                 // |forces|, of the load, of what holds and of inertia
   std::vector<Voigt> stress;         // per element; empty: not asked for
 };
 

@@ -16,7 +16,8 @@ constexpr double kLeastInertia = 1e-8, kMostInertia = 1e-2, kMoreInertia = 100;
 
 std::unique_ptr<FiniteBase> base_of(const fem::HyperelasticBody& body, const std::vector<double>& u,
                                     fem::Tangent kind, const fem::TangentPattern& pattern,
-                                    double inertia, const linear_algebra::FactorWork& work) {
+                                    const fem::Inertia& inertia,
+                                    const linear_algebra::FactorWork& work) {
   try {
     return std::make_unique<FiniteBase>(body, u, kind, pattern, inertia, work);
   } catch (const NumericalError&) {
@@ -38,24 +39,27 @@ double stiffness_scale(const Problem& problem) {
 std::unique_ptr<FiniteBase> projected_base(const fem::HyperelasticBody& body,
                                            const std::vector<double>& u,
                                            const fem::TangentPattern& pattern, int& factors,
-                                           const linear_algebra::FactorWork& work) {
+                                           const linear_algebra::FactorWork& work,
+                                           const fem::Inertia& inertia) {
   ++factors;
-  auto base = base_of(body, u, fem::Tangent::projected, pattern, 0, work);
+  auto base = base_of(body, u, fem::Tangent::projected, pattern, inertia, work);
+  if (inertia.factor > 0) return base;
   const double scale = stiffness_scale(body.problem);
   for (double part = kLeastInertia; !base && part <= kMostInertia; part *= kMoreInertia) {
     ++factors;
-    base = base_of(body, u, fem::Tangent::projected, pattern, part * scale, work);
+    base = base_of(body, u, fem::Tangent::projected, pattern, {part * scale}, work);
   }
   return base;
 }
 
 bool is_stable(const fem::HyperelasticBody& body, const std::vector<double>& u,
                const fem::TangentPattern& pattern, const linear_algebra::FactorWork& work) {
-  return base_of(body, u, fem::Tangent::exact, pattern, 0, work) != nullptr;
+  return base_of(body, u, fem::Tangent::exact, pattern, {}, work) != nullptr;
 }
 
 void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-                        const fem::TangentPattern& pattern, bool base, bool judgement) {
+                        const fem::TangentPattern& pattern, bool base, bool judgement,
+                        const fem::Inertia& inertia) {
   give_up();
   unwanted_ = false;
   u_ = u;
@@ -65,7 +69,7 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
   if (base) base_ = made.get_future();
   if (judgement) stable_ = stable.get_future();
   thread_ = std::thread(
-      [this, &pattern, base, judgement, made = std::move(made), stable = std::move(stable),
+      [this, &pattern, base, judgement, inertia, made = std::move(made), stable = std::move(stable),
        of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}]() mutable {
         const linear_algebra::FactorWork work{.stop = &unwanted_};
         // Out of memory or unwanted: the old base goes on.
@@ -79,7 +83,7 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
         };
         const auto make_base = [&] {
           int factors = 0;
-          auto one = projected_base(of, u_, pattern, factors, work);
+          auto one = projected_base(of, u_, pattern, factors, work, inertia);
           if (inverse_ && one) one->keep_inverse();
           return one;
         };

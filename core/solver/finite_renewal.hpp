@@ -15,11 +15,13 @@
 
 namespace sunder::solver {
 
-/// The base of the projected tangent at u; where that has no factor, for a part hangs on a hinge,
-/// with as little inertia as helps. Null: that helps neither. Throws linear_algebra::Stopped.
+/// The base of the projected tangent at u with the inertia; where that has no factor, for a part
+/// hangs on a hinge, with as little inertia as helps. Null: that helps neither. Throws
+/// linear_algebra::Stopped.
 [[nodiscard]] std::unique_ptr<FiniteBase> projected_base(
     const fem::HyperelasticBody& body, const std::vector<double>& u,
-    const fem::TangentPattern& pattern, int& factors, const linear_algebra::FactorWork& work = {});
+    const fem::TangentPattern& pattern, int& factors, const linear_algebra::FactorWork& work = {},
+    const fem::Inertia& inertia = {});
 
 /// Whether a rest is stable: the exact tangent is positive definite. Throws
 /// linear_algebra::Stopped.
@@ -36,9 +38,10 @@ class FiniteRenewal {
   FiniteRenewal& operator=(const FiniteRenewal&) = delete;
 
   /// Begins projected_base() of the body as it is now, is_stable(), or the one and then the other;
-  /// problem, laws and order must outlive it. What was asked before is given up.
+  /// problem, laws, order and masses must outlive it. What was asked before is given up.
   void ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
-           const fem::TangentPattern& pattern, bool base, bool judgement);
+           const fem::TangentPattern& pattern, bool base, bool judgement,
+           const fem::Inertia& inertia = {});
   [[nodiscard]] bool base_asked() const { return base_.valid(); }
   [[nodiscard]] bool judgement_asked() const { return stable_.valid(); }
   /// Waits for the base that was asked for; null: there is none.

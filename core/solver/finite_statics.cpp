@@ -22,23 +22,6 @@ constexpr int kMostPushes = 4;  // modes that are left one after the other
 constexpr double kNearRest = 0.02;
 constexpr int kFactorsToFinish = 3;  // of a damped path
 constexpr int kOfAGoodBase = 2;      // back-solves of a step
-// Of the largest shear modulus: stress that is as good as none, and rounding.
-constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
-// Of the sum of shear modulus and volume: an energy is what terms of that size leave.
-constexpr double kSumRounding = 2e-16;
-
-FiniteScale scale_of(const Problem& problem) {
-  double stiffest = 0, sum = 0, volume = 0;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    stiffest = std::max(stiffest, problem.small_strain(e).mu);
-    volume += problem.shape(e).volume;
-    sum += problem.small_strain(e).mu * problem.shape(e).volume;
-  }
-  const double face = std::pow(volume / std::max(1, problem.tet_count()), 2.0 / 3);
-  return {kNoStress * stiffest * face, kNoStress * stiffest, kStressRounding * stiffest * face,
-          kStressRounding * stiffest, kSumRounding * sum};
-}
-
 /// Of the bounding box: its diagonal.
 double size_of(const Problem& problem) {
   Vec3 low = problem.mesh().nodes.front(), high = low;
@@ -57,7 +40,7 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       resting_(body),
       potential_(resting_, options.stress),
       minimiser_(potential_, options.pairs),
-      scale_(scale_of(body.problem)),
+      scale_(finite_scale(body.problem)),
       pattern_(body.problem),
       u_(body.problem.dofs().size(), 0.0),
       reached_(potential_.target({})),

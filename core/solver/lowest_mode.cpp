@@ -55,7 +55,8 @@ LowestMode lowest_mode(const RestingBody& body, const std::vector<double>& u,
     shift = shift == 0 ? kFirstShift * stiffest : kShiftGrowth * shift;
     ++mode.factors;
     try {
-      base = std::make_unique<FiniteBase>(body.body(), u, fem::Tangent::exact, pattern, shift);
+      base = std::make_unique<FiniteBase>(body.body(), u, fem::Tangent::exact, pattern,
+                                          fem::Inertia{shift});
     } catch (const NumericalError&) {
     }
   }

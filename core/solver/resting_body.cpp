@@ -5,11 +5,13 @@
 
 namespace sunder::solver {
 
-RestingBody::RestingBody(const fem::HyperelasticBody& body)
+RestingBody::RestingBody(const fem::HyperelasticBody& body, Loose loose)
     : body_(body),
+      loose_(loose),
       search_(body.problem),
       out_(static_cast<std::size_t>(body.problem.tet_count()), 0),
       frozen_(static_cast<std::size_t>(body.problem.dof_count())),
+      flying_(frozen_.size()),
       resting_{body.problem, body.law_of_volume, out_} {
   look();
 }
@@ -19,18 +21,20 @@ void RestingBody::look() {
   std::ranges::fill(out_, std::uint8_t{0});
   std::ranges::copy(body_.destroyed, out_.begin());
   search_.look(out_);
-  parts_ = {search_.isolated_nodes(), search_.pieces(), search_.elements_cut_off()};
-  std::ranges::fill(frozen_, std::uint8_t{1});
+  const bool frozen = loose_ == Loose::frozen;
+  if (frozen) parts_ = {search_.isolated_nodes(), search_.pieces(), search_.elements_cut_off()};
+  std::vector<std::uint8_t>& loose = frozen ? frozen_ : flying_;
+  std::ranges::fill(loose, std::uint8_t{1});
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (out_[e]) continue;
     if (search_.piece_of(e) != kNone) {
-      out_[e] = 1;
+      out_[e] = frozen;
       continue;
     }
     for (Index n : problem.mesh().tets[e]) {
       for (int axis = 0; axis < 3; ++axis) {
         const Index d = problem.dof(n, axis);
-        if (d != kNone) frozen_[d] = 0;
+        if (d != kNone) loose[d] = 0;
       }
     }
   }

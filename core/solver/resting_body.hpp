@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of a damaged body statics can speak of: the live elements that something holds. A node that
 // no live element reaches and a piece that nothing holds have no equilibrium; they are frozen where
-// they are, and their elements carry no force.
+// they are, and their elements carry no force. In motion nothing is frozen.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,9 @@ struct FrozenParts {
 
 class RestingBody {
  public:
+  enum class Loose { frozen, moving };
   /// Reads what is destroyed now. The body must outlive it.
-  explicit RestingBody(const fem::HyperelasticBody& body);
+  explicit RestingBody(const fem::HyperelasticBody& body, Loose loose = Loose::frozen);
   RestingBody(const RestingBody&) = delete;  // body() reads its lists
   RestingBody& operator=(const RestingBody&) = delete;
 
@@ -34,12 +35,15 @@ class RestingBody {
   [[nodiscard]] std::span<const std::uint8_t> out() const { return out_; }
   /// Per unknown 1: no element of body() reaches it.
   [[nodiscard]] std::span<const std::uint8_t> frozen() const { return frozen_; }
+  /// In motion, per unknown 1: no live element that something holds reaches it.
+  [[nodiscard]] std::span<const std::uint8_t> flying() const { return flying_; }
   [[nodiscard]] const FrozenParts& parts() const { return parts_; }
 
  private:
   const fem::HyperelasticBody& body_;
+  Loose loose_;
   LooseSearch search_;
-  std::vector<std::uint8_t> out_, frozen_;
+  std::vector<std::uint8_t> out_, frozen_, flying_;
   fem::HyperelasticBody resting_;
   FrozenParts parts_;
 };

@@ -50,7 +50,7 @@ TEST(TangentPattern, IsTheAssembledTangentInItsOrder) {
           expected.col(d).setZero();
           expected(d, d) = 1;
         }
-        const linear_algebra::SparseMatrix ordered = pattern.tangent(body, u, kind, inertia);
+        const linear_algebra::SparseMatrix ordered = pattern.tangent(body, u, kind, {inertia});
         const Eigen::MatrixXd found = Eigen::MatrixXd(ordered).selfadjointView<Eigen::Lower>();
         const auto& place = pattern.supernodes()->place;
         double largest = 0;

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/finite_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunder::solver {
+namespace {
+
+// After a rupture or a step that its cap ended BDF2 carries a force on that is none any more
+// (finite.md: energy rises; three steps of backward Euler do not).
+constexpr int kEulerSteps = 3;
+// A base with so many times the step's inertia, or as little, is another body's.
+constexpr double kMostInertiaApart = 4;
+
+}  // namespace
+
+FiniteMotion::FiniteMotion(const fem::HyperelasticBody& body, std::span<const double> mass,
+                           FiniteMotionOptions options)
+    : options_(options),
+      moving_(body, RestingBody::Loose::moving),
+      potential_(moving_, options.stress),
+      minimiser_(potential_, options.pairs),
+      scale_(finite_scale(body.problem)),
+      pattern_(body.problem),
+      node_mass_(mass.begin(), mass.end()),
+      mass_(static_cast<std::size_t>(body.problem.dof_count()), 0.0),
+      u_(body.problem.dofs().size(), 0.0),
+      v_(u_.size(), 0.0),
+      renewal_(options.rest, false) {
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const Index d = body.problem.dofs()[i];
+    if (d != kNone) mass_[d] = node_mass_[i / 3];
+  }
+  state_.u = u_;
+  potential_.evaluate(potential_.target({}), false, state_);
+}
+
+void FiniteMotion::set_velocity(std::span<const double> v) {
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    v_[i] = potential_.problem().dofs()[i] == kNone ? 0 : v[i];
+  }
+  euler_ = 1;
+}
+
+void FiniteMotion::destroyed(std::span<const Index>) {
+  moving_.look();
+  potential_.body_changed();
+  euler_ = kEulerSteps;
+}
+
+FiniteMotion::Scheme FiniteMotion::scheme(double dt) const {
+  if (euler_ > 0) return {false, 1 / dt, u_, v_};
+  // BDF2 with steps of two lengths (Hairer, Norsett and Wanner 1993, III.5).
+  const double w = dt / dt_before_, now = (1 + w) * (1 + w) / (1 + 2 * w),
+               before = w * w / (1 + 2 * w);
+  Scheme by{true, (1 + 2 * w) / (1 + w) / dt, u_, v_};
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    by.u_from[i] = now * u_[i] - before * u_before_[i];
+    by.v_from[i] = now * v_[i] - before * v_before_[i];
+  }
+  return by;
+}
+
+/// Forces, and springs to where a step without them ends: a + damping v = k (u - ahead).
+FiniteTarget FiniteMotion::target(const Load& load, const Scheme& by) {
+  FiniteTarget of = potential_.target(load);
+  const double square = by.rate * by.rate, drag = options_.damping * by.rate;
+  of.inertia = {square + drag, mass_};
+  ahead_ = by.u_from;
+  for (std::size_t i = 0; i < ahead_.size(); ++i) {
+    const Index d = potential_.problem().dofs()[i];
+    if (d == kNone) continue;
+    ahead_[i] += square / (square + drag) * by.v_from[i] / by.rate;
+    of.force[d] += mass_[d] * options_.gravity[static_cast<Eigen::Index>(i % 3)];
+  }
+  of.ahead = &ahead_;
+  return of;
+}
+
+/// next_ <- where the step looks first: as the body goes, of what nothing holds with the forces on
+/// it, else where it is.
+bool FiniteMotion::begin(const FiniteTarget& target, double dt) {
+  next_.u = u_;
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const Index d = potential_.problem().dofs()[i];
+    if (d != kNone && moving_.flying()[d] && mass_[d] > 0) {
+      next_.u[i] = ahead_[i] + target.force[d] / (target.inertia.of(d));
+    } else {
+      next_.u[i] += dt * v_[i];
+    }
+  }
+  for (int i = 0; i < 2; ++i) {
+    potential_.put_grips(target, next_.u);
+    potential_.evaluate(target, false, next_);
+    if (std::isfinite(next_.potential)) return true;
+    next_.u = u_;
+  }
+  return false;
+}
+
+bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
+                         Report& report) {
+  base_ = projected_base(moving_.body(), u, pattern_, report.factors, {}, inertia);
+  return base_ != nullptr;
+}
+
+bool FiniteMotion::ensure_base(const fem::Inertia& inertia, Report& report) {
+  const bool alike = base_ && base_->inertia() < kMostInertiaApart * inertia.factor &&
+                     inertia.factor < kMostInertiaApart * base_->inertia();
+  if (!alike || !base_->follow(moving_, options_.most_rank)) base_.reset();
+  if (!base_ && !renew(u_, inertia, report)) return false;
+  report.rank = base_->rank();
+  return true;
+}
+
+/// next_ <- the step's end; false: neither the base nor new factors lead to it.
+bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
+  const auto once = [&](int most) {
+    const auto result =
+        minimiser_.minimise(target, *base_, {options_.tolerance, options_.residual}, most, next_);
+    report.back_solves += result.back_solves;
+    report.residual = result.residual;
+    report.error = result.error;
+    report.contraction = result.contraction;
+    return result.at_rest;
+  };
+  if (options_.most_iterations > 0) {
+    report.capped = !once(options_.most_iterations);
+    return true;
+  }
+  if (once(options_.most_back_solves)) return true;
+  for (int i = 0; i < options_.most_factors; ++i) {
+    if (!renew(next_.u, target.inertia, report)) return false;
+    if (once(options_.most_back_solves)) return true;
+  }
+  return false;
+}
+
+FiniteMotionReport FiniteMotion::step(const Load& load, double dt) {
+  Report report;
+  if (renewal_.base_asked() && ++since_asked_ >= options_.taken_after) {
+    if (auto base = renewal_.take_base()) base_ = std::move(base);
+  }
+  const Scheme by = scheme(dt);
+  report.second_order = by.second_order;
+  const FiniteTarget end = target(load, by);
+  FiniteScale scale = scale_;
+  scale.force = std::max(scale.force, state_.acting);
+  minimiser_.set_scale(scale);
+  report.stuck = !ensure_base(end.inertia, report) || !begin(end, dt);
+  if (!report.stuck) {
+    if (options_.turn) base_->turn(moving_, next_.u);
+    report.stuck = !minimise(end, report);
+  }
+  if (report.stuck) {
+    base_.reset();
+    return report;
+  }
+  take(by, dt);
+  euler_ = report.capped ? kEulerSteps : std::max(0, euler_ - 1);
+  renew_if_due(end.inertia, report);
+  return report;
+}
+
+/// The step's end is the state.
+void FiniteMotion::take(const Scheme& by, double dt) {
+  std::swap(state_, next_);
+  u_before_ = std::exchange(u_, state_.u);
+  v_before_ = v_;
+  for (std::size_t i = 0; i < u_.size(); ++i) v_[i] = by.rate * (u_[i] - by.u_from[i]);
+  dt_before_ = dt;
+}
+
+void FiniteMotion::renew_if_due(const fem::Inertia& inertia, Report& report) {
+  const bool hard =
+      report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
+  if (!hard || renewal_.base_asked()) return;
+  if (options_.taken_after == 0) {
+    if (!renew(u_, inertia, report)) base_.reset();
+    return;
+  }
+  since_asked_ = 0;
+  renewal_.ask(moving_.body(), u_, pattern_, true, false, inertia);
+}
+
+double FiniteMotion::kinetic_energy() const {
+  double twice = 0;
+  for (std::size_t i = 0; i < v_.size(); ++i) twice += node_mass_[i / 3] * v_[i] * v_[i];
+  return twice / 2;
+}
+
+double FiniteMotion::height_energy() const {
+  double of = 0;
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    of -= node_mass_[i / 3] * options_.gravity[static_cast<Eigen::Index>(i % 3)] * u_[i];
+  }
+  return of;
+}
+
+Vec3 FiniteMotion::momentum() const {
+  Vec3 of = Vec3::Zero();
+  for (std::size_t n = 0; n < node_mass_.size(); ++n) of += node_mass_[n] * Vec3(&v_[3 * n]);
+  return of;
+}
+
+Vec3 FiniteMotion::angular_momentum() const {
+  Vec3 of = Vec3::Zero();
+  for (std::size_t n = 0; n < node_mass_.size(); ++n) {
+    const Vec3 x = potential_.problem().mesh().nodes[n] + Vec3(&u_[3 * n]);
+    of += node_mass_[n] * x.cross(Vec3(&v_[3 * n]));
+  }
+  return of;
+}
+
+}  // namespace sunder::solver

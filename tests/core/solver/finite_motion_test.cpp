@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// Motion at finite deformation against what is known of it: free flight, spin, the scheme's own
+// decay of a swing, order of convergence, a cut.
+#include "solver/finite_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+
+#include "body/lumped_mass.hpp"
+#include "material/corotated.hpp"
+#include "material/linear.hpp"
+#include "material/neo_hookean.hpp"
+#include "support/assembled_tangent.hpp"
+#include "support/loads.hpp"
+#include "support/structured_board.hpp"
+
+namespace sunder::solver {
+namespace {
+
+constexpr Index kCells = 10;
+constexpr double kDensity = 1e-9;  // water [t/mm^3]
+const Vec3 kDown(0, -9810, 0);
+
+/// A bar of 10 x 1 x 1 mm, supported at x = 0.
+struct Bar {
+  explicit Bar(const Law& law, double density = kDensity)
+      : problem(scene()),
+        laws(fem::one_law(problem, law)),
+        out(problem.mesh().tets.size(), 0),
+        mass(fem::lumped_masses(problem, std::vector<double>{density})) {}
+  static Scene scene() {
+    Scene of;
+    of.mesh = test::structured_board({kCells, 2, 2, 10, 1, 1});
+    of.materials["board"] = {5, 0.3, 2.0};
+    of.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(1e-6, 2, 2)}, Axes{7}});
+    return of;
+  }
+  /// The cells of column i; with the first of them the bar's only support is gone.
+  std::vector<Index> column(Index i) const {
+    std::vector<Index> of;
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      if ((e / 6) % kCells == i) of.push_back(e);
+    }
+    return of;
+  }
+  void destroy(std::span<const Index> elements) {
+    for (Index e : elements) out[e] = 1;
+  }
+  /// Of nodes that are not supported, beyond x.
+  double mass_beyond(double x) const {
+    double of = 0;
+    for (Index n = 0; n < problem.node_count(); ++n) {
+      if (problem.mesh().nodes[n].x() > x && problem.dof(n, 0) != kNone) of += mass[n];
+    }
+    return of;
+  }
+  Vec3 centre() const {
+    Vec3 of = Vec3::Zero();
+    for (Index n = 0; n < problem.node_count(); ++n) {
+      if (problem.dof(n, 0) != kNone) of += mass[n] * problem.mesh().nodes[n];
+    }
+    return of / mass_beyond(0);
+  }
+  std::vector<double> velocities(const std::function<Vec3(const Vec3&)>& at) const {
+    std::vector<double> of;
+    for (const Vec3& x : problem.mesh().nodes) {
+      const Vec3 v = at(x);
+      of.insert(of.end(), {v.x(), v.y(), v.z()});
+    }
+    return of;
+  }
+
+  Problem problem;
+  std::vector<const Law*> laws;
+  std::vector<std::uint8_t> out;
+  std::vector<double> mass;
+  fem::HyperelasticBody body{problem, laws, out};
+};
+
+TEST(FiniteMotion, FliesFreelyWithItsMomentum) {
+  Bar bar(kCorotated);
+  bar.destroy(bar.column(0));
+  FiniteMotion motion(bar.body, bar.mass, {.gravity = kDown});
+  const Vec3 start(300, 400, 500);
+  motion.set_velocity(bar.velocities([&](const Vec3&) { return start; }));
+  const double mass = bar.mass_beyond(0), dt = 1.0 / 200;
+  for (int i = 1; i <= 40; ++i) {
+    const auto report = motion.step({}, dt);
+    ASSERT_FALSE(report.stuck || report.capped) << i;
+    EXPECT_EQ(report.second_order, i > 1);
+    const Vec3 expected = mass * (start + i * dt * kDown);
+    EXPECT_LE((motion.momentum() - expected).norm(), 1e-12 * expected.norm()) << i;
+  }
+  EXPECT_LE(motion.strain_energy(), 1e-12 * motion.kinetic_energy());
+}
+
+// What BDF2 leaves of a fast spin is its own: .84 and .98 of the angular momentum (finite.md).
+TEST(FiniteMotion, SpinsOnAsTheSchemeLetsIt) {
+  for (const auto& [rate, left] : {std::pair(60, 0.84), std::pair(200, 0.98)}) {
+    Bar bar(kCorotated);
+    bar.destroy(bar.column(0));
+    FiniteMotion motion(bar.body, bar.mass, {.tolerance = 1e-8, .residual = 1e-8});
+    const Vec3 centre = bar.centre();
+    motion.set_velocity(
+        bar.velocities([&](const Vec3& x) { return Vec3(0, 0, 20).cross(x - centre); }));
+    const double before = motion.angular_momentum().z();
+    for (int i = 0; i < rate / 2; ++i) ASSERT_FALSE(motion.step({}, 1.0 / rate).stuck);
+    const double share = motion.angular_momentum().z() / before;
+    std::printf("dt 1/%d s: .5 s of 20 rad/s leave %.3f of the spin\n", rate, share);
+    EXPECT_NEAR(share, left, 0.02);
+    EXPECT_LE(motion.momentum().norm(), 1e-6 * bar.mass_beyond(0) * 100);
+  }
+}
+
+/// u'' = -w^2 u from u = 0, u' = 1 by the same scheme; returns u and u' of each step.
+std::vector<std::pair<double, double>> oscillator(double w, double dt, int steps) {
+  std::vector<std::pair<double, double>> of{{0, 1}};
+  for (int i = 1; i <= steps; ++i) {
+    const auto [u, v] = of.back();
+    const double rate = (i == 1 ? 1 : 1.5) / dt;
+    double u_from = u, v_from = v;
+    if (i > 1) {
+      const auto [u_before, v_before] = of[of.size() - 2];
+      u_from = (4 * u - u_before) / 3;
+      v_from = (4 * v - v_before) / 3;
+    }
+    const double now = rate * (rate * u_from + v_from) / (rate * rate + w * w);
+    of.push_back({now, rate * (now - u_from)});
+  }
+  return of;
+}
+
+// The lowest mode of the clamped bar, its density such that it swings at 27.5 Hz.
+TEST(FiniteMotion, ASwingDecaysByTheSchemesOwnRate) {
+  const auto lowest = [](const Bar& bar) {
+    const std::vector<double> u(bar.problem.dofs().size(), 0.0);
+    const Eigen::MatrixXd k = test::assemble_tangent(bar.body, u, fem::Tangent::exact).toDense();
+    Eigen::VectorXd m(bar.problem.dof_count());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      if (bar.problem.dofs()[i] != kNone) m[bar.problem.dofs()[i]] = bar.mass[i / 3];
+    }
+    const Eigen::VectorXd root = m.cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(
+        root.asDiagonal() * k * root.asDiagonal());  // reads the lower triangle
+    return std::pair<double, Eigen::VectorXd>(std::sqrt(modes.eigenvalues()[0]),
+                                              root.cwiseProduct(modes.eigenvectors().col(0)));
+  };
+  const double wanted = 2 * std::numbers::pi * 27.5;
+  const double ratio = lowest(Bar(kLinear)).first / wanted;
+  const Bar bar(kLinear, kDensity * ratio * ratio);
+  const auto [w, shape] = lowest(bar);
+  ASSERT_NEAR(w, wanted, 1e-6 * wanted);
+  for (const auto& [rate, left] :
+       {std::pair(60, 0.0), std::pair(200, 0.0), std::pair(1000, 0.77)}) {
+    FiniteMotion motion(bar.body, bar.mass, {.tolerance = 1e-10, .residual = 1e-12});
+    std::vector<double> v(bar.problem.dofs().size(), 0.0);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (bar.problem.dofs()[i] != kNone) v[i] = shape[bar.problem.dofs()[i]];
+    }
+    motion.set_velocity(v);
+    const double before = motion.kinetic_energy();
+    const auto expected = oscillator(w, 1.0 / rate, rate / 2);
+    double apart = 0, most = 0;
+    for (int s = 1; s <= rate / 2; ++s) {
+      ASSERT_FALSE(motion.step({}, 1.0 / rate).stuck);
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        apart = std::max(apart, std::abs(motion.displacement()[i] - v[i] * expected[s].first));
+        most = std::max(most, std::abs(motion.displacement()[i]));
+      }
+    }
+    const double share = (motion.kinetic_energy() + motion.strain_energy()) / before;
+    std::printf("dt 1/%d s: .5 s of 27.5 Hz leave %.3f of the energy\n", rate, share);
+    EXPECT_LE(apart, 1e-8 * most);
+    EXPECT_NEAR(share, left, 0.02);
+  }
+}
+
+Load pulled(const Problem& problem, double force) {
+  return test::pull(problem, test::nodes_in(problem.mesh(), {Vec3(9.99, -1, -1), Vec3(11, 2, 2)}),
+                    Vec3(0, -force, 0));
+}
+
+/// From 0 to 1 without a jump in the first three derivatives.
+double smooth(double t) {
+  return std::pow(t, 4) * (35 - 84 * t + 70 * t * t - 20 * std::pow(t, 3));
+}
+
+TEST(FiniteMotion, IsOfSecondOrderInTime) {
+  for (const Law* law : {&kCorotated, &kNeoHookean}) {
+    constexpr double kEnd = 0.02;
+    const auto end = [&](int steps) {
+      Bar bar(*law);
+      FiniteMotion motion(bar.body, bar.mass, {.tolerance = 1e-9, .residual = 1e-10});
+      for (int i = 1; i <= steps; ++i) {
+        const double t = 1.0 * i / steps;
+        EXPECT_FALSE(motion.step(pulled(bar.problem, 0.01 * smooth(t)), kEnd / steps).stuck);
+      }
+      return motion.displacement();
+    };
+    const auto coarse = end(240), fine = end(480), finest = end(960);
+    double change = 0, next = 0;
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      change = std::max(change, std::abs(fine[i] - coarse[i]));
+      next = std::max(next, std::abs(finest[i] - fine[i]));
+    }
+    std::printf("%s: 480 steps change 240's by %.3g mm, 960 those by %.3g: ratio %.2f\n",
+                law->name.data(), change, next, change / next);
+    EXPECT_GT(change / next, 3.4);
+    EXPECT_LT(change / next, 4.6);
+  }
+}
+
+// What is cut off falls: only gravity changes its momentum.
+TEST(FiniteMotion, WhatIsCutOffFalls) {
+  Bar bar(kCorotated);
+  FiniteMotion motion(bar.body, bar.mass, {.tolerance = 1e-8, .residual = 1e-8, .gravity = kDown});
+  constexpr double kDt = 1e-3;
+  for (int i = 0; i < 20; ++i) ASSERT_FALSE(motion.step({}, kDt).stuck);
+  const auto gone = bar.column(4);
+  bar.destroy(gone);
+  motion.destroyed(gone);
+  const auto beyond = [&] {
+    Vec3 of = Vec3::Zero();
+    for (Index n = 0; n < bar.problem.node_count(); ++n) {
+      if (bar.problem.mesh().nodes[n].x() > 4.5) {
+        of += bar.mass[n] * Vec3(&motion.velocity()[static_cast<std::size_t>(3 * n)]);
+      }
+    }
+    return of;
+  };
+  const Vec3 before = beyond();
+  const double mass = bar.mass_beyond(4.5);
+  for (int i = 1; i <= 60; ++i) {
+    const auto report = motion.step({}, kDt);
+    ASSERT_FALSE(report.stuck || report.capped) << i;
+    EXPECT_EQ(report.second_order, i > 3);
+    const Vec3 expected = before + i * kDt * mass * kDown;
+    EXPECT_LE((beyond() - expected).norm(), 1e-8 * expected.norm()) << i;
+  }
+}
+
+TEST(FiniteMotion, HasTheSameBitsWhateverTheThreadDoes) {
+  const auto run = [](std::chrono::milliseconds rest) {
+    Bar bar(kNeoHookean);
+    FiniteMotion motion(bar.body, bar.mass, {.gravity = kDown, .renew_after = 1, .rest = rest});
+    for (int i = 0; i < 30; ++i) {
+      if (i == 20) {
+        const auto gone = bar.column(6);
+        bar.destroy(std::span(gone).first(9));
+        motion.destroyed(std::span(gone).first(9));
+      }
+      EXPECT_FALSE(motion.step(pulled(bar.problem, 0.02), 2e-3).stuck);
+    }
+    return motion.displacement();
+  };
+  EXPECT_EQ(run(std::chrono::milliseconds(0)), run(std::chrono::milliseconds(4)));
+}
+
+TEST(FiniteMotion, ACapEndsAStepAndSaysSo) {
+  Bar bar(kCorotated);
+  FiniteMotion motion(bar.body, bar.mass,
+                      {.tolerance = 1e-9, .gravity = kDown, .most_iterations = 2});
+  int capped = 0;
+  for (int i = 0; i < 20; ++i) {
+    const auto report = motion.step(pulled(bar.problem, 0.05), 5e-3);
+    ASSERT_FALSE(report.stuck);
+    EXPECT_LE(report.back_solves, 2);
+    capped += report.capped;
+    if (report.capped) {
+      EXPECT_FALSE(motion.step(pulled(bar.problem, 0.05), 5e-3).second_order);
+    }
+  }
+  EXPECT_GE(capped, 1);
+}
+
+}  // namespace
+}  // namespace sunder::solver
