@@ -11,6 +11,11 @@
 namespace sunder::fem {
 namespace {
 
+// What an eased tangent keeps of negative eigenvalues: with all of them, as near to singular as the
+// body is to buckling, an event of the torn board of 7,776 tetrahedra takes 25 back-solves, with
+// none 17, with this share 14; of 30,246 6, 8 and 7.
+constexpr double kEased = 0.7;
+
 Mat3 deformation_gradient(const HyperelasticBody& body, Index e, std::span<const double> u) {
   return Mat3::Identity() + displacement_gradient(body.problem, e, u);
 }
@@ -88,7 +93,10 @@ ElementMatrix element_tangent(const HyperelasticBody& body, Index e, std::span<c
       body.law(e).tangent(body.problem.small_strain(e), deformation_gradient(body, e, u));
   const TetShape& shape = body.problem.shape(e);
   Vector9 values = shape.volume * tangent.values;
-  if (kind == Tangent::projected) values = values.cwiseMax(0);
+  if (kind != Tangent::exact) {
+    const double kept = kind == Tangent::eased ? kEased : 0;
+    values = values.cwiseMax(0) + kept * values.cwiseMin(0);
+  }
   const auto w = corner_forces(shape, tangent.modes);
   return w * values.asDiagonal() * w.transpose();
 }

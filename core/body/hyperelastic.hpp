@@ -43,8 +43,10 @@ using StressFunction = Voigt (*)(const Mat3& p, const Mat3& f);
 void element_stresses(const HyperelasticBody& body, std::span<const double> u,
                       StressFunction stress, std::span<Voigt> stresses);
 
-enum class Tangent { exact, projected };
-/// 12 x 12, exact or the nearest positive semidefinite one by F.
+/// exact; projected: by F the nearest positive semidefinite one; eased: between the two, nearer to
+/// the exact one.
+enum class Tangent { exact, eased, projected };
+/// 12 x 12.
 [[nodiscard]] ElementMatrix element_tangent(const HyperelasticBody& body, Index e,
                                             std::span<const double> u, Tangent kind);
 

@@ -52,6 +52,15 @@ std::unique_ptr<FiniteBase> projected_base(const fem::HyperelasticBody& body,
   return base;
 }
 
+std::unique_ptr<FiniteBase> base_at_rest(const fem::HyperelasticBody& body,
+                                         const std::vector<double>& u,
+                                         const fem::TangentPattern& pattern, int& factors,
+                                         const linear_algebra::FactorWork& work) {
+  ++factors;
+  auto base = base_of(body, u, fem::Tangent::eased, pattern, {}, work);
+  return base ? std::move(base) : projected_base(body, u, pattern, factors, work);
+}
+
 bool is_stable(const fem::HyperelasticBody& body, const std::vector<double>& u,
                const fem::TangentPattern& pattern, const linear_algebra::FactorWork& work) {
   return base_of(body, u, fem::Tangent::exact, pattern, {}, work) != nullptr;
@@ -83,7 +92,8 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
         };
         const auto make_base = [&] {
           int factors = 0;
-          auto one = projected_base(of, u_, pattern, factors, work, inertia);
+          auto one = inertia.factor > 0 ? projected_base(of, u_, pattern, factors, work, inertia)
+                                        : base_at_rest(of, u_, pattern, factors, work);
           if (inverse_ && one) one->keep_inverse();
           return one;
         };

@@ -23,6 +23,14 @@ namespace sunder::solver {
     const fem::TangentPattern& pattern, int& factors, const linear_algebra::FactorWork& work = {},
     const fem::Inertia& inertia = {});
 
+/// The base of the eased tangent at a rest u; where that is not positive definite,
+/// projected_base().
+[[nodiscard]] std::unique_ptr<FiniteBase> base_at_rest(const fem::HyperelasticBody& body,
+                                                       const std::vector<double>& u,
+                                                       const fem::TangentPattern& pattern,
+                                                       int& factors,
+                                                       const linear_algebra::FactorWork& work = {});
+
 /// Whether a rest is stable: the exact tangent is positive definite. Throws
 /// linear_algebra::Stopped.
 [[nodiscard]] bool is_stable(const fem::HyperelasticBody& body, const std::vector<double>& u,
@@ -37,7 +45,8 @@ class FiniteRenewal {
   FiniteRenewal(const FiniteRenewal&) = delete;
   FiniteRenewal& operator=(const FiniteRenewal&) = delete;
 
-  /// Begins projected_base() of the body as it is now, is_stable(), or the one and then the other;
+  /// Begins base_at_rest() of the body as it is now, with an inertia projected_base(), is_stable(),
+  /// or the one and then the other;
   /// problem, laws, order and masses must outlive it. What was asked before is given up.
   void ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
            const fem::TangentPattern& pattern, bool base, bool judgement,

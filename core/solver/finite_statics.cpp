@@ -353,7 +353,7 @@ void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   if (!hard && !check) return;
   first_ = false;
   worn_ = 0;
-  if (auto base = projected_base(resting_.body(), u_, pattern_, report.factors)) {
+  if (auto base = base_at_rest(resting_.body(), u_, pattern_, report.factors)) {
     if (options_.inverse) base->keep_inverse();
     base_ = std::move(base);
   }

@@ -31,7 +31,7 @@ struct FiniteStaticsOptions {
   bool inverse = false;       ///< bases that outlive a step are kept as dense inverses
   bool turn = true;           ///< the base by the nodes' rotations
   Index most_rank = 300;      ///< unknowns that what has left touches, before a new base is made
-  int renew_after = 4;        ///< back-solves beyond two a step, after which the base is renewed
+  int renew_after = 8;        ///< back-solves beyond two a step, after which the base is renewed
   /// Steps after which it is looked whether the rest is stable; twice as many each time that it is
   /// and the base has not been renewed.
   int check_after = 4, check_after_most = 32;

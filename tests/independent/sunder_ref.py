@@ -478,6 +478,7 @@ class Sim:
         Q = self.P[T]
         self.h = float(np.mean([np.linalg.norm(Q[:, a] - Q[:, b], axis=1) for a, b in pairs]))
         self.cen = Q.mean(axis=1)
+        self.around_point = {}
 
     def proj(self, x):
         x = np.array(x, float)
@@ -578,13 +579,19 @@ class Sim:
             tip.ended = True
 
     # ---- pristine field (Geometry)
+    def around(self, p):
+        """Breakable elements within 1.5 h of p with their volumes; asked again and again."""
+        key = p.tobytes()
+        if key not in self.around_point:
+            near = np.flatnonzero(self.breakable & (((self.cen - p) ** 2).sum(axis=1) <= (1.5 * self.h) ** 2))
+            self.around_point[key] = near, self.fem.V[near]
+        return self.around_point[key]
+
     def pristine_at(self, p):
-        near = self.breakable & (np.linalg.norm(self.cen - p, axis=1) <= 1.5 * self.h)
-        if not near.any():
+        near, V = self.around(p)
+        if not len(near):
             return None
-        V = self.fem.V[near]
-        s = (V[:, None] * self.prist[near]).sum(axis=0) / V.sum()
-        return self.plane_tensor(s)
+        return self.plane_tensor(V @ self.prist[near] / V.sum())
 
     # ---- [5]-[8] of one tip
     def tip_state(self, cr, tip, t, F):
