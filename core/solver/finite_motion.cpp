@@ -190,7 +190,7 @@ double FiniteMotion::kinetic_energy() const {
   return twice / 2;
 }
 
-double FiniteMotion::height_energy() const {
+double FiniteMotion::gravity_energy() const {
   double of = 0;
   for (std::size_t i = 0; i < u_.size(); ++i) {
     of -= node_mass_[i / 3] * options_.gravity[static_cast<Eigen::Index>(i % 3)] * u_[i];
