@@ -65,8 +65,8 @@ class FiniteMotion {
 
   [[nodiscard]] double strain_energy() const { return state_.energy; }  ///< [N mm]
   [[nodiscard]] double kinetic_energy() const;                          ///< [N mm]
-  [[nodiscard]] double gravity_energy() const;   ///< 0 undeformed [N mm]
-  [[nodiscard]] Vec3 momentum() const;          ///< [t mm/s]
+  [[nodiscard]] double gravity_energy() const;                          ///< 0 undeformed [N mm]
+  [[nodiscard]] Vec3 momentum() const;                                  ///< [t mm/s]
   [[nodiscard]] Vec3 angular_momentum() const;  ///< about the origin [t mm^2/s]
 
  private:
