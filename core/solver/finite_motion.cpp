@@ -34,6 +34,10 @@ FiniteMotion::FiniteMotion(const fem::HyperelasticBody& body, std::span<const do
   }
   state_.u = u_;
   potential_.evaluate(potential_.target({}), false, state_);
+  gripped_.resize(mass_.size());
+  for (Index d : body.problem.gripped_dofs()) gripped_[d] = 1;
+  load_.setZero(body.problem.dof_count());
+  reaction_ = load_;
 }
 
 void FiniteMotion::set_velocity(std::span<const double> v) {
@@ -46,6 +50,9 @@ void FiniteMotion::set_velocity(std::span<const double> v) {
 void FiniteMotion::destroyed(std::span<const Index>) {
   moving_.look();
   potential_.body_changed();
+  const double before = state_.energy;
+  potential_.evaluate(potential_.target({}), false, state_);
+  broken_ += before - state_.energy;
   euler_ = kEulerSteps;
 }
 
@@ -157,19 +164,50 @@ FiniteMotionReport FiniteMotion::step(const Load& load, double dt) {
     base_.reset();
     return report;
   }
-  take(by, dt);
+  take(end, by, dt, report);
   euler_ = report.capped ? kEulerSteps : std::max(0, euler_ - 1);
   renew_if_due(end.inertia, report);
   return report;
 }
 
 /// The step's end is the state.
-void FiniteMotion::take(const Scheme& by, double dt) {
+void FiniteMotion::take(const FiniteTarget& end, const Scheme& by, double dt, Report& report) {
+  std::vector<double> v(u_.size());
+  for (std::size_t i = 0; i < u_.size(); ++i) v[i] = by.rate * (next_.u[i] - by.u_from[i]);
+  report.balance = balance(end, by, v);
   std::swap(state_, next_);
   u_before_ = std::exchange(u_, state_.u);
-  v_before_ = v_;
-  for (std::size_t i = 0; i < u_.size(); ++i) v_[i] = by.rate * (u_[i] - by.u_from[i]);
+  v_before_ = std::exchange(v_, std::move(v));
   dt_before_ = dt;
+}
+
+/// Of the step from state_ to next_, v its velocities; keeps what the next one's begins with. The
+/// equation of the step's end, m a + damping m v + f = load + reaction + residual, times the way.
+FiniteMotionBalance FiniteMotion::balance(const FiniteTarget& end, const Scheme& by,
+                                          std::span<const double> v) {
+  FiniteMotionBalance of;
+  of.broken = std::exchange(broken_, 0.0);
+  of.scheme = state_.energy - next_.energy;
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const Index d = potential_.problem().dofs()[i];
+    if (d == kNone) continue;
+    const double way = next_.u[i] - u_[i], mass = mass_[d];
+    const double weight = mass * options_.gravity[static_cast<Eigen::Index>(i % 3)];
+    const double load = end.force[d] - weight;
+    const double inertia = mass * by.rate * (v[i] - by.v_from[i]);
+    const double drag = options_.damping * mass * v[i];
+    const double left = inertia + drag + next_.f[i] - load - weight;
+    const double reaction = gripped_[d] ? left : 0;
+    of.work += (load_[d] + load + reaction_[d] + reaction) / 2 * way;
+    of.damped += drag * way;
+    // Of kinetic energy, of strain energy, of work: the step's end counts, not its mean.
+    of.scheme += inertia * way - mass / 2 * (v[i] * v[i] - v_[i] * v_[i]) + next_.f[i] * way +
+                 (load_[d] - load + reaction_[d] - reaction) / 2 * way;
+    if (!gripped_[d]) of.unsolved -= left * way;
+    load_[d] = load;
+    reaction_[d] = reaction;
+  }
+  return of;
 }
 
 void FiniteMotion::renew_if_due(const fem::Inertia& inertia, Report& report) {

@@ -32,6 +32,16 @@ struct FiniteMotionOptions {
   std::chrono::milliseconds rest{0};  ///< the thread's, before it begins
 };
 
+/// Where the work of a step went [N mm], each term by its own formula:
+/// work = change of kinetic, strain and gravity's energy + damped + scheme + unsolved.
+struct FiniteMotionBalance {
+  double work = 0;      ///< of forces and grips, by the trapezoidal rule
+  double damped = 0;    ///< by damping
+  double scheme = 0;    ///< what the scheme loses: of kinetic and strain energy, and of work
+  double unsolved = 0;  ///< of the residual: what the iteration has left
+  double broken = 0;    ///< strain energy of what left since the step before, gone with it
+};
+
 /// How a step ended: at rest in its own moving frame, or by the cap, which breaks the promise, or
 /// `stuck`: then the state is still the one before it.
 struct FiniteMotionReport {
@@ -40,6 +50,7 @@ struct FiniteMotionReport {
   double residual = 0, error = 0, contraction = 0;  ///< as in FiniteStaticsReport
   int back_solves = 0, factors = 0;
   Index rank = 0;
+  FiniteMotionBalance balance;
 };
 
 class FiniteMotion {
@@ -84,7 +95,9 @@ class FiniteMotion {
   [[nodiscard]] bool renew(const std::vector<double>& u, const fem::Inertia& inertia,
                            Report& report);
   [[nodiscard]] bool minimise(const FiniteTarget& target, Report& report);
-  void take(const Scheme& by, double dt);
+  void take(const FiniteTarget& end, const Scheme& by, double dt, Report& report);
+  [[nodiscard]] FiniteMotionBalance balance(const FiniteTarget& end, const Scheme& by,
+                                            std::span<const double> v);
   void renew_if_due(const fem::Inertia& inertia, Report& report);
 
   FiniteMotionOptions options_;
@@ -95,8 +108,11 @@ class FiniteMotion {
   fem::TangentPattern pattern_;
   std::vector<double> node_mass_, mass_;  // per node, per unknown
   std::vector<double> u_, v_, u_before_, v_before_;
-  double dt_before_ = 0;  // of the last step; 0: the state before it is none to go by
-  int euler_ = 1;         // so many steps of backward Euler are still to come
+  double dt_before_ = 0;               // of the last step; 0: the state before it is none to go by
+  int euler_ = 1;                      // so many steps of backward Euler are still to come
+  std::vector<std::uint8_t> gripped_;  // per unknown
+  Eigen::VectorXd load_, reaction_;    // at the state, without gravity; of grips, else 0
+  double broken_ = 0;                  // strain energy that left since the last step
   std::vector<double> ahead_;
   FiniteState state_, next_;
   std::unique_ptr<FiniteBase> base_;

@@ -244,6 +244,55 @@ TEST(FiniteMotion, WhatIsCutOffFalls) {
   }
 }
 
+// Work, damping, gravity and ruptures: the terms of every step add up, no energy comes from the
+// scheme (finite.md: at most 1.5e-3 of the work), and shorter steps lose less.
+TEST(FiniteMotion, EnergyIsAccountedForThroughRuptures) {
+  double lost = 1;
+  for (const int rate : {1000, 4000}) {
+    Bar bar(kNeoHookean);
+    FiniteMotion motion(bar.body, bar.mass, {.damping = 5, .gravity = kDown});
+    const auto energy = [&] {
+      return motion.kinetic_energy() + motion.strain_energy() + motion.gravity_energy();
+    };
+    double work = 0, scheme = 0, unsolved = 0, broken = 0, damped = 0;
+    const std::vector<Index> tear = bar.column(5);
+    std::size_t gone = 0;
+    for (int i = 1; i <= rate / 20; ++i) {
+      const double t = 20.0 * i / rate;
+      if (t > 0.5 && gone < tear.size() && gone < static_cast<std::size_t>(50 * (t - 0.5))) {
+        const std::span<const Index> next = std::span(tear).subspan(gone++, 1);
+        bar.destroy(next);
+        const double whole = motion.strain_energy();
+        motion.destroyed(next);
+        EXPECT_LE(motion.strain_energy(), whole);
+      }
+      const double before = energy();
+      const auto report = motion.step(pulled(bar.problem, 0.02 * smooth(t)), 1.0 / rate);
+      ASSERT_FALSE(report.stuck) << i;
+      const auto& b = report.balance;
+      const double terms =
+          std::abs(b.work) + std::abs(b.damped) + std::abs(b.scheme) + std::abs(before);
+      EXPECT_NEAR(b.work, energy() - before + b.damped + b.scheme + b.unsolved, 1e-12 * terms) << i;
+      EXPECT_GE(b.broken, 0);
+      EXPECT_GE(b.damped, 0);
+      work += b.work;
+      scheme += b.scheme;
+      unsolved += b.unsolved;
+      broken += b.broken;
+      damped += b.damped;
+    }
+    std::printf(
+        "dt 1/%d s: %zu ruptures, work %.4f, broken %.4f, damped %.4f, scheme %.5f, unsolved %.1e "
+        "N mm\n",
+        rate, gone, work, broken, damped, scheme, unsolved);
+    EXPECT_GE(gone, 20U);
+    EXPECT_LE(std::abs(unsolved), 1e-2 * work);
+    EXPECT_GE(scheme, -1.5e-3 * work);
+    EXPECT_LT(scheme / work, lost);
+    lost = scheme / work;
+  }
+}
+
 TEST(FiniteMotion, HasTheSameBitsWhateverTheThreadDoes) {
   const auto run = [](std::chrono::milliseconds rest) {
     Bar bar(kNeoHookean);
