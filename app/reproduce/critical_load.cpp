@@ -104,7 +104,6 @@ std::optional<CriticalLoad> searched(const Laboratory& lab, const RunPlan& plan,
     const Trial trial = try_load(lab, plan, load, growth);
     if (trial.found) bracket.best = trial.found;
     const bool broke = trial.found || !trial.result.failure.empty();
-    if (!broke && lab.notes().back().no_k) break;  // more load brings no K back
     if (broke)
       bracket.breaks = load;
     else

@@ -182,9 +182,9 @@ void Laboratory::note(const RunPlan& plan, const RunResult& result) const {
   note.all = result.problem->scene().steps;
   note.fractures = static_cast<int>(result.fractures().size());
   for (const StepReport& step : result.steps) note.unfinished += step.unfinished ? 1 : 0;
-  note.no_k =
+  note.by_j =
       std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& text) {
-        return text.find("stress intensity has no meaning") != std::string::npos;
+        return text.find("J, which is measured there too") != std::string::npos;
       });
   note.failure = result.failure;
   notes_.push_back(std::move(note));

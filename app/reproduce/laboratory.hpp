@@ -40,7 +40,7 @@ struct RunNote {
   double load = 1;       ///< times the scene's forces, in the last step
   int steps = 0, all = 0, fractures = 0;
   int unfinished = 0;   ///< steps that ended before the body was at rest
-  bool no_k = false;    ///< strains at a tip left it without a K of the field
+  bool by_j = false;    ///< strains at a tip left J in place of its K
   std::string failure;  ///< `sunder run` ends with exit code 5 there; empty: it did not fail
 };
 

@@ -83,10 +83,10 @@ std::string why_not(const TwoVerdicts& both) {
                " times its forces: no equilibrium (exit code 5)";
   if (survival == Survival::survives || both.linear.by != "field K") return "";
   const auto without = std::count_if(both.runs.begin(), both.runs.end(),
-                                     [](const RunNote& note) { return note.no_k; });
+                                     [](const RunNote& note) { return note.by_j; });
   return without == 0 ? ""
-                      : "the field has no K where the tip's surroundings are strained by over 10 % "
-                        "or turned in themselves by over 10 deg (" +
+                      : "where the tip's surroundings are strained by over 10 % or turned in "
+                        "themselves by over 10 deg K is sqrt(J E') (" +
                             std::to_string(without) + " of " +
                             counted(static_cast<long long>(both.runs.size()), "run") + ")";
 }

@@ -146,8 +146,8 @@ std::vector<std::string> k_over_load(const Laboratory& lab, const KChoice& k, do
 DataTable k_table(const TwoLabs& labs) {
   DataTable table{"two-laws-k",
                   "K of the notch at rest [MPa sqrt(mm)] by load and by the notch's length, "
-                  "elements of 3.939 mm. \"strain\": none by the field, what surrounds the tip is "
-                  "beyond small strain.",
+                  "elements of 3.939 mm. By the field beyond small strain, law corotated: "
+                  "sqrt(J E').",
                   {"notch [mm]", "pull [N]", "formula K by linear", "formula K by corotated",
                    "field K by linear", "field K by corotated"},
                   {},

@@ -51,8 +51,9 @@ std::string sentence(const Finding& f, const Scene& scene) {
              " reaches elements destroyed by something else: it is not separated from their field";
     case Finding::Kind::field_strain:
       return field_of(f) +
-             " is not measured: what surrounds the tip is strained by over 10 % or turned in "
-             "itself by over 10 degrees, where stress intensity has no meaning (docs/method.md)";
+             " has no K: what surrounds the tip is strained by over 10 % or turned in itself by "
+             "over 10 degrees; J, which is measured there too, takes its place as sqrt(J E') "
+             "(docs/method.md)";
     case Finding::Kind::field_notch:
       return field_of(f) +
              " is not measured: the notch of the mesh's shape is too wide there for a sharp "

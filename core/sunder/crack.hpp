@@ -53,12 +53,15 @@ struct SifTerms {
   double a = 0, b = 0;                      ///< crack length and chord [mm]
   /// K_I, K_II, K_III measured from the field [MPa sqrt(mm)]; none where it carries nothing.
   std::optional<double> k_1 = std::nullopt, k_2 = std::nullopt, k_3 = std::nullopt;
+  /// Energy release rate by the field [N/mm], at any deformation.
+  std::optional<double> j = std::nullopt;
   /// K [MPa sqrt(mm)] and theta [deg] by the formula and by the field, whichever drives the tip;
   /// none where nothing drives it by that one.
   std::optional<double> k_formula = std::nullopt, theta_formula = std::nullopt;
   std::optional<double> k_field = std::nullopt, theta_field = std::nullopt;
   /// What disturbs the field's K, words joined by +: "fixed", "material", "damage"; "notch": it
-  /// was not measured at a notch of the mesh's shape; empty: nothing. The text is static.
+  /// was not measured at a notch of the mesh's shape; "strain": beyond small strain there is J in
+  /// its place, and k_field = sqrt(J E'); empty: nothing. The text is static.
   std::string_view field_note = {};
   /// What the formula's direction v = K_a e_a + K_b d + K_c e_c is made of (method.md 8), in the
   /// plane: the tip's place [mm] and the unit vectors; d is its direction before the growth.
@@ -76,7 +79,8 @@ struct TipState {
   std::optional<double> k = std::nullopt, theta = std::nullopt;
   /// With sif = "field".
   std::optional<double> k_1 = std::nullopt, k_2 = std::nullopt, k_3 = std::nullopt;
-  std::string_view field_note = {};  ///< as in SifTerms
+  std::optional<double> j = std::nullopt;  ///< likewise, as in SifTerms
+  std::string_view field_note = {};        ///< as in SifTerms
 };
 
 }  // namespace sunder

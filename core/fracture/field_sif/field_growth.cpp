@@ -38,13 +38,20 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
   const auto [k_1, k_2, k_3] = measured.factors;
   // A piece that only destroyed elements hold may move as far as numbers go.
   if (!std::isfinite(k_1) || !std::isfinite(k_2) || !std::isfinite(k_3)) return std::nullopt;
-  terms.k_1 = k_1;
-  terms.k_2 = k_2;
-  terms.k_3 = k_3;
+  if (std::isfinite(measured.j)) terms.j = measured.j;
   terms.field_note = measured.note();
+  if (!measured.disturbed.strain) {
+    terms.k_1 = k_1;
+    terms.k_2 = k_2;
+    terms.k_3 = k_3;
+  }
   const double from_frame = tangential_angle(k_1, k_2);
-  const double k = tangential_intensity(k_1, k_2, from_frame);
+  double k = tangential_intensity(k_1, k_2, from_frame);
   if (!(k > 0)) return std::nullopt;
+  if (measured.disturbed.strain) {  // K of small strain has no meaning, the energy has
+    if (!terms.j || !(*terms.j > 0)) return std::nullopt;
+    k = std::sqrt(*terms.j * measured.material.effective_young());
+  }
   const Vec2& d = crack.tips[tip].direction;
   const double theta = growth_angle(d, turned(measured.frame.direction, from_frame));
   terms.k_field = k;
@@ -71,7 +78,8 @@ void add_field_state(FieldIntensityMeter& meter, const Crack& crack, std::size_t
   SifTerms terms;
   add_field_terms(meter, crack, tip, view, terms, findings);
   state.field_note = terms.field_note;
-  if (!terms.k_1) return;
+  state.j = terms.j;
+  if (!terms.j) return;
   state.k = terms.k_field.value_or(0.0);
   state.theta = terms.theta_field;
   state.k_1 = terms.k_1;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "fracture/crack_path.hpp"
+#include "fracture/field_sif/energy_release.hpp"
 #include "fracture/field_sif/turned_back.hpp"
 #include "fracture/stress_intensity.hpp"
 #include "sunder/fracture_model.hpp"
@@ -195,7 +196,7 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
   if (result.disturbed.left_out) return result;
   result.disturbed.material = around.other_material < chosen;
   result.disturbed.damage = around.other_damage < chosen;
-  if (chosen == wanted) mend(crack, tip, view, result);
+  if (chosen == wanted && !result.disturbed.strain) mend(crack, tip, view, result);
   return result;
 }
 
@@ -231,7 +232,7 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   if (problem_.finite() && !view.small) {
     const TurnedBack back = turn_back(problem_, domain, displacement_);
     if (!(back.strain <= kSmallStrain && back.rotation_deg <= kSmallRotationDeg))
-      return left_out(crack, tip, &Disturbances::strain);
+      result.disturbed.strain = true;
     turned_forces_.assign(view.forces.begin(), view.forces.end());
     for (NodalForce& at : turned_forces_) at.force = back.rotation.transpose() * at.force;
     input.forces = turned_forces_;
@@ -239,6 +240,7 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   const auto tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;
   result.factors = interaction_integral(input, result.material);
+  if (!stretch) result.j = energy_release(input);
   if (shift) *shift = shift_integral(input, result.material);
   result.disturbed.fixed = std::ranges::any_of(domain.nodes, [&](Index n) {
     for (int axis = 0; axis < 3; ++axis)

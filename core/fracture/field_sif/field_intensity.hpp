@@ -37,14 +37,15 @@ struct Disturbances {
   bool damage = false;    ///< it reaches elements destroyed by something else
   bool notch = false;     ///< the crack is a notch too blunt for K, which is left out
   bool coarse = false;    ///< the mesh at its tip is too coarse; of a notch K is left out
-  bool strain = false;    ///< it is strained or turned in itself beyond small strain: no K
+  bool strain = false;    ///< it is strained or turned in itself beyond small strain: J, no K
   bool left_out = false;  ///< there is no K
 };
 
 struct FieldIntensity {
-  IntensityFactors factors;
-  TipFrame frame;     ///< in which they are meant
-  double radius = 0;  ///< of the domain [mm]
+  IntensityFactors factors;  ///< beyond small strain modes, whose ratio tells a direction alone
+  double j = 0;              ///< energy release rate [N/mm]
+  TipFrame frame;            ///< in which they are meant
+  double radius = 0;         ///< of the domain [mm]
   TipMaterial material;
   Disturbances disturbed;
   /// What disturbs them, as SifTerms::field_note.

@@ -52,11 +52,15 @@ TEST(CriticalLoad, OfAnotherLawLiesBetweenWhatHoldsAndWhatGrows) {
   for (const RunNote& note : lab.notes()) EXPECT_EQ(note.failure, "") << note.load;
 }
 
-TEST(CriticalLoad, OfAnotherLawEndsWhereTheFieldHasNoK) {
+// Beyond small strain J takes the place of the field's K.
+TEST(CriticalLoad, OfAnotherLawGoesOnByJ) {
   const Laboratory lab = laboratory().with_law(MaterialLaw::corotated);
-  EXPECT_FALSE(critical_growth(lab, {"notch-b", {"fracture.sif=field"}, nullptr, 1, {}}));
-  ASSERT_EQ(lab.notes().size(), 1U) << "more load brings none back";
-  EXPECT_TRUE(lab.notes()[0].no_k);
+  const RunPlan plan{"notch-b", {"fracture.sif=field"}, nullptr, 1, {}};
+  const auto critical = critical_growth(lab, plan);
+  ASSERT_TRUE(critical.has_value());
+  EXPECT_TRUE(std::ranges::any_of(lab.notes(), [](const RunNote& note) { return note.by_j; }));
+  EXPECT_EQ(broken_at(lab, plan, critical->factor * 0.98), 0);
+  EXPECT_GT(broken_at(lab, plan, critical->factor * 1.02), 0);
 }
 
 TEST(CriticalLoad, ScalesTheTermsToItself) {

@@ -67,7 +67,7 @@ TEST(Survival, SaysWhereARunEndedOrTheFieldHadNoK) {
   EXPECT_EQ(why_not(torn_off),
             "scene notch-b at 1.5 times its forces: no equilibrium (exit code 5)");
   RunNote without;
-  without.no_k = true;
+  without.by_j = true;
   EXPECT_NE(
       why_not(forces(40, std::nullopt, "field K", {without, {}})).find("strained by over 10 %"),
       std::string::npos);

@@ -88,14 +88,30 @@ TEST_F(ExactField, ATurnedTipHasTheKOfItsDomain) {
   EXPECT_GT(std::abs(wrong.factors.k_1 - still.factors.k_1), k.norm());
 }
 
+// J = (K_I^2 + K_II^2) / E' + K_III^2 / (2 mu) where strains are small.
+TEST_F(ExactField, JIsThatOfItsK) {
+  for (const MaterialLaw law : {MaterialLaw::linear, MaterialLaw::corotated}) {
+    CrackedBoardOptions options = split();
+    options.law = law;
+    CrackedBoard board(test::notched_strip(test::Notch::edge, 40, 0.5, options));
+    for (const Vec3& k : {Vec3(0.03, 0, 0), Vec3(0, 0.03, 0), Vec3(0.02, 0.01, 0)}) {
+      const auto found =
+          board.meter().at(board.crack(), 0, williams_view(board, k, {5, 0.3, 0}), 8);
+      const double expected = k.squaredNorm() / found.material.effective_young();
+      EXPECT_NEAR(found.j, expected, 0.02 * expected) << k.transpose();
+    }
+  }
+}
+
 TEST_F(ExactField, BeyondSmallStrainThereIsNoK) {
   CrackedBoardOptions options = split();
   options.law = MaterialLaw::corotated;
   CrackedBoard board(test::notched_strip(test::Notch::edge, 40, 0.5, options));
   const auto found =
       board.meter().at(board.crack(), 0, williams_view(board, Vec3(8, 0, 0), {5, 0.3, 0}), 8);
-  EXPECT_TRUE(found.disturbed.left_out);
+  EXPECT_FALSE(found.disturbed.left_out);
   EXPECT_EQ(found.note(), "strain");
+  EXPECT_GT(found.j, 0);
 }
 
 TEST_F(ExactField, EachModeIsMeasuredAlone) {
