@@ -33,11 +33,6 @@ class TearingBoard {
     return std::span(order_).first(k);
   }
 
-  std::shared_ptr<const Problem> problem;
-  std::vector<Index> load_dofs;
-  std::vector<double> load_values;
-
- private:
   static Scene scene(const test::BoardShape& shape) {
     Scene scene;
     scene.mesh = test::structured_board(shape, [](const Vec3& x) {
@@ -51,6 +46,11 @@ class TearingBoard {
     return scene;
   }
 
+  std::shared_ptr<const Problem> problem;
+  std::vector<Index> load_dofs;
+  std::vector<double> load_values;
+
+ private:
   // A tear goes along the row at mid-height first, then its neighbours.
   void find_order() {
     const Mesh& mesh = problem->mesh();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "body/assembly.hpp"
+#include "body/hyperelastic.hpp"
 #include "linear_algebra/workers.hpp"
 
 namespace sunder::bench {

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: Apache-2.0
+// Motion beside what a user would pick instead (bench/motion_peers): the board's corner is pulled
+// down at 80 mm/s until it tears (model A, one pass a step) and its lower part is torn off. The
+// steps are those of a converged run; from each of its states everybody makes the next step, so
+// that the error of stress is that of one step. Steps come every dt; what runs beside them has the
+// time between.
+//   motion/TETS/dt STEPS_A_SECOND/METHOD
+// Counters by phase (pull, event: the step after a rupture, between, after: torn off): median
+// milliseconds (ms), back-solves or iterations (it); over all: median and p99 of both, the median
+// and 95 % quantile of the error of stress, the share of steps that a cap ended.
+//   motion_hand/LAW: 10,000 steps of 1/200 s, at most 12 back-solves each, after a hand that
+//   wanders at random within 25 mm at up to 200 mm/s and jumps anywhere there every 500 steps: how
+//   many steps end with numbers that are none (nan), with inverted elements, capped, in parts, or
+//   are not found (stuck). bench_motion [Google Benchmark's options] bench_motion --peers    the
+//   methods with their settings
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <thread>
+
+#include "bench/motion_peers/motion_peer.hpp"
+#include "body/hyperelastic_pass.hpp"
+#include "run_rows.hpp"
+#include "sunder/stress_measures.hpp"
+
+namespace sunder::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kSpeed = 80;  // [mm/s]
+constexpr int kStepsAfter = 30;
+enum Phase { pull, event, between, after };
+constexpr std::array kPhases{"pull", "event", "between", "after"};
+
+/// A step of the converged run.
+struct Step {
+  std::vector<Index> gone;        // since the step before
+  solver::FiniteMotionPast past;  // before they left
+  int euler = 0;                  // once they have
+  Load load;
+  Phase phase = pull;
+  std::vector<double> end;    // displacement
+  std::vector<Voigt> stress;  // there
+  double largest = 0;
+};
+
+struct Course {
+  explicit Course(Index cells, int a_second) : board(cells), dt(1.0 / a_second) {
+    const Problem& problem = board.problem;
+    std::vector<std::uint8_t> out(problem.mesh().tets.size(), 0);
+    const fem::HyperelasticBody body{problem, board.laws, out};
+    solver::FiniteMotion motion(body, board.node_mass, {.tolerance = 1e-9, .residual = 1e-7});
+    solver::RestingBody pieces(body);
+    fem::HyperelasticPass pass(body);
+    std::vector<Index> next;
+    Phase now = pull;
+    int left = kStepsAfter;
+    for (int i = 1; i <= 4000 && left > 0; ++i) {
+      Step step;
+      step.gone = next;
+      step.past = motion.past();
+      step.phase = !next.empty() ? event : now;
+      for (Index e : next) out[e] = 1;
+      if (!next.empty()) {
+        now = now == after ? after : between;
+        motion.destroyed(next);
+        pass.destroy(next);
+        pieces.look();
+        if (pieces.parts().pieces > 0 || !held_by_top(pieces)) now = after;
+      }
+      step.euler = motion.past().euler;
+      step.load = board.pulled(kSpeed * i * dt);
+      if (motion.step(step.load, dt).stuck) throw std::runtime_error("the course has no next step");
+      step.end = motion.displacement();
+      step.stress.resize(out.size());
+      pass.run(step.end, {.stress = step.stress, .measure = StressMeasure::cauchy});
+      next.clear();
+      for (Index e = 0; e < problem.tet_count(); ++e) {
+        const Voigt& s = step.stress[e];
+        step.largest = std::max(
+            step.largest, std::sqrt(s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm()));
+        if (!out[e] && problem.breakable(e) && max_shear(s) >= problem.yield(e)) next.push_back(e);
+      }
+      if (now == after) --left;
+      steps.push_back(std::move(step));
+    }
+  }
+  /// Whether the grip's corner still hangs on the supports.
+  [[nodiscard]] bool held_by_top(const solver::RestingBody& pieces) const {
+    // A grip holds its own piece, so that none is loose: look at what the supports reach.
+    const Problem& problem = board.problem;
+    std::vector<std::uint8_t> reached(problem.mesh().nodes.size(), 0);
+    for (Index n = 0; n < problem.node_count(); ++n) reached[n] = problem.dof(n, 0) == kNone;
+    for (bool grew = true; grew;) {
+      grew = false;
+      for (Index e = 0; e < problem.tet_count(); ++e) {
+        if (pieces.out()[e]) continue;
+        const auto& tet = problem.mesh().tets[e];
+        const auto some = std::ranges::count_if(tet, [&](Index n) { return reached[n] != 0; });
+        if (some == 0 || some == 4) continue;
+        for (Index n : tet) reached[n] = 1;
+        grew = true;
+      }
+    }
+    for (Index n = 0; n < problem.node_count(); ++n) {
+      if (std::ranges::binary_search(problem.gripped_dofs(), problem.dof(n, 0))) return reached[n];
+    }
+    return true;
+  }
+
+  MotionBoard board;
+  double dt;
+  std::vector<Step> steps;
+};
+
+const Course& course_of(Index cells, int a_second) {
+  static std::map<std::pair<Index, int>, std::unique_ptr<Course>> courses;
+  auto& course = courses[{cells, a_second}];
+  if (!course) course = std::make_unique<Course>(cells, a_second);
+  return *course;
+}
+
+double quantile(std::vector<double> of, double share) {
+  if (of.empty()) return 0;
+  std::sort(of.begin(), of.end());
+  return of[static_cast<std::size_t>(share * static_cast<double>(of.size() - 1) + .999)];
+}
+
+/// What a method did, step by step.
+class Record {
+ public:
+  explicit Record(const Course& course)
+      : course_(course),
+        out_(course.board.problem.mesh().tets.size(), 0),
+        body_{course.board.problem, course.board.laws, out_},
+        pass_(body_),
+        stress_(out_.size()) {}
+
+  void destroyed(const Step& step) {
+    for (Index e : step.gone) out_[e] = 1;
+    pass_.destroy(step.gone);
+  }
+  void add(const Step& step, double ms, int iterations, bool capped,
+           const std::vector<double>& end) {
+    pass_.run(end, {.stress = stress_, .measure = StressMeasure::cauchy});
+    double change = 0;
+    for (std::size_t e = 0; e < stress_.size(); ++e) {
+      const Voigt d = stress_[e] - step.stress[e];
+      change =
+          std::max(change, std::sqrt(d.head<3>().squaredNorm() + 2 * d.tail<3>().squaredNorm()));
+    }
+    errors_.push_back(change / step.largest);
+    ms_[step.phase].push_back(ms);
+    its_[step.phase].push_back(iterations);
+    capped_ += capped;
+  }
+  void report(benchmark::State& state) const {
+    std::vector<double> all_ms, all_its;
+    for (std::size_t p = 0; p < kPhases.size(); ++p) {
+      state.counters[std::string(kPhases[p]) + "_ms"] = quantile(ms_[p], .5);
+      state.counters[std::string(kPhases[p]) + "_it"] = quantile(its_[p], .5);
+      state.counters[std::string(kPhases[p]) + "_steps"] = static_cast<double>(ms_[p].size());
+      all_ms.insert(all_ms.end(), ms_[p].begin(), ms_[p].end());
+      all_its.insert(all_its.end(), its_[p].begin(), its_[p].end());
+    }
+    state.counters["median_ms"] = quantile(all_ms, .5);
+    state.counters["p99_ms"] = quantile(all_ms, .99);
+    state.counters["median_it"] = quantile(all_its, .5);
+    state.counters["p99_it"] = quantile(all_its, .99);
+    state.counters["error_median"] = quantile(errors_, .5);
+    state.counters["error_p95"] = quantile(errors_, .95);
+    state.counters["capped"] = capped_ / static_cast<double>(all_ms.size());
+    state.SetIterationTime(1e-3 * quantile(all_ms, .5));
+  }
+
+ private:
+  const Course& course_;
+  std::vector<std::uint8_t> out_;
+  fem::HyperelasticBody body_;
+  fem::HyperelasticPass pass_;
+  std::vector<Voigt> stress_;
+  std::array<std::vector<double>, kPhases.size()> ms_, its_;
+  std::vector<double> errors_;
+  double capped_ = 0;
+};
+
+/// Steps come every dt.
+class Pace {
+ public:
+  explicit Pace(double dt)
+      : dt_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(dt))) {}
+  template <class Work>
+  double time(Work&& work) {
+    std::this_thread::sleep_until(next_);
+    const auto start = Clock::now();
+    work();
+    const auto end = Clock::now();
+    next_ = std::max(end, start + dt_);
+    return std::chrono::duration<double, std::milli>(end - start).count();
+  }
+
+ private:
+  Clock::duration dt_;
+  Clock::time_point next_ = Clock::now();
+};
+
+void own_row(benchmark::State& state, Index cells, int a_second, int cap) {
+  const Course& course = course_of(cells, a_second);
+  for (auto _ : state) {
+    std::vector<std::uint8_t> out(course.board.problem.mesh().tets.size(), 0);
+    const fem::HyperelasticBody body{course.board.problem, course.board.laws, out};
+    solver::FiniteMotion motion(body, course.board.node_mass, {.most_iterations = cap});
+    Record record(course);
+    Pace pace(course.dt);
+    int factors = 0;
+    for (const Step& step : course.steps) {
+      if (step.past.dt > 0) motion.go_on_from(step.past);
+      solver::FiniteMotionReport report;
+      const double ms = pace.time([&] {
+        if (!step.gone.empty()) {
+          for (Index e : step.gone) out[e] = 1;
+          motion.destroyed(step.gone);
+        }
+        report = motion.step(step.load, course.dt);
+      });
+      factors += report.factors;
+      record.destroyed(step);
+      record.add(step, ms, report.back_solves, report.capped || report.stuck,
+                 motion.displacement());
+    }
+    record.report(state);
+    state.counters["factors"] = factors;
+  }
+}
+
+void peer_row(benchmark::State& state, const MotionKind& kind, Index cells, int a_second,
+              double tolerance) {
+  const Course& course = course_of(cells, a_second);
+  for (auto _ : state) {
+    const auto peer = kind.create(course.board, tolerance);
+    Record record(course);
+    Pace pace(course.dt);
+    for (const Step& step : course.steps) {
+      solver::FiniteMotionPast past = step.past;
+      past.euler = step.euler;
+      MotionSolved solved;
+      const double ms = pace.time([&] {
+        if (!step.gone.empty()) peer->destroy(step.gone);
+        solved = peer->step(past, step.load, course.dt);
+      });
+      record.destroyed(step);
+      record.add(step, ms, solved.iterations, !solved.ended, peer->displacement());
+    }
+    record.report(state);
+  }
+}
+
+/// Within a ball, from a seed of its own: the same on every machine.
+class Hand {
+ public:
+  Vec3 next(double dt, bool jump) {
+    if (jump) {
+      at_ = kReach * inside();
+      return at_;
+    }
+    speed_ += 0.2 * kFastest * inside();
+    if (speed_.norm() > kFastest) speed_ *= kFastest / speed_.norm();
+    at_ += dt * speed_;
+    if (at_.norm() > kReach) {
+      at_ *= kReach / at_.norm();
+      speed_ *= -0.5;
+    }
+    return at_;
+  }
+
+ private:
+  static constexpr double kReach = 25, kFastest = 200;  // [mm], [mm/s]
+  double uniform() {
+    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state_ >> 11U) / 4503599627370496.0 - 1;
+  }
+  Vec3 inside() {
+    for (;;) {
+      const Vec3 x(uniform(), uniform(), uniform());
+      if (x.norm() <= 1) return x;
+    }
+  }
+  std::uint64_t state_ = 20130727;
+  Vec3 at_ = Vec3::Zero(), speed_ = Vec3::Zero();
+};
+
+void hand_row(benchmark::State& state, const Law& law) {
+  constexpr int kSteps = 10000, kBetweenJumps = 500, kCap = 12;
+  constexpr double kDt = 1.0 / 200;
+  for (auto _ : state) {
+    const MotionBoard board(18);
+    const auto laws = fem::one_law(board.problem, law);
+    const fem::HyperelasticBody body{board.problem, laws, {}};
+    solver::FiniteMotion motion(body, board.node_mass, {.most_iterations = kCap});
+    fem::HyperelasticPass pass(body);
+    Hand hand;
+    Load load = board.pulled(0);
+    std::vector<double> ms;
+    double nan = 0, inverted = 0, capped = 0, parts = 0, stuck = 0, most_inverted = 0;
+    for (int i = 1; i <= kSteps; ++i) {
+      const Vec3 at = hand.next(kDt, i % kBetweenJumps == 0);
+      for (std::size_t g = 0; g < load.displacements.size(); ++g) {
+        load.displacements[g] = at[static_cast<Eigen::Index>(board.axis[g])];
+      }
+      const auto start = Clock::now();
+      const auto report = motion.step(load, kDt);
+      ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      capped += report.capped;
+      parts += report.parts > 1;
+      stuck += report.stuck;
+      nan += !std::ranges::all_of(motion.displacement(), [](double u) { return std::isfinite(u); });
+      const Index turned =
+          pass.run(motion.displacement(), {.deformation = true}).deformation.inverted;
+      inverted += turned > 0;
+      most_inverted = std::max(most_inverted, static_cast<double>(turned));
+    }
+    state.SetIterationTime(1e-3 * quantile(ms, .5));
+    state.counters["nan"] = nan;
+    state.counters["inverted"] = inverted;
+    state.counters["most_inverted"] = most_inverted;
+    state.counters["capped"] = capped;
+    state.counters["parts"] = parts;
+    state.counters["stuck"] = stuck;
+    state.counters["median_ms"] = quantile(ms, .5);
+    state.counters["p99_ms"] = quantile(ms, .99);
+  }
+}
+
+std::string power(double tolerance) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.0e", tolerance);
+  return text;
+}
+
+void add(const std::string& name, const std::function<void(benchmark::State&)>& run) {
+  const auto guarded = [run](benchmark::State& state) {
+    try {
+      run(state);
+    } catch (const std::runtime_error& error) {
+      state.SkipWithError(error.what());
+    }
+  };
+  benchmark::RegisterBenchmark(name.c_str(), guarded)
+      ->UseManualTime()
+      ->Iterations(1)
+      ->Unit(benchmark::kMillisecond);
+}
+
+std::vector<MotionKind> peers() {
+  return {motion_newton(), motion_projective(), motion_vertex_blocks()};
+}
+
+void register_rows() {
+  for (const Index cells : {18, 36, 71}) {
+    for (const int a_second : {200, 1000}) {
+      if (cells > 36 && a_second == 1000) continue;  // the converged run alone takes long
+      const std::string board =
+          "motion/" + std::to_string(6 * cells * cells) + "/dt " + std::to_string(a_second) + "/";
+      const int cap = a_second == 200 ? 12 : 8;
+      add(board + "sunder", [=](auto& s) { own_row(s, cells, a_second, 0); });
+      add(board + "sunder capped", [=](auto& s) { own_row(s, cells, a_second, cap); });
+      for (const MotionKind& kind : peers()) {
+        for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+          add(board + kind.name + "/" + power(tolerance),
+              [=](auto& s) { peer_row(s, kind, cells, a_second, tolerance); });
+        }
+      }
+    }
+  }
+  for (const char* law : {"neo-hookean", "corotated", "saint-venant-kirchhoff"}) {
+    const Law* of = find_law(law);
+    add(std::string("motion_hand/") + law, [=](auto& s) { hand_row(s, *of); });
+  }
+}
+
+}  // namespace
+}  // namespace sunder::bench
+
+int main(int argc, char** argv) {
+  if (argc == 2 && std::string_view(argv[1]) == "--peers") {
+    for (const auto& kind : sunder::bench::peers()) {
+      std::printf("%s\t%s\n", kind.name.c_str(), kind.settings.c_str());
+    }
+    return 0;
+  }
+  sunder::bench::register_rows();
+  return sunder::bench::run_rows(argc, argv);
+}
