@@ -52,7 +52,7 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 /// is a warning: a build without the backend and a processor that emulates one miss none.
 CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, const Needs& needs) {
   CreatedBackend created;
-  if (problem->finite()) {  // which cpu alone computes
+  if (problem->finite() || problem->moves()) {  // which cpu alone computes
     created.backend = cpu_reference::create(problem, needs);
     return created;
   }

@@ -10,6 +10,7 @@
 #include "cpu_reference/finite_backend.hpp"
 #include "cpu_reference/frame_fields.hpp"
 #include "cpu_reference/frame_kernels.hpp"
+#include "cpu_reference/motion_backend.hpp"
 #include "cpu_reference/routes.hpp"
 #include "solver/condensed_route.hpp"
 #include "solver/frame_solver.hpp"
@@ -299,6 +300,7 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
     throw DeviceError("backend cpu has device 0 only, not " +
                       std::to_string(problem->scene().solver.device));
   }
+  if (problem->moves()) return create_motion(std::move(problem), std::move(needs), options);
   if (problem->finite()) return create_finite(std::move(problem), std::move(needs), options);
   solver::Plan plan = solver::make_plan(
       *problem, needs, plan_device(options.memory > 0 ? options.memory : available_memory()));

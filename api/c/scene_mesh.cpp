@@ -59,10 +59,15 @@ sunder_status sunder_scene_add_material(sunder_scene scene, const sunder_materia
     require_finite(given.young, "young");
     require_finite(given.poisson, "poisson");
     require_finite(given.yield, "yield");
+    require_finite(given.density, "density");
     const std::size_t number = object.materials.size();
-    sunder::Material m{
-        given.young, given.poisson, {}, word<sunder::MaterialLaw>(given.law, "material", "law")};
+    sunder::Material m{given.young,
+                       given.poisson,
+                       {},
+                       word<sunder::MaterialLaw>(given.law, "material", "law"),
+                       {}};
     if (given.yield != 0) m.yield = given.yield;
+    if (given.density != 0) m.density = given.density;
     object.materials.push_back(m);
     object.scene.mesh.volumes.push_back(
         {given.name ? given.name : std::to_string(number), static_cast<int>(number)});

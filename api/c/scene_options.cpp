@@ -63,6 +63,19 @@ sunder::SolverOptions to_solver(const sunder_solver_options& given) {
   return s;
 }
 
+sunder::Dynamics to_dynamics(const sunder_dynamics& given) {
+  sunder::Dynamics d;
+  d.time_step = given.time_step;
+  d.mass_damping = given.mass_damping;
+  d.stiffness_damping = given.stiffness_damping;
+  d.max_iterations = given.max_iterations;
+  d.felt_inertia = given.felt_inertia != 0;
+  require_finite(given.time_step, "time_step");
+  require_finite(given.mass_damping, "mass_damping");
+  require_finite(given.stiffness_damping, "stiffness_damping");
+  return d;
+}
+
 }  // namespace
 
 extern "C" {
@@ -96,6 +109,27 @@ sunder_status sunder_scene_set_steps(sunder_scene scene, int32_t steps) {
       throw Failure(SUNDER_ERROR_VALUE, "steps = " + std::to_string(steps) + " is below 1");
     }
     object.scene.steps = steps;
+  });
+}
+
+sunder_status sunder_scene_set_gravity(sunder_scene scene, const double gravity[3]) {
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    require(gravity, "gravity");
+    require_finite(gravity, 3, "gravity");
+    object.scene.gravity = sunder::Vec3(gravity);
+  });
+}
+
+void sunder_dynamics_init(sunder_dynamics* dynamics) {
+  if (dynamics) *dynamics = sized<sunder_dynamics>();
+}
+
+sunder_status sunder_scene_set_dynamics(sunder_scene scene, const sunder_dynamics* dynamics) {
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    object.scene.dynamics.reset();
+    if (!dynamics) return;
+    object.scene.dynamics =
+        to_dynamics(read_struct(dynamics, sized<sunder_dynamics>(), "dynamics"));
   });
 }
 

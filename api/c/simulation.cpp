@@ -2,6 +2,9 @@
 // Create, step, drive, cancel.
 #include "c/simulation.hpp"
 
+#include <cmath>
+#include <optional>
+
 #include "c/engine.hpp"
 #include "c/simulation_create.hpp"
 
@@ -35,12 +38,44 @@ sunder_step to_step(const sunder::StepReport& report) {
     step.rotation_max_deg = report.deformation->rotation_deg;
     step.inverted = report.deformation->inverted;
   }
+  step.capped = report.capped ? 1 : 0;
+  if (report.motion) {
+    step.moves = 1;
+    step.time = report.motion->time;
+    step.kinetic = report.motion->kinetic;
+    step.strain_energy = report.motion->strain_energy;
+    step.work = report.motion->work;
+    step.dissipated = report.motion->dissipated();
+    for (int axis = 0; axis < 3; ++axis) {
+      step.momentum[axis] = report.motion->momentum[axis];
+      step.angular_momentum[axis] = report.motion->angular_momentum[axis];
+    }
+  }
   return step;
+}
+
+/// `dt`: none: the scene's own.
+void take_step(SimulationObject& object, std::optional<double> dt, sunder_step* step) {
+  if (step) static_cast<void>(stated_size(step, "step"));
+  const sunder::StepReport report = object.step(dt);
+  if (step) write_struct(step, to_step(report), "step");
+  if (object.simulation().interrupted()) {
+    throw Failure(SUNDER_ERROR_CANCELLED, "step " + std::to_string(report.step) +
+                                              " was cancelled after its event " +
+                                              std::to_string(report.events));
+  }
 }
 
 }  // namespace
 
 namespace sunder::c {
+
+void require_motion(const SimulationObject& object, const char* what) {
+  if (object.problem().moves()) return;
+  throw Failure(SUNDER_ERROR_ORDER, std::string(what) +
+                                        " needs a scene in motion: call sunder_scene_set_dynamics "
+                                        "before the simulation is made");
+}
 
 void create_simulation(const SceneObject& scene, const sunder_callbacks* callbacks,
                        const SimulationObject::Create& create, sunder_simulation* simulation) {
@@ -77,15 +112,19 @@ sunder_status sunder_simulation_engine(sunder_simulation simulation, sunder_engi
 }
 
 sunder_status sunder_simulation_step(sunder_simulation simulation, sunder_step* step) {
+  return call<SimulationObject>(
+      simulation, [&](SimulationObject& object) { take_step(object, std::nullopt, step); });
+}
+
+sunder_status sunder_simulation_step_by(sunder_simulation simulation, double dt,
+                                        sunder_step* step) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
-    if (step) static_cast<void>(stated_size(step, "step"));
-    const sunder::StepReport report = object.step();
-    if (step) write_struct(step, to_step(report), "step");
-    if (object.simulation().interrupted()) {
-      throw Failure(SUNDER_ERROR_CANCELLED, "step " + std::to_string(report.step) +
-                                                " was cancelled after its event " +
-                                                std::to_string(report.events));
+    require_motion(object, "a step of time");
+    if (!(dt > 0) || !std::isfinite(dt)) {
+      throw Failure(SUNDER_ERROR_VALUE,
+                    "dt = " + std::to_string(dt) + " is not a time in seconds above 0");
     }
+    take_step(object, dt, step);
   });
 }
 

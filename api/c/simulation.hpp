@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <set>
 
 #include "c/handles.hpp"
@@ -22,8 +23,9 @@ class SimulationObject final : public Object {
   SimulationObject(const SceneObject& scene, const sunder_callbacks& callbacks,
                    const Create& create);
 
-  /// Throws SUNDER_ERROR_CANCELLED, besides what Simulation::step throws.
-  [[nodiscard]] StepReport step();
+  /// Throws SUNDER_ERROR_CANCELLED, besides what Simulation::step throws. In motion `dt` [s] may
+  /// take the place of the scene's step.
+  [[nodiscard]] StepReport step(std::optional<double> dt);
   void cancel() noexcept { cancelled_.store(true); }
 
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
@@ -53,5 +55,8 @@ class SimulationObject final : public Object {
   bool solved_ = false;
   std::atomic<bool> cancelled_{false};
 };
+
+/// Throws SUNDER_ERROR_ORDER for statics, which has no `what`.
+void require_motion(const SimulationObject& object, const char* what);
 
 }  // namespace sunder::c

@@ -54,6 +54,27 @@ sunder_status sunder_simulation_displacement(sunder_simulation simulation, doubl
       });
 }
 
+sunder_status sunder_simulation_velocity(sunder_simulation simulation, double* values,
+                                         size_t size) {
+  return read(
+      simulation, values, size, [](auto& object) { return 3 * nodes(object); },
+      [&](SimulationObject& object) {
+        require_motion(object, "a velocity");
+        object.simulation().backend().read_velocity({values, size});
+      });
+}
+
+sunder_status sunder_simulation_set_velocity(sunder_simulation simulation, const double* values,
+                                             size_t size) {
+  return read(
+      simulation, values, size, [](auto& object) { return 3 * nodes(object); },
+      [&](SimulationObject& object) {
+        require_motion(object, "a velocity");
+        require_finite(values, size, "values");
+        object.simulation().backend().set_velocity({values, size});
+      });
+}
+
 sunder_status sunder_simulation_stress(sunder_simulation simulation, double* values, size_t size) {
   return read(
       simulation, values, size, [](auto& object) { return 6 * tets(object); },

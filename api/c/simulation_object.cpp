@@ -25,11 +25,11 @@ SimulationObject::SimulationObject(const SceneObject& scene, const sunder_callba
   log_warnings();
 }
 
-StepReport SimulationObject::step() {
+StepReport SimulationObject::step(std::optional<double> dt) {
   events_ = 0;
   StepReport report;
   try {
-    report = simulation_->step();
+    report = dt ? simulation_->step(*dt) : simulation_->step();
   } catch (const NumericalError& error) {
     log(SUNDER_LOG_ERROR, error.what());
     throw;

@@ -140,10 +140,11 @@ typedef struct sunder_material {
   const char* name;  ///< for messages; null: its index
   int32_t law;       ///< SUNDER_LAW_*
   int32_t reserved2;
+  double density;  ///< [t/mm^3], water 1e-9; needed in motion and under gravity; 0: none
 } sunder_material;
 
 #define SUNDER_MATERIAL_INIT \
-  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0 }
+  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0 }
 
 SUNDER_API void sunder_material_init(sunder_material* material);
 /// `index` (may be null) receives 0, 1, ... in the order of calls.
@@ -322,6 +323,28 @@ SUNDER_API sunder_status sunder_scene_set_solver(sunder_scene scene,
                                                  const sunder_solver_options* options);
 /// Number of steps, at least 1 (default 1). INT32_MAX for a host that decides when to stop.
 SUNDER_API sunder_status sunder_scene_set_steps(sunder_scene scene, int32_t steps);
+/// On all of the body [mm/s^2], default 0. Materials need a density.
+SUNDER_API sunder_status sunder_scene_set_gravity(sunder_scene scene, const double gravity[3]);
+
+/// Motion: each step is one of time. Materials need a density; supports and instruments may be
+/// absent. docs/method.md "Motion".
+typedef struct sunder_dynamics {
+  uint32_t struct_size;
+  int32_t max_iterations;    ///< of a step; 0: as many as the tolerance takes
+  double time_step;          ///< [s], above 0; scene time 1 is all steps of that length
+  double mass_damping;       ///< force per mass and velocity [1/s]
+  double stiffness_damping;  ///< stress per small-strain stiffness and strain rate [s]
+  int32_t felt_inertia;      ///< 1: a grip's force includes what accelerates its own nodes
+  int32_t reserved;
+} sunder_dynamics;
+
+#define SUNDER_DYNAMICS_INIT \
+  { sizeof(sunder_dynamics), 0, 0, 0, 0, 0, 0 }
+
+SUNDER_API void sunder_dynamics_init(sunder_dynamics* dynamics);
+/// Null: statics, the default.
+SUNDER_API sunder_status sunder_scene_set_dynamics(sunder_scene scene,
+                                                   const sunder_dynamics* dynamics);
 /// Whether stress is wanted (default 1). With 0 it is left out unless the fracture model needs it.
 SUNDER_API sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted);
 
@@ -417,16 +440,33 @@ typedef struct sunder_step {
   int32_t measured;         ///< 1: these three are; 0: stress was left out
   int32_t back_solves;      ///< applications of the base, those of conjugate gradients left out
   int32_t unfinished;       ///< 1: not at rest: nothing was decided, the next step goes on from it
+  int32_t moves;            ///< 1: in motion; else what follows is 0
+  int32_t capped;           ///< 1: ended by max_iterations: `error` is over what was promised
+  double time;              ///< [s]
+  double kinetic, strain_energy;  ///< [N mm]
+  /// By forces, grips and gravity since the start; of it lost by damping, by the scheme in time and
+  /// with what broke: work = kinetic + strain_energy + dissipated [N mm].
+  double work, dissipated;
+  double momentum[3];          ///< [t mm/s]
+  double angular_momentum[3];  ///< about the origin [t mm^2/s]
 } sunder_step;
 
-#define SUNDER_STEP_INIT \
-  { sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define SUNDER_STEP_INIT                                                                         \
+  {                                                                                              \
+    sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0, 0, 0, 0, 0, {0, 0, 0}, {                                                              \
+      0, 0, 0                                                                                    \
+    }                                                                                            \
+  }
 
 /// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
 /// `step` may be null. SUNDER_ERROR_ORDER when all steps are done. SUNDER_ERROR_CANCELLED: the step
 /// ended early, counts as done, and its results can be read. SUNDER_ERROR_NUMERICAL: the results of
 /// the last good solve can be read.
 SUNDER_API sunder_status sunder_simulation_step(sunder_simulation simulation, sunder_step* step);
+/// In motion: the next step, of dt [s] in place of the scene's. SUNDER_ERROR_ORDER in statics.
+SUNDER_API sunder_status sunder_simulation_step_by(sunder_simulation simulation, double dt,
+                                                   sunder_step* step);
 /// Ends the running step after its current event. Any thread, any time. When nothing breaks in it
 /// any more, or no step is running: the next step in which something breaks.
 SUNDER_API sunder_status sunder_simulation_cancel(sunder_simulation simulation);
@@ -445,6 +485,13 @@ SUNDER_API sunder_status sunder_simulation_turn(sunder_simulation simulation, in
 /// (nodes x 3), size 3 * nodes [mm].
 SUNDER_API sunder_status sunder_simulation_displacement(sunder_simulation simulation,
                                                         double* values, size_t size);
+/// (nodes x 3), size 3 * nodes [mm/s]. SUNDER_ERROR_ORDER in statics.
+SUNDER_API sunder_status sunder_simulation_velocity(sunder_simulation simulation, double* values,
+                                                    size_t size);
+/// The body goes on with these, (nodes x 3), size 3 * nodes [mm/s]; what supports hold stays.
+/// SUNDER_ERROR_ORDER in statics.
+SUNDER_API sunder_status sunder_simulation_set_velocity(sunder_simulation simulation,
+                                                        const double* values, size_t size);
 /// (tets x 6), Voigt order xx yy zz xy yz zx, size 6 * tets [MPa]; alpha times that where
 /// destroyed. SUNDER_ERROR_ORDER when stress was left out.
 SUNDER_API sunder_status sunder_simulation_stress(sunder_simulation simulation, double* values,

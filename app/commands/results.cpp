@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "app/figure/film.hpp"
 #include "app/output/summary.hpp"
 #include "app/output/tables.hpp"
 #include "app/output/text.hpp"
@@ -45,10 +46,22 @@ void ResultWriter::step_done(const StepReport& report, const State& state,
   frames_->flush();
   for (const TipState& tip : tips) tips_->write(tips_row(report.step, tip));
   tips_->flush();
+  add_to_film(report, state);
   if (!series_) return;
   const std::string name = "result_" + padded(report.step, 4) + ".vtu";
   write_state(name, state);
   series_entries_.push_back({report.load_factor, name});
+}
+
+/// Of a body in motion the states that end each sixth of its time.
+void ResultWriter::add_to_film(const StepReport& report, const State& state) {
+  if (!problem_.moves()) return;
+  constexpr long long kPictures = 6;
+  const long long steps = problem_.scene().steps, before = kPictures * report.step / steps,
+                  now = kPictures * (report.step + 1) / steps;
+  if (now == before) return;
+  film_.push_back(state);
+  film_times_.push_back(report.motion->time);
 }
 
 void ResultWriter::snapshot(int wanted, const State& state) {
@@ -76,8 +89,15 @@ void ResultWriter::finish(const RunRecord& run) {
   const std::string png = FigurePainter::png(svg);
   write("figure.svg", svg);
   write("figure.png", png);
+  std::string film_png;
+  if (!film_.empty()) {
+    const std::string film = film_strip(painter_, problem_.scene().title, film_, film_times_);
+    film_png = FigurePainter::png(film);
+    write("film.svg", film);
+    write("film.png", film_png);
+  }
   files_.push_back("summary.json");
-  write("index.html", report_html(run, {svg, png, snapshots_, files_}));
+  write("index.html", report_html(run, {svg, png, snapshots_, film_png, files_}));
   folder_.write("summary.json", summary_json(run));
 }
 

@@ -33,6 +33,7 @@ class ResultWriter {
  private:
   void write(const std::string& name, std::string_view text);
   void write_state(const std::string& name, const State& state);
+  void add_to_film(const StepReport& report, const State& state);
 
   ResultFolder& folder_;
   const Problem& problem_;
@@ -41,6 +42,8 @@ class ResultWriter {
   std::optional<ResultFile> frames_, tips_;
   std::vector<SeriesEntry> series_entries_;
   std::vector<SnapshotPicture> snapshots_;
+  std::vector<State> film_;         ///< of a body in motion
+  std::vector<double> film_times_;  ///< [s]
   std::vector<std::string> files_;
 };
 

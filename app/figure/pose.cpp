@@ -109,6 +109,15 @@ Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state
   pose.scale = scale_for(largest_in_plane(plane, holds, state), side);
   pose.loose_piece = !parts.pieces.empty();
   pose.shift.assign(mesh.nodes.size(), Vec3::Zero());
+  if (problem.moves()) {  // pieces are where they are
+    pose.scale = 1;
+    pose.loose_piece = false;
+    pose.shift = state.displacement;
+    pose.position.resize(mesh.nodes.size());
+    for (std::size_t node = 0; node < holds.size(); ++node)
+      pose.position[node] = mesh.nodes[node] + pose.shift[node];
+    return pose;
+  }
   for (std::size_t node = 0; node < holds.size(); ++node)
     if (holds[node] == Hold::firm) pose.shift[node] = state.displacement[node] * pose.scale;
   for (const auto& piece : parts.pieces) shift_piece(pose, mesh, piece, state, side);

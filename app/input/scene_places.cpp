@@ -22,7 +22,8 @@ class Collector {
     }
     for (const char* key : {"fixed", "crack", "destroy"}) add_array(key);
     add_instruments();
-    for (const char* section : {"fracture", "solver", "time"}) add_options(section);
+    for (const char* section : {"fracture", "solver", "time", "load", "dynamics"})
+      add_options(section);
     return std::move(found_);
   }
 

@@ -224,4 +224,22 @@ int read_steps(const TomlTable& root, const std::string& file) {
   return scene.steps;
 }
 
+Vec3 read_gravity(const TomlTable& root, const std::string& file) {
+  Scene scene;
+  read_members(section(root, file, "load"), load_keys(), scene);
+  return scene.gravity;
+}
+
+std::optional<Dynamics> read_dynamics(const TomlTable& root, const std::string& file) {
+  if (!root.table("dynamics")) return std::nullopt;
+  const TomlTable table = section(root, file, "dynamics");
+  Dynamics dynamics;
+  read_members(table, dynamics_keys(), dynamics);
+  if (const auto damping = table.numbers("damping", 2)) {
+    dynamics.mass_damping = (*damping)[0];
+    dynamics.stiffness_damping = (*damping)[1];
+  }
+  return dynamics;
+}
+
 }  // namespace sunder::app

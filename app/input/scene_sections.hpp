@@ -20,6 +20,8 @@ namespace sunder::app {
 [[nodiscard]] SolverOptions read_solver(const TomlTable& root, const std::string& file);
 [[nodiscard]] OutputOptions read_output(const TomlTable& root, const std::string& file);
 [[nodiscard]] int read_steps(const TomlTable& root, const std::string& file);
+[[nodiscard]] Vec3 read_gravity(const TomlTable& root, const std::string& file);
+[[nodiscard]] std::optional<Dynamics> read_dynamics(const TomlTable& root, const std::string& file);
 
 [[nodiscard]] ScenePlaces collect_places(const toml::table& scene, const std::string& file);
 

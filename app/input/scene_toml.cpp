@@ -59,6 +59,8 @@ ParsedScene parse_scene(std::string_view text, const std::string& source,
   scene.solver = read_solver(root, source);
   scene.steps = read_steps(root, source);
   scene.output = read_output(root, source);
+  scene.gravity = read_gravity(root, source);
+  scene.dynamics = read_dynamics(root, source);
   result.places = collect_places(parsed, source);
   return result;
 }

@@ -58,6 +58,21 @@ Json first_rupture(const RunRecord& run) {
 }
 
 /// What this run calls stress; null: at small strain all are one.
+Json motion(const std::optional<MotionState>& state) {
+  if (!state) return nullptr;
+  return {{"time", state->time},
+          {"kinetic", state->kinetic},
+          {"strain_energy", state->strain_energy},
+          {"work", state->work},
+          {"dissipated",
+           {{"damping", state->damped},
+            {"scheme", state->scheme},
+            {"broken", state->broken},
+            {"unsolved", state->unsolved}}},
+          {"momentum", array(state->momentum)},
+          {"angular_momentum", array(state->angular_momentum)}};
+}
+
 Json stress_measure(const Problem& problem) {
   if (!problem.finite()) return nullptr;
   return key_words("fracture", "stress")[static_cast<std::size_t>(problem.scene().fracture.stress)];
@@ -150,6 +165,7 @@ Json tree(const RunRecord& run) {
   out["volume_lost"] = run.volume_lost();
   out["law"] = problem.law();
   out["stress_measure"] = stress_measure(problem);
+  out["motion"] = motion(last.motion);
   return out;
 }
 

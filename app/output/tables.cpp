@@ -68,12 +68,30 @@ std::string events_row(const DestroyedElement& record) {
               std::string(k.field_note)});
 }
 
+namespace {
+
+std::string of_motion(const std::optional<MotionState>& motion) {
+  constexpr std::size_t kColumns = 8;
+  if (!motion) return std::string(kColumns, ',');
+  std::string line;
+  for (double x :
+       {motion->time, motion->kinetic, motion->strain_energy, motion->work, motion->dissipated(),
+        motion->momentum.x(), motion->momentum.y(), motion->momentum.z()}) {
+    line += "," + number(x);
+  }
+  return line;
+}
+
+}  // namespace
+
 std::string frames_header() {
   std::string line =
       "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
       "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations";
   for (const char* pass : kPasses) line += std::string(",ms_gpu_") + pass;
-  return line + ",strain_max,rotation_max_deg,inverted,back_solves\n";
+  return line +
+         ",strain_max,rotation_max_deg,inverted,back_solves,time,kinetic,strain_energy,work,"
+         "dissipated,momentum_x,momentum_y,momentum_z\n";
 }
 
 std::string frames_row(const StepReport& report) {
@@ -90,7 +108,8 @@ std::string frames_row(const StepReport& report) {
   line += d ? "," + number(d->strain) + "," + number(d->rotation_deg) + "," +
                   std::to_string(d->inverted)
             : ",,,";
-  return line + "," + std::to_string(report.back_solves) + "\n";
+  line += "," + std::to_string(report.back_solves);
+  return line + of_motion(report.motion) + "\n";
 }
 
 std::string tips_header() {
@@ -100,8 +119,8 @@ std::string tips_header() {
 std::string tips_row(int step, const TipState& tip) {
   return row({std::to_string(step), std::to_string(tip.crack), std::to_string(tip.tip),
               number(tip.position.x()), number(tip.position.y()), number(tip.position.z()),
-              known(tip.k), known(tip.theta), known(tip.k_1), known(tip.k_2), known(tip.k_3), "",
-              "", std::string(tip.field_note)});
+              known(tip.k), known(tip.theta), known(tip.k_1), known(tip.k_2), known(tip.k_3),
+              known(tip.j), "", std::string(tip.field_note)});
 }
 
 }  // namespace sunder::app

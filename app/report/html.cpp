@@ -23,6 +23,13 @@ std::string figure(const ReportPictures& pictures) {
          "</figure>\n";
 }
 
+std::string film(const ReportPictures& pictures) {
+  if (pictures.film_png.empty()) return {};
+  return "<section><h2>In motion</h2>\n<figure class=\"paper\">" +
+         embedded(pictures.film_png, "The body at true scale over the time of the run") +
+         "</figure></section>\n";
+}
+
 std::string snapshots(const ReportPictures& pictures) {
   if (pictures.snapshots.empty()) return {};
   std::string out = "<section><h2>On the way</h2>\n<div class=\"snapshots\">\n";
@@ -43,8 +50,9 @@ std::string report_html(const RunRecord& run, const ReportPictures& pictures) {
          "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
          title + "</title>\n<style>\n" + std::string(kStyle) +
          "</style>\n</head>\n<body>\n<main>\n" + header(run) + key_figures(run) + findings(run) +
-         figure(pictures) + snapshots(pictures) + fracture(run) + curves(run) + times(run) +
-         engine(run) + forces(run) + file_list(pictures.files) + "</main>\n</body>\n</html>\n";
+         figure(pictures) + film(pictures) + snapshots(pictures) + fracture(run) + curves(run) +
+         times(run) + engine(run) + forces(run) + file_list(pictures.files) +
+         "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace sunder::app

@@ -20,6 +20,7 @@ struct ReportPictures {
   const std::string& svg;
   const std::string& png;
   const std::vector<SnapshotPicture>& snapshots;
+  const std::string& film_png;            ///< of a body in motion; else empty
   const std::vector<std::string>& files;  ///< of the result folder
 };
 

@@ -218,6 +218,26 @@ std::string fracture(const RunRecord& run) {
   return section("Fracture", (run.cracks.empty() ? "" : crack_table(run)) + event_table(run));
 }
 
+namespace {
+
+std::string energies(const RunRecord& run) {
+  const auto over_time = [&](const std::string& name, auto value) {
+    ChartSeries series{name, {}};
+    for (const StepReport& step : run.steps)
+      series.points.emplace_back(step.motion->time, value(*step.motion));
+    return series;
+  };
+  return chart(line_chart(
+             {over_time("work", [](const MotionState& m) { return m.work; }),
+              over_time("strain energy", [](const MotionState& m) { return m.strain_energy; }),
+              over_time("dissipated", [](const MotionState& m) { return m.dissipated(); })},
+             {"time [s]", "N mm"})) +
+         chart(line_chart({over_time("", [](const MotionState& m) { return m.kinetic; })},
+                          {"time [s]", "kinetic energy [N mm]"}));
+}
+
+}  // namespace
+
 std::string curves(const RunRecord& run) {
   if (run.steps.empty()) return {};
   const std::string x = "load factor";
@@ -232,6 +252,7 @@ std::string curves(const RunRecord& run) {
   out += chart(line_chart({over_steps(run, "residual", [](const auto& s) { return s.residual; }),
                            over_steps(run, "error", [](const auto& s) { return s.error; })},
                           {x, "relative", true}));
+  if (run.problem.moves()) out += energies(run);
   return section("Over the steps", out + "</div>\n");
 }
 

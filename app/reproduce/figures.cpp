@@ -5,6 +5,7 @@
 
 #include "app/figure/canvas.hpp"
 #include "app/figure/figure.hpp"
+#include "app/figure/film.hpp"
 #include "app/figure/shading.hpp"
 #include "app/figure/svg.hpp"
 #include "app/figure/tip_vectors.hpp"
@@ -13,8 +14,8 @@
 namespace sunder::app::reproduce {
 namespace {
 
-constexpr double kPanel = 300, kGap = 14, kTop = 52, kRowTitle = 24, kPanelTitle = 20;
-constexpr double kLegend = 84, kInset = 6;
+constexpr double kPanel = 300, kGap = 14, kTop = 52, kRowTitle = 24;
+constexpr double kLegend = 84;
 
 std::vector<Panel> all_panels(const std::vector<PanelRow>& rows) {
   std::vector<Panel> panels;
@@ -32,17 +33,6 @@ Bounds common_bounds(const std::vector<PanelRow>& rows) {
     bounds.add(own.max);
   }
   return bounds;
-}
-
-std::string panel_drawing(const Panel& panel, const Canvas& canvas, const Vec2& at, double height) {
-  const Vec2 corner = canvas.corner() - Vec2::Constant(kInset);
-  const Vec2 size = canvas.size() + Vec2::Constant(2 * kInset);
-  const auto c = [](double v) { return svg::coordinate(v); };
-  return svg::text({at.x() + 2, at.y() + 14}, panel.title, "fill=\"#222\"") + "<svg x=\"" +
-         c(at.x()) + "\" y=\"" + c(at.y() + kPanelTitle) + "\" width=\"" + c(kPanel) +
-         "\" height=\"" + c(height) + "\" viewBox=\"" + c(corner.x()) + " " + c(corner.y()) + " " +
-         c(size.x()) + " " + c(size.y()) + "\">\n" +
-         FigurePainter(*panel.run->problem).drawing(*panel.state, canvas) + "</svg>\n";
 }
 
 /// The vectors' colours: by the formula and by the field, whichever the panels have.
@@ -81,8 +71,7 @@ std::string legend(double top, bool cracks) {
 
 std::string montage(const std::string& title, const std::vector<PanelRow>& rows) {
   const Canvas canvas(common_bounds(rows));
-  const double height =
-      kPanel * (canvas.size().y() + 2 * kInset) / (canvas.size().x() + 2 * kInset);
+  const double height = panel_height(canvas, kPanel);
   std::size_t columns = 1;
   bool cracks = false;
   for (const PanelRow& row : rows) columns = std::max(columns, row.panels.size());
@@ -100,9 +89,10 @@ std::string montage(const std::string& title, const std::vector<PanelRow>& rows)
     out += svg::text({kGap, top + 15}, rows[r].title, "font-weight=\"bold\" fill=\"#222\"");
     for (std::size_t p = 0; p < rows[r].panels.size(); ++p) {
       const Vec2 at(kGap + static_cast<double>(p) * (kPanel + kGap), top + kRowTitle);
-      const Panel& panel = rows[r].panels[p];
-      out += panel.state ? panel_drawing(panel, canvas, at, height)
-                         : svg::text({at.x() + 2, at.y() + 14}, panel.title, "fill=\"#888\"");
+      const Panel& of = rows[r].panels[p];
+      out += of.state ? panel(FigurePainter(*of.run->problem), *of.state, of.title, canvas, at,
+                              {kPanel, height})
+                      : svg::text({at.x() + 2, at.y() + 14}, of.title, "fill=\"#888\"");
     }
   }
   const double below = page.y() - kLegend + 8;

@@ -13,4 +13,12 @@ std::vector<double> lumped_masses(const Problem& problem, std::span<const double
   return of;
 }
 
+std::vector<double> lumped_masses(const Problem& problem) {
+  std::vector<double> density(problem.mesh().volumes.size(), 0.0);
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    density[problem.mesh().volume_of[e]] = problem.material(e).density.value();
+  }
+  return lumped_masses(problem, density);
+}
+
 }  // namespace sunder::fem

@@ -13,5 +13,7 @@ namespace sunder::fem {
 /// node of no element gets none.
 [[nodiscard]] std::vector<double> lumped_masses(const Problem& problem,
                                                 std::span<const double> density);
+/// By the materials' densities, which are there.
+[[nodiscard]] std::vector<double> lumped_masses(const Problem& problem);
 
 }  // namespace sunder::fem

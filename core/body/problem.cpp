@@ -34,7 +34,17 @@ void check_material(const std::string& name, const Material& m) {
                      what + " has yield = " + in_digits(*m.yield) +
                          "; it must be finite and above 0 MPa, or left out (unbreakable)");
   }
+  if (m.density && (!std::isfinite(*m.density) || !(*m.density > 0))) {
+    throw InputError(InputFault::out_of_range,
+                     what + " has density = " + in_digits(*m.density) +
+                         "; it must be finite and above 0 t/mm^3 (water 1e-9)");
+  }
 }
+
+/// Ten times the densest metal: a figure in another unit.
+constexpr double kDensest = 1e-7;
+/// Of a step [s] in which tissue tears (method.md "Motion").
+constexpr double kLongestTearingStep = 0.01;
 
 void check_finite(const Vec3& v, const std::string& what, const char* key) {
   if (!v.allFinite()) {
@@ -165,6 +175,46 @@ void Problem::check_options() {
     throw InputError(InputFault::out_of_range,
                      "time.steps = " + std::to_string(scene_.steps) + "; it must be at least 1");
   }
+  if (!scene_.gravity.allFinite()) {
+    throw InputError(InputFault::out_of_range, "load.gravity must be finite, in mm/s^2");
+  }
+  if (moves()) check_motion();
+}
+
+void Problem::check_motion() {
+  const Dynamics& d = *scene_.dynamics;
+  const auto refuse = [](const std::string& key, double value, const std::string& what) {
+    throw InputError(InputFault::out_of_range,
+                     "dynamics." + key + " = " + in_digits(value) + "; it must be " + what);
+  };
+  if (!(d.time_step > 0) || !std::isfinite(d.time_step)) {
+    refuse("time_step", d.time_step, "finite and above 0 s");
+  }
+  for (const double c : {d.mass_damping, d.stiffness_damping}) {
+    if (!(c >= 0) || !std::isfinite(c)) refuse("damping", c, "finite and at least 0");
+  }
+  if (d.max_iterations < 0) refuse("max_iterations", d.max_iterations, "at least 0 (0: no cap)");
+  if (d.time_step > kLongestTearingStep && row_of(scene_.fracture.model).breaks) {
+    warnings_.push_back("dynamics.time_step = " + in_digits(d.time_step) +
+                        " s is too coarse for tearing: more breaks than would in shorter steps; "
+                        "take at most " +
+                        in_digits(kLongestTearingStep) + " s");
+  }
+}
+
+void Problem::check_density(const std::string& name, const Material& material) {
+  const bool gravity = !scene_.gravity.isZero(0);
+  if (!material.density && (moves() || gravity)) {
+    throw InputError(InputFault::missing_key, "material " + in_quotes(name) +
+                                                  " has no density, which " +
+                                                  (moves() ? "motion" : "gravity") +
+                                                  " needs; add density = 1e-9 (water, in t/mm^3)");
+  }
+  if (material.density && *material.density > kDensest) {
+    warnings_.push_back("material " + in_quotes(name) +
+                        " has density = " + in_digits(*material.density) +
+                        ": denser than any metal; its unit is t/mm^3 (water 1e-9)");
+  }
 }
 
 void Problem::resolve_materials() {
@@ -192,6 +242,7 @@ void Problem::resolve_materials() {
                                                     in_quotes(mesh().volumes[v].name) + "]");
     }
     const Material* material = it == scene_.materials.end() ? nullptr : &it->second;
+    if (material && elements[v] > 0) check_density(it->first, *material);
     material_of_volume_.push_back(material);
     small_strain_of_volume_.push_back(material ? sunder::small_strain(*material) : SmallStrain{});
     finite_ = finite_ || (elements[v] > 0 && material->law != MaterialLaw::linear);

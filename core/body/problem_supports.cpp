@@ -140,7 +140,8 @@ void Problem::leave_out_what_nothing_holds(const fem::Bodies& bodies,
     for (Index n : i.nodes) wanted[bodies.body_of_node[n]] = 1;
   }
   const auto any = std::any_of(wanted.begin(), wanted.end(), [](auto w) { return w != 0; });
-  if (!any) std::fill(wanted.begin(), wanted.end(), std::uint8_t{1});  // an error, not a warning
+  // In motion such a body flies; with no other it is an error, not a warning.
+  if (!any || moves()) std::fill(wanted.begin(), wanted.end(), std::uint8_t{1});
   for (Index n = 0; n < node_count(); ++n) {
     const Index body = bodies.body_of_node[n];
     if (body == kNone || !wanted[body]) held[n] = kAllAxes;
@@ -161,6 +162,7 @@ void Problem::leave_out_what_nothing_holds(const fem::Bodies& bodies,
 }
 
 void Problem::latch_what_hangs(const fem::Bodies& bodies, std::vector<std::uint8_t>& held) {
+  if (moves()) return;  // it swings
   std::vector<std::uint8_t> restrained = held;
   for (std::size_t i = 0; i < scene_.instruments.size(); ++i) {
     if (!std::holds_alternative<Grip>(scene_.instruments[i].action)) continue;
@@ -313,7 +315,7 @@ void Problem::check_held_bodies(const fem::Bodies& bodies) {
   }
   double stiffest = 0;
   for (const auto& [name, m] : scene_.materials) stiffest = std::max(stiffest, m.young);
-  for (Index b = 0; b < bodies.count; ++b) {
+  for (Index b = 0; b < bodies.count && !moves(); ++b) {
     if (fem::rigid_modes_left(mesh(), held[b]) == 0) continue;
     auto all = held[b];
     all.insert(all.end(), gripped[b].begin(), gripped[b].end());

@@ -127,18 +127,30 @@ Voigt AveragedStrength::mean(Index element, std::span<const std::uint8_t> destro
   return sum / volume;  // its own at least
 }
 
+double AveragedStrength::ratio(Index element, std::span<const std::uint8_t> destroyed) const {
+  return yield_measure(mean(element, destroyed), strength_measure(problem_.scene().fracture)) /
+         problem_.yield(element);
+}
+
+void AveragedStrength::over(std::span<const std::uint8_t> destroyed,
+                            std::vector<Worst>& found) const {
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (destroyed[static_cast<std::size_t>(e)] || !problem_.breakable(e)) continue;
+    if (const double r = ratio(e, destroyed); r >= 1) found.push_back({e, r});
+  }
+}
+
 StressSummary AveragedStrength::summarize(const Backend& backend) {
   backend.read_stress(stress_);
   const auto destroyed = backend.destroyed();
-  const YieldMeasure measure = strength_measure(problem_.scene().fracture);
   StressSummary summary;
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     const auto at = static_cast<std::size_t>(e);
     if (destroyed[at] || !problem_.breakable(e)) continue;
-    const double ratio = yield_measure(mean(e, destroyed), measure) / problem_.yield(e);
-    if (ratio > summary.any.ratio) summary.any = {e, ratio};
-    if (ratio >= 1) ++summary.over;
-    if (!excluded_[at] && ratio > summary.candidate.ratio) summary.candidate = {e, ratio};
+    const double r = ratio(e, destroyed);
+    if (r > summary.any.ratio) summary.any = {e, r};
+    if (r >= 1) ++summary.over;
+    if (!excluded_[at] && r > summary.candidate.ratio) summary.candidate = {e, r};
   }
   return summary;
 }

@@ -21,11 +21,14 @@ class AveragedStrength {
   /// What Backend::stress() says, by the mean stress round each live breakable element: of those of
   /// its material, live, with centroids at most the radius away, weighted by volume.
   [[nodiscard]] StressSummary summarize(const Backend& backend);
+  /// At or over yield in the last summary, by id.
+  void over(std::span<const std::uint8_t> destroyed, std::vector<Worst>& found) const;
   /// Takes elements out of the candidates for good.
   void exclude(std::span<const Index> elements);
 
  private:
   void find_neighbours(double radius);
+  [[nodiscard]] double ratio(Index element, std::span<const std::uint8_t> destroyed) const;
   [[nodiscard]] Voigt mean(Index element, std::span<const std::uint8_t> destroyed) const;
 
   const Problem& problem_;

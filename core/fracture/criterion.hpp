@@ -47,6 +47,8 @@ struct FractureState {
   std::function<void(std::span<const Index>, std::span<Vec3>)> displacement = {};
   /// What the instruments exert now, grips included.
   std::function<std::span<const NodalForce>()> forces = {};
+  /// Live breakable elements at or over yield, by id; asked for in motion alone.
+  std::function<std::span<const Worst>()> over = {};
 };
 
 /// One event: the elements that one update destroys. `cause`, `element`, `crack`, `ratio`, `sif`

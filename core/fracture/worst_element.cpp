@@ -16,6 +16,13 @@ std::optional<DestroyedElement> rupture(const Worst& worst, Cause cause) {
 
 void WorstElement::decide(const FractureState& state, Decision& decision) {
   decision.clear();
+  if (problem_.moves()) {
+    if (!(state.summary.any.ratio >= 1)) return;
+    for (const Worst& over : state.over()) {
+      decision.elements.push_back(*rupture(over, cause_));
+    }
+    return;
+  }
   if (const auto row = rupture(state.summary.any, cause_)) decision.elements.push_back(*row);
 }
 

@@ -7,8 +7,8 @@
 
 namespace sunder::fracture {
 
-/// Destroys the live breakable element with the largest ratio while it is >= 1, one per event.
-/// Keeps no crack records.
+/// Destroys the live breakable element with the largest ratio while it is >= 1, one per event; in
+/// motion, where a step has one event, all with a ratio >= 1. Keeps no crack records.
 class WorstElement final : public FractureCriterion {
  public:
   /// `cause`: what the rows of its events say.

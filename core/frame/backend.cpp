@@ -50,6 +50,47 @@ SolveReport Backend::solve() {
   return report;
 }
 
+SolveReport Backend::advance(double dt) {
+  require(problem_->moves(), "a step of time needs a scene in motion");
+  require(stage_ != Stage::created, "there is nothing to advance to before a load is set");
+  require(dt > 0 && std::isfinite(dt), "a step of time must be finite and above 0 s");
+  const SolveReport report = do_advance(dt);
+  stage_ = Stage::solved;
+  return report;
+}
+
+MotionState Backend::motion() const {
+  require(problem_->moves(), "the state of motion needs a scene in motion");
+  return do_motion();
+}
+
+void Backend::read_velocity(std::span<double> velocity) const {
+  require_motion(velocity);
+  do_read_velocity(velocity);
+}
+
+void Backend::set_velocity(std::span<const double> velocity) {
+  require_motion(velocity);
+  for (double v : velocity) require(std::isfinite(v), "velocities must be finite");
+  do_set_velocity(velocity);
+}
+
+void Backend::require_motion(std::span<const double> velocity) const {
+  require(problem_->moves(), "velocities need a scene in motion");
+  require(velocity.size() == 3 * problem_->mesh().nodes.size(),
+          "the velocity needs 3 values per node");
+}
+
+SolveReport Backend::do_advance(double) {
+  throw UsageError("backend " + info().backend + " does not move bodies");
+}
+void Backend::do_read_velocity(std::span<double> velocity) const {
+  std::ranges::fill(velocity, 0.0);
+}
+void Backend::do_set_velocity(std::span<const double>) {
+  throw UsageError("backend " + info().backend + " does not move bodies");
+}
+
 StressSummary Backend::stress() {
   require(needs_.stress, "stress was left out of this backend's needs");
   require(stage_ == Stage::solved || stage_ == Stage::stressed,
@@ -88,7 +129,8 @@ void Backend::destroy(std::span<const Index> elements) {
   }
   damaged_body_->destroy(elements);
   do_destroy(elements);
-  if (stage_ != Stage::created) stage_ = Stage::loaded;
+  // In motion what has gone shows in the next step; the state is still the one before it.
+  if (stage_ != Stage::created && !problem_->moves()) stage_ = Stage::loaded;
 }
 
 void Backend::prepare(std::span<const Index> elements) {

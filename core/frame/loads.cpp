@@ -36,6 +36,7 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   if (std::any_of(instruments.begin(), instruments.end(), is_press)) {
     elements_of_node_.emplace(problem.mesh());
   }
+  if (!problem.moves() && !problem.scene().gravity.isZero(0)) weight_.emplace(problem);
   pressed_.resize(instruments.size());
   forces_.assign(instruments.size(), Vec3::Zero());
   driven_.resize(instruments.size());
@@ -55,7 +56,7 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
       for (int axis = 0; axis < 3; ++axis) {
         if (!grip->axes.has(axis)) continue;
         const auto it = std::lower_bound(gripped.begin(), gripped.end(), problem.dof(n, axis));
-        gripped_[it - gripped.begin()] = {i, axis, arm};
+        gripped_[it - gripped.begin()] = {i, n, axis, arm};
       }
     }
   }
@@ -64,7 +65,7 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
 /// Whatever acts at a time, a frame allocates nothing.
 void Loads::reserve() {
   constexpr std::size_t kPressed = std::tuple_size_v<decltype(PressedNodes::nodes)>;
-  std::size_t shares = 0;
+  std::size_t shares = weight_ ? static_cast<std::size_t>(problem_.dof_count()) : 0;
   for (const InstrumentNodes& i : problem_.instrument_nodes())
     shares += 3 * std::max(i.nodes.size(), kPressed);
   for (auto& pressed : pressed_) pressed.reserve(kPressed);
@@ -134,7 +135,16 @@ Vec3 Loads::force_on_supports() const {
         sum[axis] += forces_[i][axis] * static_cast<double>(held) / static_cast<double>(on.size());
     }
   }
+  for (Index n = 0; weight_ && n < problem_.node_count(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (problem_.dof(n, axis) == kNone) sum[axis] += weight_->of(n, axis);
+    }
+  }
   return sum;
+}
+
+double Loads::weight_on_grip(std::size_t g) const {
+  return weight_ ? weight_->of(gripped_[g].node, gripped_[g].axis) : 0;
 }
 
 void Loads::sum_into(Load& load) {
@@ -174,9 +184,10 @@ void Loads::update(double time, const FractureCriterion& criterion,
     add(i);
   }
   sum_into(expansion_);
+  if (weight_) weight_->add_intact(expansion_);
   take_turns(time);
   for (std::size_t g = 0; g < gripped_.size(); ++g) {
-    const auto& [instrument, axis, arm] = gripped_[g];
+    const auto& [instrument, node, axis, arm] = gripped_[g];
     double& moved = expansion_.displacements[g];
     moved = value(instrument, time)[axis];
     if (!turn_[instrument].isZero(0)) moved += turn_[instrument].row(axis).dot(arm);
@@ -194,6 +205,10 @@ void Loads::update(double time, const FractureCriterion& criterion,
     acting_.push_back({i, press, forces_[i], pressed_[i]});
   }
   sum_into(all_);
+  if (weight_) {
+    weight_->look(destroyed);
+    weight_->add_present(all_);
+  }
   all_.displacements = expansion_.displacements;
 }
 

@@ -8,6 +8,7 @@
 
 #include "body/node_elements.hpp"
 #include "fracture/criterion.hpp"
+#include "frame/weight.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder {
@@ -16,8 +17,9 @@ class Loads {
  public:
   explicit Loads(const Problem& problem);
 
-  /// Instruments at scene time t. Pressing instruments choose their nodes when they start to act,
-  /// and again when such a node has lost its last live element (method.md 7). Adds to `findings`.
+  /// Instruments at scene time t, in statics with the body's weight. Pressing instruments choose
+  /// their nodes when they start to act, and again when such a node has lost its last live element
+  /// (method.md 7). Adds to `findings`.
   void update(double time, const FractureCriterion& criterion,
               std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings);
 
@@ -37,11 +39,14 @@ class Loads {
   [[nodiscard]] std::span<const Index> nodes(std::size_t instrument) const;
   /// Total force of instrument i now; zero for grips.
   [[nodiscard]] const Vec3& force(std::size_t instrument) const { return forces_[instrument]; }
-  /// Of these, what acts on axes that supports hold.
+  /// Of these, with the weight there, what acts on axes that supports hold.
   [[nodiscard]] Vec3 force_on_supports() const;
+  /// Of the body on gripped dof g, in statics: a part of the grip's reaction.
+  [[nodiscard]] double weight_on_grip(std::size_t g) const;
   /// Per gripped dof: the instrument that grips it, and the axis.
   struct Gripped {
     std::size_t instrument;
+    Index node;
     int axis;
     Vec3 arm = Vec3::Zero();  ///< of a rigid grip: of the node from the nodes' centroid [mm]
   };
@@ -65,6 +70,7 @@ class Loads {
 
   const Problem& problem_;
   std::optional<NodeElements> elements_of_node_;  // only where something presses
+  std::optional<Weight> weight_;                  // only in statics under gravity
   std::vector<std::vector<Index>> pressed_;       // per instrument
   std::vector<Gripped> gripped_;
   std::vector<std::optional<Vec3>> driven_, turned_;

@@ -44,6 +44,12 @@ std::vector<std::string> Simulation::warnings() const {
                                    count_of(problem_->scene().fracture.max_events, "event") +
                                    "; more may have been ready to break"));
   }
+  if (cut_short_.count > 0) {
+    all.push_back(cut_short_.sentence(
+        "ended at dynamics.max_iterations = " +
+        std::to_string(problem_->scene().dynamics->max_iterations) +
+        ": the stress error there is only estimated, not under solver.tolerance"));
+  }
   if (polished_.count > 0) {
     all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
   }
@@ -53,6 +59,16 @@ std::vector<std::string> Simulation::warnings() const {
         "it"));
   }
   add_deformation_warnings(all);
+  if (problem_->moves()) {
+    if (loose_pieces_ > 0) {
+      all.push_back(count_of(static_cast<long long>(loose_pieces_), "piece") + " with " +
+                    count_of(static_cast<long long>(loose_elements_), "element") +
+                    (loose_pieces_ == 1 ? " moves on by itself" : " move on by themselves") +
+                    " (since step " + std::to_string(loose_pieces_step_) +
+                    "): no support and no grip holds " + (loose_pieces_ == 1 ? "it" : "them"));
+    }
+    return all;
+  }
   const std::string so =
       problem_->finite() ? " displacement stays as it was" : " displacement has no meaning";
   if (loose_nodes_ > 0) {

@@ -16,6 +16,7 @@
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder {
 namespace {
@@ -92,11 +93,29 @@ void Simulation::reserve() {
 Simulation::~Simulation() = default;
 
 StepReport Simulation::step() {
+  return compute_step(problem_->moves() ? problem_->scene().dynamics->time_step : 0);
+}
+
+StepReport Simulation::step(double dt) {
+  if (!problem_->moves()) throw UsageError("a step of time needs a scene with [dynamics]");
+  if (!(dt > 0) || !std::isfinite(dt)) {
+    throw UsageError("a step of time must be finite and above 0 s");
+  }
+  return compute_step(dt);
+}
+
+StepReport Simulation::compute_step(double dt) {
   if (done()) throw UsageError("all steps of the scene are done");
+  const bool moves = problem_->moves();
+  const int steps = problem_->scene().steps;
+  const double time_step = moves ? problem_->scene().dynamics->time_step : 0;
+  const bool even = even_ && dt == time_step;  // sums of time round, multiples do not
+  const double time = even ? (next_step_ + 1) * time_step : time_ + dt;
+  scene_time_ = even ? (next_step_ + 1.0) / steps : time / (steps * time_step);
   StepReport report;
   const Shown shown(in_work_, report);
   report.step = next_step_;
-  report.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
+  report.load_factor = scene_time_;
   interrupted_ = false;
   events_this_step_ = 0;
   decisions_this_step_ = 0;
@@ -121,7 +140,7 @@ StepReport Simulation::step() {
       }
       {
         const Timer timer(times.solve);
-        const SolveReport solved = solve();
+        const SolveReport solved = moves ? backend_->advance(dt) : solve();
         times.solve -= solved.stress_ms;
         times.stress += solved.stress_ms;
         record_solve(solved, report);
@@ -132,6 +151,8 @@ StepReport Simulation::step() {
         if (averaged_) summary = averaged_->summarize(*backend_);
       }
       report.max_yield_ratio = summary.any.ratio;
+      // In motion the intact body moves beside the real one, in every step.
+      if (moves && backend_->needs().pristine) static_cast<void>(pristine_displacement());
       if (frame_observer_) frame_observer_();
       if (report.unfinished) break;  // a body on its way: nothing is decided
       {
@@ -141,7 +162,7 @@ StepReport Simulation::step() {
       {
         const Timer timer(times.update);
         if (attribute_) attribute_event();
-        broke = apply_event();
+        broke = apply_event() && !moves;
       }
     }
     if (destroyed_.size() != destroyed_before) find_loose();
@@ -154,6 +175,12 @@ StepReport Simulation::step() {
   report.destroyed = static_cast<int>(destroyed_.size());
   report.compliance = compliance();
   report.passes = backend_->take_pass_times();
+  if (moves) {
+    report.motion = backend_->motion();
+    report.motion->time = time;  // a sum of steps rounds
+  }
+  time_ = time;
+  even_ = even;
   ++next_step_;
   prepare_next(summary);
   return report;
@@ -187,6 +214,8 @@ void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
   report.iterations += solve.iterations;
   report.back_solves += solve.back_solves;
   report.unfinished = solve.unfinished;
+  report.capped = solve.capped;
+  if (solve.capped) cut_short_.add(next_step_);
   report.polished = report.polished || solve.polished;
   if (solve.polished) polished_.add(next_step_);
   if (solve.unfinished) unfinished_.add(next_step_);
@@ -212,7 +241,23 @@ FractureState Simulation::fracture_state(const StressSummary& summary) {
         backend_->read_displacement(nodes, u);
       },
       [this] { return instrument_forces(); },
+      [this] { return over_yield(); },
   };
+}
+
+std::span<const Worst> Simulation::over_yield() {
+  over_.clear();
+  if (averaged_) {
+    averaged_->over(backend_->destroyed(), over_);
+    return over_;
+  }
+  const YieldMeasure measure = strength_measure(problem_->scene().fracture);
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    if (backend_->destroyed()[e] || !problem_->breakable(e)) continue;
+    const double ratio = yield_measure(backend_->read_stress(e), measure) / problem_->yield(e);
+    if (ratio >= 1) over_.push_back({e, ratio});
+  }
+  return over_;
 }
 
 void Simulation::decide(const StressSummary& summary) {
@@ -330,7 +375,7 @@ bool Simulation::apply_event() {
   for (DestroyedElement& d : decision_->elements) {
     d.step = next_step_;
     d.event = next_event_;
-    d.load_factor = (next_step_ + 1.0) / problem_->scene().steps;
+    d.load_factor = scene_time_;
     event_.push_back(d.element);
   }
   backend_->destroy(event_);
@@ -386,9 +431,9 @@ void Simulation::find_loose() {
   leave_out_loose();
 }
 
-/// Elements of pieces that have come off in this step.
+/// Elements of pieces that have come off in this step; in motion they stay in.
 void Simulation::leave_out_loose() {
-  if (loose_pieces_ == 0 || !backend_->needs().stress) return;
+  if (loose_pieces_ == 0 || !backend_->needs().stress || problem_->moves()) return;
   cut_off_.resize(problem_->mesh().tets.size(), 0);
   newly_cut_off_.clear();
   for (Index e = 0; e < problem_->tet_count(); ++e) {
@@ -434,8 +479,9 @@ void Simulation::read(Reactions& r) const {
   if (r.grips.empty()) return;
   backend_->read_reactions(r.grips);
   for (std::size_t g = 0; g < r.grips.size(); ++g) {
-    const auto& [instrument, axis, arm] = loads_->gripped()[g];
-    r.forces[instrument][axis] += r.grips[g];
+    r.grips[g] -= loads_->weight_on_grip(g);
+    const auto& of = loads_->gripped()[g];
+    r.forces[of.instrument][of.axis] += r.grips[g];
   }
 }
 
@@ -470,9 +516,9 @@ std::vector<Index> Simulation::acting_nodes(std::size_t instrument) const {
 double Simulation::work_of_turn(std::size_t instrument, const Vec3& displacement) const {
   double work = 0;
   for (std::size_t g = 0; g < loads_->gripped().size(); ++g) {
-    const auto& [of, axis, arm] = loads_->gripped()[g];
-    if (of != instrument) continue;
-    work += reactions_.grips[g] * (loads_->load().displacements[g] - displacement[axis]);
+    const auto& of = loads_->gripped()[g];
+    if (of.instrument != instrument) continue;
+    work += reactions_.grips[g] * (loads_->load().displacements[g] - displacement[of.axis]);
   }
   return work;
 }
@@ -486,8 +532,7 @@ double Simulation::compliance() {
     if (problem_->scene().instruments.empty()) break;
     const auto* grip = std::get_if<Grip>(&problem_->scene().instruments[i].action);
     if (grip) {
-      const Vec3 displacement =
-          loads_->value(i, static_cast<double>(next_step_ + 1) / problem_->scene().steps);
+      const Vec3 displacement = loads_->value(i, scene_time_);
       for (int axis = 0; axis < 3; ++axis) {
         if (grip->axes.has(axis)) work += forces[i][axis] * displacement[axis];
       }
@@ -503,6 +548,19 @@ double Simulation::compliance() {
     work += forces[i].dot(mean) / static_cast<double>(nodes.size());
   }
   return work;
+}
+
+std::vector<Vec3> Simulation::velocity() const {
+  std::vector<Vec3> result(problem_->mesh().nodes.size());
+  backend_->read_velocity({result.front().data(), 3 * result.size()});
+  return result;
+}
+
+void Simulation::set_velocity(std::span<const Vec3> velocity) {
+  if (velocity.size() != problem_->mesh().nodes.size()) {
+    throw UsageError("one velocity per node");
+  }
+  backend_->set_velocity({velocity.front().data(), 3 * velocity.size()});
 }
 
 std::vector<Vec3> Simulation::displacement() const {

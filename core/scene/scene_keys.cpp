@@ -79,6 +79,9 @@ std::string written(const SceneKey& key, const KeyValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* number = std::get_if<double>(&value)) return written(*number);
   if (const auto* text = std::get_if<std::string>(&value)) return "\"" + *text + "\"";
+  if (const auto* v = std::get_if<Vec3>(&value)) {
+    return "[" + written(v->x()) + ", " + written(v->y()) + ", " + written(v->z()) + "]";
+  }
   const int count = std::get<int>(value);
   if (key.type == KeyType::word) return "\"" + key.words[static_cast<std::size_t>(count)] + "\"";
   return count < key.least ? "" : std::to_string(count);  // below: none, whatever stands for it
@@ -146,6 +149,12 @@ std::vector<SceneKey> root_rows() {
       row("", "solver", table, "", "how it is computed", ""),
       row("", "time", table, "", "how often", ""),
       row("", "output", table, "", "what is stored", ""),
+      row("", "load", table, "", "what acts on all of the body", ""),
+      row("", "dynamics", table, "",
+          "motion (method.md \"Motion\"): the table's presence makes each step one of time; "
+          "supports "
+          "and instruments may be absent",
+          "a device, route, update or precision that cannot: exit code 4"),
   };
 }
 
@@ -222,6 +231,14 @@ SceneKey output_row() {
              "another field: error");
 }
 
+SceneKey damping_row() {
+  return row(
+      "dynamics", "damping", KeyType::range, "[0, 0]",
+      "[force per mass and velocity [1/s], stress per small-strain stiffness and strain rate "
+      "[s]]",
+      "below 0: error");
+}
+
 template <class Keys>
 void append(std::vector<SceneKey>& all, const Keys& keys) {
   all.insert(all.end(), keys.begin(), keys.end());
@@ -243,6 +260,9 @@ std::span<const MemberKey<Material>> material_keys() {
           "finite deformation (method.md \"Finite deformation\")",
           "a device that cannot: exit code 4",
           {.words = {"linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"}}),
+      row<&Material::density>("material", "density", "[t/mm^3], water 1e-9",
+                              "0 or below: error; over 1e-7: warning; left out in motion or under "
+                              "gravity: error"),
   };
   return keys;
 }
@@ -326,6 +346,33 @@ std::span<const MemberKey<Scene>> time_keys() {
   return keys;
 }
 
+std::span<const MemberKey<Scene>> load_keys() {
+  static const std::vector<MemberKey<Scene>> keys{
+      row<&Scene::gravity>("load", "gravity",
+                           "[mm/s^2]; the weight of destroyed elements stays with their nodes "
+                           "while something holds them",
+                           "not finite: error"),
+  };
+  return keys;
+}
+
+std::span<const MemberKey<Dynamics>> dynamics_keys() {
+  using D = Dynamics;
+  static const std::vector<MemberKey<D>> keys{
+      row<&D::time_step>("dynamics", "time_step",
+                         "[s]; scene time 1 is `steps` of them; the run starts undeformed, at rest",
+                         "0 or below: error; over 1/100 s with a fracture model: warning",
+                         kRequired),
+      row<&D::max_iterations>("dynamics", "max_iterations",
+                              "most applications of the base in a step, 0: as many as `tolerance` "
+                              "takes",
+                              "reached: the step's stress is not promised, with a warning"),
+      row<&D::felt_inertia>("dynamics", "felt_inertia",
+                            "whether a grip's force includes what accelerates its own nodes", ""),
+  };
+  return keys;
+}
+
 const std::vector<SceneKey>& scene_keys() {
   static const std::vector<SceneKey> keys = [] {
     std::vector<SceneKey> all = root_rows();
@@ -335,6 +382,9 @@ const std::vector<SceneKey>& scene_keys() {
     append(all, solver_keys());
     append(all, time_keys());
     all.push_back(output_row());
+    append(all, load_keys());
+    append(all, dynamics_keys());
+    all.push_back(damping_row());
     return all;
   }();
   return keys;

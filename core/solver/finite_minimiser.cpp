@@ -97,6 +97,7 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
         state.r,
         [&](const Eigen::VectorXd& q, Eigen::VectorXd& x) {
           base.solve(q, x);
+          if (target.viscous > 0) x /= 1 + target.viscous;  // the tangent of viscous forces
           potential_.hold(x);
         },
         du_);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/frame_cost.hpp"
+
 namespace sunder::solver {
 namespace {
 
@@ -12,6 +14,15 @@ namespace {
 constexpr int kEulerSteps = 3;
 // A base with so many times the step's inertia, or as little, is another body's.
 constexpr double kMostInertiaApart = 4;
+constexpr int kMostParts = 64;  // of a step
+// Within which a base is taken, whatever its making may be thought to take: a later one is of a
+// state long past.
+constexpr double kFewestStepsOfABase = 2, kMostStepsOfABase = 12;
+
+/// Of the base: viscous forces make its tangent so many times as stiff, and the whole is divided.
+fem::Inertia inertia_of_base(const FiniteTarget& target) {
+  return {target.inertia.factor / (1 + target.viscous), target.inertia.mass};
+}
 
 }  // namespace
 
@@ -27,7 +38,8 @@ FiniteMotion::FiniteMotion(const fem::HyperelasticBody& body, std::span<const do
       mass_(static_cast<std::size_t>(body.problem.dof_count()), 0.0),
       u_(body.problem.dofs().size(), 0.0),
       v_(u_.size(), 0.0),
-      renewal_(options.rest, false) {
+      viscosity_(moving_.body()),
+      renewal_(options.rest, options.inverse) {
   for (std::size_t i = 0; i < u_.size(); ++i) {
     const Index d = body.problem.dofs()[i];
     if (d != kNone) mass_[d] = node_mass_[i / 3];
@@ -37,14 +49,33 @@ FiniteMotion::FiniteMotion(const fem::HyperelasticBody& body, std::span<const do
   gripped_.resize(mass_.size());
   for (Index d : body.problem.gripped_dofs()) gripped_[d] = 1;
   load_.setZero(body.problem.dof_count());
-  reaction_ = load_;
+  reaction_ = felt_ = load_;
 }
 
 void FiniteMotion::set_velocity(std::span<const double> v) {
+  sum_.work -= kinetic_energy();
   for (std::size_t i = 0; i < v_.size(); ++i) {
     v_[i] = potential_.problem().dofs()[i] == kNone ? 0 : v[i];
   }
-  euler_ = 1;
+  sum_.work += kinetic_energy();
+  euler_ = std::max(euler_, 1);
+}
+
+void FiniteMotion::go_on_from(const FiniteMotionPast& past) {
+  u_ = past.u;
+  v_ = past.v;
+  u_before_ = past.u_before;
+  v_before_ = past.v_before;
+  dt_before_ = past.dt;
+  euler_ = past.euler;
+  state_.u = u_;
+  potential_.evaluate(potential_.target({}), false, state_);
+  time_ = past.time;
+  load_ = past.load;
+  reaction_ = past.reaction;
+  felt_ = past.felt;
+  broken_ = 0;
+  sum_ = past.sum;
 }
 
 void FiniteMotion::destroyed(std::span<const Index>) {
@@ -57,11 +88,11 @@ void FiniteMotion::destroyed(std::span<const Index>) {
 }
 
 FiniteMotion::Scheme FiniteMotion::scheme(double dt) const {
-  if (euler_ > 0) return {false, 1 / dt, u_, v_};
+  if (euler_ > 0) return {false, 1 / dt, 1, 0, u_, v_};
   // BDF2 with steps of two lengths (Hairer, Norsett and Wanner 1993, III.5).
   const double w = dt / dt_before_, now = (1 + w) * (1 + w) / (1 + 2 * w),
                before = w * w / (1 + 2 * w);
-  Scheme by{true, (1 + 2 * w) / (1 + w) / dt, u_, v_};
+  Scheme by{true, (1 + 2 * w) / (1 + w) / dt, now, before, u_, v_};
   for (std::size_t i = 0; i < u_.size(); ++i) {
     by.u_from[i] = now * u_[i] - before * u_before_[i];
     by.v_from[i] = now * v_[i] - before * v_before_[i];
@@ -82,6 +113,11 @@ FiniteTarget FiniteMotion::target(const Load& load, const Scheme& by) {
     of.force[d] += mass_[d] * options_.gravity[static_cast<Eigen::Index>(i % 3)];
   }
   of.ahead = &ahead_;
+  if (options_.viscosity > 0) {
+    viscosity_.start(u_, by.now, u_before_, by.before);
+    of.viscosity = &viscosity_;
+    of.viscous = options_.viscosity * by.rate;
+  }
   return of;
 }
 
@@ -109,6 +145,7 @@ bool FiniteMotion::begin(const FiniteTarget& target, double dt) {
 bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
                          Report& report) {
   base_ = projected_base(moving_.body(), u, pattern_, report.factors, {}, inertia);
+  if (base_ && options_.inverse) base_->keep_inverse();
   return base_ != nullptr;
 }
 
@@ -138,24 +175,65 @@ bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
   }
   if (once(options_.most_back_solves)) return true;
   for (int i = 0; i < options_.most_factors; ++i) {
-    if (!renew(next_.u, target.inertia, report)) return false;
+    if (!renew(next_.u, inertia_of_base(target), report)) return false;
     if (once(options_.most_back_solves)) return true;
   }
   return false;
 }
 
 FiniteMotionReport FiniteMotion::step(const Load& load, double dt) {
+  const Report report = one_step(load, dt);
+  return report.stuck ? in_parts(load, dt, report) : report;
+}
+
+/// A hand that jumps, or a jump of the body itself, in so many steps of less time.
+FiniteMotionReport FiniteMotion::in_parts(const Load& load, double dt, const Report& first) {
+  const FiniteMotionPast start = past();
+  const std::vector<double> from = potential_.grips(u_);
+  Report all = first;
+  for (int parts = 2; parts <= kMostParts; parts *= 2) {
+    all.parts = parts;
+    all.stuck = all.capped = false;
+    all.balance = {};
+    for (int i = 1; i <= parts && !all.stuck; ++i) {
+      const double share = static_cast<double>(i) / parts;
+      Load on_the_way = load;
+      for (std::size_t g = 0; g < from.size(); ++g) {
+        on_the_way.displacements[g] = from[g] + share * (load.displacements[g] - from[g]);
+      }
+      const Report part = one_step(i < parts ? on_the_way : load, dt / parts);
+      all.back_solves += part.back_solves;
+      all.factors += part.factors;
+      all.stuck = part.stuck;
+      all.capped = all.capped || part.capped;
+      all.second_order = part.second_order;
+      all.residual = part.residual;
+      all.error = part.error;
+      all.contraction = part.contraction;
+      all.rank = part.rank;
+      all.balance += part.balance;
+    }
+    if (!all.stuck) return all;
+    go_on_from(start);
+  }
+  return all;
+}
+
+FiniteMotionReport FiniteMotion::one_step(const Load& load, double dt) {
   Report report;
-  if (renewal_.base_asked() && ++since_asked_ >= options_.taken_after) {
+  if (renewal_.base_asked() && --until_taken_ <= 0) {
     if (auto base = renewal_.take_base()) base_ = std::move(base);
   }
   const Scheme by = scheme(dt);
   report.second_order = by.second_order;
   const FiniteTarget end = target(load, by);
+  const fem::Inertia inertia = inertia_of_base(end);
   FiniteScale scale = scale_;
   scale.force = std::max(scale.force, state_.acting);
+  scale.force_rounding *= 1 + end.viscous;
+  scale.energy_rounding *= 1 + end.viscous;
   minimiser_.set_scale(scale);
-  report.stuck = !ensure_base(end.inertia, report) || !begin(end, dt);
+  report.stuck = !ensure_base(inertia, report) || !begin(end, dt);
   if (!report.stuck) {
     if (options_.turn) base_->turn(moving_, next_.u);
     report.stuck = !minimise(end, report);
@@ -166,7 +244,7 @@ FiniteMotionReport FiniteMotion::step(const Load& load, double dt) {
   }
   take(end, by, dt, report);
   euler_ = report.capped ? kEulerSteps : std::max(0, euler_ - 1);
-  renew_if_due(end.inertia, report);
+  renew_if_due(inertia, dt, report);
   return report;
 }
 
@@ -179,6 +257,7 @@ void FiniteMotion::take(const FiniteTarget& end, const Scheme& by, double dt, Re
   u_before_ = std::exchange(u_, state_.u);
   v_before_ = std::exchange(v_, std::move(v));
   dt_before_ = dt;
+  time_ += dt;
 }
 
 /// Of the step from state_ to next_, v its velocities; keeps what the next one's begins with. The
@@ -195,7 +274,8 @@ FiniteMotionBalance FiniteMotion::balance(const FiniteTarget& end, const Scheme&
     const double weight = mass * options_.gravity[static_cast<Eigen::Index>(i % 3)];
     const double load = end.force[d] - weight;
     const double inertia = mass * by.rate * (v[i] - by.v_from[i]);
-    const double drag = options_.damping * mass * v[i];
+    const double drag =
+        options_.damping * mass * v[i] + (next_.viscous.empty() ? 0 : next_.viscous[i]);
     const double left = inertia + drag + next_.f[i] - load - weight;
     const double reaction = gripped_[d] ? left : 0;
     of.work += (load_[d] + load + reaction_[d] + reaction) / 2 * way;
@@ -206,20 +286,35 @@ FiniteMotionBalance FiniteMotion::balance(const FiniteTarget& end, const Scheme&
     if (!gripped_[d]) of.unsolved -= left * way;
     load_[d] = load;
     reaction_[d] = reaction;
+    felt_[d] = gripped_[d] ? left - inertia : 0;
   }
+  sum_ += of;
   return of;
 }
 
-void FiniteMotion::renew_if_due(const fem::Inertia& inertia, Report& report) {
+int FiniteMotion::steps_of_a_base(double dt) const {
+  if (options_.taken_after) return *options_.taken_after;
+  const double making = seconds_of_a_tangent(*pattern_.supernodes(), potential_.problem());
+  return static_cast<int>(
+      std::clamp(std::ceil(making / dt), kFewestStepsOfABase, kMostStepsOfABase));
+}
+
+void FiniteMotion::renew_if_due(const fem::Inertia& inertia, double dt, Report& report) {
   const bool hard =
       report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
   if (!hard || renewal_.base_asked()) return;
-  if (options_.taken_after == 0) {
+  until_taken_ = steps_of_a_base(dt);
+  if (until_taken_ == 0) {
     if (!renew(u_, inertia, report)) base_.reset();
     return;
   }
-  since_asked_ = 0;
   renewal_.ask(moving_.body(), u_, pattern_, true, false, inertia);
+}
+
+FiniteMotionBalance FiniteMotion::sum() const {
+  FiniteMotionBalance of = sum_;
+  of.broken += broken_;
+  return of;
 }
 
 double FiniteMotion::kinetic_energy() const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,15 +21,19 @@ struct FiniteMotionOptions {
   double tolerance = 1e-4, residual = 1e-2;
   StressMeasure stress = StressMeasure::cauchy;  ///< that is meant
   double damping = 0;                            ///< force per mass and velocity [1/s]
-  Vec3 gravity = Vec3::Zero();                   ///< [mm/s^2]
-  int most_iterations = 0;                       ///< back-solves of a step; 0: as many as it takes
-  int pairs = 5;                                 ///< of L-BFGS
-  int most_back_solves = 25;                     ///< on one base
-  int most_factors = 12;  ///< of one step, made where the base stalls; not under a cap
-  bool turn = true;       ///< the base by the nodes' rotations
-  Index most_rank = 300;  ///< unknowns that what has left touches, before a new base is made
-  int renew_after = 8;  ///< back-solves of a step after which the base is renewed beside the steps
-  int taken_after = 2;  ///< steps after which a renewed base is taken; 0: it is made at once
+  double viscosity = 0;         ///< stress per small-strain stiffness and strain rate [s]
+  Vec3 gravity = Vec3::Zero();  ///< [mm/s^2]
+  int most_iterations = 0;      ///< back-solves of a step; 0: as many as it takes
+  int pairs = 5;                ///< of L-BFGS
+  int most_back_solves = 25;    ///< on one base
+  int most_factors = 12;        ///< of one step, made where the base stalls; not under a cap
+  bool turn = true;             ///< the base by the nodes' rotations
+  Index most_rank = 300;        ///< unknowns that what has left touches, before a new base is made
+  int renew_after = 8;   ///< back-solves of a step after which the base is renewed beside the steps
+  bool inverse = false;  ///< bases keep their dense inverse
+  /// Steps after which a renewed base is taken; 0: it is made at once; none: as many as its making
+  /// may be thought to take, by sizes and the length of a step alone.
+  std::optional<int> taken_after = {};
   std::chrono::milliseconds rest{0};  ///< the thread's, before it begins
 };
 
@@ -40,17 +45,37 @@ struct FiniteMotionBalance {
   double scheme = 0;    ///< what the scheme loses: of kinetic and strain energy, and of work
   double unsolved = 0;  ///< of the residual: what the iteration has left
   double broken = 0;    ///< strain energy of what left since the step before, gone with it
+
+  FiniteMotionBalance& operator+=(const FiniteMotionBalance& other) {
+    work += other.work;
+    damped += other.damped;
+    scheme += other.scheme;
+    unsolved += other.unsolved;
+    broken += other.broken;
+    return *this;
+  }
 };
 
 /// How a step ended: at rest in its own moving frame, or by the cap, which breaks the promise, or
 /// `stuck`: then the state is still the one before it.
 struct FiniteMotionReport {
   bool capped = false, stuck = false;
-  bool second_order = false;                        ///< it was a step of BDF2
+  int parts = 1;              ///< into which it was split, since no other way led to its end
+  bool second_order = false;  ///< it was a step of BDF2
   double residual = 0, error = 0, contraction = 0;  ///< as in FiniteStaticsReport
   int back_solves = 0, factors = 0;
   Index rank = 0;
   FiniteMotionBalance balance;
+};
+
+/// All that the next step goes on from, but for the base.
+struct FiniteMotionPast {
+  std::vector<double> u, v, u_before, v_before;  ///< (3 * nodes), of the last two states
+  double dt = 0;                                 ///< between them [s]
+  int euler = 1;                                 ///< steps of backward Euler that are still to come
+  double time = 0;                               ///< [s]
+  Eigen::VectorXd load, reaction, felt;          ///< per unknown [N]
+  FiniteMotionBalance sum;
 };
 
 class FiniteMotion {
@@ -60,20 +85,37 @@ class FiniteMotion {
   FiniteMotion(const fem::HyperelasticBody& body, std::span<const double> mass,
                FiniteMotionOptions options = {});
 
-  /// A step of dt [s] > 0 towards the load at its end.
+  /// A step of dt [s] > 0 towards the load at its end. Where none is found, the grips go there in
+  /// up to 64 parts of the time.
   FiniteMotionReport step(const Load& load, double dt);
 
   /// (3 * nodes) [mm], [mm/s]
   [[nodiscard]] const std::vector<double>& displacement() const { return u_; }
   [[nodiscard]] const std::vector<double>& velocity() const { return v_; }
-  /// Sets the velocities, supports' to 0; the next step is one of backward Euler.
+  /// Sets the velocities, supports' to 0; the next step is one of backward Euler. What the body
+  /// gains by it counts as work.
   void set_velocity(std::span<const double> v);
   /// (3 * nodes) [N] at displacement()
   [[nodiscard]] std::span<const double> internal_forces() const { return state_.f; }
+  /// Per unknown: force of the grip there on the body, else 0; with what accelerates the node that
+  /// it holds, or without [N].
+  [[nodiscard]] const Eigen::VectorXd& grip_forces(bool with_inertia) const {
+    return with_inertia ? reaction_ : felt_;
+  }
+  /// Of all steps so far.
+  [[nodiscard]] FiniteMotionBalance sum() const;
 
   /// These have just left; the body says so already.
   void destroyed(std::span<const Index> elements);
 
+  [[nodiscard]] FiniteMotionPast past() const {
+    return {u_,    v_,    u_before_, v_before_, dt_before_, euler_,
+            time_, load_, reaction_, felt_,     sum()};
+  }
+  /// Goes on from there, of the body as it is now.
+  void go_on_from(const FiniteMotionPast& past);
+
+  [[nodiscard]] double time() const { return time_; }                   ///< sum of the steps [s]
   [[nodiscard]] double strain_energy() const { return state_.energy; }  ///< [N mm]
   [[nodiscard]] double kinetic_energy() const;                          ///< [N mm]
   [[nodiscard]] double gravity_energy() const;                          ///< 0 undeformed [N mm]
@@ -82,10 +124,13 @@ class FiniteMotion {
 
  private:
   using Report = FiniteMotionReport;
+  [[nodiscard]] Report one_step(const Load& load, double dt);
+  [[nodiscard]] Report in_parts(const Load& load, double dt, const Report& first);
   /// v = rate (u - u_from), a = rate (v - v_from): what a scheme says of the step's end.
   struct Scheme {
     bool second_order;
-    double rate;  // [1/s]
+    double rate;         // [1/s]
+    double now, before;  // u_from = now * u - before * that of the step before; so v_from
     std::vector<double> u_from, v_from;
   };
   [[nodiscard]] Scheme scheme(double dt) const;
@@ -98,7 +143,8 @@ class FiniteMotion {
   void take(const FiniteTarget& end, const Scheme& by, double dt, Report& report);
   [[nodiscard]] FiniteMotionBalance balance(const FiniteTarget& end, const Scheme& by,
                                             std::span<const double> v);
-  void renew_if_due(const fem::Inertia& inertia, Report& report);
+  void renew_if_due(const fem::Inertia& inertia, double dt, Report& report);
+  [[nodiscard]] int steps_of_a_base(double dt) const;
 
   FiniteMotionOptions options_;
   RestingBody moving_;
@@ -108,15 +154,19 @@ class FiniteMotion {
   fem::TangentPattern pattern_;
   std::vector<double> node_mass_, mass_;  // per node, per unknown
   std::vector<double> u_, v_, u_before_, v_before_;
+  double time_ = 0;
   double dt_before_ = 0;               // of the last step; 0: the state before it is none to go by
   int euler_ = 1;                      // so many steps of backward Euler are still to come
   std::vector<std::uint8_t> gripped_;  // per unknown
   Eigen::VectorXd load_, reaction_;    // at the state, without gravity; of grips, else 0
+  Eigen::VectorXd felt_;               // reaction_ without inertia
   double broken_ = 0;                  // strain energy that left since the last step
+  FiniteMotionBalance sum_;
   std::vector<double> ahead_;
+  fem::Viscosity viscosity_;
   FiniteState state_, next_;
   std::unique_ptr<FiniteBase> base_;
-  int since_asked_ = 0;
+  int until_taken_ = 0;    // steps, of the base that has been asked for
   FiniteRenewal renewal_;  // last: its thread reads pattern_ and mass_
 };
 

@@ -34,6 +34,12 @@ void FinitePotential::put_grips(const FiniteTarget& target, std::vector<double>&
   }
 }
 
+std::vector<double> FinitePotential::grips(std::span<const double> u) const {
+  std::vector<double> of;
+  for (const std::size_t place : grip_places_) of.push_back(u[place]);
+  return of;
+}
+
 FiniteTarget FinitePotential::target(const Load& load) const {
   FiniteTarget of{Eigen::VectorXd::Zero(problem().dof_count()), load.displacements};
   of.grips.resize(problem().gripped_dofs().size(), 0.0);
@@ -51,6 +57,10 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
   if (with_stress) wanted.measure = stress_;
   state.energy = pass_->run(state.u, wanted).energy;
   state.r = -target.force;
+  const bool viscous = target.viscosity != nullptr;
+  state.viscous.resize(viscous ? state.u.size() : 0);
+  const double damps =
+      viscous ? target.viscosity->forces(state.u, target.viscous, state.viscous) : 0;
   double work = 0, held = 0, loaded = 0;
   for (std::size_t i = 0; i < state.f.size(); ++i) {
     const Index d = body.problem.dofs()[i];
@@ -58,7 +68,7 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
       held += state.f[i] * state.f[i];
       continue;
     }
-    state.r[d] += state.f[i];
+    state.r[d] += state.f[i] + (viscous ? state.viscous[i] : 0);
     if (body_.frozen()[d]) continue;
     work += target.force[d] * state.u[i];
     loaded += target.force[d] * target.force[d];
@@ -78,7 +88,7 @@ void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
   hold(state.r);
   // A fictitious mass is no force that acts.
   state.acting = std::sqrt(loaded + held + (target.inertia.mass.empty() ? 0 : accelerates));
-  state.potential = state.energy - work + springs;
+  state.potential = state.energy - work + springs + damps;
 }
 
 void FinitePotential::complete(FiniteState& state) const {

@@ -10,25 +10,29 @@
 
 #include "body/hyperelastic_pass.hpp"
 #include "body/tangent_pattern.hpp"
+#include "body/viscosity.hpp"
 #include "solver/resting_body.hpp"
 #include "sunder/backend.hpp"
 
 namespace sunder::solver {
 
 /// Force per unknown, displacement per gripped dof; in motion inertia besides: springs of every
-/// free unknown to where it would go by itself.
+/// free unknown to where it would go by itself; and viscous forces.
 struct FiniteTarget {
   Eigen::VectorXd force;
   std::vector<double> grips;
   fem::Inertia inertia = {};
   const std::vector<double>* ahead = nullptr;  ///< (3 * nodes)
+  const fem::Viscosity* viscosity = nullptr;
+  double viscous = 0;  ///< its factor: viscous forces are as stiff as so many times the body
 };
 
 /// A displacement and what belongs to it.
 struct FiniteState {
   std::vector<double> u, f;          // (3 * nodes): displacement, internal forces
+  std::vector<double> viscous;       // (3 * nodes): viscous forces; empty: none
   Eigen::VectorXd r;                 // internal forces - load; 0 at gripped and frozen unknowns
-  double energy = 0, potential = 0;  // of the elements; less the load's work, with the inertia's
+  double energy = 0, potential = 0;  // of the elements; what a step minimises
   double acting = 0;                 // |forces|, of the load, of what holds and of inertia
   std::vector<Voigt> stress;         // per element; empty: not asked for
 };
@@ -50,6 +54,8 @@ class FinitePotential {
             std::vector<double>& to) const;
   /// Gripped nodes where the grips want them; frozen ones stay.
   void put_grips(const FiniteTarget& target, std::vector<double>& u) const;
+  /// Where u has the gripped dofs.
+  [[nodiscard]] std::vector<double> grips(std::span<const double> u) const;
   /// (to - from) of the unknowns.
   void difference(std::span<const double> to, std::span<const double> from,
                   Eigen::VectorXd& s) const;

@@ -45,9 +45,9 @@ class FiniteRenewal {
   FiniteRenewal(const FiniteRenewal&) = delete;
   FiniteRenewal& operator=(const FiniteRenewal&) = delete;
 
-  /// Begins base_at_rest() of the body as it is now, with an inertia projected_base(), is_stable(),
-  /// or the one and then the other;
-  /// problem, laws, order and masses must outlive it. What was asked before is given up.
+  /// Begins base_at_rest() of the body as it is now (with an inertia projected_base()),
+  /// is_stable(), or the one and then the other. Problem, laws, order and masses must outlive it.
+  /// What was asked before is given up.
   void ask(const fem::HyperelasticBody& body, const std::vector<double>& u,
            const fem::TangentPattern& pattern, bool base, bool judgement,
            const fem::Inertia& inertia = {});

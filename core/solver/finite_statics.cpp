@@ -22,6 +22,7 @@ constexpr int kMostPushes = 4;  // modes that are left one after the other
 constexpr double kNearRest = 0.02;
 constexpr int kFactorsToFinish = 3;  // of a damped path
 constexpr int kOfAGoodBase = 2;      // back-solves of a step
+
 /// Of the bounding box: its diagonal.
 double size_of(const Problem& problem) {
   Vec3 low = problem.mesh().nodes.front(), high = low;

@@ -128,6 +128,7 @@ std::size_t loaded_unknowns(const Problem& problem) {
   for (const InstrumentNodes& i : problem.instrument_nodes()) {
     loaded += 3 * std::max<std::size_t>(i.nodes.size(), 2);  // 2: a press
   }
+  if (!problem.scene().gravity.isZero(0)) loaded = static_cast<std::size_t>(problem.dof_count());
   return std::min(loaded, static_cast<std::size_t>(problem.dof_count()));
 }
 
@@ -151,6 +152,13 @@ bool takes_new_factor(std::size_t unknowns, std::size_t elements) {
   constexpr double kTouchedByOne = 4;
   return kTouchedByOne * real(elements) >
          std::clamp(kLargestShare * real(unknowns), kSmallBody, kLargestEvent);
+}
+
+double seconds_of_a_tangent(const linear_algebra::Supernodes& order, const Problem& problem) {
+  constexpr double kElement = 1.6e-6;  // its tangent
+  constexpr double kAllowance = 4;     // as above
+  return kAllowance *
+         (2 * multiply_adds(order) / kFactorFlops + kElement * real(problem.mesh().tets.size()));
 }
 
 }  // namespace sunder::solver

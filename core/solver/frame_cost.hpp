@@ -96,4 +96,9 @@ struct FrameCost {
 /// Whether an event of so many elements is worth a new factor of the body instead of an update.
 [[nodiscard]] bool takes_new_factor(std::size_t unknowns, std::size_t elements);
 
+/// In which a thread beside the steps will have made and factored a tangent, the machine busy with
+/// them. Likewise from sizes alone.
+[[nodiscard]] double seconds_of_a_tangent(const linear_algebra::Supernodes& order,
+                                          const Problem& problem);
+
 }  // namespace sunder::solver

@@ -11,6 +11,7 @@ std::size_t most_forces(const Problem& problem) {
   for (const InstrumentNodes& i : problem.instrument_nodes()) {
     sum += 3 * std::max(i.nodes.size(), kPressed);
   }
+  if (!problem.scene().gravity.isZero(0)) sum = static_cast<std::size_t>(problem.dof_count());
   return std::max(sum, kElement);
 }
 

@@ -45,6 +45,10 @@ std::string against_condensed(const Question& q) {
     return "route condensed keeps a region's fields alone on the device, but the host draws those "
            "of the whole body; use route inverse or cg";
   }
+  if (!q.problem.scene().gravity.isZero(0)) {
+    return "route condensed takes loads in its region alone, but gravity loads the whole body; use "
+           "route factor or cg";
+  }
   if (!q.device.rates.apart() || !q.region().elements.empty()) return {};
   return "route condensed needs elements that can break or be destroyed, of which this scene has "
          "none; use route inverse or cg";
@@ -55,7 +59,7 @@ std::size_t condensed_bytes(const Question& q) {
 }
 
 bool condensed_pays(const Question& q) {
-  return q.needs.damage && q.region().tears &&
+  return q.needs.damage && q.problem.scene().gravity.isZero(0) && q.region().tears &&
          kRegionShare * q.region().dofs.size() <= q.unknowns() &&
          q.region().dofs.size() <= kDenseLimit;
 }

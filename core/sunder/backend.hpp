@@ -44,9 +44,24 @@ struct SolveReport {
   int iterations = 0;   ///< of conjugate gradients, when they ran
   int back_solves = 0;  ///< applications of the base, those of conjugate gradients left out
   bool unfinished = false;  ///< the next solve() goes on towards rest; never without end
+  bool capped = false;      ///< in motion: ended by the cap on iterations, its error not promised
   bool polished = false;    ///< the frame was over tolerance and was refined
   double waited_ms = 0;     ///< for a new base from another thread, since the last solve
   double stress_ms = 0;     ///< of its time: the stress that it is checked by; 0: a device's own
+};
+
+/// Of a body in motion, after its last step. What it has done is the sum since the start:
+/// work = kinetic + strain energy + dissipated (method.md "Motion").
+struct MotionState {
+  double time = 0;                        ///< [s]
+  double kinetic = 0, strain_energy = 0;  ///< [N mm]
+  double work = 0;                        ///< of forces, grips and gravity [N mm]
+  /// Each by its own formula [N mm]: by damping, by the scheme in time, with what has left broken,
+  /// and what the iterations have left of the residual.
+  double damped = 0, scheme = 0, broken = 0, unsolved = 0;
+  Vec3 momentum = Vec3::Zero();          ///< [t mm/s], i.e. N s
+  Vec3 angular_momentum = Vec3::Zero();  ///< about the origin [t mm^2/s]
+  [[nodiscard]] double dissipated() const { return damped + scheme + broken + unsolved; }
 };
 
 struct Worst {
@@ -163,6 +178,16 @@ class Backend {
   /// it cannot get there.
   SolveReport solve();
 
+  /// In motion, in place of solve(): a step of dt [s] > 0 towards the load, which acts at its end.
+  /// Throws NumericalError when none is found under the tolerance; the state before it stays.
+  SolveReport advance(double dt);
+  /// In motion; at rest before the first step.
+  [[nodiscard]] MotionState motion() const;
+  /// In motion: velocity at all nodes, shape (3 * nodes) [mm/s]; 0 where a support holds.
+  void read_velocity(std::span<double> velocity) const;
+  /// In motion: goes on from these; what supports hold is left at 0.
+  void set_velocity(std::span<const double> velocity);
+
   /// Stress a_e D B u of every element from the last solve, and the summary over yield.
   StressSummary stress();
 
@@ -208,6 +233,10 @@ class Backend {
  private:
   virtual void do_set_load(const Load& load) = 0;
   virtual SolveReport do_solve() = 0;
+  virtual SolveReport do_advance(double dt);
+  [[nodiscard]] virtual MotionState do_motion() const { return {}; }
+  virtual void do_read_velocity(std::span<double> velocity) const;
+  virtual void do_set_velocity(std::span<const double> velocity);
   virtual StressSummary do_stress() = 0;
   virtual Deformation do_deformation() = 0;
   virtual void do_cut_off(std::span<const Index> elements) = 0;
@@ -226,6 +255,7 @@ class Backend {
 
   enum class Stage { created, loaded, solved, stressed };
   void require(bool condition, const char* what) const;
+  void require_motion(std::span<const double> velocity) const;
 
   std::shared_ptr<const Problem> problem_;
   Needs needs_;

@@ -62,6 +62,8 @@ class Problem {
   }
   /// Whether a law of its elements is one of finite deformation.
   [[nodiscard]] bool finite() const { return finite_; }
+  /// Whether its steps are steps of time.
+  [[nodiscard]] bool moves() const { return scene_.dynamics.has_value(); }
   /// As a scene names it; of several ", " between, in the order of MaterialLaw.
   [[nodiscard]] std::string law() const;
   /// Yield stress of element e [MPa]; 0: unbreakable.
@@ -69,7 +71,8 @@ class Problem {
   [[nodiscard]] bool breakable(Index e) const { return material(e).yield.has_value(); }
 
   /// Number of unknowns n: dofs not held by a support. Gripped dofs are unknowns. Nodes that no
-  /// element uses, and those of a body that nothing holds or drives, have none and stay in place.
+  /// element uses, and in statics those of a body that nothing holds or drives, have none and stay
+  /// in place.
   [[nodiscard]] Index dof_count() const { return dof_count_; }
   /// Unknown of (node, axis), or kNone where a support holds it or the node is left out.
   [[nodiscard]] Index dof(Index node, int axis) const { return dof_[3 * node + axis]; }
@@ -82,8 +85,6 @@ class Problem {
   /// spring's force is known and is taken off the reaction.
   [[nodiscard]] double anchor_stiffness() const { return anchor_stiffness_; }
   [[nodiscard]] std::span<const Index> anchored_dofs() const { return anchored_dofs_; }
-
-  /// Of a part of a body; empty for a whole one.
 
   [[nodiscard]] const std::vector<InstrumentNodes>& instrument_nodes() const {
     return instrument_nodes_;
@@ -112,6 +113,8 @@ class Problem {
   void resolve_presses();
   void resolve_elements();
   void check_options();
+  void check_motion();
+  void check_density(const std::string& name, const Material& material);
   void check_held_bodies(const fem::Bodies& bodies);
   void note_odd_mesh();
   void note_no_board();

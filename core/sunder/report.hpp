@@ -51,12 +51,15 @@ struct StepReport {
   int back_solves = 0;      ///< applications of the base, those of conjugate gradients left out
   bool unfinished = false;  ///< not at rest: nothing was decided, the next step goes on from it
   bool polished = false;
+  bool capped = false;  ///< in motion: ended by dynamics.max_iterations, its error not promised
   StageTimes times;
   /// Device time per pass of all solves and updates of the step; empty without a device clock
   /// (Backend::time_passes).
   std::vector<PassTime> passes;
   /// At the end of the step; nothing: stress was left out.
   std::optional<Deformation> deformation;
+  /// At the end of the step; nothing: statics.
+  std::optional<MotionState> motion;
 };
 
 /// Beyond these a run says that the theory of small strains no longer speaks of it

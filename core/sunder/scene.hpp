@@ -23,6 +23,8 @@ struct Material {
   double poisson = 0;           ///< nu in (-1, 0.5), likewise
   std::optional<double> yield;  ///< yield stress [MPa], finite and > 0
   MaterialLaw law = MaterialLaw::linear;
+  /// [t/mm^3], water 1e-9, finite and > 0; needed in motion and under gravity.
+  std::optional<double> density = {};
 };
 
 struct Box {
@@ -100,6 +102,16 @@ struct ScriptedRemoval {
   ElementSelection elements;
 };
 
+/// Motion with lumped masses (method.md "Motion"): one step of a run is one of time.
+struct Dynamics {
+  double time_step = 0;  ///< [s], finite and > 0
+  /// Force per mass and velocity [1/s]; stress per small-strain stiffness and strain rate [s].
+  double mass_damping = 0, stiffness_damping = 0;
+  int max_iterations = 0;  ///< of a step; 0: as many as the tolerance takes
+  /// Whether the force of a grip includes what accelerates its own nodes.
+  bool felt_inertia = false;
+};
+
 enum class FractureModel { none, a, b, p };
 /// At finite deformation: the true stress, or the nominal one in the material's frame.
 enum class StressMeasure { cauchy, biot };
@@ -160,6 +172,8 @@ struct Scene {
   SolverOptions solver;
   int steps = 1;
   OutputOptions output;
+  Vec3 gravity = Vec3::Zero();       ///< [mm/s^2]
+  std::optional<Dynamics> dynamics;  ///< none: statics
 };
 
 }  // namespace sunder

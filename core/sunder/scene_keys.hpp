@@ -57,6 +57,9 @@ struct MemberKey : SceneKey {
 [[nodiscard]] std::span<const MemberKey<FractureOptions>> fracture_keys();
 [[nodiscard]] std::span<const MemberKey<SolverOptions>> solver_keys();
 [[nodiscard]] std::span<const MemberKey<Scene>> time_keys();
+[[nodiscard]] std::span<const MemberKey<Scene>> load_keys();
+/// But for `damping`, which fills two members.
+[[nodiscard]] std::span<const MemberKey<Dynamics>> dynamics_keys();
 
 /// All of them, those above included, in the order of the document.
 [[nodiscard]] const std::vector<SceneKey>& scene_keys();

@@ -61,6 +61,10 @@ class Simulation {
   /// Computes the next step. Throws NumericalError when the promise cannot be kept and UsageError
   /// when all steps are done.
   StepReport step();
+  /// In motion: the next step, of dt [s] > 0 in place of the scene's; ramps go by the time that has
+  /// passed, over that of all steps of the scene. What breaks in it, all by one state, is gone from
+  /// the next step on.
+  StepReport step(double dt);
 
   /// Within a step, for its observers: what its report would say by now, the device's times and
   /// the total left out. Otherwise zeros.
@@ -92,6 +96,11 @@ class Simulation {
   /// Nodes on which instrument i acts at present (pressed nodes included).
   [[nodiscard]] std::vector<Index> acting_nodes(std::size_t instrument) const;
 
+  /// In motion: velocities at all nodes, shape (nodes) [mm/s].
+  [[nodiscard]] std::vector<Vec3> velocity() const;
+  /// In motion: the body goes on with these, one per node, all finite; supports stay.
+  void set_velocity(std::span<const Vec3> velocity);
+
   /// Displacement at all nodes, shape (nodes), mm; zero before the first step.
   [[nodiscard]] std::vector<Vec3> displacement() const;
   /// Element stress, shape (elements), MPa. Throws UsageError when Needs leave stress out.
@@ -100,7 +109,9 @@ class Simulation {
  private:
   void apply_presets();
   void apply_removals();
+  StepReport compute_step(double dt);
   SolveReport solve();
+  [[nodiscard]] std::span<const Worst> over_yield();
   void record_solve(const SolveReport& solve, StepReport& report);
   [[nodiscard]] FractureState fracture_state(const StressSummary& summary);
   void reserve();
@@ -159,15 +170,18 @@ class Simulation {
   std::vector<std::uint8_t> taken_;          // by a scripted removal, per element
   std::vector<Finding> of_loads_;
   std::vector<NodalForce> instrument_forces_;
+  std::vector<Worst> over_;
   Reactions reactions_;
   int next_step_ = 0;
+  double time_ = 0, scene_time_ = 0;  // [s] of the last step; of the step in work or the last
+  bool even_ = true;                  // all steps so far were the scene's own
   int next_event_ = 0;
   int events_this_step_ = 0;
   int decisions_this_step_ = 0;
   const StepReport* in_work_ = nullptr;  // of step()
   bool interrupted_ = false;
   bool attribute_ = false;
-  Steps capped_, polished_, unfinished_;
+  Steps capped_, cut_short_, polished_, unfinished_;
   Beyond strained_, turned_, inverted_;
   std::vector<std::uint8_t> cut_off_;  // per element; empty: none yet
   std::vector<Index> newly_cut_off_;

@@ -41,6 +41,7 @@ Lines company(const std::string& table, const std::string& key) {
   if (table == "material") return {{"young", "1"}, {"poisson", "0.3"}};
   if (table == "crack") return {{"elements", "[0]"}, {"mouth", "[0, 0, 0]"}, {"tip", "[1, 0, 0]"}};
   if (table == "destroy") return {{"step", "0"}};
+  if (table == "dynamics" && key != "time_step") return {{"time_step", "0.005"}};
   if (table != "instrument") return {};
   const std::vector<std::string> nodes = key_names("nodes");
   const bool selects = std::find(nodes.begin(), nodes.end(), key) != nodes.end();
@@ -137,7 +138,7 @@ TEST(SceneKeys, TheReaderMissesWhatIsNeeded) {
     expect_input_error([&] { parse(scene_with(table, "", "", lines)); }, InputFault::missing_key,
                        {name, "is missing"});
   }
-  EXPECT_EQ(needed, 4);  // young, poisson, kind, step
+  EXPECT_EQ(needed, 5);  // young, poisson, kind, step, time_step
 }
 
 /// Every word of every option, and every default written out, as the reader takes it.
@@ -148,11 +149,11 @@ void expect_values(std::span<const MemberKey<Owner>> keys,
     const std::string name(key.name), table(key.table);
     SCOPED_TRACE(table + '.' + name);
     for (std::size_t word = 0; word < key.words.size(); ++word) {
-      const Scene scene = parse(scene_with(table, name, '"' + key.words[word] + '"', {}));
+      const Scene scene = parse(scene_with(table, name, '"' + key.words[word] + '"', company(table, name)));
       EXPECT_TRUE(key.get(of(scene)) == KeyValue(static_cast<int>(word))) << key.words[word];
     }
     if (key.standard.empty()) continue;
-    const Scene scene = parse(scene_with(table, name, key.standard, {}));
+    const Scene scene = parse(scene_with(table, name, key.standard, company(table, name)));
     EXPECT_TRUE(key.get(of(scene)) == key.get(Owner{})) << key.standard;
   }
 }
@@ -161,6 +162,20 @@ TEST(SceneKeys, WordsAndDefaultsAreTheMembers) {
   expect_values<FractureOptions>(fracture_keys(), [](const Scene& s) { return s.fracture; });
   expect_values<SolverOptions>(solver_keys(), [](const Scene& s) { return s.solver; });
   expect_values<Scene>(time_keys(), [](const Scene& s) { return s; });
+  expect_values<Scene>(load_keys(), [](const Scene& s) { return s; });
+  expect_values<Dynamics>(dynamics_keys(), [](const Scene& s) { return *s.dynamics; });
+}
+
+TEST(SceneKeys, DampingIsTwoMembers) {
+  const Scene scene = parse(
+      "mesh = \"m\"\n[load]\ngravity = [1, 2, 3]\n[dynamics]\ntime_step = 0.5\n"
+      "damping = [0.25, 0.125]");
+  ASSERT_TRUE(scene.dynamics);
+  EXPECT_EQ(scene.dynamics->time_step, 0.5);
+  EXPECT_EQ(scene.dynamics->mass_damping, 0.25);
+  EXPECT_EQ(scene.dynamics->stiffness_damping, 0.125);
+  EXPECT_EQ(scene.gravity, Vec3(1, 2, 3));
+  EXPECT_FALSE(parse("mesh = \"m\"").dynamics);
 }
 
 TEST(SceneKeys, BirthIsOneOfThem) {

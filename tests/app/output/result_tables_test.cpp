@@ -137,14 +137,39 @@ TEST(TipsTable, HasTheKOfTipsThatRest) {
 TEST(FramesTable, HasARowPerStepThatAgreesWithTheEvents) {
   const auto frames = read_csv(torn_board() / "frames.csv");
   const auto events = read_csv(torn_board() / "events.csv");
-  EXPECT_EQ(
-      frames.front(),
-      (Row{
-          "step",          "load_factor",   "events",           "destroyed",       "compliance",
-          "residual",      "error",         "max_yield_ratio",  "ms_load",         "ms_solve",
-          "ms_stress",     "ms_decide",     "ms_update",        "ms_total",        "iterations",
-          "ms_gpu_solve",  "ms_gpu_stress", "ms_gpu_residual",  "ms_gpu_estimate", "ms_gpu_refine",
-          "ms_gpu_update", "strain_max",    "rotation_max_deg", "inverted",        "back_solves"}));
+  EXPECT_EQ(frames.front(), (Row{"step",
+                                 "load_factor",
+                                 "events",
+                                 "destroyed",
+                                 "compliance",
+                                 "residual",
+                                 "error",
+                                 "max_yield_ratio",
+                                 "ms_load",
+                                 "ms_solve",
+                                 "ms_stress",
+                                 "ms_decide",
+                                 "ms_update",
+                                 "ms_total",
+                                 "iterations",
+                                 "ms_gpu_solve",
+                                 "ms_gpu_stress",
+                                 "ms_gpu_residual",
+                                 "ms_gpu_estimate",
+                                 "ms_gpu_refine",
+                                 "ms_gpu_update",
+                                 "strain_max",
+                                 "rotation_max_deg",
+                                 "inverted",
+                                 "back_solves",
+                                 "time",
+                                 "kinetic",
+                                 "strain_energy",
+                                 "work",
+                                 "dissipated",
+                                 "momentum_x",
+                                 "momentum_y",
+                                 "momentum_z"}));
   ASSERT_EQ(frames.size(), 6u);
   for (int step = 0; step < 5; ++step) {
     const Row& row = frames[static_cast<std::size_t>(step) + 1];

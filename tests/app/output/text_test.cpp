@@ -111,13 +111,27 @@ TEST(Tables, FrameRowsFollowTheirHeader) {
             "step,load_factor,events,destroyed,compliance,residual,error,max_yield_ratio,"
             "ms_load,ms_solve,ms_stress,ms_decide,ms_update,ms_total,iterations,"
             "ms_gpu_solve,ms_gpu_stress,ms_gpu_residual,ms_gpu_estimate,ms_gpu_refine,"
-            "ms_gpu_update,strain_max,rotation_max_deg,inverted,back_solves\n");
-  EXPECT_EQ(frames_row(report), "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,,,,15\n");
+            "ms_gpu_update,strain_max,rotation_max_deg,inverted,back_solves,time,kinetic,"
+            "strain_energy,work,dissipated,momentum_x,momentum_y,momentum_z\n");
+  EXPECT_EQ(frames_row(report), "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,,,,15,,,,,,,,\n");
   report.deformation = Deformation{-0.125, 12.5, 3};
-  EXPECT_EQ(frames_row(report), "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,-0.125,12.5,3,15\n");
+  EXPECT_EQ(frames_row(report),
+            "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,,,,,,,-0.125,12.5,3,15,,,,,,,,\n");
   report.passes = {{"stress", 0.25}, {"solve", 0.5}};
   EXPECT_EQ(frames_row(report),
-            "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,0.5,0.25,0,0,0,0,-0.125,12.5,3,15\n");
+            "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,0.5,0.25,0,0,0,0,-0.125,12.5,3,15,,,,,,,,\n");
+  report.motion = MotionState{.time = 16,
+                              .kinetic = 17,
+                              .strain_energy = 18,
+                              .work = 19,
+                              .damped = 1,
+                              .scheme = 2,
+                              .broken = 4,
+                              .unsolved = 8,
+                              .momentum = Vec3(21, 22, 23)};
+  EXPECT_EQ(frames_row(report),
+            "1,0.5,2,3,4,5,6,7,8,9,10,11,12,13,14,0.5,0.25,0,0,0,0,-0.125,12.5,3,15,16,17,18,19,15,"
+            "21,22,23\n");
 }
 
 }  // namespace

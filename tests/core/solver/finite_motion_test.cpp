@@ -117,8 +117,8 @@ TEST(FiniteMotion, SpinsOnAsTheSchemeLetsIt) {
   }
 }
 
-/// u'' = -w^2 u from u = 0, u' = 1 by the same scheme; returns u and u' of each step.
-std::vector<std::pair<double, double>> oscillator(double w, double dt, int steps) {
+/// u'' = -w^2 u - c u' from u = 0, u' = 1 by the same scheme; returns u and u' of each step.
+std::vector<std::pair<double, double>> oscillator(double w, double c, double dt, int steps) {
   std::vector<std::pair<double, double>> of{{0, 1}};
   for (int i = 1; i <= steps; ++i) {
     const auto [u, v] = of.back();
@@ -129,55 +129,97 @@ std::vector<std::pair<double, double>> oscillator(double w, double dt, int steps
       u_from = (4 * u - u_before) / 3;
       v_from = (4 * v - v_before) / 3;
     }
-    const double now = rate * (rate * u_from + v_from) / (rate * rate + w * w);
+    const double now = rate * ((rate + c) * u_from + v_from) / (rate * (rate + c) + w * w);
     of.push_back({now, rate * (now - u_from)});
   }
   return of;
 }
 
-// The lowest mode of the clamped bar, its density such that it swings at 27.5 Hz.
-TEST(FiniteMotion, ASwingDecaysByTheSchemesOwnRate) {
-  const auto lowest = [](const Bar& bar) {
-    const std::vector<double> u(bar.problem.dofs().size(), 0.0);
-    const Eigen::MatrixXd k = test::assemble_tangent(bar.body, u, fem::Tangent::exact).toDense();
-    Eigen::VectorXd m(bar.problem.dof_count());
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      if (bar.problem.dofs()[i] != kNone) m[bar.problem.dofs()[i]] = bar.mass[i / 3];
-    }
-    const Eigen::VectorXd root = m.cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(
-        root.asDiagonal() * k * root.asDiagonal());  // reads the lower triangle
-    return std::pair<double, Eigen::VectorXd>(std::sqrt(modes.eigenvalues()[0]),
-                                              root.cwiseProduct(modes.eigenvectors().col(0)));
-  };
+/// The lowest frequency [rad/s] of a body and the displacements (3 * nodes) of that mode.
+std::pair<double, std::vector<double>> lowest_mode(const Bar& bar) {
+  std::vector<double> u(bar.problem.dofs().size(), 0.0);
+  const Eigen::MatrixXd k = test::assemble_tangent(bar.body, u, fem::Tangent::exact).toDense();
+  Eigen::VectorXd m(bar.problem.dof_count());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    if (bar.problem.dofs()[i] != kNone) m[bar.problem.dofs()[i]] = bar.mass[i / 3];
+  }
+  const Eigen::VectorXd root = m.cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(
+      root.asDiagonal() * k * root.asDiagonal());  // reads the lower triangle
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const Index d = bar.problem.dofs()[i];
+    if (d != kNone) u[i] = root[d] * modes.eigenvectors()(d, 0);
+  }
+  return {std::sqrt(modes.eigenvalues()[0]), u};
+}
+
+/// Half a second of the lowest mode of the clamped bar, its density such that it swings at 27.5 Hz.
+/// Every node is where the same scheme has the mode's own oscillator. Returns the share of the
+/// energy that is left, and what damping took of it.
+std::pair<double, double> swing(int rate, FiniteMotionOptions options) {
   const double wanted = 2 * std::numbers::pi * 27.5;
-  const double ratio = lowest(Bar(kLinear)).first / wanted;
+  const double ratio = lowest_mode(Bar(kLinear)).first / wanted;
   const Bar bar(kLinear, kDensity * ratio * ratio);
-  const auto [w, shape] = lowest(bar);
-  ASSERT_NEAR(w, wanted, 1e-6 * wanted);
+  const auto [w, v] = lowest_mode(bar);
+  EXPECT_NEAR(w, wanted, 1e-6 * wanted);
+  options.tolerance = 1e-10;
+  options.residual = 1e-12;
+  FiniteMotion motion(bar.body, bar.mass, options);
+  motion.set_velocity(v);
+  const double before = motion.kinetic_energy();
+  const auto expected =
+      oscillator(w, options.damping + options.viscosity * w * w, 1.0 / rate, rate / 2);
+  double apart = 0, most = 0;
+  for (int s = 1; s <= rate / 2; ++s) {
+    EXPECT_FALSE(motion.step({}, 1.0 / rate).stuck);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      apart = std::max(apart, std::abs(motion.displacement()[i] - v[i] * expected[s].first));
+      most = std::max(most, std::abs(motion.displacement()[i]));
+    }
+  }
+  EXPECT_LE(apart, 1e-8 * most);
+  return {(motion.kinetic_energy() + motion.strain_energy()) / before,
+          motion.sum().damped / before};
+}
+
+TEST(FiniteMotion, ASwingDecaysByTheSchemesOwnRate) {
   for (const auto& [rate, left] :
        {std::pair(60, 0.0), std::pair(200, 0.0), std::pair(1000, 0.77)}) {
-    FiniteMotion motion(bar.body, bar.mass, {.tolerance = 1e-10, .residual = 1e-12});
-    std::vector<double> v(bar.problem.dofs().size(), 0.0);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      if (bar.problem.dofs()[i] != kNone) v[i] = shape[bar.problem.dofs()[i]];
-    }
-    motion.set_velocity(v);
-    const double before = motion.kinetic_energy();
-    const auto expected = oscillator(w, 1.0 / rate, rate / 2);
-    double apart = 0, most = 0;
-    for (int s = 1; s <= rate / 2; ++s) {
-      ASSERT_FALSE(motion.step({}, 1.0 / rate).stuck);
-      for (std::size_t i = 0; i < v.size(); ++i) {
-        apart = std::max(apart, std::abs(motion.displacement()[i] - v[i] * expected[s].first));
-        most = std::max(most, std::abs(motion.displacement()[i]));
-      }
-    }
-    const double share = (motion.kinetic_energy() + motion.strain_energy()) / before;
+    const double share = swing(rate, {}).first;
     std::printf("dt 1/%d s: .5 s of 27.5 Hz leave %.3f of the energy\n", rate, share);
-    EXPECT_LE(apart, 1e-8 * most);
     EXPECT_NEAR(share, left, 0.02);
   }
+}
+
+// Damping by mass and by stiffness: exp(-(a + b w^2) t) of the energy of a swing, besides the
+// scheme's own loss.
+TEST(FiniteMotion, ASwingDecaysByItsDamping) {
+  const double w = 2 * std::numbers::pi * 27.5, own = swing(1000, {}).first;
+  const auto [by_mass, of_mass] = swing(1000, {.damping = 2});
+  const auto [by_stiffness, of_stiffness] = swing(1000, {.viscosity = 2 / (w * w)});
+  EXPECT_NEAR(by_mass, own * std::exp(-1), 0.01);
+  EXPECT_NEAR(by_stiffness, own * std::exp(-1), 0.01);
+  EXPECT_NEAR(of_mass, of_stiffness, 1e-6);
+  EXPECT_GT(of_mass, 0.4);
+}
+
+// Viscous forces know a rotation from a strain: they take nothing of a spin.
+TEST(FiniteMotion, ASpinHasNoViscosity) {
+  const auto left = [](double viscosity) {
+    Bar bar(kCorotated);
+    bar.destroy(bar.column(0));
+    FiniteMotion motion(bar.body, bar.mass,
+                        {.tolerance = 1e-6, .residual = 1e-6, .viscosity = viscosity});
+    const Vec3 centre = bar.centre();
+    motion.set_velocity(
+        bar.velocities([&](const Vec3& x) { return Vec3(0, 0, 20).cross(x - centre); }));
+    const double before = motion.angular_momentum().z();
+    for (int i = 0; i < 100; ++i) EXPECT_FALSE(motion.step({}, 1.0 / 200).stuck);
+    return motion.angular_momentum().z() / before;
+  };
+  const double without = left(0), with = left(0.01);
+  std::printf("spin left without viscosity %.4f, with %.4f\n", without, with);
+  EXPECT_NEAR(with, without, 1e-4);
 }
 
 Load pulled(const Problem& problem, double force) {
