@@ -149,7 +149,8 @@ void expect_values(std::span<const MemberKey<Owner>> keys,
     const std::string name(key.name), table(key.table);
     SCOPED_TRACE(table + '.' + name);
     for (std::size_t word = 0; word < key.words.size(); ++word) {
-      const Scene scene = parse(scene_with(table, name, '"' + key.words[word] + '"', company(table, name)));
+      const Scene scene =
+          parse(scene_with(table, name, '"' + key.words[word] + '"', company(table, name)));
       EXPECT_TRUE(key.get(of(scene)) == KeyValue(static_cast<int>(word))) << key.words[word];
     }
     if (key.standard.empty()) continue;

@@ -34,8 +34,8 @@ double sheet_energy(MaterialLaw law, double stretch) {
   return at((low + high) / 2);
 }
 
-/// A strip of 48 x 12.5 mm, thin, held along both long edges, its upper one moved up; a crack of one
-/// row of elements goes from the left to `tip`.
+/// A strip of 48 x 12.5 mm, thin, held along both long edges, its upper one moved up; a crack of
+/// one row of elements goes from the left to `tip`.
 TipState stretched(MaterialLaw law, double stretch, double tip) {
   Scene scene;
   scene.mesh = structured_board({96, 25, 1, 48, kHeight, 0.5});
