@@ -28,3 +28,13 @@ if(SUNDER_SANITIZE)
       -fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignore.txt)
   endif()
 endif()
+
+# sunder_keep_libraries(PROGRAM): with sanitizers libraries that it has loaded stay so.
+function(sunder_keep_libraries program)
+  if(SUNDER_SANITIZE)
+    if(NOT TARGET sunder_kept_libraries)
+      add_library(sunder_kept_libraries OBJECT ${PROJECT_SOURCE_DIR}/cmake/keep_libraries.cpp)
+    endif()
+    target_link_libraries(${program} PRIVATE sunder_kept_libraries)
+  endif()
+endfunction()

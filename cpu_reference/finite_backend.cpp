@@ -34,9 +34,6 @@ class FiniteBackend final : public LawBackend {
         "remaining share of a destroyed element's stiffness (fracture.alpha): at finite "
         "deformation it adds nothing to energy and forces");
     leave_out("preparation of predicted fractures: for law \"linear\" alone");
-    if (!shared->gripped_dofs().empty()) {
-      leave_out("forces of the grips between frames: for law \"linear\" alone");
-    }
   }
 
   BackendInfo info() const override {
@@ -95,6 +92,7 @@ class FiniteBackend final : public LawBackend {
           in_digits(found.error) +
           "; raise solver.tolerance or ease contrast, Poisson's ratio or slivers");
     }
+    publish_instruments();
     return report;
   }
 
@@ -111,6 +109,8 @@ class FiniteBackend final : public LawBackend {
            "solver.tolerance";
     throw NumericalError(out.str());
   }
+
+  Eigen::MatrixXd grip_compliance() override { return statics_.grip_compliance(); }
 
   /// A piece that hangs on nothing has no stress to speak of.
   [[nodiscard]] std::span<const std::uint8_t> without_stress() const override {

@@ -47,6 +47,28 @@ std::vector<KernelPlan> LawBackend::field_kernels() const {
   return list;
 }
 
+std::shared_ptr<InstrumentForces> LawBackend::instrument_forces() {
+  if (problem().gripped_dofs().empty()) return nullptr;
+  if (!instruments_) {
+    instruments_.emplace(problem());
+    reactions_.assign(problem().gripped_dofs().size(), 0.0);
+    publish_instruments();
+  }
+  return instruments_->forces();
+}
+
+void LawBackend::take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) {
+  if (instrument_forces()) instruments_->take_over(std::move(forces));
+}
+
+void LawBackend::publish_instruments() {
+  if (!instruments_ || load_.displacements.size() != reactions_.size()) return;
+  const Eigen::MatrixXd l = grip_compliance();
+  if (l.size() == 0) return;
+  read_reactions(reactions_);
+  instruments_->publish(l, reactions_, load_.displacements);
+}
+
 StressSummary LawBackend::do_stress() {
   fem::HyperelasticPass::Wanted wanted;
   wanted.stress = stress_;

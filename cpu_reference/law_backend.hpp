@@ -3,10 +3,12 @@
 // displacement by the laws of its elements, and what a scene may ask of them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "body/hyperelastic_pass.hpp"
 #include "cpu_reference/cpu_reference.hpp"
+#include "solver/instrument_block.hpp"
 
 namespace sunder::cpu_reference {
 
@@ -21,6 +23,13 @@ class LawBackend : public Backend {
 
   /// Per element 1: its stress is 0.
   [[nodiscard]] virtual std::span<const std::uint8_t> without_stress() const { return destroyed(); }
+
+  std::shared_ptr<InstrumentForces> instrument_forces() override;
+  void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override;
+  /// Of the last solution, as InstrumentBlock::publish takes it; empty: unknown.
+  [[nodiscard]] virtual Eigen::MatrixXd grip_compliance() = 0;
+  /// After a solution: to who has asked for the forces of grips.
+  void publish_instruments();
 
   void do_set_load(const Load& load) override { load_ = load; }
   StressSummary do_stress() override;
@@ -43,6 +52,8 @@ class LawBackend : public Backend {
   fem::HyperelasticBody body_, intact_;
   fem::HyperelasticPass pass_;
   std::vector<std::uint8_t> excluded_;
+  std::optional<solver::InstrumentBlock> instruments_;  // once asked for
+  std::vector<double> reactions_;
 };
 
 /// Bytes of a dense inverse, where the route is that; else 0.

@@ -41,9 +41,6 @@ class MotionBackend final : public LawBackend {
         "need "
         "none to be held by");
     leave_out("preparation of predicted fractures: for statics by law \"linear\" alone");
-    if (!shared->gripped_dofs().empty()) {
-      leave_out("forces of the grips between frames: for statics by law \"linear\" alone");
-    }
     if (shared->scene().dynamics->stiffness_damping == 0) {
       leave_out("viscous forces: dynamics.damping names none by stiffness");
     }
@@ -99,6 +96,7 @@ class MotionBackend final : public LawBackend {
     const solver::FiniteMotionReport found = motion_.step(load_, dt);
     if (found.stuck) fail(found, dt);
     u_ = motion_.displacement();
+    publish_instruments();
     return {.residual = found.residual,
             .error = found.error,
             .back_solves = found.back_solves,
@@ -111,6 +109,10 @@ class MotionBackend final : public LawBackend {
                          count_of(found.factors, "factor") +
                          " of its tangent; take shorter steps, move grips less in one, or raise "
                          "solver.tolerance");
+  }
+
+  Eigen::MatrixXd grip_compliance() override {
+    return motion_.grip_compliance(problem().scene().dynamics->felt_inertia);
   }
 
   void do_destroy(std::span<const Index> elements) override {

@@ -57,11 +57,18 @@ TangentPattern::TangentPattern(const Problem& problem)
 linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
                                                      const Inertia& inertia) const {
+  return tangent(
+      body, [&](Index e) { return element_tangent(body, e, u, kind); }, inertia);
+}
+
+linear_algebra::SparseMatrix TangentPattern::tangent(
+    const HyperelasticBody& body, const std::function<ElementMatrix(Index)>& of_element,
+    const Inertia& inertia) const {
   linear_algebra::SparseMatrix of = zero_;
   double* values = of.valuePtr();
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     if (!body.live(e)) continue;
-    const ElementMatrix k = element_tangent(body, e, u, kind);
+    const ElementMatrix k = of_element(e);
     const Index* place = places_.data() + kPairs * static_cast<std::size_t>(e);
     for_pairs([&](int i, int j) {
       if (*place != kNone) values[*place] += k(i, j);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,6 +34,10 @@ class TangentPattern {
   [[nodiscard]] linear_algebra::SparseMatrix tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
                                                      const Inertia& inertia = {}) const;
+  /// The same of any 12 x 12 of live elements.
+  [[nodiscard]] linear_algebra::SparseMatrix tangent(
+      const HyperelasticBody& body, const std::function<ElementMatrix(Index)>& of_element,
+      const Inertia& inertia = {}) const;
   [[nodiscard]] const std::shared_ptr<const linear_algebra::Supernodes>& supernodes() const {
     return supernodes_;
   }

@@ -16,6 +16,14 @@ Mat3 Viscosity::strain(const Mat3& h, Index e) const {
   return (&body_.law(e) == &kLinear ? twice : Mat3(twice + h.transpose() * h)) / 2;
 }
 
+/// Times the volume.
+Mat3 Viscosity::stress(const Mat3& strain, double factor, Index e) const {
+  const SmallStrain& law = body_.problem.small_strain(e);
+  Mat3 of = 2 * law.mu * strain;
+  of.diagonal().array() += law.lambda * strain.trace();
+  return factor * body_.problem.shape(e).volume * of;
+}
+
 void Viscosity::start(std::span<const double> u, double now, std::span<const double> u_before,
                       double before) {
   for (Index e = 0; e < body_.problem.tet_count(); ++e) {
@@ -32,14 +40,11 @@ double Viscosity::forces(std::span<const double> u, double factor, std::span<dou
   double potential = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (!body_.live(e)) continue;
-    const SmallStrain& law = problem.small_strain(e);
     const Mat3 h = displacement_gradient(problem, e, u), way = strain(h, e) - from_[e];
-    Mat3 stress = 2 * law.mu * way;
-    stress.diagonal().array() += law.lambda * way.trace();
-    stress *= factor * problem.shape(e).volume;
-    potential += stress.cwiseProduct(way).sum() / 2;
-    if (&body_.law(e) != &kLinear) stress += h * stress.eval();  // F times it
-    const Eigen::Matrix<double, 3, 4> corners = stress * problem.shape(e).gradient;
+    Mat3 s = stress(way, factor, e);
+    potential += s.cwiseProduct(way).sum() / 2;
+    if (&body_.law(e) != &kLinear) s += h * s.eval();  // F times it
+    const Eigen::Matrix<double, 3, 4> corners = s * problem.shape(e).gradient;
     for (int a = 0; a < 4; ++a) {
       for (int axis = 0; axis < 3; ++axis) {
         f[3 * problem.mesh().tets[e][a] + axis] += corners(axis, a);
@@ -47,6 +52,23 @@ double Viscosity::forces(std::span<const double> u, double factor, std::span<dou
     }
   }
   return potential;
+}
+
+ElementMatrix Viscosity::tangent(Index e, std::span<const double> u, double factor) const {
+  const Eigen::Matrix<double, 3, 4>& gradient = body_.problem.shape(e).gradient;
+  const Mat3 h = displacement_gradient(body_.problem, e, u);
+  const bool small = &body_.law(e) == &kLinear;
+  const Mat3 f = small ? Mat3::Identity() : Mat3(Mat3::Identity() + h);
+  const Mat3 s = small ? Mat3::Zero() : stress(strain(h, e) - from_[e], factor, e);
+  ElementMatrix of;
+  for (int j = 0; j < 12; ++j) {
+    Mat3 turned = Mat3::Zero();  // of F
+    turned.row(j % 3) = gradient.col(j / 3).transpose();
+    const Mat3 both = f.transpose() * turned;
+    const Mat3 p = f * stress((both + both.transpose()) / 2, factor, e) + turned * s;
+    Eigen::Map<Eigen::Matrix<double, 3, 4>>(of.col(j).data()) = p * gradient;
+  }
+  return of;
 }
 
 }  // namespace sunder::fem

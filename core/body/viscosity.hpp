@@ -23,9 +23,12 @@ class Viscosity {
   /// f = d potential / du, potential = sum of V factor/2 (e - from) : D : (e - from) [N mm], over
   /// 3 * nodes. Returns the potential.
   double forces(std::span<const double> u, double factor, std::span<double> f) const;
+  /// df/du of a live element, 12 x 12.
+  [[nodiscard]] ElementMatrix tangent(Index e, std::span<const double> u, double factor) const;
 
  private:
   [[nodiscard]] Mat3 strain(const Mat3& h, Index e) const;
+  [[nodiscard]] Mat3 stress(const Mat3& strain, double factor, Index e) const;
 
   HyperelasticBody body_;
   std::vector<Mat3> from_;  // per element

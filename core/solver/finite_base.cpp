@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "body/deformation.hpp"
 #include "material/linear.hpp"
@@ -218,6 +219,52 @@ void FiniteBase::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     back_ = x;
     rotate(back_, false, x);
   }
+}
+
+void FiniteBase::solve_ordered(linear_algebra::RowMajor& b) {
+  for (Eigen::Index column = 0; column < b.cols(); column += kColumnGroup) {
+    solve_group(b.middleCols(column, std::min<Eigen::Index>(kColumnGroup, b.cols() - column)));
+  }
+}
+
+/// By the factor, which reads a panel once for all of them.
+void FiniteBase::solve_group(Eigen::Ref<linear_algebra::RowMajor> b) {
+  const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
+  const auto& nodes = l.supernodes();
+  linear_algebra::RowMajor y =
+      linear_algebra::RowMajor::Zero(b.rows(), full_vectors(static_cast<Index>(b.cols())));
+  y.leftCols(b.cols()) = b;
+  const auto turn = [&](bool back) {
+    for (const Turned& t : turned_) {
+      Eigen::Matrix<double, 3, Eigen::Dynamic> rows(3, b.cols());
+      for (int axis = 0; axis < 3; ++axis) {
+        rows.row(axis) = y.row(nodes.place[t.unknowns[axis]]).head(b.cols());
+      }
+      rows = (back ? Mat3(t.q.transpose()) : t.q) * rows;
+      for (int axis = 0; axis < 3; ++axis) {
+        y.row(nodes.place[t.unknowns[axis]]).head(b.cols()) = rows.row(axis);
+      }
+    }
+  };
+  turn(true);
+  std::vector<Index> all(static_cast<std::size_t>(nodes.count()));
+  std::iota(all.begin(), all.end(), 0);
+  l.make_room(kColumnGroup, work_);
+  l.forward(all, y, work_);
+  if (rank() > 0) {
+    columns_.make_room();
+    linear_algebra::RowMajor with(rank(), y.cols());
+    columns_.multiply(all, y, static_cast<Index>(y.cols()), with);
+    for (Eigen::Index column = 0; column < b.cols(); ++column) {
+      c_.noalias() = m_ * with.col(column);
+      y_ = y.col(column);
+      columns_.add(c_, y_);
+      y.col(column) = y_;
+    }
+  }
+  l.backward(y, work_);
+  turn(false);
+  b = y.leftCols(b.cols());
 }
 
 void FiniteBase::solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x) {

@@ -38,6 +38,8 @@ class FiniteBase {
   void keep_inverse() { inverse_ = factor_.inverse(); }
   /// x = A^-1 b.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+  /// The same of several right sides at once, in their place, the unknowns in the factor's order.
+  void solve_ordered(linear_algebra::RowMajor& b);
 
   /// Unknowns that what has left touches.
   [[nodiscard]] Index rank() const { return static_cast<Index>(touched_.size()); }
@@ -51,6 +53,7 @@ class FiniteBase {
   [[nodiscard]] bool correct(const RestingBody& now);
   void solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x);
   void solve_by_inverse(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+  void solve_group(Eigen::Ref<linear_algebra::RowMajor> b);
   void rotate(const Eigen::VectorXd& from, bool back, Eigen::VectorXd& to) const;
 
   const Problem& problem_;

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "solver/frame_cost.hpp"
+#include "solver/grip_stiffness.hpp"
+#include "solver/instrument_block.hpp"
 
 namespace sunder::solver {
 namespace {
@@ -76,6 +78,16 @@ void FiniteMotion::go_on_from(const FiniteMotionPast& past) {
   felt_ = past.felt;
   broken_ = 0;
   sum_ = past.sum;
+}
+
+Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
+  if (!base_ || rate_ == 0) return {};
+  const GripTangent of{{rate_ * (rate_ + options_.damping), mass_},
+                       options_.viscosity > 0 ? &viscosity_ : nullptr,
+                       options_.viscosity * rate_,
+                       with_inertia};
+  return compliance_factor(grip_stiffness(moving_, u_, pattern_, *base_, of),
+                           anchors_of(potential_.problem()));
 }
 
 void FiniteMotion::destroyed(std::span<const Index>) {
@@ -257,6 +269,7 @@ void FiniteMotion::take(const FiniteTarget& end, const Scheme& by, double dt, Re
   u_before_ = std::exchange(u_, state_.u);
   v_before_ = std::exchange(v_, std::move(v));
   dt_before_ = dt;
+  rate_ = by.rate;
   time_ += dt;
 }
 

@@ -102,6 +102,9 @@ class FiniteMotion {
   [[nodiscard]] const Eigen::VectorXd& grip_forces(bool with_inertia) const {
     return with_inertia ? reaction_ : felt_;
   }
+  /// Lower L: L L^T is the compliance [mm/N] of the grips in the last step, anchors included;
+  /// empty: there is no base to find it by.
+  [[nodiscard]] Eigen::MatrixXd grip_compliance(bool with_inertia);
   /// Of all steps so far.
   [[nodiscard]] FiniteMotionBalance sum() const;
 
@@ -156,6 +159,7 @@ class FiniteMotion {
   std::vector<double> u_, v_, u_before_, v_before_;
   double time_ = 0;
   double dt_before_ = 0;               // of the last step; 0: the state before it is none to go by
+  double rate_ = 0;                    // of its scheme [1/s]
   int euler_ = 1;                      // so many steps of backward Euler are still to come
   std::vector<std::uint8_t> gripped_;  // per unknown
   Eigen::VectorXd load_, reaction_;    // at the state, without gravity; of grips, else 0

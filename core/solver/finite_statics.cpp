@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "solver/finite_start.hpp"
+#include "solver/grip_stiffness.hpp"
+#include "solver/instrument_block.hpp"
 #include "solver/lowest_mode.hpp"
 #include "sunder/error.hpp"
 
@@ -60,6 +62,12 @@ void FiniteStatics::update_parts() {
 }
 
 void FiniteStatics::destroyed(std::span<const Index>) { update_parts(); }
+
+Eigen::MatrixXd FiniteStatics::grip_compliance() {
+  if (!base_) return {};
+  return compliance_factor(grip_stiffness(resting_, shown_.u, pattern_, *base_, {}),
+                           anchors_of(body_.problem));
+}
 
 void FiniteStatics::body_changed() {
   update_parts();
