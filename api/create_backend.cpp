@@ -38,6 +38,8 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 #ifdef SUNDER_GPU
   auto primary = gpu::create(problem, needs);
   warnings = gpu::warnings(*primary);
+  // Bodies by their laws go on by the host themselves, which has their state.
+  if (problem->finite() || problem->moves()) return primary;
   return with_failover(problem, std::move(primary),
                        [problem, needs] { return create_replacement(*problem, needs); });
 #else
@@ -52,7 +54,9 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 /// is a warning: a build without the backend and a processor that emulates one miss none.
 CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, const Needs& needs) {
   CreatedBackend created;
-  if (problem->finite() || problem->moves()) {  // which cpu alone computes
+  // Laws and motion are the processor's: its factor is quicker than any device's dense inverse so
+  // far (bench_motion).
+  if (problem->finite() || problem->moves()) {
     created.backend = cpu_reference::create(problem, needs);
     return created;
   }

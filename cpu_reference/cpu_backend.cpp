@@ -7,11 +7,10 @@
 #include "body/assembly.hpp"
 #include "cpu_reference/available_memory.hpp"
 #include "cpu_reference/cpu_reference.hpp"
-#include "cpu_reference/finite_backend.hpp"
 #include "cpu_reference/frame_fields.hpp"
 #include "cpu_reference/frame_kernels.hpp"
-#include "cpu_reference/motion_backend.hpp"
 #include "cpu_reference/routes.hpp"
+#include "finite/law_backend.hpp"
 #include "solver/condensed_route.hpp"
 #include "solver/frame_solver.hpp"
 #include "solver/host_frame.hpp"
@@ -300,10 +299,11 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
     throw DeviceError("backend cpu has device 0 only, not " +
                       std::to_string(problem->scene().solver.device));
   }
-  if (problem->moves()) return create_motion(std::move(problem), std::move(needs), options);
-  if (problem->finite()) return create_finite(std::move(problem), std::move(needs), options);
-  solver::Plan plan = solver::make_plan(
-      *problem, needs, plan_device(options.memory > 0 ? options.memory : available_memory()));
+  const std::size_t memory = options.memory > 0 ? options.memory : available_memory();
+  if (problem->moves() || problem->finite()) {
+    return finite::create(std::move(problem), std::move(needs), {info_of_device(), memory});
+  }
+  solver::Plan plan = solver::make_plan(*problem, needs, plan_device(memory));
   return std::make_unique<CpuBackend>(std::move(problem), std::move(needs), std::move(plan),
                                       options.rest);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Element stress with its summary over yield.
+// Element stress.
 #pragma once
 
 #include <span>
@@ -12,11 +12,5 @@ namespace sunder::cpu_reference {
 /// stress[e] = a_e D B u from the displacement at all nodes (3 * nodes); a_e = scale[e].
 void element_stress(const Problem& problem, std::span<const double> scale,
                     std::span<const double> u, std::span<Voigt> stress);
-
-/// Worst ratio of the yield measure over live breakable elements, and over those not excluded.
-[[nodiscard]] StressSummary summarize(const Problem& problem,
-                                      std::span<const std::uint8_t> destroyed,
-                                      std::span<const std::uint8_t> excluded,
-                                      std::span<const Voigt> stress);
 
 }  // namespace sunder::cpu_reference

@@ -9,6 +9,7 @@
 
 #include "gpu/choose_device.hpp"
 #include "gpu/condensed_body.hpp"
+#include "gpu/law_machine.hpp"
 #include "gpu/plan_device.hpp"
 #include "gpu/whole_body.hpp"
 #include "solver/frame_solver.hpp"
@@ -278,6 +279,10 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
                                 const VulkanOptions& options) {
   if (!problem) throw UsageError("a backend needs a problem");
+  if (problem->moves() || problem->finite()) {
+    finite::Machine machine = law_machine(*problem, options);
+    return finite::create(std::move(problem), std::move(needs), std::move(machine));
+  }
   return std::make_unique<VulkanBackend>(std::move(problem), std::move(needs), options);
 }
 

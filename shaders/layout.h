@@ -155,6 +155,53 @@ struct CgState {
   uint unused;
 };
 
+// Bodies at finite deformation and in motion (gpu/finite_body.cpp).
+
+SUNDER_CONST kFinitePairs = 8u;    // of L-BFGS, at most
+SUNDER_CONST kFiniteShape = 12u;   // doubles of an element: grad N_1, N_2, N_3, V, mu, lambda
+SUNDER_CONST kFiniteChunk = 256u;  // columns of the base that one invocation sums
+
+// Of an element: bits of what it is, and above them its law.
+SUNDER_CONST kFiniteOut = 1u;
+SUNDER_CONST kFiniteLaw =
+    2u;  // times the law: linear, corotated, neo-Hookean, Saint Venant-Kirchhoff
+
+// Of an unknown.
+SUNDER_CONST kFiniteGripped = 1u;
+SUNDER_CONST kFiniteFrozen = 2u;
+
+struct FinitePush {
+  double part;     // of a step
+  double viscous;  // factor of viscous forces; 0: none
+  uint elements, entries, unknowns;
+  uint element_parts, entry_parts;
+  uint biot;   // 1: Biot's stress, else Cauchy's
+  uint pairs;  // of L-BFGS
+  uint slot;   // of the step and the change of the gradient that are written
+  uint order;  // slots of the pairs, four bits each, the oldest lowest
+  uint rank, turned, back;
+  uint inertia;  // 1: it is a force that acts
+  uint unused;
+};
+
+struct FiniteElementPartial {
+  double energy, viscous;
+  double stress_squared, change_squared;  // largest Frobenius norms of live elements
+};
+
+struct FiniteEntryPartial {
+  double residual_squared, held_squared, inertia_squared;
+  double springs;  // their energy less the work of the load
+};
+
+// What an iteration tells the host.
+struct FiniteSums {
+  double energy, viscous, springs;
+  double residual_squared, held_squared, inertia_squared;
+  double stress_squared, change_squared;
+  double slope, s_y, s_squared, y_squared;
+};
+
 // WIDE: fp64, or fp32 on a device that has no more.
 #ifdef __cplusplus
 #define SUNDER_WIDE_STRUCT(name) \
@@ -210,6 +257,8 @@ static_assert(sizeof(Summary) == 80);
 static_assert(sizeof(CgPush) == 32);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);
+static_assert(sizeof(FinitePush) == 72);
+static_assert(sizeof(FiniteSums) == 96);
 #undef SUNDER_CONST
 #undef SUNDER_WIDE_STRUCT
 }  // namespace sunder::shaders

@@ -26,6 +26,7 @@ Mat3 Viscosity::stress(const Mat3& strain, double factor, Index e) const {
 
 void Viscosity::start(std::span<const double> u, double now, std::span<const double> u_before,
                       double before) {
+  ++starts_;
   for (Index e = 0; e < body_.problem.tet_count(); ++e) {
     if (!body_.live(e)) continue;
     from_[e] = now * strain(displacement_gradient(body_.problem, e, u), e);

@@ -5,6 +5,7 @@
 // rate (e - from), from what a scheme in time says of the states before.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -26,12 +27,17 @@ class Viscosity {
   /// df/du of a live element, 12 x 12.
   [[nodiscard]] ElementMatrix tangent(Index e, std::span<const double> u, double factor) const;
 
+  /// Of each element: what its strain is measured from; so often start() has set it.
+  [[nodiscard]] std::span<const Mat3> from() const { return from_; }
+  [[nodiscard]] std::uint64_t starts() const { return starts_; }
+
  private:
   [[nodiscard]] Mat3 strain(const Mat3& h, Index e) const;
   [[nodiscard]] Mat3 stress(const Mat3& strain, double factor, Index e) const;
 
   HyperelasticBody body_;
   std::vector<Mat3> from_;  // per element
+  std::uint64_t starts_ = 0;
 };
 
 }  // namespace sunder::fem

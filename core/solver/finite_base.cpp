@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -21,6 +22,11 @@ constexpr double kLeastLeft = 1e-10;
 // the board with its frame a frame took 5 instead of 3 back-solves.
 constexpr double kLeastTurn = 1e-4;
 
+std::uint64_t next_stamp() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
 Index full_vectors(Index columns) { return (columns + 7) / 8 * 8; }
 
 }  // namespace
@@ -37,7 +43,8 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
       factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
       columns_(factor_.cholesky().supernodes()),
       column_(static_cast<std::size_t>(problem_.dof_count()), kNone),
-      coupled_(column_.size(), 0) {
+      coupled_(column_.size(), 0),
+      stamps_{next_stamp(), next_stamp(), next_stamp()} {
   std::ranges::copy(body.destroyed, out_.begin());
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     if (out_[e]) continue;
@@ -48,6 +55,11 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
     }
   }
   for (Index d : problem_.gripped_dofs()) coupled_[d] = 0;
+}
+
+void FiniteBase::keep_inverse() {
+  inverse_ = factor_.inverse();
+  stamps_.inverse = next_stamp();
 }
 
 bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
@@ -166,6 +178,7 @@ bool FiniteBase::correct(const RestingBody& now) {
   whole.topLeftCorner(held, held) = -(inverse.transpose() * inverse) - between * c.transpose();
   m_.resize(rank(), rank());
   m_(in_order, in_order) = whole;
+  stamps_.small = next_stamp();
   return true;
 }
 
@@ -197,6 +210,7 @@ void FiniteBase::turn(const RestingBody& now, std::span<const double> u) {
     turned_.push_back({at, q});
   }
   if (largest_turn_ < kLeastTurn) turned_.clear();
+  stamps_.turned = next_stamp();
 }
 
 void FiniteBase::rotate(const Eigen::VectorXd& from, bool back, Eigen::VectorXd& to) const {

@@ -35,11 +35,28 @@ class FiniteBase {
   /// From now on x = Q A^-1 Q^T b, Q the rotations of the nodes from the base's state to u.
   void turn(const RestingBody& now, std::span<const double> u);
   /// Computes A^-1, dense: from now on solve() multiplies by it. What follows is the same.
-  void keep_inverse() { inverse_ = factor_.inverse(); }
+  void keep_inverse();
   /// x = A^-1 b.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
   /// The same of several right sides at once, in their place, the unknowns in the factor's order.
   void solve_ordered(linear_algebra::RowMajor& b);
+
+  [[nodiscard]] bool has_inverse() const { return inverse_.size() > 0; }
+  /// What a device needs to apply the base as solve() does: x = Q (A^-1 + A^-1 E_T M E_T^T A^-1)
+  /// Q^T b.
+  struct Turned {
+    std::array<Index, 3> unknowns;
+    Mat3 q;
+  };
+  [[nodiscard]] const Eigen::MatrixXd& inverse() const { return inverse_; }
+  [[nodiscard]] const std::vector<Index>& touched() const { return touched_; }
+  [[nodiscard]] const Eigen::MatrixXd& small() const { return m_; }
+  [[nodiscard]] const std::vector<Turned>& turned() const { return turned_; }
+  /// Numbers that no other state of these three has ever had.
+  struct Stamps {
+    std::uint64_t inverse, small, turned;
+  };
+  [[nodiscard]] const Stamps& stamps() const { return stamps_; }
 
   /// Unknowns that what has left touches.
   [[nodiscard]] Index rank() const { return static_cast<Index>(touched_.size()); }
@@ -71,11 +88,8 @@ class FiniteBase {
   Eigen::MatrixXd g_, d_, m_;
   linear_algebra::RowMajor rows_, block_;  // rows of L, all zero between calls; part of G
   std::vector<Index> path_, places_;
-  struct Turned {
-    std::array<Index, 3> unknowns;
-    Mat3 q;
-  };
   std::vector<Turned> turned_;
+  Stamps stamps_;
   double largest_turn_ = 0;
   Eigen::VectorXd y_, p_, c_, back_;
   linear_algebra::SolveWork work_;

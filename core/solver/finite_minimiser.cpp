@@ -44,44 +44,51 @@ FiniteScale finite_scale(const Problem& problem) {
 }
 
 double FiniteMinimiser::residual(const FiniteState& state) const {
-  const double left = state.r.norm();
-  return left <= scale_.force_rounding ? 0 : left / std::max(state.acting, scale_.force);
+  return residual({state.potential, state.r.norm(), state.acting});
 }
 
-/// Of `state`, if `next` were right.
-double FiniteMinimiser::stress_error(FiniteState& state, FiniteState& next) {
-  potential_.complete(state);
-  potential_.complete(next);
-  const auto [change, largest] = potential_.stress_change(next.stress, state.stress);
-  return change <= scale_.stress_rounding ? 0 : change / std::max(largest, scale_.stress);
+double FiniteMinimiser::residual(const FinitePoint& at) const {
+  return at.residual <= scale_.force_rounding ? 0 : at.residual / std::max(at.acting, scale_.force);
 }
 
-/// Halves the step from `next_`, which is the whole of it, until the potential falls; false: it
-/// does not.
-bool FiniteMinimiser::line_search(const FiniteTarget& target, bool with_stress,
-                                  const FiniteState& state) {
-  const double slope = state.r.dot(du_);
-  if (!(slope < 0)) return false;
-  const double rounding = scale_.energy_rounding + kEnergyRounding * std::abs(state.potential);
+/// Of where the trial begins, if where it ends were right.
+double FiniteMinimiser::stress_error(const FiniteTrial& trial) const {
+  return trial.change <= scale_.stress_rounding
+             ? 0
+             : trial.change / std::max(trial.largest, scale_.stress);
+}
+
+/// Halves the step from the whole of it until the potential falls; false: it does not.
+bool FiniteMinimiser::line_search(FiniteSteps& steps, bool with_stress, const FinitePoint& from,
+                                  FiniteTrial& trial) const {
+  if (!(trial.slope < 0)) return false;
+  const double slope = trial.slope;
+  const double rounding = scale_.energy_rounding + kEnergyRounding * std::abs(from.potential);
   for (double part = 1; part > kLeastPart; part /= 2) {
-    if (part < 1) {
-      potential_.move(state.u, part, du_, next_.u);
-      potential_.evaluate(target, with_stress, next_);
-    }
-    if (next_.potential <= state.potential + kArmijo * part * slope + rounding) return true;
+    if (part < 1) trial = steps.part(part, with_stress);
+    if (trial.at.potential <= from.potential + kArmijo * part * slope + rounding) return true;
   }
   return false;
 }
 
 FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, FiniteBase& base,
                                                   const Stop& stop, int most, FiniteState& state) {
-  hessian_.clear();
+  FiniteDevice* device = potential_.device();
+  FiniteSteps& steps = device && base.has_inverse() ? *device : static_cast<FiniteSteps&>(host_);
+  const FinitePoint from = steps.begin(target, base, state);
+  const Result result = minimise(steps, stop, most, from);
+  steps.end();
+  return result;
+}
+
+FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop& stop, int most,
+                                                  FinitePoint at) const {
   Result result;
   double before = 0;                       // error of the last state but one
   double ratio_before = 0;                 // of that to the one before
   bool good = false, good_before = false;  // the last two estimates
   for (;;) {
-    result.residual = residual(state);
+    result.residual = residual(at);
     if (!std::isfinite(result.residual)) return result;
     if (result.residual <= kForceRounding ||
         (stop.tolerance == 0 && result.residual <= stop.residual)) {
@@ -93,21 +100,12 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
       result.at_rest = good && result.residual <= stop.residual;
       return result;
     }
-    hessian_.direction(
-        state.r,
-        [&](const Eigen::VectorXd& q, Eigen::VectorXd& x) {
-          base.solve(q, x);
-          if (target.viscous > 0) x /= 1 + target.viscous;  // the tangent of viscous forces
-          potential_.hold(x);
-        },
-        du_);
-    ++result.back_solves;
     const bool near =
         stop.tolerance > 0 && result.residual <= std::min(1.0, kResidualPerStress * stop.tolerance);
-    potential_.move(state.u, 1, du_, next_.u);
-    potential_.evaluate(target, near, next_);
+    FiniteTrial trial = steps.whole(near);
+    ++result.back_solves;
     if (near) {
-      const double change = stress_error(state, next_);
+      const double change = stress_error(trial);
       const double ratio = before > 0 ? change / before : kLeastContraction;
       result.contraction =
           std::clamp(std::max(ratio, ratio_before), kLeastContraction, kMostContraction);
@@ -121,18 +119,16 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, Fi
         return result;
       }
     }
-    if (!line_search(target, near, state)) {
+    if (!line_search(steps, near, at, trial)) {
       result.at_rest = near && good;
       return result;
     }
-    potential_.difference(next_.u, state.u, s_);
-    y_ = next_.r - state.r;
     // An unstable rest is left by what rounding has put into it: let who calls choose the side.
-    if ((good || good_before) && s_.dot(y_) < 0 && next_.r.norm() > kLeaving * state.r.norm()) {
+    if ((good || good_before) && trial.winding < 0 && trial.at.residual > kLeaving * at.residual) {
       return result;
     }
-    hessian_.learn(s_, y_);
-    std::swap(state, next_);
+    steps.take();
+    at = trial.at;
   }
 }
 

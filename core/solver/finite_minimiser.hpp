@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // L-BFGS on a base, with a line search on the energy and the estimate of the stress error by which
-// it stops (method.md "Finite deformation").
+// it stops (method.md "Finite deformation"). The steps themselves are the device's, where there is
+// one and the base is a dense inverse, else the host's.
 #pragma once
 
 #include "solver/finite_base.hpp"
 #include "solver/finite_potential.hpp"
-#include "solver/lbfgs.hpp"
+#include "solver/host_steps.hpp"
 
 namespace sunder::solver {
 
@@ -33,7 +34,7 @@ class FiniteMinimiser {
   };
 
   FiniteMinimiser(const FinitePotential& potential, int pairs)
-      : potential_(potential), hessian_(pairs) {}
+      : potential_(potential), host_(potential, pairs) {}
 
   void set_scale(const FiniteScale& scale) { scale_ = scale; }
   /// |r| over the forces that act.
@@ -44,15 +45,15 @@ class FiniteMinimiser {
                   FiniteState& state);
 
  private:
-  [[nodiscard]] double stress_error(FiniteState& state, FiniteState& next);
-  [[nodiscard]] bool line_search(const FiniteTarget& target, bool with_stress,
-                                 const FiniteState& state);
+  [[nodiscard]] double residual(const FinitePoint& at) const;
+  [[nodiscard]] double stress_error(const FiniteTrial& trial) const;
+  [[nodiscard]] bool line_search(FiniteSteps& steps, bool with_stress, const FinitePoint& from,
+                                 FiniteTrial& trial) const;
+  Result minimise(FiniteSteps& steps, const Stop& stop, int most, FinitePoint at) const;
 
   const FinitePotential& potential_;
-  Lbfgs hessian_;
+  HostSteps host_;
   FiniteScale scale_;
-  FiniteState next_;
-  Eigen::VectorXd du_, s_, y_;
 };
 
 }  // namespace sunder::solver

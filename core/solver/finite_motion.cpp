@@ -29,10 +29,10 @@ fem::Inertia inertia_of_base(const FiniteTarget& target) {
 }  // namespace
 
 FiniteMotion::FiniteMotion(const fem::HyperelasticBody& body, std::span<const double> mass,
-                           FiniteMotionOptions options)
+                           FiniteMotionOptions options, FiniteDevice* device)
     : options_(options),
       moving_(body, RestingBody::Loose::moving),
-      potential_(moving_, options.stress),
+      potential_(moving_, options.stress, device),
       minimiser_(potential_, options.pairs),
       scale_(finite_scale(body.problem)),
       pattern_(body.problem),
@@ -88,6 +88,15 @@ Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
                        with_inertia};
   return compliance_factor(grip_stiffness(moving_, u_, pattern_, *base_, of),
                            anchors_of(potential_.problem()));
+}
+
+void FiniteMotion::leave_device(const FiniteMotionPast& past) {
+  potential_.leave_device();
+  potential_.body_changed();
+  base_.reset();
+  renewal_.give_up();
+  go_on_from(past);
+  broken_ += past.energy - state_.energy;  // of what has left since
 }
 
 void FiniteMotion::destroyed(std::span<const Index>) {

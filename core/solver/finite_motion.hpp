@@ -76,6 +76,7 @@ struct FiniteMotionPast {
   double time = 0;                               ///< [s]
   Eigen::VectorXd load, reaction, felt;          ///< per unknown [N]
   FiniteMotionBalance sum;
+  double energy = 0;  ///< strain energy [N mm]
 };
 
 class FiniteMotion {
@@ -83,7 +84,7 @@ class FiniteMotion {
   /// `mass` per node [t], 0 only where all axes are supported or no element is. The body and the
   /// options' problem must outlive it; what is destroyed is read live. Starts undeformed, at rest.
   FiniteMotion(const fem::HyperelasticBody& body, std::span<const double> mass,
-               FiniteMotionOptions options = {});
+               FiniteMotionOptions options = {}, FiniteDevice* device = nullptr);
 
   /// A step of dt [s] > 0 towards the load at its end. Where none is found, the grips go there in
   /// up to 64 parts of the time.
@@ -108,12 +109,15 @@ class FiniteMotion {
   /// Of all steps so far.
   [[nodiscard]] FiniteMotionBalance sum() const;
 
+  /// The device is gone: the host goes on from there.
+  void leave_device(const FiniteMotionPast& past);
+
   /// These have just left; the body says so already.
   void destroyed(std::span<const Index> elements);
 
   [[nodiscard]] FiniteMotionPast past() const {
     return {u_,    v_,    u_before_, v_before_, dt_before_, euler_,
-            time_, load_, reaction_, felt_,     sum()};
+            time_, load_, reaction_, felt_,     sum(),      state_.energy};
   }
   /// Goes on from there, of the body as it is now.
   void go_on_from(const FiniteMotionPast& past);

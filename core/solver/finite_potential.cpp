@@ -13,10 +13,12 @@ double frobenius(const Voigt& s) {
 
 }  // namespace
 
-FinitePotential::FinitePotential(const RestingBody& body, StressMeasure stress)
+FinitePotential::FinitePotential(const RestingBody& body, StressMeasure stress,
+                                 FiniteDevice* device)
     : body_(body),
       grip_places_(body.body().problem.gripped_dofs().size()),
       stress_(stress),
+      device_(device),
       pass_(std::make_unique<fem::HyperelasticPass>(body.body())) {
   const auto gripped = problem().gripped_dofs();
   for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
@@ -25,6 +27,12 @@ FinitePotential::FinitePotential(const RestingBody& body, StressMeasure stress)
       grip_places_[static_cast<std::size_t>(at - gripped.begin())] = i;
     }
   }
+  if (device_) device_->attach(body_);
+}
+
+void FinitePotential::body_changed() {
+  pass_->body_changed();
+  if (device_) device_->attach(body_);
 }
 
 void FinitePotential::put_grips(const FiniteTarget& target, std::vector<double>& u) const {
@@ -50,6 +58,10 @@ FiniteTarget FinitePotential::target(const Load& load) const {
 
 void FinitePotential::evaluate(const FiniteTarget& target, bool with_stress,
                                FiniteState& state) const {
+  if (device_) {
+    device_->evaluate(target, with_stress, state);
+    return;
+  }
   const fem::HyperelasticBody& body = body_.body();
   state.f.resize(state.u.size());
   state.stress.resize(with_stress ? body.problem.mesh().tets.size() : 0);

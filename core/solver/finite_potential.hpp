@@ -11,6 +11,7 @@
 #include "body/hyperelastic_pass.hpp"
 #include "body/tangent_pattern.hpp"
 #include "body/viscosity.hpp"
+#include "solver/finite_steps.hpp"
 #include "solver/resting_body.hpp"
 #include "sunder/backend.hpp"
 
@@ -39,10 +40,14 @@ struct FiniteState {
 
 class FinitePotential {
  public:
-  /// The body must outlive it.
-  FinitePotential(const RestingBody& body, StressMeasure stress);
+  /// The body must outlive it, and the device, where there is one that evaluates in the host's
+  /// place.
+  FinitePotential(const RestingBody& body, StressMeasure stress, FiniteDevice* device = nullptr);
   /// What rests has changed.
-  void body_changed() { pass_->body_changed(); }
+  void body_changed();
+  [[nodiscard]] FiniteDevice* device() const { return device_; }
+  /// The host goes on alone.
+  void leave_device() { device_ = nullptr; }
 
   [[nodiscard]] FiniteTarget target(const Load& load) const;
   /// All of a state by its displacement.
@@ -77,6 +82,7 @@ class FinitePotential {
   const RestingBody& body_;
   std::vector<std::size_t> grip_places_;  // of gripped dofs in u
   StressMeasure stress_;
+  FiniteDevice* device_;
   std::unique_ptr<fem::HyperelasticPass> pass_;
 };
 

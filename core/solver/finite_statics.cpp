@@ -37,11 +37,12 @@ double size_of(const Problem& problem) {
 
 }  // namespace
 
-FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOptions options)
+FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOptions options,
+                             FiniteDevice* device)
     : body_(body),
       options_(options),
       resting_(body),
-      potential_(resting_, options.stress),
+      potential_(resting_, options.stress, device),
       minimiser_(potential_, options.pairs),
       scale_(finite_scale(body.problem)),
       pattern_(body.problem),
@@ -52,6 +53,11 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       renewal_(options.rest, options.inverse) {
   shown_.u = u_;
   shown_.f.assign(u_.size(), 0.0);
+}
+
+void FiniteStatics::leave_device() {
+  potential_.leave_device();
+  body_changed();
 }
 
 void FiniteStatics::update_parts() {

@@ -61,7 +61,8 @@ struct FiniteStaticsReport {
 class FiniteStatics {
  public:
   /// At rest at u = 0. The body must outlive it; what is destroyed is read live.
-  explicit FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOptions options = {});
+  explicit FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOptions options = {},
+                         FiniteDevice* device = nullptr);
 
   /// From the last state at rest, or on a damped path from the present one, to the load.
   FiniteStaticsReport solve(const Load& load);
@@ -74,6 +75,9 @@ class FiniteStatics {
   [[nodiscard]] Eigen::MatrixXd grip_compliance();
   /// Per element 1: destroyed, or of a piece that nothing holds, whose stress has no meaning.
   [[nodiscard]] std::span<const std::uint8_t> out() const { return resting_.out(); }
+
+  /// The device is gone: from the last state at rest on by the host.
+  void leave_device();
 
   /// These have just left; the body says so already.
   void destroyed(std::span<const Index> elements);

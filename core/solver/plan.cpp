@@ -196,14 +196,6 @@ bool PlanDevice::has(Route route) const { return std::ranges::find(routes, route
 
 Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& device) {
   const SolverOptions& solver = problem.scene().solver;
-  if (problem.moves()) {
-    throw DeviceError("backend " + device.backend +
-                      " computes statics alone, not motion ([dynamics]); use backend cpu or auto");
-  }
-  if (problem.finite()) {
-    throw DeviceError("backend " + device.backend + " computes law \"linear\" alone, not " +
-                      in_quotes(problem.law()) + "; use backend cpu or auto");
-  }
   check_options(solver, device);
   Plan plan;
   plan.eager = solver.update == Update::eager;

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/motion_backend.hpp"
+#include "finite/motion_backend.hpp"
 
 #include <algorithm>
 #include <optional>
 
 #include "body/lumped_mass.hpp"
-#include "cpu_reference/law_backend.hpp"
 #include "solver/finite_motion.hpp"
-#include "solver/plan.hpp"
 #include "sunder/error.hpp"
 #include "sunder/words.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::finite {
 namespace {
 
-solver::FiniteMotionOptions motion_options(const Problem& problem) {
+solver::FiniteMotionOptions motion_options(const Problem& problem, bool inverse) {
   const Dynamics& dynamics = *problem.scene().dynamics;
   solver::FiniteMotionOptions options;
   options.tolerance = problem.scene().solver.tolerance;
@@ -23,19 +21,20 @@ solver::FiniteMotionOptions motion_options(const Problem& problem) {
   options.viscosity = dynamics.stiffness_damping;
   options.gravity = problem.scene().gravity;
   options.most_iterations = dynamics.max_iterations;
-  options.inverse = by_inverse(problem);
+  options.inverse = inverse;
   options.turn = problem.finite();
   return options;
 }
 
 class MotionBackend final : public LawBackend {
  public:
-  MotionBackend(std::shared_ptr<const Problem> shared, Needs needs, std::size_t factor_entries)
-      : LawBackend(shared, std::move(needs)),
+  MotionBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine)
+      : LawBackend(shared, std::move(needs), std::move(machine)),
         mass_(fem::lumped_masses(*shared)),
-        motion_(body(), mass_, motion_options(*shared)),
-        factor_entries_(factor_entries) {
-    if (this->needs().pristine) pristine_.emplace(intact(), mass_, motion_options(*shared));
+        motion_(body(), mass_, motion_options(*shared, by_inverse()), device()) {
+    if (this->needs().pristine) {
+      pristine_.emplace(intact(), mass_, motion_options(*shared, by_inverse()), device_of_intact());
+    }
     leave_out(
         "remaining share of a destroyed element's stiffness (fracture.alpha): in motion pieces "
         "need "
@@ -46,38 +45,14 @@ class MotionBackend final : public LawBackend {
     }
   }
 
-  BackendInfo info() const override {
-    BackendInfo info = info_of_device();
-    info.route = solver::name_of(by_inverse(problem()) ? Route::inverse : Route::factor);
-    info.update = needs().damage ? "deferred" : "none";
-    info.why = std::string("motion, which backend cpu computes: by the ") +
-               (by_inverse(problem()) ? "dense inverse" : "factor") +
-               " of a recent tangent with the step's inertia";
-    for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
-    return info;
-  }
-
   std::vector<BufferPlan> buffers() const override {
-    std::vector<BufferPlan> plan = field_buffers();
-    const std::size_t factor = factor_entries_ * sizeof(double);
-    plan.insert(plan.begin(),
-                {"factor of a recent tangent with inertia (sparse Cholesky)", factor});
+    std::vector<BufferPlan> plan = LawBackend::buffers();
     plan.push_back({"masses, velocities and the state before", u_.size() * 5 * sizeof(double)});
-    if (pristine_) plan.push_back({"factor of the intact body's tangent with inertia", factor});
     return plan;
   }
 
   std::vector<KernelPlan> kernels() const override {
-    std::vector<KernelPlan> list = field_kernels();
-    const std::string cap = std::to_string(problem().scene().dynamics->max_iterations);
-    list.insert(list.begin() + 1,
-                {"base", (by_inverse(problem())
-                              ? "product with the dense inverse of a recent tangent with inertia"
-                              : "forward and backward through the factor of a recent tangent with "
-                                "inertia, " +
-                                    std::to_string(factor_entries_) + " values") +
-                             std::string(", once an iteration of L-BFGS") +
-                             (cap == "0" ? "" : ", at most " + cap + " a step")});
+    std::vector<KernelPlan> list = LawBackend::kernels();
     list.push_back({"energies and momentum", "of each step: kinetic, elastic, work, what is lost"});
     if (pristine_) {
       list.push_back({"intact body's field", "the intact body moves beside, a step each step"});
@@ -86,6 +61,23 @@ class MotionBackend final : public LawBackend {
   }
 
  private:
+  Words words() const override {
+    const int cap = problem().scene().dynamics->max_iterations;
+    return {"motion", "a recent tangent with the step's inertia",
+            std::string(", once an iteration of L-BFGS") +
+                (cap == 0 ? "" : ", at most " + std::to_string(cap) + " a step")};
+  }
+
+  void remember() {
+    if (!device()) return;
+    past_ = motion_.past();
+    if (pristine_) past_of_intact_ = pristine_->past();
+  }
+  void leave_device() override {
+    motion_.leave_device(past_);
+    if (pristine_) pristine_->leave_device(past_of_intact_);
+  }
+
   SolveReport do_solve() override {
     throw UsageError("a body in motion has no rest to be solved for: advance it");
   }
@@ -93,7 +85,8 @@ class MotionBackend final : public LawBackend {
   SolveReport do_advance(double dt) override {
     dt_ = dt;
     intact_known_ = false;
-    const solver::FiniteMotionReport found = motion_.step(load_, dt);
+    remember();
+    const auto found = attempt([&] { return motion_.step(load_, dt); });
     if (found.stuck) fail(found, dt);
     u_ = motion_.displacement();
     publish_instruments();
@@ -116,14 +109,16 @@ class MotionBackend final : public LawBackend {
   }
 
   void do_destroy(std::span<const Index> elements) override {
-    motion_.destroyed(elements);
+    remember();
+    attempt([&] { motion_.destroyed(elements); });
     LawBackend::do_destroy(elements);
   }
 
   /// The intact body, at rest at first as the real one was, goes the same way.
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
     if (!intact_known_) {
-      const solver::FiniteMotionReport found = pristine_->step(load, dt_);
+      remember();
+      const auto found = attempt([&] { return pristine_->step(load, dt_); });
       if (found.stuck) fail(found, dt_);
       intact_known_ = true;
     }
@@ -162,18 +157,16 @@ class MotionBackend final : public LawBackend {
   std::vector<double> mass_;  // per node
   solver::FiniteMotion motion_;
   std::optional<solver::FiniteMotion> pristine_;
-  std::size_t factor_entries_ = 0;
-  double dt_ = 0;              // of the last step
-  bool intact_known_ = false;  // the intact body has made it too
+  solver::FiniteMotionPast past_, past_of_intact_;  // before what the device does
+  double dt_ = 0;                                   // of the last step
+  bool intact_known_ = false;                       // the intact body has made it too
 };
 
 }  // namespace
 
 std::unique_ptr<Backend> create_motion(std::shared_ptr<const Problem> problem, Needs needs,
-                                       const CpuOptions& options) {
-  // The factor, that of a newer base beside it, and the intact body's.
-  const std::size_t entries = check_law_options(*problem, options, needs.pristine ? 4 : 2);
-  return std::make_unique<MotionBackend>(std::move(problem), std::move(needs), entries);
+                                       Machine machine) {
+  return std::make_unique<MotionBackend>(std::move(problem), std::move(needs), std::move(machine));
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::finite

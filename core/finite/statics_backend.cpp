@@ -1,69 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_reference/finite_backend.hpp"
+#include "finite/statics_backend.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
 
-#include "cpu_reference/law_backend.hpp"
 #include "solver/finite_statics.hpp"
-#include "solver/plan.hpp"
 #include "sunder/error.hpp"
 #include "sunder/words.hpp"
 
-namespace sunder::cpu_reference {
+namespace sunder::finite {
 namespace {
 
-solver::FiniteStaticsOptions statics_options(const Problem& problem) {
+solver::FiniteStaticsOptions statics_options(const Problem& problem, bool inverse) {
   solver::FiniteStaticsOptions options;
   options.tolerance = problem.scene().solver.tolerance;
   options.stress = problem.scene().fracture.stress;
-  options.inverse = by_inverse(problem);
+  options.inverse = inverse;
   return options;
 }
 
-class FiniteBackend final : public LawBackend {
+class StaticsBackend final : public LawBackend {
  public:
-  FiniteBackend(std::shared_ptr<const Problem> shared, Needs needs, std::size_t factor_entries)
-      : LawBackend(shared, std::move(needs)),
-        statics_(body(), statics_options(*shared)),
-        factor_entries_(factor_entries) {
-    if (this->needs().pristine) pristine_.emplace(intact(), statics_options(*shared));
+  StaticsBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine)
+      : LawBackend(shared, std::move(needs), std::move(machine)),
+        statics_(body(), statics_options(*shared, by_inverse()), device()) {
+    if (this->needs().pristine) {
+      pristine_.emplace(intact(), statics_options(*shared, by_inverse()), device_of_intact());
+    }
     leave_out(
         "remaining share of a destroyed element's stiffness (fracture.alpha): at finite "
         "deformation it adds nothing to energy and forces");
     leave_out("preparation of predicted fractures: for law \"linear\" alone");
   }
 
-  BackendInfo info() const override {
-    BackendInfo info = info_of_device();
-    info.route = solver::name_of(by_inverse(problem()) ? Route::inverse : Route::factor);
-    info.update = needs().damage ? "deferred" : "none";
-    info.why = std::string("a law of finite deformation, which backend cpu computes: by the ") +
-               (by_inverse(problem()) ? "dense inverse" : "factor") + " of a recent tangent";
-    for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
-    return info;
-  }
-
-  std::vector<BufferPlan> buffers() const override {
-    std::vector<BufferPlan> plan = field_buffers();
-    plan.insert(plan.begin(),
-                {"factor of a recent tangent (sparse Cholesky)", factor_entries_ * sizeof(double)});
-    if (pristine_) {
-      plan.push_back({"factor of the intact body's tangent", factor_entries_ * sizeof(double)});
-    }
-    return plan;
-  }
-
   std::vector<KernelPlan> kernels() const override {
-    std::vector<KernelPlan> list = field_kernels();
-    list.insert(list.begin() + 1,
-                {"base", (by_inverse(problem())
-                              ? "product with the dense inverse of a recent tangent"
-                              : "forward and backward through the factor of a recent tangent, " +
-                                    std::to_string(factor_entries_) + " values") +
-                             std::string(", once an iteration of L-BFGS")});
+    std::vector<KernelPlan> list = LawBackend::kernels();
     if (needs().pristine) {
       list.push_back({"intact body's field", "its own equilibrium, once a step that breaks"});
     }
@@ -71,8 +44,16 @@ class FiniteBackend final : public LawBackend {
   }
 
  private:
+  Words words() const override {
+    return {"a law of finite deformation", "a recent tangent", ", once an iteration of L-BFGS"};
+  }
+  void leave_device() override {
+    statics_.leave_device();
+    if (pristine_) pristine_->leave_device();
+  }
+
   SolveReport do_solve() override {
-    const solver::FiniteStaticsReport found = statics_.solve(load_);
+    const auto found = attempt([&] { return statics_.solve(load_); });
     spent_.back_solves += found.back_solves;
     spent_.factors += found.factors;
     SolveReport report;
@@ -118,15 +99,16 @@ class FiniteBackend final : public LawBackend {
   }
 
   void do_destroy(std::span<const Index> elements) override {
-    statics_.destroyed(elements);
+    attempt([&] { statics_.destroyed(elements); });
     LawBackend::do_destroy(elements);
   }
 
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
-    solver::FiniteStaticsReport found = pristine_->solve(load);
+    const auto solve = [&] { return attempt([&] { return pristine_->solve(load); }); };
+    solver::FiniteStaticsReport found = solve();
     Spent spent{found.back_solves, found.factors};
     while (found.unfinished) {
-      found = pristine_->solve(load);
+      found = solve();
       spent.back_solves += found.back_solves;
       spent.factors += found.factors;
     }
@@ -149,17 +131,14 @@ class FiniteBackend final : public LawBackend {
 
   solver::FiniteStatics statics_;
   std::optional<solver::FiniteStatics> pristine_;
-  std::size_t factor_entries_ = 0;
   Spent spent_;
 };
 
 }  // namespace
 
-std::unique_ptr<Backend> create_finite(std::shared_ptr<const Problem> problem, Needs needs,
-                                       const CpuOptions& options) {
-  // The factor, that of a newer base beside it, and the intact body's.
-  const std::size_t entries = check_law_options(*problem, options, needs.pristine ? 4 : 2);
-  return std::make_unique<FiniteBackend>(std::move(problem), std::move(needs), entries);
+std::unique_ptr<Backend> create_statics(std::shared_ptr<const Problem> problem, Needs needs,
+                                        Machine machine) {
+  return std::make_unique<StaticsBackend>(std::move(problem), std::move(needs), std::move(machine));
 }
 
-}  // namespace sunder::cpu_reference
+}  // namespace sunder::finite

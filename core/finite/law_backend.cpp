@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "finite/law_backend.hpp"
+
+#include <algorithm>
+
+#include "body/analysis.hpp"
+#include "body/stress_summary.hpp"
+#include "finite/motion_backend.hpp"
+#include "finite/statics_backend.hpp"
+#include "solver/plan.hpp"
+#include "sunder/in_quotes.hpp"
+#include "sunder/words.hpp"
+
+namespace sunder::finite {
+namespace {
+
+constexpr int kPairs = 5;  // of L-BFGS, as the solvers' own options
+
+}  // namespace
+
+LawBackend::LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine)
+    : Backend(shared, std::move(needs)),
+      u_(shared->dofs().size(), 0.0),
+      laws_(fem::laws_of(*shared)),
+      body_{*shared, laws_, destroyed()},
+      intact_{*shared, laws_},
+      machine_(std::move(machine)),
+      inverse_(machine_.device || shared->scene().solver.route == Route::inverse),
+      factor_entries_(check_options()),
+      pass_(body_) {
+  const std::size_t elements = shared->mesh().tets.size();
+  if (this->needs().stress) stress_.assign(elements, Voigt::Zero());
+  if (this->needs().yield) excluded_.assign(elements, 0);
+  if (!machine_.device) return;
+  device_ = machine_.device(body_, *shared, kPairs);
+  if (this->needs().pristine) device_of_intact_ = machine_.device(intact_, *shared, kPairs);
+}
+
+BackendInfo LawBackend::info() const {
+  BackendInfo info = machine_.info;
+  info.route = solver::name_of(inverse_ ? Route::inverse : Route::factor);
+  info.update = needs().damage ? "deferred" : "none";
+  const Words say = words();
+  info.why = say.what + ": by the " + (inverse_ ? "dense inverse" : "factor") + " of " +
+             say.tangent +
+             (device_ ? ", made by the host; forces, stress and L-BFGS on the device" : "");
+  if (!lost_.empty()) info.why += "; the host took over from the device: " + lost_;
+  for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
+  return info;
+}
+
+std::vector<std::string> LawBackend::warnings() const {
+  if (lost_.empty()) return {};
+  return {"backend vulkan failed in mid-run, cpu took over from the last frame: " + lost_ +
+          "; look for a driver's reset in the system log, or use backend cpu"};
+}
+
+std::vector<BufferPlan> LawBackend::buffers() const {
+  const std::size_t factor = factor_entries_ * sizeof(double),
+                    unknowns = static_cast<std::size_t>(problem().dof_count()),
+                    dense = inverse_ ? unknowns * unknowns * sizeof(double) : 0;
+  std::vector<BufferPlan> plan{{"factor of " + words().tangent + " (sparse Cholesky)", factor},
+                               {"displacement and forces", u_.size() * 4 * sizeof(double)}};
+  if (inverse_) plan.push_back({"dense inverse of it", dense});
+  if (needs().stress) plan.push_back({"stress", stress_.size() * sizeof(Voigt)});
+  if (needs().pristine) plan.push_back({"factor of the intact body's tangent", factor + dense});
+  for (const auto* device : {device_.get(), device_of_intact_.get()}) {
+    if (!device) continue;
+    for (BufferPlan& buffer : device->buffers()) {
+      if (device != device_.get()) buffer.name += ", of the intact body";
+      plan.push_back(std::move(buffer));
+    }
+  }
+  return plan;
+}
+
+std::vector<KernelPlan> LawBackend::kernels() const {
+  if (device_) return device_->kernels();
+  const auto elements = std::to_string(problem().tet_count());
+  const Words say = words();
+  std::vector<KernelPlan> list{
+      {"internal forces", "energy and forces of " + elements + " elements by their laws"},
+      {"base", (inverse_ ? "product with the dense inverse of " + say.tangent
+                         : "forward and backward through the factor of " + say.tangent + ", " +
+                               std::to_string(factor_entries_) + " values") +
+                   say.iteration},
+      {"line search", "on the energy, a pass over the elements for each length that it tries"},
+      {"check", "one base application to what is left, and the stress that it would change"}};
+  if (needs().damage) {
+    list.push_back({"small update", "of the base by the tangents of destroyed elements"});
+  }
+  if (needs().stress) {
+    list.push_back({"stress", elements + " elements, the stress that fracture.stress names"});
+  }
+  if (needs().yield) list.push_back({"yield summary", "largest ratio, and where"});
+  return list;
+}
+
+std::shared_ptr<InstrumentForces> LawBackend::instrument_forces() {
+  if (problem().gripped_dofs().empty()) return nullptr;
+  if (!instruments_) {
+    instruments_.emplace(problem());
+    reactions_.assign(problem().gripped_dofs().size(), 0.0);
+    publish_instruments();
+  }
+  return instruments_->forces();
+}
+
+void LawBackend::take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) {
+  if (instrument_forces()) instruments_->take_over(std::move(forces));
+}
+
+void LawBackend::publish_instruments() {
+  if (!instruments_ || load_.displacements.size() != reactions_.size()) return;
+  const Eigen::MatrixXd l = grip_compliance();
+  if (l.size() == 0) return;
+  read_reactions(reactions_);
+  instruments_->publish(l, reactions_, load_.displacements);
+}
+
+StressSummary LawBackend::do_stress() {
+  attempt([&] {
+    if (device_) {
+      device_->stress(u_, stress_);
+      return;
+    }
+    fem::HyperelasticPass::Wanted wanted;
+    wanted.stress = stress_;
+    wanted.measure = problem().scene().fracture.stress;
+    pass_.run(u_, wanted);
+  });
+  const auto none = without_stress();
+  for (std::size_t e = 0; e < stress_.size(); ++e) {
+    if (none[e]) stress_[e].setZero();
+  }
+  return needs().yield ? fem::summarize(problem(), destroyed(), excluded_, stress_)
+                       : StressSummary{};
+}
+
+Deformation LawBackend::do_deformation() {
+  fem::HyperelasticPass::Wanted wanted;
+  wanted.deformation = true;
+  return pass_.run(u_, wanted).deformation;
+}
+
+void LawBackend::do_destroy(std::span<const Index> elements) {
+  pass_.destroy(elements);
+  if (!needs().stress) return;
+  for (Index e : elements) stress_[e].setZero();
+}
+
+void LawBackend::do_exclude_candidates(std::span<const Index> elements) {
+  for (Index e : elements) excluded_[e] = 1;
+}
+
+void LawBackend::do_read_displacement(std::span<double> displacement) const {
+  std::ranges::copy(u_, displacement.begin());
+}
+
+void LawBackend::do_read_displacement(std::span<const Index> nodes,
+                                      std::span<Vec3> displacement) const {
+  for (std::size_t i = 0; i < nodes.size(); ++i) displacement[i] = Vec3(&u_[3 * nodes[i]]);
+}
+
+void LawBackend::do_read_stress(std::span<Voigt> stress) const {
+  std::ranges::copy(stress_, stress.begin());
+}
+
+/// Returns the entries of a factor.
+std::size_t LawBackend::check_options() const {
+  const SolverOptions& solver = problem().scene().solver;
+  const bool moves = problem().moves(), on_device = static_cast<bool>(machine_.device);
+  const std::string whom = moves ? "motion" : "law " + in_quotes(problem().law());
+  const auto refuse = [&](const std::string& what, const std::string& why,
+                          const std::string& instead) {
+    throw DeviceError(what + " cannot serve " + whom + ": " + why + "; use " + instead);
+  };
+  if (solver.precision == Precision::fp32 && !on_device) {
+    refuse("precision fp32", "backend cpu computes in fp64 only", "precision fp64 or auto");
+  }
+  if (solver.route == Route::factor && on_device) {
+    refuse("route factor", "backend vulkan computes by a dense inverse", "route inverse or auto");
+  }
+  if (solver.route == Route::cg) {
+    refuse("route cg", "its preconditioner is the factor of the intact body at rest",
+           on_device ? "route inverse or auto" : "route factor or auto");
+  }
+  if (solver.route == Route::condensed) {
+    refuse("route condensed", "the stiffness outside its region changes with the deformation",
+           on_device ? "route inverse or auto" : "route factor or auto");
+  }
+  if (solver.update == Update::eager) {
+    refuse("update eager", "the base is a tangent that later states do not write over",
+           "update deferred or auto");
+  }
+  // The factor and that of a newer base beside it, and the intact body's.
+  const std::size_t bases = needs().pristine ? 4 : 2;
+  const auto unknowns = static_cast<std::size_t>(problem().dof_count());
+  const auto analysis = fem::analyse(problem());
+  const std::size_t needed =
+      bases * (analysis->entries() + (inverse_ ? unknowns * unknowns : 0)) * sizeof(double);
+  if (needed > machine_.memory) {
+    throw InputError(InputFault::too_large,
+                     "the bases of a tangent need " + std::to_string(needed) + " bytes for " +
+                         count_of(problem().dof_count(), "unknown") + ", but " +
+                         std::to_string(machine_.memory) + " are free; use a coarser mesh" +
+                         (moves ? "" : " or law \"linear\""));
+  }
+  return analysis->entries();
+}
+
+std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
+                                Machine machine) {
+  const bool moves = problem->moves();
+  return moves ? create_motion(std::move(problem), std::move(needs), std::move(machine))
+               : create_statics(std::move(problem), std::move(needs), std::move(machine));
+}
+
+}  // namespace sunder::finite

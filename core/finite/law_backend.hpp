@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// What statics at finite deformation and motion share as backends, on a device or by the host
+// alone: the fields of a displacement by the laws of its elements, forces of grips between frames,
+// what a scene may ask of them, and how the host goes on where the device is lost.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "body/hyperelastic_pass.hpp"
+#include "solver/finite_steps.hpp"
+#include "solver/instrument_block.hpp"
+#include "sunder/backend.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::finite {
+
+/// What computes: the host, with a device or without.
+struct Machine {
+  BackendInfo info;        ///< backend, device, driver, precision
+  std::size_t memory = 0;  ///< bytes that the host has free
+  /// A device that holds states of such a body, by L-BFGS of so many pairs, with viscous forces or
+  /// without. Empty: the host alone computes. It owns what the device needs.
+  std::function<std::unique_ptr<solver::FiniteDevice>(const fem::HyperelasticBody& body,
+                                                      const Problem& problem, int pairs)>
+      device = {};
+};
+
+/// The backend of statics or of motion, as the problem asks. Throws DeviceError for options that a
+/// body with tangents of its own cannot serve, InputError where there is no room for its bases.
+[[nodiscard]] std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
+                                              Machine machine);
+
+class LawBackend : public Backend {
+ public:
+  BackendInfo info() const override;
+  std::vector<BufferPlan> buffers() const override;
+  std::vector<KernelPlan> kernels() const override;
+  std::vector<std::string> warnings() const override;
+
+ protected:
+  LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine);
+
+  /// By a dense inverse; else by a factor.
+  [[nodiscard]] bool by_inverse() const { return inverse_; }
+  [[nodiscard]] const fem::HyperelasticBody& body() const { return body_; }
+  [[nodiscard]] const fem::HyperelasticBody& intact() const { return intact_; }
+  /// Null: the host.
+  [[nodiscard]] solver::FiniteDevice* device() const { return device_.get(); }
+  [[nodiscard]] solver::FiniteDevice* device_of_intact() const { return device_of_intact_.get(); }
+
+  /// What moves or rests, for the texts: "motion", "a recent tangent with inertia" and so on.
+  struct Words {
+    std::string what, tangent, iteration;
+  };
+  [[nodiscard]] virtual Words words() const = 0;
+  /// Per element 1: its stress is 0.
+  [[nodiscard]] virtual std::span<const std::uint8_t> without_stress() const { return destroyed(); }
+
+  /// An operation that may find the device lost: then the host does it, from the state before.
+  template <class Operation>
+  auto attempt(Operation&& operation) {
+    try {
+      return operation();
+    } catch (const DeviceLost& error) {
+      if (!device_) throw;
+      lost_ = error.what();
+      leave_device();
+      device_.reset();
+      device_of_intact_.reset();
+    }
+    return operation();
+  }
+  /// The host goes on from the state before the operation.
+  virtual void leave_device() = 0;
+
+  std::shared_ptr<InstrumentForces> instrument_forces() override;
+  void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override;
+  /// Of the last solution, as InstrumentBlock::publish takes it; empty: unknown.
+  [[nodiscard]] virtual Eigen::MatrixXd grip_compliance() = 0;
+  /// After a solution: to who has asked for the forces of grips.
+  void publish_instruments();
+
+  void do_set_load(const Load& load) override { load_ = load; }
+  StressSummary do_stress() override;
+  Deformation do_deformation() override;
+  void do_cut_off(std::span<const Index> elements) override { pass_.cut_off(elements); }
+  void do_destroy(std::span<const Index> elements) override;
+  void do_exclude_candidates(std::span<const Index> elements) override;
+  void do_read_displacement(std::span<double> displacement) const override;
+  void do_read_displacement(std::span<const Index> nodes,
+                            std::span<Vec3> displacement) const override;
+  void do_read_stress(std::span<Voigt> stress) const override;
+  Voigt do_read_stress(Index element) const override { return stress_[element]; }
+
+  Load load_;
+  std::vector<double> u_;  // of the last solution
+
+ private:
+  std::size_t check_options() const;
+
+  std::vector<Voigt> stress_;  // of the last stress()
+  std::vector<const Law*> laws_;
+  fem::HyperelasticBody body_, intact_;
+  Machine machine_;
+  bool inverse_;
+  std::size_t factor_entries_ = 0;
+  fem::HyperelasticPass pass_;
+  std::unique_ptr<solver::FiniteDevice> device_, device_of_intact_;
+  std::string lost_;  // why the device is gone; empty: it is not
+  std::vector<std::uint8_t> excluded_;
+  std::optional<solver::InstrumentBlock> instruments_;  // once asked for
+  std::vector<double> reactions_;
+};
+
+}  // namespace sunder::finite

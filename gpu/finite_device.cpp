@@ -1,0 +1,483 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/finite_device.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "body/node_elements.hpp"
+#include "material/corotated.hpp"
+#include "material/linear.hpp"
+#include "material/neo_hookean.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+using shaders::FinitePush;
+using vulkan::Buffer;
+using vulkan::Placement;
+
+// Invocations of the passes over all unknowns that leave one sum, on a device.
+constexpr std::uint32_t kOneGroup = 256;
+// Least room for the unknowns that what has left touches.
+constexpr std::uint32_t kFirstRank = 64;
+
+std::uint32_t u32(std::size_t value) { return static_cast<std::uint32_t>(value); }
+
+std::uint32_t number_of(const Law& law) {
+  return &law == &kLinear ? 0 : &law == &kCorotated ? 1 : &law == &kNeoHookean ? 2 : 3;
+}
+
+template <class T>
+Buffer filled(vulkan::Device& device, const std::vector<T>& values) {
+  Buffer buffer(device, std::max<std::size_t>(values.size(), 1) * sizeof(T), Placement::device);
+  if (!values.empty()) buffer.write(std::span<const T>(values));
+  return buffer;
+}
+
+}  // namespace
+
+std::size_t FiniteDevice::inverse_bytes(const KernelFactory& kernels, const Problem& problem) {
+  const auto unknowns = static_cast<std::size_t>(problem.dof_count());
+  return unknowns * round_up(u32(unknowns), shaders::kColumnPad) * kernels.real_bytes();
+}
+
+FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
+                           StressMeasure stress, int pairs, bool viscous)
+    : kernels_(kernels),
+      device_(kernels.device()),
+      problem_(body.problem),
+      body_(body),
+      measure_(stress),
+      elements_(u32(problem_.mesh().tets.size())),
+      nodes_(u32(problem_.mesh().nodes.size())),
+      entries_(3 * nodes_),
+      unknowns_(u32(static_cast<std::size_t>(problem_.dof_count()))),
+      rows_(round_up(std::max(unknowns_, 1U), shaders::kColumnPad)),
+      pairs_(std::min(u32(static_cast<std::size_t>(pairs)), shaders::kFinitePairs)),
+      commands_(kernels.device()) {
+  const vulkan::PhysicalDevice& device = device_.physical();
+  const std::size_t limit = std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
+                                                   std::size_t{device.largest_texel_buffer} * 16});
+  if (inverse_bytes(kernels, problem_) > limit) {
+    throw DeviceError("the device \"" + device.name + "\" takes buffers of " +
+                      std::to_string(limit) + " bytes, but the inverse of a tangent needs " +
+                      std::to_string(inverse_bytes(kernels, problem_)) +
+                      "; use precision fp32, a coarser mesh or backend cpu");
+  }
+  create_buffers(viscous);
+  create_passes();
+}
+
+void FiniteDevice::create_buffers(bool viscous) {
+  const auto doubles = [&](std::size_t count) {
+    Buffer buffer(device_, std::max<std::size_t>(count, 1) * sizeof(double), Placement::device);
+    buffer.fill_zero();
+    return buffer;
+  };
+  for (std::size_t i : {0, 1}) {
+    u_[i] = doubles(entries_);
+    r_[i] = doubles(unknowns_);
+    f_[i] = doubles(2 * std::size_t{entries_});
+    stress_[i] = doubles(6 * std::size_t{elements_});
+  }
+  std::vector<std::uint32_t> corners;
+  std::vector<double> shape;
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    for (Index n : problem_.mesh().tets[e]) corners.push_back(static_cast<std::uint32_t>(n));
+    const TetShape& of = problem_.shape(e);
+    for (int corner = 1; corner < 4; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) shape.push_back(of.gradient(axis, corner));
+    }
+    const SmallStrain& constants = problem_.small_strain(e);
+    shape.insert(shape.end(), {of.volume, constants.mu, constants.lambda});
+  }
+  nodes_of_ = filled(device_, corners);
+  shape_ = filled(device_, shape);
+  facts_ = filled(device_, std::vector<std::uint32_t>(elements_, shaders::kFiniteOut));
+  std::vector<std::vector<std::uint32_t>> around(nodes_);
+  for (std::uint32_t i = 0; i < corners.size(); ++i) around[corners[i]].push_back(i);
+  std::vector<std::uint32_t> first{0}, list;
+  for (const auto& of : around) {
+    list.insert(list.end(), of.begin(), of.end());
+    first.push_back(u32(list.size()));
+  }
+  first_ = filled(device_, first);
+  around_ = filled(device_, list);
+  entries_of_ = filled(device_, std::vector<std::uint32_t>(2 * std::size_t{entries_}, 0));
+  held_ = filled(device_, std::vector<std::uint32_t>(unknowns_, 0));
+  from_ = doubles(viscous ? 6 * std::size_t{elements_} : 1);
+  target_ = doubles(2 * std::size_t{unknowns_} + entries_);
+  corners_ = doubles(12 * std::size_t{elements_});
+  viscous_corners_ = doubles(viscous ? 12 * std::size_t{elements_} : 1);
+  const auto parts = [&](std::uint32_t count) {
+    return std::size_t{round_up(count, shaders::kGroup)} / shaders::kGroup * kernels_.parts();
+  };
+  element_partials_ = doubles(parts(elements_) * 4);
+  entry_partials_ = doubles(parts(entries_) * 4);
+  sums_ = Buffer(device_, sizeof(shaders::FiniteSums), Placement::host);
+  const std::uint32_t chunks = round_up(unknowns_, shaders::kFiniteChunk) / shaders::kFiniteChunk;
+  for (Buffer* vector : {&du_, &q_, &x_}) *vector = doubles(rows_);
+  partial_ = doubles(std::size_t{rows_} * chunks);
+  for (Buffer* pairs : {&s_, &y_}) *pairs = doubles((pairs_ + 1) * std::size_t{unknowns_});
+  products_ = Buffer(device_, 16 * sizeof(double), Placement::host);
+  lengths_ = doubles(16);
+  turned_ = filled(device_, std::vector<std::uint32_t>(4 * std::size_t{nodes_}, 0));
+  rotations_ = doubles(9 * std::size_t{nodes_});
+  inverse_ = Buffer(device_, std::max<std::size_t>(inverse_bytes(kernels_, problem_), 16),
+                    Placement::device);
+}
+
+void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers first,
+                        Buffers second) {
+  const bool one = name == "finite_sums" || name == "finite_begin" || name == "finite_end";
+  const KernelFactory factory = real ? kernels_ : kernels_.in_fp64();
+  const std::uint32_t group = !one                  ? shaders::kGroup
+                              : kernels_.emulated() ? kernels_.summing_group()
+                                                    : kOneGroup;
+  if (!pass.kernel) pass.kernel = factory.make(name, group);
+  pass.binding[0] =
+      std::make_unique<vulkan::Binding>(device_, *pass.kernel, std::vector<const Buffer*>(first));
+  pass.binding[1] =
+      std::make_unique<vulkan::Binding>(device_, *pass.kernel, std::vector<const Buffer*>(second));
+}
+
+void FiniteDevice::create_passes() {
+  make(move_, "finite_move", false, {&entries_of_, &u_[0], &du_, &u_[1]},
+       {&entries_of_, &u_[1], &du_, &u_[0]});
+  // binding[i] evaluates state i against the other one.
+  make(law_, "finite_law", false,
+       {&u_[0], &nodes_of_, &shape_, &facts_, &stress_[1], &from_, &corners_, &viscous_corners_,
+        &stress_[0], &element_partials_},
+       {&u_[1], &nodes_of_, &shape_, &facts_, &stress_[0], &from_, &corners_, &viscous_corners_,
+        &stress_[1], &element_partials_});
+  make(gather_, "finite_gather", false,
+       {&corners_, &viscous_corners_, &first_, &around_, &entries_of_, &target_, &u_[0], &f_[0],
+        &r_[0], &entry_partials_},
+       {&corners_, &viscous_corners_, &first_, &around_, &entries_of_, &target_, &u_[1], &f_[1],
+        &r_[1], &entry_partials_});
+  make(sum_, "finite_sums", false,
+       {&element_partials_, &entry_partials_, &r_[1], &r_[0], &du_, &s_, &y_, &sums_},
+       {&element_partials_, &entry_partials_, &r_[0], &r_[1], &du_, &s_, &y_, &sums_});
+  make(begin_, "finite_begin", false, {&r_[0], &s_, &y_, &products_, &lengths_, &q_},
+       {&r_[1], &s_, &y_, &products_, &lengths_, &q_});
+  make(turn_q_, "finite_turn", false, {&turned_, &rotations_, &q_}, {&turned_, &rotations_, &q_});
+  make(turn_x_, "finite_turn", false, {&turned_, &rotations_, &x_}, {&turned_, &rotations_, &x_});
+  make(product_, "finite_product", true, {&inverse_, &q_, &partial_}, {&inverse_, &q_, &partial_});
+  make(fold_, "finite_fold", false, {&partial_, &x_}, {&partial_, &x_});
+  make(end_, "finite_end", false, {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_},
+       {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_});
+}
+
+void FiniteDevice::attach(const solver::RestingBody& body) {
+  resting_ = &body;
+  known_.clear();
+  shown_target_.clear();
+  std::vector<std::uint32_t> facts(elements_), entries(2 * std::size_t{entries_}),
+      held(unknowns_, 0);
+  for (std::uint32_t e = 0; e < elements_; ++e) {
+    const auto element = static_cast<Index>(e);
+    facts[e] = (body.out()[e] ? shaders::kFiniteOut : 0) |
+               shaders::kFiniteLaw * number_of(body.body().law(element));
+  }
+  for (Index d : problem_.gripped_dofs())
+    held[static_cast<std::size_t>(d)] = shaders::kFiniteGripped;
+  for (std::uint32_t d = 0; d < unknowns_; ++d) {
+    if (body.frozen()[d]) held[d] |= shaders::kFiniteFrozen;
+  }
+  for (std::size_t i = 0; i < entries_; ++i) {
+    const Index d = problem_.dofs()[i];
+    entries[2 * i] = d == kNone ? shaders::kHeld : static_cast<std::uint32_t>(d);
+    entries[2 * i + 1] = d == kNone ? 0 : held[static_cast<std::size_t>(d)];
+  }
+  facts_.write(std::span<const std::uint32_t>(facts));
+  entries_of_.write(std::span<const std::uint32_t>(entries));
+  if (unknowns_ > 0) held_.write(std::span<const std::uint32_t>(held));
+}
+
+/// Writes what differs from what is there.
+void FiniteDevice::set_target(const solver::FiniteTarget& target) {
+  std::vector<double> all(2 * std::size_t{unknowns_} + entries_, 0.0);
+  loaded_squared_ = 0;
+  for (std::uint32_t d = 0; d < unknowns_; ++d) {
+    all[d] = target.force[d];
+    if (target.ahead) all[unknowns_ + d] = target.inertia.of(static_cast<Index>(d));
+    if (!resting_->frozen()[d]) loaded_squared_ += target.force[d] * target.force[d];
+  }
+  if (target.ahead) {
+    std::ranges::copy(*target.ahead, all.begin() + 2 * std::ptrdiff_t{unknowns_});
+  }
+  if (all != shown_target_) {
+    target_.write(std::span<const double>(all));
+    shown_target_ = std::move(all);
+    known_.clear();
+  }
+  inertia_ = target.ahead && !target.inertia.mass.empty();
+  const double viscous = target.viscosity ? target.viscous : 0;
+  if (viscous != viscous_) known_.clear();
+  viscous_ = viscous;
+  if (!target.viscosity ||
+      (viscosity_ == target.viscosity && viscous_start_ == target.viscosity->starts())) {
+    return;
+  }
+  viscosity_ = target.viscosity;
+  viscous_start_ = target.viscosity->starts();
+  known_.clear();
+  std::vector<double> from;
+  for (const Mat3& of : target.viscosity->from()) {
+    from.insert(from.end(), {of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(1, 2), of(2, 0)});
+  }
+  from_.write(std::span<const double>(from));
+}
+
+void FiniteDevice::set_inverse(const Eigen::MatrixXd& inverse) {
+  constexpr Eigen::Index kColumns = 256;  // at once
+  const bool fp64 = kernels_.fp64();
+  std::vector<double> wide;
+  std::vector<float> narrow;
+  for (Eigen::Index first = 0; first < inverse.cols(); first += kColumns) {
+    const Eigen::Index count = std::min(kColumns, inverse.cols() - first);
+    const auto block = inverse.middleCols(first, count);
+    const std::size_t begin = static_cast<std::size_t>(first) * rows_,
+                      size = static_cast<std::size_t>(count) * rows_;
+    if (fp64) {
+      wide.assign(size, 0.0);
+      Eigen::Map<Eigen::MatrixXd>(wide.data(), rows_, count).topRows(inverse.rows()) = block;
+      inverse_.write(std::span<const double>(wide), begin);
+    } else {
+      narrow.assign(size, 0.0F);
+      Eigen::Map<Eigen::MatrixXf>(narrow.data(), rows_, count).topRows(inverse.rows()) =
+          block.cast<float>();
+      inverse_.write(std::span<const float>(narrow), begin);
+    }
+  }
+}
+
+void FiniteDevice::bind_base() {
+  make(small_pass_, "finite_small", false, {&small_, &touched_, &x_, &coefficients_},
+       {&small_, &touched_, &x_, &coefficients_});
+  make(columns_, "finite_columns", true, {&inverse_, &touched_, &coefficients_, &x_},
+       {&inverse_, &touched_, &coefficients_, &x_});
+}
+
+void FiniteDevice::set_base(const solver::FiniteBase& base) {
+  const auto& now = base.stamps();
+  if (now.inverse != stamps_.inverse) set_inverse(base.inverse());
+  if (now.small != stamps_.small || now.inverse != stamps_.inverse) {
+    rank_ = static_cast<std::uint32_t>(base.rank());
+    if (rank_ > rank_room_) {
+      rank_room_ = std::max({rank_, 2 * rank_room_, kFirstRank});
+      small_pass_.binding = {};
+      columns_.binding = {};
+      const std::size_t room = rank_room_;
+      touched_ = Buffer(device_, room * sizeof(std::uint32_t), Placement::device);
+      small_ = Buffer(device_, room * room * sizeof(double), Placement::device);
+      coefficients_ = Buffer(device_, room * sizeof(double), Placement::device);
+      bind_base();
+    }
+    if (rank_ > 0) {
+      const std::vector<std::uint32_t> touched(base.touched().begin(), base.touched().end());
+      touched_.write(std::span<const std::uint32_t>(touched));
+      const Eigen::MatrixXd& m = base.small();
+      small_.write(std::span<const double>(m.data(), static_cast<std::size_t>(m.size())));
+    }
+  }
+  if (now.turned != stamps_.turned) {
+    std::vector<std::uint32_t> places;
+    std::vector<double> rotations;
+    for (const auto& turned : base.turned()) {
+      for (Index d : turned.unknowns) places.push_back(static_cast<std::uint32_t>(d));
+      places.push_back(0);
+      rotations.insert(rotations.end(), turned.q.data(), turned.q.data() + 9);
+    }
+    turned_count_ = u32(base.turned().size());
+    if (turned_count_ > 0) {
+      turned_.write(std::span<const std::uint32_t>(places));
+      rotations_.write(std::span<const double>(rotations));
+    }
+  }
+  stamps_ = now;
+}
+
+FinitePush FiniteDevice::push() const {
+  FinitePush of{};
+  of.viscous = viscous_;
+  of.elements = elements_;
+  of.entries = entries_;
+  of.unknowns = unknowns_;
+  of.element_parts = round_up(elements_, shaders::kGroup) / shaders::kGroup * kernels_.parts();
+  of.entry_parts = round_up(entries_, shaders::kGroup) / shaders::kGroup * kernels_.parts();
+  of.biot = measure_ == StressMeasure::biot ? 1 : 0;
+  of.pairs = u32(order_.size());
+  of.slot = slot_;
+  for (std::size_t k = 0; k < order_.size(); ++k) of.order |= order_[k] << (4 * k);
+  of.rank = rank_;
+  of.turned = turned_count_;
+  of.inertia = inertia_ ? 1 : 0;
+  return of;
+}
+
+/// A pass with `count` invocations, or of one workgroup.
+void FiniteDevice::over(const Pass& pass, const FinitePush& push, std::uint32_t count,
+                        std::uint32_t rows) {
+  const std::uint32_t groups = round_up(count, shaders::kGroup) / shaders::kGroup;
+  commands_.dispatch(*pass.binding[first_state_], push, std::max(groups, 1U), rows);
+  commands_.barrier();
+}
+
+void FiniteDevice::record_direction() {
+  FinitePush push = this->push();
+  commands_.pass("direction");
+  over(begin_, push, 1);
+  push.back = 1;
+  if (turned_count_ > 0) over(turn_q_, push, turned_count_);
+  push.back = 0;
+  commands_.pass("base");
+  over(product_, push, rows_ / 4,
+       round_up(unknowns_, shaders::kFiniteChunk) / shaders::kFiniteChunk);
+  over(fold_, push, unknowns_);
+  if (rank_ > 0) {
+    over(small_pass_, push, rank_);
+    over(columns_, push, unknowns_);
+  }
+  if (turned_count_ > 0) over(turn_x_, push, turned_count_);
+  commands_.pass("direction");
+  over(end_, push, 1);
+}
+
+/// Of the second state, or of the first one.
+void FiniteDevice::record_evaluation(const FinitePush& push, bool next) {
+  const std::size_t which = next ? 1 - first_state_ : first_state_;
+  const auto dispatch = [&](const Pass& pass, std::uint32_t count) {
+    commands_.dispatch(*pass.binding[which], push,
+                       round_up(count, shaders::kGroup) / shaders::kGroup);
+    commands_.barrier();
+  };
+  commands_.pass("internal forces");
+  dispatch(law_, elements_);
+  dispatch(gather_, entries_);
+  dispatch(sum_, 1);
+}
+
+solver::FinitePoint FiniteDevice::point() const {
+  const shaders::FiniteSums& of = *sums_.mapped<shaders::FiniteSums>();
+  return {of.energy + of.viscous + of.springs, std::sqrt(of.residual_squared),
+          std::sqrt(loaded_squared_ + of.held_squared + (inertia_ ? of.inertia_squared : 0))};
+}
+
+/// The first state <- u, evaluated.
+void FiniteDevice::set_state(std::span<const double> u) {
+  if (known_.size() == u.size() && std::ranges::equal(known_, u)) return;
+  known_.clear();
+  u_[first_state_].write(u);
+  commands_.begin();
+  record_evaluation(push(), false);
+  commands_.end();
+  commands_.submit();
+  known_.assign(u.begin(), u.end());
+}
+
+void FiniteDevice::read_vector(const Buffer& from, std::size_t first, std::span<double> to) {
+  if (!to.empty()) from.read(to, first);
+}
+
+/// All of the first state but its displacement and what the last sums say.
+void FiniteDevice::read(solver::FiniteState& state, bool with_stress) {
+  state.f.resize(entries_);
+  read_vector(f_[first_state_], 0, state.f);
+  state.viscous.resize(viscous_ > 0 ? entries_ : 0);
+  read_vector(f_[first_state_], entries_, state.viscous);
+  state.r.resize(unknowns_);
+  read_vector(r_[first_state_], 0, {state.r.data(), unknowns_});
+  state.stress.resize(with_stress ? elements_ : 0);
+  if (with_stress) {
+    read_vector(stress_[first_state_], 0, {state.stress.front().data(), 6 * state.stress.size()});
+  }
+}
+
+void FiniteDevice::evaluate(const solver::FiniteTarget& target, bool with_stress,
+                            solver::FiniteState& state) {
+  set_target(target);
+  known_.clear();  // the sums are those of another state
+  set_state(state.u);
+  const solver::FinitePoint at = point();
+  state.energy = sums_.mapped<shaders::FiniteSums>()->energy;
+  state.potential = at.potential;
+  state.acting = at.acting;
+  read(state, with_stress);
+}
+
+void FiniteDevice::stress(std::span<const double> u, std::span<Voigt> stress) {
+  if (stress.empty()) return;
+  set_state(u);
+  read_vector(stress_[first_state_], 0, {stress.front().data(), 6 * stress.size()});
+}
+
+solver::FinitePoint FiniteDevice::begin(const solver::FiniteTarget& target,
+                                        solver::FiniteBase& base, solver::FiniteState& state) {
+  set_target(target);
+  set_base(base);
+  order_.clear();
+  slot_ = 0;
+  state_ = &state;
+  set_state(state.u);
+  return {state.potential, state.r.norm(), state.acting};
+}
+
+solver::FiniteTrial FiniteDevice::trial(double part, bool direction) {
+  commands_.begin();
+  if (direction) record_direction();
+  FinitePush push = this->push();
+  push.part = part;
+  over(move_, push, entries_);
+  record_evaluation(push, true);
+  commands_.end();
+  commands_.submit();
+  const shaders::FiniteSums& of = *sums_.mapped<shaders::FiniteSums>();
+  return {point(), of.slope, of.s_y, std::sqrt(of.change_squared), std::sqrt(of.stress_squared)};
+}
+
+solver::FiniteTrial FiniteDevice::whole(bool) { return trial(1, true); }
+solver::FiniteTrial FiniteDevice::part(double of, bool) { return trial(of, false); }
+
+void FiniteDevice::take() {
+  const shaders::FiniteSums& of = *sums_.mapped<shaders::FiniteSums>();
+  first_state_ = 1 - first_state_;
+  known_.clear();
+  state_->energy = of.energy;
+  const solver::FinitePoint at = point();
+  state_->potential = at.potential;
+  state_->acting = at.acting;
+  // As Lbfgs::learn.
+  if (pairs_ == 0 || !(of.s_y > 1e-12 * std::sqrt(of.s_squared) * std::sqrt(of.y_squared))) return;
+  products_.mapped<double>()[slot_] = of.s_y;
+  if (order_.size() == pairs_) order_.erase(order_.begin());
+  order_.push_back(slot_);
+  slot_ = 0;
+  while (std::ranges::find(order_, slot_) != order_.end()) ++slot_;
+}
+
+void FiniteDevice::end() {
+  solver::FiniteState& state = *state_;
+  if (known_.empty()) {
+    read_vector(u_[first_state_], 0, state.u);
+    known_ = state.u;
+    read(state, true);
+  }
+}
+
+std::vector<BufferPlan> FiniteDevice::buffers() const {
+  const std::size_t states =
+      2 * (u_[0].bytes() + r_[0].bytes() + f_[0].bytes() + stress_[0].bytes());
+  const std::size_t vectors =
+      du_.bytes() + q_.bytes() + x_.bytes() + partial_.bytes() + s_.bytes() + y_.bytes();
+  const std::size_t body = nodes_of_.bytes() + shape_.bytes() + facts_.bytes() + first_.bytes() +
+                           around_.bytes() + entries_of_.bytes() + held_.bytes() + from_.bytes() +
+                           target_.bytes() + corners_.bytes() + viscous_corners_.bytes();
+  return {{"dense inverse of a recent tangent (device)", inverse_.bytes()},
+          {"two states of the body (device)", states},
+          {"vectors of L-BFGS (device)", vectors},
+          {"mesh, laws and corner forces (device)", body}};
+}
+
+}  // namespace sunder::gpu

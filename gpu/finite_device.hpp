@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// A body at finite deformation on the device: internal forces, stress and residual of its states,
+// and the steps of L-BFGS between them on a dense inverse (core/solver/finite_steps.hpp). One
+// submit an iteration, and one more for each shorter step of the line search; fp64 but for the
+// inverse, which may be stored in fp32.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "gpu/kernels.hpp"
+#include "gpu/vulkan/commands.hpp"
+#include "solver/finite_potential.hpp"
+
+namespace sunder::gpu {
+
+class FiniteDevice final : public solver::FiniteDevice {
+ public:
+  /// `body` names problem and laws, which must outlive it. Throws DeviceError where the device's
+  /// memory or buffers do not do.
+  FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
+               StressMeasure stress, int pairs, bool viscous);
+
+  void attach(const solver::RestingBody& body) override;
+  void evaluate(const solver::FiniteTarget& target, bool with_stress,
+                solver::FiniteState& state) override;
+  solver::FinitePoint begin(const solver::FiniteTarget& target, solver::FiniteBase& base,
+                            solver::FiniteState& state) override;
+  solver::FiniteTrial whole(bool with_stress) override;
+  solver::FiniteTrial part(double of, bool with_stress) override;
+  void take() override;
+  void end() override;
+
+  /// Stress at a displacement (3 * nodes), of elements that count.
+  void stress(std::span<const double> u, std::span<Voigt> stress) override;
+  [[nodiscard]] std::vector<BufferPlan> buffers() const override;
+  [[nodiscard]] std::vector<KernelPlan> kernels() const override {
+    return describe(device_.living_pipelines());
+  }
+  /// Bytes of the inverse for so many unknowns.
+  [[nodiscard]] static std::size_t inverse_bytes(const KernelFactory& kernels,
+                                                 const Problem& problem);
+
+ private:
+  struct Pass {
+    std::unique_ptr<vulkan::Kernel> kernel;
+    std::array<std::unique_ptr<vulkan::Binding>, 2> binding;  // by which state is the first
+  };
+  using Buffers = std::initializer_list<const vulkan::Buffer*>;
+  void make(Pass& pass, std::string_view name, bool real, Buffers first, Buffers second);
+  void create_buffers(bool viscous);
+  void create_passes();
+  void bind_base();
+  void write_body(const fem::HyperelasticBody& body);
+  void set_target(const solver::FiniteTarget& target);
+  void set_base(const solver::FiniteBase& base);
+  void set_inverse(const Eigen::MatrixXd& inverse);
+  void set_state(std::span<const double> u);
+  void over(const Pass& pass, const shaders::FinitePush& push, std::uint32_t count,
+            std::uint32_t rows = 1);
+  void record_direction();
+  void record_evaluation(const shaders::FinitePush& push, bool next);
+  void submit();
+  [[nodiscard]] shaders::FinitePush push() const;
+  [[nodiscard]] solver::FinitePoint point() const;
+  [[nodiscard]] solver::FiniteTrial trial(double part, bool direction);
+  void read(solver::FiniteState& state, bool with_stress);
+  void read_vector(const vulkan::Buffer& from, std::size_t first, std::span<double> to);
+
+  const KernelFactory& kernels_;
+  vulkan::Device& device_;
+  const Problem& problem_;
+  fem::HyperelasticBody body_;
+  StressMeasure measure_;
+  std::uint32_t elements_, nodes_, entries_, unknowns_, rows_, pairs_;
+  const solver::RestingBody* resting_ = nullptr;
+
+  // Of both states: displacement, residual, forces, stress.
+  std::array<vulkan::Buffer, 2> u_, r_, f_, stress_;
+  vulkan::Buffer nodes_of_, shape_, facts_, first_, around_, entries_of_, held_, from_, target_;
+  vulkan::Buffer corners_, viscous_corners_, element_partials_, entry_partials_, sums_;
+  vulkan::Buffer du_, q_, x_, partial_, s_, y_, products_, lengths_;
+  vulkan::Buffer inverse_, touched_, small_, coefficients_, turned_, rotations_;
+  Pass move_, law_, gather_, sum_, begin_, turn_q_, turn_x_, product_, fold_, small_pass_, columns_,
+      end_;
+  vulkan::Commands commands_;
+
+  std::size_t first_state_ = 0;  // of the two
+  std::vector<double> known_;    // displacement of the first state, where it is evaluated there
+  std::vector<double> shown_target_;  // as target_ has it
+  const fem::Viscosity* viscosity_ = nullptr;
+  std::uint64_t viscous_start_ = 0;
+  double viscous_ = 0;
+  bool inertia_ = false;
+  double loaded_squared_ = 0;
+  solver::FiniteBase::Stamps stamps_{0, 0, 0};
+  std::uint32_t rank_ = 0, turned_count_ = 0, rank_room_ = 0;
+  std::vector<std::uint32_t> order_;  // slots of the pairs, the oldest first
+  std::uint32_t slot_ = 0;            // of the trial
+  solver::FiniteState* state_ = nullptr;
+};
+
+}  // namespace sunder::gpu

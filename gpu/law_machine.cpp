@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/law_machine.hpp"
+
+#include <unistd.h>
+
+#include "gpu/choose_device.hpp"
+#include "gpu/finite_device.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+namespace {
+
+/// A device and its kernels; what computes on them keeps them.
+struct OpenDevice {
+  OpenDevice(const VulkanOptions& options, int asked, bool fp64)
+      : device(open(options, asked)),
+        kernels(*device, options.variant.value_or(choose_variant(device->physical())), fp64) {
+    device->set_timing(false);
+  }
+  static std::unique_ptr<vulkan::Device> open(const VulkanOptions& options, int asked) {
+    const auto instance = std::make_shared<vulkan::Instance>(options.instance);
+    return vulkan::create_device(instance, choose_device(*instance, asked, options.probe),
+                                 options.probe);
+  }
+  std::unique_ptr<vulkan::Device> device;
+  KernelFactory kernels;
+};
+
+/// A body's states on a device that it keeps.
+class KeptDevice final : public solver::FiniteDevice {
+ public:
+  KeptDevice(std::shared_ptr<OpenDevice> open, const fem::HyperelasticBody& body,
+             const Problem& problem, int pairs)
+      : open_(std::move(open)),
+        of_(open_->kernels, body, problem.scene().fracture.stress, pairs,
+            problem.moves() && problem.scene().dynamics->stiffness_damping > 0) {}
+  void attach(const solver::RestingBody& body) override { of_.attach(body); }
+  void evaluate(const solver::FiniteTarget& target, bool with_stress,
+                solver::FiniteState& state) override {
+    of_.evaluate(target, with_stress, state);
+  }
+  void stress(std::span<const double> u, std::span<Voigt> stress) override {
+    of_.stress(u, stress);
+  }
+  std::vector<BufferPlan> buffers() const override { return of_.buffers(); }
+  std::vector<KernelPlan> kernels() const override { return of_.kernels(); }
+  solver::FinitePoint begin(const solver::FiniteTarget& target, solver::FiniteBase& base,
+                            solver::FiniteState& state) override {
+    return of_.begin(target, base, state);
+  }
+  solver::FiniteTrial whole(bool with_stress) override { return of_.whole(with_stress); }
+  solver::FiniteTrial part(double of, bool with_stress) override {
+    return of_.part(of, with_stress);
+  }
+  void take() override { of_.take(); }
+  void end() override { of_.end(); }
+
+ private:
+  std::shared_ptr<OpenDevice> open_;
+  gpu::FiniteDevice of_;
+};
+
+}  // namespace
+
+finite::Machine law_machine(const Problem& problem, const VulkanOptions& options) {
+  const std::string whom = problem.moves() ? "motion" : "laws of finite deformation";
+  if (options.lent) {
+    throw DeviceError("backend vulkan computes " + whom +
+                      " on a device of its own, not on a host's; use backend cpu or auto");
+  }
+  const bool fp64 = problem.scene().solver.precision != Precision::fp32;
+  const auto open = std::make_shared<OpenDevice>(options, problem.scene().solver.device, fp64);
+  const vulkan::PhysicalDevice& physical = open->device->physical();
+  if (!physical.float64) {
+    throw DeviceError("the device \"" + physical.name + "\" lacks shaderFloat64, which " + whom +
+                      " needs; use another device, or backend cpu or auto");
+  }
+  finite::Machine machine;
+  machine.info.backend = "vulkan";
+  machine.info.device = physical.name;
+  machine.info.driver = physical.driver;
+  machine.info.precision = fp64 ? "fp64" : "fp32";
+  machine.memory = static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
+                   static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  machine.device = [open](const fem::HyperelasticBody& body, const Problem& of, int pairs) {
+    return std::make_unique<KeptDevice>(open, body, of, pairs);
+  };
+  return machine;
+}
+
+}  // namespace sunder::gpu

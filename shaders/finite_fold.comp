@@ -1,0 +1,20 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// The partial sums of a product, added up in order.
+#extension GL_GOOGLE_include_directive : require
+#include "finite.glsl"
+
+IN_DOUBLES(0, Partial, partial)
+OUT(1, Made, double, x)
+layout(push_constant) uniform Push { FinitePush p; };
+
+void main() {
+  const uint d = gl_GlobalInvocationID.x;
+  if (d >= p.unknowns) return;
+  const uint rows = (p.unknowns + kColumnPad - 1u) / kColumnPad * kColumnPad;
+  double sum = 0;
+  for (uint begin = 0u, chunk = 0u; begin < p.unknowns; begin += kFiniteChunk, ++chunk) {
+    sum += partial.data[chunk * rows + d];
+  }
+  x.data[d] = sum;
+}
