@@ -38,8 +38,9 @@ Buffer filled(vulkan::Device& device, const std::vector<T>& values) {
 }  // namespace
 
 std::size_t FiniteDevice::inverse_bytes(const KernelFactory& kernels, const Problem& problem) {
-  const auto unknowns = static_cast<std::size_t>(problem.dof_count());
-  return unknowns * round_up(u32(unknowns), shaders::kColumnPad) * kernels.real_bytes();
+  const std::size_t rows =
+      round_up(u32(static_cast<std::size_t>(problem.dof_count())), shaders::kChunk);
+  return rows * rows * kernels.real_bytes();
 }
 
 FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
@@ -53,7 +54,7 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
       nodes_(u32(problem_.mesh().nodes.size())),
       entries_(3 * nodes_),
       unknowns_(u32(static_cast<std::size_t>(problem_.dof_count()))),
-      rows_(round_up(std::max(unknowns_, 1U), shaders::kColumnPad)),
+      rows_(round_up(std::max(unknowns_, 1U), shaders::kChunk)),
       pairs_(std::min(u32(static_cast<std::size_t>(pairs)), shaders::kFinitePairs)),
       commands_(kernels.device()) {
   const vulkan::PhysicalDevice& device = device_.physical();
@@ -65,6 +66,12 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
                       std::to_string(inverse_bytes(kernels, problem_)) +
                       "; use precision fp32, a coarser mesh or backend cpu");
   }
+  // Besides the inverse: states and vectors, some 60 numbers a node, mesh and forces, 55 an
+  // element.
+  device_.require_memory(
+      inverse_bytes(kernels, problem_) +
+          (60 * std::size_t{nodes_} + 55 * std::size_t{elements_}) * sizeof(double),
+      "a body with tangents of its own");
   create_buffers(viscous);
   create_passes();
 }
@@ -116,9 +123,8 @@ void FiniteDevice::create_buffers(bool viscous) {
   element_partials_ = doubles(parts(elements_) * 4);
   entry_partials_ = doubles(parts(entries_) * 4);
   sums_ = Buffer(device_, sizeof(shaders::FiniteSums), Placement::host);
-  const std::uint32_t chunks = round_up(unknowns_, shaders::kFiniteChunk) / shaders::kFiniteChunk;
   for (Buffer* vector : {&du_, &q_, &x_}) *vector = doubles(rows_);
-  partial_ = doubles(std::size_t{rows_} * chunks);
+  partial_ = doubles(std::size_t{rows_} * (rows_ / shaders::kChunk));
   for (Buffer* pairs : {&s_, &y_}) *pairs = doubles((pairs_ + 1) * std::size_t{unknowns_});
   products_ = Buffer(device_, 16 * sizeof(double), Placement::host);
   lengths_ = doubles(16);
@@ -126,6 +132,7 @@ void FiniteDevice::create_buffers(bool viscous) {
   rotations_ = doubles(9 * std::size_t{nodes_});
   inverse_ = Buffer(device_, std::max<std::size_t>(inverse_bytes(kernels_, problem_), 16),
                     Placement::device);
+  inverse_.fill_zero();
 }
 
 void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers first,
@@ -333,8 +340,7 @@ void FiniteDevice::record_direction() {
   if (turned_count_ > 0) over(turn_q_, push, turned_count_);
   push.back = 0;
   commands_.pass("base");
-  over(product_, push, rows_ / 4,
-       round_up(unknowns_, shaders::kFiniteChunk) / shaders::kFiniteChunk);
+  over(product_, push, rows_ / 4, rows_ / shaders::kChunk);
   over(fold_, push, unknowns_);
   if (rank_ > 0) {
     over(small_pass_, push, rank_);

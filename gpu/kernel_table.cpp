@@ -89,7 +89,7 @@ constexpr KernelRow kTable[] = {
      sizeof(shaders::FinitePush)},
     {"finite_product",
      "product with the dense inverse of a recent tangent",
-     {reals, plain, plain},
+     {reals, doubles, plain},
      sizeof(shaders::FinitePush)},
     {"finite_small",
      "the base's change by destroyed elements: the small matrix",

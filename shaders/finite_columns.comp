@@ -13,7 +13,7 @@ layout(push_constant) uniform Push { FinitePush p; };
 void main() {
   const uint d = gl_GlobalInvocationID.x;
   if (d >= p.unknowns) return;
-  const uint rows = (p.unknowns + kColumnPad - 1u) / kColumnPad * kColumnPad;
+  const uint rows = (p.unknowns + kChunk - 1u) / kChunk * kChunk;
   double sum = x.data[d];
   for (uint t = 0u; t < p.rank; ++t) {
     sum += double(inverse.data[touched.data[t] * rows + d]) * c.data[t];

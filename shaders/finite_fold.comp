@@ -11,10 +11,8 @@ layout(push_constant) uniform Push { FinitePush p; };
 void main() {
   const uint d = gl_GlobalInvocationID.x;
   if (d >= p.unknowns) return;
-  const uint rows = (p.unknowns + kColumnPad - 1u) / kColumnPad * kColumnPad;
+  const uint rows = (p.unknowns + kChunk - 1u) / kChunk * kChunk;
   double sum = 0;
-  for (uint begin = 0u, chunk = 0u; begin < p.unknowns; begin += kFiniteChunk, ++chunk) {
-    sum += partial.data[chunk * rows + d];
-  }
+  for (uint chunk = 0u; chunk < rows / kChunk; ++chunk) sum += partial.data[chunk * rows + d];
   x.data[d] = sum;
 }

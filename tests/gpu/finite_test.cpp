@@ -215,5 +215,172 @@ INSTANTIATE_TEST_SUITE_P(All, FiniteKernels,
                                            Numbers{gpu::Variant::lvp, true}),
                          [](const auto& info) { return name_of(info.param); });
 
+/// A sheet that hangs from its upper edge under gravity, pulled by a grip until it tears.
+Scene torn_sheet(bool moves, MaterialLaw law, FractureModel model) {
+  Scene scene;
+  scene.mesh = structured_board({8, 8, 1, 8, 8, 1});
+  scene.materials["board"] = {5, 0.4, 1.2, law, 1e-9};
+  scene.supports.push_back({Box{Vec3(-1, 8 - 1e-6, -1), Vec3(9, 9, 9)}, Axes{7}});
+  Instrument hand;
+  hand.name = "hand";
+  hand.action = Grip{Box{Vec3(6, -1, -1), Vec3(9, 1e-6, 9)}, Vec3(1, -5, 1), Axes{7}};
+  hand.ramp = Ramp{0, 1};
+  scene.instruments.push_back(hand);
+  scene.fracture.model = model;
+  scene.fracture.birth = CrackBirth::through;
+  scene.fracture.max_events = 4;
+  scene.steps = moves ? 24 : 8;
+  scene.gravity = Vec3(0, -9810, 0);
+  if (moves) {
+    scene.dynamics = Dynamics{.time_step = 0.002};
+    scene.dynamics->stiffness_damping = 1e-4;
+  }
+  scene.solver.tolerance = 1e-8;
+  return scene;
+}
+
+struct Course {
+  std::vector<Index> destroyed;
+  std::vector<Vec3> displacement;
+  std::vector<Voigt> stress;
+  std::vector<double> kinetic;
+  std::vector<std::string> warnings;
+  BackendInfo info;
+};
+
+Course run(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backend> backend) {
+  Simulation simulation(problem, std::move(backend));
+  Course of;
+  while (!simulation.done()) {
+    const StepReport report = simulation.step();
+    if (report.motion) of.kinetic.push_back(report.motion->kinetic);
+  }
+  for (const DestroyedElement& d : simulation.destroyed()) of.destroyed.push_back(d.element);
+  of.displacement = simulation.displacement();
+  of.stress = simulation.stress();
+  of.warnings = simulation.warnings();
+  of.info = simulation.backend().info();
+  return of;
+}
+
+Course run_on_cpu(Scene scene) {
+  scene.solver.precision = Precision::automatic;
+  const auto problem = std::make_shared<const Problem>(std::move(scene));
+  return run(problem, cpu_reference::create(problem, needs_of(*problem)));
+}
+
+void expect_alike(const Course& found, const Course& expected, double tolerance) {
+  EXPECT_GE(expected.destroyed.size(), 4u);
+  ASSERT_EQ(found.destroyed, expected.destroyed);
+  double apart_by = 0, most = 0, apart_in_stress = 0, largest = 0;
+  for (std::size_t n = 0; n < found.displacement.size(); ++n) {
+    apart_by = std::max(apart_by, (found.displacement[n] - expected.displacement[n]).norm());
+    most = std::max(most, expected.displacement[n].norm());
+  }
+  for (std::size_t e = 0; e < found.stress.size(); ++e) {
+    apart_in_stress = std::max(apart_in_stress, tensor_norm(found.stress[e] - expected.stress[e]));
+    largest = std::max(largest, tensor_norm(expected.stress[e]));
+  }
+  EXPECT_LE(apart_by, tolerance * most);
+  EXPECT_LE(apart_in_stress, tolerance * largest);
+  for (std::size_t i = 0; i < expected.kinetic.size(); ++i) {
+    EXPECT_NEAR(found.kinetic[i], expected.kinetic[i], tolerance * expected.kinetic[i]) << i;
+  }
+}
+
+struct Sheet {
+  const char* name;
+  bool moves;
+  MaterialLaw law;
+  FractureModel model;
+  Precision precision = Precision::fp64;
+};
+
+class FiniteScenes : public WithVulkan<testing::TestWithParam<Sheet>> {};
+
+// Both stop at a stress error of 1e-8.
+TEST_P(FiniteScenes, TearAsOnTheHost) {
+  const Sheet& of = GetParam();
+  Scene scene = torn_sheet(of.moves, of.law, of.model);
+  const Course expected = run_on_cpu(scene);
+  WatchedBackend watched(scene, {.precision = of.precision, .tolerance = 1e-8});
+  const Course found = run(watched.problem, watched.create());
+  expect_alike(found, expected, 1e-6);
+  EXPECT_EQ(found.info.backend, "vulkan");
+  EXPECT_EQ(found.info.precision, of.precision == Precision::fp64 ? "fp64" : "fp32");
+  const Course again = run(watched.problem, watched.create());
+  EXPECT_EQ(again.displacement, found.displacement);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, FiniteScenes,
+    ::testing::Values(
+        Sheet{"corotated_A", false, MaterialLaw::corotated, FractureModel::a},
+        Sheet{"neo_hookean_B", false, MaterialLaw::neo_hookean, FractureModel::b},
+        Sheet{"motion_corotated_B", true, MaterialLaw::corotated, FractureModel::b},
+        Sheet{"motion_neo_hookean_A", true, MaterialLaw::neo_hookean, FractureModel::a},
+        Sheet{"motion_neo_hookean_A_fp32", true, MaterialLaw::neo_hookean, FractureModel::a,
+              Precision::fp32},
+        Sheet{"motion_kirchhoff_A", true, MaterialLaw::saint_venant_kirchhoff, FractureModel::a},
+        Sheet{"motion_linear_A", true, MaterialLaw::linear, FractureModel::a}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+class FiniteDeviceLost : public WithVulkan<testing::TestWithParam<bool>> {};
+
+TEST_P(FiniteDeviceLost, InMidStepTheHostGoesOnFromTheLastState) {
+  Scene scene = torn_sheet(GetParam(), MaterialLaw::neo_hookean, FractureModel::a);
+  const Course expected = run_on_cpu(scene);
+  WatchedBackend watched(scene, {.tolerance = 1e-8});
+  int losses = 0;
+  for (const int submits : {2, 9, 40, 77, 150, 400}) {
+    watched.options.probe.submits_until_lost = submits;
+    std::unique_ptr<Backend> backend;
+    try {
+      backend = watched.create();
+    } catch (const sunder::DeviceLost&) {
+      continue;  // while it was made
+    }
+    const Course found = run(watched.problem, std::move(backend));
+    expect_alike(found, expected, 1e-6);
+    const bool lost = found.info.why.find("took over") != std::string::npos;
+    losses += lost;
+    EXPECT_EQ(std::ranges::any_of(found.warnings,
+                                  [](const std::string& text) {
+                                    return text.find("backend vulkan failed in mid-run") == 0;
+                                  }),
+              lost);
+  }
+  EXPECT_GE(losses, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, FiniteDeviceLost, ::testing::Bool(),
+                         [](const auto& info) { return info.param ? "moving" : "resting"; });
+
+using FiniteRefusals = WithVulkan<>;
+
+TEST_F(FiniteRefusals, SayWhatWouldDo) {
+  const auto refusal = [](Scene scene,
+                          const std::function<void(gpu::VulkanOptions&)>& adjust = {}) {
+    scene.solver.backend = "vulkan";
+    const auto problem = std::make_shared<const Problem>(std::move(scene));
+    gpu::VulkanOptions options;
+    if (adjust) adjust(options);
+    return message_of(
+        [&] { static_cast<void>(gpu::create(problem, needs_of(*problem), options)); });
+  };
+  Scene scene = torn_sheet(true, MaterialLaw::corotated, FractureModel::a);
+  scene.solver.tolerance = 1e-4;
+  scene.solver.route = Route::factor;
+  EXPECT_EQ(refusal(scene),
+            "route factor cannot serve motion: backend vulkan computes by a dense inverse; use "
+            "route inverse or auto");
+  scene.solver.route = Route::automatic;
+  EXPECT_NE(refusal(scene, [](gpu::VulkanOptions& o) { o.probe.no_float64 = true; })
+                .find("lacks shaderFloat64, which motion needs"),
+            std::string::npos);
+  EXPECT_NE(refusal(scene, [](gpu::VulkanOptions& o) { o.probe.memory = 100000; }).find("memory"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace sunder::test

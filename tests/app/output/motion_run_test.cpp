@@ -56,13 +56,13 @@ TEST(MotionRun, SaysWhereItsWorkWent) {
   }
 }
 
-TEST(MotionRun, BackendVulkanSaysWhoCan) {
+TEST(MotionRun, RouteThatKnowsNoMotionSaysWhatDoes) {
   const TempFolder folder;
   const Outcome run =
       run_program({"run", SUNDER_SOURCE "/scenes/motion/board.toml", "--out",
-                   (folder / "out").string(), "--quiet", "--steps", "2", "--backend", "vulkan"});
+                   (folder / "out").string(), "--quiet", "--steps", "2", "--route", "condensed"});
   EXPECT_EQ(run.exit_code, 4);
-  EXPECT_TRUE(mentions(run.err, "computes statics alone, not motion")) << run.err;
+  EXPECT_TRUE(mentions(run.err, "route condensed cannot serve motion")) << run.err;
 }
 
 }  // namespace
