@@ -8,6 +8,8 @@
 // Counters by phase (pull, event: the step after a rupture, between, after: torn off): median
 // milliseconds (ms), back-solves or iterations (it); over all: median and p99 of both, the median
 // and 95 % quantile of the error of stress, the share of steps that a cap ended.
+//   Of the project's own: "sunder" by the factor, with grips_ms, what the forces of the grips
+//   between frames take; "sunder inverse" and "sunder vulkan" by a dense inverse.
 //   motion_hand/LAW: 10,000 steps of 1/200 s, at most 12 back-solves each, after a hand that
 //   wanders at random within 25 mm at up to 200 mm/s and jumps anywhere there every 500 steps: how
 //   many steps end with numbers that are none (nan), with inverted elements, capped, in parts, or
@@ -24,6 +26,9 @@
 
 #include "bench/motion_peers/motion_peer.hpp"
 #include "body/hyperelastic_pass.hpp"
+#ifdef SUNDER_GPU
+#include "gpu/law_machine.hpp"
+#endif
 #include "run_rows.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -209,15 +214,35 @@ class Pace {
   Clock::time_point next_ = Clock::now();
 };
 
-void own_row(benchmark::State& state, Index cells, int a_second, int cap) {
+/// How the project's own method runs.
+struct Own {
+  int cap = 0;
+  bool inverse = false, vulkan = false;
+  bool grips = false;  ///< and what forces of grips between frames take, each step
+};
+
+std::unique_ptr<solver::FiniteDevice> device_for(const Own& how, const fem::HyperelasticBody& body) {
+#ifdef SUNDER_GPU
+  if (how.vulkan) return gpu::law_machine(body.problem, {}).device(body, body.problem, 5);
+#endif
+  static_cast<void>(how);
+  static_cast<void>(body);
+  return nullptr;
+}
+
+void own_row(benchmark::State& state, Index cells, int a_second, const Own& how) {
   const Course& course = course_of(cells, a_second);
   for (auto _ : state) {
     std::vector<std::uint8_t> out(course.board.problem.mesh().tets.size(), 0);
     const fem::HyperelasticBody body{course.board.problem, course.board.laws, out};
-    solver::FiniteMotion motion(body, course.board.node_mass, {.most_iterations = cap});
+    const auto device = device_for(how, body);
+    solver::FiniteMotion motion(
+        body, course.board.node_mass,
+        {.most_iterations = how.cap, .inverse = how.inverse || how.vulkan}, device.get());
     Record record(course);
     Pace pace(course.dt);
     int factors = 0;
+    std::vector<double> grips;
     for (const Step& step : course.steps) {
       if (step.past.dt > 0) motion.go_on_from(step.past);
       solver::FiniteMotionReport report;
@@ -229,12 +254,18 @@ void own_row(benchmark::State& state, Index cells, int a_second, int cap) {
         report = motion.step(step.load, course.dt);
       });
       factors += report.factors;
+      if (how.grips) {
+        const auto start = Clock::now();
+        benchmark::DoNotOptimize(motion.grip_compliance(true));
+        grips.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      }
       record.destroyed(step);
       record.add(step, ms, report.back_solves, report.capped || report.stuck,
                  motion.displacement());
     }
     record.report(state);
     state.counters["factors"] = factors;
+    if (how.grips) state.counters["grips_ms"] = quantile(grips, .5);
   }
 }
 
@@ -367,8 +398,14 @@ void register_rows() {
       const std::string board =
           "motion/" + std::to_string(6 * cells * cells) + "/dt " + std::to_string(a_second) + "/";
       const int cap = a_second == 200 ? 12 : 8;
-      add(board + "sunder", [=](auto& s) { own_row(s, cells, a_second, 0); });
-      add(board + "sunder capped", [=](auto& s) { own_row(s, cells, a_second, cap); });
+      add(board + "sunder", [=](auto& s) { own_row(s, cells, a_second, {.grips = true}); });
+      add(board + "sunder capped", [=](auto& s) { own_row(s, cells, a_second, {.cap = cap}); });
+      if (cells == 18) {
+        add(board + "sunder inverse", [=](auto& s) { own_row(s, cells, a_second, {.inverse = true}); });
+#ifdef SUNDER_GPU
+        add(board + "sunder vulkan", [=](auto& s) { own_row(s, cells, a_second, {.vulkan = true}); });
+#endif
+      }
       for (const MotionKind& kind : peers()) {
         for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
           add(board + kind.name + "/" + power(tolerance),

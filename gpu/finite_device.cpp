@@ -8,6 +8,7 @@
 #include "material/corotated.hpp"
 #include "material/linear.hpp"
 #include "material/neo_hookean.hpp"
+#include "material/saint_venant_kirchhoff.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -25,7 +26,12 @@ constexpr std::uint32_t kFirstRank = 64;
 std::uint32_t u32(std::size_t value) { return static_cast<std::uint32_t>(value); }
 
 std::uint32_t number_of(const Law& law) {
-  return &law == &kLinear ? 0 : &law == &kCorotated ? 1 : &law == &kNeoHookean ? 2 : 3;
+  const Law* const known[] = {&kLinear, &kCorotated, &kNeoHookean, &kSaintVenantKirchhoff};
+  const auto* at = std::ranges::find(known, &law);
+  if (at == std::end(known)) {
+    throw DeviceError("shaders/finite_law.comp does not know this law; use backend cpu");
+  }
+  return static_cast<std::uint32_t>(at - known);
 }
 
 template <class T>
@@ -71,7 +77,7 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
   device_.require_memory(
       inverse_bytes(kernels, problem_) +
           (60 * std::size_t{nodes_} + 55 * std::size_t{elements_}) * sizeof(double),
-      "a body with tangents of its own");
+      "a body with tangents of its own", "a smaller mesh or backend cpu");
   create_buffers(viscous);
   create_passes();
 }

@@ -104,11 +104,12 @@ std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags r
   throw DeviceError("the Vulkan device \"" + physical_.name + "\" has no memory of the kind asked");
 }
 
-void Device::require_memory(VkDeviceSize bytes, const std::string& purpose) const {
+void Device::require_memory(VkDeviceSize bytes, const std::string& purpose,
+                            const std::string& instead) const {
   if (bytes <= physical_.memory) return;
   throw DeviceError(purpose + " needs " + std::to_string(bytes) + " bytes on the device \"" +
                     physical_.name + "\", which has " + std::to_string(physical_.memory) +
-                    "; use precision fp32, route cg or a smaller mesh");
+                    "; use precision fp32, " + instead);
 }
 
 void Device::add_time(const char* pass, double milliseconds) {

@@ -125,8 +125,10 @@ class Device {
     if (probe_.allocations) ++*probe_.allocations;
   }
 
-  /// Throws DeviceError when `bytes` more than the device's memory are asked for.
-  void require_memory(VkDeviceSize bytes, const std::string& purpose) const;
+  /// Throws DeviceError when `bytes` more than the device's memory are asked for; `instead`: what
+  /// would do.
+  void require_memory(VkDeviceSize bytes, const std::string& purpose,
+                      const std::string& instead = "route cg or a smaller mesh") const;
 
  private:
   void check_messages() const;

@@ -378,7 +378,8 @@ TEST_F(FiniteRefusals, SayWhatWouldDo) {
   EXPECT_NE(refusal(scene, [](gpu::VulkanOptions& o) { o.probe.no_float64 = true; })
                 .find("lacks shaderFloat64, which motion needs"),
             std::string::npos);
-  EXPECT_NE(refusal(scene, [](gpu::VulkanOptions& o) { o.probe.memory = 100000; }).find("memory"),
+  EXPECT_NE(refusal(scene, [](gpu::VulkanOptions& o) { o.probe.memory = 100000; })
+                .find("bytes on the device"),
             std::string::npos);
 }
 
