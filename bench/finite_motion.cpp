@@ -221,7 +221,8 @@ struct Own {
   bool grips = false;  ///< and what forces of grips between frames take, each step
 };
 
-std::unique_ptr<solver::FiniteDevice> device_for(const Own& how, const fem::HyperelasticBody& body) {
+std::unique_ptr<solver::FiniteDevice> device_for(const Own& how,
+                                                 const fem::HyperelasticBody& body) {
 #ifdef SUNDER_GPU
   if (how.vulkan) return gpu::law_machine(body.problem, {}).device(body, body.problem, 5);
 #endif
@@ -236,9 +237,9 @@ void own_row(benchmark::State& state, Index cells, int a_second, const Own& how)
     std::vector<std::uint8_t> out(course.board.problem.mesh().tets.size(), 0);
     const fem::HyperelasticBody body{course.board.problem, course.board.laws, out};
     const auto device = device_for(how, body);
-    solver::FiniteMotion motion(
-        body, course.board.node_mass,
-        {.most_iterations = how.cap, .inverse = how.inverse || how.vulkan}, device.get());
+    solver::FiniteMotion motion(body, course.board.node_mass,
+                                {.most_iterations = how.cap, .inverse = how.inverse || how.vulkan},
+                                device.get());
     Record record(course);
     Pace pace(course.dt);
     int factors = 0;
@@ -401,9 +402,11 @@ void register_rows() {
       add(board + "sunder", [=](auto& s) { own_row(s, cells, a_second, {.grips = true}); });
       add(board + "sunder capped", [=](auto& s) { own_row(s, cells, a_second, {.cap = cap}); });
       if (cells == 18) {
-        add(board + "sunder inverse", [=](auto& s) { own_row(s, cells, a_second, {.inverse = true}); });
+        add(board + "sunder inverse",
+            [=](auto& s) { own_row(s, cells, a_second, {.inverse = true}); });
 #ifdef SUNDER_GPU
-        add(board + "sunder vulkan", [=](auto& s) { own_row(s, cells, a_second, {.vulkan = true}); });
+        add(board + "sunder vulkan",
+            [=](auto& s) { own_row(s, cells, a_second, {.vulkan = true}); });
 #endif
       }
       for (const MotionKind& kind : peers()) {

@@ -53,7 +53,6 @@ class FiniteDevice final : public solver::FiniteDevice {
   void create_buffers(bool viscous);
   void create_passes();
   void bind_base();
-  void write_body(const fem::HyperelasticBody& body);
   void set_target(const solver::FiniteTarget& target);
   void set_base(const solver::FiniteBase& base);
   void set_inverse(const Eigen::MatrixXd& inverse);
@@ -62,7 +61,6 @@ class FiniteDevice final : public solver::FiniteDevice {
             std::uint32_t rows = 1);
   void record_direction();
   void record_evaluation(const shaders::FinitePush& push, bool next);
-  void submit();
   [[nodiscard]] shaders::FinitePush push() const;
   [[nodiscard]] solver::FinitePoint point() const;
   [[nodiscard]] solver::FiniteTrial trial(double part, bool direction);
