@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "body/node_elements.hpp"
 #include "material/corotated.hpp"
 #include "material/linear.hpp"
 #include "material/neo_hookean.hpp"
@@ -50,8 +49,10 @@ std::size_t FiniteDevice::inverse_bytes(const KernelFactory& kernels, const Prob
 }
 
 FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
-                           StressMeasure stress, int pairs, bool viscous)
-    : kernels_(kernels),
+                           StressMeasure stress, int pairs, bool viscous,
+                           std::shared_ptr<void> keeps)
+    : keeps_(std::move(keeps)),
+      kernels_(kernels),
       device_(kernels.device()),
       problem_(body.problem),
       body_(body),

@@ -18,10 +18,11 @@ namespace sunder::gpu {
 
 class FiniteDevice final : public solver::FiniteDevice {
  public:
-  /// `body` names problem and laws, which must outlive it. Throws DeviceError where the device's
-  /// memory or buffers do not do.
+  /// `body` names problem and laws, which must outlive it, as must the kernels and their device;
+  /// `keeps`: what owns these, kept until the end. Throws DeviceError where the device's memory or
+  /// buffers do not do.
   FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
-               StressMeasure stress, int pairs, bool viscous);
+               StressMeasure stress, int pairs, bool viscous, std::shared_ptr<void> keeps = {});
 
   void attach(const solver::RestingBody& body) override;
   void evaluate(const solver::FiniteTarget& target, bool with_stress,
@@ -67,6 +68,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   void read(solver::FiniteState& state, bool with_stress);
   void read_vector(const vulkan::Buffer& from, std::size_t first, std::span<double> to);
 
+  std::shared_ptr<void> keeps_;  // first: it goes last
   const KernelFactory& kernels_;
   vulkan::Device& device_;
   const Problem& problem_;

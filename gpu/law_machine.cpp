@@ -26,40 +26,6 @@ struct OpenDevice {
   KernelFactory kernels;
 };
 
-/// A body's states on a device that it keeps.
-class KeptDevice final : public solver::FiniteDevice {
- public:
-  KeptDevice(std::shared_ptr<OpenDevice> open, const fem::HyperelasticBody& body,
-             const Problem& problem, int pairs)
-      : open_(std::move(open)),
-        of_(open_->kernels, body, problem.scene().fracture.stress, pairs,
-            problem.moves() && problem.scene().dynamics->stiffness_damping > 0) {}
-  void attach(const solver::RestingBody& body) override { of_.attach(body); }
-  void evaluate(const solver::FiniteTarget& target, bool with_stress,
-                solver::FiniteState& state) override {
-    of_.evaluate(target, with_stress, state);
-  }
-  void stress(std::span<const double> u, std::span<Voigt> stress) override {
-    of_.stress(u, stress);
-  }
-  std::vector<BufferPlan> buffers() const override { return of_.buffers(); }
-  std::vector<KernelPlan> kernels() const override { return of_.kernels(); }
-  solver::FinitePoint begin(const solver::FiniteTarget& target, solver::FiniteBase& base,
-                            solver::FiniteState& state) override {
-    return of_.begin(target, base, state);
-  }
-  solver::FiniteTrial whole(bool with_stress) override { return of_.whole(with_stress); }
-  solver::FiniteTrial part(double of, bool with_stress) override {
-    return of_.part(of, with_stress);
-  }
-  void take() override { of_.take(); }
-  void end() override { of_.end(); }
-
- private:
-  std::shared_ptr<OpenDevice> open_;
-  gpu::FiniteDevice of_;
-};
-
 }  // namespace
 
 finite::Machine law_machine(const Problem& problem, const VulkanOptions& options) {
@@ -83,7 +49,9 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
   machine.memory = static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
                    static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   machine.device = [open](const fem::HyperelasticBody& body, const Problem& of, int pairs) {
-    return std::make_unique<KeptDevice>(open, body, of, pairs);
+    const bool viscous = of.moves() && of.scene().dynamics->stiffness_damping > 0;
+    return std::make_unique<FiniteDevice>(open->kernels, body, of.scene().fracture.stress, pairs,
+                                          viscous, open);
   };
   return machine;
 }
