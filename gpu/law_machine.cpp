@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/law_machine.hpp"
 
-#include <unistd.h>
-
 #include "gpu/choose_device.hpp"
 #include "gpu/finite_device.hpp"
+#include "solver/available_memory.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -46,8 +45,7 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
   machine.info.device = physical.name;
   machine.info.driver = physical.driver;
   machine.info.precision = fp64 ? "fp64" : "fp32";
-  machine.memory = static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) *
-                   static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  machine.memory = solver::available_memory();
   machine.device = [open](const fem::HyperelasticBody& body, const Problem& of, int pairs) {
     const bool viscous = of.moves() && of.scene().dynamics->stiffness_damping > 0;
     return std::make_unique<FiniteDevice>(open->kernels, body, of.scene().fracture.stress, pairs,
