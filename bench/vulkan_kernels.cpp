@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "body/assembly.hpp"
+#include "body/stress_summary.hpp"
 #include "cpu_reference/stress.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "gpu/passes/fields.hpp"
@@ -199,7 +200,7 @@ void element_fields(benchmark::State& state, const Rows& rows, const std::string
   const std::vector<std::uint8_t> none(stress.size(), 0);
   work.reference = [&] {
     cpu_reference::element_stress(*problem, scale, u, stress);
-    benchmark::DoNotOptimize(cpu_reference::summarize(*problem, none, none, stress));
+    benchmark::DoNotOptimize(fem::summarize(*problem, none, none, stress));
     if (balance) fem::apply_stiffness(*problem, scale, u, k_u);
   };
   rows.table.measure(state, name, work);

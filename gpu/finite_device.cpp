@@ -55,7 +55,6 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
       kernels_(kernels),
       device_(kernels.device()),
       problem_(body.problem),
-      body_(body),
       measure_(stress),
       elements_(u32(problem_.mesh().tets.size())),
       nodes_(u32(problem_.mesh().nodes.size())),
@@ -327,7 +326,6 @@ FinitePush FiniteDevice::push() const {
   for (std::size_t k = 0; k < order_.size(); ++k) of.order |= order_[k] << (4 * k);
   of.rank = rank_;
   of.turned = turned_count_;
-  of.inertia = inertia_ ? 1 : 0;
   return of;
 }
 

@@ -72,7 +72,6 @@ class FiniteDevice final : public solver::FiniteDevice {
   const KernelFactory& kernels_;
   vulkan::Device& device_;
   const Problem& problem_;
-  fem::HyperelasticBody body_;
   StressMeasure measure_;
   std::uint32_t elements_, nodes_, entries_, unknowns_, rows_, pairs_;
   const solver::RestingBody* resting_ = nullptr;

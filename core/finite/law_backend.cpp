@@ -7,17 +7,13 @@
 #include "body/stress_summary.hpp"
 #include "finite/motion_backend.hpp"
 #include "finite/statics_backend.hpp"
+#include "solver/finite_motion.hpp"
+#include "solver/finite_statics.hpp"
 #include "solver/plan.hpp"
 #include "sunder/in_quotes.hpp"
 #include "sunder/words.hpp"
 
 namespace sunder::finite {
-namespace {
-
-constexpr int kPairs = 5;  // of L-BFGS, as the solvers' own options
-
-}  // namespace
-
 LawBackend::LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine)
     : Backend(shared, std::move(needs)),
       u_(shared->dofs().size(), 0.0),
@@ -32,8 +28,10 @@ LawBackend::LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machi
   if (this->needs().stress) stress_.assign(elements, Voigt::Zero());
   if (this->needs().yield) excluded_.assign(elements, 0);
   if (!machine_.device) return;
-  device_ = machine_.device(body_, *shared, kPairs);
-  if (this->needs().pristine) device_of_intact_ = machine_.device(intact_, *shared, kPairs);
+  const int pairs =
+      shared->moves() ? solver::FiniteMotionOptions{}.pairs : solver::FiniteStaticsOptions{}.pairs;
+  device_ = machine_.device(body_, *shared, pairs);
+  if (this->needs().pristine) device_of_intact_ = machine_.device(intact_, *shared, pairs);
 }
 
 BackendInfo LawBackend::info() const {

@@ -2,6 +2,7 @@
 // Laws of finite deformation and grips that turn, by the C interface.
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -109,15 +110,15 @@ TEST_F(CFinite, AttributionIsRefusedWithTheReason) {
   EXPECT_NE(std::string(sunder_last_error()).find("superposition"), std::string::npos);
 }
 
-// On a machine without a Vulkan device the error says so.
 TEST_F(CFinite, VulkanComputesThemToo) {
   make(SUNDER_LAW_COROTATED);
+  if (std::getenv("SUNDER_EXPECT_NO_VULKAN")) GTEST_SKIP() << "no Vulkan device is expected";
   const auto solver = on(SUNDER_BACKEND_VULKAN);
   ASSERT_OK(sunder_scene_set_solver(scene, &solver));
-  if (sunder_simulation_create(scene, nullptr, &simulation) != SUNDER_OK) {
-    EXPECT_NE(std::string(sunder_last_error()).find("ulkan"), std::string::npos);
+  const auto created = sunder_simulation_create(scene, nullptr, &simulation);
+  if (std::string(sunder_last_error()).find("this build leaves out the backend vulkan") == 0)
     return;
-  }
+  ASSERT_OK(created);
   EXPECT_OK(sunder_simulation_step(simulation, nullptr));
 }
 

@@ -92,7 +92,7 @@ TEST_P(LawGrips, FollowTheHandBetweenFramesAtRest) {
       const double change = apart(there, reactions);
       std::printf("the hand moved by .024 mm: %.3g N, felt within %.2g of it\n", change,
                   apart(felt, there) / change);
-      EXPECT_LE(apart(felt, there), 0.02 * change);
+      EXPECT_LE(apart(felt, there), 0.01 * change);
       hand.go(to);
     }
   }
@@ -128,7 +128,7 @@ TEST(MovingGrips, FollowTheHandBetweenFrames) {
       const double change = apart(there, hand.body.reactions());
       std::printf("in motion, .024 mm: %.3g N, felt within %.2g of it\n", change,
                   apart(felt, there) / change);
-      EXPECT_LE(apart(felt, there), 0.02 * change);
+      EXPECT_LE(apart(felt, there), 0.01 * change);
     }
   }
 }
