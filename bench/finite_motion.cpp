@@ -217,14 +217,15 @@ class Pace {
 /// How the project's own method runs.
 struct Own {
   int cap = 0;
-  bool inverse = false, vulkan = false;
+  Route route = Route::factor;
+  bool vulkan = false;
   bool grips = false;  ///< and what forces of grips between frames take, each step
 };
 
 std::unique_ptr<solver::FiniteDevice> device_for(const Own& how,
                                                  const fem::HyperelasticBody& body) {
 #ifdef SUNDER_GPU
-  if (how.vulkan) return gpu::law_machine(body.problem, {}).device(body, body.problem, 5);
+  if (how.vulkan) return gpu::law_machine(body.problem, {}).device(body, how.route, 5);
 #endif
   static_cast<void>(how);
   static_cast<void>(body);
@@ -237,9 +238,9 @@ void own_row(benchmark::State& state, Index cells, int a_second, const Own& how)
     std::vector<std::uint8_t> out(course.board.problem.mesh().tets.size(), 0);
     const fem::HyperelasticBody body{course.board.problem, course.board.laws, out};
     const auto device = device_for(how, body);
-    solver::FiniteMotion motion(body, course.board.node_mass,
-                                {.most_iterations = how.cap, .inverse = how.inverse || how.vulkan},
-                                device.get());
+    solver::FiniteMotion motion(
+        body, course.board.node_mass,
+        {.most_iterations = how.cap, .inverse = how.route == Route::inverse}, device.get());
     Record record(course);
     Pace pace(course.dt);
     int factors = 0;
@@ -401,14 +402,15 @@ void register_rows() {
       const int cap = a_second == 200 ? 12 : 8;
       add(board + "sunder", [=](auto& s) { own_row(s, cells, a_second, {.grips = true}); });
       add(board + "sunder capped", [=](auto& s) { own_row(s, cells, a_second, {.cap = cap}); });
-      if (cells == 18) {
-        add(board + "sunder inverse",
-            [=](auto& s) { own_row(s, cells, a_second, {.inverse = true}); });
+      const auto own = [&](const std::string& name, Route route, bool vulkan) {
+        const Own how{.route = route, .vulkan = vulkan};
+        add(board + name, [=](auto& s) { own_row(s, cells, a_second, how); });
+      };
+      if (cells == 18) own("sunder inverse", Route::inverse, false);
 #ifdef SUNDER_GPU
-        add(board + "sunder vulkan",
-            [=](auto& s) { own_row(s, cells, a_second, {.vulkan = true}); });
+      if (cells == 18) own("sunder vulkan inverse", Route::inverse, true);
+      own("sunder vulkan cg", Route::cg, true);
 #endif
-      }
       for (const MotionKind& kind : peers()) {
         for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
           add(board + kind.name + "/" + power(tolerance),

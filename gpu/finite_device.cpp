@@ -48,38 +48,52 @@ std::size_t FiniteDevice::inverse_bytes(const KernelFactory& kernels, const Prob
   return rows * rows * kernels.real_bytes();
 }
 
+std::size_t FiniteDevice::route_bytes(const KernelFactory& kernels, Route route,
+                                      const Problem& problem) {
+  if (route == Route::inverse) return inverse_bytes(kernels, problem);
+  return route == Route::cg ? FiniteCg::planned_bytes(kernels, problem) : 0;
+}
+
+std::size_t FiniteDevice::largest_buffer(const KernelFactory& kernels) {
+  const vulkan::PhysicalDevice& device = kernels.device().physical();
+  return std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
+                                std::size_t{device.largest_texel_buffer} * 16});
+}
+
 FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
-                           StressMeasure stress, int pairs, bool viscous,
-                           std::shared_ptr<void> keeps)
+                           const Options& options, std::shared_ptr<void> keeps)
     : keeps_(std::move(keeps)),
       kernels_(kernels),
       device_(kernels.device()),
       problem_(body.problem),
-      measure_(stress),
+      options_(options),
       elements_(u32(problem_.mesh().tets.size())),
       nodes_(u32(problem_.mesh().nodes.size())),
       entries_(3 * nodes_),
       unknowns_(u32(static_cast<std::size_t>(problem_.dof_count()))),
       rows_(round_up(std::max(unknowns_, 1U), shaders::kChunk)),
-      pairs_(std::min(u32(static_cast<std::size_t>(pairs)), shaders::kFinitePairs)),
+      pairs_(options.route == Route::inverse
+                 ? std::min(u32(static_cast<std::size_t>(options.pairs)), shaders::kFinitePairs)
+                 : 0),
       commands_(kernels.device()) {
-  const vulkan::PhysicalDevice& device = device_.physical();
-  const std::size_t limit = std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
-                                                   std::size_t{device.largest_texel_buffer} * 16});
-  if (inverse_bytes(kernels, problem_) > limit) {
-    throw DeviceError("the device \"" + device.name + "\" takes buffers of " +
-                      std::to_string(limit) + " bytes, but the inverse of a tangent needs " +
-                      std::to_string(inverse_bytes(kernels, problem_)) +
-                      "; use precision fp32, a coarser mesh or backend cpu");
+  const std::size_t route = route_bytes(kernels, options.route, problem_);
+  if (route > largest_buffer(kernels)) {
+    const bool inverse = options.route == Route::inverse;
+    throw DeviceError("the device \"" + device_.physical().name + "\" takes buffers of " +
+                      std::to_string(largest_buffer(kernels)) + " bytes, but the " +
+                      (inverse ? "inverse of a tangent needs " : "tangents of all elements need ") +
+                      std::to_string(route) + "; use precision fp32, " +
+                      (inverse && problem_.moves() ? "route cg, " : "") +
+                      "a coarser mesh or backend cpu");
   }
-  // Besides the inverse: states and vectors, some 60 numbers a node, mesh and forces, 55 an
-  // element.
+  // Besides: states and vectors, some 60 numbers a node, mesh and forces, 55 an element.
   device_.require_memory(
-      inverse_bytes(kernels, problem_) +
-          (60 * std::size_t{nodes_} + 55 * std::size_t{elements_}) * sizeof(double),
+      route + (60 * std::size_t{nodes_} + 55 * std::size_t{elements_}) * sizeof(double),
       "a body with tangents of its own", "a smaller mesh or backend cpu");
-  create_buffers(viscous);
+  create_buffers(options.viscous);
   create_passes();
+  if (options.route == Route::inverse) create_inverse();
+  if (options.route == Route::cg) create_cg();
 }
 
 void FiniteDevice::create_buffers(bool viscous) {
@@ -129,16 +143,49 @@ void FiniteDevice::create_buffers(bool viscous) {
   element_partials_ = doubles(parts(elements_) * 4);
   entry_partials_ = doubles(parts(entries_) * 4);
   sums_ = Buffer(device_, sizeof(shaders::FiniteSums), Placement::host);
-  for (Buffer* vector : {&du_, &q_, &x_}) *vector = doubles(rows_);
-  partial_ = doubles(std::size_t{rows_} * (rows_ / shaders::kChunk));
+  du_ = doubles(rows_);
   for (Buffer* pairs : {&s_, &y_}) *pairs = doubles((pairs_ + 1) * std::size_t{unknowns_});
   products_ = Buffer(device_, 16 * sizeof(double), Placement::host);
+}
+
+/// The base of L-BFGS.
+void FiniteDevice::create_inverse() {
+  const auto doubles = [&](std::size_t count) {
+    Buffer buffer(device_, std::max<std::size_t>(count, 1) * sizeof(double), Placement::device);
+    buffer.fill_zero();
+    return buffer;
+  };
+  for (Buffer* vector : {&q_, &x_}) *vector = doubles(rows_);
+  partial_ = doubles(std::size_t{rows_} * (rows_ / shaders::kChunk));
   lengths_ = doubles(16);
   turned_ = filled(device_, std::vector<std::uint32_t>(4 * std::size_t{nodes_}, 0));
   rotations_ = doubles(9 * std::size_t{nodes_});
   inverse_ = Buffer(device_, std::max<std::size_t>(inverse_bytes(kernels_, problem_), 16),
                     Placement::device);
   inverse_.fill_zero();
+  make(begin_, "finite_begin", false, {&r_[0], &s_, &y_, &products_, &lengths_, &q_},
+       {&r_[1], &s_, &y_, &products_, &lengths_, &q_});
+  make(turn_q_, "finite_turn", false, {&turned_, &rotations_, &q_}, {&turned_, &rotations_, &q_});
+  make(turn_x_, "finite_turn", false, {&turned_, &rotations_, &x_}, {&turned_, &rotations_, &x_});
+  make(product_, "finite_product", true, {&inverse_, &q_, &partial_}, {&inverse_, &q_, &partial_});
+  make(fold_, "finite_fold", false, {&partial_, &x_}, {&partial_, &x_});
+  make(end_, "finite_end", false, {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_},
+       {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_});
+}
+
+void FiniteDevice::create_cg() {
+  cg_ = std::make_unique<FiniteCg>(kernels_, problem_,
+                                   FiniteCgBody{nodes_of_,
+                                                shape_,
+                                                facts_,
+                                                from_,
+                                                first_,
+                                                around_,
+                                                target_,
+                                                corners_,
+                                                du_,
+                                                {&u_[0], &u_[1]},
+                                                {&r_[0], &r_[1]}});
 }
 
 void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers first,
@@ -160,9 +207,9 @@ void FiniteDevice::create_passes() {
        {&entries_of_, &u_[1], &du_, &u_[0]});
   // binding[i] evaluates state i against the other one.
   make(law_, "finite_law", false,
-       {&u_[0], &nodes_of_, &shape_, &facts_, &stress_[1], &from_, &corners_, &viscous_corners_,
+       {&u_[0], &nodes_of_, &shape_, &facts_, &from_, &stress_[1], &corners_, &viscous_corners_,
         &stress_[0], &element_partials_},
-       {&u_[1], &nodes_of_, &shape_, &facts_, &stress_[0], &from_, &corners_, &viscous_corners_,
+       {&u_[1], &nodes_of_, &shape_, &facts_, &from_, &stress_[0], &corners_, &viscous_corners_,
         &stress_[1], &element_partials_});
   make(gather_, "finite_gather", false,
        {&corners_, &viscous_corners_, &first_, &around_, &entries_of_, &target_, &u_[0], &f_[0],
@@ -172,14 +219,6 @@ void FiniteDevice::create_passes() {
   make(sum_, "finite_sums", false,
        {&element_partials_, &entry_partials_, &r_[1], &r_[0], &du_, &s_, &y_, &sums_},
        {&element_partials_, &entry_partials_, &r_[0], &r_[1], &du_, &s_, &y_, &sums_});
-  make(begin_, "finite_begin", false, {&r_[0], &s_, &y_, &products_, &lengths_, &q_},
-       {&r_[1], &s_, &y_, &products_, &lengths_, &q_});
-  make(turn_q_, "finite_turn", false, {&turned_, &rotations_, &q_}, {&turned_, &rotations_, &q_});
-  make(turn_x_, "finite_turn", false, {&turned_, &rotations_, &x_}, {&turned_, &rotations_, &x_});
-  make(product_, "finite_product", true, {&inverse_, &q_, &partial_}, {&inverse_, &q_, &partial_});
-  make(fold_, "finite_fold", false, {&partial_, &x_}, {&partial_, &x_});
-  make(end_, "finite_end", false, {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_},
-       {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_});
 }
 
 void FiniteDevice::attach(const solver::RestingBody& body) {
@@ -206,6 +245,7 @@ void FiniteDevice::attach(const solver::RestingBody& body) {
   facts_.write(std::span<const std::uint32_t>(facts));
   entries_of_.write(std::span<const std::uint32_t>(entries));
   if (unknowns_ > 0) held_.write(std::span<const std::uint32_t>(held));
+  if (cg_) cg_->attach(body);
 }
 
 /// Writes what differs from what is there.
@@ -320,7 +360,7 @@ FinitePush FiniteDevice::push() const {
   of.unknowns = unknowns_;
   of.element_parts = round_up(elements_, shaders::kGroup) / shaders::kGroup * kernels_.parts();
   of.entry_parts = round_up(entries_, shaders::kGroup) / shaders::kGroup * kernels_.parts();
-  of.biot = measure_ == StressMeasure::biot ? 1 : 0;
+  of.biot = options_.stress == StressMeasure::biot ? 1 : 0;
   of.pairs = u32(order_.size());
   of.slot = slot_;
   for (std::size_t k = 0; k < order_.size(); ++k) of.order |= order_[k] << (4 * k);
@@ -425,9 +465,9 @@ void FiniteDevice::stress(std::span<const double> u, std::span<Voigt> stress) {
 }
 
 solver::FinitePoint FiniteDevice::begin(const solver::FiniteTarget& target,
-                                        solver::FiniteBase& base, solver::FiniteState& state) {
+                                        solver::FiniteBase* base, solver::FiniteState& state) {
   set_target(target);
-  set_base(base);
+  if (base) set_base(*base);
   order_.clear();
   slot_ = 0;
   state_ = &state;
@@ -437,15 +477,22 @@ solver::FinitePoint FiniteDevice::begin(const solver::FiniteTarget& target,
 
 solver::FiniteTrial FiniteDevice::trial(double part, bool direction) {
   commands_.begin();
-  if (direction) record_direction();
+  if (direction && cg_) cg_->record(commands_, this->push(), first_state_);
+  if (direction && !cg_) record_direction();
   FinitePush push = this->push();
   push.part = part;
   over(move_, push, entries_);
   record_evaluation(push, true);
   commands_.end();
   commands_.submit();
+  if (direction && cg_) cg_->learn();
   const shaders::FiniteSums& of = *sums_.mapped<shaders::FiniteSums>();
   return {point(), of.slope, of.s_y, std::sqrt(of.change_squared), std::sqrt(of.stress_squared)};
+}
+
+solver::FiniteDevice::Needs FiniteDevice::needs() const {
+  if (cg_) return Needs::nothing;
+  return options_.route == Route::inverse ? Needs::inverse : Needs::host;
 }
 
 solver::FiniteTrial FiniteDevice::whole(bool) { return trial(1, true); }
@@ -485,10 +532,18 @@ std::vector<BufferPlan> FiniteDevice::buffers() const {
   const std::size_t body = nodes_of_.bytes() + shape_.bytes() + facts_.bytes() + first_.bytes() +
                            around_.bytes() + entries_of_.bytes() + held_.bytes() + from_.bytes() +
                            target_.bytes() + corners_.bytes() + viscous_corners_.bytes();
-  return {{"dense inverse of a recent tangent (device)", inverse_.bytes()},
-          {"two states of the body (device)", states},
-          {"vectors of L-BFGS (device)", vectors},
-          {"mesh, laws and corner forces (device)", body}};
+  std::vector<BufferPlan> list;
+  if (inverse_.bytes() > 0) {
+    list.push_back({"dense inverse of a recent tangent (device)", inverse_.bytes()});
+  }
+  if (cg_) list = cg_->buffers();
+  for (BufferPlan& plan :
+       std::vector<BufferPlan>{{"two states of the body (device)", states},
+                               {"vectors of steps (device)", vectors},
+                               {"mesh, laws and corner forces (device)", body}}) {
+    list.push_back(std::move(plan));
+  }
+  return list;
 }
 
 }  // namespace sunder::gpu

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A body at finite deformation on the device: internal forces, stress and residual of its states,
-// and the steps of L-BFGS between them on a dense inverse (core/solver/finite_steps.hpp). One
-// submit an iteration, and one more for each shorter step of the line search; fp64 but for the
-// inverse, which may be stored in fp32.
+// and the steps between them (core/solver/finite_steps.hpp), of L-BFGS on a dense inverse or of
+// Newton by conjugate gradients. One submit an iteration, and one more for each shorter step of the
+// line search; fp64 but for the inverse or the tangents, which may be stored in fp32.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gpu/finite_cg.hpp"
 #include "gpu/kernels.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "solver/finite_potential.hpp"
@@ -18,16 +19,23 @@ namespace sunder::gpu {
 
 class FiniteDevice final : public solver::FiniteDevice {
  public:
+  struct Options {
+    Route route = Route::inverse;  ///< or cg; or factor: the host steps, states are the device's
+    StressMeasure stress = StressMeasure::cauchy;
+    int pairs = 5;  ///< of L-BFGS
+    bool viscous = false;
+  };
   /// `body` names problem and laws, which must outlive it, as must the kernels and their device;
   /// `keeps`: what owns these, kept until the end. Throws DeviceError where the device's memory or
   /// buffers do not do.
   FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
-               StressMeasure stress, int pairs, bool viscous, std::shared_ptr<void> keeps = {});
+               const Options& options, std::shared_ptr<void> keeps = {});
 
   void attach(const solver::RestingBody& body) override;
   void evaluate(const solver::FiniteTarget& target, bool with_stress,
                 solver::FiniteState& state) override;
-  solver::FinitePoint begin(const solver::FiniteTarget& target, solver::FiniteBase& base,
+  [[nodiscard]] Needs needs() const override;
+  solver::FinitePoint begin(const solver::FiniteTarget& target, solver::FiniteBase* base,
                             solver::FiniteState& state) override;
   solver::FiniteTrial whole(bool with_stress) override;
   solver::FiniteTrial part(double of, bool with_stress) override;
@@ -43,6 +51,11 @@ class FiniteDevice final : public solver::FiniteDevice {
   /// Bytes of the inverse for so many unknowns.
   [[nodiscard]] static std::size_t inverse_bytes(const KernelFactory& kernels,
                                                  const Problem& problem);
+  /// Of all but states and mesh: what the route takes.
+  [[nodiscard]] static std::size_t route_bytes(const KernelFactory& kernels, Route route,
+                                               const Problem& problem);
+  /// What a device can bind of it at once.
+  [[nodiscard]] static std::size_t largest_buffer(const KernelFactory& kernels);
 
  private:
   struct Pass {
@@ -53,6 +66,8 @@ class FiniteDevice final : public solver::FiniteDevice {
   void make(Pass& pass, std::string_view name, bool real, Buffers first, Buffers second);
   void create_buffers(bool viscous);
   void create_passes();
+  void create_inverse();
+  void create_cg();
   void bind_base();
   void set_target(const solver::FiniteTarget& target);
   void set_base(const solver::FiniteBase& base);
@@ -72,7 +87,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   const KernelFactory& kernels_;
   vulkan::Device& device_;
   const Problem& problem_;
-  StressMeasure measure_;
+  Options options_;
   std::uint32_t elements_, nodes_, entries_, unknowns_, rows_, pairs_;
   const solver::RestingBody* resting_ = nullptr;
 
@@ -84,6 +99,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   vulkan::Buffer inverse_, touched_, small_, coefficients_, turned_, rotations_;
   Pass move_, law_, gather_, sum_, begin_, turn_q_, turn_x_, product_, fold_, small_pass_, columns_,
       end_;
+  std::unique_ptr<FiniteCg> cg_;  // route cg
   vulkan::Commands commands_;
 
   std::size_t first_state_ = 0;  // of the two

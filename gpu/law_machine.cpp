@@ -9,6 +9,9 @@
 namespace sunder::gpu {
 namespace {
 
+// Unknowns whose inverse a host makes beside the steps in a second (n^3).
+constexpr Index kMostDense = 4500;
+
 /// A device and its kernels; what computes on them keeps them.
 struct OpenDevice {
   OpenDevice(const VulkanOptions& options, int asked, bool fp64)
@@ -46,10 +49,14 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
   machine.info.driver = physical.driver;
   machine.info.precision = fp64 ? "fp64" : "fp32";
   machine.memory = solver::available_memory();
-  machine.device = [open](const fem::HyperelasticBody& body, const Problem& of, int pairs) {
-    const bool viscous = of.moves() && of.scene().dynamics->stiffness_damping > 0;
-    return std::make_unique<FiniteDevice>(open->kernels, body, of.scene().fracture.stress, pairs,
-                                          viscous, open);
+  const bool fits = FiniteDevice::inverse_bytes(open->kernels, problem) <=
+                    FiniteDevice::largest_buffer(open->kernels);
+  machine.most_dense = fits ? kMostDense : 0;
+  machine.device = [open](const fem::HyperelasticBody& body, Route route, int pairs) {
+    const Scene& scene = body.problem.scene();
+    const bool viscous = scene.dynamics && scene.dynamics->stiffness_damping > 0;
+    const FiniteDevice::Options options{route, scene.fracture.stress, pairs, viscous};
+    return std::make_unique<FiniteDevice>(open->kernels, body, options, open);
   };
   return machine;
 }

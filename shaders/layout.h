@@ -155,11 +155,11 @@ struct CgState {
   uint unused;
 };
 
-// Bodies at finite deformation and in motion (gpu/finite_body.cpp).
+// Bodies at finite deformation and in motion (gpu/finite_device.cpp).
 
-SUNDER_CONST kFinitePairs = 8u;    // of L-BFGS, at most
-SUNDER_CONST kFiniteShape = 12u;   // doubles of an element: grad N_1, N_2, N_3, V, mu, lambda
-SUNDER_CONST kFiniteChunk = 256u;  // columns of the base that one invocation sums
+SUNDER_CONST kFinitePairs = 8u;     // of L-BFGS, at most
+SUNDER_CONST kFiniteShape = 12u;    // doubles of an element: grad N_1, N_2, N_3, V, mu, lambda
+SUNDER_CONST kFiniteTangent = 12u;  // packs of four: the upper triangle of 9 x 9
 
 // Of an element: bits of what it is, and above them its law.
 SUNDER_CONST kFiniteOut = 1u;
@@ -180,6 +180,10 @@ struct FinitePush {
   uint slot;   // of the step and the change of the gradient that are written
   uint order;  // slots of the pairs, four bits each, the oldest lowest
   uint rank, turned, back;
+};
+
+struct FiniteCgPush {
+  uint elements, nodes, unknowns;
 };
 
 struct FiniteElementPartial {

@@ -21,7 +21,7 @@ LawBackend::LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machi
       body_{*shared, laws_, destroyed()},
       intact_{*shared, laws_},
       machine_(std::move(machine)),
-      inverse_(machine_.device || shared->scene().solver.route == Route::inverse),
+      route_(chosen_route()),
       factor_entries_(check_options()),
       pass_(body_) {
   const std::size_t elements = shared->mesh().tets.size();
@@ -30,18 +30,25 @@ LawBackend::LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machi
   if (!machine_.device) return;
   const int pairs =
       shared->moves() ? solver::FiniteMotionOptions{}.pairs : solver::FiniteStaticsOptions{}.pairs;
-  device_ = machine_.device(body_, *shared, pairs);
-  if (this->needs().pristine) device_of_intact_ = machine_.device(intact_, *shared, pairs);
+  device_ = machine_.device(body_, route_, pairs);
+  if (this->needs().pristine) device_of_intact_ = machine_.device(intact_, route_, pairs);
 }
 
 BackendInfo LawBackend::info() const {
   BackendInfo info = machine_.info;
-  info.route = solver::name_of(inverse_ ? Route::inverse : Route::factor);
+  info.route = solver::name_of(route_);
   info.update = needs().damage ? "deferred" : "none";
   const Words say = words();
-  info.why = say.what + ": by the " + (inverse_ ? "dense inverse" : "factor") + " of " +
-             say.tangent +
-             (device_ ? ", made by the host; forces, stress and L-BFGS on the device" : "");
+  if (route_ == Route::cg) {
+    info.why = say.what + ": by conjugate gradients on the tangent of every state" +
+               (device_ ? ", on the device with forces, stress and line search" : "");
+  } else {
+    info.why = say.what + ": by the " + (by_inverse() ? "dense inverse" : "factor") + " of " +
+               say.tangent +
+               (!device_       ? ""
+                : by_inverse() ? ", made by the host; forces, stress and L-BFGS on the device"
+                               : ", by the host; forces and stress on the device");
+  }
   if (!lost_.empty()) info.why += "; the host took over from the device: " + lost_;
   for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
   return info;
@@ -56,12 +63,16 @@ std::vector<std::string> LawBackend::warnings() const {
 std::vector<BufferPlan> LawBackend::buffers() const {
   const std::size_t factor = factor_entries_ * sizeof(double),
                     unknowns = static_cast<std::size_t>(problem().dof_count()),
-                    dense = inverse_ ? unknowns * unknowns * sizeof(double) : 0;
-  std::vector<BufferPlan> plan{{"factor of " + words().tangent + " (sparse Cholesky)", factor},
-                               {"displacement and forces", u_.size() * 4 * sizeof(double)}};
-  if (inverse_) plan.push_back({"dense inverse of it", dense});
+                    dense = by_inverse() ? unknowns * unknowns * sizeof(double) : 0;
+  std::vector<BufferPlan> plan{{"displacement and forces", u_.size() * 4 * sizeof(double)}};
+  if (route_ != Route::cg) {
+    plan.push_back({"factor of " + words().tangent + " (sparse Cholesky)", factor});
+  }
+  if (by_inverse()) plan.push_back({"dense inverse of it", dense});
   if (needs().stress) plan.push_back({"stress", stress_.size() * sizeof(Voigt)});
-  if (needs().pristine) plan.push_back({"factor of the intact body's tangent", factor + dense});
+  if (needs().pristine && route_ != Route::cg) {
+    plan.push_back({"factor of the intact body's tangent", factor + dense});
+  }
   for (const auto* device : {device_.get(), device_of_intact_.get()}) {
     if (!device) continue;
     for (BufferPlan& buffer : device->buffers()) {
@@ -78,9 +89,9 @@ std::vector<KernelPlan> LawBackend::kernels() const {
   const Words say = words();
   std::vector<KernelPlan> list{
       {"internal forces", "energy and forces of " + elements + " elements by their laws"},
-      {"base", (inverse_ ? "product with the dense inverse of " + say.tangent
-                         : "forward and backward through the factor of " + say.tangent + ", " +
-                               std::to_string(factor_entries_) + " values") +
+      {"base", (by_inverse() ? "product with the dense inverse of " + say.tangent
+                             : "forward and backward through the factor of " + say.tangent + ", " +
+                                   std::to_string(factor_entries_) + " values") +
                    say.iteration},
       {"line search", "on the energy, a pass over the elements for each length that it tries"},
       {"check", "one base application to what is left, and the stress that it would change"}};
@@ -164,7 +175,17 @@ void LawBackend::do_read_stress(std::span<Voigt> stress) const {
   std::ranges::copy(stress_, stress.begin());
 }
 
-/// Returns the entries of a factor.
+/// As the scene says; else on the host a factor, on a device an inverse of bodies that are small
+/// enough, and of others in motion none at all.
+Route LawBackend::chosen_route() const {
+  const Route asked = problem().scene().solver.route;
+  if (asked != Route::automatic) return asked;
+  if (!machine_.device) return Route::factor;
+  if (problem().dof_count() <= machine_.most_dense) return Route::inverse;
+  return problem().moves() ? Route::cg : Route::factor;
+}
+
+/// Returns the entries of a factor, where there is one.
 std::size_t LawBackend::check_options() const {
   const SolverOptions& solver = problem().scene().solver;
   const bool moves = problem().moves(), on_device = static_cast<bool>(machine_.device);
@@ -176,27 +197,31 @@ std::size_t LawBackend::check_options() const {
   if (solver.precision == Precision::fp32 && !on_device) {
     refuse("precision fp32", "backend cpu computes in fp64 only", "precision fp64 or auto");
   }
-  if (solver.route == Route::factor && on_device) {
-    refuse("route factor", "backend vulkan computes by a dense inverse", "route inverse or auto");
-  }
-  if (solver.route == Route::cg) {
+  if (solver.route == Route::cg && !on_device) {
     refuse("route cg", "its preconditioner is the factor of the intact body at rest",
-           on_device ? "route inverse or auto" : "route factor or auto");
+           "route factor or auto");
+  }
+  if (solver.route == Route::cg && !moves) {
+    refuse("route cg", "whether a rest is stable is judged by a factor of its tangent",
+           "route inverse, factor or auto");
   }
   if (solver.route == Route::condensed) {
     refuse("route condensed", "the stiffness outside its region changes with the deformation",
-           on_device ? "route inverse or auto" : "route factor or auto");
+           on_device && moves ? "route inverse, factor, cg or auto"
+           : on_device        ? "route inverse, factor or auto"
+                              : "route factor or auto");
   }
   if (solver.update == Update::eager) {
     refuse("update eager", "the base is a tangent that later states do not write over",
            "update deferred or auto");
   }
+  if (route_ == Route::cg) return 0;
   // The factor and that of a newer base beside it, and the intact body's.
   const std::size_t bases = needs().pristine ? 4 : 2;
   const auto unknowns = static_cast<std::size_t>(problem().dof_count());
   const auto analysis = fem::analyse(problem());
   const std::size_t needed =
-      bases * (analysis->entries() + (inverse_ ? unknowns * unknowns : 0)) * sizeof(double);
+      bases * (analysis->entries() + (by_inverse() ? unknowns * unknowns : 0)) * sizeof(double);
   if (needed > machine_.memory) {
     throw InputError(InputFault::too_large,
                      "the bases of a tangent need " + std::to_string(needed) + " bytes for " +

@@ -22,10 +22,11 @@ namespace sunder::finite {
 struct Machine {
   BackendInfo info;        ///< backend, device, driver, precision
   std::size_t memory = 0;  ///< bytes that the host has free
-  /// A device that holds states of such a body, by L-BFGS of so many pairs, with viscous forces or
-  /// without. Empty: the host alone computes. It owns what the device needs.
+  Index most_dense = 0;    ///< unknowns of which the device takes a dense inverse
+  /// A device that holds states of such a body, by such a route, with L-BFGS of so many pairs.
+  /// Empty: the host alone computes. It owns what the device needs.
   std::function<std::unique_ptr<solver::FiniteDevice>(const fem::HyperelasticBody& body,
-                                                      const Problem& problem, int pairs)>
+                                                      Route route, int pairs)>
       device = {};
 };
 
@@ -44,8 +45,9 @@ class LawBackend : public Backend {
  protected:
   LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine);
 
-  /// By a dense inverse; else by a factor.
-  [[nodiscard]] bool by_inverse() const { return inverse_; }
+  /// Inverse, factor, or (in motion on a device) cg.
+  [[nodiscard]] Route route() const { return route_; }
+  [[nodiscard]] bool by_inverse() const { return route_ == Route::inverse; }
   [[nodiscard]] const fem::HyperelasticBody& body() const { return body_; }
   [[nodiscard]] const fem::HyperelasticBody& intact() const { return intact_; }
   /// Null: the host.
@@ -100,13 +102,14 @@ class LawBackend : public Backend {
   std::vector<double> u_;  // of the last solution
 
  private:
+  [[nodiscard]] Route chosen_route() const;
   std::size_t check_options() const;
 
   std::vector<Voigt> stress_;  // of the last stress()
   std::vector<const Law*> laws_;
   fem::HyperelasticBody body_, intact_;
   Machine machine_;
-  bool inverse_;
+  Route route_;
   std::size_t factor_entries_ = 0;
   fem::HyperelasticPass pass_;
   std::unique_ptr<solver::FiniteDevice> device_, device_of_intact_;

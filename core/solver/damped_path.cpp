@@ -79,7 +79,7 @@ bool DampedPath::try_step(const FiniteTarget& target, Cost& cost) {
   const double before = next_.potential;
   for (bool again = !fresh;; again = false) {
     const auto result =
-        minimiser_.minimise(moving, *base_, {0, kStepResidual}, kMostPerStep, next_);
+        minimiser_.minimise(moving, base_.get(), {0, kStepResidual}, kMostPerStep, next_);
     cost.back_solves += result.back_solves;
     easy_ = result.at_rest && result.back_solves <= kEasy;
     hard_ = !result.at_rest;

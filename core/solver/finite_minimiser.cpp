@@ -71,10 +71,13 @@ bool FiniteMinimiser::line_search(FiniteSteps& steps, bool with_stress, const Fi
   return false;
 }
 
-FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, FiniteBase& base,
+FiniteMinimiser::Result FiniteMinimiser::minimise(const FiniteTarget& target, FiniteBase* base,
                                                   const Stop& stop, int most, FiniteState& state) {
   FiniteDevice* device = potential_.device();
-  FiniteSteps& steps = device && base.has_inverse() ? *device : static_cast<FiniteSteps&>(host_);
+  const auto needs = device ? device->needs() : FiniteDevice::Needs::host;
+  const bool there = needs == FiniteDevice::Needs::nothing ||
+                     (needs == FiniteDevice::Needs::inverse && base->has_inverse());
+  FiniteSteps& steps = there ? *device : static_cast<FiniteSteps&>(host_);
   const FinitePoint from = steps.begin(target, base, state);
   const Result result = minimise(steps, stop, most, from);
   steps.end();

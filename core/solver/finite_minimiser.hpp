@@ -39,9 +39,9 @@ class FiniteMinimiser {
   void set_scale(const FiniteScale& scale) { scale_ = scale; }
   /// |r| over the forces that act.
   [[nodiscard]] double residual(const FiniteState& state) const;
-  /// From an evaluated state, at most so many applications of the base. Not at rest: they did not
-  /// do, or the energy falls no more; the state is the best one.
-  Result minimise(const FiniteTarget& target, FiniteBase& base, const Stop& stop, int most,
+  /// From an evaluated state, at most so many applications of the base (null: the device needs
+  /// none). Not at rest: they did not do, or the energy falls no more; the state is the best one.
+  Result minimise(const FiniteTarget& target, FiniteBase* base, const Stop& stop, int most,
                   FiniteState& state);
 
  private:

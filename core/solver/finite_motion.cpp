@@ -35,7 +35,6 @@ FiniteMotion::FiniteMotion(const fem::HyperelasticBody& body, std::span<const do
       potential_(moving_, options.stress, device),
       minimiser_(potential_, options.pairs),
       scale_(finite_scale(body.problem)),
-      pattern_(body.problem),
       node_mass_(mass.begin(), mass.end()),
       mass_(static_cast<std::size_t>(body.problem.dof_count()), 0.0),
       u_(body.problem.dofs().size(), 0.0),
@@ -86,7 +85,7 @@ Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
                        options_.viscosity > 0 ? &viscosity_ : nullptr,
                        options_.viscosity * rate_,
                        with_inertia};
-  return compliance_factor(grip_stiffness(moving_, u_, pattern_, *base_, of),
+  return compliance_factor(grip_stiffness(moving_, u_, pattern(), *base_, of),
                            anchors_of(potential_.problem()));
 }
 
@@ -165,12 +164,23 @@ bool FiniteMotion::begin(const FiniteTarget& target, double dt) {
 
 bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
                          Report& report) {
-  base_ = projected_base(moving_.body(), u, pattern_, report.factors, {}, inertia);
+  base_ = projected_base(moving_.body(), u, pattern(), report.factors, {}, inertia);
   if (base_ && options_.inverse) base_->keep_inverse();
   return base_ != nullptr;
 }
 
+bool FiniteMotion::needs_base() const {
+  const FiniteDevice* device = potential_.device();
+  return !device || device->needs() != FiniteDevice::Needs::nothing;
+}
+
+const fem::TangentPattern& FiniteMotion::pattern() {
+  if (!pattern_) pattern_.emplace(potential_.problem());
+  return *pattern_;
+}
+
 bool FiniteMotion::ensure_base(const fem::Inertia& inertia, Report& report) {
+  if (!needs_base()) return true;
   const bool alike = base_ && base_->inertia() < kMostInertiaApart * inertia.factor &&
                      inertia.factor < kMostInertiaApart * base_->inertia();
   if (!alike || !base_->follow(moving_, options_.most_rank)) base_.reset();
@@ -182,8 +192,8 @@ bool FiniteMotion::ensure_base(const fem::Inertia& inertia, Report& report) {
 /// next_ <- the step's end; false: neither the base nor new factors lead to it.
 bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
   const auto once = [&](int most) {
-    const auto result =
-        minimiser_.minimise(target, *base_, {options_.tolerance, options_.residual}, most, next_);
+    const auto result = minimiser_.minimise(target, base_.get(),
+                                            {options_.tolerance, options_.residual}, most, next_);
     report.back_solves += result.back_solves;
     report.residual = result.residual;
     report.error = result.error;
@@ -195,6 +205,7 @@ bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
     return true;
   }
   if (once(options_.most_back_solves)) return true;
+  if (!needs_base()) return false;
   for (int i = 0; i < options_.most_factors; ++i) {
     if (!renew(next_.u, inertia_of_base(target), report)) return false;
     if (once(options_.most_back_solves)) return true;
@@ -256,7 +267,7 @@ FiniteMotionReport FiniteMotion::one_step(const Load& load, double dt) {
   minimiser_.set_scale(scale);
   report.stuck = !ensure_base(inertia, report) || !begin(end, dt);
   if (!report.stuck) {
-    if (options_.turn) base_->turn(moving_, next_.u);
+    if (options_.turn && base_) base_->turn(moving_, next_.u);
     report.stuck = !minimise(end, report);
   }
   if (report.stuck) {
@@ -314,9 +325,9 @@ FiniteMotionBalance FiniteMotion::balance(const FiniteTarget& end, const Scheme&
   return of;
 }
 
-int FiniteMotion::steps_of_a_base(double dt) const {
+int FiniteMotion::steps_of_a_base(double dt) {
   if (options_.taken_after) return *options_.taken_after;
-  const double making = seconds_of_a_tangent(*pattern_.supernodes(), potential_.problem());
+  const double making = seconds_of_a_tangent(*pattern().supernodes(), potential_.problem());
   return static_cast<int>(
       std::clamp(std::ceil(making / dt), kFewestStepsOfABase, kMostStepsOfABase));
 }
@@ -324,13 +335,13 @@ int FiniteMotion::steps_of_a_base(double dt) const {
 void FiniteMotion::renew_if_due(const fem::Inertia& inertia, double dt, Report& report) {
   const bool hard =
       report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
-  if (!hard || renewal_.base_asked()) return;
+  if (!hard || renewal_.base_asked() || !needs_base()) return;
   until_taken_ = steps_of_a_base(dt);
   if (until_taken_ == 0) {
     if (!renew(u_, inertia, report)) base_.reset();
     return;
   }
-  renewal_.ask(moving_.body(), u_, pattern_, true, false, inertia);
+  renewal_.ask(moving_.body(), u_, pattern(), true, false, inertia);
 }
 
 FiniteMotionBalance FiniteMotion::sum() const {

@@ -143,6 +143,9 @@ class FiniteMotion {
   [[nodiscard]] Scheme scheme(double dt) const;
   [[nodiscard]] FiniteTarget target(const Load& load, const Scheme& by);
   [[nodiscard]] bool begin(const FiniteTarget& target, double dt);
+  /// False: the device goes by tangents of its own.
+  [[nodiscard]] bool needs_base() const;
+  [[nodiscard]] const fem::TangentPattern& pattern();
   [[nodiscard]] bool ensure_base(const fem::Inertia& inertia, Report& report);
   [[nodiscard]] bool renew(const std::vector<double>& u, const fem::Inertia& inertia,
                            Report& report);
@@ -151,15 +154,15 @@ class FiniteMotion {
   [[nodiscard]] FiniteMotionBalance balance(const FiniteTarget& end, const Scheme& by,
                                             std::span<const double> v);
   void renew_if_due(const fem::Inertia& inertia, double dt, Report& report);
-  [[nodiscard]] int steps_of_a_base(double dt) const;
+  [[nodiscard]] int steps_of_a_base(double dt);
 
   FiniteMotionOptions options_;
   RestingBody moving_;
   FinitePotential potential_;
   FiniteMinimiser minimiser_;
   FiniteScale scale_;
-  fem::TangentPattern pattern_;
-  std::vector<double> node_mass_, mass_;  // per node, per unknown
+  std::optional<fem::TangentPattern> pattern_;  // once a base is made
+  std::vector<double> node_mass_, mass_;        // per node, per unknown
   std::vector<double> u_, v_, u_before_, v_before_;
   double time_ = 0;
   double dt_before_ = 0;               // of the last step; 0: the state before it is none to go by

@@ -153,8 +153,8 @@ void FiniteStatics::move_grips(const FiniteTarget& target) {
 }
 
 bool FiniteStatics::minimise(const FiniteTarget& target, int most, Report& report) {
-  const auto result =
-      minimiser_.minimise(target, *base_, {options_.tolerance, options_.residual}, most, state_);
+  const auto result = minimiser_.minimise(target, base_.get(),
+                                          {options_.tolerance, options_.residual}, most, state_);
   report.back_solves += result.back_solves;
   report.residual = result.residual;
   report.error = result.error;

@@ -33,8 +33,9 @@ class FiniteSteps {
   virtual ~FiniteSteps() = default;
 
   /// From a state that is evaluated; steps before are forgotten. All three must live until end().
-  virtual FinitePoint begin(const FiniteTarget& target, FiniteBase& base, FiniteState& state) = 0;
-  /// The whole step that L-BFGS proposes.
+  /// `base`: null where none is needed.
+  virtual FinitePoint begin(const FiniteTarget& target, FiniteBase* base, FiniteState& state) = 0;
+  /// The whole step that L-BFGS proposes, or Newton's.
   virtual FiniteTrial whole(bool with_stress) = 0;
   /// So much of the same.
   virtual FiniteTrial part(double of, bool with_stress) = 0;
@@ -47,6 +48,13 @@ class FiniteSteps {
 /// A device that holds a body's states and steps. Throws DeviceLost from any call.
 class FiniteDevice : public FiniteSteps {
  public:
+  /// What its steps go by.
+  enum class Needs {
+    inverse,  ///< a base with its dense inverse
+    nothing,  ///< tangents of its own
+    host      ///< it makes none: the host steps
+  };
+  [[nodiscard]] virtual Needs needs() const = 0;
   /// Reads what counts of the body now, which must outlive it; before anything else.
   virtual void attach(const RestingBody& body) = 0;
   /// All of a state by its displacement, as FinitePotential::evaluate.

@@ -12,10 +12,10 @@ FinitePoint point_of(const FiniteState& state) {
 
 }  // namespace
 
-FinitePoint HostSteps::begin(const FiniteTarget& target, FiniteBase& base, FiniteState& state) {
+FinitePoint HostSteps::begin(const FiniteTarget& target, FiniteBase* base, FiniteState& state) {
   hessian_.clear();
   target_ = &target;
-  base_ = &base;
+  base_ = base;
   state_ = &state;
   return point_of(state);
 }

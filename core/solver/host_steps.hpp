@@ -13,7 +13,7 @@ class HostSteps final : public FiniteSteps {
   /// The potential must outlive it. `pairs`: of L-BFGS.
   HostSteps(const FinitePotential& potential, int pairs) : potential_(potential), hessian_(pairs) {}
 
-  FinitePoint begin(const FiniteTarget& target, FiniteBase& base, FiniteState& state) override;
+  FinitePoint begin(const FiniteTarget& target, FiniteBase* base, FiniteState& state) override;
   FiniteTrial whole(bool with_stress) override;
   FiniteTrial part(double of, bool with_stress) override;
   void take() override;

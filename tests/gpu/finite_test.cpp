@@ -97,7 +97,7 @@ TEST_P(FiniteKernels, StatesAreTheHosts) {
         const Torn torn(*law);
         const solver::RestingBody resting(torn.body, moves ? solver::RestingBody::Loose::moving
                                                            : solver::RestingBody::Loose::frozen);
-        gpu::FiniteDevice device(*factory_, torn.body, measure, 5, moves);
+        gpu::FiniteDevice device(*factory_, torn.body, {.stress = measure, .viscous = moves});
         const solver::FinitePotential host(resting, measure), there(resting, measure, &device);
         solver::FiniteTarget target = torn.target(host);
         std::vector<double> mass(static_cast<std::size_t>(torn.problem.dof_count()), 2e-9), ahead;
@@ -134,7 +134,7 @@ TEST_P(FiniteKernels, TurnedInsideOutAndFlat) {
   for (const Law* law : all_laws()) {
     const Torn torn(*law);
     const solver::RestingBody resting(torn.body);
-    gpu::FiniteDevice device(*factory_, torn.body, StressMeasure::biot, 5, false);
+    gpu::FiniteDevice device(*factory_, torn.body, {.stress = StressMeasure::biot});
     const solver::FinitePotential host(resting, StressMeasure::biot),
         there(resting, StressMeasure::biot, &device);
     const solver::FiniteTarget target = torn.target(host);
@@ -158,7 +158,7 @@ TEST_P(FiniteKernels, IterationsAreTheHostsInASubmitEach) {
   for (const Law* law : all_laws()) {
     Torn torn(*law);
     solver::RestingBody resting(torn.body);
-    gpu::FiniteDevice device(*factory_, torn.body, StressMeasure::cauchy, 5, false);
+    gpu::FiniteDevice device(*factory_, torn.body, {});
     solver::FinitePotential host(resting, StressMeasure::cauchy),
         there(resting, StressMeasure::cauchy, &device);
     const fem::TangentPattern pattern(torn.problem);
@@ -190,7 +190,7 @@ TEST_P(FiniteKernels, IterationsAreTheHostsInASubmitEach) {
       by.put_grips(target, state.u);
       by.evaluate(target, false, state);
       const std::size_t before = device_->queue().submits();
-      results.push_back(minimiser.minimise(target, *base, {1e-10, 1e-9}, 60, state));
+      results.push_back(minimiser.minimise(target, base.get(), {1e-10, 1e-9}, 60, state));
       if (on_device) {
         const auto submits = static_cast<int>(device_->queue().submits() - before);
         // Shorter steps of the line search, and copies where memory is not mapped, add to them.
@@ -205,6 +205,60 @@ TEST_P(FiniteKernels, IterationsAreTheHostsInASubmitEach) {
     EXPECT_NEAR(results[1].back_solves, results[0].back_solves, GetParam().fp64 ? 1 : 6);
     EXPECT_LE(apart(states[1].u, states[0].u), kIntactTolerance);
     EXPECT_LE(apart(states[1].f, states[0].f), kIntactTolerance);
+  }
+}
+
+// The exact tangent of every law, viscous stress and inertia included: Newton's steps converge as
+// no wrong tangent lets them, to the host's rest.
+TEST_P(FiniteKernels, NewtonByConjugateGradientsInASubmitEach) {
+  for (const Law* law : all_laws()) {
+    for (const bool moves : {false, true}) {
+      const Torn torn(*law);
+      const solver::RestingBody resting(torn.body, solver::RestingBody::Loose::moving);
+      gpu::FiniteDevice device(*factory_, torn.body, {.route = Route::cg, .viscous = moves});
+      const solver::FinitePotential host(resting, StressMeasure::cauchy),
+          there(resting, StressMeasure::cauchy, &device);
+      solver::FiniteTarget target = torn.target(host);
+      target.grips.assign(target.grips.size(), 0.2);
+      std::vector<double> u = torn.displacement(0.01);  // turned by some 8 deg
+      for (double& x : u) x *= 0.1;
+      std::vector<double> mass(static_cast<std::size_t>(torn.problem.dof_count()), 2e-4);
+      fem::Viscosity viscosity(resting.body());
+      viscosity.start(u, 1, u, 0);
+      target.inertia = {1e4, mass};
+      target.ahead = &u;
+      if (moves) {
+        target.viscosity = &viscosity;
+        target.viscous = 0.3;
+      }
+      const fem::TangentPattern pattern(torn.problem);
+      int factors = 0;
+      const auto base = solver::projected_base(torn.body, u, pattern, factors, {}, target.inertia);
+      ASSERT_TRUE(base);
+      std::vector<solver::FiniteMinimiser::Result> results;
+      std::vector<solver::FiniteState> states(2);
+      for (const bool on_device : {false, true}) {
+        const solver::FinitePotential& by = on_device ? there : host;
+        solver::FiniteMinimiser minimiser(by, 5);
+        minimiser.set_scale(solver::finite_scale(torn.problem));
+        solver::FiniteState& state = states[on_device ? 1 : 0];
+        state.u = u;
+        by.put_grips(target, state.u);
+        by.evaluate(target, false, state);
+        const std::size_t before = device_->queue().submits();
+        results.push_back(minimiser.minimise(target, on_device ? nullptr : base.get(),
+                                             {1e-10, 1e-9}, on_device ? 14 : 200, state));
+        if (on_device && device_->physical().is_cpu() &&
+            std::getenv("SUNDER_VULKAN_PROBE") == nullptr) {
+          const auto submits = static_cast<int>(device_->queue().submits() - before);
+          EXPECT_LE(submits, results[1].back_solves + 6);
+        }
+      }
+      EXPECT_TRUE(results[0].at_rest) << law->name;
+      EXPECT_TRUE(results[1].at_rest) << law->name;
+      EXPECT_LE(apart(states[1].u, states[0].u), kIntactTolerance) << law->name;
+      EXPECT_LE(apart(states[1].f, states[0].f), kIntactTolerance) << law->name;
+    }
   }
 }
 
@@ -294,6 +348,7 @@ struct Sheet {
   MaterialLaw law;
   FractureModel model;
   Precision precision = Precision::fp64;
+  Route route = Route::automatic;
 };
 
 class FiniteScenes : public WithVulkan<testing::TestWithParam<Sheet>> {};
@@ -303,7 +358,7 @@ TEST_P(FiniteScenes, TearAsOnTheHost) {
   const Sheet& of = GetParam();
   Scene scene = torn_sheet(of.moves, of.law, of.model);
   const Course expected = run_on_cpu(scene);
-  WatchedBackend watched(scene, {.precision = of.precision, .tolerance = 1e-8});
+  WatchedBackend watched(scene, {.precision = of.precision, .tolerance = 1e-8, .route = of.route});
   const Course found = run(watched.problem, watched.create());
   expect_alike(found, expected, 1e-6);
   EXPECT_EQ(found.info.backend, "vulkan");
@@ -321,16 +376,32 @@ INSTANTIATE_TEST_SUITE_P(
         Sheet{"motion_neo_hookean_A", true, MaterialLaw::neo_hookean, FractureModel::a},
         Sheet{"motion_neo_hookean_A_fp32", true, MaterialLaw::neo_hookean, FractureModel::a,
               Precision::fp32},
+        Sheet{"by_factor", false, MaterialLaw::corotated, FractureModel::a, Precision::fp64,
+              Route::factor},
+        Sheet{"motion_by_factor", true, MaterialLaw::neo_hookean, FractureModel::a, Precision::fp64,
+              Route::factor},
+        Sheet{"motion_corotated_by_cg", true, MaterialLaw::corotated, FractureModel::b,
+              Precision::fp64, Route::cg},
+        Sheet{"motion_neo_hookean_by_cg_fp32", true, MaterialLaw::neo_hookean, FractureModel::a,
+              Precision::fp32, Route::cg},
+        Sheet{"motion_kirchhoff_by_cg", true, MaterialLaw::saint_venant_kirchhoff, FractureModel::a,
+              Precision::fp64, Route::cg},
+        Sheet{"motion_linear_by_cg", true, MaterialLaw::linear, FractureModel::a, Precision::fp64,
+              Route::cg},
         Sheet{"motion_kirchhoff_A", true, MaterialLaw::saint_venant_kirchhoff, FractureModel::a},
         Sheet{"motion_linear_A", true, MaterialLaw::linear, FractureModel::a}),
     [](const auto& info) { return std::string(info.param.name); });
 
-class FiniteDeviceLost : public WithVulkan<testing::TestWithParam<bool>> {};
+struct Loss {
+  bool moves;
+  Route route;
+};
+class FiniteDeviceLost : public WithVulkan<testing::TestWithParam<Loss>> {};
 
 TEST_P(FiniteDeviceLost, InMidStepTheHostGoesOnFromTheLastState) {
-  Scene scene = torn_sheet(GetParam(), MaterialLaw::neo_hookean, FractureModel::a);
+  Scene scene = torn_sheet(GetParam().moves, MaterialLaw::neo_hookean, FractureModel::a);
   const Course expected = run_on_cpu(scene);
-  WatchedBackend watched(scene, {.tolerance = 1e-8});
+  WatchedBackend watched(scene, {.tolerance = 1e-8, .route = GetParam().route});
   int losses = 0;
   for (const int submits : {2, 9, 40, 77, 150, 400}) {
     watched.options.probe.submits_until_lost = submits;
@@ -353,8 +424,13 @@ TEST_P(FiniteDeviceLost, InMidStepTheHostGoesOnFromTheLastState) {
   EXPECT_GE(losses, 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, FiniteDeviceLost, ::testing::Bool(),
-                         [](const auto& info) { return info.param ? "moving" : "resting"; });
+INSTANTIATE_TEST_SUITE_P(All, FiniteDeviceLost,
+                         ::testing::Values(Loss{false, Route::inverse}, Loss{true, Route::inverse},
+                                           Loss{true, Route::cg}),
+                         [](const auto& info) {
+                           return std::string(info.param.moves ? "moving_" : "resting_") +
+                                  (info.param.route == Route::cg ? "cg" : "inverse");
+                         });
 
 using FiniteRefusals = WithVulkan<>;
 
@@ -368,13 +444,14 @@ TEST_F(FiniteRefusals, SayWhatWouldDo) {
     return message_of(
         [&] { static_cast<void>(gpu::create(problem, needs_of(*problem), options)); });
   };
+  Scene resting = torn_sheet(false, MaterialLaw::corotated, FractureModel::a);
+  resting.solver.tolerance = 1e-4;
+  resting.solver.route = Route::cg;
+  EXPECT_EQ(refusal(resting),
+            "route cg cannot serve law \"corotated\": whether a rest is stable is judged by a "
+            "factor of its tangent; use route inverse, factor or auto");
   Scene scene = torn_sheet(true, MaterialLaw::corotated, FractureModel::a);
   scene.solver.tolerance = 1e-4;
-  scene.solver.route = Route::factor;
-  EXPECT_EQ(refusal(scene),
-            "route factor cannot serve motion: backend vulkan computes by a dense inverse; use "
-            "route inverse or auto");
-  scene.solver.route = Route::automatic;
   EXPECT_NE(refusal(scene, [](gpu::VulkanOptions& o) { o.probe.no_float64 = true; })
                 .find("lacks shaderFloat64, which motion needs"),
             std::string::npos);
