@@ -26,7 +26,7 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
     : kernels_(kernels),
       fields_(fields),
       matrix_(fields.matrix()),
-      rigid_(kernels, body),
+      rigid_(kernels, body.problem(), body.destroyed(), body.problem().scene().fracture.alpha),
       add_(kernels, fields),
       commands_(kernels.device()) {
   const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;

@@ -93,7 +93,7 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
   create_buffers(options.viscous);
   create_passes();
   if (options.route == Route::inverse) create_inverse();
-  if (options.route == Route::cg) create_cg();
+  if (options.route == Route::cg) create_cg(body);
 }
 
 void FiniteDevice::create_buffers(bool viscous) {
@@ -173,8 +173,8 @@ void FiniteDevice::create_inverse() {
        {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_});
 }
 
-void FiniteDevice::create_cg() {
-  cg_ = std::make_unique<FiniteCg>(kernels_, problem_,
+void FiniteDevice::create_cg(const fem::HyperelasticBody& body) {
+  cg_ = std::make_unique<FiniteCg>(kernels_, problem_, body.destroyed,
                                    FiniteCgBody{nodes_of_,
                                                 shape_,
                                                 facts_,
@@ -468,6 +468,7 @@ solver::FinitePoint FiniteDevice::begin(const solver::FiniteTarget& target,
                                         solver::FiniteBase* base, solver::FiniteState& state) {
   set_target(target);
   if (base) set_base(*base);
+  if (cg_) cg_->begin(state.u, target.inertia);
   order_.clear();
   slot_ = 0;
   state_ = &state;

@@ -67,7 +67,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   void create_buffers(bool viscous);
   void create_passes();
   void create_inverse();
-  void create_cg();
+  void create_cg(const fem::HyperelasticBody& body);
   void bind_base();
   void set_target(const solver::FiniteTarget& target);
   void set_base(const solver::FiniteBase& base);

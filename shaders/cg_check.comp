@@ -44,4 +44,5 @@ void main() {
   arguments.data[3] = run ? p.rigid_groups : 0u;
   arguments.data[6] = run ? p.rigid_solves : 0u;
   arguments.data[9] = run ? 1u : 0u;
+  arguments.data[12] = run ? p.elements : 0u;
 }

@@ -138,9 +138,12 @@ struct CgPush {
   uint first;         // 1: nothing has been iterated yet
   uint guess;         // 1: the first step goes along u
   double reduction;   // stop at this share of the first r^T M r, or of u's energy
+  uint elements;      // workgroups of 64 elements, where a kernel goes over these
+  uint unused;
 };
 
-SUNDER_CONST kCgSizes = 4u;  // kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup
+// Kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup, elements.
+SUNDER_CONST kCgSizes = 5u;
 
 // State of conjugate gradients, on the device from the first iteration to the last.
 struct CgState {
@@ -256,7 +259,7 @@ static_assert(sizeof(StressPartial) == 48);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 80);
-static_assert(sizeof(CgPush) == 32);
+static_assert(sizeof(CgPush) == 40);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);
 static_assert(sizeof(FinitePush) == 64);

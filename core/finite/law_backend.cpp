@@ -27,6 +27,9 @@ LawBackend::LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machi
   const std::size_t elements = shared->mesh().tets.size();
   if (this->needs().stress) stress_.assign(elements, Voigt::Zero());
   if (this->needs().yield) excluded_.assign(elements, 0);
+  if (route_ == Route::cg) {
+    leave_out("forces of grips between frames: route cg has no base to find them by");
+  }
   if (!machine_.device) return;
   const int pairs =
       shared->moves() ? solver::FiniteMotionOptions{}.pairs : solver::FiniteStaticsOptions{}.pairs;
@@ -106,7 +109,7 @@ std::vector<KernelPlan> LawBackend::kernels() const {
 }
 
 std::shared_ptr<InstrumentForces> LawBackend::instrument_forces() {
-  if (problem().gripped_dofs().empty()) return nullptr;
+  if (problem().gripped_dofs().empty() || route_ == Route::cg) return nullptr;
   if (!instruments_) {
     instruments_.emplace(problem());
     reactions_.assign(problem().gripped_dofs().size(), 0.0);

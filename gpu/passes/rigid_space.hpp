@@ -3,7 +3,9 @@
 // the rigid motions Z of groups of nodes (additive two-level method; e.g. Tang, Nabben, Vuik,
 // Erlangga, J. Sci. Comput. 39, 2009). Blocks D alone pass a motion on by one element an iteration,
 // and what a cut sets free is held by destroyed elements only: its rigid motions are modes of their
-// own, which cost thousands of iterations.
+// own, which cost thousands of iterations. At finite deformation Z are the rigid motions of where
+// the nodes are now, and Z^T K Z is that of the body at rest, turned with the groups: the stiffness
+// turns so as long as their strain is small.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "body/damaged_body.hpp"
+#include "body/tangent_pattern.hpp"
 #include "gpu/kernels.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "sunder/problem.hpp"
@@ -21,16 +23,24 @@ namespace sunder::gpu {
 
 class RigidSpace {
  public:
-  /// The body must outlive it.
-  RigidSpace(const KernelFactory& kernels, const fem::DamagedBody& body);
+  /// Of the body as it rests: what is destroyed, read live, keeps a `share` of its stiffness; both
+  /// must outlive it. `apart`: no group has nodes of volumes of unlike stiffness.
+  RigidSpace(const KernelFactory& kernels, const Problem& problem,
+             std::span<const std::uint8_t> destroyed, double share, bool apart = false);
 
   /// Device bytes, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
 
   /// Follows an event that the body has recorded already.
   void destroy(std::span<const Index> elements);
-  /// Brings the device up to date with the damage; before what is recorded next.
+  /// Elements are back: all of it is made anew.
+  void forget();
+  /// Springs of inertia that are in K; where they are much as they were nothing changes.
+  void set_inertia(const fem::Inertia& inertia);
+  /// Brings the device up to date with the damage and the inertia; before what is recorded next.
   void update();
+  /// The same, and with where the nodes are (3 * nodes).
+  void update(std::span<const double> u);
   /// Groups of nodes, at least one (an empty one where there is no body).
   [[nodiscard]] std::uint32_t groups() const {
     return std::max(1u, static_cast<std::uint32_t>(groups_.size()));
@@ -53,21 +63,32 @@ class RigidSpace {
 
  private:
   [[nodiscard]] std::vector<std::vector<Index>> grouped();
+  [[nodiscard]] std::vector<Index> kinds_of_nodes() const;
   void split(std::span<Index> nodes, Index count, std::vector<std::vector<Index>>& groups) const;
-  void place_modes();
+  void place_modes(std::span<const double> u);
   void add_element(Index element, double scale);
+  void add_inertia(Eigen::MatrixXd& to) const;
   void invert();
+  void turn(std::span<const double> u);
+  void upload_inverse(const Eigen::MatrixXd& inverse);
   [[nodiscard]] Eigen::Matrix<double, 3, 6> motion(Index node) const;
 
   const KernelFactory& kernels_;
-  const fem::DamagedBody& body_;
   const Problem& problem_;
+  std::span<const std::uint8_t> destroyed_;
+  double share_;
+  std::vector<Index> kind_;  // of every node: groups have one alone; empty: it does not matter
   bool changed_ = true;
+  fem::Inertia inertia_;
+  std::vector<double> mass_;                // that inertia_ refers to
+  std::vector<double> size_;                // of the groups
+  std::vector<double> shown_;               // u that the device has; empty: the undeformed places
   std::vector<std::vector<Index>> groups_;  // nodes of each, ascending
   std::vector<Index> group_of_;             // of every node, kNone: none
   std::vector<Vec3> place_;                 // of every node from its group's centre, by its size
   std::vector<std::uint8_t> held_;          // axes of every node that nothing moves, as bits
-  Eigen::MatrixXd coarse_;                  // Z^T K Z
+  Eigen::MatrixXd coarse_;                  // Z^T K Z, at rest, without inertia
+  Eigen::MatrixXd resting_inverse_;         // with it; empty: there is none
   vulkan::Buffer modes_, first_, members_, inverse_, y_, w_, terms_;
   std::unique_ptr<vulkan::Kernel> restrict_, solve_;
   std::unique_ptr<vulkan::Binding> restrict_binding_, solve_binding_;

@@ -325,20 +325,21 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
     vulkan::Buffer of_state;
     state(of_state) = before;
     const auto sums = buffer(of_rz), of_terms = buffer(terms);
-    const auto arguments = buffer(Words(12, 9));
+    const auto arguments = buffer(Words(15, 9));
     shaders::CgPush push{};
     push.groups = 50;
     push.partials = kPacks;
     push.rigid_groups = 23;
     push.rigid_solves = kSolves;
+    push.elements = 31;
     push.first = first ? 1 : 0;
     push.reduction = 1e-3;
     run("cg_check", {&sums, &of_terms, &of_state, &arguments}, push, 1, factory_->summing_group());
-    Words sizes(12);
+    Words sizes(15);
     arguments.read(std::span<std::uint32_t>(sizes));
     return Outcome{state(of_state), sizes};
   };
-  const Words on = {50, 1, 1, 23, 1, 1, kSolves, 1, 1, 1, 1, 1};
+  const Words on = {50, 1, 1, 23, 1, 1, kSolves, 1, 1, 1, 1, 1, 31, 1, 1};
   shaders::CgState before{};
   before.iterations = 99;
   before.energy = 2 * sum;
@@ -363,11 +364,12 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
   EXPECT_EQ(later.arguments[3], 23u);
   EXPECT_EQ(later.arguments[6], kSolves);
   EXPECT_EQ(later.arguments[9], 1u);
+  EXPECT_EQ(later.arguments[12], 31u);
 
   const auto expect_stopped = [](const Outcome& outcome, std::uint32_t broken, const char* why) {
     EXPECT_EQ(outcome.state.running, 0u) << why;
     EXPECT_EQ(outcome.state.broken, broken) << why;
-    for (std::size_t kind : {0, 3, 6, 9}) EXPECT_EQ(outcome.arguments[kind], 0u) << why;
+    for (std::size_t kind : {0, 3, 6, 9, 12}) EXPECT_EQ(outcome.arguments[kind], 0u) << why;
   };
   before.target = 2 * sum;
   expect_stopped(check(rz, before, false), 0, "converged");
