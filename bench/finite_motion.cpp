@@ -9,7 +9,10 @@
 // milliseconds (ms), back-solves or iterations (it); over all: median and p99 of both, the median
 // and 95 % quantile of the error of stress, the share of steps that a cap ended.
 //   Of the project's own: "sunder" by the factor, with grips_ms, what the forces of the grips
-//   between frames take; "sunder inverse" and "sunder vulkan" by a dense inverse.
+//   between frames take; "sunder inverse" by a dense inverse; the same and conjugate gradients on
+//   the tangent on a Vulkan device.
+//   motion_balance/TETS/dt STEPS_A_SECOND: the board with damping and gravity until 90 elements are
+//   gone: where the work went, in shares of it.
 //   motion_hand/LAW: 10,000 steps of 1/200 s, at most 12 back-solves each, after a hand that
 //   wanders at random within 25 mm at up to 200 mm/s and jumps anywhere there every 500 steps: how
 //   many steps end with numbers that are none (nan), with inverted elements, capped, in parts, or
@@ -54,6 +57,18 @@ struct Step {
   double largest = 0;
 };
 
+/// Live elements at or over their yield, by maximum shear stress.
+std::vector<Index> over(const Problem& problem, std::span<const std::uint8_t> out,
+                        std::span<const Voigt> stress) {
+  std::vector<Index> of;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (!out[e] && problem.breakable(e) && max_shear(stress[e]) >= problem.yield(e)) {
+      of.push_back(e);
+    }
+  }
+  return of;
+}
+
 struct Course {
   explicit Course(Index cells, int a_second) : board(cells), dt(1.0 / a_second) {
     const Problem& problem = board.problem;
@@ -84,12 +99,10 @@ struct Course {
       step.end = motion.displacement();
       step.stress.resize(out.size());
       pass.run(step.end, {.stress = step.stress, .measure = StressMeasure::cauchy});
-      next.clear();
-      for (Index e = 0; e < problem.tet_count(); ++e) {
-        const Voigt& s = step.stress[e];
+      next = over(problem, out, step.stress);
+      for (const Voigt& s : step.stress) {
         step.largest = std::max(
             step.largest, std::sqrt(s.head<3>().squaredNorm() + 2 * s.tail<3>().squaredNorm()));
-        if (!out[e] && problem.breakable(e) && max_shear(s) >= problem.yield(e)) next.push_back(e);
       }
       if (now == after) --left;
       steps.push_back(std::move(step));
@@ -293,6 +306,50 @@ void peer_row(benchmark::State& state, const MotionKind& kind, Index cells, int 
   }
 }
 
+/// The board pulled until so many elements are gone, with damping and gravity: where the work went,
+/// in shares of it. `open`: what the terms leave, where what the iteration has left counts as none.
+void balance_row(benchmark::State& state, Index cells, int a_second, int ruptures) {
+  const double dt = 1.0 / a_second;
+  for (auto _ : state) {
+    const MotionBoard board(cells);
+    std::vector<std::uint8_t> out(board.problem.mesh().tets.size(), 0);
+    const fem::HyperelasticBody body{board.problem, board.laws, out};
+    solver::FiniteMotion motion(body, board.node_mass,
+                                {.damping = 1, .gravity = Vec3(0, -9810, 0)});
+    fem::HyperelasticPass pass(body);
+    std::vector<Voigt> stress(out.size());
+    std::vector<double> ms;
+    std::vector<Index> next;
+    double gone = 0, steps = 0, stuck = 0;
+    for (int i = 1; i <= 10 * a_second && gone < ruptures && stuck == 0; ++i, ++steps) {
+      for (Index e : next) out[e] = 1;
+      gone += static_cast<double>(next.size());
+      const auto start = Clock::now();
+      if (!next.empty()) motion.destroyed(next);
+      stuck += motion.step(board.pulled(kSpeed * i * dt), dt).stuck;
+      ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      pass.destroy(next);
+      pass.run(motion.displacement(), {.stress = stress, .measure = StressMeasure::cauchy});
+      next = over(board.problem, out, stress);
+    }
+    const solver::FiniteMotionBalance sum = motion.sum();
+    const double held = motion.kinetic_energy() + motion.strain_energy() + motion.gravity_energy();
+    const double terms = held + sum.damped + sum.scheme + sum.broken;
+    state.SetIterationTime(1e-3 * quantile(ms, .5));
+    state.counters["ruptures"] = gone;
+    state.counters["steps"] = steps;
+    state.counters["stuck"] = stuck;
+    state.counters["work"] = sum.work;
+    state.counters["held"] = held / sum.work;
+    state.counters["damped"] = sum.damped / sum.work;
+    state.counters["scheme"] = sum.scheme / sum.work;
+    state.counters["broken"] = sum.broken / sum.work;
+    state.counters["unsolved"] = sum.unsolved / sum.work;
+    state.counters["open"] = (sum.work - terms) / sum.work;
+    state.counters["rounding"] = (sum.work - terms - sum.unsolved) / sum.work;
+  }
+}
+
 /// Within a ball, from a seed of its own: the same on every machine.
 class Hand {
  public:
@@ -409,7 +466,7 @@ void register_rows() {
       if (cells == 18) own("sunder inverse", Route::inverse, false);
 #ifdef SUNDER_GPU
       if (cells == 18) own("sunder vulkan inverse", Route::inverse, true);
-      own("sunder vulkan cg", Route::cg, true);
+      if (cells <= 36) own("sunder vulkan cg", Route::cg, true);  // else hours on lavapipe
 #endif
       for (const MotionKind& kind : peers()) {
         for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
@@ -418,6 +475,10 @@ void register_rows() {
         }
       }
     }
+  }
+  for (const int a_second : {200, 1000}) {
+    add("motion_balance/1944/dt " + std::to_string(a_second),
+        [=](auto& s) { balance_row(s, 18, a_second, 90); });
   }
   for (const char* law : {"neo-hookean", "corotated", "saint-venant-kirchhoff"}) {
     const Law* of = find_law(law);

@@ -63,7 +63,7 @@ PROGRAMS = [
             Share(600, "finite/(1944|7776)/|finite_error/", 3)),
     Program("bench_motion", "motion beside Newton's method and others, and after a random hand",
             Share(3, "motion/1944/dt 200/sunder/", 1),
-            Share(900, "motion/(1944|7776)/dt 200/|motion_hand", 1)),
+            Share(900, "motion/(1944|7776)/dt 200/|motion_hand|motion_balance", 1)),
     Program("bench_needs", "what a scene saves that needs less",
             Share(3, "/1944/", 1), Share(200, repetitions=3)),
     Program("bench_scaling", "sizes against frames and memory",
