@@ -74,7 +74,11 @@ struct Course {
     const Problem& problem = board.problem;
     std::vector<std::uint8_t> out(problem.mesh().tets.size(), 0);
     const fem::HyperelasticBody body{problem, board.laws, out};
-    solver::FiniteMotion motion(body, board.node_mass, {.tolerance = 1e-9, .residual = 1e-7});
+    // Of 30,246 tetrahedra a step on the way of the tear does not come to 1e-9; 1e-7 is far below
+    // the errors that the rows show.
+    const double tolerance = cells > 36 ? 1e-7 : 1e-9;
+    solver::FiniteMotion motion(body, board.node_mass,
+                                {.tolerance = tolerance, .residual = 100 * tolerance});
     solver::RestingBody pieces(body);
     fem::HyperelasticPass pass(body);
     std::vector<Index> next;
