@@ -27,6 +27,7 @@ solver::PlanDevice plan_device(std::size_t memory) {
   device.backend = "cpu";
   device.routes = {Route::inverse, Route::condensed, Route::factor, Route::cg};
   device.memory = memory;
+  device.splits = true;
   return device;
 }
 
@@ -237,6 +238,20 @@ class CpuBackend final : public Backend {
     }
     solver_.event();
     route_->follow({.leave = elements});
+  }
+
+  void do_change(const fem::Change& change) override {
+    if (!splits()) {
+      throw UsageError("route " + solver::name_of(plan_.route) + " takes no new nodes");
+    }
+    fields_.change(change);
+    solver_.event();
+    route_->follow(change);
+  }
+
+  /// The routes whose deferred update takes new unknowns.
+  [[nodiscard]] bool splits() const {
+    return !plan_.eager && (plan_.route == Route::inverse || plan_.route == Route::factor);
   }
 
   void do_exclude_candidates(std::span<const Index> elements) override {

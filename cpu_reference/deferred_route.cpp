@@ -25,6 +25,7 @@ class DeferredRoute final : public InverseRoute {
                 std::chrono::milliseconds rest)
       : dense_(dense),
         all_(static_cast<std::size_t>(body.problem().dof_count())),
+        unknowns_(all_.size()),
         stiffness_(std::move(intact.stiffness)) {
     std::iota(all_.begin(), all_.end(), 0);
     std::unique_ptr<solver::Base> base;
@@ -51,7 +52,7 @@ class DeferredRoute final : public InverseRoute {
     const Index columns = static_cast<Index>(renewal.columns) + followed;
     // The factor that takes the inverse's place solves backward for as much as so many columns.
     renewal.first_columns =
-        dense ? std::max(renewal.columns, intact.factor.entries() / all_.size()) : renewal.columns;
+        dense ? std::max(renewal.columns, intact.factor.entries() / unknowns_) : renewal.columns;
     first.deferred =
         std::make_unique<solver::Deferred>(body.problem(), std::move(base), true,
                                            static_cast<Index>(renewal.first_columns) + followed);
@@ -63,18 +64,32 @@ class DeferredRoute final : public InverseRoute {
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
     update_->loaded(load);
-    update_->deferred().solve({load.force_dofs, load.forces}, load.displacements, u,
-                              energy_tolerance_);
+    const solver::Forces forces{load.force_dofs, load.forces};
+    if (update_->deferred().forms().new_nodes().empty()) {
+      update_->deferred().solve(forces, load.displacements, u, energy_tolerance_);
+    } else {
+      update_->deferred().solve(forces, load.displacements, of_mesh_, energy_tolerance_);
+      add_offsets(u);
+    }
     return {};
   }
 
   Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& u) override {
-    update_->deferred().correct({all_, {r.data(), static_cast<std::size_t>(r.size())}}, u);
+    const auto size = static_cast<std::size_t>(r.size());
+    for (std::size_t i = all_.size(); i < size; ++i) all_.push_back(static_cast<Index>(i));
+    const solver::Forces forces{std::span(all_).first(size), {r.data(), size}};
+    if (update_->deferred().forms().new_nodes().empty()) {
+      update_->deferred().correct(forces, u);
+    } else {
+      update_->deferred().correct(forces, of_mesh_);
+      add_offsets(u);
+    }
     return {};
   }
 
   void follow(const fem::Event& event) override {
-    update_->follow(event, solver::takes_new_factor(all_.size(), event.leave.size()));
+    const bool split = !event.nodes.empty() || !update_->deferred().forms().new_nodes().empty();
+    update_->follow(event, !split && solver::takes_new_factor(unknowns_, event.leave.size()));
   }
   bool rebase() override { return update_->rebase(); }
 
@@ -99,6 +114,13 @@ class DeferredRoute final : public InverseRoute {
   }
 
  private:
+  /// The solution of the mesh's unknowns with the offsets of new nodes behind them.
+  void add_offsets(Eigen::VectorXd& u) const {
+    const Eigen::VectorXd& d = update_->deferred().offsets();
+    u.resize(of_mesh_.size() + d.size());
+    u << of_mesh_, d;
+  }
+
   /// A factor of the body and an empty damage over it.
   solver::Based based_on(const DamagedBody& body, const linear_algebra::FactorWork& work,
                          Index columns) {
@@ -119,6 +141,8 @@ class DeferredRoute final : public InverseRoute {
 
   bool dense_;              // the first base is an inverse
   std::vector<Index> all_;  // every unknown: the loads of a residual
+  std::size_t unknowns_;    // of the mesh
+  Eigen::VectorXd of_mesh_;
   double energy_tolerance_ = 0;
   std::unique_ptr<fem::OrderedStiffness> stiffness_;  // of whoever makes a base
   std::optional<solver::RenewedUpdate> update_;       // last: its thread uses what is above

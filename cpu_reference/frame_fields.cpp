@@ -48,6 +48,13 @@ void FrameFields::keep_forces() {
   nodal_forces_ = nodal_;
 }
 
+/// Displacement at all nodes.
+void FrameFields::scatter(const Eigen::VectorXd& u, std::vector<double>& nodal) const {
+  const auto n = static_cast<std::size_t>(problem_.dof_count());
+  fem::scatter(problem_, view(u).first(n), std::span(nodal).first(problem_.dofs().size()));
+  if (!offsets_.empty()) offsets_.move(view(u).subspan(n), nodal);
+}
+
 std::optional<double> FrameFields::take(const Eigen::VectorXd& u) {
   if (condensed_) {
     for (Index n : condensed_->region().nodes) {
@@ -57,7 +64,10 @@ std::optional<double> FrameFields::take(const Eigen::VectorXd& u) {
       }
     }
   } else {
-    fem::scatter(problem_, view(u), next_nodal_);
+    scatter(u, next_nodal_);
+    const std::span<const double> own =
+        view(u).subspan(static_cast<std::size_t>(problem_.dof_count()));
+    own_.assign(own.begin(), own.end());
   }
   if (!kernel_) return std::nullopt;
   fresh_ = false;
@@ -66,12 +76,16 @@ std::optional<double> FrameFields::take(const Eigen::VectorXd& u) {
 
 void FrameFields::forces(Eigen::VectorXd& f) {
   kernel_->nodal_forces(nodal_forces_);
-  f.resize(problem_.dof_count());
-  fem::gather(problem_, nodal_forces_, {f.data(), static_cast<std::size_t>(f.size())});
+  const auto n = static_cast<std::size_t>(problem_.dof_count());
+  f.resize(problem_.dof_count() + offsets_.count());
+  const std::span<double> all(f.data(), static_cast<std::size_t>(f.size()));
+  fem::gather(problem_, std::span<const double>(nodal_forces_).first(problem_.dofs().size()),
+              all.first(n));
+  if (!offsets_.empty()) offsets_.gather(nodal_forces_, own_, all.subspan(n));
 }
 
 double FrameFields::largest_stress(const Eigen::VectorXd& u) {
-  fem::scatter(problem_, view(u), nodal_forces_);
+  scatter(u, nodal_forces_);
   return kernel_->largest(nodal_forces_);
 }
 
@@ -112,9 +126,28 @@ void FrameFields::destroy(std::span<const Index> elements) {
   if (kernel_) kernel_->destroy(elements);
 }
 
+void FrameFields::change(const fem::Change& change) {
+  offsets_.follow(body_.forms());
+  const std::size_t all = problem_.dofs().size() + 3 * offsets_.nodes().size();
+  // Where they were until now: at their parents, or at the node they have parted from.
+  const auto moves = [&](std::vector<double>& nodal) {
+    if (nodal.size() >= all) return;
+    const std::size_t before = nodal.size();
+    nodal.resize(all);
+    for (std::size_t i = before; i < all; ++i) {
+      const fem::NewNode& node = offsets_.nodes()[(i - problem_.dofs().size()) / 3];
+      nodal[i] = nodal[3 * static_cast<std::size_t>(node.parent) + i % 3];
+    }
+  };
+  moves(nodal_);
+  moves(next_nodal_);
+  if (has_forces()) nodal_forces_.resize(all);
+  if (kernel_) kernel_->change(change.come);
+}
+
 void FrameFields::read_displacement(std::span<double> displacement) const {
   if (condensed_) condensed_->complete(nodal_);
-  std::copy(nodal_.begin(), nodal_.end(), displacement.begin());
+  std::copy_n(nodal_.begin(), displacement.size(), displacement.begin());
 }
 
 void FrameFields::read_displacement(std::span<const Index> nodes,

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "body/offsets.hpp"
 #include "cpu_reference/routes.hpp"
 #include "solver/condensed_fields.hpp"
 #include "solver/host_fields.hpp"
@@ -42,6 +43,8 @@ class FrameFields final : public solver::HostFields {
   void exclude_candidates(std::span<const Index> elements);
   /// Follows an event.
   void destroy(std::span<const Index> elements);
+  /// Follows a change that the body has recorded: elements with corners at new nodes.
+  void change(const fem::Change& change);
 
   /// What is published, at all nodes and elements or some; outside a region at the price of a
   /// solve.
@@ -57,6 +60,7 @@ class FrameFields final : public solver::HostFields {
   [[nodiscard]] std::vector<BufferPlan> buffers() const;
 
  private:
+  void scatter(const Eigen::VectorXd& u, std::vector<double>& nodal) const;
   [[nodiscard]] Index place(Index element) const {
     return kernel_ ? kernel_->place(element) : kNone;
   }
@@ -70,6 +74,8 @@ class FrameFields final : public solver::HostFields {
   std::vector<Voigt> stress_, next_stress_;  // published; of the last solution
   bool fresh_ = false;                       // next_stress_ is that of nodal_
   std::vector<double> nodal_forces_;         // K u; also another displacement
+  fem::Offsets offsets_;                     // new nodes stand behind the mesh's in what is nodal
+  std::vector<double> own_;                  // of the displacement in work: the offsets
   std::vector<std::uint8_t> excluded_;       // per element; empty: there is no summary
 };
 

@@ -38,6 +38,8 @@ sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   f.max_events = given.max_events;
   require_finite(given.averaging, "averaging");
   f.averaging = given.averaging;
+  f.crack = word<sunder::CrackWay>(given.crack, "fracture", "crack");
+  f.max_new_nodes = given.max_new_nodes;
   f.stress = word<sunder::StressMeasure>(given.stress, "fracture", "stress");
   if (given.has_plane_normal) {
     require_finite(given.plane_normal, 3, "plane_normal");

@@ -257,6 +257,7 @@ enum { SUNDER_SIGMA0_LINE = 0, SUNDER_SIGMA0_TIP = 1, SUNDER_SIGMA0_PRESENT = 2 
 enum { SUNDER_LENGTH_PATH = 0, SUNDER_LENGTH_TOOL = 1 };
 enum { SUNDER_BIRTH_ELEMENT = 0, SUNDER_BIRTH_THROUGH = 1 };
 enum { SUNDER_SIF_FORMULA = 0, SUNDER_SIF_FIELD = 1 };
+enum { SUNDER_CRACK_DESTROYED = 0, SUNDER_CRACK_SPLIT = 1 };
 enum { SUNDER_STRESS_CAUCHY = 0, SUNDER_STRESS_BIOT = 1 };
 
 /// docs/method.md says what each reading means.
@@ -276,6 +277,9 @@ typedef struct sunder_fracture_options {
   double plane_normal[3];
   double averaging;  ///< radius of the mean that strength is judged by [mm], 0: by element
   int32_t stress;    ///< SUNDER_STRESS_*: what laws but linear call stress
+  int32_t crack;     ///< SUNDER_CRACK_*: what a crack of model B leaves
+  int32_t
+      max_new_nodes;  ///< with SUNDER_CRACK_SPLIT: how many may come; 0: as many as the mesh has
   int32_t reserved;
 } sunder_fracture_options;
 
@@ -283,7 +287,7 @@ typedef struct sunder_fracture_options {
   {                                                                                              \
     sizeof(sunder_fracture_options), SUNDER_FRACTURE_NONE, 1e-6, SUNDER_YIELD_MAX_SHEAR,         \
         SUNDER_SIGMA0_LINE, SUNDER_LENGTH_PATH, SUNDER_BIRTH_ELEMENT, SUNDER_SIF_FORMULA, 10000, \
-        0, 0, {0, 0, 0}, 0, SUNDER_STRESS_CAUCHY, 0                                              \
+        0, 0, {0, 0, 0}, 0, SUNDER_STRESS_CAUCHY, SUNDER_CRACK_DESTROYED, 0, 0                   \
   }
 
 SUNDER_API void sunder_fracture_options_init(sunder_fracture_options* options);

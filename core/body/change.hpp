@@ -32,6 +32,9 @@ struct Coming {
 struct NewNode {
   Index parent = 0;
   Axes axes;
+  /// Stiffness between both [N/mm], on each of those axes: what a face that opened leaves, as a
+  /// destroyed element leaves a share alpha. 0: nothing.
+  double tie = 0;
 };
 /// A change that somebody else holds.
 struct Event {

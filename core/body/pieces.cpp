@@ -39,7 +39,43 @@ void LooseSearch::sort_held() {
 }
 
 void LooseSearch::look(std::span<const std::uint8_t> destroyed) {
-  const Mesh& mesh = problem_.mesh();
+  search(problem_.mesh(), destroyed);
+}
+
+void LooseSearch::look(std::span<const std::uint8_t> destroyed,
+                       std::span<const std::array<Index, 4>> corners, Index nodes) {
+  if (nodes > problem_.node_count()) follow(corners, nodes);
+  search(nodes > problem_.node_count() ? split_ : problem_.mesh(), destroyed);
+}
+
+/// New nodes lie where their parents do and are held as those are.
+void LooseSearch::follow(std::span<const std::array<Index, 4>> corners, Index nodes) {
+  split_.tets.assign(corners.begin(), corners.end());
+  split_.nodes = problem_.mesh().nodes;
+  split_.nodes.resize(static_cast<std::size_t>(nodes));
+  std::vector<Index> parent(static_cast<std::size_t>(nodes), kNone);
+  for (std::size_t e = 0; e < corners.size(); ++e) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Index n = corners[e][a], in_mesh = problem_.mesh().tets[e][a];
+      if (n == in_mesh) continue;
+      parent[static_cast<std::size_t>(n)] = in_mesh;
+      split_.nodes[static_cast<std::size_t>(n)] =
+          problem_.mesh().nodes[static_cast<std::size_t>(in_mesh)];
+    }
+  }
+  const auto first = static_cast<std::size_t>(problem_.node_count());
+  std::erase_if(all_held_, [&](const fem::HeldDof& h) { return h.node >= problem_.node_count(); });
+  const std::vector<fem::HeldDof> of_mesh = all_held_;
+  for (std::size_t n = first; n < parent.size(); ++n) {
+    for (const fem::HeldDof& h : of_mesh) {
+      if (h.node == parent[n]) all_held_.push_back({static_cast<Index>(n), h.axis});
+    }
+  }
+  held_.resize(all_held_.size());
+  used_.resize(parent.size(), 1);
+}
+
+void LooseSearch::search(const Mesh& mesh, std::span<const std::uint8_t> destroyed) {
   fem::find_bodies(mesh, destroyed, bodies_, room_);
   isolated_ = static_cast<std::size_t>(std::ranges::count(bodies_.body_of_node, kNone)) - unused_;
   sort_held();

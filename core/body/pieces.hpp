@@ -2,6 +2,7 @@
 // What damage has set loose (sunder/loose_parts.hpp), by graph search.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,6 +17,9 @@ class LooseSearch {
  public:
   explicit LooseSearch(const Problem& problem);
   void look(std::span<const std::uint8_t> destroyed);
+  /// Of a body in which elements have other corners than in the mesh, where nodes have come.
+  void look(std::span<const std::uint8_t> destroyed, std::span<const std::array<Index, 4>> corners,
+            Index nodes);
 
   // Of the last look:
   [[nodiscard]] std::size_t isolated_nodes() const { return isolated_; }
@@ -31,6 +35,8 @@ class LooseSearch {
   }
 
  private:
+  void search(const Mesh& mesh, std::span<const std::uint8_t> destroyed);
+  void follow(std::span<const std::array<Index, 4>> corners, Index nodes);
   void sort_held();
 
   const Problem& problem_;
@@ -41,6 +47,7 @@ class LooseSearch {
   std::size_t unused_ = 0;
   std::vector<std::size_t> held_end_;  // per body
   std::vector<Index> piece_of_body_;
+  Mesh split_;  // empty: no nodes have come
   std::size_t isolated_ = 0, pieces_ = 0, cut_off_ = 0;
 };
 

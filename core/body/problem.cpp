@@ -142,6 +142,30 @@ Problem::Problem(const Problem& whole, const PartOfBody& part)
   anchor_stiffness_ = whole.anchor_stiffness_;
 }
 
+void Problem::check_crack(const FractureOptions& f, const FractureModelRow& model) {
+  if (f.max_new_nodes < 0) {
+    throw InputError(InputFault::out_of_range,
+                     "fracture.max_new_nodes = " + std::to_string(f.max_new_nodes) +
+                         "; it must be at least 0, the default");
+  }
+  if (f.crack != CrackWay::split) return;
+  if (!model.grows_cracks) {
+    throw InputError(InputFault::out_of_range,
+                     "fracture.crack = \"split\" needs model \"B\", which grows cracks; model " +
+                         in_quotes(model.name) + " has none");
+  }
+  if (f.birth != FractureOptions{}.birth) {
+    warnings_.push_back(
+        "fracture.birth is not read: with crack \"split\" a rupture opens faces through the "
+        "thickness "
+        "and takes no element");
+  }
+  if (f.sif != SifSource::field) {
+    warnings_.push_back(
+        "fracture.sif = \"formula\" is not read: split cracks grow by K from the field");
+  }
+}
+
 void Problem::check_options() {
   const FractureOptions& f = scene_.fracture;
   if (!(f.alpha > 0 && f.alpha < 1)) {
@@ -153,6 +177,7 @@ void Problem::check_options() {
     warnings_.push_back("fracture.yield_measure is not read: model " + in_quotes(model.name) +
                         " has a measure of its own");
   }
+  check_crack(f, model);
   if (f.max_events < 1) {
     throw InputError(
         InputFault::out_of_range,

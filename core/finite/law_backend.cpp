@@ -197,6 +197,10 @@ std::size_t LawBackend::check_options() const {
                           const std::string& instead) {
     throw DeviceError(what + " cannot serve " + whom + ": " + why + "; use " + instead);
   };
+  if (needs().split) {
+    refuse("fracture.crack = \"split\"", "tangents have no new unknowns yet",
+           "law \"linear\" in statics, or crack \"destroyed\"");
+  }
   if (solver.precision == Precision::fp32 && !on_device) {
     refuse("precision fp32", "backend cpu computes in fp64 only", "precision fp64 or auto");
   }

@@ -5,6 +5,7 @@
 
 #include "fracture/combined.hpp"
 #include "fracture/fixed_cracks.hpp"
+#include "fracture/split/split_cracks.hpp"
 #include "fracture/worst_element.hpp"
 #include "sunder/fracture_model.hpp"
 
@@ -69,6 +70,9 @@ YieldMeasure strength_measure(const FractureOptions& options) {
 }
 
 std::unique_ptr<FractureCriterion> make_criterion(const Problem& problem) {
+  if (problem.scene().fracture.crack == CrackWay::split) {
+    return std::make_unique<fracture::SplitCracks>(problem);
+  }
   return row_of(problem.scene().fracture.model).make(problem);
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "body/change.hpp"
 #include "fracture/finding.hpp"
 #include "sunder/backend.hpp"
 #include "sunder/crack.hpp"
@@ -59,8 +60,11 @@ struct Decision {
   std::vector<Index> excluded;
   /// To report, e.g. a closing push.
   std::vector<Finding> findings;
+  /// Of cracks that split: the rows then say what has happened, and nothing is destroyed.
+  fem::Change change;
 
   void clear() {
+    change = {};
     elements.clear();
     excluded.clear();
     findings.clear();
@@ -94,6 +98,10 @@ class FractureCriterion {
   [[nodiscard]] virtual PressedNodes pressed_nodes(
       const Press& press, std::span<const std::uint8_t> destroyed) const = 0;
   [[nodiscard]] virtual const std::vector<Crack>& cracks() const = 0;
+  /// Faces that split cracks have opened, by crack.
+  [[nodiscard]] virtual std::vector<CrackFace> faces() const { return {}; }
+  /// Of all elements, where cracks split them; empty: as the mesh has them.
+  [[nodiscard]] virtual std::span<const std::array<Index, 4>> corners() const { return {}; }
 };
 
 /// The criterion of problem.scene().fracture.model; never null (model none: never breaks anything).

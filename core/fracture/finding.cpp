@@ -83,6 +83,9 @@ std::string sentence(const Finding& f, const Scene& scene) {
              " takes its remote stress from a mesh whose nodes are split along the crack, beside "
              "which there is hardly any; take fracture.sif = \"field\", or let the crack take "
              "elements";
+    case Finding::Kind::nodes_spent:
+      return "as many nodes have come as fracture.max_new_nodes allows: tips rest from here on; "
+             "raise it";
   }
   return {};
 }

@@ -23,6 +23,7 @@ struct Finding {
     field_split,       ///< crack, tip
     formula_notch,     ///< crack
     formula_split,     ///< crack
+    nodes_spent,
   };
   Kind kind;
   int subject = 0;            ///< the first of what the kind names

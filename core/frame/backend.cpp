@@ -133,6 +133,23 @@ void Backend::destroy(std::span<const Index> elements) {
   if (stage_ != Stage::created && !problem_->moves()) stage_ = Stage::loaded;
 }
 
+void Backend::change(const fem::Change& change) {
+  require(needs_.split, "new nodes were left out of this backend's needs");
+  require(change.leave.empty(), "elements that leave are destroyed, not changed");
+  if (change.come.empty()) return;
+  if (!damaged_body_->change(change)) {
+    throw NumericalError("a change would let a part of the body move without strain");
+  }
+  do_change(change);
+  if (stage_ != Stage::created && !problem_->moves()) stage_ = Stage::loaded;
+}
+
+Index Backend::node_count() const { return damaged_body_->forms().node_count(); }
+
+void Backend::do_change(const fem::Change&) {
+  throw UsageError("backend " + info().backend + " does not split nodes");
+}
+
 void Backend::prepare(std::span<const Index> elements) {
   require(needs_.damage, "damage was left out of this backend's needs");
   for (Index e : elements) {
@@ -169,7 +186,7 @@ void Backend::read_displacement(std::span<double> displacement) const {
 void Backend::read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const {
   require(stage_ != Stage::created, "there is no displacement before the first solution");
   require(nodes.size() == displacement.size(), "one displacement per node");
-  for (Index n : nodes) require(n >= 0 && n < problem_->node_count(), "a node outside the mesh");
+  for (Index n : nodes) require(n >= 0 && n < node_count(), "a node outside the body");
   do_read_displacement(nodes, displacement);
 }
 

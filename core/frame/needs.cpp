@@ -35,6 +35,7 @@ void check_needs(const Needs& scene, const Needs& backend) {
   check(scene.stress, backend.stress, "stress");
   check(scene.yield, backend.yield, "the yield summary");
   check(scene.damage, backend.damage, "damage");
+  check(scene.split, backend.split, "new nodes");
   check(scene.pristine, backend.pristine, "the intact body's field");
 }
 
@@ -49,6 +50,7 @@ Needs needs_of(const Problem& problem) {
   needs.stress = breaks || scene.output.stress;
   needs.yield = needs.stress && any_breakable(problem);
   needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
+  needs.split = breaks && scene.fracture.crack == CrackWay::split;
   needs.pristine = breaks && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
   if (!needs.stress) {
     needs.left_out.push_back(

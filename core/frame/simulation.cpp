@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "body/law_stress.hpp"
 #include "body/pieces.hpp"
@@ -172,7 +173,7 @@ StepReport Simulation::compute_step(double dt) {
     }
   }
   report.events = events_this_step_;
-  report.destroyed = static_cast<int>(destroyed_.size());
+  report.destroyed = gone_;
   report.compliance = compliance();
   report.passes = backend_->take_pass_times();
   if (moves) {
@@ -202,7 +203,7 @@ StepReport Simulation::so_far() {
   if (!in_work_) return {};
   StepReport report = *in_work_;
   report.events = events_this_step_;
-  report.destroyed = static_cast<int>(destroyed_.size());
+  report.destroyed = gone_;
   report.compliance = compliance();
   return report;
 }
@@ -376,9 +377,11 @@ bool Simulation::apply_event() {
     d.step = next_step_;
     d.event = next_event_;
     d.load_factor = scene_time_;
-    event_.push_back(d.element);
+    if (!d.lives) event_.push_back(d.element);
   }
-  backend_->destroy(event_);
+  if (!event_.empty()) backend_->destroy(event_);
+  if (!decision_->change.come.empty()) backend_->change(decision_->change);
+  gone_ += static_cast<int>(event_.size());
   if (backend_->needs().yield) backend_->exclude_candidates(decision_->excluded);
   if (averaged_) averaged_->exclude(decision_->excluded);
   ++next_event_;
@@ -422,7 +425,7 @@ void Simulation::apply_removals() {
 }
 
 void Simulation::find_loose() {
-  loose_->look(backend_->destroyed());
+  loose_->look(backend_->destroyed(), criterion_->corners(), backend_->node_count());
   loose_nodes_ = loose_->isolated_nodes();
   loose_pieces_ = loose_->pieces();
   loose_elements_ = loose_->elements_cut_off();
@@ -454,6 +457,23 @@ void Simulation::measure_deformation(StepReport& report) {
 }
 
 const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
+
+Mesh Simulation::mesh() const {
+  Mesh mesh = problem_->mesh();
+  const auto corners = criterion_->corners();
+  if (corners.empty()) return mesh;
+  mesh.nodes.resize(static_cast<std::size_t>(backend_->node_count()));
+  for (std::size_t e = 0; e < corners.size(); ++e) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      mesh.nodes[static_cast<std::size_t>(corners[e][a])] =
+          problem_->mesh().nodes[static_cast<std::size_t>(problem_->mesh().tets[e][a])];
+    }
+    mesh.tets[e] = corners[e];
+  }
+  return mesh;
+}
+
+std::vector<CrackFace> Simulation::crack_faces() const { return criterion_->faces(); }
 
 std::vector<TipState> Simulation::tips() {
   std::vector<TipState> tips;
@@ -566,6 +586,13 @@ void Simulation::set_velocity(std::span<const Vec3> velocity) {
 std::vector<Vec3> Simulation::displacement() const {
   std::vector<Vec3> result(problem_->mesh().nodes.size(), Vec3::Zero());
   if (!solved_) return result;
+  if (backend_->node_count() > problem_->node_count()) {
+    result.resize(static_cast<std::size_t>(backend_->node_count()));
+    std::vector<Index> nodes(result.size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    backend_->read_displacement(nodes, result);
+    return result;
+  }
   std::vector<double> flat(3 * result.size());
   backend_->read_displacement(flat);
   for (std::size_t n = 0; n < result.size(); ++n) {

@@ -289,6 +289,13 @@ std::span<const MemberKey<FractureOptions>> fracture_keys() {
       row<&F::sif>("fracture", "sif",
                    "model B: K by Eq. 2 or by the current field (method.md \"Field K\")", "",
                    {.words = {"formula", "field"}}),
+      row<&F::crack>(
+          "fracture", "crack",
+          "model B: what a crack leaves, destroyed elements or a surface of faces that "
+          "have opened, without lost volume (method.md \"Split cracks\")",
+          "\"split\" without model B: error; a route, backend or law that cannot: exit code "
+          "4; `birth` beside \"split\" is not read, with a warning",
+          {.words = {"destroyed", "split"}}),
       row<&F::max_events>("fracture", "max_events", "most events of one step",
                           "below 1: error; reached: a warning", {.least = 1}),
       row<&F::plane_normal>("fracture", "plane_normal",
@@ -300,6 +307,10 @@ std::span<const MemberKey<FractureOptions>> fracture_keys() {
           "model B: a rupture that starts a crack takes its element alone or all through "
           "the thickness (method.md 4)",
           "", {.words = {"element", "through"}}),
+      row<&F::max_new_nodes>("fracture", "max_new_nodes",
+                             "crack \"split\": how many nodes may come; left out: as many as the "
+                             "mesh has, at least 1,000",
+                             "below 0: error; reached: tips rest, with a warning"),
       row<&F::averaging>("fracture", "averaging",
                          "radius of the mean stress that strength is judged by [mm]; 0: by element "
                          "(method.md \"Averaged strength\")",

@@ -11,32 +11,25 @@
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
-Index Border::unknown(Index added, int axis) const {
-  return unknowns_[static_cast<std::size_t>(added)][static_cast<std::size_t>(axis)];
-}
-
-void Border::number(const fem::Forms& forms) {
-  unknowns_.clear();
-  Index count = 0;
-  for (const fem::NewNode& node : forms.new_nodes()) {
-    std::array<Index, 3>& own = unknowns_.emplace_back();
-    for (int axis = 0; axis < 3; ++axis) {
-      own[static_cast<std::size_t>(axis)] = node.axes.has(axis) ? count++ : kNone;
-    }
-  }
-  for (Eigen::VectorXd* v : {&load_, &d_, &lack_, &step_}) v->setZero(count);
-}
-
 void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
                       Eigen::Index columns) {
-  number(forms);
+  unknowns_.follow(forms);
+  for (Eigen::VectorXd* v : {&load_, &d_, &lack_, &step_}) v->setZero(unknowns_.count());
   if (empty()) return;
-  e_.setZero(columns, size());
+  entries_.clear();
   f_.setZero(size(), size());
+  const Index first = forms.problem().node_count();
   for (const auto& [element, form] : forms.came()) {
-    const bool at_new = std::ranges::any_of(
-        form.corners, [&](Index n) { return n >= forms.problem().node_count(); });
+    const bool at_new = std::ranges::any_of(form.corners, [&](Index n) { return n >= first; });
     if (at_new && form.share > 0) add(forms, form, basis, grips);
+  }
+  e_.resize(columns, size());
+  e_.setFromTriplets(entries_.begin(), entries_.end());
+  for (std::size_t i = 0; i < unknowns_.nodes().size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index own = unknowns_.unknown(static_cast<Index>(i), axis);
+      if (own != kNone) f_(own, own) += unknowns_.nodes()[i].tie;
+    }
   }
 }
 
@@ -50,13 +43,14 @@ void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis
   for (int i = 0; i < 12; ++i) {
     const Index added =
         form.corners[static_cast<std::size_t>(i / 3)] - forms.problem().node_count();
-    own[static_cast<std::size_t>(i)] = added < 0 ? kNone : unknown(added, i % 3);
+    own[static_cast<std::size_t>(i)] = added < 0 ? kNone : unknowns_.unknown(added, i % 3);
   }
   for (int j = 0; j < 12; ++j) {
     const Index column = own[static_cast<std::size_t>(j)];
     if (column == kNone) continue;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      e_(grips + rows_[r], column) += y_.row(static_cast<Eigen::Index>(r)).head<6>().dot(w.row(j));
+      entries_.emplace_back(static_cast<int>(grips) + rows_[r], column,
+                            y_.row(static_cast<Eigen::Index>(r)).head<6>().dot(w.row(j)));
     }
     for (int i = 0; i < 12; ++i) {
       const Index row = own[static_cast<std::size_t>(i)];
@@ -65,19 +59,38 @@ void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis
   }
 }
 
-bool Border::factor(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m) {
+/// x += sign N d.
+void Border::add_product_e(const Eigen::VectorXd& d, double sign, Eigen::VectorXd& x) const {
+  for (Eigen::Index j = 0; j < e_.outerSize(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator at(e_, j); at; ++at) {
+      x[at.row()] += sign * at.value() * d[j];
+    }
+  }
+  x.head(n_.rows()).noalias() += sign * (n_ * d);
+}
+
+bool Border::factor(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
+                    Eigen::Index changed) {
   if (empty()) return true;
-  const Eigen::Index n = e_.rows();
-  h_.noalias() = g.topLeftCorner(n, n) * e_;
-  n_ = e_;
-  n_.noalias() += m.topLeftCorner(n, n) * h_;
-  h_.noalias() = g.topLeftCorner(n, n) * n_;
+  const Eigen::Index n = e_.rows(), k = std::min(changed, n);
+  h_.setZero(n, size());  // G E; G is symmetric, its rows lie together
+  for (Eigen::Index j = 0; j < e_.outerSize(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator at(e_, j); at; ++at) {
+      h_.col(j) += at.value() * g.row(at.row()).head(n).transpose();
+    }
+  }
+  n_.noalias() = m.topLeftCorner(k, k) * h_.topRows(k);
+  h_.noalias() += g.topLeftCorner(n, k) * n_;  // G N
   Eigen::MatrixXd s = f_;
-  s.noalias() -= e_.transpose() * h_;
+  for (Eigen::Index i = 0; i < e_.outerSize(); ++i) {
+    for (Eigen::SparseMatrix<double>::InnerIterator at(e_, i); at; ++at) {
+      s.row(i).head(i + 1) -= at.value() * h_.row(at.row()).head(i + 1);
+    }
+  }
   for (Eigen::Index j = 0; j < s.cols(); ++j) {
     if (f_(j, j) == 0) s(j, j) = 1;  // no element there (any more): its offset is 0
   }
-  s_.compute(s);
+  s_.compute(s.selfadjointView<Eigen::Lower>());
   return s_.info() == Eigen::Success && s_.matrixLLT().allFinite();
 }
 
@@ -107,11 +120,11 @@ Forces Border::take(const Forces& forces, Index first) {
 }
 
 void Border::start(const Eigen::VectorXd& p, Eigen::VectorXd& x) {
-  const Eigen::Index n = e_.rows();
   d_ = load_;
-  d_.noalias() -= n_.transpose() * p.head(n);
+  d_.noalias() -= e_.transpose() * p.head(e_.rows());
+  d_.noalias() -= n_.transpose() * p.head(n_.rows());
   s_.solveInPlace(d_);
-  x.head(n).noalias() -= n_ * d_;
+  add_product_e(d_, -1, x);
 }
 
 void Border::add_lack(const Eigen::VectorXd& v, Eigen::VectorXd& lack) {
@@ -128,7 +141,7 @@ double Border::correct(const Eigen::VectorXd& lack, Eigen::VectorXd& x, Eigen::V
   step_ = lack_;
   s_.solveInPlace(step_);
   d_ += step_;
-  x.head(n).noalias() -= n_ * step_;
+  add_product_e(step_, -1, x);
   moved.noalias() -= h_.topRows(moved.size()) * step_;
   return lack_.dot(step_);
 }
@@ -137,11 +150,11 @@ void Border::follow_grips(const Eigen::VectorXd& forces, Eigen::VectorXd& x) {
   step_.noalias() = h_.topRows(forces.size()).transpose() * forces;
   s_.solveInPlace(step_);
   d_ -= step_;
-  x.head(e_.rows()).noalias() += n_ * step_;
+  add_product_e(step_, 1, x);
 }
 
 std::size_t Border::bytes() const {
-  const Eigen::Index doubles = e_.size() + f_.size() + n_.size() + h_.size() + f_.size();
+  const Eigen::Index doubles = 2 * e_.nonZeros() + f_.size() + n_.size() + h_.size() + f_.size();
   return empty() ? 0 : static_cast<std::size_t>(doubles) * sizeof(double);
 }
 

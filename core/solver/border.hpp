@@ -9,10 +9,11 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 #include <array>
 #include <vector>
 
-#include "body/change.hpp"
+#include "body/offsets.hpp"
 #include "solver/base.hpp"
 #include "solver/difference_basis.hpp"
 
@@ -23,16 +24,17 @@ class Border {
   /// Whether there are no new unknowns.
   [[nodiscard]] bool empty() const { return d_.size() == 0; }
   [[nodiscard]] Index size() const { return static_cast<Index>(d_.size()); }
-  /// Which of them a new node has on an axis; kNone: there it keeps to its parent.
-  [[nodiscard]] Index unknown(Index added, int axis) const;
+  /// Which new node has which of them.
+  [[nodiscard]] const fem::Offsets& unknowns() const { return unknowns_; }
 
   /// E and F of the elements at new nodes, all of them in the basis; E has `columns` rows, the
   /// first `grips` of them zero.
   void assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
                 Eigen::Index columns);
-  /// Reads the leading blocks of G and M; false where S is not positive definite in double
-  /// precision.
-  [[nodiscard]] bool factor(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m);
+  /// Reads the leading blocks of G and M; of M no more than `changed` rows are not 0. False where S
+  /// is not positive definite in double precision.
+  [[nodiscard]] bool factor(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
+                            Eigen::Index changed);
   /// What the border adds to (A^-1)_GG of the grips.
   void add_to_grips(Eigen::MatrixXd& compliance) const;
 
@@ -54,12 +56,15 @@ class Border {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  void number(const fem::Forms& forms);
   void add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
            Eigen::Index grips);
+  void add_product_e(const Eigen::VectorXd& d, double sign, Eigen::VectorXd& x) const;
 
-  std::vector<std::array<Index, 3>> unknowns_;  // of each new node
-  Eigen::MatrixXd e_, f_, n_, h_;
+  fem::Offsets unknowns_;
+  // An element has few differences: E is sparse, and N = E where nothing but splits has changed.
+  Eigen::SparseMatrix<double> e_;
+  std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::MatrixXd f_, n_, h_;  // of N the rows beyond E, those of M
   Eigen::LLT<Eigen::MatrixXd> s_;
   Eigen::VectorXd load_, d_, lack_, step_;  // f_d; d; what lacks on d; a step of d
   std::vector<Index> dofs_;                 // of the forces before f_d

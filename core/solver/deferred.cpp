@@ -217,6 +217,7 @@ void Deferred::take_back() {
 
 /// No element differs from what the base has: A^-1 = X.
 void Deferred::clear() {
+  changed_ = 0;
   m_.topLeftCorner(count(), padded(count())).setZero();
   d_.topLeftCorner(count(), padded(count())).setZero();
   grip_compliance_.setZero(grips_, padded(grips_));
@@ -283,6 +284,7 @@ void Deferred::gather_event(std::span<const Part> all) {
 bool Deferred::update(std::span<const Part> parts, bool more) {
   gather(parts);
   if (rows_.empty()) return true;  // every corner is held: nothing changes
+  changed_ = std::max(changed_, Eigen::Index{rows_.back()} + 1);
   const Eigen::Index n = count(), width = padded(rank_), room = m_.rows();
   const auto rows = static_cast<Eigen::Index>(rows_.size());
   make_room(columns_, rows, padded(room));

@@ -156,7 +156,8 @@ class Deferred {
   Border border_;
   std::vector<Difference> wanted_;  // by what is to be prepared
   linear_algebra::RowMajor compliance_, m_,
-      d_;  // G = B^T X B, M and the stiffness D that is gone, in B
+      d_;                     // G = B^T X B, M and the stiffness D that is gone, in B
+  Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
   // The event in work: what it takes and what it adds, its update vectors and where they act, and

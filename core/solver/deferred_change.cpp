@@ -25,7 +25,7 @@ bool Deferred::change(const fem::Event& change) {
 Index Deferred::unknown(Index node, int axis) const {
   if (node < problem_.node_count()) return problem_.dof(node, axis);
   if (node >= forms_.node_count()) throw UsageError("there is no node " + std::to_string(node));
-  const Index own = border_.unknown(node - problem_.node_count(), axis);
+  const Index own = border_.unknowns().unknown(node - problem_.node_count(), axis);
   return own == kNone ? kNone : base_->size() + own;
 }
 
@@ -68,6 +68,10 @@ void Deferred::collect(const fem::Event& event) {
 /// digits of M decide otherwise, all changes so far are taken at once.
 bool Deferred::apply(const fem::Event& event) {
   collect(event);
+  if (less_.empty() && more_.empty()) {  // splits alone change nothing between old unknowns
+    forms_.follow(event);
+    return true;
+  }
   const bool destroys = event.come.empty() && forms_.came().empty();
   const bool followed = update_both();
   forms_.follow(event);
@@ -112,7 +116,7 @@ void Deferred::sum_up_d() {
 bool Deferred::set_border() {
   if (border_.empty() && forms_.new_nodes().empty()) return true;
   border_.assemble(forms_, basis_, grips_, count());
-  return border_.factor(compliance_, m_);
+  return border_.factor(compliance_, m_, changed_);
 }
 
 }  // namespace sunder::solver

@@ -39,9 +39,19 @@ HostFrame::HostFrame(const fem::DamagedBody& body, InverseRoute& route, HostFiel
 }
 
 void HostFrame::set_load(const Load& load) {
+  make_room_for_offsets();
   for (Index d : load_.force_dofs) force_[d] = 0;
   load_ = load;
   for (std::size_t i = 0; i < load.forces.size(); ++i) force_[load.force_dofs[i]] = load.forces[i];
+}
+
+/// Offsets of new nodes bear no load.
+void HostFrame::make_room_for_offsets() {
+  offsets_.follow(body_.forms());
+  const Eigen::Index all = problem().dof_count() + offsets_.count(), before = force_.size();
+  if (all == before) return;
+  force_.conservativeResize(all);
+  if (all > before) force_.tail(all - before).setZero();
 }
 
 Precision HostFrame::precision() const {
@@ -49,6 +59,7 @@ Precision HostFrame::precision() const {
 }
 
 int HostFrame::solve(double energy_tolerance, bool) {
+  make_room_for_offsets();
   route().set_energy_tolerance(energy_tolerance);
   const int iterations = route().solve(load_, force_, u_).iterations;
   route().complete(u_);
@@ -101,7 +112,7 @@ void HostFrame::add_correction() {
 }
 
 bool HostFrame::fall_back(bool on) {
-  if (!fall_back_) return false;
+  if (!fall_back_ || body_.forms().node_count() > problem().node_count()) return false;
   other_ = on ? fall_back_() : nullptr;
   return true;
 }

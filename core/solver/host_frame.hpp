@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "body/damaged_body.hpp"
+#include "body/offsets.hpp"
 #include "solver/frame_device.hpp"
 #include "solver/host_fields.hpp"
 #include "solver/inverse_route.hpp"
@@ -26,7 +27,8 @@ class HostFrame final : public FrameDevice {
 
   void set_load(const Load& load);
   [[nodiscard]] const Load& load() const { return load_; }
-  /// The solution in work, over all unknowns; solve_region() fills those of the region alone.
+  /// The solution in work, over all unknowns, offsets of new nodes last; solve_region() fills those
+  /// of the region alone.
   [[nodiscard]] const Eigen::VectorXd& u() const { return u_; }
   /// Force that the grips exert on the body, one per gripped unknown.
   [[nodiscard]] std::span<const double> reactions() const { return reactions_; }
@@ -51,6 +53,7 @@ class HostFrame final : public FrameDevice {
 
  private:
   void compute_residual();
+  void make_room_for_offsets();
   void compute_stress();
   [[nodiscard]] const Problem& problem() const { return body_.problem(); }
   [[nodiscard]] InverseRoute& route() { return other_ ? *other_ : route_; }
@@ -64,6 +67,7 @@ class HostFrame final : public FrameDevice {
   std::unique_ptr<InverseRoute> other_;  // while a frame falls back
   std::vector<double> anchors_;          // stiffness of each gripped unknown's anchor
 
+  fem::Offsets offsets_;
   Load load_;
   Eigen::VectorXd force_, u_, du_, product_, r_;
   std::vector<double> reactions_;

@@ -2,6 +2,7 @@
 #include "solver/renewed_update.hpp"
 
 #include "solver/load_room.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::solver {
 
@@ -23,7 +24,7 @@ void RenewedUpdate::follow(const fem::Event& event, bool anew) {
   if (coming_->due()) take_base();
   coming_->follow();
   if (anew || !based_.deferred->follow(event)) {
-    rebase();
+    if (!rebase()) throw NumericalError("the update of the split body is singular");
   } else if (begins()) {
     coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
                                  const linear_algebra::FactorWork& work) {
@@ -40,8 +41,7 @@ bool RenewedUpdate::begins() const {
 }
 
 bool RenewedUpdate::rebase() {
-  if (!coming_) return false;
-  body_.refuse_new_unknowns();
+  if (!coming_ || !body_.forms().new_nodes().empty()) return false;  // no base takes those over
   coming_->give_up();
   saved_ms_ = saved_ms();
   based_ = {};  // frees the old base first

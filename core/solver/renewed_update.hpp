@@ -34,10 +34,10 @@ class RenewedUpdate {
   /// Remembers the load of a frame: a base that is made is checked by it.
   void loaded(const Load& load) { load_ = load; }
   /// Follows an event that the body has recorded already. `anew`: a base of the body as it is now
-  /// costs less than following. Throws UsageError where new unknowns would need a new base.
+  /// costs less than following. Throws NumericalError where new unknowns would need a new base.
   void follow(const fem::Event& event, bool anew = false);
-  /// Waits for a base of the body as it is now. False: nothing can be destroyed. Throws UsageError
-  /// where there are new unknowns.
+  /// Waits for a base of the body as it is now. False: nothing can be destroyed, or there are new
+  /// unknowns, which no base takes over.
   bool rebase();
 
   [[nodiscard]] Deferred& deferred() { return *based_.deferred; }

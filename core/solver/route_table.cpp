@@ -41,6 +41,11 @@ std::string asked_for(const std::string& detail = {}) {
 // condensed: the inverse of a region, always on the host.
 
 std::string against_condensed(const Question& q) {
+  if (q.needs.split) {
+    return "route condensed has no room for the unknowns which split nodes bring; use route "
+           "inverse "
+           "or factor";
+  }
   if (q.device.displayed) {
     return "route condensed keeps a region's fields alone on the device, but the host draws those "
            "of the whole body; use route inverse or cg";
@@ -181,6 +186,13 @@ void factor_update(FrameWork& work, const FrameShape& s) {
   work.host(path, 1, 2 * kDifferences * path);
 }
 
+/// Its matrix is that of the mesh's own nodes.
+std::string against_cg(const Question& q) {
+  if (!q.needs.split) return {};
+  return "route cg has no room for the unknowns which split nodes bring; use route inverse or "
+         "factor";
+}
+
 // cg: with the host's factor the yardstick; apart from it some hundred iterations a frame.
 
 bool without_factor(const Question& q) { return q.factor_bytes > q.device.memory; }
@@ -225,7 +237,7 @@ constexpr std::array<RouteRow, 4> kRoutes = {{
      why_inverse, inverse_solution, inverse_update},
     {Route::factor, "factor", Updates::deferred, nothing, no_bytes, always, why_factor,
      factor_solution, factor_update},
-    {Route::cg, "cg", Updates::none, nothing, no_bytes, cg_pays, why_cg, cg_solution, no_update},
+    {Route::cg, "cg", Updates::none, against_cg, no_bytes, cg_pays, why_cg, cg_solution, no_update},
 }};
 
 }  // namespace

@@ -121,6 +121,17 @@ void StressKernel::destroy(std::span<const Index> elements) {
   }
 }
 
+void StressKernel::change(std::span<const fem::Coming> come) {
+  for (const fem::Coming& c : come) {
+    if (place_[c.element] == kNone) continue;
+    Block& b = blocks_[static_cast<std::size_t>(place_[c.element] / kLanes)];
+    const int l = place_[c.element] % kLanes;
+    for (std::size_t a = 0; a < 4; ++a) b.corner[a][l] = 3 * c.form.corners[a];
+    const auto at = std::ranges::lower_bound(changed_, c.element);
+    if (at == changed_.end() || *at != c.element) changed_.insert(at, c.element);
+  }
+}
+
 namespace {
 
 /// Of eight elements, (s1 / yield)^2 where s1 may be tension, else 0: s1 is at most the mean stress
@@ -292,6 +303,17 @@ void StressKernel::nodal_forces(std::span<double> forces) {
       forces[3 * n + 2] = z;
     }
   });
+  const std::size_t first = 3 * (node_begin_.size() - 1);  // of new nodes
+  std::ranges::fill(forces.subspan(first), 0.0);
+  for (Index e : changed_) {
+    const auto at = static_cast<std::size_t>(place_[e]), k = at / kLanes, l = at % kLanes;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto node = static_cast<std::size_t>(blocks_[k].corner[a][l]);
+      if (node < first) continue;
+      const double* f = forces_.data() + k * kForces + a * kLanes + l;
+      for (std::size_t axis = 0; axis < 3; ++axis) forces[node + axis] += f[axis * 4 * kLanes];
+    }
+  }
 }
 
 Worst StressKernel::worst(std::span<const std::uint8_t> excluded,

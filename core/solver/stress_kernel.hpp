@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "body/change.hpp"
 #include "linear_algebra/workers.hpp"
 #include "solver/deformation_search.hpp"
 #include "sunder/backend.hpp"
@@ -23,6 +24,9 @@ class StressKernel {
 
   /// Follows the removal of elements: their stress is scaled and no longer counts.
   void destroy(std::span<const Index> elements);
+
+  /// Follows elements that come as they were but for their corners.
+  void change(std::span<const fem::Coming> come);
 
   /// Stress a_e D B u from the displacement at all nodes (3 * nodes), bit by bit that of
   /// fem::stress, one value per listed element in that order; empty `stress`: not stored. Returns
@@ -45,7 +49,8 @@ class StressKernel {
   [[nodiscard]] Index place(Index element) const { return place_[element]; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] int threads() const { return workers_->count(); }
-  /// Forces K u on all nodes (3 * nodes), of the displacement that the last run() got.
+  /// Forces K u on all nodes (3 * nodes), of the displacement that the last run() got. Those on a
+  /// node of the mesh are the whole of what acts there, new nodes included (method.md 14).
   void nodal_forces(std::span<double> forces);
 
   /// Makes run() keep what summarize() reads.
@@ -149,6 +154,7 @@ class StressKernel {
   std::vector<double> forces_;
   std::vector<std::size_t> node_begin_;
   std::vector<Index> at_node_;
+  std::vector<Index> changed_;  // elements with corners at new nodes, ascending
   std::vector<Partial> partials_;
   std::unique_ptr<Workers> workers_;
 };

@@ -18,7 +18,8 @@ namespace sunder {
 
 namespace fem {
 class DamagedBody;
-}
+struct Change;
+}  // namespace fem
 
 /// What a scene asks of a backend; nothing else is allocated, built or computed. Asking for what
 /// was not planned is a UsageError.
@@ -27,6 +28,7 @@ struct Needs {
   bool yield = false;     ///< ratio to yield with its summary
   bool damage = false;    ///< elements may be destroyed
   bool pristine = false;  ///< displacement of the intact body (method B's remote stress)
+  bool split = false;     ///< cracks open faces: elements change corners, nodes come (change())
   std::vector<std::string> left_out;  ///< what this scene does not need, in words
 };
 
@@ -201,6 +203,12 @@ class Backend {
   /// Destroys live elements (one event: one update of rank 6 k). Ids must be valid, distinct, live.
   void destroy(std::span<const Index> elements);
 
+  /// Parts elements (method.md "Split cracks"): none leaves, some come as they were but with
+  /// corners at new nodes. One event, as destroy() is.
+  void change(const fem::Change& change);
+  /// Nodes of the mesh and, with ids after theirs, those that changes have brought.
+  [[nodiscard]] Index node_count() const;
+
   /// Takes elements out of StressSummary::candidate for good.
   void exclude_candidates(std::span<const Index> elements);
 
@@ -209,7 +217,7 @@ class Backend {
 
   /// Displacement of the last solve at all nodes (supports included), shape (3 * nodes), mm.
   void read_displacement(std::span<double> displacement) const;
-  /// Same at some nodes, so that a quiet frame reads back only what its instruments need.
+  /// Same at some nodes, new ones too: a quiet frame reads back only what its instruments need.
   void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;
   /// Stress of the last stress() (that of an earlier solve after a solve() that failed), Voigt
   /// order, shape (elements), MPa.
@@ -241,6 +249,7 @@ class Backend {
   virtual Deformation do_deformation() = 0;
   virtual void do_cut_off(std::span<const Index> elements) = 0;
   virtual void do_destroy(std::span<const Index> elements) = 0;  // damaged_body() knows them
+  virtual void do_change(const fem::Change& change);             // damaged_body() knows it
   virtual void do_prepare(std::span<const Index>) {}
   virtual void do_exclude_candidates(std::span<const Index> elements) = 0;
   virtual void do_solve_pristine(const Load& load, std::span<double> displacement) = 0;

@@ -3,6 +3,7 @@
 // Geometry is the projection on the board's plane (method.md 4), undeformed, in mm.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory_resource>
 #include <optional>
@@ -66,6 +67,13 @@ struct SifTerms {
   /// What the formula's direction v = K_a e_a + K_b d + K_c e_c is made of (method.md 8), in the
   /// plane: the tip's place [mm] and the unit vectors; d is its direction before the growth.
   Vec2 at = Vec2::Zero(), d = Vec2::Zero(), e_a = Vec2::Zero(), e_c = Vec2::Zero();
+};
+
+/// A face of a split crack that has opened: two triangles that were one. Nodes of the body as it
+/// is, in the same order on both lips; the lip left of the path (seen from above) first.
+struct CrackFace {
+  int crack = 0;
+  std::array<Index, 3> left{}, right{};
 };
 
 /// A tip as it stands, whether it grows or rests (Simulation::tips): a row of tips.csv.

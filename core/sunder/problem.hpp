@@ -14,6 +14,8 @@
 
 namespace sunder {
 
+struct FractureModelRow;
+
 namespace fem {
 struct Bodies;
 }
@@ -113,6 +115,7 @@ class Problem {
   void resolve_presses();
   void resolve_elements();
   void check_options();
+  void check_crack(const FractureOptions& f, const FractureModelRow& model);
   void check_motion();
   void check_density(const std::string& name, const Material& material);
   void check_held_bodies(const fem::Bodies& bodies);

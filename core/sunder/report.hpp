@@ -15,11 +15,14 @@ namespace sunder {
 enum class Cause { mss, sif, preset, script, principal };
 [[nodiscard]] const char* to_string(Cause cause);
 
-/// One destroyed element (a row of events.csv).
+/// One destroyed element, or what a split crack did (a row of events.csv).
 struct DestroyedElement {
   int step = 0;
   int event = 0;  ///< over the whole run, from 0
   Index element = kNone;
+  /// A crack has split (fracture.crack): nothing is destroyed, `element` is the one that asked for
+  /// a new crack, none where one grows.
+  bool lives = false;
   Cause cause = Cause::mss;
   int crack = kNone;            ///< for sif, preset, and the mss that starts a crack
   std::optional<double> ratio;  ///< mss, principal: measure/yield; sif: r_e / max(rho, h/2)

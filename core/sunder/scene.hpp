@@ -121,6 +121,9 @@ enum class RemoteStress { line, tip, present };
 enum class CrackLength { path, tool };
 enum class CrackBirth { element, through };
 enum class SifSource { formula, field };
+/// What a crack of model B leaves: destroyed elements, or a surface of faces that have opened
+/// (method.md "Split cracks").
+enum class CrackWay { destroyed, split };
 
 struct FractureOptions {
   FractureModel model = FractureModel::none;
@@ -132,7 +135,9 @@ struct FractureOptions {
   /// element through the thickness (method.md 4).
   CrackBirth birth = CrackBirth::element;
   SifSource sif = SifSource::formula;
-  int max_events = 10000;            ///< of one step
+  CrackWay crack = CrackWay::destroyed;
+  int max_new_nodes = 0;   ///< with split: how many may come; 0: as many as the mesh has, or 1,000
+  int max_events = 10000;  ///< of one step
   std::optional<Vec3> plane_normal;  ///< overrides the third axis of the bounding box
   double averaging = 0;  ///< radius of the mean that strength is judged by [mm], 0: by element
   StressMeasure stress =

@@ -101,7 +101,13 @@ class Simulation {
   /// In motion: the body goes on with these, one per node, all finite; supports stay.
   void set_velocity(std::span<const Vec3> velocity);
 
-  /// Displacement at all nodes, shape (nodes), mm; zero before the first step.
+  /// The body as split cracks leave it: the problem's mesh with nodes that have come after its own
+  /// and the corners that elements have now. Element ids never change.
+  [[nodiscard]] Mesh mesh() const;
+  /// Faces that split cracks have opened (nodes of mesh()), by crack.
+  [[nodiscard]] std::vector<CrackFace> crack_faces() const;
+
+  /// Displacement at all nodes of mesh(), mm; zero before the first step.
   [[nodiscard]] std::vector<Vec3> displacement() const;
   /// Element stress, shape (elements), MPa. Throws UsageError when Needs leave stress out.
   [[nodiscard]] std::vector<Voigt> stress() const;
@@ -176,6 +182,7 @@ class Simulation {
   double time_ = 0, scene_time_ = 0;  // [s] of the last step; of the step in work or the last
   bool even_ = true;                  // all steps so far were the scene's own
   int next_event_ = 0;
+  int gone_ = 0;  // elements destroyed so far
   int events_this_step_ = 0;
   int decisions_this_step_ = 0;
   const StepReport* in_work_ = nullptr;  // of step()

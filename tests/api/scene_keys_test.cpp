@@ -31,6 +31,8 @@ const std::map<std::string, Member<sunder_fracture_options>>& fracture_members()
       {"birth", &O::birth},
       {"averaging", &O::averaging},
       {"stress", &O::stress},
+      {"crack", &O::crack},
+      {"max_new_nodes", &O::max_new_nodes},
   };
   return members;
 }

@@ -221,7 +221,7 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
       position,
       fitted_direction(crack, tip, radius).value_or(mean_direction(crack, tip, radius / 2))};
   const auto part = thin(radius) ? FreeSurface::Part::outline : FreeSurface::Part::all;
-  builder_.collect(position, radius, view.destroyed, part, stretch, domain_);
+  builder_.collect(position, radius, view.destroyed, part, stretch, view.corners, domain_);
   const TipDomain& domain = domain_;
   if (domain.elements.empty()) return result;  // nothing left to carry a field
   result.material = tip_material(domain);
@@ -242,7 +242,7 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   result.factors = interaction_integral(input, result.material);
   if (!stretch) result.j = energy_release(input);
   if (shift) *shift = shift_integral(input, result.material);
-  result.disturbed.fixed = std::ranges::any_of(domain.nodes, [&](Index n) {
+  result.disturbed.fixed = std::ranges::any_of(domain.in_mesh, [&](Index n) {
     for (int axis = 0; axis < 3; ++axis)
       if (axis != normal_axis_ && problem_.dof(n, axis) == kNone) return true;
     return false;
@@ -263,9 +263,14 @@ TipMaterial FieldIntensityMeter::tip_material(const TipDomain& domain) const {
     compliance += v / problem_.small_strain(e).young;
     poisson += v * problem_.small_strain(e).poisson;
   }
-  const auto held = std::count_if(domain.nodes.begin(), domain.nodes.end(),
-                                  [&](Index n) { return problem_.dof(n, normal_axis_) == kNone; });
-  const bool flat = 2 * static_cast<std::size_t>(held) > domain.nodes.size();
+  // Faces that are held flat make plane strain of a thin board.
+  std::size_t held = 0, faces = 0;
+  for (Index n : domain.in_mesh) {
+    if (!board_.on_bottom(n) && !board_.on_top(n)) continue;
+    ++faces;
+    held += problem_.dof(n, normal_axis_) == kNone;
+  }
+  const bool flat = 2 * held > faces;
   TipMaterial material;
   material.young = volume / compliance;
   material.poisson = poisson / volume;

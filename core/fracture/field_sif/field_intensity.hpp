@@ -28,6 +28,8 @@ struct FieldView {
   std::function<void(std::span<const Index>, std::span<Vec3>)> displacement;
   std::span<const NodalForce> forces;  ///< of pulling and pressing instruments
   bool small = false;                  ///< a field of small strain, whatever the body's laws
+  /// Of all elements, where cracks have split some; empty: as the mesh has them.
+  std::span<const std::array<Index, 4>> corners = {};
 };
 
 /// What disturbs the field around a tip.

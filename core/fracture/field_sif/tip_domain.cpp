@@ -44,16 +44,18 @@ void DomainBuilder::reserve(double radius, TipDomain& domain) {
   domain.elements.reserve(most);
   domain.corners.reserve(most);
   domain.nodes.reserve(nodes);
+  domain.in_mesh.reserve(nodes);
   domain.weight.reserve(nodes);
 }
 
 void DomainBuilder::collect(const Vec2& tip, double radius, std::span<const std::uint8_t> destroyed,
                             FreeSurface::Part part, const std::optional<FrontStretch>& stretch,
-                            TipDomain& domain) {
+                            std::span<const std::array<Index, 4>> corners_now, TipDomain& domain) {
   ++round_;
   domain.elements.clear();
   domain.corners.clear();
   domain.nodes.clear();
+  domain.in_mesh.clear();
   domain.weight.clear();
   domain.radius = radius;
   domain.front_length = front_length(board_.plane(), stretch);
@@ -64,10 +66,14 @@ void DomainBuilder::collect(const Vec2& tip, double radius, std::span<const std:
     if (destroyed[e]) continue;
     const bool inside = (board_.centroid(e) - tip).squaredNorm() < full * full;
     if (inside && !surface_.touches(e, part)) continue;
+    const auto& tet = board_.mesh().tets[e];
+    const auto& now = corners_now.empty() ? tet : corners_now[static_cast<std::size_t>(e)];
+    const auto last = static_cast<std::size_t>(*std::ranges::max_element(now));
+    if (last >= place_.size()) place_.resize(last + 1);
     std::array<Place*, 4> places{};
     double lowest = 1, highest = 0;
     for (int a = 0; a < 4; ++a) {
-      places[a] = &place_of(board_.mesh().tets[e][a], tip, radius, stretch);
+      places[a] = &place_of(now[a], tet[a], tip, radius, stretch);
       lowest = std::min(lowest, places[a]->weight);
       highest = std::max(highest, places[a]->weight);
     }
@@ -77,7 +83,8 @@ void DomainBuilder::collect(const Vec2& tip, double radius, std::span<const std:
     for (int a = 0; a < 4; ++a) {
       if (places[a]->at == kNone) {
         places[a]->at = static_cast<Index>(domain.nodes.size());
-        domain.nodes.push_back(board_.mesh().tets[e][a]);
+        domain.nodes.push_back(now[a]);
+        domain.in_mesh.push_back(tet[a]);
         domain.weight.push_back(places[a]->weight);
       }
       corners[a] = places[a]->at;
@@ -87,12 +94,14 @@ void DomainBuilder::collect(const Vec2& tip, double radius, std::span<const std:
   }
 }
 
-DomainBuilder::Place& DomainBuilder::place_of(Index node, const Vec2& tip, double radius,
+DomainBuilder::Place& DomainBuilder::place_of(Index node, Index in_mesh, const Vec2& tip,
+                                              double radius,
                                               const std::optional<FrontStretch>& stretch) {
   Place& place = place_[node];
   if (place.round == round_) return place;
-  double weight = domain_weight((board_.node(node) - tip).norm(), radius);
-  if (stretch) weight *= stretch_weight(*stretch, board_.mesh().nodes[node].dot(board_.plane().e3));
+  double weight = domain_weight((board_.node(in_mesh) - tip).norm(), radius);
+  if (stretch)
+    weight *= stretch_weight(*stretch, board_.mesh().nodes[in_mesh].dot(board_.plane().e3));
   place = {round_, kNone, weight};
   return place;
 }

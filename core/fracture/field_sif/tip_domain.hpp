@@ -39,8 +39,9 @@ struct TipDomain {
   double front_length = 0;  ///< integral of q along the front [mm]
   std::vector<Index> elements;
   std::vector<std::array<Index, 4>> corners;  ///< per element: places in `nodes`
-  std::vector<Index> nodes;
-  std::vector<double> weight;  ///< q per node
+  std::vector<Index> nodes;                   ///< of the body as it is, new ones too
+  std::vector<Index> in_mesh;                 ///< where those lie: nodes of the mesh
+  std::vector<double> weight;                 ///< q per node
 };
 
 /// q at a distance r from the front.
@@ -54,11 +55,12 @@ class DomainBuilder {
 
   /// Room for the fullest domain of that radius.
   void reserve(double radius, TipDomain& domain);
+  /// `corners`: of all elements where some are split from others; empty: as the mesh has them.
   /// Live elements of the ring, by id, and within it those on the named part of the surface; over
   /// the whole thickness, or around a stretch of the front. In place of what `domain` held.
   void collect(const Vec2& tip, double radius, std::span<const std::uint8_t> destroyed,
                FreeSurface::Part part, const std::optional<FrontStretch>& stretch,
-               TipDomain& domain);
+               std::span<const std::array<Index, 4>> corners, TipDomain& domain);
 
  private:
   struct Place {
@@ -66,12 +68,12 @@ class DomainBuilder {
     Index at = kNone;         // in its nodes
     double weight = 0;
   };
-  Place& place_of(Index node, const Vec2& tip, double radius,
+  Place& place_of(Index node, Index in_mesh, const Vec2& tip, double radius,
                   const std::optional<FrontStretch>& stretch);
 
   const Board& board_;
   const FreeSurface& surface_;
-  std::vector<Place> place_;  // shape (nodes)
+  std::vector<Place> place_;  // shape (nodes), as many as have been seen
   std::uint32_t round_ = 0;
   std::vector<Index> near_;  // elements around the tip in work
 };

@@ -34,7 +34,7 @@ TurnedBack turn_back(const Problem& problem, const TipDomain& domain,
   }
   back.rotation = polar(mean).rotation;
   for (std::size_t n = 0; n < domain.nodes.size(); ++n) {
-    const Vec3& x = problem.mesh().nodes[domain.nodes[n]];
+    const Vec3& x = problem.mesh().nodes[domain.in_mesh[n]];
     displacement[n] = back.rotation.transpose() * (x + displacement[n]) - x;
   }
   for (std::size_t i = 0; i < domain.elements.size(); ++i) {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "body/offsets.hpp"
+
+namespace sunder::fem {
+
+void Offsets::follow(const Forms& forms) {
+  const auto all = forms.new_nodes();
+  if (all.size() < nodes_.size()) *this = {};
+  for (std::size_t i = nodes_.size(); i < all.size(); ++i) {
+    nodes_.push_back(all[i]);
+    auto& own = unknowns_.emplace_back();
+    for (int axis = 0; axis < 3; ++axis) {
+      own[static_cast<std::size_t>(axis)] = all[i].axes.has(axis) ? count_++ : kNone;
+    }
+  }
+}
+
+void Offsets::move(std::span<const double> d, std::span<double> nodal) const {
+  double* at = nodal.data() + nodal.size() - 3 * nodes_.size();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis, ++at) {
+      const Index own = unknowns_[i][axis];
+      *at = nodal[3 * static_cast<std::size_t>(nodes_[i].parent) + axis] +
+            (own == kNone ? 0.0 : d[static_cast<std::size_t>(own)]);
+    }
+  }
+}
+
+void Offsets::gather(std::span<const double> nodal, std::span<const double> d,
+                     std::span<double> forces) const {
+  const double* at = nodal.data() + nodal.size() - 3 * nodes_.size();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis, ++at) {
+      const Index own = unknowns_[i][axis];
+      if (own == kNone) continue;
+      const auto o = static_cast<std::size_t>(own);
+      forces[o] = *at + nodes_[i].tie * d[o];
+    }
+  }
+}
+
+}  // namespace sunder::fem

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The body's elements as split cracks leave them (method.md "Split cracks"): which faces are open
+// and whose corners are whose. A node whose elements no longer hang together by faces becomes as
+// many nodes as there are groups of them; no node moves and no element changes its shape.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "body/change.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::fracture {
+
+/// The face of an element that lies opposite to one of its corners.
+struct Face {
+  Index element = 0;
+  int opposite = 0;
+  friend bool operator==(const Face&, const Face&) = default;
+};
+
+class SplitBody {
+ public:
+  /// Intact. The problem must outlive it.
+  explicit SplitBody(const Problem& problem);
+
+  /// Nodes of the mesh and, with ids after theirs, those that splitting has added.
+  [[nodiscard]] Index node_count() const { return static_cast<Index>(at_node_.size()); }
+  /// The node of the mesh where a node lies.
+  [[nodiscard]] Index in_mesh(Index node) const {
+    const Index added = node - problem_.node_count();
+    return added < 0 ? node : parents_[static_cast<std::size_t>(added)];
+  }
+  [[nodiscard]] const std::array<Index, 4>& corners(Index element) const {
+    return corners_[static_cast<std::size_t>(element)];
+  }
+  [[nodiscard]] std::span<const std::array<Index, 4>> corners() const { return corners_; }
+  /// Elements at a node, ascending, destroyed ones too.
+  [[nodiscard]] std::span<const Index> elements_of(Index node) const {
+    return at_node_[static_cast<std::size_t>(node)];
+  }
+  /// The element behind a face of the mesh, whether the face is open or not; kNone: there is none.
+  [[nodiscard]] Index behind(const Face& face) const {
+    return behind_[static_cast<std::size_t>(face.element)][static_cast<std::size_t>(face.opposite)];
+  }
+  /// The same face as the element behind it has it.
+  [[nodiscard]] Face other_side(const Face& face) const;
+  [[nodiscard]] bool open(const Face& face) const {
+    return (open_[static_cast<std::size_t>(face.element)] >> face.opposite & 1) != 0;
+  }
+  /// Nodes of a face, by the element's order of corners.
+  [[nodiscard]] std::array<Index, 3> nodes(const Face& face) const;
+
+  /// Opens faces between two elements and names what changes by it: elements with other corners and
+  /// the nodes that come. Elements that are destroyed hold nothing together and keep their corners.
+  void open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
+            fem::Change& change);
+  /// Whether the live elements at a node hang together by faces that are not open.
+  [[nodiscard]] bool whole(Index node, std::span<const std::uint8_t> destroyed) const;
+
+ private:
+  void find_neighbours();
+  void split(Index node, std::span<const std::uint8_t> destroyed, fem::Change& change);
+  [[nodiscard]] std::vector<std::vector<Index>> groups(
+      Index node, std::span<const std::uint8_t> destroyed) const;
+  [[nodiscard]] Index add_node(Index node, std::span<const Index> group, fem::Change& change);
+
+  const Problem& problem_;
+  std::vector<std::array<Index, 4>> corners_, behind_;  // per element
+  std::vector<std::uint8_t> open_;                      // per element, a bit a face
+  std::vector<std::vector<Index>> at_node_;             // elements
+  std::vector<Index> parents_;                          // of nodes that were added
+};
+
+}  // namespace sunder::fracture

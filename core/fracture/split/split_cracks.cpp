@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fracture/split/split_cracks.hpp"
+
+#include <algorithm>
+
+#include "fracture/crack_birth.hpp"
+#include "fracture/crack_path.hpp"
+#include "fracture/in_plane_stress.hpp"
+#include "fracture/preset_cracks.hpp"
+#include "fracture/pressed_nodes.hpp"
+#include "fracture/split/crack_tip_offset.hpp"
+#include "fracture/stress_intensity.hpp"
+#include "fracture/worst_element.hpp"
+
+namespace sunder::fracture {
+namespace {
+
+constexpr Index kFewestNewNodes = 1000;
+
+Index most_nodes(const Problem& problem) {
+  const int asked = problem.scene().fracture.max_new_nodes;
+  const Index most = asked > 0 ? asked : std::max(problem.node_count(), kFewestNewNodes);
+  return problem.node_count() + most;
+}
+
+}  // namespace
+
+SplitCracks::SplitCracks(const Problem& problem)
+    : problem_(problem),
+      board_(problem.mesh(), problem.scene().fracture.plane_normal),
+      meter_(problem, board_),
+      body_(problem),
+      front_(board_, problem, body_),
+      most_nodes_(most_nodes(problem)),
+      excluded_(problem.mesh().tets.size(), 0) {}
+
+/// Preset cracks of destroyed elements, or of the mesh's own faces, go on as splits from their
+/// tips.
+Decision SplitCracks::preset() {
+  const auto& presets = problem_.scene().cracks;
+  for (std::size_t c = 0; c < presets.size(); ++c) {
+    cracks_.push_back(
+        preset_crack(board_, presets[c], static_cast<int>(c), problem_.crack_elements()[c]));
+    SplitCrack& split = splits_.emplace_back();
+    for (std::size_t tip = 0; tip < cracks_.back().tips.size(); ++tip) {
+      split.front[tip] = front_.nodes_at(cracks_.back().tips[tip].position);
+    }
+  }
+  Decision decision;
+  decision.elements = preset_elements(problem_);
+  for (const DestroyedElement& row : decision.elements) {
+    for (Index n : problem_.mesh().tets[row.element]) {
+      for (Index e : board_.elements_of(n)) {
+        if (excluded_[e]) continue;
+        excluded_[e] = 1;
+        decision.excluded.push_back(e);
+      }
+    }
+  }
+  std::sort(decision.excluded.begin(), decision.excluded.end());
+  return decision;
+}
+
+FieldView SplitCracks::view(const FractureState& state) const {
+  FieldView view{state.destroyed, state.displacement,
+                 state.forces ? state.forces() : std::span<const NodalForce>{}};
+  view.corners = body_.corners();
+  return view;
+}
+
+/// Where a tip is for the field: linear tetrahedra hold a split crack too stiffly at its end.
+Crack SplitCracks::measured(const Crack& crack, std::size_t tip) const {
+  const SplitCrack& split = splits_[static_cast<std::size_t>(crack.id)];
+  if (split.faces.empty()) return crack;  // still as it was preset
+  return as_its_field_shows(crack, tip, board_, problem_.small_strain(split.faces.back().element));
+}
+
+void SplitCracks::tips(const FractureState& state, std::vector<TipState>& tips,
+                       std::vector<Finding>& findings) {
+  const FieldView field = view(state);
+  for (const Crack& crack : cracks_) {
+    for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
+      tips.push_back(tip_state(board_, crack, tip));
+      if (crack.tips[tip].ended) continue;
+      add_field_state(meter_, measured(crack, tip), tip, field, tips.back(), findings);
+    }
+  }
+}
+
+void SplitCracks::decide(const FractureState& state, Decision& decision) {
+  decision.clear();
+  driven_.clear();
+  const FieldView field = view(state);
+  for (const Crack& crack : cracks_) {
+    for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
+      if (crack.tips[tip].ended) continue;
+      const auto growth = field_growth(meter_, measured(crack, tip), tip, field, decision.findings);
+      if (growth) driven_.push_back({crack.id, *growth});
+    }
+  }
+  for (const Driven& driven : driven_) grow(driven, state, decision);
+  if (decision.change.come.empty()) bear(state, decision);
+  std::sort(decision.excluded.begin(), decision.excluded.end());
+}
+
+bool SplitCracks::full(const Decision&) const { return body_.node_count() >= most_nodes_; }
+
+/// A piece of the path is h long; Eq. 1's reach must pass it.
+void SplitCracks::grow(const Driven& driven, const FractureState& state, Decision& decision) {
+  if (full(decision)) {
+    decision.findings.push_back({Finding::Kind::nodes_spent});
+    return;
+  }
+  const TipGrowth& growth = driven.growth;
+  const auto tip = static_cast<std::size_t>(growth.terms.tip);
+  Crack& crack = cracks_[static_cast<std::size_t>(driven.crack)];
+  SplitCrack& split = splits_[static_cast<std::size_t>(driven.crack)];
+  const double length = board_.h();
+  const auto parts = [&](Index e) {
+    const double yield = problem_.yield(e);
+    return yield > 0 && reach(growth.terms.k, yield, growth.theta) >= length;
+  };
+  const SplitStep step =
+      front_.advance(crack, split, tip, growth.direction, length, state.destroyed, parts);
+  crack.tips[tip].ended = step.through;
+  if (!step.moved()) return;
+  follow(step, decision);
+  DestroyedElement row;
+  row.lives = true;
+  row.cause = Cause::sif;
+  row.crack = crack.id;
+  row.sif = growth.terms;
+  row.sif->reach = step.advance;
+  decision.elements.push_back(row);
+  exclude(split, decision);
+}
+
+void SplitCracks::bear(const FractureState& state, Decision& decision) {
+  auto row = rupture(state.summary.candidate, Cause::mss);
+  if (!row || full(decision)) return;
+  const InPlane stress = in_plane(state.current_stress(row->element), board_.plane());
+  const int id = static_cast<int>(cracks_.size());
+  Crack crack = born_crack(board_, row->element, stress, id, std::pmr::get_default_resource());
+  crack.elements.clear();
+  SplitCrack split;
+  const auto parts = [&](Index e) { return problem_.breakable(e); };
+  const SplitStep step = front_.bear(crack, split, row->element, state.destroyed, parts);
+  if (!step.moved()) {  // too little room for a surface: no other try
+    excluded_[row->element] = 1;
+    decision.excluded.push_back(row->element);
+    return;
+  }
+  cracks_.push_back(std::move(crack));
+  splits_.push_back(std::move(split));
+  follow(step, decision);
+  row->crack = id;
+  row->lives = true;
+  decision.elements.push_back(*row);
+  exclude(splits_.back(), decision);
+}
+
+/// Elements of several tips may be the same: the last step has their corners.
+void SplitCracks::follow(const SplitStep& step, Decision& decision) const {
+  fem::Change& all = decision.change;
+  all.nodes.insert(all.nodes.end(), step.change.nodes.begin(), step.change.nodes.end());
+  for (const fem::Coming& c : step.change.come) {
+    const auto before = std::ranges::find(all.come, c.element, &fem::Coming::element);
+    if (before == all.come.end()) {
+      all.come.push_back(c);
+    } else {
+      before->form = c.form;
+    }
+  }
+}
+
+/// What touches a crack starts no other: its tips are judged by K.
+void SplitCracks::exclude(const SplitCrack& split, Decision& decision) {
+  for (const Face& face : split.faces) {
+    for (Index n : body_.nodes(face)) {
+      for (Index e : board_.elements_of(body_.in_mesh(n))) {
+        if (excluded_[e]) continue;
+        excluded_[e] = 1;
+        decision.excluded.push_back(e);
+      }
+    }
+  }
+}
+
+PressedNodes SplitCracks::pressed_nodes(const Press& press,
+                                        std::span<const std::uint8_t> destroyed) const {
+  if (press.crack < 0 || static_cast<std::size_t>(press.crack) >= cracks_.size()) return {};
+  return fracture::pressed_nodes(board_, cracks_[static_cast<std::size_t>(press.crack)], press,
+                                 destroyed);
+}
+
+std::vector<CrackFace> SplitCracks::faces() const {
+  std::vector<CrackFace> all;
+  for (const Crack& crack : cracks_) {
+    for (const Face& face : splits_[static_cast<std::size_t>(crack.id)].faces) {
+      CrackFace both;
+      both.crack = crack.id;
+      both.left = body_.nodes(face);
+      // The right lip's nodes in the same order: those at the same places of the mesh.
+      const auto right = body_.nodes(body_.other_side(face));
+      for (std::size_t i = 0; i < 3; ++i) {
+        both.right[i] = *std::ranges::find_if(
+            right, [&](Index n) { return body_.in_mesh(n) == body_.in_mesh(both.left[i]); });
+      }
+      all.push_back(both);
+    }
+  }
+  return all;
+}
+
+}  // namespace sunder::fracture

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Model B by split cracks (method.md "Split cracks"): cracks are surfaces of faces that open, grown
+// by K from the field; where none grows, strength opens a small new one. Nothing is destroyed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fracture/board.hpp"
+#include "fracture/criterion.hpp"
+#include "fracture/field_sif/field_growth.hpp"
+#include "fracture/split/split_front.hpp"
+
+namespace sunder::fracture {
+
+class SplitCracks final : public FractureCriterion {
+ public:
+  explicit SplitCracks(const Problem& problem);
+
+  void decide(const FractureState& state, Decision& decision) override;
+  void tips(const FractureState& state, std::vector<TipState>& tips,
+            std::vector<Finding>& findings) override;
+  [[nodiscard]] Decision preset() override;
+  [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
+                                           std::span<const std::uint8_t> destroyed) const override;
+  [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }
+  [[nodiscard]] std::vector<CrackFace> faces() const override;
+  [[nodiscard]] std::span<const std::array<Index, 4>> corners() const override {
+    return body_.corners();
+  }
+
+ private:
+  struct Driven {
+    int crack;
+    TipGrowth growth;
+  };
+  [[nodiscard]] FieldView view(const FractureState& state) const;
+  [[nodiscard]] Crack measured(const Crack& crack, std::size_t tip) const;
+  void grow(const Driven& driven, const FractureState& state, Decision& decision);
+  void bear(const FractureState& state, Decision& decision);
+  void follow(const SplitStep& step, Decision& decision) const;
+  void exclude(const SplitCrack& split, Decision& decision);
+  [[nodiscard]] bool full(const Decision& decision) const;
+
+  const Problem& problem_;
+  Board board_;
+  FieldIntensityMeter meter_;
+  SplitBody body_;
+  SplitFront front_;
+  Index most_nodes_;
+  std::vector<Crack> cracks_;
+  std::vector<SplitCrack> splits_;  // of each crack
+  std::vector<std::uint8_t> excluded_;
+  std::vector<Driven> driven_;
+};
+
+}  // namespace sunder::fracture

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boards that a crack splits, and the same boards as meshes of their own, in which every node that
+// came has unknowns of its own: what a fresh factor of them says is what the update must say.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "core/fracture/board_fixture.hpp"
+#include "fracture/split/split_front.hpp"
+#include "support/structured_board.hpp"
+
+namespace sunder::test {
+
+/// A board of cubes whose inner nodes are moved at random, so that no edge follows a line.
+inline Mesh shaken_board(const BoardShape& shape, std::mt19937& random, double by) {
+  Mesh mesh = structured_board(shape);
+  const Vec3 size(shape.width, shape.height, shape.depth);
+  const Vec3 cells(shape.nx, shape.ny, shape.nz);
+  std::uniform_real_distribution<double> part(-by, by);
+  for (Vec3& x : mesh.nodes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool outside = x[axis] < 1e-9 || x[axis] > size[axis] - 1e-9;
+      if (!outside) x[axis] += part(random) * size[axis] / cells[axis];
+    }
+  }
+  return mesh;
+}
+
+inline Vec2 turned_by(const Vec2& d, double angle) {
+  return {std::cos(angle) * d.x() - std::sin(angle) * d.y(),
+          std::sin(angle) * d.x() + std::cos(angle) * d.y()};
+}
+
+/// An edge crack that grows from the middle of the side x = 0 of a board that begins at the origin.
+class EdgeSplit {
+ public:
+  explicit EdgeSplit(const Problem& problem)
+      : problem_(problem),
+        board(problem.mesh(), {}),
+        body(problem),
+        front(board, problem, body),
+        destroyed(problem.mesh().tets.size(), 0) {}
+
+  fracture::SplitStep begin(double angle) {
+    double height = 0;
+    for (const Vec3& x : problem_.mesh().nodes) height = std::max(height, x.y());
+    const Vec2 mouth = board.plane().project(Vec3(0, height / 2, 0));
+    const Vec2 d = board.plane().project(Vec3(std::cos(angle), std::sin(angle), 0));
+    crack.kind = CrackKind::edge;
+    crack.mouth = mouth;
+    crack.path = {mouth, mouth + 1.5 * board.h() * d};
+    crack.length = 1.5 * board.h();
+    crack.tips = {{crack.path.back(), d, false}};
+    const Vec2 at = mouth + 0.5 * board.h() * d;
+    Index nearest = 0;
+    for (Index e = 0; e < problem_.tet_count(); ++e) {
+      if ((board.centroid(e) - at).norm() < (board.centroid(nearest) - at).norm()) nearest = e;
+    }
+    return front.bear(crack, split, nearest, destroyed, parts);
+  }
+  fracture::SplitStep advance(const Vec2& d) {
+    return front.advance(crack, split, 0, d, board.h(), destroyed, parts);
+  }
+  [[nodiscard]] Vec3 tip() const { return board.plane().lift(crack.tips[0].position); }
+  /// Turned against the last step.
+  fracture::SplitStep advance(double angle) {
+    return advance(turned_by(crack.tips[0].direction, angle));
+  }
+
+  /// The mesh as it is now, and where its new nodes lie.
+  [[nodiscard]] Mesh mesh() const {
+    Mesh mesh = problem_.mesh();
+    mesh.tets.assign(body.corners().begin(), body.corners().end());
+    for (Index n = problem_.node_count(); n < body.node_count(); ++n) {
+      mesh.nodes.push_back(mesh.nodes[static_cast<std::size_t>(body.in_mesh(n))]);
+    }
+    return mesh;
+  }
+
+ private:
+  const Problem& problem_;
+
+ public:
+  fracture::Board board;
+  fracture::SplitBody body;
+  fracture::SplitFront front;
+  std::vector<std::uint8_t> destroyed;
+  fracture::SplitFront::Parts parts = [](Index) { return true; };
+  Crack crack;
+  fracture::SplitCrack split;
+};
+
+}  // namespace sunder::test
