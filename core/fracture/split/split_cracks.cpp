@@ -17,6 +17,13 @@ namespace {
 
 constexpr Index kFewestNewNodes = 1000;
 
+/// Two tissues part as the weaker one does, and tissue parts from what is unbreakable; 0: both are.
+double weaker_yield(const Problem& problem, Index a, Index b) {
+  if (!problem.breakable(a)) return problem.yield(b);
+  if (!problem.breakable(b)) return problem.yield(a);
+  return std::min(problem.yield(a), problem.yield(b));
+}
+
 Index most_nodes(const Problem& problem) {
   const int asked = problem.scene().fracture.max_new_nodes;
   const Index most = asked > 0 ? asked : std::max(problem.node_count(), kFewestNewNodes);
@@ -71,7 +78,7 @@ FieldView SplitCracks::view(const FractureState& state) const {
 /// Where a tip is for the field: linear tetrahedra hold a split crack too stiffly at its end.
 Crack SplitCracks::measured(const Crack& crack, std::size_t tip) const {
   const SplitCrack& split = splits_[static_cast<std::size_t>(crack.id)];
-  if (split.faces.empty()) return crack;  // still as it was preset
+  if (!split.grown) return crack;  // still as it was preset
   return as_its_field_shows(crack, tip, board_, problem_.small_strain(split.faces.back().element));
 }
 
@@ -105,7 +112,8 @@ void SplitCracks::decide(const FractureState& state, Decision& decision) {
 
 bool SplitCracks::full(const Decision&) const { return body_.node_count() >= most_nodes_; }
 
-/// A piece of the path is h long; Eq. 1's reach must pass it.
+/// A piece of the path is h long. As where elements are destroyed (method.md 10), none is reached
+/// by less than half an edge length.
 void SplitCracks::grow(const Driven& driven, const FractureState& state, Decision& decision) {
   if (full(decision)) {
     decision.findings.push_back({Finding::Kind::nodes_spent});
@@ -116,9 +124,9 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   Crack& crack = cracks_[static_cast<std::size_t>(driven.crack)];
   SplitCrack& split = splits_[static_cast<std::size_t>(driven.crack)];
   const double length = board_.h();
-  const auto parts = [&](Index e) {
-    const double yield = problem_.yield(e);
-    return yield > 0 && reach(growth.terms.k, yield, growth.theta) >= length;
+  const auto parts = [&](Index a, Index b) {
+    const double yield = weaker_yield(problem_, a, b);
+    return yield > 0 && reach(growth.terms.k, yield, growth.theta) >= length / 2;
   };
   const SplitStep step =
       front_.advance(crack, split, tip, growth.direction, length, state.destroyed, parts);
@@ -143,7 +151,7 @@ void SplitCracks::bear(const FractureState& state, Decision& decision) {
   Crack crack = born_crack(board_, row->element, stress, id, std::pmr::get_default_resource());
   crack.elements.clear();
   SplitCrack split;
-  const auto parts = [&](Index e) { return problem_.breakable(e); };
+  const auto parts = [&](Index a, Index b) { return weaker_yield(problem_, a, b) > 0; };
   const SplitStep step = front_.bear(crack, split, row->element, state.destroyed, parts);
   if (!step.moved()) {  // too little room for a surface: no other try
     excluded_[row->element] = 1;

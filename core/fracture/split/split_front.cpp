@@ -127,7 +127,7 @@ void SplitFront::find_faces(Work& work) const {
       const auto right = work.label.find(other);
       if (right == work.label.end() || right->second > 0) continue;
       if (!within(face, work)) continue;
-      if (!work.parts(e) || !work.parts(other)) {
+      if (!work.parts(e, other)) {
         work.held = true;
         continue;
       }
@@ -291,7 +291,9 @@ SplitStep SplitFront::advance(Crack& crack, SplitCrack& split, std::size_t tip,
       if (step.moved() && outside(at.position)) break;
       continue;
     }
-    front = front_of(crack, split, tip, destroyed);
+    const std::vector<Index> now = front_of(crack, split, tip, destroyed);
+    if (now.empty() && !step.moved()) continue;  // faces whose nodes still hold
+    front = now;
     step.through = front.empty() || outside(at.position);
     if (step.through) break;
     step.advance = (middle(front) - before.position).dot(direction);
@@ -305,6 +307,7 @@ SplitStep SplitFront::advance(Crack& crack, SplitCrack& split, std::size_t tip,
     step.through = !step.held;
     return step;
   }
+  split.grown = true;
   if (step.through) {
     step.advance = (at.position - before.position).dot(direction);
   } else {
@@ -313,12 +316,21 @@ SplitStep SplitFront::advance(Crack& crack, SplitCrack& split, std::size_t tip,
   return step;
 }
 
+/// Whether nodes have parted on both surfaces of the board.
+bool SplitFront::through_thickness(const fem::Change& change) const {
+  const auto any = [&](auto&& on) {
+    return std::ranges::any_of(change.nodes, [&](const fem::NewNode& n) { return on(n.parent); });
+  };
+  return any([&](Index n) { return board_.on_bottom(n); }) &&
+         any([&](Index n) { return board_.on_top(n); });
+}
+
 SplitStep SplitFront::bear(Crack& crack, SplitCrack& split, Index element,
                            std::span<const std::uint8_t> destroyed, const Parts& parts) {
   SplitStep step;
   const Vec2 along = (crack.path.back() - crack.path.front()).normalized();
   const bool edge = crack.kind == CrackKind::edge;
-  for (int longer = 0; longer < kPieces && !step.moved(); ++longer) {
+  for (int longer = 0; longer < kPieces && !through_thickness(step.change); ++longer) {
     if (longer > 0) {
       crack.path.back() += board_.h() / 2 * along;
       if (!edge) crack.path.front() -= board_.h() / 2 * along;
@@ -326,6 +338,9 @@ SplitStep SplitFront::bear(Crack& crack, SplitCrack& split, Index element,
     Work work{crack, split, destroyed, parts,      crack.path.front(), crack.path.back(),
               along, !edge, {},        step.change};
     work.seeds.assign(body_.corners(element).begin(), body_.corners(element).end());
+    for (const Face& face : split.faces) {
+      for (Index n : body_.nodes(face)) work.seeds.push_back(n);
+    }
     static_cast<void>(open_along(work));
     step.area += work.area;
     step.held = work.held;
@@ -334,6 +349,7 @@ SplitStep SplitFront::bear(Crack& crack, SplitCrack& split, Index element,
     }
   }
   crack.length = (crack.path.back() - crack.path.front()).norm();
+  split.grown = step.moved();
   split.area += step.area;
   for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
     CrackTip& at = crack.tips[tip];

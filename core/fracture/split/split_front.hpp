@@ -24,6 +24,7 @@ struct SplitCrack {
   std::array<std::vector<Index>, 2> front;  ///< nodes where each tip's faces end
   std::vector<Face> faces;  ///< opened by it, as the element left of the path has them
   double area = 0;          ///< of them [mm^2]
+  bool grown = false;       ///< its tips are at fronts of its own
 };
 
 /// What has moved, and what the body must follow.
@@ -41,8 +42,8 @@ class SplitFront {
   /// All must outlive it.
   SplitFront(const Board& board, const Problem& problem, SplitBody& body);
 
-  /// Whether the tissue of an element parts.
-  using Parts = std::function<bool(Index)>;
+  /// Whether the tissue between two elements parts.
+  using Parts = std::function<bool(Index, Index)>;
 
   /// Nodes of the mesh's own tip there, or of destroyed elements that end there.
   [[nodiscard]] std::vector<Index> nodes_at(const Vec2& tip) const;
@@ -70,6 +71,7 @@ class SplitFront {
   [[nodiscard]] std::vector<Index> front_within(double radius, const Crack& crack,
                                                 const SplitCrack& split, std::size_t tip,
                                                 std::span<const std::uint8_t> destroyed) const;
+  [[nodiscard]] bool through_thickness(const fem::Change& change) const;
   [[nodiscard]] bool outside(const Vec2& p) const;
   [[nodiscard]] double area_of(const Face& face) const;
   [[nodiscard]] Vec2 middle(std::span<const Index> nodes) const;

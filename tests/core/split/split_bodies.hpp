@@ -88,7 +88,7 @@ class EdgeSplit {
   fracture::SplitBody body;
   fracture::SplitFront front;
   std::vector<std::uint8_t> destroyed;
-  fracture::SplitFront::Parts parts = [](Index) { return true; };
+  fracture::SplitFront::Parts parts = [](Index, Index) { return true; };
   Crack crack;
   fracture::SplitCrack split;
 };

@@ -84,7 +84,9 @@ TEST(SplitFront, AStraightCrackOpensEveryFaceOnItsWay) {
 TEST(SplitFront, TissueThatDoesNotPartHoldsIt) {
   const auto volume = [](const Vec3& x) { return x.x() < 5 ? "board" : "frame"; };
   Cracked board(test::structured_board({10, 10, 2, 10, 10, 2}, volume));
-  board.parts = [&](Index e) { return board.problem.breakable(e); };
+  board.parts = [&](Index a, Index b) {
+    return board.problem.breakable(a) && board.problem.breakable(b);
+  };
   ASSERT_TRUE(board.begin(0).moved());
   SplitStep step;
   for (int i = 0; i < 40 && (step = board.advance(0)).moved();) ++i;

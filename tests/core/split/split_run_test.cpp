@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole runs of model B by cracks that split.
+#include <set>
+#include <string>
+
+#include "cpu_reference/cpu_reference.hpp"
+#include "split_bodies.hpp"
+#include "sunder/error.hpp"
+#include "sunder/simulation.hpp"
+#include "support/notch_board.hpp"
+
+namespace sunder {
+namespace {
+
+struct Torn {
+  explicit Torn(Scene scene)
+      : problem(std::make_shared<const Problem>(std::move(scene))),
+        simulation(problem, cpu_reference::create(problem, needs_of(*problem))) {}
+
+  std::shared_ptr<const Problem> problem;
+  Simulation simulation;
+};
+
+Scene split(Scene scene) {
+  scene.fracture.crack = CrackWay::split;
+  scene.fracture.sif = SifSource::field;
+  return scene;
+}
+
+double volume(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const auto& x = mesh.nodes;
+    sum += (x[b] - x[a]).cross(x[c] - x[a]).dot(x[d] - x[a]) / 6;
+  }
+  return sum;
+}
+
+TEST(SplitRun, TheNotchedBoardTearsThroughWithoutLosingVolume) {
+  Scene scene = split(test::notch_board(FractureModel::b));
+  scene.fracture.max_events = 3;
+  Torn run(std::move(scene));
+  const int notch = static_cast<int>(run.problem->crack_elements()[0].size());
+  int events = 0;
+  while (!run.simulation.done()) {
+    const StepReport report = run.simulation.step();
+    events += report.events;
+    EXPECT_LE(report.error, 1e-8) << report.step;
+    EXPECT_FALSE(report.polished) << report.step;
+    EXPECT_EQ(report.destroyed, notch);
+  }
+  const Simulation& torn = run.simulation;
+  const Mesh mesh = torn.mesh();
+  EXPECT_EQ(mesh.node_count(), torn.backend().node_count());
+  EXPECT_EQ(torn.displacement().size(), mesh.nodes.size());
+  EXPECT_NEAR(volume(mesh), volume(run.problem->mesh()), 1e-9 * volume(mesh));
+  // One crack, from the notch to the other side: rows without an element, one per event.
+  ASSERT_EQ(torn.cracks().size(), 1U);
+  EXPECT_TRUE(torn.cracks()[0].tips[0].ended);
+  EXPECT_LT(torn.cracks()[0].tips[0].position.x(), 2);
+  int rows = 0;
+  for (const DestroyedElement& row : torn.destroyed()) {
+    if (!row.lives) continue;
+    ++rows;
+    EXPECT_EQ(row.element, kNone);
+    EXPECT_EQ(row.cause, Cause::sif);
+    EXPECT_EQ(row.crack, 0);
+  }
+  EXPECT_EQ(rows, events - 1);  // the first event is the notch itself
+  // The lower part has come off; nothing else has.
+  std::string told;
+  for (const std::string& warning : run.simulation.warnings()) told += warning + "\n";
+  EXPECT_NE(told.find("1 piece with "), std::string::npos) << told;
+}
+
+/// What one opens lies where the other has it too, lip by lip.
+TEST(SplitRun, BothLipsOfAFaceLieAtTheSamePlaceOfTheMesh) {
+  Scene scene = split(test::notch_board(FractureModel::b));
+  scene.fracture.max_events = 3;
+  scene.steps = 15;
+  scene.instruments[0].ramp = Ramp{0, 0.75};
+  Torn run(std::move(scene));
+  while (!run.simulation.done()) run.simulation.step();
+  const Mesh mesh = run.simulation.mesh();
+  const auto faces = run.simulation.crack_faces();
+  ASSERT_FALSE(faces.empty());
+  int gaping = 0;
+  for (const CrackFace& face : faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(mesh.nodes[face.left[i]], mesh.nodes[face.right[i]]);
+      gaping += face.left[i] != face.right[i];
+    }
+  }
+  EXPECT_GT(gaping, 0);
+}
+
+/// A plate without a notch: strength opens a surface through the thickness where it is reached, and
+/// takes no element.
+TEST(SplitRun, ABirthTakesNoElement) {
+  Scene scene = split(test::board_scene(
+      test::structured_board(
+          {12, 12, 2, 12, 12, 2},
+          [](const Vec3& x) { return x.y() < 2 || x.y() > 10 ? "frame" : "board"; }),
+      FractureModel::b));
+  scene.materials["board"] = {5, 0.3, 1};
+  scene.materials["frame"] = {50, 0.3, std::nullopt};
+  Instrument pull{"pull", Pull{Box{Vec3(-1, -1e-9, -9), Vec3(0.5, 1e-9, 9)}, Vec3(0, -14, 0)}, {}};
+  pull.ramp = Ramp{0, 1};
+  scene.instruments = {pull};
+  scene.steps = 20;
+  scene.fracture.max_events = 1;
+  Torn run(std::move(scene));
+  while (!run.simulation.done() && run.simulation.cracks().empty()) run.simulation.step();
+  ASSERT_EQ(run.simulation.cracks().size(), 1U);
+  const DestroyedElement& row = run.simulation.destroyed().front();
+  EXPECT_EQ(row.cause, Cause::mss);
+  EXPECT_TRUE(row.lives);
+  ASSERT_NE(row.element, kNone);
+  EXPECT_GE(*row.ratio, 1);
+  EXPECT_EQ(run.simulation.backend().destroyed()[static_cast<std::size_t>(row.element)], 0);
+  // Through the thickness: nodes on both faces and between have parted.
+  std::set<double> depths;
+  const Mesh mesh = run.simulation.mesh();
+  for (Index n = run.problem->node_count(); n < mesh.node_count(); ++n)
+    depths.insert(mesh.nodes[n].z());
+  EXPECT_EQ(depths, (std::set<double>{0, 1, 2}));
+}
+
+TEST(SplitRun, NodesThatAreSpentLetTipsRest) {
+  Scene scene = split(test::notch_board(FractureModel::b));
+  scene.fracture.max_new_nodes = 10;
+  Torn run(std::move(scene));
+  while (!run.simulation.done()) run.simulation.step();
+  EXPECT_GE(run.simulation.backend().node_count(), run.problem->node_count() + 10);
+  EXPECT_LE(run.simulation.backend().node_count(), run.problem->node_count() + 20);
+  std::string told;
+  for (const std::string& warning : run.simulation.warnings()) told += warning + "\n";
+  EXPECT_NE(told.find("fracture.max_new_nodes"), std::string::npos) << told;
+}
+
+TEST(SplitRun, WhatCannotSplitSaysWhatCan) {
+  const auto refused = [](Scene scene) -> std::string {
+    try {
+      const auto problem = std::make_shared<const Problem>(std::move(scene));
+      static_cast<void>(cpu_reference::create(problem, needs_of(*problem)));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const Route route : {Route::condensed, Route::cg}) {
+    Scene scene = split(test::notch_board(FractureModel::b));
+    scene.solver.route = route;
+    EXPECT_NE(refused(scene).find("use route inverse or factor"), std::string::npos);
+  }
+  Scene eager = split(test::notch_board(FractureModel::b));
+  eager.solver.update = Update::eager;
+  EXPECT_NE(refused(eager).find("use update deferred or auto"), std::string::npos);
+  Scene law = split(test::notch_board(FractureModel::b));
+  for (auto& [name, material] : law.materials) material.law = MaterialLaw::corotated;
+  EXPECT_NE(refused(law).find("law \"linear\""), std::string::npos);
+  EXPECT_NE(refused(split(test::notch_board(FractureModel::a))).find("model \"B\""),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace sunder
