@@ -67,8 +67,9 @@ void Damage::add(const Event& event) {
   leave_.insert(leave_.end(), event.leave.begin(), event.leave.end());
   come_.insert(come_.end(), event.come.begin(), event.come.end());
   nodes_.insert(nodes_.end(), event.nodes.begin(), event.nodes.end());
+  ties_.insert(ties_.end(), event.ties.begin(), event.ties.end());
   const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
-  ends_.push_back({size(leave_), size(come_), size(nodes_)});
+  ends_.push_back({size(leave_), size(come_), size(nodes_), size(ties_)});
 }
 
 void Damage::take_back() {
@@ -77,6 +78,7 @@ void Damage::take_back() {
   leave_.resize(end.leave);
   come_.resize(end.come);
   nodes_.resize(end.nodes);
+  ties_.resize(end.ties);
 }
 
 Event Damage::operator[](std::size_t i) const {
@@ -85,7 +87,7 @@ Event Damage::operator[](std::size_t i) const {
     return std::span(list).subspan(from, to - from);
   };
   return {part(leave_, begin.leave, end.leave), part(come_, begin.come, end.come),
-          part(nodes_, begin.nodes, end.nodes)};
+          part(nodes_, begin.nodes, end.nodes), part(ties_, begin.ties, end.ties)};
 }
 
 Forms::Forms(const Problem& problem)
@@ -96,6 +98,9 @@ void Forms::add(std::span<const NewNode> nodes) {
 }
 
 void Forms::follow(const Event& event) {
+  for (const Tie& tie : event.ties) {
+    nodes_[static_cast<std::size_t>(tie.node - problem_->node_count())].tie = tie.stiffness;
+  }
   const double alpha = problem_->scene().fracture.alpha;
   for (Index e : event.leave) {
     if (e < problem_->tet_count()) destroyed_[static_cast<std::size_t>(e)] = 1;
@@ -165,6 +170,15 @@ void check(const Forms& forms, const Event& change) {
       refuse("node", n.parent, "cannot be a parent: it is no node of the mesh");
     }
   }
+  const Index first = forms.problem().node_count();
+  const Index end = forms.node_count() + static_cast<Index>(change.nodes.size());
+  for (const Tie& tie : change.ties) {
+    if (tie.node < first || tie.node >= end)
+      refuse("node", tie.node, "has no parent to be tied to");
+    if (!(tie.stiffness >= 0 && std::isfinite(tie.stiffness))) {
+      refuse("node", tie.node, "cannot be tied: the stiffness must be 0 or more");
+    }
+  }
   Index beyond = forms.element_count();
   for (const Coming& c : change.come) {
     if (c.element < 0 || c.element > beyond) {
@@ -191,6 +205,11 @@ Change reverse(Forms before, const Damage& damage, std::size_t i) {
   for (Index e : event.leave) forms[e] = before.of(e);
   Change change;
   for (const auto& [element, form] : forms) change.come.push_back({element, form});
+  for (const Tie& tie : event.ties) {
+    const auto at = static_cast<std::size_t>(tie.node - before.problem().node_count());
+    const bool is_new = at >= before.new_nodes().size();
+    change.ties.push_back({tie.node, is_new ? 0.0 : before.new_nodes()[at].tie});
+  }
   return change;
 }
 
@@ -198,7 +217,12 @@ bool reverses_last(const Forms& first, const Damage& damage, const Forms& forms,
                    const Event& change) {
   if (damage.size() == 0 || !change.nodes.empty()) return false;
   const auto asked = outcome(forms, change);
-  const auto back = outcome(forms, reverse(first, damage, damage.size() - 1));
+  const Change reversed = reverse(first, damage, damage.size() - 1);
+  const auto back = outcome(forms, reversed);
+  const auto same_tie = [](const Tie& a, const Tie& b) {
+    return a.node == b.node && a.stiffness == b.stiffness;
+  };
+  if (!std::ranges::equal(change.ties, reversed.ties, same_tie)) return false;
   return std::ranges::equal(asked, back, [](const auto& a, const auto& b) {
     return a.first == b.first && same(a.second, b.second);
   });

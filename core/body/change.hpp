@@ -32,22 +32,30 @@ struct Coming {
 struct NewNode {
   Index parent = 0;
   Axes axes;
-  /// Stiffness between both [N/mm], on each of those axes: what a face that opened leaves, as a
-  /// destroyed element leaves a share alpha. 0: nothing.
-  double tie = 0;
+  double tie = 0;  ///< what holds both together [N/mm], on each of those axes
+};
+/// Holds a new node to its parent where faces that have opened leave a piece loose: in statics it
+/// would have no place. A share alpha of the stiffness, as a destroyed element leaves.
+struct Tie {
+  Index node = 0;        ///< a new one
+  double stiffness = 0;  ///< from now on [N/mm]
 };
 /// A change that somebody else holds.
 struct Event {
   std::span<const Index> leave{};
   std::span<const Coming> come{};
   std::span<const NewNode> nodes{};
+  std::span<const Tie> ties{};
+  bool held = false;  ///< its maker has seen that it leaves nothing without a hold
 };
 /// Elements in `leave` keep a share alpha of their stiffness.
 struct Change {
   std::vector<Index> leave;
   std::vector<Coming> come;
   std::vector<NewNode> nodes;
-  operator Event() const { return {leave, come, nodes}; }
+  std::vector<Tie> ties = {};
+  bool held = false;
+  operator Event() const { return {leave, come, nodes, ties, held}; }
 };
 
 /// The record of what has happened to a body, change by change.
@@ -64,12 +72,13 @@ class Damage {
 
  private:
   struct End {
-    std::uint32_t leave = 0, come = 0, nodes = 0;
+    std::uint32_t leave = 0, come = 0, nodes = 0, ties = 0;
   };
   std::vector<End> ends_;  // of each event in the lists
   std::vector<Index> leave_;
   std::vector<Coming> come_;
   std::vector<NewNode> nodes_;
+  std::vector<Tie> ties_;
 };
 
 /// Every element's form after some changes.
@@ -79,7 +88,8 @@ class Forms {
   explicit Forms(const Problem& problem);
   /// The nodes of an event, before its elements are asked about or followed.
   void add(std::span<const NewNode> nodes);
-  /// The elements of an event. Allocates nothing where elements of the mesh's form leave.
+  /// The elements of an event and its ties. Allocates nothing where elements of the mesh's form
+  /// leave.
   void follow(const Event& event);
 
   [[nodiscard]] Index element_count() const;

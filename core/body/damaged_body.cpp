@@ -108,6 +108,8 @@ void DamagedBody::read(std::size_t event, Change& change) const {
   change.leave.assign(of.leave.begin(), of.leave.end());
   change.come.assign(of.come.begin(), of.come.end());
   change.nodes.assign(of.nodes.begin(), of.nodes.end());
+  change.ties.assign(of.ties.begin(), of.ties.end());
+  change.held = true;  // or it would not have been recorded
 }
 
 std::vector<Index> DamagedBody::changed(std::size_t begin, std::size_t end) const {

@@ -170,13 +170,7 @@ class Pieces {
 bool held_together(const Forms& forms) { return Pieces(forms).held(); }
 
 bool holds_together(const Forms& forms, const Event& change) {
-  if (change.come.empty()) return true;
-  // What new nodes are tied to holds what only hung on faces that open.
-  const auto tied = [](const NewNode& node) { return node.tie > 0; };
-  const bool splits = std::ranges::all_of(change.come, [&](const Coming& c) {
-    return c.element < forms.element_count() && forms.share(c.element) == c.form.share;
-  });
-  if (change.leave.empty() && splits && std::ranges::all_of(change.nodes, tied)) return true;
+  if (change.come.empty() || change.held) return true;
   Forms after = forms;
   after.add(change.nodes);
   after.follow(change);

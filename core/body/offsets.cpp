@@ -6,6 +6,7 @@ namespace sunder::fem {
 void Offsets::follow(const Forms& forms) {
   const auto all = forms.new_nodes();
   if (all.size() < nodes_.size()) *this = {};
+  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].tie = all[i].tie;
   for (std::size_t i = nodes_.size(); i < all.size(); ++i) {
     nodes_.push_back(all[i]);
     auto& own = unknowns_.emplace_back();

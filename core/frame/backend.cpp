@@ -136,7 +136,7 @@ void Backend::destroy(std::span<const Index> elements) {
 void Backend::change(const fem::Change& change) {
   require(needs_.split, "new nodes were left out of this backend's needs");
   require(change.leave.empty(), "elements that leave are destroyed, not changed");
-  if (change.come.empty()) return;
+  if (change.come.empty() && change.ties.empty()) return;
   if (!damaged_body_->change(change)) {
     throw NumericalError("a change would let a part of the body move without strain");
   }

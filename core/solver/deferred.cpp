@@ -122,7 +122,8 @@ bool Deferred::factor_grips() {
 }
 
 bool Deferred::follow(const fem::Event& event) {
-  return event.come.empty() && event.nodes.empty() ? destroy(event.leave) : change(event);
+  const bool destroys = event.come.empty() && event.nodes.empty() && event.ties.empty();
+  return destroys ? destroy(event.leave) : change(event);
 }
 
 bool Deferred::destroy(std::span<const Index> elements) {

@@ -2,7 +2,6 @@
 #include "fracture/split/split_body.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace sunder::fracture {
@@ -18,17 +17,6 @@ Axes free_axes(const Problem& problem, Index parent) {
     axes.bits = static_cast<std::uint8_t>(axes.bits | 1U << axis);
   }
   return axes;
-}
-
-/// What ties a new node to its parent once nothing else does [N/mm]: as of a destroyed element, a
-/// share alpha of the stiffness that was there (a cube's of the group's volume).
-double tie(const Problem& problem, std::span<const Index> group) {
-  double young = 0, volume = 0;
-  for (Index e : group) {
-    young = std::max(young, problem.small_strain(e).young);
-    volume += problem.shape(e).volume;
-  }
-  return problem.scene().fracture.alpha * young * std::cbrt(volume);
 }
 
 }  // namespace
@@ -93,6 +81,12 @@ void SplitBody::open(std::span<const Face> faces, std::span<const std::uint8_t> 
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   for (Index n : touched) split(n, destroyed, change);
+}
+
+Index SplitBody::live_at(Index node, std::span<const std::uint8_t> destroyed) const {
+  const auto star = elements_of(node);
+  const auto live = std::ranges::find_if(star, [&](Index e) { return destroyed[e] == 0; });
+  return live == star.end() ? kNone : *live;
 }
 
 bool SplitBody::whole(Index node, std::span<const std::uint8_t> destroyed) const {
@@ -160,7 +154,7 @@ Index SplitBody::add_node(Index node, std::span<const Index> group, fem::Change&
   const Index added = node_count(), parent = in_mesh(node);
   parents_.push_back(parent);
   at_node_.emplace_back();
-  change.nodes.push_back({parent, free_axes(problem_, parent), tie(problem_, group)});
+  change.nodes.push_back({parent, free_axes(problem_, parent), 0});
   for (Index e : group) {
     auto& own = corners_[static_cast<std::size_t>(e)];
     std::ranges::replace(own, node, added);

@@ -41,6 +41,8 @@ class SplitBody {
   [[nodiscard]] std::span<const Index> elements_of(Index node) const {
     return at_node_[static_cast<std::size_t>(node)];
   }
+  /// An element that shares a node with others that hold it; kNone: all are destroyed.
+  [[nodiscard]] Index live_at(Index node, std::span<const std::uint8_t> destroyed) const;
   /// The element behind a face of the mesh, whether the face is open or not; kNone: there is none.
   [[nodiscard]] Index behind(const Face& face) const {
     return behind_[static_cast<std::size_t>(face.element)][static_cast<std::size_t>(face.opposite)];

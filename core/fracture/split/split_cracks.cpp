@@ -2,6 +2,7 @@
 #include "fracture/split/split_cracks.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fracture/crack_birth.hpp"
 #include "fracture/crack_path.hpp"
@@ -38,6 +39,7 @@ SplitCracks::SplitCracks(const Problem& problem)
       meter_(problem, board_),
       body_(problem),
       front_(board_, problem, body_),
+      loose_(problem),
       most_nodes_(most_nodes(problem)),
       excluded_(problem.mesh().tets.size(), 0) {}
 
@@ -97,6 +99,7 @@ void SplitCracks::tips(const FractureState& state, std::vector<TipState>& tips,
 void SplitCracks::decide(const FractureState& state, Decision& decision) {
   decision.clear();
   driven_.clear();
+  ran_through_ = false;
   const FieldView field = view(state);
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
@@ -107,15 +110,32 @@ void SplitCracks::decide(const FractureState& state, Decision& decision) {
   }
   for (const Driven& driven : driven_) grow(driven, state, decision);
   if (decision.change.come.empty()) bear(state, decision);
+  if (ran_through_) tie_what_is_loose(state, decision);
+  decision.change.held = true;
   std::sort(decision.excluded.begin(), decision.excluded.end());
 }
 
-bool SplitCracks::full(const Decision&) const { return body_.node_count() >= most_nodes_; }
+/// A piece that nothing holds any more stays where it is by as much as destroyed elements would
+/// hold it: a share alpha of a cube of tissue at each node.
+void SplitCracks::tie_what_is_loose(const FractureState& state, Decision& decision) {
+  loose_.look(state.destroyed, body_.corners(), body_.node_count());
+  if (loose_.pieces() == 0) return;
+  const double alpha = problem_.scene().fracture.alpha;
+  for (Index n = problem_.node_count(); n < body_.node_count(); ++n) {
+    const Index own = body_.live_at(n, state.destroyed);
+    const Index other = body_.live_at(body_.in_mesh(n), state.destroyed);
+    if (own == kNone || other == kNone || loose_.piece_of(own) == loose_.piece_of(other)) continue;
+    const double size = std::cbrt(problem_.shape(own).volume);
+    decision.change.ties.push_back({n, alpha * problem_.small_strain(own).young * size});
+  }
+}
+
+bool SplitCracks::full() const { return body_.node_count() >= most_nodes_; }
 
 /// A piece of the path is h long. As where elements are destroyed (method.md 10), none is reached
 /// by less than half an edge length.
 void SplitCracks::grow(const Driven& driven, const FractureState& state, Decision& decision) {
-  if (full(decision)) {
+  if (full()) {
     decision.findings.push_back({Finding::Kind::nodes_spent});
     return;
   }
@@ -132,6 +152,7 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
       front_.advance(crack, split, tip, growth.direction, length, state.destroyed, parts);
   crack.tips[tip].ended = step.through;
   if (!step.moved()) return;
+  ran_through_ = ran_through_ || step.through;
   follow(step, decision);
   DestroyedElement row;
   row.lives = true;
@@ -145,7 +166,7 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
 
 void SplitCracks::bear(const FractureState& state, Decision& decision) {
   auto row = rupture(state.summary.candidate, Cause::mss);
-  if (!row || full(decision)) return;
+  if (!row || full()) return;
   const InPlane stress = in_plane(state.current_stress(row->element), board_.plane());
   const int id = static_cast<int>(cracks_.size());
   Crack crack = born_crack(board_, row->element, stress, id, std::pmr::get_default_resource());
@@ -158,6 +179,7 @@ void SplitCracks::bear(const FractureState& state, Decision& decision) {
     decision.excluded.push_back(row->element);
     return;
   }
+  ran_through_ = ran_through_ || std::ranges::any_of(crack.tips, &CrackTip::ended);
   cracks_.push_back(std::move(crack));
   splits_.push_back(std::move(split));
   follow(step, decision);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "body/pieces.hpp"
 #include "fracture/board.hpp"
 #include "fracture/criterion.hpp"
 #include "fracture/field_sif/field_growth.hpp"
@@ -40,13 +41,16 @@ class SplitCracks final : public FractureCriterion {
   void bear(const FractureState& state, Decision& decision);
   void follow(const SplitStep& step, Decision& decision) const;
   void exclude(const SplitCrack& split, Decision& decision);
-  [[nodiscard]] bool full(const Decision& decision) const;
+  [[nodiscard]] bool full() const;
+  void tie_what_is_loose(const FractureState& state, Decision& decision);
 
   const Problem& problem_;
   Board board_;
   FieldIntensityMeter meter_;
   SplitBody body_;
   SplitFront front_;
+  LooseSearch loose_;
+  bool ran_through_ = false;  // a tip of the decision in work
   Index most_nodes_;
   std::vector<Crack> cracks_;
   std::vector<SplitCrack> splits_;  // of each crack
