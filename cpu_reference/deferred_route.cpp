@@ -65,10 +65,10 @@ class DeferredRoute final : public InverseRoute {
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
     update_->loaded(load);
     const solver::Forces forces{load.force_dofs, load.forces};
-    if (update_->deferred().forms().new_nodes().empty()) {
+    if (!split()) {
       update_->deferred().solve(forces, load.displacements, u, energy_tolerance_);
     } else {
-      update_->deferred().solve(forces, load.displacements, of_mesh_, energy_tolerance_);
+      update_->deferred().solve(forces, load.displacements, of_base_, energy_tolerance_);
       add_offsets(u);
     }
     return {};
@@ -77,19 +77,21 @@ class DeferredRoute final : public InverseRoute {
   Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& u) override {
     const auto size = static_cast<std::size_t>(r.size());
     for (std::size_t i = all_.size(); i < size; ++i) all_.push_back(static_cast<Index>(i));
-    const solver::Forces forces{std::span(all_).first(size), {r.data(), size}};
-    if (update_->deferred().forms().new_nodes().empty()) {
-      update_->deferred().correct(forces, u);
+    if (!split()) {
+      update_->deferred().correct({std::span(all_).first(size), {r.data(), size}}, u);
     } else {
-      update_->deferred().correct(forces, of_mesh_);
+      forces_ = r;
+      if (update_->parted()) update_->parted()->take_forces(forces_);
+      update_->deferred().correct({std::span(all_).first(size), {forces_.data(), size}}, of_base_);
       add_offsets(u);
     }
     return {};
   }
 
   void follow(const fem::Event& event) override {
-    const bool split = !event.nodes.empty() || !update_->deferred().forms().new_nodes().empty();
-    update_->follow(event, !split && solver::takes_new_factor(unknowns_, event.leave.size()));
+    const bool anew =
+        event.nodes.empty() && !split() && solver::takes_new_factor(unknowns_, event.leave.size());
+    update_->follow(event, anew);
   }
   bool rebase() override { return update_->rebase(); }
 
@@ -114,18 +116,28 @@ class DeferredRoute final : public InverseRoute {
   }
 
  private:
-  /// The solution of the mesh's unknowns with the offsets of new nodes behind them.
+  /// There are unknowns beyond the mesh's.
+  [[nodiscard]] bool split() const {
+    return update_->parted() || update_->deferred().offsets().size() > 0;
+  }
+
+  /// The solution of the base's unknowns with the offsets of new nodes behind them.
   void add_offsets(Eigen::VectorXd& u) const {
     const Eigen::VectorXd& d = update_->deferred().offsets();
-    u.resize(of_mesh_.size() + d.size());
-    u << of_mesh_, d;
+    u.resize(of_base_.size() + d.size());
+    u << of_base_, d;
+    if (update_->parted()) update_->parted()->give_displacement(u);
   }
 
   /// A factor of the body and an empty damage over it.
   solver::Based based_on(const DamagedBody& body, const linear_algebra::FactorWork& work,
                          Index columns) {
     solver::Based based;
-    if (body.others().empty()) {
+    if (!body.forms().new_nodes().empty()) {
+      based.parted = std::make_shared<fem::PartedBody>(body);
+      based.factor = std::make_shared<const linear_algebra::Factor>(
+          fem::factor_stiffness(based.parted->body(), work));
+    } else if (body.others().empty()) {
       stiffness_->follow(body);
       based.factor = std::make_shared<const linear_algebra::Factor>(stiffness_->factor(work));
     } else {  // entries that the intact body's stiffness has no place for
@@ -133,7 +145,8 @@ class DeferredRoute final : public InverseRoute {
           std::make_shared<const linear_algebra::Factor>(fem::factor_stiffness(body, work));
     }
     based.deferred = std::make_unique<solver::Deferred>(
-        body.forms(), std::make_unique<solver::FactorBase>(*based.factor), true, columns);
+        based.parted ? based.parted->body().forms() : body.forms(),
+        std::make_unique<solver::FactorBase>(*based.factor), true, columns);
     // Room for predictions too: the frame that takes the base is to allocate nothing.
     if (body.problem().scene().solver.prepare) based.deferred->prepare({});
     return based;
@@ -142,7 +155,7 @@ class DeferredRoute final : public InverseRoute {
   bool dense_;              // the first base is an inverse
   std::vector<Index> all_;  // every unknown: the loads of a residual
   std::size_t unknowns_;    // of the mesh
-  Eigen::VectorXd of_mesh_;
+  Eigen::VectorXd of_base_, forces_;
   double energy_tolerance_ = 0;
   std::unique_ptr<fem::OrderedStiffness> stiffness_;  // of whoever makes a base
   std::optional<solver::RenewedUpdate> update_;       // last: its thread uses what is above

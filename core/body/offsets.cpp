@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "body/offsets.hpp"
 
+#include <algorithm>
+
 namespace sunder::fem {
 
 void Offsets::follow(const Forms& forms) {
   const auto all = forms.new_nodes();
-  if (all.size() < nodes_.size()) *this = {};
+  const auto same = [](const NewNode& a, const NewNode& b) {
+    return a.parent == b.parent && a.axes == b.axes;
+  };
+  const bool grown =
+      all.size() >= nodes_.size() && std::equal(nodes_.begin(), nodes_.end(), all.begin(), same);
+  if (!grown) *this = {};  // an event was taken back
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].tie = all[i].tie;
   for (std::size_t i = nodes_.size(); i < all.size(); ++i) {
     nodes_.push_back(all[i]);

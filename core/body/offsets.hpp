@@ -13,8 +13,8 @@ namespace sunder::fem {
 
 class Offsets {
  public:
-  /// Takes the new nodes of some forms that have come since the last call; or, where there are
-  /// fewer than then, all of them anew.
+  /// Takes the new nodes of some forms: those that have come since the last call, or all of them
+  /// where an event was taken back.
   void follow(const Forms& forms);
   [[nodiscard]] bool empty() const { return unknowns_.empty(); }
   /// How many unknowns.

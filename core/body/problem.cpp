@@ -142,6 +142,26 @@ Problem::Problem(const Problem& whole, const PartOfBody& part)
   anchor_stiffness_ = whole.anchor_stiffness_;
 }
 
+Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners,
+                 std::span<const NodeThatParts> nodes)
+    : scene_(whole.scene_),
+      shapes_(whole.shapes_),
+      dof_(whole.dof_),
+      dof_count_(whole.dof_count_),
+      gripped_dofs_(whole.gripped_dofs_),
+      anchored_dofs_(whole.anchored_dofs_),
+      anchor_stiffness_(whole.anchor_stiffness_) {
+  resolve_materials();
+  Mesh& mesh = scene_.mesh;
+  mesh.tets = std::move(corners);
+  for (const NodeThatParts& node : nodes) {
+    mesh.nodes.push_back(Vec3(mesh.nodes[static_cast<std::size_t>(node.parent)]));
+    for (int axis = 0; axis < 3; ++axis) {
+      dof_.push_back(node.axes.has(axis) ? dof_count_++ : kNone);
+    }
+  }
+}
+
 void Problem::check_crack(const FractureOptions& f, const FractureModelRow& model) {
   if (f.max_new_nodes < 0) {
     throw InputError(InputFault::out_of_range,

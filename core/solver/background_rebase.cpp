@@ -157,7 +157,7 @@ void BackgroundRebase::follow_next(std::unique_lock<std::mutex>& lock) {
   body_.read(at_, event_);
   body_.follow(next);
   try {
-    if (result_.deferred && !result_.deferred->follow(event_)) result_ = {};
+    if (result_.deferred && !result_.follow(event_)) result_ = {};
   } catch (const std::exception&) {
     result_ = {};  // as in make()
   }

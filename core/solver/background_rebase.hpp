@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "body/damaged_body.hpp"
+#include "body/parted_body.hpp"
 #include "linear_algebra/factor.hpp"
 #include "solver/base_check.hpp"
 #include "solver/deferred.hpp"
@@ -22,7 +22,16 @@ namespace sunder::solver {
 
 /// A base with the damage laid over it.
 struct Based {
+  /// Follows an event of the body.
+  [[nodiscard]] bool follow(const fem::Event& event) {
+    if (!parted) return deferred->follow(event);
+    const fem::Change told = parted->translate(event);
+    return deferred->follow(told);
+  }
+
   BaseCheck check;
+  /// The body as the base has it, where nodes had parted by then: `deferred` is in its terms.
+  std::shared_ptr<fem::PartedBody> parted;
   std::shared_ptr<const linear_algebra::Factor>
       factor;  // what the base reads; empty: it is the intact one
   std::unique_ptr<Deferred> deferred;

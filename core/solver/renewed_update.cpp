@@ -23,25 +23,30 @@ RenewedUpdate::RenewedUpdate(const fem::DamagedBody& body, Based first, const Re
 void RenewedUpdate::follow(const fem::Event& event, bool anew) {
   if (coming_->due()) take_base();
   coming_->follow();
-  if (anew || !based_.deferred->follow(event)) {
+  if (anew || !based_.follow(event)) {
     if (!rebase()) throw NumericalError("the update of the split body is singular");
   } else if (begins()) {
     coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
                                  const linear_algebra::FactorWork& work) {
       Based based = make_(body, work);
-      check_base(based, body, load, [](Eigen::VectorXd&) {});
+      check_base(based, based.parted ? based.parted->body() : body, load, [](Eigen::VectorXd&) {});
       return based;
     });
   }
 }
 
+/// Elements that come with another form need no mesh of their own.
+bool RenewedUpdate::can_be_renewed() const {
+  return body_.forms().new_nodes().empty() || fem::can_be_parted(body_);
+}
+
 bool RenewedUpdate::begins() const {
-  return !coming_->making() && static_cast<std::size_t>(based_.deferred->rank()) > threshold_ &&
-         body_.forms().new_nodes().empty();
+  const Eigen::Index columns = based_.deferred->rank() + based_.deferred->offsets().size();
+  return !coming_->making() && static_cast<std::size_t>(columns) > threshold_ && can_be_renewed();
 }
 
 bool RenewedUpdate::rebase() {
-  if (!coming_ || !body_.forms().new_nodes().empty()) return false;  // no base takes those over
+  if (!coming_ || !can_be_renewed()) return false;
   coming_->give_up();
   saved_ms_ = saved_ms();
   based_ = {};  // frees the old base first

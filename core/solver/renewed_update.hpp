@@ -34,14 +34,16 @@ class RenewedUpdate {
   /// Remembers the load of a frame: a base that is made is checked by it.
   void loaded(const Load& load) { load_ = load; }
   /// Follows an event that the body has recorded already. `anew`: a base of the body as it is now
-  /// costs less than following. Throws NumericalError where new unknowns would need a new base.
+  /// costs less than following. Throws NumericalError where a new base is needed and cannot be.
   void follow(const fem::Event& event, bool anew = false);
-  /// Waits for a base of the body as it is now. False: nothing can be destroyed, or there are new
-  /// unknowns, which no base takes over.
+  /// Waits for a base of the body as it is now. False: nothing can be destroyed, or new nodes are
+  /// there that no base takes over (parted_body.hpp).
   bool rebase();
 
   [[nodiscard]] Deferred& deferred() { return *based_.deferred; }
   [[nodiscard]] const Deferred& deferred() const { return *based_.deferred; }
+  /// The body in whose terms deferred() is; null: in those of the body itself.
+  [[nodiscard]] const fem::PartedBody* parted() const { return based_.parted.get(); }
   /// The factor of the damaged body below; null: the base is the first.
   [[nodiscard]] const linear_algebra::Factor* factor() const { return based_.factor.get(); }
   [[nodiscard]] int bases() const { return bases_; }
@@ -50,6 +52,7 @@ class RenewedUpdate {
   [[nodiscard]] double saved_ms() const { return saved_ms_ + based_.deferred->saved_ms(); }
 
  private:
+  [[nodiscard]] bool can_be_renewed() const;
   [[nodiscard]] bool begins() const;
   void take_base();
   void renewed();

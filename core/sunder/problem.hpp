@@ -3,6 +3,7 @@
 // shared by the simulation and its backend.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -31,6 +32,12 @@ struct InstrumentNodes {
   std::vector<Index> nodes;  ///< ascending
 };
 
+/// A node that comes where another lies: held on the axes that it has not.
+struct NodeThatParts {
+  Index parent = 0;
+  Axes axes;
+};
+
 /// Nodes and elements of a body, ascending. Elements have their corners among the nodes.
 struct PartOfBody {
   std::vector<Index> nodes, elements;
@@ -44,6 +51,11 @@ class Problem {
   /// A part of a body, with unknowns, grips and anchors of its own numbering: what computes its
   /// fields. Its stiffness lacks that of the rest.
   Problem(const Problem& whole, const PartOfBody& part);
+  /// The same body whose elements have other corners, at nodes that come after its own: its
+  /// unknowns keep their numbers, those of the new nodes follow by node and axis. What is selected
+  /// is not.
+  Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners,
+          std::span<const NodeThatParts> nodes);
   Problem(const Problem&) = delete;  // holds pointers into its own scene
   Problem& operator=(const Problem&) = delete;
 
