@@ -82,11 +82,7 @@ bool Border::factor(const linear_algebra::RowMajor& g, const linear_algebra::Row
   n_.noalias() = m.topLeftCorner(k, k) * h_.topRows(k);
   h_.noalias() += g.topLeftCorner(n, k) * n_;  // G N
   Eigen::MatrixXd s = f_;
-  for (Eigen::Index i = 0; i < e_.outerSize(); ++i) {
-    for (Eigen::SparseMatrix<double>::InnerIterator at(e_, i); at; ++at) {
-      s.row(i).head(i + 1) -= at.value() * h_.row(at.row()).head(i + 1);
-    }
-  }
+  s.noalias() -= e_.transpose() * h_;
   for (Eigen::Index j = 0; j < s.cols(); ++j) {
     if (f_(j, j) == 0) s(j, j) = 1;  // no element there (any more): its offset is 0
   }
