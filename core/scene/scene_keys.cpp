@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "sunder/fracture_model.hpp"
+#include "sunder/tissue_presets.hpp"
 
 namespace sunder {
 namespace {
@@ -231,6 +232,13 @@ SceneKey output_row() {
              "another field: error");
 }
 
+SceneKey preset_row() {
+  return row("material", "preset", KeyType::word, "",
+             "a tissue of [tissues.md](tissues.md) with all that is known of it, `young` and "
+             "`poisson` too; keys beside it override",
+             "unknown: error that lists them", {.words = preset_names()});
+}
+
 SceneKey damping_row() {
   return row(
       "dynamics", "damping", KeyType::range, "[0, 0]",
@@ -263,6 +271,16 @@ std::span<const MemberKey<Material>> material_keys() {
       row<&Material::density>("material", "density", "[t/mm^3], water 1e-9",
                               "0 or below: error; over 1e-7: warning; left out in motion or under "
                               "gravity: error"),
+      row<&Material::toughness>(
+          "material", "toughness",
+          "K_c [MPa sqrt(mm)] at which cracks of model B grow (method.md \"Toughness\"); left out: "
+          "by the yield stress (Eq. 1); without `yield` no crack starts here, cracks grow",
+          "0 or below, or beside `energy`: error; a model that grows no cracks: not read, with a "
+          "warning; no crack and no yield: a warning that nothing can break"),
+      row<&Material::energy>("material", "energy",
+                             "G_c [N/mm] in place of `toughness`, 1000 J/m^2 each: K_c = "
+                             "sqrt(G_c E')",
+                             "as `toughness`"),
   };
   return keys;
 }
@@ -388,6 +406,7 @@ const std::vector<SceneKey>& scene_keys() {
   static const std::vector<SceneKey> keys = [] {
     std::vector<SceneKey> all = root_rows();
     append(all, material_keys());
+    all.push_back(preset_row());
     append(all, body_rows());
     append(all, fracture_keys());
     append(all, solver_keys());

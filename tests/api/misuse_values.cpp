@@ -53,6 +53,25 @@ std::vector<Misuse> values() {
        [](World& w) {
          return sunder_simulation_warning_at(w.simulation, 99, nullptr, 0, nullptr);
        }},
+      {"tip_index", SUNDER_ERROR_VALUE, "tip 0 does not exist",
+       [](World& w) {
+         sunder_tip tip = SUNDER_TIP_INIT;
+         return sunder_simulation_tip_at(w.simulation, 0, &tip);
+       }},
+      {"preset_index", SUNDER_ERROR_VALUE, "preset -1",
+       [](World&) { return sunder_preset_at(-1, nullptr, 0, nullptr); }},
+      {"preset_unknown", SUNDER_ERROR_VALUE, "preset is \"liver\"; allowed: \"aortic-media-axial\"",
+       [](World&) {
+         sunder_material material = SUNDER_MATERIAL_INIT;
+         return sunder_material_preset("liver", &material);
+       }},
+      {"toughness_infinite", SUNDER_ERROR_VALUE, "toughness",
+       [](World& w) {
+         sunder_material material = SUNDER_MATERIAL_INIT;
+         material.young = 5;
+         material.toughness = INFINITY;
+         return sunder_scene_add_material(w.scene, &material, nullptr);
+       }},
       {"plan_buffer_index", SUNDER_ERROR_VALUE, "buffer 1000",
        [](World& w) { return sunder_plan_buffer(w.plan, 1000, nullptr, nullptr, 0, nullptr); }},
       {"device_index", SUNDER_ERROR_VALUE, "device 1000",

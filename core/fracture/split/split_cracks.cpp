@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "fracture/crack_birth.hpp"
 #include "fracture/crack_path.hpp"
@@ -18,13 +19,6 @@ namespace {
 
 constexpr Index kFewestNewNodes = 1000;
 
-/// Two tissues part as the weaker one does, and tissue parts from what is unbreakable; 0: both are.
-double weaker_yield(const Problem& problem, Index a, Index b) {
-  if (!problem.breakable(a)) return problem.yield(b);
-  if (!problem.breakable(b)) return problem.yield(a);
-  return std::min(problem.yield(a), problem.yield(b));
-}
-
 Index most_nodes(const Problem& problem) {
   const int asked = problem.scene().fracture.max_new_nodes;
   const Index most = asked > 0 ? asked : std::max(problem.node_count(), kFewestNewNodes);
@@ -37,6 +31,7 @@ SplitCracks::SplitCracks(const Problem& problem)
     : problem_(problem),
       board_(problem.mesh(), problem.scene().fracture.plane_normal),
       meter_(problem, board_),
+      toughness_(problem),
       body_(problem),
       front_(board_, problem, body_),
       loose_(problem),
@@ -92,8 +87,22 @@ void SplitCracks::tips(const FractureState& state, std::vector<TipState>& tips,
       tips.push_back(tip_state(board_, crack, tip));
       if (crack.tips[tip].ended) continue;
       add_field_state(meter_, measured(crack, tip), tip, field, tips.back(), findings);
+      add_toughness(crack, tip, field, tips.back());
     }
   }
+}
+
+void SplitCracks::add_toughness(const Crack& crack, std::size_t tip, const FieldView& field,
+                                TipState& state) {
+  if (!toughness_.any()) return;
+  const double theta = state.theta.value_or(0.0) * std::numbers::pi / 180;
+  const Vec2 direction = turned(crack.tips[tip].direction, theta);
+  const double k_c =
+      toughness_at(crack, tip, field).of(ahead(crack, tip, direction, field.destroyed));
+  if (!(k_c > 0)) return;
+  state.toughness = k_c;
+  const TipMaterial material = meter_.material_at(measured(crack, tip), tip, field);
+  state.toughness_state = material.constraint > 0 ? "plane strain" : "plane stress";
 }
 
 void SplitCracks::decide(const FractureState& state, Decision& decision) {
@@ -143,11 +152,15 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   const auto tip = static_cast<std::size_t>(growth.terms.tip);
   Crack& crack = cracks_[static_cast<std::size_t>(driven.crack)];
   SplitCrack& split = splits_[static_cast<std::size_t>(driven.crack)];
-  const double length = board_.h();
-  const auto parts = [&](Index a, Index b) {
-    const double yield = weaker_yield(problem_, a, b);
-    return yield > 0 && reach(growth.terms.k, yield, growth.theta) >= length / 2;
+  const double k = growth.terms.k, length = board_.h();
+  const ToughnessView toughness = toughness_at(crack, tip, view(state));
+  const auto lets_pass = [&](Index e) {
+    if (const double k_c = toughness.of(e); k_c > 0) return k >= k_c;
+    const double yield = problem_.yield(e);
+    return yield > 0 && reach(k, yield, growth.theta) >= length / 2;
   };
+  const auto parts = [&](Index a, Index b) { return lets_pass(a) || lets_pass(b); };
+  const double k_c = toughness.of(ahead(crack, tip, growth.direction, state.destroyed));
   const SplitStep step =
       front_.advance(crack, split, tip, growth.direction, length, state.destroyed, parts);
   crack.tips[tip].ended = step.through;
@@ -159,9 +172,34 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   row.cause = Cause::sif;
   row.crack = crack.id;
   row.sif = growth.terms;
-  row.sif->reach = step.advance;
+  row.sif->advance = step.advance;
+  if (k_c > 0) {
+    row.sif->toughness = k_c;
+    row.ratio = k / k_c;
+  }
   decision.elements.push_back(row);
   exclude(split, decision);
+}
+
+/// With the E' that field K takes at the tip.
+ToughnessView SplitCracks::toughness_at(const Crack& crack, std::size_t tip,
+                                        const FieldView& field) {
+  if (!toughness_.by_energy()) return toughness_.view(0);
+  return toughness_.view(meter_.material_at(measured(crack, tip), tip, field).effective_young());
+}
+
+/// The live element half an edge length ahead of a tip.
+Index SplitCracks::ahead(const Crack& crack, std::size_t tip, const Vec2& direction,
+                         std::span<const std::uint8_t> destroyed) const {
+  const Vec2 at = crack.tips[tip].position + board_.h() / 2 * direction;
+  std::vector<Index> near;
+  board_.elements_within(at, 2 * board_.h(), near);
+  std::erase_if(near, [&](Index e) { return destroyed[e] != 0; });
+  const auto nearer = [&](Index a, Index b) {
+    return (board_.centroid(a) - at).squaredNorm() < (board_.centroid(b) - at).squaredNorm();
+  };
+  const auto nearest = std::ranges::min_element(near, nearer);
+  return nearest == near.end() ? 0 : *nearest;
 }
 
 void SplitCracks::bear(const FractureState& state, Decision& decision) {
@@ -172,7 +210,9 @@ void SplitCracks::bear(const FractureState& state, Decision& decision) {
   Crack crack = born_crack(board_, row->element, stress, id, std::pmr::get_default_resource());
   crack.elements.clear();
   SplitCrack split;
-  const auto parts = [&](Index a, Index b) { return weaker_yield(problem_, a, b) > 0; };
+  const auto parts = [&](Index a, Index b) {
+    return problem_.destructible(a) || problem_.destructible(b);
+  };
   const SplitStep step = front_.bear(crack, split, row->element, state.destroyed, parts);
   if (!step.moved()) {  // too little room for a surface: no other try
     excluded_[row->element] = 1;

@@ -11,6 +11,7 @@
 #include "fracture/criterion.hpp"
 #include "fracture/field_sif/field_growth.hpp"
 #include "fracture/split/split_front.hpp"
+#include "fracture/toughness.hpp"
 
 namespace sunder::fracture {
 
@@ -42,11 +43,17 @@ class SplitCracks final : public FractureCriterion {
   void follow(const SplitStep& step, Decision& decision) const;
   void exclude(const SplitCrack& split, Decision& decision);
   [[nodiscard]] bool full() const;
+  [[nodiscard]] ToughnessView toughness_at(const Crack& crack, std::size_t tip,
+                                           const FieldView& field);
+  [[nodiscard]] Index ahead(const Crack& crack, std::size_t tip, const Vec2& direction,
+                            std::span<const std::uint8_t> destroyed) const;
+  void add_toughness(const Crack& crack, std::size_t tip, const FieldView& field, TipState& state);
   void tie_what_is_loose(const FractureState& state, Decision& decision);
 
   const Problem& problem_;
   Board board_;
   FieldIntensityMeter meter_;
+  Toughness toughness_;
   SplitBody body_;
   SplitFront front_;
   LooseSearch loose_;
