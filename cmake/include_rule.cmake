@@ -2,8 +2,8 @@
 # Which room may include which: checked before anything is compiled, in every build.
 #   cmake -DROOT=SOURCE [-DSTAMP=FILE] -P cmake/include_rule.cmake
 # A room is a folder; a file belongs to the innermost one that is named here. It may include its own
-# room, the rooms after the colon, and headers in angle brackets. The first word of a header that has
-# no folder in its name ("pieces.hpp") is looked up next to the file.
+# room, the rooms after the colon, and headers that are none of ours, in quotes or angle brackets
+# alike. A header in quotes that has no folder in its name ("pieces.hpp") is looked up next to the file.
 cmake_minimum_required(VERSION 3.22)
 
 set(rooms
@@ -62,11 +62,11 @@ function(room_of path out)
   set(${out} "${best}" PARENT_SCOPE)
 endfunction()
 
-# header_path(HEADER FROM OUT): the header's path below ROOT; empty: it is none of ours.
-function(header_path header from out)
-  get_filename_component(beside "${from}" DIRECTORY)
+# header_path(HEADER BESIDE OUT): the header's path below ROOT; empty: it is none of ours. BESIDE is
+# the folder of the file that includes it, empty for angle brackets: they do not look there.
+function(header_path header beside out)
   set(found "")
-  foreach(folder IN LISTS include_folders ITEMS "${beside}")
+  foreach(folder IN LISTS include_folders ITEMS ${beside})
     if(NOT found AND EXISTS "${ROOT}/${folder}/${header}")
       set(found "${folder}/${header}")
     endif()
@@ -86,10 +86,16 @@ foreach(top core cpu_reference shaders gpu api app)
       list(APPEND wrong "${file} lies in no room: name its folder in cmake/include_rule.cmake")
       continue()
     endif()
-    file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*\"")
+    file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*[\"<]")
+    get_filename_component(folder "${file}" DIRECTORY)
     foreach(line IN LISTS lines)
-      string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*$" "\\1" header "${line}")
-      header_path("${header}" "${file}" path)
+      string(REGEX MATCH "[\"<]([^\">]*)" header "${line}")
+      set(header "${CMAKE_MATCH_1}")
+      set(beside "${folder}")
+      if(line MATCHES "^[^\"]*<")
+        set(beside "")
+      endif()
+      header_path("${header}" "${beside}" path)
       if(path STREQUAL "")
         continue()
       endif()

@@ -73,11 +73,13 @@ const std::vector<std::string>& writable_extensions() {
   return extensions;
 }
 
-void check_extension(const std::filesystem::path& file) {
+void check_file(const std::filesystem::path& file, bool ascii) {
   const auto& known = writable_extensions();
   if (std::find(known.begin(), known.end(), file.extension().string()) == known.end())
     throw UsageError("-o " + file.string() + ": the extension \"" + file.extension().string() +
                      "\" is not one that can be written; allowed: " + quoted_list(known));
+  if (ascii && file.extension() != ".msh")
+    throw UsageError("--ascii is for .msh alone; -o is " + file.string());
 }
 
 // Removes a temporary file when it goes out of scope.
@@ -125,11 +127,11 @@ Mesh make_board(const BoardOptions& options, BoardReport* report) {
 }
 
 BoardReport write_board(const BoardOptions& options, const std::filesystem::path& file) {
-  check_extension(file);
+  check_file(file, options.ascii);
   BoardReport report;
   const Mesh mesh = make_board(options, &report);
   const bool direct = file.extension() == ".msh";
-  const std::string msh = to_msh(mesh, direct && options.ascii);
+  const std::string msh = to_msh(mesh, options.ascii);
   if (direct)
     write_file(file, msh);
   else

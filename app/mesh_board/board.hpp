@@ -17,7 +17,7 @@ struct BoardOptions {
   std::optional<long long> tets;  ///< instead: the nearest count (unstructured: within 3 %)
   bool unstructured = false;      ///< meshed by gmsh; needs `tets`
   double thickness = 2.0;         ///< mm
-  bool ascii = false;             ///< .msh as text (default: binary)
+  bool ascii = false;             ///< .msh as text (default: binary); no other file
 };
 
 struct BoardReport {
@@ -29,7 +29,7 @@ struct BoardReport {
 [[nodiscard]] Mesh make_board(const BoardOptions& options, BoardReport* report = nullptr);
 
 /// Writes .msh (version 4.1), .vtk, .mesh, .unv or .bdf; the file appears complete or not at
-/// all. Throws UsageError for another extension.
+/// all. Throws UsageError for another extension, and for text that is not .msh.
 BoardReport write_board(const BoardOptions& options, const std::filesystem::path& file);
 
 /// Removes what a write_board() of this process that does not go on has left beside the file.

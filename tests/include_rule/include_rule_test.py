@@ -32,10 +32,11 @@ class IncludeRule(unittest.TestCase):
         shutil.rmtree(cls.root)
 
     def refuse(self, includes):
-        """{file: header}: all of them are named."""
+        """{file: header}: all of them are named. A header comes in quotes where it has no brackets."""
         for file, header in includes.items():
             (self.root / file).parent.mkdir(exist_ok=True)
-            (self.root / file).write_text(f'#include "{header}"\n')
+            quoted = header if header.startswith("<") else f'"{header}"'
+            (self.root / file).write_text(f"#include {quoted}\n")
         outcome = checked(self.root)
         for file in includes:
             (self.root / file).unlink()
@@ -63,6 +64,22 @@ class IncludeRule(unittest.TestCase):
         said = self.refuse(wrong)
         for file in wrong:
             self.assertIn(f"{file} includes ", said)
+
+    def test_angle_brackets_open_no_way_round_it(self):
+        wrong = {"core/body/intruder.cpp": "<gpu/plan_device.hpp>",
+                 "core/solver/intruder.hpp": "<frame/loads.hpp>",
+                 "api/sunder/intruder.h": "<c/structs.hpp>",
+                 "cpu_reference/plain/intruder.cpp": "<body/element.hpp> // after a word \"of ours\""}
+        said = self.refuse(wrong)
+        for file in wrong:
+            self.assertIn(f"{file} includes ", said)
+
+    def test_public_headers_and_those_of_others_may_stand_in_angle_brackets(self):
+        file = self.root / "app" / "input" / "guest.hpp"
+        file.write_text("#include <sunder/mesh.hpp>\n#include <vector>\n#include <loads.hpp>\n")
+        outcome = checked(self.root)
+        file.unlink()
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
 
     def test_the_yardstick_takes_public_headers_alone(self):
         wrong = {"cpu_reference/plain/a.cpp": "body/element.hpp",

@@ -148,6 +148,7 @@ TEST(Board, FilesReadBack) {
     EXPECT_EQ(report.tets, 2000);
     expect_same_mesh(app::import_mesh(folder.file("board.msh")), mesh);
   }
+  options.ascii = false;
   options.unstructured = true;
   static_cast<void>(app::write_board(options, folder.file("free.msh")));
   expect_same_mesh(app::import_mesh(folder.file("free.msh")), app::make_board(options));
@@ -206,6 +207,9 @@ TEST(Board, SaysWhatIsAllowed) {
   }
   expect_usage({}, folder.file("b.stl"), {".stl", "\".msh\""});
   expect_usage({}, folder.file("b"), {"extension \"\""});
+  options = {};
+  options.ascii = true;
+  expect_usage(options, folder.file("b.vtk"), {"--ascii", ".msh", "b.vtk"});
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // Commands, options and exit codes of docs/interface.md "Program".
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "app/output/program.hpp"
 
 namespace sunder::test {
@@ -84,6 +86,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"mesh_thickness",
                    {"mesh", "board", "--thickness", "nan", "-o", "x.msh"},
                    "--thickness is \"nan\"; allowed is a finite number above 0"},
+        WrongUsage{"mesh_ascii",
+                   {"mesh", "board", "--nx", "4", "--ascii", "-o", "x.vtk"},
+                   "--ascii is for .msh alone; -o is x.vtk"},
         WrongUsage{"devices", {"devices", "all"}, "no further argument \"all\""},
         WrongUsage{"help", {"help", "fly"}, "\"fly\"; " + kCommands}),
     [](const auto& test) { return test.param.name; });
@@ -102,6 +107,26 @@ TEST(CommandLine, HelpAndVersion) {
   for (const char* option : {"--out", "--backend", "--device", "--route", "--update", "--precision",
                              "--steps", "--series", "--snapshots", "--set", "--quiet"})
     EXPECT_NE(run_help.find(option), std::string::npos) << option;
+}
+
+TEST(CommandLine, MeshBoardIsATextWhereAscii) {
+  const TempFolder folder;
+  const auto board = [&](Arguments more) {
+    Arguments arguments = {"mesh", "board", "--nx", "1", "--ny", "4", "--nz", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"-o", (folder / "b.msh").string()});
+    EXPECT_EQ(run_program(arguments).exit_code, 0);
+    return read_file(folder / "b.msh");
+  };
+  const auto is_text = [](const std::string& bytes) {
+    return std::all_of(bytes.begin(), bytes.end(),
+                       [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); });
+  };
+  const std::string text = board({"--ascii"}), binary = board({});
+  EXPECT_EQ(text.find("$MeshFormat\n4.1 0 8\n"), 0u);
+  EXPECT_TRUE(is_text(text));
+  EXPECT_EQ(binary.find("$MeshFormat\n4.1 1 8\n"), 0u);
+  EXPECT_FALSE(is_text(binary));
 }
 
 TEST(CommandLine, DevicesListsTheCpu) {
