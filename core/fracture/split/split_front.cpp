@@ -174,10 +174,11 @@ bool SplitFront::turn_small_groups(Work& work, bool keep) const {
   std::set<Index> seen;
   bool any = false;
   for (const auto& [first, side] : work.label) {
-    if (!seen.insert(first).second) continue;
+    if (seen.contains(first)) continue;
+    // As far as it takes to see that it is no small one, beyond the band too.
     std::vector<Index> group{first};
-    bool holds = false;  // on something beyond the band
-    for (std::size_t i = 0; i < group.size(); ++i) {
+    std::set<Index> in_group{first};
+    for (std::size_t i = 0; i < group.size() && group.size() < kSmall; ++i) {
       for (int f = 0; f < 4; ++f) {
         const Face face{group[i], f};
         const Index next = body_.behind(face);
@@ -185,14 +186,11 @@ bool SplitFront::turn_small_groups(Work& work, bool keep) const {
             work.destroyed[static_cast<std::size_t>(next)]) {
           continue;
         }
-        if (!work.label.contains(next)) {
-          holds = true;
-        } else if (seen.insert(next).second) {
-          group.push_back(next);
-        }
+        if (in_group.insert(next).second) group.push_back(next);
       }
     }
-    if (holds || group.size() >= kSmall) continue;
+    seen.insert(group.begin(), group.end());
+    if (group.size() >= kSmall) continue;
     const auto opens = [&](Index e) {
       for (int f = 0; f < 4; ++f) {
         if (opening.contains({e, f})) return true;
@@ -203,7 +201,7 @@ bool SplitFront::turn_small_groups(Work& work, bool keep) const {
     any = true;
     for (Index e : group) {
       if (!keep) {
-        if (!work.turned.insert(e).second) work.turned.erase(e);
+        if (work.label.contains(e) && !work.turned.insert(e).second) work.turned.erase(e);
         continue;
       }
       for (const Face& face : work.faces) {

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -69,6 +71,28 @@ class EdgeSplit {
   fracture::SplitStep advance(double angle) {
     return advance(turned_by(crack.tips[0].direction, angle));
   }
+
+  /// Sizes of the groups of elements that hang together by faces that are not open.
+  [[nodiscard]] std::map<Index, int> piece_sizes() const {
+    std::vector<Index> above(problem_.mesh().tets.size());
+    std::iota(above.begin(), above.end(), 0);
+    const auto root = [&](Index e) {
+      while (above[static_cast<std::size_t>(e)] != e) e = above[static_cast<std::size_t>(e)];
+      return e;
+    };
+    for (Index e = 0; e < problem_.tet_count(); ++e) {
+      for (int f = 0; f < 4; ++f) {
+        const fracture::Face face{e, f};
+        if (body.behind(face) == kNone || body.open(face)) continue;
+        const Index a = root(e), b = root(body.behind(face));
+        above[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      }
+    }
+    std::map<Index, int> sizes;
+    for (Index e = 0; e < problem_.tet_count(); ++e) ++sizes[root(e)];
+    return sizes;
+  }
+  [[nodiscard]] int pieces() const { return static_cast<int>(piece_sizes().size()); }
 
   /// The mesh as it is now, and where its new nodes lie.
   [[nodiscard]] Mesh mesh() const {

@@ -17,26 +17,6 @@ struct Cracked : test::EdgeSplit {
   explicit Cracked(const Mesh& mesh)
       : Cracked(std::make_shared<const Problem>(test::board_scene(mesh, FractureModel::b))) {}
 
-  /// Groups of elements that hang together by faces that are not open.
-  [[nodiscard]] int pieces() const {
-    std::vector<Index> above(problem.mesh().tets.size());
-    std::iota(above.begin(), above.end(), 0);
-    const auto root = [&](Index e) {
-      while (above[static_cast<std::size_t>(e)] != e) e = above[static_cast<std::size_t>(e)];
-      return e;
-    };
-    for (Index e = 0; e < problem.tet_count(); ++e) {
-      for (int f = 0; f < 4; ++f) {
-        const Face face{e, f};
-        if (body.behind(face) == kNone || body.open(face)) continue;
-        const Index a = root(e), b = root(body.behind(face));
-        above[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-      }
-    }
-    int count = 0;
-    for (Index e = 0; e < problem.tet_count(); ++e) count += root(e) == e;
-    return count;
-  }
   /// Elements that share a face that is not open have its three nodes in common; no others have
   /// more nodes than the mesh gave them.
   void expect_joined() const {

@@ -75,10 +75,11 @@ class Tension {
   void grow_to(double length) {
     while (crack_.tip().x() < length) follow(crack_.advance(0));
   }
-  /// K where the crack ends for its field, and how long it is there.
+  /// K where the crack ends for its field, how long it is there, and half the work of the load.
   struct Found {
     double length = 0;
     fracture::IntensityFactors k;
+    double energy = 0;
   };
   [[nodiscard]] Found measure() {
     backend_->set_load(test::load_of(*problem_, force_, {}));
@@ -91,8 +92,12 @@ class Tension {
     view.corners = crack_.body.corners();
     const Crack shorter =
         fracture::as_its_field_shows(crack_.crack, 0, crack_.board, problem_->small_strain(0));
+    std::vector<double> u(force_.size());
+    backend_->read_displacement(u);
+    double work = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) work += force_[i] * u[i];
     return {crack_.board.plane().lift(shorter.tips[0].position).x(),
-            meter_.at(shorter, 0, view).factors};
+            meter_.at(shorter, 0, view).factors, work / 2};
   }
 
  private:
@@ -124,10 +129,29 @@ TEST_P(SplitIntensity, IsThatOfAnEdgeCrackWithinOnePercent) {
   Tension plate(GetParam());
   for (const double length : {8.0, 12.0, 16.0}) {  // .2 to .42 of the width; 1.3 % at .46
     plate.grow_to(length);
-    const auto [a, k] = plate.measure();
+    const auto [a, k, energy] = plate.measure();
     EXPECT_NEAR(k.k_1, published(a), 0.01 * published(a)) << a;
     EXPECT_NEAR(k.k_2, 0, 0.04 * published(a)) << a;
   }
+}
+
+/// What a growing crack releases under a constant load, half the work that the load does by it, is
+/// K^2 (1 - nu^2)/E times the area that opens.
+TEST(SplitEnergy, IsReleasedAsKSays) {
+  const Strip of{2, 0.3, 0};
+  Tension plate(of);
+  plate.grow_to(10);
+  auto before = plate.measure();
+  double released = 0;
+  const double energy_before = before.energy;
+  while (before.length < 15) {
+    plate.grow_to(before.length + 1.5);
+    const auto now = plate.measure();
+    const auto g = [](const auto& found) { return 0.91 * found.k.k_1 * found.k.k_1; };
+    released += (g(before) + g(now)) / 2 * (now.length - before.length) * 2;  // 2 mm thick, E = 1
+    before = now;
+  }
+  EXPECT_NEAR(before.energy - energy_before, released, 0.02 * released);
 }
 
 }  // namespace

@@ -168,5 +168,56 @@ TEST(SplitRun, WhatCannotSplitSaysWhatCan) {
             std::string::npos);
 }
 
+/// A notched plate in tension whose tissue has a toughness: the crack starts where K reaches it,
+/// whatever the mesh, and each row says how far over it K was.
+TEST(SplitRun, ToughnessStartsACrackAtALoadThatDoesNotKnowTheMesh) {
+  constexpr double kToughness = 2;
+  std::vector<double> loads;
+  for (const Index across : {20, 30, 40}) {
+    const double cell = 20.0 / across;
+    const Mesh mesh = test::structured_board({across, 2 * across, 1, 20, 40, cell});
+    Scene scene = test::board_scene(mesh, FractureModel::b);
+    scene.materials["board"] = {5, 0.3, std::nullopt};
+    scene.materials["board"].toughness = kToughness;
+    scene.supports.clear();
+    scene.supports.push_back({Box{Vec3(-9, -9, -9), Vec3(99, 99, 99)}, Axes{4}});
+    scene.supports.push_back({Box{Vec3(-9, 39.99, -9), Vec3(99, 99, 99)}, Axes{3}});
+    Instrument pull{"pull", Pull{Box{Vec3(-9, -9, -9), Vec3(99, 0.01, 99)}, Vec3(0, -1, 0)}, {}};
+    pull.ramp = Ramp{0, 1};
+    scene.instruments = {pull};
+    PresetCrack notch;  // a row of cells, 6 mm deep
+    notch.elements = Box{Vec3(-1, 20 - cell, -9), Vec3(6, 20, 9)};
+    notch.mouth = Vec3(0, 20 - cell / 2, 0);
+    notch.tips = {Vec3(6, 20 - cell / 2, 0)};
+    scene.cracks = {notch};
+    scene.steps = 1;
+    scene.instruments[0].ramp.reset();
+    // K is linear in the force: what it is at 1 N says when it reaches the toughness.
+    Torn still(split(scene));
+    still.simulation.step();
+    const auto tips = still.simulation.tips();
+    ASSERT_EQ(tips.size(), 1U);
+    ASSERT_TRUE(tips[0].toughness && tips[0].k);
+    EXPECT_DOUBLE_EQ(*tips[0].toughness, kToughness);
+    const double load = kToughness / *tips[0].k;
+    loads.push_back(load / cell);  // per thickness
+    for (const double share : {0.99, 1.01}) {
+      Scene at = scene;
+      std::get<Pull>(at.instruments[0].action).force = Vec3(0, -share * load, 0);
+      at.fracture.max_events = 1;
+      Torn run(split(std::move(at)));
+      run.simulation.step();
+      const auto& rows = run.simulation.destroyed();
+      const bool grown = rows.back().lives;
+      EXPECT_EQ(grown, share > 1);
+      if (!grown) continue;
+      EXPECT_NEAR(*rows.back().ratio, share, 1e-6);
+      EXPECT_DOUBLE_EQ(*rows.back().sif->toughness, kToughness);
+      EXPECT_GT(rows.back().sif->advance, 0);
+    }
+  }
+  for (double load : loads) EXPECT_NEAR(load, loads.back(), 0.02 * loads.back());
+}
+
 }  // namespace
 }  // namespace sunder
