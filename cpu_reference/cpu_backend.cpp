@@ -126,7 +126,7 @@ class CpuBackend final : public Backend {
   std::vector<Index> an_element_that_can_break() const {
     std::vector<Index> all, dofs;
     for (Index e = 0; e < problem().tet_count(); ++e) {
-      if (problem().breakable(e)) all.push_back(e);
+      if (problem().destructible(e)) all.push_back(e);
     }
     const Index e = all.empty() ? problem().tet_count() / 2 : all[all.size() / 2];
     for (Index n : problem().mesh().tets[e]) add_unknowns(n, dofs);

@@ -38,7 +38,7 @@ double nearly_largest(const Problem& problem, const std::vector<double>& values,
   const bool frame = shows_frame(problem);
   std::vector<double> shown;
   for (Index e = 0; e < problem.tet_count(); ++e)
-    if (!destroyed[e] && (!frame || problem.breakable(e))) shown.push_back(values[e]);
+    if (!destroyed[e] && (!frame || problem.destructible(e))) shown.push_back(values[e]);
   if (shown.empty()) return 0;
   const auto rank = shown.begin() + static_cast<std::ptrdiff_t>((shown.size() - 1) * 199 / 200);
   std::nth_element(shown.begin(), rank, shown.end());
@@ -49,7 +49,7 @@ double nearly_largest(const Problem& problem, const std::vector<double>& values,
 
 bool shows_frame(const Problem& problem) {
   for (Index e = 0; e < problem.tet_count(); ++e)
-    if (problem.breakable(e)) return true;
+    if (problem.destructible(e)) return true;
   return false;
 }
 
@@ -83,7 +83,7 @@ std::vector<Color> element_colors(const Problem& problem, const State& state,
   const bool frame = shows_frame(problem);
   std::vector<Color> colors(state.destroyed.size(), kPlain);
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (frame && !problem.breakable(e))
+    if (frame && !problem.destructible(e))
       colors[e] = kFrame;
     else if (scale)
       colors[e] = red(scale->value[e] / scale->maximum);

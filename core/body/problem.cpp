@@ -19,6 +19,24 @@
 namespace sunder {
 namespace {
 
+void check_toughness(const std::string& what, const Material& m) {
+  const auto check = [&what](const char* key, const std::optional<double>& value,
+                             const char* unit) {
+    if (!value || (std::isfinite(*value) && *value > 0)) return;
+    throw InputError(InputFault::out_of_range, what + " has " + key + " = " + in_digits(*value) +
+                                                   "; it must be finite and above 0 " + unit +
+                                                   ", or left out (no crack grows by it)");
+  };
+  check("toughness", m.toughness, "MPa sqrt(mm)");
+  check("energy", m.energy, "N/mm");
+  if (m.toughness && m.energy) {
+    throw InputError(InputFault::out_of_range,
+                     what +
+                         " has toughness and energy; they say the same (G_c = K_c^2/E'), so "
+                         "give one of them");
+  }
+}
+
 void check_material(const std::string& name, const Material& m) {
   const std::string what = "material " + in_quotes(name);
   if (!std::isfinite(m.young) || !(m.young > 0)) {
@@ -34,6 +52,7 @@ void check_material(const std::string& name, const Material& m) {
                      what + " has yield = " + in_digits(*m.yield) +
                          "; it must be finite and above 0 MPa, or left out (unbreakable)");
   }
+  check_toughness(what, m);
   if (m.density && (!std::isfinite(*m.density) || !(*m.density > 0))) {
     throw InputError(InputFault::out_of_range,
                      what + " has density = " + in_digits(*m.density) +
@@ -81,6 +100,7 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
     check_held_bodies(bodies);
     note_odd_mesh();
     note_no_board();
+    note_toughness();
   } catch (const InputError& error) {
     throw InputError(error.fault(), where + ": " + error.what());
   }
@@ -93,6 +113,30 @@ void Problem::note_no_board() {
                         " takes the body for a flat board of even thickness, but " + *why +
                         ": its cracks and their stress intensity are not those of this body "
                         "(docs/limits.md); model \"A\" assumes no shape");
+  }
+}
+
+/// Of materials that elements have.
+void Problem::note_toughness() {
+  const FractureModelRow& model = row_of(scene_.fracture.model);
+  std::vector<std::uint8_t> used(mesh().volumes.size(), 0);
+  for (Index v : mesh().volume_of) used[static_cast<std::size_t>(v)] = 1;
+  bool tough = false, yields = false;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    const Material& material = *material_of_volume_[v];
+    yields = yields || material.yield;
+    tough = tough || material.tough();
+    if (!material.tough() || model.grows_cracks) continue;
+    warnings_.push_back("material " + in_quotes(mesh().volumes[v].name) + " has " +
+                        (material.toughness ? "toughness" : "energy") + ", which model " +
+                        in_quotes(model.name) +
+                        " does not read: cracks grow by it in model \"B\" alone");
+  }
+  if (model.grows_cracks && tough && !yields && scene_.cracks.empty()) {
+    warnings_.push_back(
+        "nothing can break: no material has a yield stress, by which a crack would start, and the "
+        "scene has no crack that could grow; add yield or a [[crack]]");
   }
 }
 
@@ -218,6 +262,7 @@ void Problem::check_density(const std::string& name, const Material& material) {
 }
 
 void Problem::resolve_materials() {
+  reads_toughness_ = row_of(scene_.fracture.model).grows_cracks;
   for (const auto& [name, material] : scene_.materials) {
     check_material(name, material);
     const bool known =

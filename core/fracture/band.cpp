@@ -17,6 +17,7 @@ constexpr double kLabelKept = 1.0;    // labelled nodes this close to the ray ke
 constexpr double kBehind = 0.5;       // centroids may lie this far behind the tip
 constexpr double kNodeBehind = 0.25;  // but one node must lie beyond this
 constexpr double kLongestStep = 1.5;  // of one event
+constexpr double kShare = 1.0;        // of the local h: one event's advance by toughness
 constexpr double kStepMargin = 0.25;  // past the last destroyed centroid
 constexpr double kOnLine =
     1e-9;  // rounding: a node behind the tip, on the prolonged ray, has no side
@@ -56,7 +57,8 @@ void sort_into_bands(const Board& board, const Ray& ray, BandElement candidate, 
 }
 
 struct Strength {
-  double least_yield = std::numeric_limits<double>::infinity();  // of unbreakable elements
+  double least_yield = std::numeric_limits<double>::infinity();  // of elements without
+  double least_toughness = std::numeric_limits<double>::infinity();
   std::size_t count = 0;
 };
 
@@ -67,6 +69,8 @@ Strength strength(const std::vector<BandElement>& band, double h, const ElementV
     ++s.count;
     const double yield = view.yield[b.element];
     if (yield > 0) s.least_yield = std::min(s.least_yield, yield);
+    const double toughness = view.toughness.of(b.element);
+    if (toughness > 0) s.least_toughness = std::min(s.least_toughness, toughness);
   }
   return s;
 }
@@ -75,6 +79,8 @@ Strength strength(const std::vector<BandElement>& band, double h, const ElementV
 int choose_near_side(const TwoBands& bands, double h, const ElementView& view) {
   const Strength right = strength(bands[0], h, view), left = strength(bands[1], h, view);
   if (right.least_yield != left.least_yield) return right.least_yield < left.least_yield ? -1 : 1;
+  if (right.least_toughness != left.least_toughness)
+    return right.least_toughness < left.least_toughness ? -1 : 1;
   return right.count < left.count ? -1 : 1;
 }
 
@@ -112,23 +118,45 @@ const Band& BandSearch::find(const Ray& ray, const ElementView& view) {
             [](const BandElement& a, const BandElement& b) {
               return a.rho != b.rho ? a.rho < b.rho : a.element < b.element;
             });
+  double sum = 0;
+  for (const BandElement& b : band_.elements) sum += board_.edge_length(b.element);
+  band_.size = band_.elements.empty() ? 0 : sum / static_cast<double>(band_.elements.size());
   return band_;
 }
+
+namespace {
+
+/// How far K lets the tip go into an element.
+Passed judge(const BandElement& b, double distance, double k, double theta, double share,
+             const ElementView& view) {
+  const double toughness = view.toughness.of(b.element);
+  if (toughness > 0)
+    return {b.element, b.rho, k >= toughness ? share : 0, k / toughness, toughness};
+  const double yield = view.yield[b.element];
+  const double r = yield > 0 ? reach(k, yield, theta) : 0;
+  return {b.element, b.rho, r, r / distance};
+}
+
+}  // namespace
 
 void walk_band(const Band& band, double h, double k, double theta, const ElementView& view,
                Walk& walk) {
   walk.passed.clear();
   walk.advance = 0;
   double survivor = std::numeric_limits<double>::infinity();  // rho of the first that holds
+  const double share = std::clamp(kShare * band.size, kBehind * h, kLongestStep * h);
   for (const BandElement& b : band.elements) {
-    const double yield = view.yield[b.element];
     const double distance = std::max(b.rho, kBehind * h);
-    const double r = yield > 0 ? reach(k, yield, theta) : 0;
+    // What K_c lets go, goes a share of h; the first element even where it lies farther.
+    const double by_toughness = walk.passed.empty() ? std::max(share, distance) : share;
+    Passed passed = judge(b, distance, k, theta, by_toughness, view);
+    const double r = passed.reach;
     if (!(r >= distance)) {
       survivor = b.rho;
       break;
     }
-    walk.passed.push_back({b.element, b.rho, r, r / distance});
+    if (passed.toughness > 0) passed.reach = 0;
+    walk.passed.push_back(passed);
     const double step = std::min({r, kLongestStep * h, distance + kStepMargin * h});
     walk.advance = std::max(walk.advance, step);
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fracture/board.hpp"
+#include "fracture/toughness.hpp"
 #include "sunder/crack.hpp"
 
 namespace sunder::fracture {
@@ -15,9 +16,10 @@ namespace sunder::fracture {
 /// What a walk needs to know of elements, so that it depends on neither problem nor backend.
 struct ElementView {
   std::span<const std::uint8_t> destroyed;   ///< per element
-  std::span<const double> yield;             ///< [MPa] per element; 0: unbreakable
+  std::span<const double> yield;             ///< [MPa] per element; 0: none
   std::span<const std::uint8_t> taken = {};  ///< by this event already; empty: none
-  bool breakable_only = false;               ///< unbreakable ones count as not there
+  bool breakable_only = false;               ///< those without yield count as not there
+  ToughnessView toughness = {};              ///< at the tip
 
   [[nodiscard]] bool live(Index e) const {
     return !destroyed[e] && (taken.empty() || !taken[e]) && (!breakable_only || yield[e] > 0);
@@ -42,6 +44,7 @@ struct BandElement {
 struct Band {
   std::vector<BandElement> elements;
   int near_side = 1;
+  double size = 0;  ///< local h: mean projected edge length of its elements [mm]
 };
 
 /// Searches of one board, with lists that have room for the fullest of its places.
@@ -67,9 +70,10 @@ class BandSearch {
 
 struct Passed {
   Index element;
-  double rho;    ///< [mm]
-  double reach;  ///< r_e [mm] (Eq. 1)
-  double ratio;  ///< r_e / max(rho, h/2)
+  double rho;            ///< [mm]
+  double reach;          ///< r_e [mm] (Eq. 1); 0 where the material's toughness decides
+  double ratio;          ///< r_e / max(rho, h/2), K / K_c by toughness
+  double toughness = 0;  ///< K_c [MPa sqrt(mm)]; 0: none
 };
 
 struct Walk {
@@ -77,7 +81,8 @@ struct Walk {
   double advance = 0;          ///< of the tip [mm]; 0 when nothing is destroyed
 };
 
-/// Walks the band with stress intensity K and angle theta [rad], in place of what `walk` held.
+/// Walks the band with stress intensity K and angle theta [rad], in place of what `walk` held. By
+/// toughness where an element has one (method.md "Toughness"), else by Eq. 1.
 void walk_band(const Band& band, double h, double k, double theta, const ElementView& view,
                Walk& walk);
 

@@ -32,6 +32,14 @@ Board::Board(const Mesh& mesh, const std::optional<Vec3>& plane_normal)
   sort_free_faces();
 }
 
+double Board::edge_length(Index e) const {
+  const auto& tet = mesh_.tets[e];
+  double sum = 0;
+  for (int a = 0; a < 4; ++a)
+    for (int b = a + 1; b < 4; ++b) sum += (node(tet[a]) - node(tet[b])).norm();
+  return sum / 6;
+}
+
 void Board::sort_free_faces() {
   for (const FreeFace& face : free_faces(mesh_)) {
     const auto& [a, b, c] = face.nodes;

@@ -38,6 +38,8 @@ class Board {
   [[nodiscard]] std::size_t most_within(double radius) const {
     return centroids_.most_within(radius);
   }
+  /// Mean projected length of an element's edges [mm]; h is the mean of all.
+  [[nodiscard]] double edge_length(Index e) const;
   /// Largest distance between an element's projected centroid and one of its nodes [mm].
   [[nodiscard]] double largest_element() const { return largest_element_; }
   struct LateralFace {

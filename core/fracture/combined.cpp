@@ -2,11 +2,14 @@
 #include "fracture/combined.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "fracture/crack_birth.hpp"
 #include "fracture/crack_path.hpp"
 #include "fracture/preset_cracks.hpp"
 #include "fracture/pressed_nodes.hpp"
+#include "fracture/stress_intensity.hpp"
 #include "fracture/worst_element.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
@@ -27,13 +30,15 @@ std::vector<double> yields_of(const Problem& problem) {
   return yields;
 }
 
-std::size_t room_for_cracks(std::span<const double> yields) {
-  const auto breakable = yields.size() - static_cast<std::size_t>(std::ranges::count(yields, 0.0));
-  return std::min(kOfAnElement * (breakable + 1), kMostOfCracks);
+std::size_t room_for_cracks(const Problem& problem) {
+  std::size_t destructible = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) destructible += problem.destructible(e) ? 1 : 0;
+  return std::min(kOfAnElement * (destructible + 1), kMostOfCracks);
 }
 
 DestroyedElement growth_row(const Passed& passed, int crack, SifTerms terms) {
   terms.reach = passed.reach;
+  if (passed.toughness > 0) terms.toughness = passed.toughness;
   DestroyedElement row;
   row.element = passed.element;
   row.cause = Cause::sif;
@@ -80,13 +85,15 @@ Combined::Combined(const Problem& problem)
       board_(problem.mesh(), problem.scene().fracture.plane_normal),
       meter_(problem, board_),
       yields_(yields_of(problem)),
-      lists_(room_for_cracks(yields_)),
+      toughness_(problem),
+      lists_(room_for_cracks(problem)),
       excluded_(problem.mesh().tets.size(), 0),
       pristine_(problem, board_, {}),
       present_(problem, board_),
       bands_(board_),
       taken_(problem.mesh().tets.size(), 0) {
-  anything_breakable_ = std::ranges::any_of(yields_, [](double yield) { return yield > 0; });
+  for (Index e = 0; e < problem.tet_count() && !anything_destructible_; ++e)
+    anything_destructible_ = problem.destructible(e);
   // Births share no node with one another.
   cracks_.reserve(problem.scene().cracks.size() + problem.mesh().nodes.size() / 4 + 1);
   driven_.reserve(2 * std::min(cracks_.capacity(), kTipsAtOnce * kTipsAtOnce));
@@ -117,7 +124,7 @@ void Combined::reserve(Decision& decision) const {
 void Combined::decide(const FractureState& state, Decision& decision) {
   decision.clear();
   reserve(decision);
-  if (!anything_breakable_) return;
+  if (!anything_destructible_) return;
   drive_tips(state, decision.findings);
   for (const DrivenTip& driven : driven_) grow(driven, state, decision);
   if (decision.elements.empty()) start_crack(state, decision);
@@ -148,7 +155,7 @@ void Combined::next_in_line(const FractureState& state, std::vector<Index>& next
       const Ray ray{crack.tips[tip].position, heading(crack, tip), &crack, orientation(crack, tip)};
       std::size_t taken = 0;
       for (const BandElement& e : bands_.find(ray, view).elements) {
-        if (!problem_.breakable(e.element) || taken++ == kAhead) break;
+        if (!problem_.destructible(e.element) || taken++ == kAhead) break;
         add(e.element);
       }
     }
@@ -197,7 +204,7 @@ bool Combined::formula_holds(const Crack& crack, std::vector<Finding>& findings)
 
 void Combined::tips(const FractureState& state, std::vector<TipState>& tips,
                     std::vector<Finding>& findings) {
-  const bool formula = !by_field() && anything_breakable_ && any_tip_left(cracks_);
+  const bool formula = !by_field() && anything_destructible_ && any_tip_left(cracks_);
   const RemoteField* remote = formula ? &remote_field(state) : nullptr;
   const FieldView view = by_field() ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
@@ -208,8 +215,35 @@ void Combined::tips(const FractureState& state, std::vector<TipState>& tips,
         add_field_state(meter_, crack, tip, view, tips.back(), findings);
       else if (remote)
         add_formula_state(*remote, crack, state, tips.back(), findings);
+      add_toughness(crack, state, tips.back());
     }
   }
+}
+
+/// E' is that of field K, whichever K drives the tip.
+ToughnessView Combined::toughness_at(const Crack& crack, std::size_t tip,
+                                     const FractureState& state) {
+  if (!toughness_.by_energy()) return toughness_.view(0);
+  return toughness_.view(
+      meter_.material_at(crack, tip, {state.destroyed, {}, {}}).effective_young());
+}
+
+/// Of the element that is judged first when the tip grows.
+void Combined::add_toughness(const Crack& crack, const FractureState& state, TipState& tip) {
+  if (!toughness_.any()) return;
+  const auto at = static_cast<std::size_t>(tip.tip);
+  const double theta = tip.theta.value_or(0.0) * std::numbers::pi / 180;
+  const CrackTip& end = crack.tips[at];
+  const Ray ray{end.position, turned(end.direction, theta), &crack, orientation(crack, at)};
+  ElementView view{state.destroyed, yields_};
+  const TipMaterial material = meter_.material_at(crack, at, {state.destroyed, {}, {}});
+  view.toughness = toughness_.view(material.effective_young());
+  const Band& band = bands_.find(ray, view);
+  if (band.elements.empty()) return;
+  const double k_c = view.toughness.of(band.elements.front().element);
+  if (!(k_c > 0)) return;
+  tip.toughness = k_c;
+  tip.toughness_state = material.constraint > 0 ? "plane strain" : "plane stress";
 }
 
 void Combined::add_formula_state(const RemoteField& remote, const Crack& crack,
@@ -260,7 +294,8 @@ void Combined::grow(const DrivenTip& driven, const FractureState& state, Decisio
   CrackTip& tip = crack.tips[growth.terms.tip];
   const int sense = orientation(crack, growth.terms.tip);
   const Ray ray{tip.position, growth.direction, &crack, sense};
-  const ElementView view{state.destroyed, yields_, taken_};
+  const auto toughness = toughness_at(crack, static_cast<std::size_t>(growth.terms.tip), state);
+  const ElementView view{state.destroyed, yields_, taken_, false, toughness};
   const Band& band = bands_.find(ray, view);
   if (band.elements.empty()) {
     tip.ended = true;
@@ -269,13 +304,15 @@ void Combined::grow(const DrivenTip& driven, const FractureState& state, Decisio
   walk_band(band, board_.h(), growth.terms.k, growth.theta, view, walk_);
   if (walk_.passed.empty()) return;
   if (decision.elements.empty()) add_other_terms(state);  // no tip has moved yet
-  labels_.clear();                                        // all from the sides before this step
+  SifTerms terms = growth.terms;
+  terms.advance = walk_.advance;
+  labels_.clear();  // all from the sides before this step
   for (const Passed& passed : walk_.passed) {
     for (Index n : problem_.mesh().tets[passed.element])
       if (const int side = node_side(board_, ray, band.near_side, n))
         labels_.emplace_back(n, static_cast<std::int8_t>(side * sense));
     crack.elements.push_back(passed.element);
-    take(growth_row(passed, crack.id, growth.terms), decision);
+    take(growth_row(passed, crack.id, terms), decision);
   }
   for (const auto& [node, side] : labels_) crack.side[node] = side;
   advance_tip(crack, growth.terms.tip, growth.direction, walk_.advance);

@@ -15,6 +15,7 @@
 #include "fracture/present_field.hpp"
 #include "fracture/pristine_field.hpp"
 #include "fracture/tip_growth.hpp"
+#include "fracture/toughness.hpp"
 
 namespace sunder::fracture {
 
@@ -40,6 +41,10 @@ class Combined final : public FractureCriterion {
   void reserve(Decision& decision) const;
   /// Fills driven_: K and direction of all tips that have not ended, from one state.
   void drive_tips(const FractureState& state, std::vector<Finding>& findings);
+  /// K_c of what lies ahead of a tip.
+  [[nodiscard]] ToughnessView toughness_at(const Crack& crack, std::size_t tip,
+                                           const FractureState& state);
+  void add_toughness(const Crack& crack, const FractureState& state, TipState& tip);
   [[nodiscard]] bool by_field() const { return problem_.scene().fracture.sif == SifSource::field; }
   /// Whether the formula has a remote stress for the crack; says why not, and where it is poor.
   [[nodiscard]] bool formula_holds(const Crack& crack, std::vector<Finding>& findings) const;
@@ -61,8 +66,9 @@ class Combined final : public FractureCriterion {
   const Problem& problem_;
   Board board_;
   FieldIntensityMeter meter_;
-  std::vector<double> yields_;  // per element, 0: unbreakable
-  bool anything_breakable_ = false;
+  std::vector<double> yields_;  // per element, 0: none
+  Toughness toughness_;
+  bool anything_destructible_ = false;
   std::pmr::monotonic_buffer_resource lists_;  // of the cracks
   std::vector<Crack> cracks_;
   std::vector<std::uint8_t> excluded_;  // shape (elements)

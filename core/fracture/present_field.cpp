@@ -18,7 +18,7 @@ PresentField::PresentField(const Problem& problem, const Board& board)
 
 std::optional<InPlane> PresentField::at(const Vec2& p) const {
   board_.elements_within(p, kNeighbourhood * board_.h(), near_);
-  std::erase_if(near_, [&](Index e) { return !problem_.breakable(e) || destroyed_[e]; });
+  std::erase_if(near_, [&](Index e) { return !problem_.destructible(e) || destroyed_[e]; });
   if (near_.empty()) return std::nullopt;
   corners_.clear();
   for (Index e : near_)

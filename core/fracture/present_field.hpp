@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stress of the body as it is now, damaged and under all instruments, smoothed over the live
-// breakable elements around a place (method.md 5, sigma0 = "present"). Only the displacements of
+// destructible elements around a place (method.md 5, sigma0 = "present"). Only the displacements of
 // the elements asked for are read.
 #pragma once
 
@@ -28,7 +28,7 @@ class PresentField final : public RemoteField {
     displacement_ = &displacement;
   }
 
-  /// Over the live breakable elements.
+  /// Over the live destructible elements.
   [[nodiscard]] std::optional<InPlane> at(const Vec2& p) const override;
 
  private:

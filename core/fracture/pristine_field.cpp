@@ -10,7 +10,7 @@ std::optional<InPlane> PristineField::at(const Vec2& p) const {
   double volume = 0;
   board_.elements_within(p, kNeighbourhood * board_.h(), near_);
   for (Index e : near_) {
-    if (!problem_.breakable(e)) continue;
+    if (!problem_.destructible(e)) continue;
     const TetShape& shape = problem_.shape(e);
     const auto u = fem::corner_displacement(problem_.mesh(), e, displacement_);
     sum += shape.volume * fem::material_stress(problem_, e, u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stress of the intact body under the expansion instruments alone, smoothed over the breakable
+// Stress of the intact body under the expansion instruments alone, smoothed over the destructible
 // elements around a place (method.md "Model B"). Only the elements asked for are evaluated.
 #pragma once
 
@@ -23,7 +23,7 @@ class PristineField final : public RemoteField {
   /// From now on that of another displacement.
   void take(std::span<const double> displacement) { displacement_ = displacement; }
 
-  /// Over the breakable elements.
+  /// Over the destructible elements.
   [[nodiscard]] std::optional<InPlane> at(const Vec2& p) const override;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stress field smoothed over the breakable elements around a place, from which Eq. 3 takes its
+// A stress field smoothed over the destructible elements around a place, from which Eq. 3 takes its
 // remote stress (method.md 5).
 #pragma once
 

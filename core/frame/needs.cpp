@@ -12,13 +12,13 @@
 namespace sunder {
 namespace {
 
-bool any_breakable(const Problem& problem) {
+bool any(const Problem& problem, bool (Problem::*property)(Index) const) {
   const auto& volumes = problem.mesh().volume_of;
   std::vector<std::uint8_t> seen(problem.mesh().volumes.size(), 0);
   for (Index e = 0; e < static_cast<Index>(volumes.size()); ++e) {
     if (seen[volumes[e]]) continue;
     seen[volumes[e]] = 1;
-    if (problem.breakable(e)) return true;
+    if ((problem.*property)(e)) return true;
   }
   return false;
 }
@@ -41,13 +41,13 @@ void check_needs(const Needs& scene, const Needs& backend) {
 Needs needs_of(const Problem& problem) {
   const Scene& scene = problem.scene();
   const FractureModelRow& model = row_of(scene.fracture.model);
-  const bool breaks = model.breaks && any_breakable(problem);
+  const bool breaks = model.breaks && any(problem, &Problem::destructible);
   const bool presses =
       std::any_of(scene.instruments.begin(), scene.instruments.end(),
                   [](const Instrument& i) { return std::holds_alternative<Press>(i.action); });
   Needs needs;
   needs.stress = breaks || scene.output.stress;
-  needs.yield = needs.stress && any_breakable(problem);
+  needs.yield = needs.stress && any(problem, &Problem::breakable);
   needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
   needs.pristine = breaks && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
   if (!needs.stress) {

@@ -263,6 +263,16 @@ std::span<const MemberKey<Material>> material_keys() {
       row<&Material::density>("material", "density", "[t/mm^3], water 1e-9",
                               "0 or below: error; over 1e-7: warning; left out in motion or under "
                               "gravity: error"),
+      row<&Material::toughness>(
+          "material", "toughness",
+          "K_c [MPa sqrt(mm)] at which cracks of model B grow (method.md \"Toughness\"); left out: "
+          "by the yield stress (Eq. 1); without `yield` no crack starts here, cracks grow",
+          "0 or below, or beside `energy`: error; a model that grows no cracks: not read, with a "
+          "warning; no crack and no yield: a warning that nothing can break"),
+      row<&Material::energy>("material", "energy",
+                             "G_c [N/mm] in place of `toughness`, 1000 J/m^2 each: K_c = "
+                             "sqrt(G_c E')",
+                             "as `toughness`"),
   };
   return keys;
 }

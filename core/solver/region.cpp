@@ -14,7 +14,7 @@ void mark(const Problem& problem, Index element, std::vector<std::uint8_t>& insi
 
 void mark_elements(const Problem& problem, const Needs& needs, Region& region) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (!problem.breakable(e)) continue;
+    if (!problem.destructible(e)) continue;
     mark(problem, e, region.inside);
     region.tears = region.tears || row_of(problem.scene().fracture.model).breaks;
   }

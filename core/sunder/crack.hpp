@@ -47,7 +47,7 @@ struct SifTerms {
   int tip = 0;
   double k = 0, k_a = 0, k_b = 0, k_c = 0;  ///< [MPa sqrt(mm)]
   double theta = 0;                         ///< [deg] of growth from d, counter-clockwise
-  double reach = 0;                         ///< r_e [mm] of the element (Eq. 1)
+  double reach = 0;                         ///< r_e [mm] of the element (Eq. 1), 0 by toughness
   double sigma0 = 0;                        ///< remote stress s0 [MPa]
   double beta = 0;                          ///< [deg] between crack normal and n1
   double a = 0, b = 0;                      ///< crack length and chord [mm]
@@ -63,6 +63,9 @@ struct SifTerms {
   /// was not measured at a notch of the mesh's shape; "strain": beyond small strain there is J in
   /// its place, and k_field = sqrt(J E'); empty: nothing. The text is static.
   std::string_view field_note = {};
+  /// K_c [MPa sqrt(mm)] of the row's element; none: Eq. 1 let the tip pass.
+  std::optional<double> toughness = std::nullopt;
+  double advance = 0;  ///< of the tip in this event [mm]
   /// What the formula's direction v = K_a e_a + K_b d + K_c e_c is made of (method.md 8), in the
   /// plane: the tip's place [mm] and the unit vectors; d is its direction before the growth.
   Vec2 at = Vec2::Zero(), d = Vec2::Zero(), e_a = Vec2::Zero(), e_c = Vec2::Zero();
@@ -80,7 +83,12 @@ struct TipState {
   /// With sif = "field".
   std::optional<double> k_1 = std::nullopt, k_2 = std::nullopt, k_3 = std::nullopt;
   std::optional<double> j = std::nullopt;  ///< likewise, as in SifTerms
-  std::string_view field_note = {};        ///< as in SifTerms
+  /// K_c [MPa sqrt(mm)] of the element into which it would grow; none: that has none, or the tip
+  /// has ended.
+  std::optional<double> toughness = std::nullopt;
+  /// Where `toughness` is there: "plane stress" or "plane strain", whose E' makes K_c of G_c.
+  std::string_view toughness_state = {};
+  std::string_view field_note = {};  ///< as in SifTerms
 };
 
 }  // namespace sunder

@@ -66,9 +66,14 @@ class Problem {
   [[nodiscard]] bool moves() const { return scene_.dynamics.has_value(); }
   /// As a scene names it; of several ", " between, in the order of MaterialLaw.
   [[nodiscard]] std::string law() const;
-  /// Yield stress of element e [MPa]; 0: unbreakable.
+  /// Yield stress of element e [MPa]; 0: no stress breaks it.
   [[nodiscard]] double yield(Index e) const { return material(e).yield.value_or(0.0); }
+  /// By strength.
   [[nodiscard]] bool breakable(Index e) const { return material(e).yield.has_value(); }
+  /// By strength, or by a crack that grows where the material has a toughness.
+  [[nodiscard]] bool destructible(Index e) const {
+    return breakable(e) || (reads_toughness_ && material(e).tough());
+  }
 
   /// Number of unknowns n: dofs not held by a support. Gripped dofs are unknowns. Nodes that no
   /// element uses, and in statics those of a body that nothing holds or drives, have none and stay
@@ -118,12 +123,14 @@ class Problem {
   void check_held_bodies(const fem::Bodies& bodies);
   void note_odd_mesh();
   void note_no_board();
+  void note_toughness();
 
   Scene scene_;
   std::vector<TetShape> shapes_;
   std::vector<const Material*> material_of_volume_;
   std::vector<SmallStrain> small_strain_of_volume_;
   bool finite_ = false;
+  bool reads_toughness_ = false;  // the fracture model grows cracks
   std::vector<Index> dof_;
   Index dof_count_ = 0;
   std::vector<Index> gripped_dofs_, anchored_dofs_;

@@ -21,9 +21,10 @@ struct DestroyedElement {
   int event = 0;  ///< over the whole run, from 0
   Index element = kNone;
   Cause cause = Cause::mss;
-  int crack = kNone;            ///< for sif, preset, and the mss that starts a crack
-  std::optional<double> ratio;  ///< mss, principal: measure/yield; sif: r_e / max(rho, h/2)
-  double load_factor = 0;       ///< scene time t
+  int crack = kNone;  ///< for sif, preset, and the mss that starts a crack
+  std::optional<double>
+      ratio;               ///< mss, principal: measure/yield; sif: r_e / max(rho, h/2) or K / K_c
+  double load_factor = 0;  ///< scene time t
   std::optional<SifTerms> sif;
   /// The instrument with the largest share of the maximum shear stress of the event's first
   /// element, and that share of the whole (Simulation::attribute_events); kNone: not asked for.

@@ -17,7 +17,8 @@ namespace sunder {
 /// "Finite deformation"). A body whose materials are not all linear is computed by the latter.
 enum class MaterialLaw { linear, corotated, neo_hookean, saint_venant_kirchhoff };
 
-/// Isotropic elasticity; without yield the material is unbreakable (method.md "Elasticity").
+/// Isotropic elasticity; without yield nothing ruptures in it, without yield and toughness it is
+/// unbreakable (method.md "Elasticity").
 struct Material {
   double young = 0;             ///< E [MPa] at small strain, finite and > 0
   double poisson = 0;           ///< nu in (-1, 0.5), likewise
@@ -25,6 +26,10 @@ struct Material {
   MaterialLaw law = MaterialLaw::linear;
   /// [t/mm^3], water 1e-9, finite and > 0; needed in motion and under gravity.
   std::optional<double> density = {};
+  /// What lets a crack of model "B" grow in it (method.md "Toughness"): K_c [MPa sqrt(mm)] or G_c
+  /// [N/mm], finite and > 0, at most one of them; none: Eq. 1's reach, by yield.
+  std::optional<double> toughness = {}, energy = {};
+  [[nodiscard]] bool tough() const { return toughness || energy; }
 };
 
 struct Box {

@@ -190,7 +190,7 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
   if (blunt(crack, tip)) return left_out(crack, tip, &Disturbances::notch);
   const double wanted = wanted_radius(crack, tip);
   const Surroundings around = look_around(crack, crack.tips[tip].position, wanted, view);
-  const double chosen = std::clamp(around.nearest(), kSmallestDomainRadius * board_.h(), wanted);
+  const double chosen = chosen_radius(crack, tip, around);
   if (chosen < clear_of_notch(crack, tip)) return left_out(crack, tip, &Disturbances::notch);
   FieldIntensity result = measure(crack, tip, view, chosen);
   if (result.disturbed.left_out) return result;
@@ -198,6 +198,26 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
   result.disturbed.damage = around.other_damage < chosen;
   if (chosen == wanted && !result.disturbed.strain) mend(crack, tip, view, result);
   return result;
+}
+
+double FieldIntensityMeter::chosen_radius(const Crack& crack, std::size_t tip,
+                                          const Surroundings& around) const {
+  return std::clamp(around.nearest(), kSmallestDomainRadius * board_.h(),
+                    wanted_radius(crack, tip));
+}
+
+TipMaterial FieldIntensityMeter::material_at(const Crack& crack, std::size_t tip,
+                                             const FieldView& view) {
+  const Vec2& position = crack.tips[tip].position;
+  const Surroundings around = look_around(crack, position, wanted_radius(crack, tip), view);
+  collect(position, chosen_radius(crack, tip, around), view);
+  return domain_.elements.empty() ? TipMaterial{} : tip_material(domain_);
+}
+
+void FieldIntensityMeter::collect(const Vec2& tip, double radius, const FieldView& view,
+                                  const std::optional<FrontStretch>& stretch) {
+  const auto part = thin(radius) ? FreeSurface::Part::outline : FreeSurface::Part::all;
+  builder_.collect(tip, radius, view.destroyed, part, stretch, domain_);
 }
 
 std::vector<FieldIntensity> FieldIntensityMeter::along_front(const Crack& crack, std::size_t tip,
@@ -220,8 +240,7 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   result.frame = {
       position,
       fitted_direction(crack, tip, radius).value_or(mean_direction(crack, tip, radius / 2))};
-  const auto part = thin(radius) ? FreeSurface::Part::outline : FreeSurface::Part::all;
-  builder_.collect(position, radius, view.destroyed, part, stretch, domain_);
+  collect(position, radius, view, stretch);
   const TipDomain& domain = domain_;
   if (domain.elements.empty()) return result;  // nothing left to carry a field
   result.material = tip_material(domain);

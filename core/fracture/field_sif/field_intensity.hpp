@@ -60,6 +60,9 @@ class FieldIntensityMeter {
   [[nodiscard]] FieldIntensity at(const Crack& crack, std::size_t tip, const FieldView& view,
                                   std::optional<double> radius = {});
 
+  /// What at() takes the body for round this tip: its E' above all.
+  [[nodiscard]] TipMaterial material_at(const Crack& crack, std::size_t tip, const FieldView& view);
+
   /// Along a straight front: at `stations` equidistant places from bottom to top, each the mean
   /// around it. Meant for blocks of several elements across.
   [[nodiscard]] std::vector<FieldIntensity> along_front(const Crack& crack, std::size_t tip,
@@ -78,6 +81,11 @@ class FieldIntensityMeter {
   };
   [[nodiscard]] Surroundings look_around(const Crack& crack, const Vec2& tip, double radius,
                                          const FieldView& view);
+  /// Radius of the domain with these surroundings [mm].
+  [[nodiscard]] double chosen_radius(const Crack& crack, std::size_t tip,
+                                     const Surroundings& around) const;
+  void collect(const Vec2& tip, double radius, const FieldView& view,
+               const std::optional<FrontStretch>& stretch = {});
   /// Whether a domain sees the board in plane stress.
   [[nodiscard]] bool thin(double radius) const;
   [[nodiscard]] TipMaterial tip_material(const TipDomain& domain) const;

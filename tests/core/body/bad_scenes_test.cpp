@@ -86,6 +86,22 @@ const std::vector<Fault> kMaterialFaults = {
      },
      InputFault::unknown_name,
      {"middle", "\"lower\"", "\"upper\""}},
+    {"ToughnessZero",
+     [](Scene& s) { s.materials["lower"].toughness = 0; },
+     InputFault::out_of_range,
+     {"lower", "toughness = 0", "above 0 MPa sqrt(mm)"}},
+    {"ToughnessNan",
+     [](Scene& s) { s.materials["upper"].toughness = kNan; },
+     InputFault::out_of_range,
+     {"upper", "toughness = ", "finite"}},
+    {"EnergyNegative",
+     [](Scene& s) { s.materials["lower"].energy = -0.1; },
+     InputFault::out_of_range,
+     {"lower", "energy = -0.1", "above 0 N/mm"}},
+    {"ToughnessAndEnergy",
+     [](Scene& s) { s.materials["lower"].toughness = s.materials["lower"].energy = 1; },
+     InputFault::out_of_range,
+     {"lower", "toughness and energy", "one of them"}},
 };
 
 const std::vector<Fault> kMeshFaults = {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <functional>
 
 #include "body/board_check.hpp"
@@ -42,6 +43,42 @@ std::vector<std::string> said_of(const BoardShape& shape,
   scene.supports.push_back({Box{Vec3(-1, -1, -9), Vec3(99, 1e-9, 99)}, Axes{7}});
   scene.fracture.model = model;
   return Problem(std::move(scene)).warnings();
+}
+
+TEST(Toughness, IsReadByModelsThatGrowCracksAlone) {
+  using enum FractureModel;
+  for (const FractureModel model : {none, a, b, p}) {
+    Scene scene = good_scene();
+    scene.fracture.model = model;
+    scene.materials["upper"].energy = 0.1;  // without yield
+    const Problem problem(std::move(scene));
+    EXPECT_EQ(problem.destructible(23), model == b);
+    EXPECT_FALSE(problem.breakable(23));
+    EXPECT_TRUE(problem.destructible(0));
+    const auto& said = problem.warnings();
+    const bool warned = std::ranges::any_of(said, [](const std::string& text) {
+      return text.find("material \"upper\" has energy, which model ") == 0 &&
+             text.find("does not read") != std::string::npos;
+    });
+    EXPECT_EQ(warned, model != b);
+  }
+}
+
+TEST(Toughness, WithoutCrackAndYieldIsAWarning) {
+  const auto warned = [](bool yields, bool cracked) {
+    Scene scene = good_scene();
+    scene.fracture.model = FractureModel::b;
+    scene.materials["lower"].toughness = 1;
+    if (!yields) scene.materials["lower"].yield.reset();
+    if (cracked) scene.cracks.push_back(crack({0}, Vec3(0, 0.5, 0.5), {Vec3(0.5, 0.5, 0.5)}));
+    const Problem problem(std::move(scene));
+    return std::ranges::any_of(problem.warnings(), [](const std::string& text) {
+      return text.find("nothing can break") == 0;
+    });
+  };
+  EXPECT_TRUE(warned(false, false));
+  EXPECT_FALSE(warned(true, false));
+  EXPECT_FALSE(warned(false, true));
 }
 
 TEST(ModelB, WarnsOfABodyThatIsNoBoard) {
