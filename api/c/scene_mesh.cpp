@@ -60,14 +60,17 @@ sunder_status sunder_scene_add_material(sunder_scene scene, const sunder_materia
     require_finite(given.poisson, "poisson");
     require_finite(given.yield, "yield");
     require_finite(given.density, "density");
+    require_finite(given.toughness, "toughness");
+    require_finite(given.energy, "energy");
     const std::size_t number = object.materials.size();
-    sunder::Material m{given.young,
-                       given.poisson,
-                       {},
-                       word<sunder::MaterialLaw>(given.law, "material", "law"),
+    sunder::Material m{given.young, given.poisson,
+                       {},          word<sunder::MaterialLaw>(given.law, "material", "law"),
+                       {},          {},
                        {}};
     if (given.yield != 0) m.yield = given.yield;
     if (given.density != 0) m.density = given.density;
+    if (given.toughness != 0) m.toughness = given.toughness;
+    if (given.energy != 0) m.energy = given.energy;
     object.materials.push_back(m);
     object.scene.mesh.volumes.push_back(
         {given.name ? given.name : std::to_string(number), static_cast<int>(number)});

@@ -34,6 +34,7 @@ class SimulationObject final : public Object {
   [[nodiscard]] bool solved() const { return solved_; }
   [[nodiscard]] std::vector<std::string> warnings() const;
 
+  std::vector<TipState> tips;   ///< as last measured
   std::weak_ptr<Object> grips;  ///< the handle for forces between frames: one thread may ask
   /// Destroyed by the host, though a call of another thread may hold this object a little longer.
   const std::shared_ptr<std::atomic<bool>> gone = std::make_shared<std::atomic<bool>>(false);

@@ -41,6 +41,8 @@ sunder_event to_event(const sunder::DestroyedElement& d, std::int32_t order) {
   event.b = s.b;
   event.k_1 = s.k_1.value_or(0.0);
   event.k_2 = s.k_2.value_or(0.0);
+  event.toughness = s.toughness.value_or(0.0);
+  event.advance = s.advance;
   return event;
 }
 
@@ -66,6 +68,28 @@ sunder_crack to_crack(const sunder::Crack& c, const sunder::BoardPlane& plane) {
   }
   crack.length = c.length;
   return crack;
+}
+
+sunder_tip to_tip(const sunder::TipState& t) {
+  auto tip = sized<sunder_tip>();
+  tip.crack = t.crack;
+  tip.tip = t.tip;
+  tip.ended = t.ended ? 1 : 0;
+  tip.plane_strain = t.toughness_state == "plane strain" ? 1 : 0;
+  put(t.position, tip.position);
+  const auto take = [&tip](const std::optional<double>& from, double& to, std::int32_t bit) {
+    if (from) tip.known |= bit;
+    to = from.value_or(0.0);
+  };
+  take(t.k, tip.k, SUNDER_TIP_K);
+  take(t.theta, tip.theta, SUNDER_TIP_THETA);
+  take(t.k_1, tip.k_1, SUNDER_TIP_MODES);
+  take(t.k_2, tip.k_2, SUNDER_TIP_MODES);
+  take(t.k_3, tip.k_3, SUNDER_TIP_MODES);
+  take(t.j, tip.j, SUNDER_TIP_J);
+  take(t.toughness, tip.toughness, SUNDER_TIP_TOUGHNESS);
+  t.field_note.copy(tip.field_note, sizeof tip.field_note - 1);
+  return tip;
 }
 
 const sunder::Crack& crack_of(const SimulationObject& object, std::int32_t index) {
@@ -131,6 +155,21 @@ sunder_status sunder_simulation_crack_elements(sunder_simulation simulation, int
     require_size(size, crack.elements.size(), "values");
     require(values, "values");
     std::copy(crack.elements.begin(), crack.elements.end(), values);
+  });
+}
+
+sunder_status sunder_simulation_measure_tips(sunder_simulation simulation, int32_t* count) {
+  return count_of(simulation, count, [](auto& object) {
+    object.tips = object.simulation().tips();
+    return object.tips.size();
+  });
+}
+
+sunder_status sunder_simulation_tip_at(sunder_simulation simulation, int32_t index,
+                                       sunder_tip* tip) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    require_index(index, static_cast<std::int64_t>(object.tips.size()), "tip");
+    write_struct(tip, to_tip(object.tips[static_cast<std::size_t>(index)]), "tip");
   });
 }
 

@@ -22,6 +22,8 @@ inline constexpr std::size_t kFirstSize<sunder_step> = offsetof(sunder_step, str
 template <>
 inline constexpr std::size_t kFirstSize<sunder_material> = offsetof(sunder_material, law);
 template <>
+inline constexpr std::size_t kFirstSize<sunder_event> = offsetof(sunder_event, toughness);
+template <>
 inline constexpr std::size_t kFirstSize<sunder_instrument> = offsetof(sunder_instrument, turn);
 template <>
 inline constexpr std::size_t kFirstSize<sunder_fracture_options> = offsetof(sunder_fracture_options,

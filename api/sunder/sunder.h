@@ -141,10 +141,13 @@ typedef struct sunder_material {
   int32_t law;       ///< SUNDER_LAW_*
   int32_t reserved2;
   double density;  ///< [t/mm^3], water 1e-9; needed in motion and under gravity; 0: none
+  /// K_c [MPa sqrt(mm)] at which cracks of model B grow; 0: none, Eq. 1 by yield decides
+  double toughness;
+  double energy;  ///< G_c [N/mm] in its place (1000 J/m^2); 0: none; one of the two
 } sunder_material;
 
 #define SUNDER_MATERIAL_INIT \
-  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0 }
+  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0, 0, 0 }
 
 SUNDER_API void sunder_material_init(sunder_material* material);
 /// `index` (may be null) receives 0, 1, ... in the order of calls.
@@ -553,18 +556,23 @@ typedef struct sunder_event {
   int32_t instrument;       ///< with the largest share of its maximum shear stress; -1: not known
   double instrument_share;  ///< that share of the whole; 0: not known
   double load_factor;
-  double ratio;  ///< mss, principal: measure / yield; sif: r_e / max(rho, h/2); else 0
+  double ratio;  ///< mss, principal: measure / yield; sif: r_e / max(rho, h/2) or K / K_c; else 0
   int32_t has_sif;
   int32_t tip;                ///< with has_sif: which tip of the crack
   double k, k_a, k_b, k_c;    ///< Eq. 2 to 4 [MPa sqrt(mm)]
   double theta;               ///< of growth [deg]
-  double reach;               ///< r_e [mm]
+  double reach;               ///< r_e [mm]; 0 where the material's toughness decided
   double sigma0, beta, a, b;  ///< [MPa], [deg], [mm], [mm]
   double k_1, k_2;            ///< from the field; 0 with SUNDER_SIF_FORMULA
+  double toughness;           ///< K_c of the element [MPa sqrt(mm)]; 0: none
+  double advance;             ///< of the tip in this event [mm]
 } sunder_event;
 
-#define SUNDER_EVENT_INIT \
-  { sizeof(sunder_event), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define SUNDER_EVENT_INIT                                                                         \
+  {                                                                                               \
+    sizeof(sunder_event), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0, 0                                                                                      \
+  }
 
 SUNDER_API sunder_status sunder_simulation_event_count(sunder_simulation simulation,
                                                        int32_t* count);
@@ -605,6 +613,41 @@ SUNDER_API sunder_status sunder_simulation_crack_path(sunder_simulation simulati
 SUNDER_API sunder_status sunder_simulation_crack_elements(sunder_simulation simulation,
                                                           int32_t index, int32_t* values,
                                                           size_t size);
+
+enum {
+  SUNDER_TIP_K = 1,
+  SUNDER_TIP_THETA = 2,
+  SUNDER_TIP_MODES = 4,  ///< k_1, k_2, k_3
+  SUNDER_TIP_J = 8,
+  SUNDER_TIP_TOUGHNESS = 16
+};
+
+/// A tip as the last solve leaves it, whether it grows or rests.
+typedef struct sunder_tip {
+  uint32_t struct_size;
+  int32_t crack;
+  int32_t tip;              ///< which tip of the crack
+  int32_t ended;            ///< 1: nothing drives it any more
+  int32_t known;            ///< a sum of SUNDER_TIP_*: what is there; all else is 0
+  int32_t plane_strain;     ///< of toughness: 1: plane strain round the tip, 0: plane stress
+  double position[3];       ///< undeformed, at mid-thickness [mm]
+  double k;                 ///< >= 0, by what drives the tips [MPa sqrt(mm)]
+  double theta;             ///< of growth [deg]
+  double k_1, k_2, k_3, j;  ///< by the field [MPa sqrt(mm)], [N/mm]
+  double toughness;         ///< K_c of what lies ahead [MPa sqrt(mm)]: it grows when k reaches it
+  char field_note[32];      ///< what disturbs the field's K (docs/interface.md); "": nothing
+} sunder_tip;
+
+#define SUNDER_TIP_INIT \
+  { sizeof(sunder_tip), 0, 0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, 0, 0, 0, 0, "" }
+
+/// Measures all tips, by crack and tip, and tells how many there are. 0 before the first step and
+/// without cracks.
+SUNDER_API sunder_status sunder_simulation_measure_tips(sunder_simulation simulation,
+                                                        int32_t* count);
+/// One of those last measured.
+SUNDER_API sunder_status sunder_simulation_tip_at(sunder_simulation simulation, int32_t index,
+                                                  sunder_tip* tip);
 
 SUNDER_API sunder_status sunder_simulation_warning_count(sunder_simulation simulation,
                                                          int32_t* count);

@@ -227,6 +227,7 @@ void Run::step() {
   State state = capture(*simulation_, number);
   std::vector<TipState> tips;
   if (!simulation_->interrupted()) tips = simulation_->tips();
+  record_.tips = tips;
   const std::lock_guard turn(turn_);
   aside_.reset();
   put_aside_ = Clock::now();

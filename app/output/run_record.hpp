@@ -28,7 +28,8 @@ struct RunRecord {
   std::vector<DestroyedElement> destroyed;
   std::vector<Crack> cracks;
   std::vector<std::string> warnings;
-  State last;  ///< after the last of them
+  State last;                  ///< after the last of them
+  std::vector<TipState> tips;  ///< likewise; none of an interrupted step
   bool interrupted = false;
   std::optional<std::string> failure;  ///< of a run that could not go on
 

@@ -105,6 +105,19 @@ Json cracks(const RunRecord& run) {
   return out;
 }
 
+/// K_c where cracks could grow on, and in which state a G_c was made K_c there.
+Json toughness(const RunRecord& run) {
+  Json out = Json::array();
+  for (const TipState& tip : run.tips) {
+    if (!tip.toughness) continue;
+    out.push_back({{"crack", tip.crack},
+                   {"tip", tip.tip},
+                   {"toughness", *tip.toughness},
+                   {"state", std::string(tip.toughness_state)}});
+  }
+  return out;
+}
+
 Json reactions(const RunRecord& run) {
   Json out = Json::object();
   for (const InstrumentState& tool : run.last.instruments) out[tool.name] = array(tool.force);
@@ -166,6 +179,7 @@ Json tree(const RunRecord& run) {
   out["law"] = problem.law();
   out["stress_measure"] = stress_measure(problem);
   out["motion"] = motion(last.motion);
+  out["toughness"] = toughness(run);
   return out;
 }
 

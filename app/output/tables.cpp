@@ -34,7 +34,7 @@ std::string gpu_time(const StepReport& report, const std::string& pass) {
 std::string events_header() {
   return "step,event,element,criterion,crack,ratio,load_factor,"
          "tip,K,K_a,K_b,K_c,theta_deg,r,sigma0,beta_deg,a,b,K_I,K_II,"
-         "K_III,K_formula,theta_formula_deg,K_field,theta_field_deg,field_note\n";
+         "K_III,K_formula,theta_formula_deg,K_field,theta_field_deg,field_note,advance\n";
 }
 
 std::string events_row(const DestroyedElement& record) {
@@ -53,7 +53,7 @@ std::string events_row(const DestroyedElement& record) {
               sif(k.k_b),
               sif(k.k_c),
               sif(k.theta),
-              sif(k.reach),
+              k.toughness ? "" : sif(k.reach),
               sif(k.sigma0),
               sif(k.beta),
               sif(k.a),
@@ -65,7 +65,8 @@ std::string events_row(const DestroyedElement& record) {
               known(k.theta_formula),
               known(k.k_field),
               known(k.theta_field),
-              std::string(k.field_note)});
+              std::string(k.field_note),
+              sif(k.advance)});
 }
 
 namespace {
@@ -120,7 +121,7 @@ std::string tips_row(int step, const TipState& tip) {
   return row({std::to_string(step), std::to_string(tip.crack), std::to_string(tip.tip),
               number(tip.position.x()), number(tip.position.y()), number(tip.position.z()),
               known(tip.k), known(tip.theta), known(tip.k_1), known(tip.k_2), known(tip.k_3),
-              known(tip.j), "", std::string(tip.field_note)});
+              known(tip.j), known(tip.toughness), std::string(tip.field_note)});
 }
 
 }  // namespace sunder::app

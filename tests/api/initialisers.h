@@ -19,19 +19,20 @@ struct initialised {
   sunder_step step;
   sunder_event event;
   sunder_crack grown;
+  sunder_tip tip;
   sunder_vulkan_buffer buffer;
   sunder_vulkan_host host;
   sunder_vulkan_display display;
   sunder_vulkan_signals signals;
 };
 
-#define INITIALISED                                                                               \
-  {                                                                                               \
-    SUNDER_DEVICE_INIT, SUNDER_MATERIAL_INIT, SUNDER_SELECTION_INIT, SUNDER_SUPPORT_INIT,         \
-        SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FRACTURE_OPTIONS_INIT,           \
-        SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT, SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT,  \
-        SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT, \
-        SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT                                    \
+#define INITIALISED                                                                              \
+  {                                                                                              \
+    SUNDER_DEVICE_INIT, SUNDER_MATERIAL_INIT, SUNDER_SELECTION_INIT, SUNDER_SUPPORT_INIT,        \
+        SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FRACTURE_OPTIONS_INIT,          \
+        SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT, SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT, \
+        SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_TIP_INIT, SUNDER_VULKAN_BUFFER_INIT,        \
+        SUNDER_VULKAN_HOST_INIT, SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT          \
   }
 
 #endif

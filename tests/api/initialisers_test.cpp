@@ -24,6 +24,7 @@ TEST(CInitialisers, StateTheSizeAndNothingElseOfResults) {
   expect_only_size(all.step);
   expect_only_size(all.event);
   expect_only_size(all.grown);
+  expect_only_size(all.tip);
   expect_only_size(all.host);
   expect_only_size(all.display);
   expect_only_size(all.signals);

@@ -53,6 +53,18 @@ std::vector<Misuse> values() {
        [](World& w) {
          return sunder_simulation_warning_at(w.simulation, 99, nullptr, 0, nullptr);
        }},
+      {"tip_index", SUNDER_ERROR_VALUE, "tip 0 does not exist",
+       [](World& w) {
+         sunder_tip tip = SUNDER_TIP_INIT;
+         return sunder_simulation_tip_at(w.simulation, 0, &tip);
+       }},
+      {"toughness_infinite", SUNDER_ERROR_VALUE, "toughness",
+       [](World& w) {
+         sunder_material material = SUNDER_MATERIAL_INIT;
+         material.young = 5;
+         material.toughness = INFINITY;
+         return sunder_scene_add_material(w.scene, &material, nullptr);
+       }},
       {"plan_buffer_index", SUNDER_ERROR_VALUE, "buffer 1000",
        [](World& w) { return sunder_plan_buffer(w.plan, 1000, nullptr, nullptr, 0, nullptr); }},
       {"device_index", SUNDER_ERROR_VALUE, "device 1000",

@@ -81,6 +81,13 @@ std::vector<Struct> results() {
        [](World& w, void* to) {
          return sunder_simulation_crack_at(w.torn, 0, as<sunder_crack>(to));
        }},
+      {"tip", sizeof(sunder_tip), 136,
+       [](World& w, void* to) {
+         int32_t count = 0;
+         EXPECT_OK(sunder_simulation_measure_tips(w.torn, &count));
+         EXPECT_GT(count, 0);
+         return sunder_simulation_tip_at(w.torn, 0, as<sunder_tip>(to));
+       }},
   };
 }
 

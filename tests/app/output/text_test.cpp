@@ -82,7 +82,7 @@ TEST(Tables, EventRowsLeaveEmptyWhatDoesNotApply) {
   expect_row("2,7,42,mss,3,1.5,0.25,,,,,,,,,,,");
   record.cause = Cause::sif;
   record.sif = SifTerms{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-  expect_row("2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,7,8,9,10,11,,,,,,,,");
+  expect_row("2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,7,8,9,10,11,,,,,,,,,0");
   record.sif->k_1 = 12;
   record.sif->k_2 = -13;
   record.sif->k_3 = 0;
@@ -91,7 +91,28 @@ TEST(Tables, EventRowsLeaveEmptyWhatDoesNotApply) {
   record.sif->k_field = 16;
   record.sif->theta_field = -17;
   record.sif->field_note = "material+fixed";
-  expect_row("2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,7,8,9,10,11,12,-13,0,14,15,16,-17,material+fixed");
+  expect_row(
+      "2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,7,8,9,10,11,12,-13,0,14,15,16,-17,material+fixed,"
+      "0");
+  // By toughness Eq. 1's reach has no say.
+  record.sif->toughness = 2.5;
+  record.sif->advance = 1.25;
+  expect_row(
+      "2,7,42,sif,3,1.5,0.25,1,2,3,4,5,6,,8,9,10,11,12,-13,0,14,15,16,-17,material+fixed,"
+      "1.25");
+}
+
+TEST(Tables, TipRowsFollowTheirHeader) {
+  TipState tip;
+  tip.crack = 1;
+  tip.position = Vec3(2, 3, 4);
+  EXPECT_EQ(tips_row(7, tip), "7,1,0,2,3,4,,,,,,,,\n");
+  tip.k = 5;
+  tip.theta = 6;
+  tip.j = 0.5;
+  tip.toughness = 7.5;
+  tip.field_note = "strain";
+  EXPECT_EQ(tips_row(7, tip), "7,1,0,2,3,4,5,6,,,,0.5,7.5,strain\n");
 }
 
 TEST(Tables, FrameRowsFollowTheirHeader) {
