@@ -4,6 +4,9 @@
 #include "c/scene.hpp"
 #include "c/scene_words.hpp"
 #include "c/structs.hpp"
+#include "c/text.hpp"
+#include "sunder/in_quotes.hpp"
+#include "sunder/tissue_presets.hpp"
 
 namespace {
 
@@ -50,6 +53,44 @@ sunder_status sunder_scene_set_mesh(sunder_scene scene, const double* nodes, siz
 
 void sunder_material_init(sunder_material* material) {
   if (material) *material = sized<sunder_material>();
+}
+
+sunder_status sunder_preset_count(int32_t* count) {
+  return guarded([&] {
+    require(count, "count");
+    *count = static_cast<int32_t>(sunder::tissue_presets().size());
+  });
+}
+
+sunder_status sunder_preset_at(int32_t index, char* name, size_t capacity, size_t* length) {
+  return guarded([&] {
+    const auto all = sunder::preset_names();
+    require_index(index, static_cast<std::int64_t>(all.size()), "preset");
+    write_text(all[static_cast<std::size_t>(index)], name, capacity, length);
+  });
+}
+
+sunder_status sunder_material_preset(const char* preset, sunder_material* material) {
+  return guarded([&] {
+    require(preset, "preset");
+    auto filled = read_struct(material, sized<sunder_material>(), "material");
+    const sunder::TissuePreset* found = sunder::find_preset(preset);
+    if (!found) {
+      std::string known;
+      for (const std::string& name : sunder::preset_names())
+        known += (known.empty() ? "" : ", ") + sunder::in_quotes(name);
+      throw Failure(SUNDER_ERROR_VALUE,
+                    "preset is " + sunder::in_quotes(preset) + "; allowed: " + known);
+    }
+    const sunder::Material of = found->material();
+    filled.young = of.young;
+    filled.poisson = of.poisson;
+    filled.yield = of.yield.value_or(0.0);
+    filled.density = of.density.value_or(0.0);
+    filled.toughness = of.toughness.value_or(0.0);
+    filled.energy = of.energy.value_or(0.0);
+    write_struct(material, filled, "material");
+  });
 }
 
 sunder_status sunder_scene_add_material(sunder_scene scene, const sunder_material* material,

@@ -150,6 +150,13 @@ typedef struct sunder_material {
   { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0, 0, 0 }
 
 SUNDER_API void sunder_material_init(sunder_material* material);
+/// Tissues by name, with their sources in docs/tissues.md: how many, and the name of each.
+SUNDER_API sunder_status sunder_preset_count(int32_t* count);
+SUNDER_API sunder_status sunder_preset_at(int32_t index, char* name, size_t capacity,
+                                          size_t* length);
+/// Writes what is known of a tissue into `material` (young to energy, 0 what nobody has measured);
+/// its name and law stay. SUNDER_ERROR_VALUE: no such tissue.
+SUNDER_API sunder_status sunder_material_preset(const char* preset, sunder_material* material);
 /// `index` (may be null) receives 0, 1, ... in the order of calls.
 SUNDER_API sunder_status sunder_scene_add_material(sunder_scene scene,
                                                    const sunder_material* material, int32_t* index);

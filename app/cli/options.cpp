@@ -140,6 +140,8 @@ void add_commands(CLI::App& app, Options& options) {
       options);
   add_mesh_options(*app.add_subcommand("mesh", "Make meshes"), options);
   app.add_subcommand("devices", "Devices and backends, and what would be chosen");
+  app.add_subcommand("materials",
+                     "Tissues that a scene can name, with where their numbers are from");
   app.add_subcommand("help", "Help for a command")
       ->add_option("command", options.help_path, "Command")
       ->type_name("COMMAND");
@@ -151,6 +153,7 @@ int carry_out(const CLI::App& app, const Options& options, Interruption& interru
   if (app.got_subcommand("reproduce"))
     return reproduce_paper(reproduce_arguments(options), interruption);
   if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options), interruption);
+  if (app.got_subcommand("materials")) return list_materials();
   return list_devices();
 }
 

@@ -7,6 +7,7 @@
 #include "app/input/scene_selection.hpp"
 #include "sunder/in_quotes.hpp"
 #include "sunder/scene_keys.hpp"
+#include "sunder/tissue_presets.hpp"
 
 namespace sunder::app {
 namespace {
@@ -38,12 +39,14 @@ std::optional<KeyValue> read_value(const TomlTable& table, const SceneKey& key) 
   }
 }
 
+/// `filled`: what is needed is there already.
 template <class Owner>
-void read_members(const TomlTable& table, std::span<const MemberKey<Owner>> keys, Owner& owner) {
+void read_members(const TomlTable& table, std::span<const MemberKey<Owner>> keys, Owner& owner,
+                  bool filled = false) {
   for (const MemberKey<Owner>& key : keys) {
     if (const std::optional<KeyValue> value = read_value(table, key)) {
       key.set(owner, *value);
-    } else if (key.required) {
+    } else if (key.required && !filled) {
       table.fail_missing(key.name);
     }
   }
@@ -67,9 +70,24 @@ void for_each_table(const TomlTable& root, const std::string& file, const std::s
     read(TomlTable(*table, file, name + "." + std::to_string(i++), allowed));
 }
 
+const TissuePreset* read_preset(const TomlTable& table) {
+  const auto name = table.text("preset");
+  if (!name) return nullptr;
+  const TissuePreset* preset = find_preset(*name);
+  if (preset) return preset;
+  const std::string close = nearest(*name, preset_names());
+  table.fail(InputFault::unknown_key, "preset",
+             "is " + in_quotes(*name) +
+                 (close.empty() ? "" : ", perhaps " + in_quotes(close) + " was meant") +
+                 "; allowed: " + quoted_list(preset_names()));
+}
+
 Material read_material(const TomlTable& table) {
   Material material;
-  read_members(table, material_keys(), material);
+  const TissuePreset* preset = read_preset(table);
+  if (preset) material = preset->material();
+  if (table.has("toughness") || table.has("energy")) material.toughness = material.energy = {};
+  read_members(table, material_keys(), material, preset != nullptr);
   return material;
 }
 

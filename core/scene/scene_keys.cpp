@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "sunder/fracture_model.hpp"
+#include "sunder/tissue_presets.hpp"
 
 namespace sunder {
 namespace {
@@ -231,6 +232,13 @@ SceneKey output_row() {
              "another field: error");
 }
 
+SceneKey preset_row() {
+  return row("material", "preset", KeyType::word, "",
+             "a tissue of [tissues.md](tissues.md) with all that is known of it, `young` and "
+             "`poisson` too; keys beside it override",
+             "unknown: error that lists them", {.words = preset_names()});
+}
+
 SceneKey damping_row() {
   return row(
       "dynamics", "damping", KeyType::range, "[0, 0]",
@@ -387,6 +395,7 @@ const std::vector<SceneKey>& scene_keys() {
   static const std::vector<SceneKey> keys = [] {
     std::vector<SceneKey> all = root_rows();
     append(all, material_keys());
+    all.push_back(preset_row());
     append(all, body_rows());
     append(all, fracture_keys());
     append(all, solver_keys());

@@ -58,6 +58,13 @@ std::vector<Misuse> values() {
          sunder_tip tip = SUNDER_TIP_INIT;
          return sunder_simulation_tip_at(w.simulation, 0, &tip);
        }},
+      {"preset_index", SUNDER_ERROR_VALUE, "preset -1",
+       [](World&) { return sunder_preset_at(-1, nullptr, 0, nullptr); }},
+      {"preset_unknown", SUNDER_ERROR_VALUE, "preset is \"liver\"; allowed: \"aortic-media-axial\"",
+       [](World&) {
+         sunder_material material = SUNDER_MATERIAL_INIT;
+         return sunder_material_preset("liver", &material);
+       }},
       {"toughness_infinite", SUNDER_ERROR_VALUE, "toughness",
        [](World& w) {
          sunder_material material = SUNDER_MATERIAL_INIT;

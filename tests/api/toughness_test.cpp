@@ -1,12 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
-// Toughness and tips through the C interface.
+// Toughness, tissues by name and tips through the C interface.
 #include <cmath>
 #include <cstring>
 
 #include "api/c_scene.hpp"
+#include "sunder/tissue_presets.hpp"
 
 namespace sunder::test {
 namespace {
+
+TEST(CPresets, AreThoseOfTheTable) {
+  int32_t count = 0;
+  EXPECT_OK(sunder_preset_count(&count));
+  ASSERT_EQ(count, static_cast<int32_t>(tissue_presets().size()));
+  for (int32_t i = 0; i < count; ++i) {
+    char name[64] = "";
+    size_t length = 0;
+    EXPECT_OK(sunder_preset_at(i, name, sizeof name, &length));
+    const TissuePreset& preset = tissue_presets()[static_cast<std::size_t>(i)];
+    EXPECT_EQ(name, preset.name);
+    EXPECT_EQ(length, preset.name.size());
+    sunder_material material = SUNDER_MATERIAL_INIT;
+    material.name = "organ";
+    material.law = SUNDER_LAW_COROTATED;
+    material.toughness = 7;  // of before
+    EXPECT_OK(sunder_material_preset(name, &material));
+    const Material of = preset.material();
+    EXPECT_EQ(material.young, of.young);
+    EXPECT_EQ(material.poisson, of.poisson);
+    EXPECT_EQ(material.yield, of.yield.value_or(0));
+    EXPECT_EQ(material.density, of.density.value_or(0));
+    EXPECT_EQ(material.toughness, of.toughness.value_or(0));
+    EXPECT_EQ(material.energy, of.energy.value_or(0));
+    EXPECT_STREQ(material.name, "organ");
+    EXPECT_EQ(material.law, SUNDER_LAW_COROTATED);
+  }
+}
+
+// A caller compiled before toughness came gets what it has room for.
+TEST(CPresets, FillAnOlderCallersMaterial) {
+  sunder_material older = SUNDER_MATERIAL_INIT;
+  older.struct_size = offsetof(sunder_material, toughness);
+  older.toughness = -1;
+  EXPECT_OK(sunder_material_preset("liver-porcine", &older));
+  EXPECT_EQ(older.young, find_preset("liver-porcine")->young.value);
+  EXPECT_EQ(older.toughness, -1);
+}
 
 TEST(CToughness, OlderMaterialsHaveNone) {
   sunder_scene scene = nullptr;

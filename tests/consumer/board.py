@@ -23,7 +23,9 @@ class Sized(c.Structure):
 class Material(Sized):
     # The member is called yield in C, which is a keyword here; only its place matters.
     _fields_ = [("struct_size", c.c_uint32), ("reserved", c.c_uint32), ("young", c.c_double),
-                ("poisson", c.c_double), ("yield_stress", c.c_double), ("name", c.c_char_p)]
+                ("poisson", c.c_double), ("yield_stress", c.c_double), ("name", c.c_char_p),
+                ("law", c.c_int32), ("reserved2", c.c_int32), ("density", c.c_double),
+                ("toughness", c.c_double), ("energy", c.c_double)]
 
 
 class Support(Sized):
@@ -91,6 +93,9 @@ for struct, function in ((Material, library.sunder_material_init),
     expect_defaults(struct, function)
 tissue = Material(young=5, poisson=0.4, yield_stress=2)
 check(library.sunder_scene_add_material(scene, c.byref(tissue), None))
+liver = Material()
+check(library.sunder_material_preset(b"liver-porcine", c.byref(liver)))
+assert liver.young > 0 and liver.energy > 0 and liver.toughness == 0, liver.energy
 support = Support(nodes=ids(0, 2, 3))
 check(library.sunder_scene_add_support(scene, c.byref(support)))
 forceps = Instrument(nodes=ids(4))

@@ -45,6 +45,47 @@ TEST(BadScenes, NotToml) {
       read);
 }
 
+TEST(BadScenes, Toughness) {
+  expect_all(
+      {
+          {"young = 5\n",
+           "young = 5\ntoughness = \"high\"\n",
+           F::wrong_type,
+           {"bad.toml:13:", "material.upper.toughness takes a number"}},
+          {"young = 5\n",
+           "young = 5\nenergy = nan\n",
+           F::out_of_range,
+           {"bad.toml:13:", "material.upper.energy", "finite"}},
+          {"young = 5\n",
+           "young = 5\ntoughnes = 1\n",
+           F::unknown_key,
+           {"bad.toml:13:", "\"toughness\""}},
+      },
+      read);
+}
+
+TEST(BadScenes, Presets) {
+  expect_all(
+      {
+          {"young = 5\n",
+           "preset = \"liver-porcin\"\n",
+           F::unknown_key,
+           {"bad.toml:12:",
+            "material.upper.preset is \"liver-porcin\", perhaps \"liver-porcine\" was "
+            "meant; allowed: \"aortic-media-axial\"",
+            "or \"skin-porcine\""}},
+          {"young = 5\n",
+           "preset = \"granite\"\n",
+           F::unknown_key,
+           {"material.upper.preset is \"granite\"; allowed: "}},
+          {"young = 5\n",
+           "preset = 3\n",
+           F::wrong_type,
+           {"material.upper.preset takes a string, not the integer 3"}},
+      },
+      read);
+}
+
 // What a message quotes stays one line and cannot end it early.
 TEST(BadScenes, NamesWithControlCharacters) {
   expect_all(

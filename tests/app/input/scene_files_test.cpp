@@ -38,6 +38,7 @@ TEST(SceneFiles, AllAreThere) {
                            "board-grip",
                            "liver",
                            "peel",
+                           "brain-notch",
                            "board",
                            "sheet"})
     EXPECT_TRUE(names.contains(name)) << name;

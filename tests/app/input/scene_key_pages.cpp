@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "sunder/scene_keys.hpp"
+#include "sunder/tissue_presets.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::test {
 namespace {
@@ -122,6 +124,36 @@ std::string scene_dictionary() {
   return text +
          "\"nan\"\n\"inf\"\n\"1e400\"\n\"\\x0a%%\\x0a\"\n\"\\\"\\\"\\\"\"\n\"'''\"\n"
          "\"0x7fffffffffffffff\"\n";
+}
+
+std::string tissues_page() {
+  std::string text =
+      "<!-- SPDX-License-Identifier: Apache-2.0 -->\n"
+      "# Tissues\n\n"
+      "What `preset` of a material means (`core/scene/tissue_presets.cpp`, from which `scene_keys "
+      ".` "
+      "writes this page). `sunder materials` prints the same, the C interface has them as "
+      "`sunder_material_preset`. Keys beside `preset` override.\n\n"
+      "Numbers of soft tissue differ by species, age, rate and the way of measuring by a factor of "
+      "two and more; \"order of magnitude\" says where not even that is sure. What nobody is known "
+      "to have measured is left out. `yield` is compared with the maximum shear stress, half of a "
+      "pull: it is half of a tensile strength. 1 N/mm = 1000 J/m^2.\n\n"
+      "| preset | key | value | source |\n|---|---|---:|---|\n";
+  const auto add = [&text](const std::string& name, const std::string& key, const SourcedValue& v,
+                           const std::string& unit) {
+    text += "| " + name + " | `" + key + "` | " + in_digits(v.value) + unit + " | " +
+            std::string(v.source) + " |\n";
+  };
+  for (const TissuePreset& p : tissue_presets()) {
+    text += "| **" + std::string(p.name) + "** | | | " + std::string(p.tissue) + " |\n";
+    add("", "young", p.young, " MPa");
+    add("", "poisson", p.poisson, "");
+    if (p.yield) add("", "yield", *p.yield, " MPa");
+    if (p.toughness) add("", "toughness", *p.toughness, " MPa sqrt(mm)");
+    if (p.energy) add("", "energy", *p.energy, " N/mm");
+    if (p.density) add("", "density", *p.density, " t/mm^3");
+  }
+  return text;
 }
 
 }  // namespace sunder::test

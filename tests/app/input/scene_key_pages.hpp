@@ -13,4 +13,7 @@ namespace sunder::test {
 /// tests/fuzz/scene.dict.
 [[nodiscard]] std::string scene_dictionary();
 
+/// docs/tissues.md, from core/scene/tissue_presets.cpp.
+[[nodiscard]] std::string tissues_page();
+
 }  // namespace sunder::test

@@ -11,6 +11,7 @@
 #include "app/input/parsed_scene.hpp"
 #include "app/input/scene_key_pages.hpp"
 #include "app/input/scene_toml.hpp"
+#include "sunder/tissue_presets.hpp"
 
 namespace sunder::test {
 namespace {
@@ -184,6 +185,35 @@ TEST(SceneKeys, BirthIsOneOfThem) {
   EXPECT_EQ(words, (std::vector<std::string>{"element", "through"}));
   EXPECT_EQ(parse("mesh = \"m\"\n[fracture]\nbirth = \"through\"").fracture.birth,
             CrackBirth::through);
+}
+
+TEST(SceneKeys, PresetsAreTheTissues) {
+  EXPECT_EQ(key_words("material", "preset"), preset_names());
+}
+
+TEST(SceneKeys, TheTissuesPageIsTheTable) {
+  EXPECT_EQ(read_bytes(SUNDER_SOURCE "/docs/tissues.md"), tissues_page())
+      << "write it anew with: scene_keys " SUNDER_SOURCE;
+}
+
+// A number without a source, or a source without a year, is no data.
+TEST(SceneKeys, EveryNumberOfATissueHasItsSource) {
+  std::string last;
+  for (const TissuePreset& preset : tissue_presets()) {
+    SCOPED_TRACE(std::string(preset.name));
+    EXPECT_LT(last, preset.name) << "by name";
+    last = preset.name;
+    EXPECT_FALSE(preset.toughness && preset.energy);
+    EXPECT_GT(preset.young.value, 0);
+    for (const std::optional<SourcedValue>& value :
+         {std::optional(preset.young), std::optional(preset.poisson), preset.yield,
+          preset.toughness, preset.energy, preset.density}) {
+      if (!value) continue;
+      const std::string source(value->source);
+      EXPECT_TRUE(source.find("19") != std::string::npos || source.find("20") != std::string::npos)
+          << source;
+    }
+  }
 }
 
 TEST(SceneKeys, EachStandsOnce) {

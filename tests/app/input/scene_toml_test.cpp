@@ -3,6 +3,7 @@
 
 #include "app/input/input_support.hpp"
 #include "app/input/parsed_scene.hpp"
+#include "sunder/tissue_presets.hpp"
 
 namespace sunder::test {
 namespace {
@@ -50,6 +51,50 @@ TEST(SceneToml, ReadsEveryKey) {
   EXPECT_EQ(scene.fracture.plane_normal, Vec3(0, 0, 1));
   EXPECT_EQ(scene.steps, 4);
   EXPECT_TRUE(scene.output.stress);
+}
+
+TEST(SceneToml, ReadsToughness) {
+  const std::string base = "mesh = \"m\"\n[material.a]\nyoung = 5\npoisson = 0.4\n";
+  const auto material = [&](const std::string& more) {
+    return parse(base + more).materials.at("a");
+  };
+  EXPECT_FALSE(material("").tough());
+  EXPECT_EQ(material("toughness = 1.5").toughness, 1.5);
+  EXPECT_FALSE(material("toughness = 1.5").energy);
+  EXPECT_EQ(material("energy = 0.1").energy, 0.1);
+}
+
+TEST(SceneToml, APresetIsItsTissueAndKeysBesideItOverride) {
+  const auto material = [](const std::string& more) {
+    return parse("mesh = \"m\"\n[material.a]\npreset = \"liver-porcine\"\n" + more)
+        .materials.at("a");
+  };
+  const Material liver = find_preset("liver-porcine")->material();
+  ASSERT_TRUE(liver.energy);
+  const Material plain = material("");
+  EXPECT_EQ(plain.young, liver.young);
+  EXPECT_EQ(plain.poisson, liver.poisson);
+  EXPECT_EQ(plain.yield, liver.yield);
+  EXPECT_EQ(plain.energy, liver.energy);
+  EXPECT_EQ(plain.density, liver.density);
+  EXPECT_EQ(plain.law, MaterialLaw::linear);
+  const Material other = material("young = 0.02\nlaw = \"corotated\"");
+  EXPECT_EQ(other.young, 0.02);
+  EXPECT_EQ(other.yield, liver.yield);
+  EXPECT_EQ(other.law, MaterialLaw::corotated);
+  // Either of the two that say the same takes the place of the tissue's.
+  const Material tough = material("toughness = 3");
+  EXPECT_EQ(tough.toughness, 3.0);
+  EXPECT_FALSE(tough.energy);
+  EXPECT_EQ(material("energy = 3").energy, 3.0);
+}
+
+TEST(SceneToml, EveryPresetIsAMaterial) {
+  for (const TissuePreset& preset : tissue_presets()) {
+    const Scene scene =
+        parse("mesh = \"m\"\n[material.a]\npreset = \"" + std::string(preset.name) + "\"\n");
+    EXPECT_EQ(scene.materials.at("a").young, preset.young.value) << preset.name;
+  }
 }
 
 TEST(SceneToml, DefaultsAreTheContracts) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// scene_keys SOURCE: writes the table of keys of SOURCE/docs/interface.md and the fuzzer's
-// dictionary SOURCE/tests/fuzz/scene.dict anew.
+// scene_keys SOURCE: writes the table of keys of SOURCE/docs/interface.md, SOURCE/docs/tissues.md
+// and the fuzzer's dictionary SOURCE/tests/fuzz/scene.dict anew.
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -21,7 +21,9 @@ int main(int count, char** arguments) try {
   std::ofstream dictionary(source + "/tests/fuzz/scene.dict", std::ios::binary);
   out << written << std::flush;
   dictionary << sunder::test::scene_dictionary() << std::flush;
-  if (out && dictionary) return 0;
+  std::ofstream tissues(source + "/docs/tissues.md", std::ios::binary);
+  tissues << sunder::test::tissues_page() << std::flush;
+  if (out && dictionary && tissues) return 0;
   std::cerr << "scene_keys: could not write below " << source << '\n';
   return 1;
 } catch (const std::exception& error) {

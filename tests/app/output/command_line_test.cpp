@@ -29,7 +29,7 @@ TEST_P(WrongUsageTest, IsOneSentenceAndExitCode2) {
 }
 
 const std::string kCommands =
-    R"(allowed is "run", "plan", "reproduce", "mesh", "devices" or "help")";
+    R"(allowed is "run", "plan", "reproduce", "mesh", "devices", "materials" or "help")";
 
 INSTANTIATE_TEST_SUITE_P(
     All, WrongUsageTest,
@@ -109,6 +109,16 @@ TEST(CommandLine, DevicesListsTheCpu) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_NE(run.out.find("cpu"), std::string::npos);
   EXPECT_NE(run.out.find("fp64"), std::string::npos);
+}
+
+TEST(CommandLine, MaterialsListsTissuesWithTheirSources) {
+  const Outcome run = run_program({"materials"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_NE(run.out.find("liver-porcine: liver of pigs\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("  energy     0.051 N/mm        51 +- 6 J/m^2, peeled along the "
+                         "circumference (Sommer et al. 2008)\n"),
+            std::string::npos)
+      << run.out;
 }
 
 TEST(CommandLine, ExitCodesTellWhoseFaultItIs) {
