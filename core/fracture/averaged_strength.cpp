@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <tuple>
 
@@ -14,6 +15,7 @@
 namespace sunder::fracture {
 namespace {
 
+constexpr double kNothing = -std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostNeighbours = std::size_t{1} << 30;  // 4 GiB of ids
 
 Vec3 centroid(const Mesh& mesh, Index e) {
@@ -44,10 +46,9 @@ class Cubes {
     std::sort(points_.begin(), points_.end());
   }
 
-  /// visit(id) for the points at most one side away from that of element e.
+  /// visit(id) for the points at most one side away from `centre`.
   template <class Visit>
-  void around(Index e, Visit&& visit) const {
-    const Vec3& centre = centroids_[static_cast<std::size_t>(e)];
+  void around(const Vec3& centre, Visit&& visit) const {
     const auto own = cube_of(centre);
     for (long long x = own[0] - 1; x <= own[0] + 1; ++x) {
       for (long long y = own[1] - 1; y <= own[1] + 1; ++y) {
@@ -78,79 +79,119 @@ class Cubes {
 
 AveragedStrength::AveragedStrength(const Problem& problem)
     : problem_(problem),
-      begin_(problem.mesh().tets.size() + 1, 0),
+      place_of_(4 * problem.mesh().tets.size(), kNone),
       excluded_(problem.mesh().tets.size(), 0),
       stress_(problem.mesh().tets.size()) {
-  find_neighbours(problem.scene().fracture.averaging);
+  const std::vector<Place> places = number_places();
+  find_neighbours(places, problem.scene().fracture.averaging);
+  measure_.resize(places.size());
 }
 
-void AveragedStrength::find_neighbours(double radius) {
+/// By volume, then by the first element that has them.
+std::vector<AveragedStrength::Place> AveragedStrength::number_places() {
+  const Mesh& mesh = problem_.mesh();
+  std::vector<Place> places;
+  for (int volume = 0; volume < static_cast<int>(mesh.volumes.size()); ++volume) {
+    std::vector<Index> of_node(mesh.nodes.size(), kNone);
+    for (Index e = 0; e < problem_.tet_count(); ++e) {
+      const auto at = static_cast<std::size_t>(e);
+      if (mesh.volume_of[at] != volume || !problem_.breakable(e)) continue;
+      for (std::size_t a = 0; a < 4; ++a) {
+        Index& place = of_node[static_cast<std::size_t>(mesh.tets[at][a])];
+        if (place == kNone) {
+          place = static_cast<Index>(places.size());
+          places.push_back({mesh.tets[at][a], volume});
+        }
+        place_of_[4 * at + a] = place;
+      }
+    }
+  }
+  return places;
+}
+
+void AveragedStrength::find_neighbours(const std::vector<Place>& places, double radius) {
   const Mesh& mesh = problem_.mesh();
   Vec3 size = Vec3::Zero();
   for (const Vec3& node : mesh.nodes) size = size.cwiseMax((node - mesh.nodes.front()).cwiseAbs());
   // No farther than the body reaches, and no cubes beyond what counts them.
   radius = std::clamp(radius, 1e-9 * size.norm(), 2 * size.norm());
   const Cubes cubes(problem_, radius);
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
-    const auto at = static_cast<std::size_t>(e);
-    begin_[at] = neighbours_.size();
-    if (!problem_.breakable(e)) continue;
-    cubes.around(e, [&](Index other) {
-      if (mesh.volume_of[static_cast<std::size_t>(other)] == mesh.volume_of[at])
+  for (const Place& place : places) {
+    begin_.push_back(neighbours_.size());
+    cubes.around(mesh.nodes[static_cast<std::size_t>(place.node)], [&](Index other) {
+      if (mesh.volume_of[static_cast<std::size_t>(other)] == place.volume)
         neighbours_.push_back(other);
     });
-    std::sort(neighbours_.begin() + static_cast<std::ptrdiff_t>(begin_[at]), neighbours_.end());
+    std::sort(neighbours_.begin() + static_cast<std::ptrdiff_t>(begin_.back()), neighbours_.end());
     if (neighbours_.size() <= kMostNeighbours) continue;
     std::ostringstream words;
     words << "fracture.averaging = " << problem_.scene().fracture.averaging
           << " mm reaches so many elements that their lists pass 4 GiB; take a smaller radius";
     throw InputError(InputFault::out_of_range, words.str());
   }
-  begin_.back() = neighbours_.size();
+  begin_.push_back(neighbours_.size());
 }
 
 void AveragedStrength::exclude(std::span<const Index> elements) {
   for (Index e : elements) excluded_[static_cast<std::size_t>(e)] = 1;
 }
 
-Voigt AveragedStrength::mean(Index element, std::span<const std::uint8_t> destroyed) const {
-  const auto at = static_cast<std::size_t>(element);
-  Voigt sum = Voigt::Zero();
-  double volume = 0;
-  for (std::size_t i = begin_[at]; i < begin_[at + 1]; ++i) {
-    const auto other = static_cast<std::size_t>(neighbours_[i]);
-    if (destroyed[other]) continue;
-    const double share = problem_.shape(neighbours_[i]).volume;
-    sum += share * stress_[other];
-    volume += share;
+void AveragedStrength::measure_places(std::span<const std::uint8_t> destroyed) {
+  const YieldMeasure measure = strength_measure(problem_.scene().fracture);
+  for (std::size_t place = 0; place < measure_.size(); ++place) {
+    Voigt sum = Voigt::Zero();
+    double volume = 0;
+    for (std::size_t i = begin_[place]; i < begin_[place + 1]; ++i) {
+      const auto other = static_cast<std::size_t>(neighbours_[i]);
+      if (destroyed[other]) continue;
+      const double share = problem_.shape(neighbours_[i]).volume;
+      sum += share * stress_[other];
+      volume += share;
+    }
+    measure_[place] = volume > 0 ? yield_measure(sum / volume, measure) : kNothing;
   }
-  return sum / volume;  // its own at least
 }
 
-double AveragedStrength::ratio(Index element, std::span<const std::uint8_t> destroyed) const {
-  return yield_measure(mean(element, destroyed), strength_measure(problem_.scene().fracture)) /
+double AveragedStrength::own_ratio(Index element) const {
+  return yield_measure(stress_[static_cast<std::size_t>(element)],
+                       strength_measure(problem_.scene().fracture)) /
          problem_.yield(element);
+}
+
+double AveragedStrength::ratio(Index element) const {
+  double largest = kNothing;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const Index place = place_of_[4 * static_cast<std::size_t>(element) + a];
+    largest = std::max(largest, measure_[static_cast<std::size_t>(place)]);
+  }
+  return largest > kNothing ? largest / problem_.yield(element) : own_ratio(element);
 }
 
 void AveragedStrength::over(std::span<const std::uint8_t> destroyed,
                             std::vector<Worst>& found) const {
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     if (destroyed[static_cast<std::size_t>(e)] || !problem_.breakable(e)) continue;
-    if (const double r = ratio(e, destroyed); r >= 1) found.push_back({e, r});
+    if (const double r = ratio(e); r >= 1) found.push_back({e, r});
   }
 }
 
 StressSummary AveragedStrength::summarize(const Backend& backend) {
   backend.read_stress(stress_);
   const auto destroyed = backend.destroyed();
+  measure_places(destroyed);
   StressSummary summary;
+  // All elements at one corner may have its mean.
+  const auto take = [this](Worst& worst, Index e, double r) {
+    const bool equal = r == worst.ratio && worst.element != kNone;
+    if (r > worst.ratio || (equal && own_ratio(e) > own_ratio(worst.element))) worst = {e, r};
+  };
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     const auto at = static_cast<std::size_t>(e);
     if (destroyed[at] || !problem_.breakable(e)) continue;
-    const double r = ratio(e, destroyed);
-    if (r > summary.any.ratio) summary.any = {e, r};
+    const double r = ratio(e);
+    take(summary.any, e, r);
     if (r >= 1) ++summary.over;
-    if (!excluded_[at] && r > summary.candidate.ratio) summary.candidate = {e, r};
+    if (!excluded_[at]) take(summary.candidate, e, r);
   }
   return summary;
 }
