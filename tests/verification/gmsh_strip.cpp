@@ -27,16 +27,24 @@ class Session {
   Session& operator=(const Session&) = delete;
 };
 
-int rectangle_with_slot(double width, double half, double notch) {
-  const int a = geo::addPoint(0, -half, 0), b = geo::addPoint(width, -half, 0),
-            c = geo::addPoint(width, half, 0), d = geo::addPoint(0, half, 0);
+struct Rectangle {
+  double width, low, high;  // mm
+};
+
+/// `slot` x `height`, in the middle of the left side.
+int rectangle_with_slot(const Rectangle& sides, double notch, double height) {
+  const auto& [width, low, high] = sides;
+  const double middle = (low + high) / 2;
+  const int a = geo::addPoint(0, low, 0), b = geo::addPoint(width, low, 0),
+            c = geo::addPoint(width, high, 0), d = geo::addPoint(0, high, 0);
   const int bottom = geo::addLine(a, b), right = geo::addLine(b, c), top = geo::addLine(c, d);
   if (!(notch > 0)) {
     const int left = geo::addLine(d, a);
     return geo::addPlaneSurface({geo::addCurveLoop({bottom, right, top, left})});
   }
-  const int p = geo::addPoint(0, 0.5, 0), q = geo::addPoint(notch, 0.5, 0),
-            r = geo::addPoint(notch, -0.5, 0), s = geo::addPoint(0, -0.5, 0);
+  const double up = middle + height / 2, down = middle - height / 2;
+  const int p = geo::addPoint(0, up, 0), q = geo::addPoint(notch, up, 0),
+            r = geo::addPoint(notch, down, 0), s = geo::addPoint(0, down, 0);
   const int upper_left = geo::addLine(d, p), upper = geo::addLine(p, q), end = geo::addLine(q, r),
             lower = geo::addLine(r, s), lower_left = geo::addLine(s, a), mouth = geo::addLine(p, s);
   const int strip = geo::addPlaneSurface(
@@ -80,7 +88,7 @@ Mesh read_mesh() {
 
 Mesh strip_mesh(int n, int notch, PlaneMesh how) {
   const Session session(how);
-  rectangle_with_slot(n, 3.0 * n, notch);
+  rectangle_with_slot({1.0 * n, -3.0 * n, 3.0 * n}, notch, 1);
   geo::synchronize();
   gmsh::vectorpair faces, solids;
   gmsh::model::getEntities(faces, 2);
@@ -89,6 +97,33 @@ Mesh strip_mesh(int n, int notch, PlaneMesh how) {
   set_size(n);
   gmsh::model::mesh::generate(3);
   return read_mesh();
+}
+
+/// A square with a round hole in its middle.
+void square_with_hole(double side, double radius) {
+  const double m = side / 2;
+  const int a = geo::addPoint(0, 0, 0), b = geo::addPoint(side, 0, 0),
+            c = geo::addPoint(side, side, 0), d = geo::addPoint(0, side, 0);
+  const int outer = geo::addCurveLoop(
+      {geo::addLine(a, b), geo::addLine(b, c), geo::addLine(c, d), geo::addLine(d, a)});
+  const int middle = geo::addPoint(m, m, 0), p = geo::addPoint(m + radius, m, 0),
+            q = geo::addPoint(m, m + radius, 0), r = geo::addPoint(m - radius, m, 0),
+            s = geo::addPoint(m, m - radius, 0);
+  const int inner =
+      geo::addCurveLoop({geo::addCircleArc(p, middle, q), geo::addCircleArc(q, middle, r),
+                         geo::addCircleArc(r, middle, s), geo::addCircleArc(s, middle, p)});
+  geo::addPlaneSurface({outer, inner});
+}
+
+/// Even up to 4 mm beside the hole, growing by a fifth of the distance beyond.
+void set_size_round_hole(const GmshBoard& wanted) {
+  const int field = gmsh::model::mesh::field::add("MathEval");
+  const std::string middle = std::to_string(kGmshBoardSide / 2);
+  const std::string beyond =
+      "(Sqrt((x-" + middle + ")^2+(y-" + middle + ")^2)-" + std::to_string(wanted.hole + 4) + ")";
+  gmsh::model::mesh::field::setString(
+      field, "F", std::to_string(wanted.size) + "+0.1*(" + beyond + "+Fabs(" + beyond + "))");
+  gmsh::model::mesh::field::setAsBackgroundMesh(field);
 }
 
 Index nearest(const Mesh& mesh, const Vec3& p) {
@@ -112,6 +147,26 @@ CrackedBody make_strip(int n, int notch, PlaneMesh how) {
 }
 
 }  // namespace
+
+Mesh gmsh_board(const GmshBoard& wanted) {
+  constexpr double kThickness = 2;
+  const Session session(PlaneMesh::delaunay);
+  if (wanted.hole > 0) {
+    square_with_hole(kGmshBoardSide, wanted.hole);
+  } else {
+    rectangle_with_slot({kGmshBoardSide, 0, kGmshBoardSide}, wanted.notch, wanted.size);
+  }
+  geo::synchronize();
+  gmsh::vectorpair faces, solids;
+  gmsh::model::getEntities(faces, 2);
+  geo::extrude(faces, 0, 0, kThickness, solids);
+  geo::synchronize();
+  gmsh::option::setNumber("Mesh.CharacteristicLengthMin", wanted.size);
+  gmsh::option::setNumber("Mesh.CharacteristicLengthMax", wanted.hole > 0 ? 3 : wanted.size);
+  if (wanted.hole > 0) set_size_round_hole(wanted);
+  gmsh::model::mesh::generate(3);
+  return read_mesh();
+}
 
 CrackedBody gmsh_strip(int n, int notch, PlaneMesh how) {
   CrackedBody body = make_strip(n, notch, how);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unstructured strips from gmsh: W wide, 6 W high, one element size thick.
+// Unstructured meshes from gmsh: strips W wide, 6 W high, one element size thick, and square
+// boards.
 #pragma once
 
 #include "core/field_sif/cracked_body.hpp"
@@ -16,5 +17,18 @@ enum class PlaneMesh { delaunay = 5, frontal = 6, mesh_adapt = 1 };
 
 /// The same strip with an edge crack grown straight through its elements by rule 10 (method.md).
 [[nodiscard]] CrackedBody grown_strip(int n, double length, PlaneMesh how);
+
+inline constexpr double kGmshBoardSide = 50;  ///< mm
+
+/// A square board, 2 mm thick, x and y from 0.
+struct GmshBoard {
+  double size = 1;  ///< of elements [mm]
+  double notch =
+      0;  ///< length of a volume of its own, one size high, at half height from x = 0 [mm]
+  /// Radius of a hole in the middle, where there is no notch [mm]; elements grow from 4 mm beside
+  /// it.
+  double hole = 0;
+};
+[[nodiscard]] Mesh gmsh_board(const GmshBoard& wanted);
 
 }  // namespace sunder::test

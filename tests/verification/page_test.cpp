@@ -9,6 +9,9 @@
 
 #include "core/field_sif/published.hpp"
 #include "verification/engine_cases.hpp"
+#ifdef SUNDER_GMSH
+#include "verification/first_growth.hpp"
+#endif
 #include "verification/sections.hpp"
 
 namespace sunder::test {
@@ -97,6 +100,24 @@ TEST(VerificationPage, HasTheCantileverAndCook) {
   expect_cell("Cook's membrane, plane stress", {"16 x 16"}, "ours [mm]",
               text("%.3f", cook_deflection(Plane::stress, 16)));
 }
+
+#ifdef SUNDER_GMSH
+TEST(VerificationPage, HasTheFirstGrowth) {
+  const NotchedBoard notched = notched_board(kBoardSizes[0]);
+  const std::vector<std::string> key{std::to_string(notched.tets)};
+  expect_cell("First growth", key, "force by K_c [N]", text("%.4f", notched.force));
+  expect_cell("First growth", key, "force by Eq. 1 [N]", text("%.3f", notched.force_by_eq1));
+  const HoledBoard holed = holed_board(kHoleSizes[0]);
+  expect_cell("First growth", {std::to_string(holed.tets)}, "force, averaging 3 mm [N]",
+              text("%.2f", holed.force));
+}
+
+TEST(VerificationPage, HasTheFirstGrowthOfATurnedBoard) {
+  const TurnedBoard turned = turned_board(kBoardSizes[0]);
+  expect_cell("First growth", {std::to_string(turned.tets)}, "extension [mm]",
+              text("%.4f", turned.extension));
+}
+#endif
 
 TEST(VerificationPage, NothingOnItMissesItsTarget) {
   std::ifstream in(SUNDER_SOURCE "/docs/verification.md");

@@ -27,6 +27,7 @@ void write_force_pairs(std::ostream& out);
 void write_thickness(std::ostream& out);
 void write_antiplane(std::ostream& out);
 void write_growing(std::ostream& out);
+void write_first_growth(std::ostream& out);  ///< needs gmsh
 
 // Numbers that the quick test computes again.
 

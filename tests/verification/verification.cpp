@@ -39,6 +39,9 @@ void write(std::ostream& out) {
   write_thickness(out);
   write_antiplane(out);
   write_growing(out);
+#ifdef SUNDER_GMSH
+  write_first_growth(out);
+#endif
 }
 
 }  // namespace
