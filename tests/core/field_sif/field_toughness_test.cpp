@@ -132,7 +132,7 @@ TEST(FieldToughness, AtFiniteStrainIsJAgainstGc) {
 TEST(FieldToughness, RunsOnEveryRouteAlike) {
   std::vector<Index> first;
   for (const Route route : {Route::factor, Route::inverse, Route::condensed, Route::cg}) {
-    Scene scene = tough_strip(SifSource::field, {0, 6, 0});
+    Scene scene = tough_strip(SifSource::field, {0, 8, 0});
     scene.materials["board"].toughness = 1.5;
     scene.solver.route = route;
     const StripRun r = run_strip(std::move(scene), 5);
