@@ -217,11 +217,7 @@ TipMaterial FieldIntensityMeter::material_at(const Crack& crack, std::size_t tip
 void FieldIntensityMeter::collect(const Vec2& tip, double radius, const FieldView& view,
                                   const std::optional<FrontStretch>& stretch) {
   const auto part = thin(radius) ? FreeSurface::Part::outline : FreeSurface::Part::all;
-<<<<<<< HEAD
   builder_.collect(tip, radius, view.destroyed, part, stretch, view.corners, domain_);
-=======
-  builder_.collect(tip, radius, view.destroyed, part, stretch, domain_);
->>>>>>> tough
 }
 
 std::vector<FieldIntensity> FieldIntensityMeter::along_front(const Crack& crack, std::size_t tip,
