@@ -40,6 +40,7 @@ TEST(SceneFiles, AllAreThere) {
                            "peel",
                            "brain-notch",
                            "board",
+                           "board-split",
                            "sheet"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
