@@ -11,88 +11,192 @@
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
-void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
-                      Eigen::Index columns) {
+/// The least unknown at which the event's elements, before it or after it, or its ties act.
+Index Border::first_changed(const fem::Forms& forms, const fem::Event& event) {
+  Index first = unknowns_.count();
+  const auto acts = [&](const std::array<Index, 4>& corners) {
+    for (Index column : own(forms, corners)) {
+      if (column != kNone) first = std::min(first, column);
+    }
+  };
+  for (const fem::Coming& c : event.come) {
+    const auto before = corners_.find(c.element);
+    if (before != corners_.end()) acts(before->second);
+    acts(c.form.corners);
+    corners_[c.element] = c.form.corners;
+  }
+  for (Index e : event.leave) {
+    const auto at = corners_.find(e);
+    if (at != corners_.end()) acts(at->second);
+  }
+  for (const fem::Tie& tie : event.ties) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index column = unknowns_.unknown(tie.node - forms.problem().node_count(), axis);
+      if (column != kNone) first = std::min(first, column);
+    }
+  }
+  return first;
+}
+
+/// The offsets of an element's corners, by corner and axis; kNone: it has none there.
+std::array<Index, 12> Border::own(const fem::Forms& forms,
+                                  const std::array<Index, 4>& corners) const {
+  std::array<Index, 12> own;
+  for (int i = 0; i < 12; ++i) {
+    const Index added = corners[static_cast<std::size_t>(i / 3)] - forms.problem().node_count();
+    own[static_cast<std::size_t>(i)] = added < 0 ? kNone : unknowns_.unknown(added, i % 3);
+  }
+  return own;
+}
+
+bool Border::follow(const fem::Forms& forms, const fem::Event& event, DifferenceBasis& basis,
+                    const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
+                    const Over& over) {
+  const Index before = unknowns_.count();
   unknowns_.follow(forms);
   for (Eigen::VectorXd* v : {&load_, &d_, &lack_, &step_}) v->setZero(unknowns_.count());
-  if (empty()) return;
-  entries_.clear();
-  f_.setZero(size(), size());
+  if (empty() && event.come.empty()) return true;
+  const bool anew = over.anew || before > unknowns_.count() || before != l_.rows();
+  const Index changed = first_changed(forms, event);
+  const Index from = anew ? 0 : std::min(changed, before);
+  const Eigen::Index rows = anew ? 0 : rows_of_h_;
+  resize(over.columns);
+  assemble(forms, basis, over.grips, from);
+  multiply(g, m, over, from, rows);
+  rows_of_h_ = over.columns;
+  return factor(from);
+}
+
+/// What is there stays.
+void Border::resize(Eigen::Index rows) {
+  e_.resize(static_cast<std::size_t>(size()));
+  h_.conservativeResize(rows, size());
+  f_.conservativeResize(size(), size());
+  l_.conservativeResize(size(), size());
+}
+
+/// Columns of E and rows of F from `from` on; F is kept up to its diagonal.
+void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
+                      Index from) {
+  for (std::size_t j = static_cast<std::size_t>(from); j < e_.size(); ++j) e_[j].clear();
+  f_.bottomRows(size() - from).setZero();
   const Index first = forms.problem().node_count();
   for (const auto& [element, form] : forms.came()) {
     const bool at_new = std::ranges::any_of(form.corners, [&](Index n) { return n >= first; });
-    if (at_new && form.share > 0) add(forms, form, basis, grips);
+    if (at_new && form.share > 0) add(forms, form, basis, grips, from);
   }
-  e_.resize(columns, size());
-  e_.setFromTriplets(entries_.begin(), entries_.end());
   for (std::size_t i = 0; i < unknowns_.nodes().size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      const Index own = unknowns_.unknown(static_cast<Index>(i), axis);
-      if (own != kNone) f_(own, own) += unknowns_.nodes()[i].tie;
+      const Index column = unknowns_.unknown(static_cast<Index>(i), axis);
+      if (column >= from) f_(column, column) += unknowns_.nodes()[i].tie;
     }
   }
 }
 
 /// An element's K = W W^T, W = share^1/2 B^T L V^1/2, joins E and F.
 void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
-                 Eigen::Index grips) {
+                 Eigen::Index grips, Index from) {
+  const std::array<Index, 12> columns = own(forms, form.corners);
+  if (*std::ranges::max_element(columns) < from) return;
   const fem::UpdateFactor w =
       fem::update_factor(form.shape, elasticity(form.law), 0) * std::sqrt(form.share);
   basis.coordinates(forms.parents(form.corners), w, rows_, y_);
-  std::array<Index, 12> own;
-  for (int i = 0; i < 12; ++i) {
-    const Index added =
-        form.corners[static_cast<std::size_t>(i / 3)] - forms.problem().node_count();
-    own[static_cast<std::size_t>(i)] = added < 0 ? kNone : unknowns_.unknown(added, i % 3);
-  }
   for (int j = 0; j < 12; ++j) {
-    const Index column = own[static_cast<std::size_t>(j)];
-    if (column == kNone) continue;
+    const Index column = columns[static_cast<std::size_t>(j)];
+    if (column < from) continue;  // kNone too
+    auto& entries = e_[static_cast<std::size_t>(column)];
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      entries_.emplace_back(static_cast<int>(grips) + rows_[r], column,
-                            y_.row(static_cast<Eigen::Index>(r)).head<6>().dot(w.row(j)));
+      const Index row = static_cast<Index>(grips) + rows_[r];
+      const double value = y_.row(static_cast<Eigen::Index>(r)).head<6>().dot(w.row(j));
+      const auto there = std::ranges::find(entries, row, &Entry::row);
+      if (there == entries.end()) {
+        entries.push_back({row, value});
+      } else {
+        there->value += value;
+      }
     }
     for (int i = 0; i < 12; ++i) {
-      const Index row = own[static_cast<std::size_t>(i)];
-      if (row != kNone) f_(row, column) += w.row(i).dot(w.row(j));
+      const Index other = columns[static_cast<std::size_t>(i)];
+      if (other != kNone && other <= column) f_(column, other) += w.row(i).dot(w.row(j));
     }
   }
 }
 
-/// x += sign N d.
-void Border::add_product_e(const Eigen::VectorXd& d, double sign, Eigen::VectorXd& x) const {
-  for (Eigen::Index j = 0; j < e_.outerSize(); ++j) {
-    for (Eigen::SparseMatrix<double>::InnerIterator at(e_, j); at; ++at) {
-      x[at.row()] += sign * at.value() * d[j];
+/// N = E + M G E and H = G N: columns from `from` on, and of those before the rows from `rows` on.
+void Border::multiply(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
+                      const Over& over, Index from, Eigen::Index rows) {
+  const Eigen::Index n = over.columns, k = std::min(over.changed, n), added = size() - from;
+  h_.rightCols(added).setZero();
+  if (n > rows) h_.bottomLeftCorner(n - rows, from).setZero();
+  for (Index j = 0; j < size(); ++j) {
+    const Eigen::Index first = j < from ? rows : 0;
+    for (const Entry& at : e_[static_cast<std::size_t>(j)]) {  // G is symmetric
+      h_.col(j).tail(n - first) += at.value * g.row(at.row).segment(first, n - first).transpose();
     }
+  }
+  n_.conservativeResize(k, size());
+  if (k == 0) return;
+  n_.rightCols(added).noalias() = m.topLeftCorner(k, k) * h_.topRightCorner(k, added);
+  h_.rightCols(added).noalias() += g.topLeftCorner(n, k) * n_.rightCols(added);
+  if (n > rows) {
+    h_.bottomLeftCorner(n - rows, from).noalias() +=
+        g.block(rows, 0, n - rows, k) * n_.leftCols(from);
+  }
+}
+
+/// S = F - E^T H from row `from` on, and its Cholesky factor by a border of the one before.
+bool Border::factor(Index from) {
+  const Eigen::Index kept = from, added = size() - from;
+  if (added == 0) return true;
+  Eigen::MatrixXd s(added, size());  // up to the diagonal
+  for (Eigen::Index i = 0; i < added; ++i) {
+    const auto row = static_cast<Index>(kept + i);
+    for (Index j = 0; j <= row; ++j) {
+      double sum = f_(row, j);
+      for (const Entry& at : e_[static_cast<std::size_t>(row)]) sum -= at.value * h_(at.row, j);
+      s(i, j) = sum;
+    }
+    // No element there (any more): its offset is 0.
+    if (f_(row, row) == 0) s(i, row) = 1;
+  }
+  if (kept > 0) {
+    Eigen::MatrixXd x = s.leftCols(kept).transpose();
+    l_.topLeftCorner(kept, kept).triangularView<Eigen::Lower>().solveInPlace(x);
+    l_.bottomLeftCorner(added, kept) = x.transpose();
+    s.rightCols(added).triangularView<Eigen::Lower>() -= x.transpose() * x;
+  }
+  const Eigen::LLT<Eigen::MatrixXd> corner(s.rightCols(added).selfadjointView<Eigen::Lower>());
+  l_.bottomRightCorner(added, added) = corner.matrixL();
+  return corner.info() == Eigen::Success && l_.bottomRows(added).allFinite();
+}
+
+/// d = S^-1 d.
+void Border::solve(Eigen::VectorXd& d) const {
+  l_.triangularView<Eigen::Lower>().solveInPlace(d);
+  l_.triangularView<Eigen::Lower>().transpose().solveInPlace(d);
+}
+
+/// d -= N^T p.
+void Border::subtract_transposed(const Eigen::VectorXd& p, Eigen::VectorXd& d) const {
+  for (std::size_t j = 0; j < e_.size(); ++j) {
+    for (const Entry& at : e_[j]) d[static_cast<Eigen::Index>(j)] -= at.value * p[at.row];
+  }
+  d.noalias() -= n_.transpose() * p.head(n_.rows());
+}
+
+/// x += sign N d.
+void Border::add_product(const Eigen::VectorXd& d, double sign, Eigen::VectorXd& x) const {
+  for (std::size_t j = 0; j < e_.size(); ++j) {
+    const double by = sign * d[static_cast<Eigen::Index>(j)];
+    for (const Entry& at : e_[j]) x[at.row] += by * at.value;
   }
   x.head(n_.rows()).noalias() += sign * (n_ * d);
 }
 
-bool Border::factor(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
-                    Eigen::Index changed) {
-  if (empty()) return true;
-  const Eigen::Index n = e_.rows(), k = std::min(changed, n);
-  h_.setZero(n, size());  // G E; G is symmetric, its rows lie together
-  for (Eigen::Index j = 0; j < e_.outerSize(); ++j) {
-    for (Eigen::SparseMatrix<double>::InnerIterator at(e_, j); at; ++at) {
-      h_.col(j) += at.value() * g.row(at.row()).head(n).transpose();
-    }
-  }
-  n_.noalias() = m.topLeftCorner(k, k) * h_.topRows(k);
-  h_.noalias() += g.topLeftCorner(n, k) * n_;  // G N
-  Eigen::MatrixXd s = f_;
-  s.noalias() -= e_.transpose() * h_;
-  for (Eigen::Index j = 0; j < s.cols(); ++j) {
-    if (f_(j, j) == 0) s(j, j) = 1;  // no element there (any more): its offset is 0
-  }
-  s_.compute(s.selfadjointView<Eigen::Lower>());
-  return s_.info() == Eigen::Success && s_.matrixLLT().allFinite();
-}
-
 void Border::add_to_grips(Eigen::MatrixXd& compliance) const {
   const Eigen::Index g = compliance.rows();
-  const Eigen::MatrixXd t = s_.matrixL().solve(h_.topRows(g).transpose());
+  Eigen::MatrixXd t = h_.topRows(g).transpose();
+  l_.triangularView<Eigen::Lower>().solveInPlace(t);
   compliance.noalias() += t.transpose() * t;
 }
 
@@ -117,40 +221,42 @@ Forces Border::take(const Forces& forces, Index first) {
 
 void Border::start(const Eigen::VectorXd& p, Eigen::VectorXd& x) {
   d_ = load_;
-  d_.noalias() -= e_.transpose() * p.head(e_.rows());
-  d_.noalias() -= n_.transpose() * p.head(n_.rows());
-  s_.solveInPlace(d_);
-  add_product_e(d_, -1, x);
+  subtract_transposed(p, d_);
+  solve(d_);
+  add_product(d_, -1, x);
 }
 
 void Border::add_lack(const Eigen::VectorXd& v, Eigen::VectorXd& lack) {
-  const Eigen::Index n = e_.rows();
-  lack.head(n).noalias() -= e_ * d_;
   lack_ = load_;
-  lack_.noalias() -= e_.transpose() * v.head(n);
-  lack_.noalias() -= f_ * d_;
+  for (std::size_t j = 0; j < e_.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    for (const Entry& at : e_[j]) {
+      lack[at.row] -= at.value * d_[column];
+      lack_[column] -= at.value * v[at.row];
+    }
+  }
+  lack_.noalias() -= f_.selfadjointView<Eigen::Lower>() * d_;
 }
 
 double Border::correct(const Eigen::VectorXd& lack, Eigen::VectorXd& x, Eigen::VectorXd& moved) {
-  const Eigen::Index n = e_.rows();
-  lack_.noalias() -= h_.transpose() * lack.head(n);
+  lack_.noalias() -= h_.transpose() * lack.head(h_.rows());
   step_ = lack_;
-  s_.solveInPlace(step_);
+  solve(step_);
   d_ += step_;
-  add_product_e(step_, -1, x);
+  add_product(step_, -1, x);
   moved.noalias() -= h_.topRows(moved.size()) * step_;
   return lack_.dot(step_);
 }
 
 void Border::follow_grips(const Eigen::VectorXd& forces, Eigen::VectorXd& x) {
   step_.noalias() = h_.topRows(forces.size()).transpose() * forces;
-  s_.solveInPlace(step_);
+  solve(step_);
   d_ -= step_;
-  add_product_e(step_, 1, x);
+  add_product(step_, 1, x);
 }
 
 std::size_t Border::bytes() const {
-  const Eigen::Index doubles = 2 * e_.nonZeros() + f_.size() + n_.size() + h_.size() + f_.size();
+  const Eigen::Index doubles = f_.size() + n_.size() + h_.size() + l_.size();
   return empty() ? 0 : static_cast<std::size_t>(doubles) * sizeof(double);
 }
 

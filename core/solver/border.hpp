@@ -6,11 +6,12 @@
 //   [ E^T B^T    F   ] [d] = [f_d],   S = F - E^T B^T A^-1 B E.
 // With A^-1 = X + X B M B^T X and G = B^T X B (deferred.hpp) S = F - E^T H, H = G N,
 // N = E + M G E, and u = X (f + B x) with x = M p - N d, p = B^T X f, S d = f_d - N^T p.
+// An event changes few columns of E, the last ones: what came before them is kept, and the Cholesky
+// factor of S grows by a border of its own.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCore>
 #include <array>
+#include <map>
 #include <vector>
 
 #include "body/offsets.hpp"
@@ -27,14 +28,20 @@ class Border {
   /// Which new node has which of them.
   [[nodiscard]] const fem::Offsets& unknowns() const { return unknowns_; }
 
-  /// E and F of the elements at new nodes, all of them in the basis; E has `columns` rows, the
-  /// first `grips` of them zero.
-  void assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
-                Eigen::Index columns);
-  /// Reads the leading blocks of G and M; of M no more than `changed` rows are not 0. False where S
-  /// is not positive definite in double precision.
-  [[nodiscard]] bool factor(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
-                            Eigen::Index changed);
+  /// Follows an event that the forms have followed: E and F of the elements at new nodes, all of
+  /// them in the basis, S and its factor. E has `columns` rows, the first `grips` of them zero.
+  /// Reads the leading blocks of G and M; of M no more than `changed` rows are not 0, and with
+  /// `anew` it is another one than at the last event. False where S is not positive definite in
+  /// double precision.
+  struct Over {
+    Eigen::Index grips = 0, columns = 0, changed = 0;
+    bool anew = false;
+  };
+  [[nodiscard]] bool follow(const fem::Forms& forms, const fem::Event& event,
+                            DifferenceBasis& basis, const linear_algebra::RowMajor& g,
+                            const linear_algebra::RowMajor& m, const Over& over);
+  /// No event has happened.
+  void clear() { *this = {}; }
   /// What the border adds to (A^-1)_GG of the grips.
   void add_to_grips(Eigen::MatrixXd& compliance) const;
 
@@ -56,16 +63,31 @@ class Border {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  struct Entry {
+    Index row;
+    double value;
+  };
+  [[nodiscard]] Index first_changed(const fem::Forms& forms, const fem::Event& event);
+  [[nodiscard]] std::array<Index, 12> own(const fem::Forms& forms,
+                                          const std::array<Index, 4>& corners) const;
+  void resize(Eigen::Index rows);
+  void assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips, Index from);
   void add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
-           Eigen::Index grips);
-  void add_product_e(const Eigen::VectorXd& d, double sign, Eigen::VectorXd& x) const;
+           Eigen::Index grips, Index from);
+  void multiply(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
+                const Over& over, Index from, Eigen::Index rows);
+  [[nodiscard]] bool factor(Index from);
+  void solve(Eigen::VectorXd& d) const;
+  void subtract_transposed(const Eigen::VectorXd& p, Eigen::VectorXd& d) const;
+  void add_product(const Eigen::VectorXd& d, double sign, Eigen::VectorXd& x) const;
 
   fem::Offsets unknowns_;
   // An element has few differences: E is sparse, and N = E where nothing but splits has changed.
-  Eigen::SparseMatrix<double> e_;
-  std::vector<Eigen::Triplet<double>> entries_;
-  Eigen::MatrixXd f_, n_, h_;  // of N the rows beyond E, those of M
-  Eigen::LLT<Eigen::MatrixXd> s_;
+  std::vector<std::vector<Entry>> e_;  // by column
+  Eigen::MatrixXd f_, n_, h_, l_;      // of N the rows beyond E, those of M; l_ l_^T = S
+  Eigen::Index rows_of_h_ = 0;
+  std::map<Index, std::array<Index, 4>>
+      corners_;                             // of the elements at new nodes, at the last event
   Eigen::VectorXd load_, d_, lack_, step_;  // f_d; d; what lacks on d; a step of d
   std::vector<Index> dofs_;                 // of the forces before f_d
   std::vector<double> values_;

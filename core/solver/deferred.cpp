@@ -60,8 +60,7 @@ Deferred::Deferred(const fem::Forms& in_base, std::unique_ptr<Base> base, bool d
   make_room(gram_, grips_, padded(grips_));
   base_->push(units, gram_);
   compliance_.topLeftCorner(grips_, grips_) = gram_.topLeftCorner(grips_, grips_);
-  replay();
-  if (!factor_grips()) {
+  if (!replay() || !factor_grips()) {
     throw NumericalError("the compliance of the gripped nodes is singular in double precision");
   }
 }
@@ -135,7 +134,7 @@ bool Deferred::follow_last() {
   const fem::Event event = damage_.last();
   forms_.add(event.nodes);
   push(event);
-  if (apply(event) && set_border() && factor_grips()) return true;
+  if (apply(event) && follow_border(event) && factor_grips()) return true;
   take_back();
   return false;
 }
@@ -211,8 +210,7 @@ void Deferred::pop() {
 void Deferred::take_back() {
   if (before_.empty()) throw UsageError("there is no event to take back");
   pop();
-  replay();
-  if (!set_border()) throw NumericalError("the stiffness of the new unknowns is singular");
+  if (!replay()) throw NumericalError("the stiffness of the new unknowns is singular");
   if (!factor_grips()) throw NumericalError("the compliance of the gripped nodes is singular");
 }
 
@@ -226,13 +224,17 @@ void Deferred::clear() {
 }
 
 /// Adds all events up again, in order: the same sums as the first time.
-void Deferred::replay() {
+bool Deferred::replay() {
   clear();
   forms_ = in_base_;
+  border_.clear();
+  bool bordered = true;
   for (std::size_t i = 0; i < damage_.size(); ++i) {
     forms_.add(damage_[i].nodes);
     static_cast<void>(apply(damage_[i]));
+    bordered = bordered && follow_border(damage_[i]);
   }
+  return bordered;
 }
 
 /// The event's update vectors: where they act in B, and U, padded to full vectors.

@@ -130,7 +130,7 @@ class Deferred {
   [[nodiscard]] bool update_both();
   void collect_all();
   void sum_up_d();
-  [[nodiscard]] bool set_border();
+  [[nodiscard]] bool follow_border(const fem::Event& event);
   [[nodiscard]] Forces on_body(const Forces& forces);
   void start(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
@@ -138,7 +138,7 @@ class Deferred {
   void add_to_grips(Eigen::Index width, bool more);
   [[nodiscard]] const Eigen::VectorXd& correct(const Eigen::VectorXd& projection);
   void clear();
-  void replay();
+  [[nodiscard]] bool replay();
   [[nodiscard]] bool factor_grips();
   [[nodiscard]] Eigen::Index count() const { return count_; }
   void touch(const std::array<Index, 4>& nodes);
@@ -157,6 +157,7 @@ class Deferred {
   std::vector<Difference> wanted_;  // by what is to be prepared
   linear_algebra::RowMajor compliance_, m_,
       d_;                     // G = B^T X B, M and the stiffness D that is gone, in B
+  bool stiffened_ = false;    // the last event has changed M
   Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};

@@ -70,8 +70,10 @@ bool Deferred::apply(const fem::Event& event) {
   collect(event);
   if (less_.empty() && more_.empty()) {  // splits alone change nothing between old unknowns
     forms_.follow(event);
+    stiffened_ = false;
     return true;
   }
+  stiffened_ = true;
   const bool destroys = event.come.empty() && forms_.came().empty();
   const bool followed = update_both();
   forms_.follow(event);
@@ -113,10 +115,10 @@ void Deferred::sum_up_d() {
   }
 }
 
-bool Deferred::set_border() {
+bool Deferred::follow_border(const fem::Event& event) {
   if (border_.empty() && forms_.new_nodes().empty()) return true;
-  border_.assemble(forms_, basis_, grips_, count());
-  return border_.factor(compliance_, m_, changed_);
+  return border_.follow(forms_, event, basis_, compliance_, m_,
+                        {grips_, count(), changed_, stiffened_});
 }
 
 }  // namespace sunder::solver
