@@ -20,6 +20,10 @@ constexpr int kMostParts = 64;  // of a step
 // Within which a base is taken, whatever its making may be thought to take: a later one is of a
 // state long past.
 constexpr double kFewestStepsOfABase = 2, kMostStepsOfABase = 12;
+// Back-solves that a step takes on a base which is still good (finite.md): the inertia of shorter
+// steps makes more of the tangent, so that fewer do.
+constexpr int kMostOnAGoodBase = 8, kMostOfShortSteps = 5;
+constexpr double kShortStep = 1.0 / 500;  // [s]
 
 /// Of the base: viscous forces make its tangent so many times as stiff, and the whole is divided.
 fem::Inertia inertia_of_base(const FiniteTarget& target) {
@@ -236,6 +240,7 @@ FiniteMotionReport FiniteMotion::in_parts(const Load& load, double dt, const Rep
       const Report part = one_step(i < parts ? on_the_way : load, dt / parts);
       all.back_solves += part.back_solves;
       all.factors += part.factors;
+      all.bases += part.bases;
       all.stuck = part.stuck;
       all.capped = all.capped || part.capped;
       all.second_order = part.second_order;
@@ -254,7 +259,10 @@ FiniteMotionReport FiniteMotion::in_parts(const Load& load, double dt, const Rep
 FiniteMotionReport FiniteMotion::one_step(const Load& load, double dt) {
   Report report;
   if (renewal_.base_asked() && --until_taken_ <= 0) {
-    if (auto base = renewal_.take_base()) base_ = std::move(base);
+    if (auto base = renewal_.take_base()) {
+      base_ = std::move(base);
+      ++report.bases;
+    }
   }
   const Scheme by = scheme(dt);
   report.second_order = by.second_order;
@@ -325,6 +333,13 @@ FiniteMotionBalance FiniteMotion::balance(const FiniteTarget& end, const Scheme&
   return of;
 }
 
+int FiniteMotion::most_on_a_good_base(double dt) const {
+  int most = options_.renew_after.value_or(dt < kShortStep ? kMostOfShortSteps : kMostOnAGoodBase);
+  // Below the cap, or a base that no longer does would never be renewed.
+  if (options_.most_iterations > 0) most = std::min(most, options_.most_iterations - 1);
+  return most;
+}
+
 int FiniteMotion::steps_of_a_base(double dt) {
   if (options_.taken_after) return *options_.taken_after;
   const double making = seconds_of_a_tangent(*pattern().supernodes(), potential_.problem());
@@ -334,7 +349,7 @@ int FiniteMotion::steps_of_a_base(double dt) {
 
 void FiniteMotion::renew_if_due(const fem::Inertia& inertia, double dt, Report& report) {
   const bool hard =
-      report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
+      report.back_solves > most_on_a_good_base(dt) || report.rank > options_.most_rank / 2;
   if (!hard || renewal_.base_asked() || !needs_base()) return;
   until_taken_ = steps_of_a_base(dt);
   if (until_taken_ == 0) {

@@ -29,7 +29,9 @@ struct FiniteMotionOptions {
   int most_factors = 12;        ///< of one step, made where the base stalls; not under a cap
   bool turn = true;             ///< the base by the nodes' rotations
   Index most_rank = 300;        ///< unknowns that what has left touches, before a new base is made
-  int renew_after = 8;   ///< back-solves of a step after which the base is renewed beside the steps
+  /// Back-solves of a step after which the base is renewed beside the steps; none: 8, of steps
+  /// under 1/500 s 5. A step that reaches its cap renews it in any case.
+  std::optional<int> renew_after = {};
   bool inverse = false;  ///< bases keep their dense inverse
   /// Steps after which a renewed base is taken; 0: it is made at once; none: as many as its making
   /// may be thought to take, by sizes and the length of a step alone.
@@ -64,6 +66,7 @@ struct FiniteMotionReport {
   bool second_order = false;  ///< it was a step of BDF2
   double residual = 0, error = 0, contraction = 0;  ///< as in FiniteStaticsReport
   int back_solves = 0, factors = 0;
+  int bases = 0;  ///< made beside the steps, that it took
   Index rank = 0;
   FiniteMotionBalance balance;
 };
@@ -154,6 +157,7 @@ class FiniteMotion {
   [[nodiscard]] FiniteMotionBalance balance(const FiniteTarget& end, const Scheme& by,
                                             std::span<const double> v);
   void renew_if_due(const fem::Inertia& inertia, double dt, Report& report);
+  [[nodiscard]] int most_on_a_good_base(double dt) const;
   [[nodiscard]] int steps_of_a_base(double dt);
 
   FiniteMotionOptions options_;

@@ -376,5 +376,30 @@ TEST(FiniteMotion, ACapEndsAStepAndSaysSo) {
   EXPECT_GE(capped, 1);
 }
 
+// A base no longer does after 8 back-solves, 5 of short steps, and in any case where the cap ended
+// the step: the next one takes a new base then, and only then.
+TEST(FiniteMotion, ABaseIsRenewedAfterStepsThatAreHard) {
+  struct Case {
+    int rate, cap, most;
+  };
+  for (const auto& [rate, cap, most] :
+       {Case{200, 0, 8}, {200, 12, 8}, {200, 8, 7}, {200, 3, 2}, {1000, 8, 5}, {1000, 0, 5}}) {
+    Bar bar(kNeoHookean);
+    FiniteMotion motion(
+        bar.body, bar.mass,
+        {.tolerance = 1e-7, .residual = 1e-6, .most_iterations = cap, .taken_after = 1});
+    int bases = 0;
+    bool hard = false;
+    for (int i = 1; i <= 40; ++i) {
+      const auto report = motion.step(pulled(bar.problem, 0.01 * i), 1.0 / rate);
+      ASSERT_FALSE(report.stuck || report.parts > 1);
+      EXPECT_EQ(report.bases, hard ? 1 : 0) << "step " << i << ", cap " << cap;
+      hard = report.back_solves > most;
+      bases += report.bases;
+    }
+    EXPECT_GE(bases, 1) << "1/" << rate << " s, cap " << cap;
+  }
+}
+
 }  // namespace
 }  // namespace sunder::solver
