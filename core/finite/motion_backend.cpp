@@ -151,6 +151,18 @@ class MotionBackend final : public LawBackend {
     if (pristine_) pristine_->set_velocity(velocity);
   }
 
+  Vec3 do_held_beside() const override {
+    Vec3 sum = Vec3::Zero();
+    const std::vector<double>& viscous = motion_.viscous_forces();
+    for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
+      if (problem().dofs()[i] != kNone) continue;
+      const auto axis = static_cast<Eigen::Index>(i % 3);
+      sum[axis] -= mass_[i / 3] * problem().scene().gravity[axis];
+      if (!viscous.empty()) sum[axis] += viscous[i];
+    }
+    return sum;
+  }
+
   void do_read_reactions(std::span<double> reactions) const override {
     const auto gripped = problem().gripped_dofs();
     const Eigen::VectorXd& forces = motion_.grip_forces(problem().scene().dynamics->felt_inertia);

@@ -490,6 +490,7 @@ Vec3 Simulation::support_reaction() const {
   backend_->read_displacement(u);
   const auto destroyed = backend_->destroyed();
   Vec3 sum = -loads_->force_on_supports();
+  if (problem_->moves()) sum += backend_->held_beside();
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     const auto& tet = problem_->mesh().tets[e];
     const auto held = [&](int a, int axis) { return problem_->dof(tet[a], axis) == kNone; };
