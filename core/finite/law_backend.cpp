@@ -132,6 +132,7 @@ void LawBackend::publish_instruments() {
 
 StressSummary LawBackend::do_stress() {
   attempt([&] {
+    if (stress_known_) return;  // nothing has moved
     if (device_) {
       device_->stress(u_, stress_);
       return;
@@ -141,6 +142,7 @@ StressSummary LawBackend::do_stress() {
     wanted.measure = problem().scene().fracture.stress;
     pass_.run(u_, wanted);
   });
+  stress_known_ = true;
   const auto none = without_stress();
   for (std::size_t e = 0; e < stress_.size(); ++e) {
     if (none[e]) stress_[e].setZero();
@@ -150,13 +152,23 @@ StressSummary LawBackend::do_stress() {
 }
 
 Deformation LawBackend::do_deformation() {
-  fem::HyperelasticPass::Wanted wanted;
-  wanted.deformation = true;
-  return pass_.run(u_, wanted).deformation;
+  if (!deformation_) {
+    fem::HyperelasticPass::Wanted wanted;
+    wanted.deformation = true;
+    deformation_ = pass_.run(u_, wanted).deformation;
+  }
+  return *deformation_;
+}
+
+void LawBackend::moved_to(const std::vector<double>& u) {
+  u_ = u;
+  stress_known_ = false;
+  deformation_.reset();
 }
 
 void LawBackend::do_destroy(std::span<const Index> elements) {
   pass_.destroy(elements);
+  deformation_.reset();
   if (!needs().stress) return;
   for (Index e : elements) stress_[e].setZero();
 }

@@ -83,13 +83,18 @@ class LawBackend : public Backend {
   void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override;
   /// Of the last solution, as InstrumentBlock::publish takes it; empty: unknown.
   [[nodiscard]] virtual Eigen::MatrixXd grip_compliance() = 0;
+  /// The last solution; fields of the one before no longer hold.
+  void moved_to(const std::vector<double>& u);
   /// After a solution: to who has asked for the forces of grips.
   void publish_instruments();
 
   void do_set_load(const Load& load) override { load_ = load; }
   StressSummary do_stress() override;
   Deformation do_deformation() override;
-  void do_cut_off(std::span<const Index> elements) override { pass_.cut_off(elements); }
+  void do_cut_off(std::span<const Index> elements) override {
+    pass_.cut_off(elements);
+    deformation_.reset();
+  }
   void do_destroy(std::span<const Index> elements) override;
   void do_exclude_candidates(std::span<const Index> elements) override;
   void do_read_displacement(std::span<double> displacement) const override;
@@ -105,7 +110,9 @@ class LawBackend : public Backend {
   [[nodiscard]] Route chosen_route() const;
   std::size_t check_options() const;
 
-  std::vector<Voigt> stress_;  // of the last stress()
+  std::vector<Voigt> stress_;               // of the last stress()
+  bool stress_known_ = false;               // it is that of u_
+  std::optional<Deformation> deformation_;  // of u_, once asked for
   std::vector<const Law*> laws_;
   fem::HyperelasticBody body_, intact_;
   Machine machine_;

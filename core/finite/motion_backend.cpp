@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "body/lumped_mass.hpp"
 #include "solver/finite_motion.hpp"
@@ -83,13 +84,15 @@ class MotionBackend final : public LawBackend {
   }
 
   SolveReport do_advance(double dt) override {
-    dt_ = dt;
+    const bool as_long = std::exchange(dt_, dt) == dt;
     intact_known_ = false;
     remember();
     const auto found = attempt([&] { return motion_.step(load_, dt); });
     if (found.stuck) fail(found, dt);
-    u_ = motion_.displacement();
-    publish_instruments();
+    if (!found.still) moved_to(motion_.displacement());
+    // At rest they stay as they are, once the scheme too is that of the step before.
+    if (!(found.still && still_ && as_long)) publish_instruments();
+    still_ = found.still && found.second_order;
     return {.residual = found.residual,
             .error = found.error,
             .back_solves = found.back_solves,
@@ -148,6 +151,18 @@ class MotionBackend final : public LawBackend {
     if (pristine_) pristine_->set_velocity(velocity);
   }
 
+  Vec3 do_held_beside() const override {
+    Vec3 sum = Vec3::Zero();
+    const std::vector<double>& viscous = motion_.viscous_forces();
+    for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
+      if (problem().dofs()[i] != kNone) continue;
+      const auto axis = static_cast<Eigen::Index>(i % 3);
+      sum[axis] -= mass_[i / 3] * problem().scene().gravity[axis];
+      if (!viscous.empty()) sum[axis] += viscous[i];
+    }
+    return sum;
+  }
+
   void do_read_reactions(std::span<double> reactions) const override {
     const auto gripped = problem().gripped_dofs();
     const Eigen::VectorXd& forces = motion_.grip_forces(problem().scene().dynamics->felt_inertia);
@@ -160,6 +175,7 @@ class MotionBackend final : public LawBackend {
   solver::FiniteMotionPast past_, past_of_intact_;  // before what the device does
   double dt_ = 0;                                   // of the last step
   bool intact_known_ = false;                       // the intact body has made it too
+  bool still_ = false;                              // nothing moved in it
 };
 
 }  // namespace

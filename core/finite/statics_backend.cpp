@@ -61,7 +61,7 @@ class StaticsBackend final : public LawBackend {
     report.error = found.error;
     report.back_solves = found.back_solves;
     report.unfinished = found.unfinished;
-    u_ = statics_.displacement();  // after a refusal the last state at rest
+    moved_to(statics_.displacement());  // after a refusal the last state at rest
     const Spent spent = spent_;
     if (!found.unfinished) spent_ = {};
     if (!found.at_rest && !found.unfinished) fail(found.share, spent, "the body");

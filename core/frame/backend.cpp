@@ -75,6 +75,11 @@ void Backend::set_velocity(std::span<const double> velocity) {
   do_set_velocity(velocity);
 }
 
+Vec3 Backend::held_beside() const {
+  require(problem_->moves(), "what supports hold beside internal forces needs a scene in motion");
+  return do_held_beside();
+}
+
 void Backend::require_motion(std::span<const double> velocity) const {
   require(problem_->moves(), "velocities need a scene in motion");
   require(velocity.size() == 3 * problem_->mesh().nodes.size(),

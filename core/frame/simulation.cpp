@@ -511,6 +511,7 @@ Vec3 Simulation::support_reaction() const {
   const auto destroyed = backend_->destroyed();
   const auto split = criterion_->corners();
   Vec3 sum = -loads_->force_on_supports();
+  if (problem_->moves()) sum += backend_->held_beside();
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     const auto& tet = problem_->mesh().tets[e];
     const auto& corners = split.empty() ? tet : split[static_cast<std::size_t>(e)];

@@ -58,12 +58,23 @@ double FiniteMinimiser::stress_error(const FiniteTrial& trial) const {
              : trial.change / std::max(trial.largest, scale_.stress);
 }
 
+double FiniteMinimiser::energy_rounding(const FinitePoint& at) const {
+  return scale_.energy_rounding + kEnergyRounding * std::abs(at.potential);
+}
+
+/// By the potential, and where rounding hides what it says by the residual.
+bool FiniteMinimiser::is_better(const FinitePoint& point, const FinitePoint& than) const {
+  const double rounding = energy_rounding(than);
+  if (point.potential < than.potential - rounding) return true;
+  return point.potential <= than.potential + rounding && point.residual < than.residual;
+}
+
 /// Halves the step from the whole of it until the potential falls; false: it does not.
 bool FiniteMinimiser::line_search(FiniteSteps& steps, bool with_stress, const FinitePoint& from,
                                   FiniteTrial& trial) const {
   if (!(trial.slope < 0)) return false;
   const double slope = trial.slope;
-  const double rounding = scale_.energy_rounding + kEnergyRounding * std::abs(from.potential);
+  const double rounding = energy_rounding(from);
   for (double part = 1; part > kLeastPart; part /= 2) {
     if (part < 1) trial = steps.part(part, with_stress);
     if (trial.at.potential <= from.potential + kArmijo * part * slope + rounding) return true;
@@ -118,8 +129,16 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
       good_before =
           std::exchange(good, result.error <= stop.tolerance && result.residual <= stop.residual);
       if (good && (good_before || result.back_solves <= kFewBackSolves)) {
-        result.at_rest = true;
-        return result;
+        const bool better = is_better(trial.at, at);
+        // A base that overshoots so small a step is not to leave the body where it drifts.
+        if (!stop.takes_last || better || good_before) {
+          result.at_rest = true;
+          if (stop.takes_last && better) {
+            steps.take();
+            result.residual = residual(trial.at);
+          }
+          return result;
+        }
       }
     }
     if (!line_search(steps, near, at, trial)) {

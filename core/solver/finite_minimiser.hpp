@@ -26,6 +26,9 @@ class FiniteMinimiser {
   struct Stop {
     double tolerance;  ///< of stress; 0: only the residual counts
     double residual;
+    /// The last step tried, which has shown the state good enough, is taken where it is better yet:
+    /// then steps at rest come ever nearer to it.
+    bool takes_last = false;
   };
   struct Result {
     bool at_rest = false;
@@ -46,6 +49,8 @@ class FiniteMinimiser {
 
  private:
   [[nodiscard]] double residual(const FinitePoint& at) const;
+  [[nodiscard]] double energy_rounding(const FinitePoint& at) const;
+  [[nodiscard]] bool is_better(const FinitePoint& point, const FinitePoint& than) const;
   [[nodiscard]] double stress_error(const FiniteTrial& trial) const;
   [[nodiscard]] bool line_search(FiniteSteps& steps, bool with_stress, const FinitePoint& from,
                                  FiniteTrial& trial) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "material/linear.hpp"
 #include "solver/frame_cost.hpp"
 #include "solver/grip_stiffness.hpp"
 #include "solver/instrument_block.hpp"
@@ -20,10 +21,23 @@ constexpr int kMostParts = 64;  // of a step
 // Within which a base is taken, whatever its making may be thought to take: a later one is of a
 // state long past.
 constexpr double kFewestStepsOfABase = 2, kMostStepsOfABase = 12;
+// Back-solves that a step takes on a base which is still good (finite.md): the inertia of shorter
+// steps makes more of the tangent, so that fewer do.
+constexpr int kMostOnAGoodBase = 8, kMostOfShortSteps = 5;
+constexpr double kShortStep = 1.0 / 500;  // [s]
+// What of its way a step is left that its cap ended with too much energy.
+constexpr double kPartsOfAWay[] = {0.5, 0.25, 0.125, 0};
+// A step that would leave no more than this of the forces that act, times the tolerance of stress,
+// by ending where it began, does so: of soft bodies a hundredth of what the promise lets it be off.
+constexpr double kStill = 1e-3;
 
 /// Of the base: viscous forces make its tangent so many times as stiff, and the whole is divided.
 fem::Inertia inertia_of_base(const FiniteTarget& target) {
   return {target.inertia.factor / (1 + target.viscous), target.inertia.mass};
+}
+
+bool all_linear(const fem::HyperelasticBody& body) {
+  return std::ranges::all_of(body.law_of_volume, [](const Law* law) { return law == &kLinear; });
 }
 
 }  // namespace
@@ -40,6 +54,7 @@ FiniteMotion::FiniteMotion(const fem::HyperelasticBody& body, std::span<const do
       u_(body.problem.dofs().size(), 0.0),
       v_(u_.size(), 0.0),
       viscosity_(moving_.body()),
+      linear_(all_linear(body)),
       renewal_(options.rest, options.inverse) {
   for (std::size_t i = 0; i < u_.size(); ++i) {
     const Index d = body.problem.dofs()[i];
@@ -75,6 +90,7 @@ void FiniteMotion::go_on_from(const FiniteMotionPast& past) {
   load_ = past.load;
   reaction_ = past.reaction;
   felt_ = past.felt;
+  viscous_ = past.viscous;
   broken_ = 0;
   sum_ = past.sum;
 }
@@ -104,6 +120,7 @@ void FiniteMotion::destroyed(std::span<const Index>) {
   const double before = state_.energy;
   potential_.evaluate(potential_.target({}), false, state_);
   broken_ += before - state_.energy;
+  if (!viscous_.empty()) viscosity_.forces(u_, options_.viscosity * rate_, viscous_);
   euler_ = kEulerSteps;
 }
 
@@ -133,12 +150,66 @@ FiniteTarget FiniteMotion::target(const Load& load, const Scheme& by) {
     of.force[d] += mass_[d] * options_.gravity[static_cast<Eigen::Index>(i % 3)];
   }
   of.ahead = &ahead_;
-  if (options_.viscosity > 0) {
-    viscosity_.start(u_, by.now, u_before_, by.before);
-    of.viscosity = &viscosity_;
-    of.viscous = options_.viscosity * by.rate;
-  }
   return of;
+}
+
+void FiniteMotion::add_viscosity(const Scheme& by, FiniteTarget& target) {
+  if (options_.viscosity == 0 || target.viscosity) return;
+  viscosity_.start(u_, by.now, u_before_, by.before);
+  target.viscosity = &viscosity_;
+  target.viscous = options_.viscosity * by.rate;
+}
+
+/// Whether the step ends where it begins, as good as exactly: what a body at rest asks of a step.
+/// No pass over the elements tells, but for viscous forces while anything moves yet.
+bool FiniteMotion::is_still(const Scheme& by, FiniteTarget& target) {
+  if (potential_.grips(u_) != target.grips) return false;
+  const double least = std::max(kStill * options_.tolerance * std::max(state_.acting, scale_.force),
+                                scale_.force_rounding);
+  std::vector<double> viscous;
+  const auto holds = [&] {
+    double square = 0;
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      const Index d = potential_.problem().dofs()[i];
+      if (d == kNone || gripped_[d]) continue;
+      const double left = state_.f[i] - target.force[d] +
+                          target.inertia.of(d) * (u_[i] - ahead_[i]) +
+                          (viscous.empty() ? 0 : viscous[i]);
+      square += left * left;
+    }
+    return std::sqrt(square) <= least;
+  };
+  if (!holds()) return false;
+  // Without a velocity and a way there is no rate.
+  if (options_.viscosity == 0 || u_before_.empty() || u_before_ == u_) return true;
+  add_viscosity(by, target);
+  viscous.resize(u_.size());
+  viscosity_.forces(u_, target.viscous, viscous);
+  return holds();
+}
+
+FiniteMotionReport FiniteMotion::stay(const FiniteTarget& end, const Scheme& by, double dt) {
+  Report report;
+  report.still = true;
+  report.second_order = by.second_order;
+  report.balance.broken = std::exchange(broken_, 0.0);
+  report.balance.scheme = kinetic_energy();  // of what is as good as no velocity
+  sum_ += report.balance;
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const Index d = potential_.problem().dofs()[i];
+    if (d == kNone) continue;
+    load_[d] = end.force[d] - mass_[d] * options_.gravity[static_cast<Eigen::Index>(i % 3)];
+    felt_[d] = reaction_[d] = gripped_[d] ? state_.f[i] - end.force[d] : 0;
+  }
+  u_before_ = u_;
+  v_.assign(u_.size(), 0.0);
+  v_before_ = v_;
+  if (!viscous_.empty()) viscous_.assign(u_.size(), 0.0);
+  dt_before_ = dt;
+  rate_ = by.rate;
+  time_ += dt;
+  euler_ = std::max(0, euler_ - 1);
+  return report;
 }
 
 /// next_ <- where the step looks first: as the body goes, of what nothing holds with the forces on
@@ -156,10 +227,26 @@ bool FiniteMotion::begin(const FiniteTarget& target, double dt) {
   for (int i = 0; i < 2; ++i) {
     potential_.put_grips(target, next_.u);
     potential_.evaluate(target, false, next_);
-    if (std::isfinite(next_.potential)) return true;
+    const bool known = std::isfinite(next_.potential);
+    if (i == 1 || (known && !better_where_it_is(target))) return known;
     next_.u = u_;
   }
   return false;
+}
+
+/// Whether what a step minimises is less where it begins than at next_: of what creeps, velocities
+/// are mostly what the iterations left. No pass over the elements tells.
+bool FiniteMotion::better_where_it_is(const FiniteTarget& target) const {
+  if (potential_.grips(u_) != target.grips) return false;
+  double potential = state_.energy;  // no viscous potential, as good as without a way
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const Index d = potential_.problem().dofs()[i];
+    if (d == kNone) continue;
+    if (moving_.flying()[d]) return false;
+    const double from = u_[i] - ahead_[i];
+    potential += target.inertia.of(d) * from * from / 2 - target.force[d] * u_[i];
+  }
+  return potential < next_.potential;
 }
 
 bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
@@ -192,8 +279,8 @@ bool FiniteMotion::ensure_base(const fem::Inertia& inertia, Report& report) {
 /// next_ <- the step's end; false: neither the base nor new factors lead to it.
 bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
   const auto once = [&](int most) {
-    const auto result = minimiser_.minimise(target, base_.get(),
-                                            {options_.tolerance, options_.residual}, most, next_);
+    const auto result = minimiser_.minimise(
+        target, base_.get(), {options_.tolerance, options_.residual, true}, most, next_);
     report.back_solves += result.back_solves;
     report.residual = result.residual;
     report.error = result.error;
@@ -236,6 +323,7 @@ FiniteMotionReport FiniteMotion::in_parts(const Load& load, double dt, const Rep
       const Report part = one_step(i < parts ? on_the_way : load, dt / parts);
       all.back_solves += part.back_solves;
       all.factors += part.factors;
+      all.bases += part.bases;
       all.stuck = part.stuck;
       all.capped = all.capped || part.capped;
       all.second_order = part.second_order;
@@ -253,12 +341,17 @@ FiniteMotionReport FiniteMotion::in_parts(const Load& load, double dt, const Rep
 
 FiniteMotionReport FiniteMotion::one_step(const Load& load, double dt) {
   Report report;
-  if (renewal_.base_asked() && --until_taken_ <= 0) {
-    if (auto base = renewal_.take_base()) base_ = std::move(base);
-  }
   const Scheme by = scheme(dt);
   report.second_order = by.second_order;
-  const FiniteTarget end = target(load, by);
+  FiniteTarget end = target(load, by);
+  if (is_still(by, end)) return stay(end, by, dt);
+  if (renewal_.base_asked() && --until_taken_ <= 0) {
+    if (auto base = renewal_.take_base()) {
+      base_ = std::move(base);
+      ++report.bases;
+    }
+  }
+  add_viscosity(by, end);
   const fem::Inertia inertia = inertia_of_base(end);
   FiniteScale scale = scale_;
   scale.force = std::max(scale.force, state_.acting);
@@ -280,26 +373,40 @@ FiniteMotionReport FiniteMotion::one_step(const Load& load, double dt) {
   return report;
 }
 
+std::vector<double> FiniteMotion::velocity_of(const FiniteState& state, const Scheme& by) const {
+  std::vector<double> v(u_.size());
+  for (std::size_t i = 0; i < u_.size(); ++i) v[i] = by.rate * (state.u[i] - by.u_from[i]);
+  return v;
+}
+
 /// The step's end is the state.
 void FiniteMotion::take(const FiniteTarget& end, const Scheme& by, double dt, Report& report) {
-  std::vector<double> v(u_.size());
-  for (std::size_t i = 0; i < u_.size(); ++i) v[i] = by.rate * (next_.u[i] - by.u_from[i]);
+  std::vector<double> v = velocity_of(next_, by);
   report.balance = balance(end, by, v);
+  if (report.capped) stay_within(end, by, v, report);
+  sum_ += report.balance;
+  broken_ = 0;
+  std::swap(load_, at_end_.load);
+  std::swap(reaction_, at_end_.reaction);
+  std::swap(felt_, at_end_.felt);
   std::swap(state_, next_);
   u_before_ = std::exchange(u_, state_.u);
   v_before_ = std::exchange(v_, std::move(v));
+  viscous_ = state_.viscous;
   dt_before_ = dt;
   rate_ = by.rate;
   time_ += dt;
 }
 
-/// Of the step from state_ to next_, v its velocities; keeps what the next one's begins with. The
-/// equation of the step's end, m a + damping m v + f = load + reaction + residual, times the way.
+/// Of the step from state_ to next_, v its velocities; at_end_ has what the next one begins with.
+/// The equation of the step's end, m a + damping m v + f = load + reaction + residual, times the
+/// way.
 FiniteMotionBalance FiniteMotion::balance(const FiniteTarget& end, const Scheme& by,
                                           std::span<const double> v) {
   FiniteMotionBalance of;
-  of.broken = std::exchange(broken_, 0.0);
+  of.broken = broken_;
   of.scheme = state_.energy - next_.energy;
+  at_end_ = {load_, reaction_, felt_};
   for (std::size_t i = 0; i < u_.size(); ++i) {
     const Index d = potential_.problem().dofs()[i];
     if (d == kNone) continue;
@@ -317,12 +424,72 @@ FiniteMotionBalance FiniteMotion::balance(const FiniteTarget& end, const Scheme&
     of.scheme += inertia * way - mass / 2 * (v[i] * v[i] - v_[i] * v_[i]) + next_.f[i] * way +
                  (load_[d] - load + reaction_[d] - reaction) / 2 * way;
     if (!gripped_[d]) of.unsolved -= left * way;
-    load_[d] = load;
-    reaction_[d] = reaction;
-    felt_[d] = gripped_[d] ? left - inertia : 0;
+    at_end_.load[d] = load;
+    at_end_.reaction[d] = reaction;
+    at_end_.felt[d] = gripped_[d] ? left - inertia : 0;
   }
-  sum_ += of;
   return of;
+}
+
+/// What slowing the body gives back of the energy that a step has won beyond work; v is slowed.
+/// Pieces that fly keep their momentum.
+double FiniteMotion::won_back(const FiniteMotionBalance& of, std::vector<double>& v) const {
+  const double won = -(of.damped + of.scheme + of.unsolved);
+  if (!(won > 0)) return 0;
+  const auto slows = [&](std::size_t i) {
+    const Index d = potential_.problem().dofs()[i];
+    return d != kNone && !gripped_[d] && !moving_.flying()[d];
+  };
+  double there = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (slows(i)) there += node_mass_[i / 3] / 2 * v[i] * v[i];
+  }
+  const double taken = std::min(won, there);
+  const double share = taken > 0 ? std::sqrt(1 - taken / there) : 1;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (slows(i)) v[i] *= share;
+  }
+  return taken;
+}
+
+/// The residual that a cap leaves pushes the body, and such steps one after the other pump it up.
+/// So none ends with more energy than it began with and got by work: the body is slowed, or, where
+/// its strain energy alone is more, goes only part of the way. Backward Euler, which is next, asks
+/// no more of the past than place and velocity.
+void FiniteMotion::stay_within(const FiniteTarget& end, const Scheme& by, std::vector<double>& v,
+                               Report& report) {
+  const auto keeps = [&] {
+    const double taken = won_back(report.balance, v);
+    report.balance.unsolved += taken;
+    const FiniteMotionBalance& of = report.balance;
+    return of.damped + of.scheme + of.unsolved >= -1e-12 * (state_.energy + kinetic_energy());
+  };
+  if (keeps()) return;
+  const std::vector<double> whole = next_.u;
+  const auto go = [&](double part) {
+    next_.u = whole;
+    for (std::size_t i = 0; part < 1 && i < u_.size(); ++i) {
+      const Index d = potential_.problem().dofs()[i];
+      if (d == kNone || gripped_[d] || moving_.flying()[d]) continue;
+      next_.u[i] = u_[i] + part * (whole[i] - u_[i]);
+    }
+    potential_.evaluate(end, false, next_);
+    if (!std::isfinite(next_.potential)) return false;
+    v = velocity_of(next_, by);
+    report.balance = balance(end, by, v);
+    return keeps();
+  };
+  for (const double part : kPartsOfAWay) {
+    if (go(part)) return;
+  }
+  go(1);  // a hand's jump: none of them is better
+}
+
+int FiniteMotion::most_on_a_good_base(double dt) const {
+  int most = options_.renew_after.value_or(dt < kShortStep ? kMostOfShortSteps : kMostOnAGoodBase);
+  // Below the cap, or a base that no longer does would never be renewed.
+  if (options_.most_iterations > 0) most = std::min(most, options_.most_iterations - 1);
+  return most;
 }
 
 int FiniteMotion::steps_of_a_base(double dt) {
@@ -333,8 +500,9 @@ int FiniteMotion::steps_of_a_base(double dt) {
 }
 
 void FiniteMotion::renew_if_due(const fem::Inertia& inertia, double dt, Report& report) {
-  const bool hard =
-      report.back_solves > options_.renew_after || report.rank > options_.most_rank / 2;
+  // The linear law's tangent is the same in every state: one base serves for ever.
+  const bool worn = !linear_ && report.back_solves > most_on_a_good_base(dt);
+  const bool hard = worn || report.rank > options_.most_rank / 2;
   if (!hard || renewal_.base_asked() || !needs_base()) return;
   until_taken_ = steps_of_a_base(dt);
   if (until_taken_ == 0) {

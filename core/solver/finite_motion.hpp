@@ -29,7 +29,9 @@ struct FiniteMotionOptions {
   int most_factors = 12;        ///< of one step, made where the base stalls; not under a cap
   bool turn = true;             ///< the base by the nodes' rotations
   Index most_rank = 300;        ///< unknowns that what has left touches, before a new base is made
-  int renew_after = 8;   ///< back-solves of a step after which the base is renewed beside the steps
+  /// Back-solves of a step after which the base is renewed beside the steps; none: 8, of steps
+  /// under 1/500 s 5. A step that reaches its cap renews it in any case.
+  std::optional<int> renew_after = {};
   bool inverse = false;  ///< bases keep their dense inverse
   /// Steps after which a renewed base is taken; 0: it is made at once; none: as many as its making
   /// may be thought to take, by sizes and the length of a step alone.
@@ -60,10 +62,12 @@ struct FiniteMotionBalance {
 /// `stuck`: then the state is still the one before it.
 struct FiniteMotionReport {
   bool capped = false, stuck = false;
+  bool still = false;         ///< nothing moved, and nothing was to be found: the state stays
   int parts = 1;              ///< into which it was split, since no other way led to its end
   bool second_order = false;  ///< it was a step of BDF2
   double residual = 0, error = 0, contraction = 0;  ///< as in FiniteStaticsReport
   int back_solves = 0, factors = 0;
+  int bases = 0;  ///< made beside the steps, that it took
   Index rank = 0;
   FiniteMotionBalance balance;
 };
@@ -75,6 +79,7 @@ struct FiniteMotionPast {
   int euler = 1;                                 ///< steps of backward Euler that are still to come
   double time = 0;                               ///< [s]
   Eigen::VectorXd load, reaction, felt;          ///< per unknown [N]
+  std::vector<double> viscous;                   ///< (3 * nodes) forces [N]; empty: none
   FiniteMotionBalance sum;
   double energy = 0;  ///< strain energy [N mm]
 };
@@ -103,6 +108,8 @@ class FiniteMotion {
   [[nodiscard]] const Eigen::VectorXd& grip_forces(bool with_inertia) const {
     return with_inertia ? reaction_ : felt_;
   }
+  /// (3 * nodes) [N], of what is live, at the rates of the last step; empty: there are none.
+  [[nodiscard]] const std::vector<double>& viscous_forces() const { return viscous_; }
   /// Lower L: L L^T is the compliance [mm/N] of the grips in the last step, anchors included;
   /// empty: there is no base to find it by.
   [[nodiscard]] Eigen::MatrixXd grip_compliance(bool with_inertia);
@@ -116,8 +123,8 @@ class FiniteMotion {
   void destroyed(std::span<const Index> elements);
 
   [[nodiscard]] FiniteMotionPast past() const {
-    return {u_,    v_,    u_before_, v_before_, dt_before_, euler_,
-            time_, load_, reaction_, felt_,     sum(),      state_.energy};
+    return {u_,    v_,        u_before_, v_before_, dt_before_, euler_,       time_,
+            load_, reaction_, felt_,     viscous_,  sum(),      state_.energy};
   }
   /// Goes on from there, of the body as it is now.
   void go_on_from(const FiniteMotionPast& past);
@@ -142,7 +149,11 @@ class FiniteMotion {
   };
   [[nodiscard]] Scheme scheme(double dt) const;
   [[nodiscard]] FiniteTarget target(const Load& load, const Scheme& by);
+  void add_viscosity(const Scheme& by, FiniteTarget& target);
+  [[nodiscard]] bool is_still(const Scheme& by, FiniteTarget& target);
+  [[nodiscard]] Report stay(const FiniteTarget& end, const Scheme& by, double dt);
   [[nodiscard]] bool begin(const FiniteTarget& target, double dt);
+  [[nodiscard]] bool better_where_it_is(const FiniteTarget& target) const;
   /// False: the device goes by tangents of its own.
   [[nodiscard]] bool needs_base() const;
   [[nodiscard]] const fem::TangentPattern& pattern();
@@ -151,9 +162,14 @@ class FiniteMotion {
                            Report& report);
   [[nodiscard]] bool minimise(const FiniteTarget& target, Report& report);
   void take(const FiniteTarget& end, const Scheme& by, double dt, Report& report);
+  [[nodiscard]] std::vector<double> velocity_of(const FiniteState& state, const Scheme& by) const;
   [[nodiscard]] FiniteMotionBalance balance(const FiniteTarget& end, const Scheme& by,
                                             std::span<const double> v);
+  [[nodiscard]] double won_back(const FiniteMotionBalance& of, std::vector<double>& v) const;
+  void stay_within(const FiniteTarget& end, const Scheme& by, std::vector<double>& v,
+                   Report& report);
   void renew_if_due(const fem::Inertia& inertia, double dt, Report& report);
+  [[nodiscard]] int most_on_a_good_base(double dt) const;
   [[nodiscard]] int steps_of_a_base(double dt);
 
   FiniteMotionOptions options_;
@@ -171,10 +187,15 @@ class FiniteMotion {
   std::vector<std::uint8_t> gripped_;  // per unknown
   Eigen::VectorXd load_, reaction_;    // at the state, without gravity; of grips, else 0
   Eigen::VectorXd felt_;               // reaction_ without inertia
-  double broken_ = 0;                  // strain energy that left since the last step
+  struct {
+    Eigen::VectorXd load, reaction, felt;
+  } at_end_;  // the same of the step's end that balance() has seen last
+  std::vector<double> viscous_;
+  double broken_ = 0;  // strain energy that left since the last step
   FiniteMotionBalance sum_;
   std::vector<double> ahead_;
   fem::Viscosity viscosity_;
+  bool linear_;  // by law "linear" alone
   FiniteState state_, next_;
   std::unique_ptr<FiniteBase> base_;
   int until_taken_ = 0;    // steps, of the base that has been asked for

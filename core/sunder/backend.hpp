@@ -190,6 +190,10 @@ class Backend {
   /// In motion: goes on from these; what supports hold is left at 0.
   void set_velocity(std::span<const double> velocity);
 
+  /// In motion: what supports hold beside internal forces, of the last step's end: viscous forces
+  /// and the weight of their own nodes [N].
+  [[nodiscard]] Vec3 held_beside() const;
+
   /// Stress a_e D B u of every element from the last solve, and the summary over yield.
   StressSummary stress();
 
@@ -245,6 +249,7 @@ class Backend {
   [[nodiscard]] virtual MotionState do_motion() const { return {}; }
   virtual void do_read_velocity(std::span<double> velocity) const;
   virtual void do_set_velocity(std::span<const double> velocity);
+  [[nodiscard]] virtual Vec3 do_held_beside() const { return Vec3::Zero(); }
   virtual StressSummary do_stress() = 0;
   virtual Deformation do_deformation() = 0;
   virtual void do_cut_off(std::span<const Index> elements) = 0;

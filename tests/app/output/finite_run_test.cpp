@@ -72,7 +72,7 @@ TEST(FiniteRun, ALoadBeyondAnyEquilibriumEndsWithFive) {
   EXPECT_EQ(read_csv(folder / "out" / "frames.csv").size(), 2u);  // the step before stays
 }
 
-TEST(FiniteRun, VulkanAndOtherRoutesAreRefusedWithFour) {
+TEST(FiniteRun, OtherRoutesAreRefusedWithFour) {
   const TempFolder folder;
   const auto refused = [&](std::vector<std::string> how, const std::string& what) {
     const Outcome run = run_program(peel(folder, std::move(how)));
@@ -81,9 +81,6 @@ TEST(FiniteRun, VulkanAndOtherRoutesAreRefusedWithFour) {
   };
   refused({"--backend", "cpu", "--route", "condensed"}, "route condensed");
   refused({"--backend", "cpu", "--route", "cg"}, "route cg");
-#ifdef SUNDER_GPU
-  refused({"--backend", "vulkan"}, "use backend cpu");
-#endif
 }
 
 }  // namespace

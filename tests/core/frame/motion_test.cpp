@@ -209,6 +209,30 @@ TEST(Motion, AGripFeelsInertiaByChoice) {
   EXPECT_NEAR(force(false), whole - held, 0.02 * whole);
 }
 
+// What supports hold of a body that swings, its viscous forces included: with the weight of all it
+// is what changes the momentum, as the scheme has it (backward Euler, then BDF2).
+TEST(Motion, SupportsHoldWhatDampingAsks) {
+  for (const double viscosity : {0.0, 0.02}) {
+    Scene scene = free_bar();
+    scene.supports.push_back({kLeft, Axes{7}});
+    scene.gravity = Vec3(0, -kGravity, 0);
+    scene.dynamics->stiffness_damping = viscosity;
+    scene.solver.tolerance = 1e-10;
+    const auto simulation = moving(scene);
+    const Vec3 weight = 8 * 2 * 2 * kDensity * scene.gravity;
+    std::vector<Vec3> momentum{Vec3::Zero()};
+    for (int i = 0; i < 6; ++i) {
+      const StepReport report = simulation->step();
+      momentum.push_back(report.motion->momentum);
+      const std::size_t n = momentum.size() - 1;
+      const Vec3 from = n == 1 ? momentum[0] : Vec3((4 * momentum[n - 1] - momentum[n - 2]) / 3);
+      const Vec3 change = (n == 1 ? 1 : 1.5) / 0.005 * (momentum[n] - from);
+      EXPECT_LE((weight + simulation->support_reaction() - change).norm(), 1e-8 * weight.norm())
+          << viscosity << ", step " << n;
+    }
+  }
+}
+
 // Small motions are the same by the linear law and by one of finite deformation; the linear body
 // needs one base.
 TEST(Motion, SmallSwingsAreThoseOfTheLinearLaw) {
