@@ -93,10 +93,15 @@ void LooseSearch::search(const Mesh& mesh, std::span<const std::uint8_t> destroy
 }
 
 LooseParts find_loose_parts(const Problem& problem, std::span<const std::uint8_t> destroyed) {
+  return find_loose_parts(problem, destroyed, problem.mesh());
+}
+
+LooseParts find_loose_parts(const Problem& problem, std::span<const std::uint8_t> destroyed,
+                            const Mesh& body) {
   LooseSearch search(problem);
-  search.look(destroyed);
+  search.look(destroyed, body.tets, body.node_count());
   LooseParts parts;
-  for (Index n = 0; n < problem.node_count(); ++n) {
+  for (Index n = 0; n < body.node_count(); ++n) {
     if (search.isolated(n)) parts.isolated_nodes.push_back(n);
   }
   parts.pieces.resize(search.pieces());

@@ -506,19 +506,27 @@ void Simulation::read(Reactions& r) const {
 }
 
 Vec3 Simulation::support_reaction() const {
-  std::vector<double> u(3 * problem_->mesh().nodes.size());
-  backend_->read_displacement(u);
+  const std::vector<Vec3> displacement = this->displacement();
+  std::vector<double> u(3 * problem_->mesh().nodes.size());  // of the element in work
   const auto destroyed = backend_->destroyed();
+  const auto split = criterion_->corners();
   Vec3 sum = -loads_->force_on_supports();
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     const auto& tet = problem_->mesh().tets[e];
+    const auto& corners = split.empty() ? tet : split[static_cast<std::size_t>(e)];
     const auto held = [&](int a, int axis) { return problem_->dof(tet[a], axis) == kNone; };
     Eigen::Matrix<double, 3, 4> forces;
     bool known = false;
     for (int a = 0; a < 4; ++a) {
       for (int axis = 0; axis < 3; ++axis) {
         if (!held(a, axis)) continue;
-        if (!known) forces = fem::corner_forces(*problem_, e, u, destroyed[e] != 0);
+        if (!known) {
+          for (std::size_t c = 0; c < 4; ++c) {
+            std::copy_n(displacement[static_cast<std::size_t>(corners[c])].data(), 3,
+                        u.data() + 3 * static_cast<std::size_t>(tet[c]));
+          }
+          forces = fem::corner_forces(*problem_, e, u, destroyed[e] != 0);
+        }
         known = true;
         sum[axis] += forces(axis, a);
       }

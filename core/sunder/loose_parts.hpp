@@ -21,5 +21,9 @@ struct LooseParts {
 /// mode. `destroyed`: shape (elements).
 [[nodiscard]] LooseParts find_loose_parts(const Problem& problem,
                                           std::span<const std::uint8_t> destroyed);
+/// Of a body that split cracks have opened (Simulation::mesh()).
+[[nodiscard]] LooseParts find_loose_parts(const Problem& problem,
+                                          std::span<const std::uint8_t> destroyed,
+                                          const Mesh& body);
 
 }  // namespace sunder

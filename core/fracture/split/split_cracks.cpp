@@ -23,6 +23,12 @@ Index most_nodes(const Problem& problem) {
   return problem.node_count() + most;
 }
 
+/// Length of a crack up to the front at a tip, which its path may have passed.
+double length_to(const Crack& crack, std::size_t tip) {
+  const Vec2& end = orientation(crack, tip) < 0 ? crack.path.front() : crack.path.back();
+  return crack.length - (end - crack.tips[tip].position).dot(crack.tips[tip].direction);
+}
+
 }  // namespace
 
 SplitCracks::SplitCracks(const Problem& problem)
@@ -120,6 +126,8 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
     const double yield = problem_.yield(e);
     return yield > 0 && reach(growth.terms.k, yield, growth.theta) >= length;
   };
+  const CrackTip before = crack.tips[tip];
+  const double measured_at = length_to(crack, tip);
   const SplitStep step =
       front_.advance(crack, split, tip, growth.direction, length, state.destroyed, parts);
   crack.tips[tip].ended = step.through;
@@ -131,6 +139,9 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   row.crack = crack.id;
   row.sif = growth.terms;
   row.sif->reach = step.advance;
+  row.sif->a = measured_at;
+  row.sif->at = before.position;
+  row.sif->d = before.direction;
   decision.elements.push_back(row);
   exclude(split, decision);
 }
