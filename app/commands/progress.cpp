@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <utility>
 
 #include "app/output/text.hpp"
 
@@ -16,26 +17,29 @@ double seconds_between(auto a, auto b) { return std::chrono::duration<double>(b 
 
 }  // namespace
 
-Progress::Progress(int steps, bool shown)
-    : steps_(steps), shown_(shown), terminal_(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(int steps, bool shown, std::string counts)
+    : steps_(steps),
+      counts_(std::move(counts)),
+      shown_(shown),
+      terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() { finish(); }
 
-std::string Progress::line(int steps_done, int destroyed, double seconds) const {
+std::string Progress::line(int steps_done, int broken, double seconds) const {
   std::string text = "step " + std::to_string(steps_done) + "/" + std::to_string(steps_) + ", " +
-                     std::to_string(destroyed) + " destroyed";
+                     std::to_string(broken) + " " + counts_;
   if (steps_done == 0 || !(seconds > 0)) return text;
   const double rate = steps_done / seconds;
   return text + ", " + rounded(rate, 3) + " steps/s, " + rounded((steps_ - steps_done) / rate, 2) +
          " s left";
 }
 
-void Progress::update(int steps_done, int destroyed) {
+void Progress::update(int steps_done, int broken) {
   if (!shown_) return;
   const auto now = Clock::now();
   if (seconds_between(last_, now) < (terminal_ ? kTerminalSeconds : kPlainSeconds)) return;
   last_ = now;
-  const std::string text = line(steps_done, destroyed, seconds_between(start_, now));
+  const std::string text = line(steps_done, broken, seconds_between(start_, now));
   // "\033[K" clears what a longer line before left behind.
   std::fprintf(stderr, terminal_ ? "\r%s\033[K" : "%s\n", text.c_str());
   std::fflush(stderr);

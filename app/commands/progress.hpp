@@ -10,20 +10,21 @@ namespace sunder::app {
 
 class Progress {
  public:
-  /// `shown` false: silent.
-  Progress(int steps, bool shown);
+  /// `shown` false: silent. `counts`: what it says of the number beside the step, "destroyed".
+  Progress(int steps, bool shown, std::string counts);
   ~Progress();
 
   /// After a step, and within one after each event (then `steps_done` has not grown).
-  void update(int steps_done, int destroyed);
+  void update(int steps_done, int broken);
   /// Ends the line.
   void finish();
 
  private:
   using Clock = std::chrono::steady_clock;
-  [[nodiscard]] std::string line(int steps_done, int destroyed, double seconds) const;
+  [[nodiscard]] std::string line(int steps_done, int broken, double seconds) const;
 
   int steps_;
+  std::string counts_;
   bool shown_, terminal_;
   bool open_ = false;  ///< a line on the terminal has no end yet
   Clock::time_point start_ = Clock::now(), last_ = start_;

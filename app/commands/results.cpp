@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "app/figure/film.hpp"
 #include "app/output/summary.hpp"
 #include "app/output/tables.hpp"
 #include "app/output/text.hpp"
@@ -19,7 +18,7 @@ std::string padded(int value, std::size_t width) {
 }  // namespace
 
 ResultWriter::ResultWriter(ResultFolder& folder, const Problem& problem, bool series)
-    : folder_(folder), problem_(problem), series_(series), painter_(problem) {}
+    : folder_(folder), problem_(problem), series_(series), painter_(problem), film_(problem) {}
 
 void ResultWriter::begin() {
   if (frames_) return;
@@ -40,28 +39,28 @@ void ResultWriter::write_state(const std::string& name, const State& state) {
   files_.push_back(name);
 }
 
+void ResultWriter::write_cracks(const std::string& name, const State& state) {
+  ResultFile file(folder_, name);
+  write_cracks_vtu(file, state);
+  file.commit();
+  files_.push_back(name);
+}
+
 void ResultWriter::step_done(const StepReport& report, const State& state,
                              const std::vector<TipState>& tips) {
   frames_->write(frames_row(report));
   frames_->flush();
   for (const TipState& tip : tips) tips_->write(tips_row(report.step, tip));
   tips_->flush();
-  add_to_film(report, state);
+  film_.step_done(report, state);
   if (!series_) return;
-  const std::string name = "result_" + padded(report.step, 4) + ".vtu";
+  const std::string number = padded(report.step, 4);
+  const std::string name = "result_" + number + ".vtu", of_cracks = "cracks_" + number + ".vtu";
   write_state(name, state);
   series_entries_.push_back({report.load_factor, name});
-}
-
-/// Of a body in motion the states that end each sixth of its time.
-void ResultWriter::add_to_film(const StepReport& report, const State& state) {
-  if (!problem_.moves()) return;
-  constexpr long long kPictures = 6;
-  const long long steps = problem_.scene().steps, before = kPictures * report.step / steps,
-                  now = kPictures * (report.step + 1) / steps;
-  if (now == before) return;
-  film_.push_back(state);
-  film_times_.push_back(report.motion->time);
+  if (!cracks_split(problem_.scene())) return;
+  write_cracks(of_cracks, state);
+  crack_entries_.push_back({report.load_factor, of_cracks});
 }
 
 void ResultWriter::snapshot(int wanted, const State& state) {
@@ -71,7 +70,7 @@ void ResultWriter::snapshot(int wanted, const State& state) {
   write(name + ".svg", svg);
   write(name + ".png", png);
   write_state(name + ".vtu", state);
-  snapshots_.push_back({wanted, state.destroyed_count, state.step, std::move(png)});
+  snapshots_.push_back({wanted, broken(state), state.step, std::move(png)});
 }
 
 void ResultWriter::finish(const RunRecord& run) {
@@ -85,13 +84,17 @@ void ResultWriter::finish(const RunRecord& run) {
   files_.push_back("tips.csv");
   write_state("result.vtu", run.last);
   if (series_) write("series.pvd", pvd(series_entries_));
+  if (cracks_split(problem_.scene())) {
+    write_cracks("cracks.vtu", run.last);
+    if (series_) write("cracks.pvd", pvd(crack_entries_));
+  }
   const std::string svg = painter_.svg(run.last);
   const std::string png = FigurePainter::png(svg);
   write("figure.svg", svg);
   write("figure.png", png);
   std::string film_png;
-  if (!film_.empty()) {
-    const std::string film = film_strip(painter_, problem_.scene().title, film_, film_times_);
+  if (const auto pictures = film_.pictures(); !pictures.empty()) {
+    const std::string film = film_strip(painter_, problem_.scene().title, pictures);
     film_png = FigurePainter::png(film);
     write("film.svg", film);
     write("film.png", film_png);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/figure/figure.hpp"
+#include "app/figure/film.hpp"
 #include "app/output/result_folder.hpp"
 #include "app/output/run_record.hpp"
 #include "app/output/vtu.hpp"
@@ -33,17 +34,16 @@ class ResultWriter {
  private:
   void write(const std::string& name, std::string_view text);
   void write_state(const std::string& name, const State& state);
-  void add_to_film(const StepReport& report, const State& state);
+  void write_cracks(const std::string& name, const State& state);
 
   ResultFolder& folder_;
   const Problem& problem_;
   bool series_;
   FigurePainter painter_;
   std::optional<ResultFile> frames_, tips_;
-  std::vector<SeriesEntry> series_entries_;
+  std::vector<SeriesEntry> series_entries_, crack_entries_;
   std::vector<SnapshotPicture> snapshots_;
-  std::vector<State> film_;         ///< of a body in motion
-  std::vector<double> film_times_;  ///< [s]
+  FilmReel film_;
   std::vector<std::string> files_;
 };
 

@@ -36,7 +36,7 @@ std::string of_steps(int step, const Problem& problem) {
 
 /// A picture to be taken within a step.
 struct Snapshot {
-  int wanted = 0;  ///< number of destroyed elements that was asked for
+  int wanted = 0;  ///< number of destroyed elements, or of splits, that was asked for
   State state;
 };
 
@@ -68,7 +68,8 @@ class Run {
         record_(problem_),
         simulation_(make_simulation(scene)),
         writer_(folder, problem_, arguments.series),
-        progress_(problem_.scene().steps, !quiet_),
+        progress_(problem_.scene().steps, !quiet_,
+                  cracks_split(problem_.scene()) ? "splits" : "destroyed"),
         wanted_(arguments.snapshots) {
     if (folder.warning()) record_.warnings.push_back(*folder.warning());
     of_setup_ = record_.warnings;
@@ -92,6 +93,7 @@ class Run {
   void note_rupture(std::span<const DestroyedElement> event);
   void put_aside();
   void write_snapshots();
+  [[nodiscard]] std::string no_snapshot(int wanted) const;
   void tell_stopped();
   int end();
   int end_without_computing();
@@ -240,7 +242,7 @@ void Run::step() {
   record_.steps.push_back(report);
   tell_stopped();
   writer_.step_done(report, record_.last, tips);
-  progress_.update(simulation_->steps_done(), report.destroyed);
+  progress_.update(simulation_->steps_done(), broken(record_.last));
 }
 
 /// Files appear once a signal ends the computing and no longer the set-up.
@@ -282,10 +284,20 @@ int Run::end_without_computing() {
     add_new(record_.warnings, aside_->warnings);
   }
   std::erase_if(taken_, [this](const Snapshot& snapshot) {
-    return snapshot.state.destroyed_count > record_.last.destroyed_count;
+    return broken(snapshot.state) > broken(record_.last);
   });
   record_.interrupted = !record_.failure;
   return end();
+}
+
+std::string Run::no_snapshot(int wanted) const {
+  const auto count = static_cast<long long>(record_.destroyed.size());
+  if (cracks_split(problem_.scene())) {
+    return "no snapshot at " + counted(wanted, "split") + ": there were only " +
+           std::to_string(count);
+  }
+  return "no snapshot at " + counted(wanted, "destroyed element") + ": only " +
+         std::to_string(count) + " were destroyed";
 }
 
 /// The result files and what is to be said; reads the record alone.
@@ -293,9 +305,7 @@ int Run::end() {
   progress_.finish();
   tell_stopped();
   write_snapshots();
-  for (const int count : wanted_)
-    add_new(record_.warnings, {"no snapshot at " + counted(count, "destroyed element") + ": only " +
-                               std::to_string(record_.destroyed.size()) + " were destroyed"});
+  for (const int count : wanted_) add_new(record_.warnings, {no_snapshot(count)});
   writer_.finish(record_);
   const bool signalled = interruption_.requested();
   writer_.folder().release();
@@ -323,9 +333,14 @@ void print_first_rupture(const RunRecord& run) {
     std::cout << "  no rupture\n";
     return;
   }
-  std::cout << "  first rupture: element " << first->element << " (" << to_string(first->cause)
-            << ") in step " << first->step << ", load factor " << rounded(first->load_factor, 4)
-            << "\n";
+  std::cout << "  first rupture: ";
+  if (first->element == kNone) {
+    std::cout << "crack " << first->crack;
+  } else {
+    std::cout << "element " << first->element;
+  }
+  std::cout << " (" << to_string(first->cause) << ") in step " << first->step << ", load factor "
+            << rounded(first->load_factor, 4) << "\n";
   if (!run.at_first_rupture) return;
   const Mesh& mesh = run.problem.mesh();
   Vec3 low = mesh.nodes.front(), high = low;
@@ -354,9 +369,13 @@ void Run::print_summary() const {
             << run.backend.update << ")\n  "
             << counted(static_cast<long long>(run.steps.size()), "step") << " in "
             << rounded(seconds_since(start_), 3)
-            << " s: " << counted(static_cast<long long>(run.destroyed.size()), "element")
-            << " destroyed in " << counted(run.event_count(), "event") << ", "
+            << " s: " << counted(run.destroyed_count(), "element") << " destroyed in "
+            << counted(run.event_count(), "event") << ", "
             << counted(static_cast<long long>(run.cracks.size()), "crack") << "\n";
+  if (const SplitMesh* split = run.last.split.get()) {
+    std::cout << "  " << rounded(crack_area(*split), 4) << " mm^2 split open, "
+              << counted(split->mesh.node_count() - problem.node_count(), "new node") << "\n";
+  }
   print_first_rupture(run);
   const StepReport last = run.last_report();
   std::cout << "  largest yield ratio left " << rounded(last.max_yield_ratio, 4) << ", residual "

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "app/figure/svg.hpp"
@@ -52,20 +53,29 @@ std::string ring(const Vec2& at) {
 
 }  // namespace
 
-Vec2 drawn_point(const Mesh& mesh, const BoardPlane& plane, const Pose& pose, const Crack& crack,
-                 const Vec2& point) {
+Vec2 drawn_point(const Problem& problem, const BoardPlane& plane, const Pose& pose,
+                 const State& state, const Crack& crack, const Vec2& point) {
+  const Mesh& mesh = mesh_of(problem, state);
   double nearest = std::numeric_limits<double>::infinity(), weights = 0;
   std::vector<std::pair<double, Vec2>> shifts;  // squared distance over h^2
-  for (const Index e : crack.elements) {
+  const auto add = [&](std::span<const Index> nodes) {
     Vec3 centroid = Vec3::Zero(), mean = Vec3::Zero();
-    for (const Index node : mesh.tets[e]) {
-      centroid += mesh.nodes[node] / 4;
-      mean += pose.shift[node] / 4;
+    for (const Index node : nodes) {
+      centroid += mesh.nodes[node] / static_cast<double>(nodes.size());
+      mean += pose.shift[node] / static_cast<double>(nodes.size());
     }
     const double distance =
         (plane.project(centroid) - point).squaredNorm() / (plane.edge_length * plane.edge_length);
     nearest = std::min(nearest, distance);
     shifts.emplace_back(distance, plane.project(mean));
+  };
+  for (const Index e : crack.elements) add(mesh.tets[e]);
+  if (state.split) {
+    for (const CrackFace& face : state.split->faces) {
+      if (face.crack != crack.id) continue;
+      add(face.left);
+      add(face.right);
+    }
   }
   Vec2 sum = Vec2::Zero();
   for (const auto& [distance, shift] : shifts) {
@@ -129,8 +139,10 @@ std::string undeformed_outline(const BoardPlane& plane, const Canvas& canvas) {
 }
 
 std::string held_edges(const Problem& problem, const BoardPlane& plane, const Pose& pose,
-                       const std::vector<BodyFace>& faces, const Canvas& canvas) {
-  const auto held = [&](Index node) {
+                       const State& state, const std::vector<BodyFace>& faces,
+                       const Canvas& canvas) {
+  const auto held = [&](Index at) {
+    const Index node = state.split ? state.split->in_file[at] : at;
     return problem.dof(node, 0) == kNone || problem.dof(node, 1) == kNone ||
            problem.dof(node, 2) == kNone;
   };
@@ -152,13 +164,13 @@ std::string held_edges(const Problem& problem, const BoardPlane& plane, const Po
   return out + "</g>\n";
 }
 
-std::string crack_paths(const Mesh& mesh, const BoardPlane& plane, const Pose& pose,
+std::string crack_paths(const Problem& problem, const BoardPlane& plane, const Pose& pose,
                         const State& state, const Canvas& canvas) {
   std::string out;
   for (const Crack& crack : state.cracks) {
     std::vector<Vec2> points;
     for (const Vec2& p : crack.path)
-      points.push_back(canvas.map(drawn_point(mesh, plane, pose, crack, p)));
+      points.push_back(canvas.map(drawn_point(problem, plane, pose, state, crack, p)));
     out += svg::polyline(points,
                          "fill=\"none\" stroke=\"#fff\" stroke-opacity=\"0.75\" stroke-width=\"4\" "
                          "stroke-linejoin=\"round\" stroke-linecap=\"round\"");
@@ -166,7 +178,8 @@ std::string crack_paths(const Mesh& mesh, const BoardPlane& plane, const Pose& p
                          "fill=\"none\" stroke=\"#0a84ff\" stroke-width=\"2\" "
                          "stroke-linejoin=\"round\" stroke-linecap=\"round\"");
     for (const CrackTip& tip : crack.tips)
-      out += svg::circle(canvas.map(drawn_point(mesh, plane, pose, crack, tip.position)), 3.6,
+      out += svg::circle(canvas.map(drawn_point(problem, plane, pose, state, crack, tip.position)),
+                         3.6,
                          tip.ended ? "fill=\"#0a84ff\" stroke=\"#fff\" stroke-width=\"1\""
                                    : "fill=\"#fff\" stroke=\"#0a84ff\" stroke-width=\"1.8\"");
   }
@@ -195,14 +208,26 @@ std::string color_bar(const StressScale& scale, const Canvas& canvas) {
   return out + svg::text({corner.x() - 22, corner.y() - 14}, scale.label, "fill=\"#333\"");
 }
 
+namespace {
+
+std::string what_happened(const Problem& problem, const State& state) {
+  const std::string destroyed = counted(state.destroyed_count, "element") + " of " +
+                                grouped(problem.tet_count()) + " destroyed";
+  if (!state.split) return destroyed + ".";
+  const double area = crack_area(*state.split);
+  const std::string open = counted(static_cast<long long>(state.cracks.size()), "crack") + ", " +
+                           rounded(area, 3) + " mm² split open";
+  return state.destroyed_count > 0 ? destroyed + "; " + open + "." : open + ".";
+}
+
+}  // namespace
+
 std::string caption(const Problem& problem, const Pose& pose, const State& state,
                     const Canvas& canvas) {
   const Scene& scene = problem.scene();
   const std::string what = "Step " + std::to_string(state.step + 1) + " of " +
                            std::to_string(scene.steps) + ", load factor " +
-                           rounded(state.load_factor, 4) + ": " +
-                           counted(state.destroyed_count, "element") + " of " +
-                           grouped(problem.tet_count()) + " destroyed.";
+                           rounded(state.load_factor, 4) + ": " + what_happened(problem, state);
   std::string legend = "Dashed: undeformed";
   if (shows_frame(problem)) legend += "; grey: unbreakable";
   if (!state.cracks.empty()) legend += "; blue line: crack path";
@@ -217,7 +242,11 @@ std::string caption(const Problem& problem, const Pose& pose, const State& state
   };
   add(what, "fill=\"#222\"");
   add(sentence_of_scale(pose), "fill=\"#222\"");
-  if (state.destroyed_count > 0)
+  if (state.split)
+    add(std::string("Lips, outlined and shaded, lie on the ideal path") +
+            (state.destroyed_count > 0 ? "; small picture: destroyed elements." : "."),
+        "fill=\"#666\"");
+  else if (state.destroyed_count > 0)
     add("A tear is a gap, its lips outlined and shaded; the small picture shows the destroyed "
         "elements.",
         "fill=\"#666\"");

@@ -29,18 +29,18 @@ struct Arrow {
 
 /// Edges of the surface whose both ends a support holds.
 [[nodiscard]] std::string held_edges(const Problem& problem, const BoardPlane& plane,
-                                     const Pose& pose, const std::vector<BodyFace>& faces,
-                                     const Canvas& canvas);
+                                     const Pose& pose, const State& state,
+                                     const std::vector<BodyFace>& faces, const Canvas& canvas);
 
 /// Where a point of a crack is drawn, in the plane [mm]. Crack records are undeformed: the point
-/// moves with the crack's elements around it, weighted by a bell of width h, so that an opened
-/// crack's path runs in the middle of its opening.
-[[nodiscard]] Vec2 drawn_point(const Mesh& mesh, const BoardPlane& plane, const Pose& pose,
-                               const Crack& crack, const Vec2& point);
+/// moves with the crack's destroyed elements and open faces around it, weighted by a bell of width
+/// h, so that an opened crack's path runs in the middle of its opening.
+[[nodiscard]] Vec2 drawn_point(const Problem& problem, const BoardPlane& plane, const Pose& pose,
+                               const State& state, const Crack& crack, const Vec2& point);
 
 /// Paths and tips of all cracks, deformed.
-[[nodiscard]] std::string crack_paths(const Mesh& mesh, const BoardPlane& plane, const Pose& pose,
-                                      const State& state, const Canvas& canvas);
+[[nodiscard]] std::string crack_paths(const Problem& problem, const BoardPlane& plane,
+                                      const Pose& pose, const State& state, const Canvas& canvas);
 
 [[nodiscard]] std::string color_bar(const StressScale& scale, const Canvas& canvas);
 

@@ -53,8 +53,10 @@ struct FigurePainter::Scenery {
 FigurePainter::Scenery FigurePainter::scenery(const State& state) const {
   Scenery scene;
   scene.pose = pose_of(problem_, plane_, state);
-  scene.faces = faces_->surface(state.destroyed);
-  scene.visible = visible_faces(problem_.mesh(), plane_, scene.pose, scene.faces);
+  const Mesh& mesh = mesh_of(problem_, state);
+  scene.faces = state.split ? FaceTable(mesh, *faces_).surface(state.destroyed)
+                            : faces_->surface(state.destroyed);
+  scene.visible = visible_faces(mesh, plane_, scene.pose, scene.faces);
   scene.scale = stress_scale(problem_, state);
   scene.arrows = instrument_arrows(plane_, scene.pose, state);
   scene.bounds.add(plane_.outline_min);
@@ -71,8 +73,8 @@ std::string FigurePainter::draw_body(const State& state, const Scenery& scene,
   std::string out = undeformed_outline(plane_, canvas);
   out += surface(scene.visible, element_colors(problem_, state, scene.scale), canvas,
                  plane_.edge_length);
-  out += held_edges(problem_, plane_, scene.pose, scene.faces, canvas);
-  out += crack_paths(problem_.mesh(), plane_, scene.pose, state, canvas);
+  out += held_edges(problem_, plane_, scene.pose, state, scene.faces, canvas);
+  out += crack_paths(problem_, plane_, scene.pose, state, canvas);
   out += draw(scene.arrows, canvas);
   return out + draw_tip_vectors(problem_, plane_, scene.pose, state, canvas);
 }
@@ -89,13 +91,13 @@ std::string FigurePainter::drawing(const State& state, const Canvas& canvas) con
 
 std::string FigurePainter::svg(const State& state) const {
   const Scenery scene = scenery(state);
-  const bool torn = state.destroyed_count > 0;
-  const Canvas canvas(scene.bounds, torn ? kTornCaption : kCaption);
+  const bool gone = state.destroyed_count > 0;
+  const Canvas canvas(scene.bounds, gone || state.split ? kTornCaption : kCaption);
   std::string out = canvas.open(problem_.scene().title);
   out += draw_body(state, scene, canvas);
   if (scene.scale) out += color_bar(*scene.scale, canvas);
   out += caption(problem_, scene.pose, state, canvas);
-  if (torn)
+  if (gone)
     out += destroyed_inset(problem_.mesh(), plane_, *faces_, state.destroyed, canvas.inset_corner(),
                            canvas.inset_size());
   out += tip_vector_key(canvas.corner() - Vec2(0, 16), problem_.scene().fracture.sif,

@@ -101,8 +101,9 @@ void follow_neighbours(Pose& pose, const Mesh& mesh, const std::vector<Hold>& ho
 }  // namespace
 
 Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state) {
-  const Mesh& mesh = problem.mesh();
-  const LooseParts parts = find_loose_parts(problem, state.destroyed);
+  const Mesh& mesh = mesh_of(problem, state);
+  const std::vector<Vec3>& rest = state.split ? state.split->drawn : mesh.nodes;
+  const LooseParts parts = find_loose_parts(problem, state.destroyed, mesh);
   const std::vector<Hold> holds = holds_of(mesh, parts);
   const double side = (plane.outline_max - plane.outline_min).maxCoeff();
   Pose pose;
@@ -115,7 +116,7 @@ Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state
     pose.shift = state.displacement;
     pose.position.resize(mesh.nodes.size());
     for (std::size_t node = 0; node < holds.size(); ++node)
-      pose.position[node] = mesh.nodes[node] + pose.shift[node];
+      pose.position[node] = rest[node] + pose.shift[node];
     return pose;
   }
   for (std::size_t node = 0; node < holds.size(); ++node)
@@ -124,7 +125,7 @@ Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state
   follow_neighbours(pose, mesh, holds, state.destroyed);
   pose.position.resize(mesh.nodes.size());
   for (std::size_t node = 0; node < holds.size(); ++node)
-    pose.position[node] = mesh.nodes[node] + pose.shift[node];
+    pose.position[node] = rest[node] + pose.shift[node];
   return pose;
 }
 

@@ -12,14 +12,15 @@
 namespace sunder::app {
 
 struct Pose {
-  std::vector<Vec3> position;  ///< per node, mm, displacement times `scale`
+  std::vector<Vec3> position;  ///< per node of mesh_of(), mm, displacement times `scale`
   std::vector<Vec3> shift;     ///< position minus undeformed
   double scale = 1;            ///< of displacements
   bool loose_piece = false;    ///< a piece is cut off: it is drawn as a rigid body near its place
 };
 
 /// Nodes that only destroyed elements hold follow their neighbours; their own displacement means
-/// nothing (their stiffness is alpha times the tissue's).
+/// nothing (their stiffness is alpha times the tissue's). Lips of split cracks lie on their ideal
+/// paths before they move.
 [[nodiscard]] Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state);
 
 }  // namespace sunder::app

@@ -71,6 +71,10 @@ FaceTable::FaceTable(const Mesh& mesh)
   }
 }
 
+FaceTable::FaceTable(const Mesh& split, const FaceTable& intact) : FaceTable(split) {
+  intact_ = intact.neighbour_;
+}
+
 std::vector<BodyFace> FaceTable::border(std::span<const std::uint8_t> destroyed,
                                         bool of_destroyed) const {
   std::vector<BodyFace> faces;
@@ -81,7 +85,7 @@ std::vector<BodyFace> FaceTable::border(std::span<const std::uint8_t> destroyed,
       if (other != kNone && (destroyed[other] != 0) == of_destroyed) continue;
       BodyFace face{{}, e};
       for (int i = 0; i < 3; ++i) face.nodes[i] = mesh_.tets[e][kFaces[f][i]];
-      face.lip = other != kNone;
+      face.lip = other != kNone || (!intact_.empty() && intact_[e][f] != kNone);
       faces.push_back(face);
     }
   }

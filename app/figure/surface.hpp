@@ -16,7 +16,7 @@ namespace sunder::app {
 struct BodyFace {
   std::array<Index, 3> nodes;
   Index tet;
-  bool lip = false;  ///< a destroyed element lay on its other side
+  bool lip = false;  ///< a destroyed element lay on its other side, or a crack has split it off
   std::array<bool, 3>
       rim{};  ///< edge from node i to node i + 1: a lip meets the body's surface there
 };
@@ -30,6 +30,8 @@ using Edge = std::array<Index, 2>;  ///< nodes, ascending
 class FaceTable {
  public:
   explicit FaceTable(const Mesh& mesh);
+  /// Of a body that split cracks have opened: faces that were joined in `intact` are lips.
+  FaceTable(const Mesh& split, const FaceTable& intact);
 
   /// Faces of live elements with nothing, or a destroyed element, on the other side.
   [[nodiscard]] std::vector<BodyFace> surface(std::span<const std::uint8_t> destroyed) const;
@@ -42,6 +44,7 @@ class FaceTable {
 
   const Mesh& mesh_;
   std::vector<std::array<Index, 4>> neighbour_;  ///< kNone: outside
+  std::vector<std::array<Index, 4>> intact_;     ///< before cracks split the body; empty: likewise
 };
 
 }  // namespace sunder::app

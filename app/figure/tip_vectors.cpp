@@ -85,7 +85,7 @@ std::string draw_tip_vectors(const Problem& problem, const BoardPlane& plane, co
   std::string out;
   for (const LastGrowth& growth : state.growths) {
     const Crack& crack = state.cracks[static_cast<std::size_t>(growth.crack)];
-    const Vec2 root = drawn_point(problem.mesh(), plane, pose, crack, growth.terms.at);
+    const Vec2 root = drawn_point(problem, plane, pose, state, crack, growth.terms.at);
     // The sum lies under its parts: without pressure it is K_a e_a.
     std::vector<TipVector> vectors = tip_vectors(growth.terms, drives);
     std::reverse(vectors.begin(), vectors.end());

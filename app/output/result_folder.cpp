@@ -27,7 +27,8 @@ constexpr const char* kLast[] = {"summary.json", "reproduce.json"};
 /// they do not depend on its chapters.
 bool is_result(const std::string& name) {
   static const std::regex ours(
-      "((summary|reproduce)\\.json|(events|frames|tips)\\.csv|series\\.pvd|(figure|film)\\.(svg|"
+      "((summary|reproduce)\\.json|(events|frames|tips)\\.csv|(series|cracks)\\.pvd|(figure|film)"
+      "\\.(svg|"
       "png)|"
       "index\\.html|reproduction\\.md|(result|cracks)(_[0-9]+)?\\.vtu|"
       "snapshot_[0-9]+\\.(svg|png|vtu))(\\.([0-9]+\\.)?partial)?");

@@ -11,6 +11,11 @@ namespace sunder::app {
 
 int RunRecord::event_count() const { return destroyed.empty() ? 0 : destroyed.back().event + 1; }
 
+int RunRecord::destroyed_count() const {
+  return static_cast<int>(
+      std::ranges::count(destroyed, false, [](const DestroyedElement& d) { return d.lives; }));
+}
+
 std::optional<Deformation> RunRecord::largest() const {
   std::optional<Deformation> all;
   const auto add = [&](const std::optional<Deformation>& one) {
@@ -29,7 +34,7 @@ std::optional<Deformation> RunRecord::largest() const {
 double RunRecord::volume_lost() const {
   double sum = 0;
   for (const DestroyedElement& d : destroyed) {
-    if (d.cause != Cause::preset) sum += problem.shape(d.element).volume;
+    if (!d.lives && d.cause != Cause::preset) sum += problem.shape(d.element).volume;
   }
   return sum;
 }
@@ -67,6 +72,17 @@ TimeStatistics statistics(const std::vector<StepReport>& steps, const Stage& sta
   std::vector<double> ms;
   for (const StepReport& step : steps) ms.push_back(step.times.*stage.time);
   return statistics(std::move(ms));
+}
+
+bool cracks_split(const Scene& scene) {
+  return scene.fracture.crack == CrackWay::split && row_of(scene.fracture.model).breaks;
+}
+
+std::string what_broke(const DestroyedElement& row) {
+  const std::string by = std::string(to_string(row.cause)) + ", ";
+  if (row.element != kNone) return by + "element " + std::to_string(row.element);
+  return by + "crack " + std::to_string(row.crack) +
+         (row.sif ? ", tip " + std::to_string(row.sif->tip) : std::string());
 }
 
 const char* name_of(FractureModel model) { return row_of(model).name; }

@@ -23,9 +23,9 @@ struct RunRecord {
   BackendInfo backend;
   std::optional<PreparationReport> preparation;  ///< of predicted fractures, where there was one
   std::vector<std::string> left_out;
-  std::vector<StepReport> steps;         ///< those that are done
-  std::optional<StepReport> unfinished;  ///< the step in which the run was interrupted
-  std::vector<DestroyedElement> destroyed;
+  std::vector<StepReport> steps;            ///< those that are done
+  std::optional<StepReport> unfinished;     ///< the step in which the run was interrupted
+  std::vector<DestroyedElement> destroyed;  ///< and what split, rows of events.csv
   std::vector<Crack> cracks;
   std::vector<std::string> warnings;
   State last;  ///< after the last of them
@@ -35,6 +35,8 @@ struct RunRecord {
   std::optional<RuptureState> at_first_rupture;
 
   [[nodiscard]] int event_count() const;
+  /// Elements that are gone: those of split cracks live.
+  [[nodiscard]] int destroyed_count() const;
   /// The farthest of all steps and of the first rupture; nothing: stress was left out.
   [[nodiscard]] std::optional<Deformation> largest() const;
   /// Volume of the elements destroyed since the start, presets not counted [mm^3].
@@ -60,6 +62,12 @@ struct Stage {
 /// Median: mean of the middle two for an even count; p99: nearest rank.
 [[nodiscard]] TimeStatistics statistics(std::vector<double> milliseconds);
 [[nodiscard]] TimeStatistics statistics(const std::vector<StepReport>& steps, const Stage& stage);
+
+/// Whether cracks of a scene open faces and destroy nothing.
+[[nodiscard]] bool cracks_split(const Scene& scene);
+
+/// "sif, crack 0, tip 1"; "mss, element 12": what broke first, say.
+[[nodiscard]] std::string what_broke(const DestroyedElement& row);
 
 [[nodiscard]] const char* name_of(FractureModel model);
 [[nodiscard]] const char* name_of(CrackKind kind);

@@ -36,7 +36,10 @@ State capture(const Simulation& simulation, int step) {
   if (simulation.backend().needs().stress) state.stress = simulation.stress();
   const auto destroyed = simulation.backend().destroyed();
   state.destroyed.assign(destroyed.begin(), destroyed.end());
-  state.destroyed_count = static_cast<int>(simulation.destroyed().size());
+  for (const DestroyedElement& row : simulation.destroyed()) {
+    ++(row.lives ? state.split_count : state.destroyed_count);
+  }
+  state.split = split_mesh(simulation);
   state.cracks = simulation.cracks();
   state.growths = last_growths(simulation.destroyed());
   const std::vector<Vec3> forces = simulation.reactions();
@@ -52,6 +55,10 @@ State undeformed(const Problem& problem) {
   state.displacement.assign(problem.mesh().nodes.size(), Vec3::Zero());
   state.destroyed.assign(problem.mesh().tets.size(), 0);
   return state;
+}
+
+const Mesh& mesh_of(const Problem& problem, const State& state) {
+  return state.split ? state.split->mesh : problem.mesh();
 }
 
 double scene_time(const Scene& scene, int step) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sunder/simulation.hpp"
+#include "app/output/split_mesh.hpp"
 
 namespace sunder::app {
 
@@ -24,12 +24,14 @@ struct LastGrowth {
 };
 
 struct State {
-  int step = 0;                         ///< the step in which it was taken
-  double load_factor = 0;               ///< its scene time
-  std::vector<Vec3> displacement;       ///< per node, mm
-  std::vector<Voigt> stress;            ///< per element, MPa; empty: not computed in this scene
-  std::vector<std::uint8_t> destroyed;  ///< per element
-  int destroyed_count = 0;
+  int step = 0;                            ///< the step in which it was taken
+  double load_factor = 0;                  ///< its scene time
+  std::vector<Vec3> displacement;          ///< per node of mesh_of(), mm
+  std::vector<Voigt> stress;               ///< per element, MPa; empty: not computed in this scene
+  std::vector<std::uint8_t> destroyed;     ///< per element
+  int destroyed_count = 0;                 ///< elements
+  int split_count = 0;                     ///< rows of events in which a crack has split
+  std::shared_ptr<const SplitMesh> split;  ///< null: the body has the problem's mesh
   std::vector<Crack> cracks;
   std::vector<LastGrowth> growths;  ///< of every tip that has grown, in order of its first growth
   std::vector<InstrumentState> instruments;
@@ -41,6 +43,14 @@ struct State {
 
 /// The undeformed body before the first solve, without stress.
 [[nodiscard]] State undeformed(const Problem& problem);
+
+/// The body that a state's fields belong to, undeformed.
+[[nodiscard]] const Mesh& mesh_of(const Problem& problem, const State& state);
+
+/// What `--snapshots` counts: destroyed elements and rows of cracks that have split.
+[[nodiscard]] inline int broken(const State& state) {
+  return state.destroyed_count + state.split_count;
+}
 
 /// Scene time of a step (method.md "Time").
 [[nodiscard]] double scene_time(const Scene& scene, int step);

@@ -36,7 +36,9 @@ Json lifted(const BoardPlane& plane, std::span<const Vec2> path) {
 
 Json destroyed_ids(const RunRecord& run) {
   Json out = Json::array();
-  for (const DestroyedElement& d : run.destroyed) out.push_back(d.element);
+  for (const DestroyedElement& d : run.destroyed) {
+    if (!d.lives) out.push_back(d.element);
+  }
   return out;
 }
 
@@ -45,7 +47,7 @@ Json first_rupture(const RunRecord& run) {
   if (!first) return nullptr;
   Json out = {{"step", first->step},
               {"event", first->event},
-              {"element", first->element},
+              {"element", first->element == kNone ? Json(nullptr) : Json(first->element)},
               {"criterion", to_string(first->cause)},
               {"load_factor", first->load_factor}};
   if (const auto& state = run.at_first_rupture) {
@@ -57,7 +59,6 @@ Json first_rupture(const RunRecord& run) {
   return out;
 }
 
-/// What this run calls stress; null: at small strain all are one.
 Json motion(const std::optional<MotionState>& state) {
   if (!state) return nullptr;
   return {{"time", state->time},
@@ -73,6 +74,7 @@ Json motion(const std::optional<MotionState>& state) {
           {"angular_momentum", array(state->angular_momentum)}};
 }
 
+/// What this run calls stress; null: at small strain all are one.
 Json stress_measure(const Problem& problem) {
   if (!problem.finite()) return nullptr;
   return key_words("fracture", "stress")[static_cast<std::size_t>(problem.scene().fracture.stress)];
@@ -121,6 +123,16 @@ Json timings(const RunRecord& run) {
   return out;
 }
 
+/// What cracks of this run leave, and how much of it.
+void add_split(const RunRecord& run, Json& out) {
+  const Scene& scene = run.problem.scene();
+  const bool split = cracks_split(scene);
+  const SplitMesh* mesh = run.last.split.get();
+  out["crack"] = key_words("fracture", "crack")[static_cast<std::size_t>(scene.fracture.crack)];
+  out["crack_area"] = !split ? Json(nullptr) : Json(mesh ? crack_area(*mesh) : 0.0);
+  out["new_nodes"] = mesh ? mesh->mesh.node_count() - run.problem.node_count() : 0;
+}
+
 Json tree(const RunRecord& run) {
   const Problem& problem = run.problem;
   const StepReport last = run.last_report();
@@ -166,6 +178,7 @@ Json tree(const RunRecord& run) {
   out["law"] = problem.law();
   out["stress_measure"] = stress_measure(problem);
   out["motion"] = motion(last.motion);
+  add_split(run, out);
   return out;
 }
 

@@ -42,7 +42,7 @@ std::string events_row(const DestroyedElement& record) {
   const SifTerms k = record.sif.value_or(SifTerms{});
   return row({std::to_string(record.step),
               std::to_string(record.event),
-              std::to_string(record.element),
+              record.element == kNone ? "" : std::to_string(record.element),
               to_string(record.cause),
               record.crack == kNone ? "" : std::to_string(record.crack),
               record.ratio ? number(*record.ratio) : "",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/output/vtu.hpp"
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <span>
@@ -13,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "VTU files are written little endian");
 
-constexpr int kVtkTetra = 10;
+constexpr int kVtkTriangle = 5, kVtkTetra = 10;
 
 template <class T>
 constexpr const char* kTypeName = nullptr;
@@ -77,17 +78,32 @@ void write_tag_names(ResultFile& file, const Mesh& mesh) {
   file.write("    </FieldData>\n");
 }
 
-void write_cells(ResultFile& file, const Mesh& mesh) {
-  static_assert(sizeof(mesh.tets[0]) == 4 * sizeof(std::int32_t));
-  std::vector<std::int64_t> offsets(mesh.tets.size());
+/// Cells of one kind, each with as many corners.
+template <std::size_t Corners>
+void write_cells(ResultFile& file, const std::vector<std::array<Index, Corners>>& cells,
+                 std::uint8_t type) {
+  static_assert(sizeof(cells[0]) == Corners * sizeof(std::int32_t));
+  std::vector<std::int64_t> offsets(cells.size());
   for (std::size_t e = 0; e < offsets.size(); ++e)
-    offsets[e] = static_cast<std::int64_t>(4 * e + 4);
+    offsets[e] = static_cast<std::int64_t>(Corners * (e + 1));
   file.write("      <Cells>\n");
-  write_array<std::int32_t>(file, "connectivity", 1,
-                            {mesh.tets.front().data(), mesh.tets.size() * 4});
+  write_array<std::int32_t>(
+      file, "connectivity", 1,
+      {cells.empty() ? nullptr : cells.front().data(), cells.size() * Corners});
   write_array(file, "offsets", offsets);
-  write_array(file, "types", std::vector<std::uint8_t>(mesh.tets.size(), kVtkTetra));
+  write_array(file, "types", std::vector<std::uint8_t>(cells.size(), type));
   file.write("      </Cells>\n");
+}
+
+constexpr const char* kOpening =
+    "<?xml version=\"1.0\"?>\n"
+    "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+    "header_type=\"UInt64\">\n  <UnstructuredGrid>\n";
+constexpr const char* kClosing = "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+
+std::string piece(std::size_t points, std::size_t cells) {
+  return "    <Piece NumberOfPoints=\"" + std::to_string(points) + "\" NumberOfCells=\"" +
+         std::to_string(cells) + "\">\n";
 }
 
 void write_cell_data(ResultFile& file, const Problem& problem, const State& state) {
@@ -109,14 +125,10 @@ void write_cell_data(ResultFile& file, const Problem& problem, const State& stat
 }  // namespace
 
 void write_vtu(ResultFile& file, const Problem& problem, const State& state) {
-  const Mesh& mesh = problem.mesh();
-  file.write(
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n  <UnstructuredGrid>\n");
+  const Mesh& mesh = mesh_of(problem, state);
+  file.write(kOpening);
   write_tag_names(file, mesh);
-  file.write("    <Piece NumberOfPoints=\"" + std::to_string(mesh.nodes.size()) +
-             "\" NumberOfCells=\"" + std::to_string(mesh.tets.size()) + "\">\n");
+  file.write(piece(mesh.nodes.size(), mesh.tets.size()));
   file.write("      <PointData>\n");
   if (problem.scene().output.displacement) write_vectors(file, "displacement", state.displacement);
   file.write("      </PointData>\n");
@@ -124,8 +136,70 @@ void write_vtu(ResultFile& file, const Problem& problem, const State& state) {
   file.write("      <Points>\n");
   write_vectors(file, "points", mesh.nodes);
   file.write("      </Points>\n");
-  write_cells(file, mesh);
-  file.write("    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
+  write_cells(file, mesh.tets, kVtkTetra);
+  file.write(kClosing);
+}
+
+namespace {
+
+/// Triangles of both lips with nodes of their own, as cracks.vtu has them.
+struct Lips {
+  std::vector<Index> nodes;  ///< of the body, per point
+  std::vector<std::array<Index, 3>> triangles;
+  std::vector<std::int32_t> crack, side;
+};
+
+Lips lips_of(const SplitMesh& split) {
+  Lips lips;
+  std::vector<Index> point(split.mesh.nodes.size(), kNone);
+  const auto add = [&](const CrackFace& face, const std::array<Index, 3>& lip, std::int32_t side) {
+    std::array<Index, 3> corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      Index& at = point[static_cast<std::size_t>(lip[i])];
+      if (at == kNone) {
+        at = static_cast<Index>(lips.nodes.size());
+        lips.nodes.push_back(lip[i]);
+      }
+      corners[i] = at;
+    }
+    lips.triangles.push_back(corners);
+    lips.crack.push_back(face.crack);
+    lips.side.push_back(side);
+  };
+  for (const CrackFace& face : split.faces) {
+    add(face, face.left, 1);
+    add(face, face.right, -1);
+  }
+  return lips;
+}
+
+}  // namespace
+
+void write_cracks_vtu(ResultFile& file, const State& state) {
+  const Lips lips = state.split ? lips_of(*state.split) : Lips{};
+  const std::vector<double> all =
+      state.split ? openings(*state.split, state.displacement) : std::vector<double>{};
+  std::vector<double> opening;
+  std::vector<Vec3> points, displacement;
+  for (const Index n : lips.nodes) {
+    const auto node = static_cast<std::size_t>(n);
+    opening.push_back(all[node]);
+    displacement.push_back(state.displacement[node]);
+    points.push_back(state.split->drawn[node] + state.displacement[node]);
+  }
+  file.write(kOpening);
+  file.write(piece(points.size(), lips.triangles.size()));
+  file.write("      <PointData>\n");
+  write_array(file, "opening", opening);
+  write_vectors(file, "displacement", displacement);
+  file.write("      </PointData>\n      <CellData>\n");
+  write_array(file, "crack", lips.crack);
+  write_array(file, "side", lips.side);
+  file.write("      </CellData>\n      <Points>\n");
+  write_vectors(file, "points", points);
+  file.write("      </Points>\n");
+  write_cells(file, lips.triangles, kVtkTriangle);
+  file.write(kClosing);
 }
 
 std::string pvd(const std::vector<SeriesEntry>& entries) {

@@ -13,6 +13,10 @@ namespace sunder::app {
 /// One state: binary inline arrays (base64, little endian, 64-bit headers), fp64.
 void write_vtu(ResultFile& file, const Problem& problem, const State& state);
 
+/// The lips of split cracks as triangles of surfaces of their own: on the ideal paths, then moved
+/// as their nodes are. Without an open face it has none.
+void write_cracks_vtu(ResultFile& file, const State& state);
+
 struct SeriesEntry {
   double load_factor = 0;
   std::string file;  ///< relative to the .pvd

@@ -23,21 +23,26 @@ std::string figure(const ReportPictures& pictures) {
          "</figure>\n";
 }
 
-std::string film(const ReportPictures& pictures) {
+std::string film(const RunRecord& run, const ReportPictures& pictures) {
   if (pictures.film_png.empty()) return {};
-  return "<section><h2>In motion</h2>\n<figure class=\"paper\">" +
-         embedded(pictures.film_png, "The body at true scale over the time of the run") +
+  const bool moves = run.problem.moves();
+  return "<section><h2>" + std::string(moves ? "In motion" : "The tear") +
+         "</h2>\n<figure class=\"paper\">" +
+         embedded(pictures.film_png, moves ? "The body at true scale over the time of the run"
+                                           : "The body as its cracks grow") +
          "</figure></section>\n";
 }
 
-std::string snapshots(const ReportPictures& pictures) {
+std::string snapshots(const RunRecord& run, const ReportPictures& pictures) {
   if (pictures.snapshots.empty()) return {};
   std::string out = "<section><h2>On the way</h2>\n<div class=\"snapshots\">\n";
   for (const SnapshotPicture& s : pictures.snapshots)
     out += "<figure class=\"paper\">" +
-           embedded(s.png, "Snapshot at " + std::to_string(s.wanted) + " destroyed elements") +
-           "<figcaption>" + counted(s.destroyed, "element") + " destroyed, step " +
-           std::to_string(s.step + 1) + "</figcaption></figure>\n";
+           embedded(s.png, "Snapshot at " + std::to_string(s.wanted) +
+                               (run.last.split ? " splits" : " destroyed elements")) +
+           "<figcaption>" + counted(s.broken, run.last.split ? "split" : "element") +
+           (run.last.split ? "" : " destroyed") + ", step " + std::to_string(s.step + 1) +
+           "</figcaption></figure>\n";
   return out + "</div></section>\n";
 }
 
@@ -50,8 +55,8 @@ std::string report_html(const RunRecord& run, const ReportPictures& pictures) {
          "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
          title + "</title>\n<style>\n" + std::string(kStyle) +
          "</style>\n</head>\n<body>\n<main>\n" + header(run) + key_figures(run) + findings(run) +
-         figure(pictures) + film(pictures) + snapshots(pictures) + fracture(run) + curves(run) +
-         times(run) + engine(run) + forces(run) + file_list(pictures.files) +
+         figure(pictures) + film(run, pictures) + snapshots(run, pictures) + fracture(run) +
+         curves(run) + times(run) + engine(run) + forces(run) + file_list(pictures.files) +
          "</main>\n</body>\n</html>\n";
 }
 

@@ -10,8 +10,8 @@
 namespace sunder::app {
 
 struct SnapshotPicture {
-  int wanted = 0;     ///< destroyed elements asked for
-  int destroyed = 0;  ///< those at the event that reached it
+  int wanted = 0;  ///< destroyed elements, or splits, asked for
+  int broken = 0;  ///< those at the event that reached it
   int step = 0;
   std::string png;
 };
@@ -20,7 +20,7 @@ struct ReportPictures {
   const std::string& svg;
   const std::string& png;
   const std::vector<SnapshotPicture>& snapshots;
-  const std::string& film_png;            ///< of a body in motion; else empty
+  const std::string& film_png;            ///< in motion, or of cracks that split; else empty
   const std::vector<std::string>& files;  ///< of the result folder
 };
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/report/sections.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "app/report/chart.hpp"
 #include "app/report/table.hpp"
@@ -36,14 +38,23 @@ std::string point(const Vec2& p) {
 }
 
 std::string crack_table(const RunRecord& run) {
-  Table table({"crack", "kind", "mouth [mm]", "tips [mm]", "length [mm]", "elements"});
+  const SplitMesh* split = run.last.split.get();
+  std::vector<std::string> columns{"crack",     "kind",        "mouth [mm]",
+                                   "tips [mm]", "length [mm]", "elements"};
+  if (split) columns.emplace_back("split open [mm²]");
+  Table table(columns);
   for (const Crack& crack : run.cracks) {
     std::string tips;
     for (const CrackTip& tip : crack.tips)
       tips += (tips.empty() ? "" : ", ") + point(tip.position) + (tip.ended ? " ended" : "");
-    table.row({std::to_string(crack.id), name_of(crack.kind),
-               crack.mouth ? point(*crack.mouth) : "-", tips, rounded(crack.length, 4),
-               std::to_string(crack.elements.size())});
+    std::vector<std::string> cells{std::to_string(crack.id),
+                                   name_of(crack.kind),
+                                   crack.mouth ? point(*crack.mouth) : "-",
+                                   tips,
+                                   rounded(crack.length, 4),
+                                   std::to_string(crack.elements.size())};
+    if (split) cells.push_back(rounded(crack_area(*split, crack.id), 4));
+    table.row(cells);
   }
   return "<h3>Cracks</h3>\n" + table.html();
 }
@@ -97,7 +108,7 @@ std::string event_table(const RunRecord& run) {
                d.crack == kNone
                    ? ""
                    : std::to_string(d.crack) + (tipped ? " tip " + std::to_string(d.sif->tip) : ""),
-               std::to_string(lines[i].elements),
+               d.lives ? std::string("split") : std::to_string(lines[i].elements),
                d.ratio ? rounded(lines[i].largest_ratio, 4) : "",
                sif(&SifTerms::k),
                sif(&SifTerms::k_a),
@@ -163,12 +174,13 @@ std::string key_figures(const RunRecord& run) {
   const DestroyedElement* first = run.first_rupture();
   const StepReport last = run.last_report();
   return "<div class=\"keys\">\n" +
-         key(grouped(static_cast<long long>(run.destroyed.size())), "elements destroyed") +
+         (run.last.split ? key(rounded(crack_area(*run.last.split), 4), "mm² split open")
+                         : std::string()) +
+         key(grouped(run.destroyed_count()), "elements destroyed") +
          key(grouped(run.event_count()), "events") +
          key(std::to_string(run.cracks.size()), run.cracks.size() == 1 ? "crack" : "cracks") +
          key(first ? rounded(first->load_factor, 4) : "none",
-             first ? std::string("load factor of the first rupture (") + to_string(first->cause) +
-                         ", element " + std::to_string(first->element) + ")"
+             first ? "load factor of the first rupture (" + what_broke(*first) + ")"
                    : "rupture by a criterion") +
          kTimings +
          key(rounded(statistics(run.steps, stages().back()).median, 3) + " ms", "median step") +
@@ -213,9 +225,58 @@ std::string findings(const RunRecord& run) {
   return out;
 }
 
+namespace {
+
+/// What one tip was driven by at each of its growths.
+struct TipHistory {
+  int crack = 0, tip = 0;
+  ChartSeries k, load;  ///< over the crack's length before the growth
+};
+
+constexpr std::size_t kMostTips = 5;  // colours of a chart
+
+std::vector<TipHistory> tip_histories(const RunRecord& run) {
+  std::vector<TipHistory> tips;
+  for (const DestroyedElement& row : run.destroyed) {
+    if (!row.sif || row.crack == kNone) continue;
+    auto tip = std::ranges::find_if(
+        tips, [&](const TipHistory& t) { return t.crack == row.crack && t.tip == row.sif->tip; });
+    if (tip == tips.end()) {
+      const std::string name =
+          "crack " + std::to_string(row.crack) + ", tip " + std::to_string(row.sif->tip);
+      tip = tips.insert(tips.end(), {row.crack, row.sif->tip, {name, {}}, {name, {}}});
+    }
+    tip->k.points.emplace_back(row.sif->a, row.sif->k);
+    tip->load.points.emplace_back(row.sif->a, row.load_factor);
+  }
+  std::erase_if(tips, [](const TipHistory& t) { return t.k.points.size() < 2; });
+  std::ranges::stable_sort(tips, std::ranges::greater{},
+                           [](const TipHistory& t) { return t.k.points.size(); });
+  if (tips.size() > kMostTips) tips.resize(kMostTips);
+  return tips;
+}
+
+/// K and load of the tips that have grown most often.
+std::string along_the_cracks(const RunRecord& run) {
+  const std::vector<TipHistory> tips = tip_histories(run);
+  if (tips.empty()) return {};
+  std::vector<ChartSeries> k, load;
+  for (const TipHistory& tip : tips) {
+    k.push_back(tip.k);
+    load.push_back(tip.load);
+  }
+  const std::string x = "crack length a [mm]";
+  return "<h3>Along the cracks</h3>\n<div class=\"charts\">\n" +
+         chart(line_chart(k, {x, "K [MPa√mm] that made it grow"})) +
+         chart(line_chart(load, {x, "load factor at which it grew"})) + "</div>\n";
+}
+
+}  // namespace
+
 std::string fracture(const RunRecord& run) {
   if (run.destroyed.empty()) return section("Fracture", "<p class=\"note\">Nothing broke.</p>\n");
-  return section("Fracture", (run.cracks.empty() ? "" : crack_table(run)) + event_table(run));
+  return section("Fracture", (run.cracks.empty() ? "" : crack_table(run)) + along_the_cracks(run) +
+                                 event_table(run));
 }
 
 namespace {
@@ -242,9 +303,11 @@ std::string curves(const RunRecord& run) {
   if (run.steps.empty()) return {};
   const std::string x = "load factor";
   std::string out = "<div class=\"charts\">\n";
-  ChartSeries destroyed = over_steps(run, "", [](const StepReport& s) { return s.destroyed; });
-  destroyed.steps = true;
-  out += chart(line_chart({destroyed}, {x, "destroyed elements"}));
+  if (!cracks_split(run.problem.scene()) || run.destroyed_count() > 0) {
+    ChartSeries destroyed = over_steps(run, "", [](const StepReport& s) { return s.destroyed; });
+    destroyed.steps = true;
+    out += chart(line_chart({destroyed}, {x, "destroyed elements"}));
+  }
   out += chart(line_chart({over_steps(run, "", [](const auto& s) { return s.max_yield_ratio; })},
                           {x, "largest yield ratio left after the step"}));
   out += chart(line_chart({over_steps(run, "", [](const auto& s) { return s.compliance; })},

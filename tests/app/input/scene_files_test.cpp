@@ -39,6 +39,7 @@ TEST(SceneFiles, AllAreThere) {
                            "liver",
                            "peel",
                            "board",
+                           "board-split",
                            "sheet"})
     EXPECT_TRUE(names.contains(name)) << name;
 }

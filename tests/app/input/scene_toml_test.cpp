@@ -52,6 +52,13 @@ TEST(SceneToml, ReadsEveryKey) {
   EXPECT_TRUE(scene.output.stress);
 }
 
+TEST(SceneToml, ReadsHowCracksSplit) {
+  const Scene scene =
+      parse(with(good_scene(), "alpha = 1e-6", "crack = \"split\"\nmax_new_nodes = 77"));
+  EXPECT_EQ(scene.fracture.crack, CrackWay::split);
+  EXPECT_EQ(scene.fracture.max_new_nodes, 77);
+}
+
 TEST(SceneToml, DefaultsAreTheContracts) {
   const Scene scene = parse("mesh = \"m.msh\"");
   EXPECT_EQ(scene.title, "scene");
@@ -63,6 +70,8 @@ TEST(SceneToml, DefaultsAreTheContracts) {
   EXPECT_EQ(scene.fracture.crack_length, CrackLength::path);
   EXPECT_EQ(scene.fracture.sif, SifSource::formula);
   EXPECT_EQ(scene.fracture.max_events, 10000);
+  EXPECT_EQ(scene.fracture.crack, CrackWay::destroyed);
+  EXPECT_EQ(scene.fracture.max_new_nodes, 0);
   EXPECT_FALSE(scene.fracture.plane_normal.has_value());
   EXPECT_EQ(scene.solver.backend, "auto");
   EXPECT_EQ(scene.solver.device, kNone);
