@@ -19,6 +19,7 @@ sunder_event to_event(const sunder::DestroyedElement& d, std::int32_t order) {
   event.step = d.step;
   event.event = d.event;
   event.element = d.element;
+  event.lives = d.lives ? 1 : 0;
   event.cause = static_cast<std::int32_t>(d.cause);
   event.crack = d.crack;
   event.instrument = d.instrument;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "c/simulation.hpp"
+
+#include <algorithm>
+
 #include "c/structs.hpp"
 #include "sunder/error.hpp"
 
@@ -70,7 +73,8 @@ bool SimulationObject::tell(std::int32_t phase, int events) const {
   progress.events = events;
   if (simulation_) {
     progress.step = simulation_->steps_done();
-    progress.destroyed = static_cast<std::int32_t>(simulation_->destroyed().size());
+    progress.destroyed = static_cast<std::int32_t>(std::ranges::count(
+        simulation_->destroyed(), false, [](const DestroyedElement& d) { return d.lives; }));
   }
   return callbacks_.progress(callbacks_.progress_user, &progress) == 0;
 }

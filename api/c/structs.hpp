@@ -20,6 +20,8 @@ inline constexpr std::size_t kFirstSize<sunder_solver_options> = offsetof(sunder
 template <>
 inline constexpr std::size_t kFirstSize<sunder_step> = offsetof(sunder_step, strain_max);
 template <>
+inline constexpr std::size_t kFirstSize<sunder_event> = offsetof(sunder_event, lives);
+template <>
 inline constexpr std::size_t kFirstSize<sunder_material> = offsetof(sunder_material, law);
 template <>
 inline constexpr std::size_t kFirstSize<sunder_instrument> = offsetof(sunder_instrument, turn);

@@ -535,6 +535,39 @@ SUNDER_API sunder_status sunder_grips_destroy(sunder_grips grips);
 SUNDER_API sunder_status sunder_grips_forces(sunder_grips grips, const double* displacements,
                                              double* forces, size_t size);
 
+/* The body as split cracks leave it (SUNDER_CRACK_SPLIT). Nodes and elements keep their ids for
+   ever; nodes that come have ids after the mesh's own, and elements get other corners. All arrays
+   above have the size that the mesh had at creation: displacements are those of the mesh's own
+   nodes. Without split cracks what follows says what the mesh says. */
+
+typedef struct sunder_body {
+  uint32_t struct_size;
+  int32_t version;           ///< another one whenever what follows, or a corner, has changed
+  int32_t node_count;        ///< of the mesh, and those that have come
+  int32_t tet_count;         ///< as at creation
+  int32_t crack_face_count;  ///< open faces
+  int32_t reserved;
+} sunder_body;
+
+#define SUNDER_BODY_INIT \
+  { sizeof(sunder_body), 0, 0, 0, 0, 0 }
+
+SUNDER_API sunder_status sunder_simulation_body(sunder_simulation simulation, sunder_body* body);
+/// (tets x 4): nodes of each element now, in the order of its corners in the mesh. Size 4 * tets.
+SUNDER_API sunder_status sunder_simulation_body_corners(sunder_simulation simulation,
+                                                        int32_t* values, size_t size);
+/// (node_count): the mesh's node that lies where each node lies; its own id for the mesh's own.
+SUNDER_API sunder_status sunder_simulation_body_parents(sunder_simulation simulation,
+                                                        int32_t* values, size_t size);
+/// (node_count x 3), size 3 * node_count [mm]. Zero before the first step.
+SUNDER_API sunder_status sunder_simulation_body_displacement(sunder_simulation simulation,
+                                                             double* values, size_t size);
+/// (crack_face_count x 7), size 7 * crack_face_count: the crack's id, three nodes of the lip left
+/// of its path (seen from above), and those of the right lip that lay at the same places. Where the
+/// two are one node the face ends in tissue that holds: the crack's front.
+SUNDER_API sunder_status sunder_simulation_crack_faces(sunder_simulation simulation,
+                                                       int32_t* values, size_t size);
+
 /* What broke, and why. */
 
 enum {
@@ -545,13 +578,14 @@ enum {
   SUNDER_CAUSE_PRINCIPAL = 4
 };
 
-/// One destroyed element. `order` counts them over the whole run, as the index does.
+/// One destroyed element, or one growth or birth of a split crack. `order` counts them over the
+/// whole run, as the index does.
 typedef struct sunder_event {
   uint32_t struct_size;
   int32_t order;
   int32_t step;
-  int32_t event;  ///< one decision with one update; several elements may share it
-  int32_t element;
+  int32_t event;            ///< one decision with one update; several elements may share it
+  int32_t element;          ///< with `lives`: that asked for a new crack; -1: one has grown
   int32_t cause;            ///< SUNDER_CAUSE_*: which hypothesis
   int32_t crack;            ///< id; -1: none
   int32_t instrument;       ///< with the largest share of its maximum shear stress; -1: not known
@@ -565,10 +599,15 @@ typedef struct sunder_event {
   double reach;               ///< r_e [mm]
   double sigma0, beta, a, b;  ///< [MPa], [deg], [mm], [mm]
   double k_1, k_2;            ///< from the field; 0 with SUNDER_SIF_FORMULA
+  int32_t lives;              ///< 1: a crack has split, nothing was destroyed
+  int32_t reserved;
 } sunder_event;
 
-#define SUNDER_EVENT_INIT \
-  { sizeof(sunder_event), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define SUNDER_EVENT_INIT                                                                         \
+  {                                                                                               \
+    sizeof(sunder_event), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0, 0                                                                                      \
+  }
 
 SUNDER_API sunder_status sunder_simulation_event_count(sunder_simulation simulation,
                                                        int32_t* count);

@@ -17,6 +17,7 @@ struct initialised {
   sunder_engine engine;
   sunder_callbacks callbacks;
   sunder_step step;
+  sunder_body body;
   sunder_event event;
   sunder_crack grown;
   sunder_vulkan_buffer buffer;
@@ -25,13 +26,13 @@ struct initialised {
   sunder_vulkan_signals signals;
 };
 
-#define INITIALISED                                                                               \
-  {                                                                                               \
-    SUNDER_DEVICE_INIT, SUNDER_MATERIAL_INIT, SUNDER_SELECTION_INIT, SUNDER_SUPPORT_INIT,         \
-        SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FRACTURE_OPTIONS_INIT,           \
-        SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT, SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT,  \
-        SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT, \
-        SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT                                    \
+#define INITIALISED                                                                              \
+  {                                                                                              \
+    SUNDER_DEVICE_INIT, SUNDER_MATERIAL_INIT, SUNDER_SELECTION_INIT, SUNDER_SUPPORT_INIT,        \
+        SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FRACTURE_OPTIONS_INIT,          \
+        SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT, SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT, \
+        SUNDER_BODY_INIT, SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_VULKAN_BUFFER_INIT,       \
+        SUNDER_VULKAN_HOST_INIT, SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT          \
   }
 
 #endif

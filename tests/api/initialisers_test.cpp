@@ -22,6 +22,7 @@ TEST(CInitialisers, StateTheSizeAndNothingElseOfResults) {
   expect_only_size(all.engine);
   expect_only_size(all.callbacks);
   expect_only_size(all.step);
+  expect_only_size(all.body);
   expect_only_size(all.event);
   expect_only_size(all.grown);
   expect_only_size(all.host);

@@ -31,6 +31,11 @@ std::vector<Misuse> handles() {
        [](World&) { return sunder_error_of(nullptr, nullptr, 0, nullptr); }},
       {"grips_null", SUNDER_ERROR_HANDLE, "grips",
        [](World& w) { return sunder_grips_forces(nullptr, w.values, w.values, 3); }},
+      {"body_of_a_scene", SUNDER_ERROR_HANDLE, "simulation",
+       [](World& w) {
+         sunder_body body = SUNDER_BODY_INIT;
+         return sunder_simulation_body(reinterpret_cast<sunder_simulation>(w.scene), &body);
+       }},
       {"simulation_for_grips", SUNDER_ERROR_HANDLE, "grips",
        [](World& w) { return sunder_grips_destroy(reinterpret_cast<sunder_grips>(w.simulation)); }},
       {"pointer_to_something_else", SUNDER_ERROR_HANDLE, "simulation",
@@ -86,6 +91,12 @@ std::vector<Misuse> null_pointers() {
        }},
       {"event_count_null", SUNDER_ERROR_NULL, "count",
        [](World& w) { return sunder_simulation_event_count(w.simulation, nullptr); }},
+      {"body_null", SUNDER_ERROR_NULL, "body",
+       [](World& w) { return sunder_simulation_body(w.simulation, nullptr); }},
+      {"body_corners_null", SUNDER_ERROR_NULL, "values",
+       [](World& w) { return sunder_simulation_body_corners(w.simulation, nullptr, 384); }},
+      {"body_displacement_null", SUNDER_ERROR_NULL, "values",
+       [](World& w) { return sunder_simulation_body_displacement(w.simulation, nullptr, 150); }},
       {"warning_count_null", SUNDER_ERROR_NULL, "count",
        [](World& w) { return sunder_simulation_warning_count(w.simulation, nullptr); }},
       {"crack_count_null", SUNDER_ERROR_NULL, "count",
@@ -162,6 +173,23 @@ std::vector<Misuse> sizes() {
        [](World& w) { return sunder_simulation_reactions(w.simulation, w.values, 2); }},
       {"support_reaction_too_long", SUNDER_ERROR_SIZE, "must have 3",
        [](World& w) { return sunder_simulation_support_reaction(w.simulation, w.values, 8); }},
+      {"body_corners_too_short", SUNDER_ERROR_SIZE, "must have 384",
+       [](World& w) {
+         std::int32_t id = 0;
+         return sunder_simulation_body_corners(w.simulation, &id, 1);
+       }},
+      {"body_parents_too_short", SUNDER_ERROR_SIZE, "must have 50",
+       [](World& w) {
+         std::int32_t id = 0;
+         return sunder_simulation_body_parents(w.simulation, &id, 1);
+       }},
+      {"body_displacement_too_short", SUNDER_ERROR_SIZE, "must have 150",
+       [](World& w) { return sunder_simulation_body_displacement(w.simulation, w.values, 3); }},
+      {"crack_faces_where_none_is_open", SUNDER_ERROR_SIZE, "must have 0",
+       [](World& w) {
+         std::int32_t ids[7] = {};
+         return sunder_simulation_crack_faces(w.simulation, ids, 7);
+       }},
       {"zero_size", SUNDER_ERROR_SIZE, "has 0",
        [](World& w) { return sunder_simulation_displacement(w.simulation, w.values, 0); }},
   };
@@ -188,6 +216,11 @@ std::vector<Misuse> struct_sizes() {
          } newer{on(SUNDER_BACKEND_CPU), 1.0};
          newer.known.struct_size = sizeof newer;
          return sunder_scene_set_solver(w.scene, &newer.known);
+       }},
+      {"body_size_unset", SUNDER_ERROR_STRUCT_SIZE, "body has struct_size = 0",
+       [](World& w) {
+         sunder_body body{};
+         return sunder_simulation_body(w.simulation, &body);
        }},
       {"step_size_unset", SUNDER_ERROR_STRUCT_SIZE, "step has struct_size = 0",
        [](World& w) {

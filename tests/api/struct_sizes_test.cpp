@@ -77,6 +77,8 @@ std::vector<Struct> results() {
        [](World& w, void* to) {
          return sunder_simulation_event_at(w.torn, 0, as<sunder_event>(to));
        }},
+      {"body", sizeof(sunder_body), 24,
+       [](World& w, void* to) { return sunder_simulation_body(w.torn, as<sunder_body>(to)); }},
       {"crack", sizeof(sunder_crack), 160,
        [](World& w, void* to) {
          return sunder_simulation_crack_at(w.torn, 0, as<sunder_crack>(to));
