@@ -243,8 +243,8 @@ std::string caption(const Problem& problem, const Pose& pose, const State& state
   add(what, "fill=\"#222\"");
   add(sentence_of_scale(pose), "fill=\"#222\"");
   if (state.split)
-    add(std::string("A tear's lips, outlined and shaded, are drawn on its ideal path") +
-            (state.destroyed_count > 0 ? "; the small picture shows the destroyed elements." : "."),
+    add(std::string("Lips, outlined and shaded, lie on the ideal path") +
+            (state.destroyed_count > 0 ? "; small picture: destroyed elements." : "."),
         "fill=\"#666\"");
   else if (state.destroyed_count > 0)
     add("A tear is a gap, its lips outlined and shaded; the small picture shows the destroyed "

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 
 #include "body/pieces.hpp"
@@ -141,6 +142,32 @@ TEST(LooseParts, ByHand) {
   EXPECT_TRUE(parts.isolated_nodes.empty());
   ASSERT_EQ(parts.pieces.size(), 1u);
   EXPECT_EQ(parts.pieces[0].size(), 24u);
+}
+
+// A crack that has split the strip all across leaves the lower half to itself.
+TEST(LooseParts, OfASplitBody) {
+  const Problem problem(strip(1, 1, 1));
+  const std::vector<std::uint8_t> destroyed(192, 0);
+  Mesh body = problem.mesh();
+  std::map<Index, Index> upper;  // new nodes of the rows above
+  for (auto& tet : body.tets) {
+    double y = 0;
+    for (const Index n : tet) y += problem.mesh().nodes[static_cast<std::size_t>(n)].y() / 4;
+    if (y < 4) continue;
+    for (Index& n : tet) {
+      const Vec3 at = problem.mesh().nodes[static_cast<std::size_t>(n)];
+      if (std::abs(at.y() - 4) > 1e-9) continue;
+      const auto [node, is_new] = upper.try_emplace(n, body.node_count());
+      if (is_new) body.nodes.push_back(at);
+      n = node->second;
+    }
+  }
+  ASSERT_EQ(upper.size(), 10u);
+  const LooseParts parts = find_loose_parts(problem, destroyed, body);
+  EXPECT_TRUE(parts.isolated_nodes.empty());
+  ASSERT_EQ(parts.pieces.size(), 1u);
+  EXPECT_EQ(parts.pieces[0].size(), 96u);
+  EXPECT_TRUE(find_loose_parts(problem, destroyed).none());
 }
 
 }  // namespace
