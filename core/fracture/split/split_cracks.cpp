@@ -166,7 +166,7 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
     return yield > 0 && reach(k, yield, growth.theta) >= length / 2;
   };
   const auto parts = [&](Index a, Index b) { return lets_pass(a) || lets_pass(b); };
-  const double k_c = toughness.of(ahead(crack, tip, growth.direction, state.destroyed));
+  const Index next = ahead(crack, tip, growth.direction, state.destroyed);
   const CrackTip before = crack.tips[tip];
   const double measured_at = length_to(crack, tip);
   const SplitStep step =
@@ -181,9 +181,12 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   row.crack = crack.id;
   row.sif = growth.terms;
   row.sif->advance = step.advance;
-  if (k_c > 0) {
+  if (const double k_c = toughness.of(next); k_c > 0) {
     row.sif->toughness = k_c;
     row.ratio = k / k_c;
+  } else if (problem_.breakable(next)) {
+    row.sif->reach = reach(k, problem_.yield(next), growth.theta);
+    row.ratio = row.sif->reach / (length / 2);
   }
   row.sif->a = measured_at;
   row.sif->at = before.position;
