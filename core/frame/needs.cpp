@@ -51,7 +51,8 @@ Needs needs_of(const Problem& problem) {
   needs.yield = needs.stress && any(problem, &Problem::breakable);
   needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
   needs.split = breaks && scene.fracture.crack == CrackWay::split;
-  needs.pristine = breaks && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
+  needs.pristine =
+      breaks && !needs.split && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
   if (!needs.stress) {
     needs.left_out.push_back(
         "stress of each element: no fracture model and no output needs it; a frame's check "
@@ -63,7 +64,9 @@ Needs needs_of(const Problem& problem) {
   if (!needs.yield) needs.left_out.push_back("yield summary: nothing breakable or no stress");
   if (!needs.damage) needs.left_out.push_back("update of the inverse: nothing can be destroyed");
   if (!needs.pristine)
-    needs.left_out.push_back("intact body's field: only model B reads it, not with sigma0 present");
+    needs.left_out.push_back(
+        "intact body's field: only model B reads it, not with sigma0 present nor where cracks "
+        "split");
   if (!presses) needs.left_out.push_back("pressure terms K_b, K_c: no pressing instrument");
   if (problem.gripped_dofs().empty()) {
     needs.left_out.push_back("compliance block of grips: no prescribed displacement");
