@@ -8,16 +8,24 @@
 // Counters by phase (pull, event: the step after a rupture, between, after: torn off): median
 // milliseconds (ms), back-solves or iterations (it); over all: median and p99 of both, the median
 // and 95 % quantile of the error of stress, the share of steps that a cap ended.
-//   Of the project's own: "sunder" by the factor, with grips_ms, what the forces of the grips
+//   Of the project's own: factors made in the steps, bases made beside them and taken; "sunder" by
+//   the factor, with grips_ms, what the forces of the grips
 //   between frames take; "sunder inverse" by a dense inverse; the same and conjugate gradients on
-//   the tangent on a Vulkan device.
+//   the tangent on a Vulkan device, cg_it of them an iteration of Newton.
 //   motion_balance/TETS/dt STEPS_A_SECOND: the board with damping and gravity until 90 elements are
 //   gone: where the work went, in shares of it.
 //   motion_hand/LAW: 10,000 steps of 1/200 s, at most 12 back-solves each, after a hand that
 //   wanders at random within 25 mm at up to 200 mm/s and jumps anywhere there every 500 steps: how
 //   many steps end with numbers that are none (nan), with inverted elements, capped, in parts, or
-//   are not found (stuck). bench_motion [Google Benchmark's options] bench_motion --peers    the
-//   methods with their settings
+//   are not found (stuck); how many of the capped ones end with over 1e-6 more energy than they
+//   began with and got by work (gained), of them where the hand jumps (gained_at_jumps), and the
+//   largest share of the energy so won (most_gained).
+//   motion_rest/TETS: steps of 1/200 s of a board that has come to rest, and of those before it
+//   has.
+//
+//   bench_motion [Google Benchmark's options]
+//
+//   bench_motion --peers    the methods with their settings
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -260,7 +268,7 @@ void own_row(benchmark::State& state, Index cells, int a_second, const Own& how)
         {.most_iterations = how.cap, .inverse = how.route == Route::inverse}, device.get());
     Record record(course);
     Pace pace(course.dt);
-    int factors = 0;
+    int factors = 0, bases = 0, back_solves = 0;
     std::vector<double> grips;
     for (const Step& step : course.steps) {
       if (step.past.dt > 0) motion.go_on_from(step.past);
@@ -273,6 +281,8 @@ void own_row(benchmark::State& state, Index cells, int a_second, const Own& how)
         report = motion.step(step.load, course.dt);
       });
       factors += report.factors;
+      bases += report.bases;
+      back_solves += report.back_solves;
       if (how.grips) {
         const auto start = Clock::now();
         benchmark::DoNotOptimize(motion.grip_compliance(true));
@@ -284,7 +294,11 @@ void own_row(benchmark::State& state, Index cells, int a_second, const Own& how)
     }
     record.report(state);
     state.counters["factors"] = factors;
+    state.counters["bases"] = bases;
     if (how.grips) state.counters["grips_ms"] = quantile(grips, .5);
+    if (device && how.route == Route::cg) {
+      state.counters["cg_it"] = static_cast<double>(device->inner_iterations()) / back_solves;
+    }
   }
 }
 
@@ -401,6 +415,7 @@ void hand_row(benchmark::State& state, const Law& law) {
     Load load = board.pulled(0);
     std::vector<double> ms;
     double nan = 0, inverted = 0, capped = 0, parts = 0, stuck = 0, most_inverted = 0;
+    double gained = 0, gained_at_jumps = 0, most_gained = 0;
     for (int i = 1; i <= kSteps; ++i) {
       const Vec3 at = hand.next(kDt, i % kBetweenJumps == 0);
       for (std::size_t g = 0; g < load.displacements.size(); ++g) {
@@ -409,6 +424,14 @@ void hand_row(benchmark::State& state, const Law& law) {
       const auto start = Clock::now();
       const auto report = motion.step(load, kDt);
       ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      const solver::FiniteMotionBalance& of = report.balance;
+      const double gain = -(of.damped + of.scheme + of.unsolved) /
+                          (motion.kinetic_energy() + motion.strain_energy());
+      if (report.capped && !report.stuck) {
+        gained += gain > 1e-6;
+        gained_at_jumps += gain > 1e-6 && i % kBetweenJumps == 0;
+        most_gained = std::max(most_gained, gain);
+      }
       capped += report.capped;
       parts += report.parts > 1;
       stuck += report.stuck;
@@ -423,10 +446,47 @@ void hand_row(benchmark::State& state, const Law& law) {
     state.counters["inverted"] = inverted;
     state.counters["most_inverted"] = most_inverted;
     state.counters["capped"] = capped;
+    state.counters["gained"] = gained;
+    state.counters["gained_at_jumps"] = gained_at_jumps;
+    state.counters["most_gained"] = most_gained;
     state.counters["parts"] = parts;
     state.counters["stuck"] = stuck;
     state.counters["median_ms"] = quantile(ms, .5);
     state.counters["p99_ms"] = quantile(ms, .99);
+  }
+}
+
+/// The board hangs by its upper edge and comes to rest; what its steps take then, and before.
+void rest_row(benchmark::State& state, Index cells) {
+  constexpr int kMost = 4000, kAtRest = 1000;
+  constexpr double kDt = 1.0 / 200;
+  for (auto _ : state) {
+    const MotionBoard board(cells);
+    const fem::HyperelasticBody body{board.problem, board.laws, {}};
+    solver::FiniteMotion motion(body, board.node_mass,
+                                {.damping = 20, .viscosity = 5e-4, .gravity = Vec3(0, -9810, 0)});
+    std::vector<double> moving, resting;
+    double back_solves = 0;
+    const auto& u = motion.displacement();
+    std::vector<double> at_rest;
+    double same = 1;
+    for (int i = 0; i < kMost && resting.size() < kAtRest; ++i) {
+      const auto start = Clock::now();
+      const auto report = motion.step(board.pulled(0), kDt);
+      const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+      (report.still ? resting : moving).push_back(ms);
+      if (!report.still) continue;
+      back_solves += report.back_solves;
+      if (at_rest.empty()) at_rest = u;
+      same *= at_rest == u;
+    }
+    state.SetIterationTime(1e-3 * quantile(resting, .5));
+    state.counters["moving_steps"] = static_cast<double>(moving.size());
+    state.counters["moving_ms"] = quantile(moving, .5);
+    state.counters["rest_steps"] = static_cast<double>(resting.size());
+    state.counters["rest_ms"] = quantile(resting, .5);
+    state.counters["rest_back_solves"] = back_solves;
+    state.counters["same_bits"] = same;
   }
 }
 
@@ -483,6 +543,9 @@ void register_rows() {
   for (const int a_second : {200, 1000}) {
     add("motion_balance/1944/dt " + std::to_string(a_second),
         [=](auto& s) { balance_row(s, 18, a_second, 90); });
+  }
+  for (const Index cells : {18, 36}) {
+    add("motion_rest/" + std::to_string(6 * cells * cells), [=](auto& s) { rest_row(s, cells); });
   }
   for (const char* law : {"neo-hookean", "corotated", "saint-venant-kirchhoff"}) {
     const Law* of = find_law(law);

@@ -486,7 +486,10 @@ solver::FiniteTrial FiniteDevice::trial(double part, bool direction) {
   record_evaluation(push, true);
   commands_.end();
   commands_.submit();
-  if (direction && cg_) cg_->learn();
+  if (direction && cg_) {
+    cg_->learn();
+    inner_iterations_ += static_cast<std::size_t>(cg_->iterations());
+  }
   const shaders::FiniteSums& of = *sums_.mapped<shaders::FiniteSums>();
   return {point(), of.slope, of.s_y, std::sqrt(of.change_squared), std::sqrt(of.stress_squared)};
 }

@@ -44,6 +44,7 @@ class FiniteDevice final : public solver::FiniteDevice {
 
   /// Stress at a displacement (3 * nodes), of elements that count.
   void stress(std::span<const double> u, std::span<Voigt> stress) override;
+  [[nodiscard]] std::size_t inner_iterations() const override { return inner_iterations_; }
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
   [[nodiscard]] std::vector<KernelPlan> kernels() const override {
     return describe(device_.living_pipelines());
@@ -100,6 +101,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   Pass move_, law_, gather_, sum_, begin_, turn_q_, turn_x_, product_, fold_, small_pass_, columns_,
       end_;
   std::unique_ptr<FiniteCg> cg_;  // route cg
+  std::size_t inner_iterations_ = 0;
   vulkan::Commands commands_;
 
   std::size_t first_state_ = 0;  // of the two

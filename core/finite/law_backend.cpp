@@ -2,6 +2,7 @@
 #include "finite/law_backend.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "body/analysis.hpp"
 #include "body/stress_summary.hpp"
@@ -53,6 +54,8 @@ BackendInfo LawBackend::info() const {
                                : ", by the host; forces and stress on the device");
   }
   if (!lost_.empty()) info.why += "; the host took over from the device: " + lost_;
+  info.quiet_ms = device_ ? 0 : cost_.quiet_ms;
+  if (needs().damage && !device_) info.fracture_ms = cost_.torn_ms;
   for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
   return info;
 }
@@ -90,19 +93,28 @@ std::vector<KernelPlan> LawBackend::kernels() const {
   if (device_) return device_->kernels();
   const auto elements = std::to_string(problem().tet_count());
   const Words say = words();
+  const auto about = [](double ms) {
+    char text[32] = "";
+    if (ms > 0) std::snprintf(text, sizeof text, ", about %.2g ms", ms);
+    return std::string(text);
+  };
   std::vector<KernelPlan> list{
-      {"internal forces", "energy and forces of " + elements + " elements by their laws"},
+      {"internal forces",
+       "energy and forces of " + elements + " elements by their laws" + about(cost_.forces_ms)},
       {"base", (by_inverse() ? "product with the dense inverse of " + say.tangent
                              : "forward and backward through the factor of " + say.tangent + ", " +
                                    std::to_string(factor_entries_) + " values") +
-                   say.iteration},
+                   about(cost_.back_solve_ms) + say.iteration},
+      {"new base",
+       say.tangent + " assembled and factored beside the steps" + about(cost_.tangent_ms)},
       {"line search", "on the energy, a pass over the elements for each length that it tries"},
       {"check", "one base application to what is left, and the stress that it would change"}};
   if (needs().damage) {
     list.push_back({"small update", "of the base by the tangents of destroyed elements"});
   }
   if (needs().stress) {
-    list.push_back({"stress", elements + " elements, the stress that fracture.stress names"});
+    list.push_back({"stress", elements + " elements, the stress that fracture.stress names" +
+                                  about(cost_.stress_ms)});
   }
   if (needs().yield) list.push_back({"yield summary", "largest ratio, and where"});
   return list;
@@ -200,8 +212,8 @@ Route LawBackend::chosen_route() const {
   return problem().moves() ? Route::cg : Route::factor;
 }
 
-/// Returns the entries of a factor, where there is one.
-std::size_t LawBackend::check_options() const {
+/// Returns the entries of a factor, where there is one; the host's cost is known then.
+std::size_t LawBackend::check_options() {
   const SolverOptions& solver = problem().scene().solver;
   const bool moves = problem().moves(), on_device = static_cast<bool>(machine_.device);
   const std::string whom = moves ? "motion" : "law " + in_quotes(problem().law());
@@ -247,6 +259,9 @@ std::size_t LawBackend::check_options() const {
                          count_of(problem().dof_count(), "unknown") + ", but " +
                          std::to_string(machine_.memory) + " are free; use a coarser mesh" +
                          (moves ? "" : " or law \"linear\""));
+  }
+  if (!on_device) {
+    cost_ = solver::law_cost(*analysis->nodes, problem(), by_inverse() ? unknowns : 0);
   }
   return analysis->entries();
 }

@@ -12,6 +12,7 @@
 
 #include "body/hyperelastic_pass.hpp"
 #include "solver/finite_steps.hpp"
+#include "solver/frame_cost.hpp"
 #include "solver/instrument_block.hpp"
 #include "sunder/backend.hpp"
 #include "sunder/error.hpp"
@@ -108,7 +109,7 @@ class LawBackend : public Backend {
 
  private:
   [[nodiscard]] Route chosen_route() const;
-  std::size_t check_options() const;
+  std::size_t check_options();
 
   std::vector<Voigt> stress_;               // of the last stress()
   bool stress_known_ = false;               // it is that of u_
@@ -117,6 +118,7 @@ class LawBackend : public Backend {
   fem::HyperelasticBody body_, intact_;
   Machine machine_;
   Route route_;
+  solver::LawCost cost_;  // of the host alone
   std::size_t factor_entries_ = 0;
   fem::HyperelasticPass pass_;
   std::unique_ptr<solver::FiniteDevice> device_, device_of_intact_;

@@ -61,6 +61,8 @@ class FiniteDevice : public FiniteSteps {
   virtual void evaluate(const FiniteTarget& target, bool with_stress, FiniteState& state) = 0;
   /// At a displacement (3 * nodes), per element; of those that count.
   virtual void stress(std::span<const double> u, std::span<Voigt> stress) = 0;
+  /// Of conjugate gradients, so far.
+  [[nodiscard]] virtual std::size_t inner_iterations() const { return 0; }
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
   [[nodiscard]] virtual std::vector<KernelPlan> kernels() const = 0;
 };

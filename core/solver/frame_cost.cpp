@@ -17,6 +17,10 @@ constexpr double kProductSeconds = 120e-9;  // per element of a product K u
 constexpr double kFactorFlops = 26e9;       // of a factor's dense products
 constexpr double kCheckSeconds = 200e-9;    // per element of a full check by plain loops
 
+// A thread beside the frames follows meanwhile, and a busy machine takes twice as long: a frame is
+// not to wait.
+constexpr double kAllowanceOfAThread = 4;
+
 constexpr double kValue = sizeof(double);
 // On a device apart, from the last solution to one under a larger load or with an element less: 490
 // to 500 on boards with frames 100 times stiffer, 208 to 229 without.
@@ -135,14 +139,12 @@ std::size_t loaded_unknowns(const Problem& problem) {
 int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor, std::size_t elements) {
   constexpr double kSolutions = 4;  // of the check, each forward and backward
   constexpr double kUpdate = 3e-5;  // seconds of a frame with a fracture, whatever the size
-  // The thread follows meanwhile, and a busy machine takes twice as long: a frame is not to wait.
-  constexpr double kAllowance = 4;
   const double solve = host_seconds(kValue * real(factor.entries()));
   const double count = real(elements);
   const double making = 2 * multiply_adds(factor.supernodes()) / kFactorFlops +
                         kCheckSeconds * count + 2 * kSolutions * solve;
   const double frame = 1.5 * solve + FrameRates{}.stress * count + kUpdate;
-  return std::clamp(static_cast<int>(kAllowance * making / frame), 48, 256);
+  return std::clamp(static_cast<int>(kAllowanceOfAThread * making / frame), 48, 256);
 }
 
 bool takes_new_factor(std::size_t unknowns, std::size_t elements) {
@@ -154,10 +156,31 @@ bool takes_new_factor(std::size_t unknowns, std::size_t elements) {
          std::clamp(kLargestShare * real(unknowns), kSmallBody, kLargestEvent);
 }
 
+LawCost law_cost(const linear_algebra::Supernodes& order, const Problem& problem,
+                 std::size_t dense) {
+  // Of an element: energy and forces by lanes of AVX2; with the stress.
+  constexpr double kForces = 6e-8, kStress = 8e-8;
+  // Back-solves of a step that pulls and of one with a rupture (docs/figures.md "Motion"; of
+  // statics method.md), each with a force pass and, near the end, its stress.
+  const double quiet = problem.moves() ? 7 : 8, torn = problem.moves() ? 12 : 16;
+  const double count = real(problem.mesh().tets.size());
+  const double values = dense > 0 ? real(dense) * real(dense) : 2 * real(order.value_begin.back());
+  LawCost cost;
+  cost.back_solve_ms = 1e3 * host_seconds(kValue * values);
+  cost.forces_ms = 1e3 * kForces * count;
+  cost.stress_ms = 1e3 * kStress * count;
+  cost.tangent_ms = 1e3 * seconds_of_a_tangent(order, problem) / kAllowanceOfAThread;
+  const auto step = [&](double back_solves) {
+    return back_solves * (cost.back_solve_ms + cost.forces_ms) + 2 * cost.stress_ms;
+  };
+  cost.quiet_ms = step(quiet);
+  cost.torn_ms = step(torn);
+  return cost;
+}
+
 double seconds_of_a_tangent(const linear_algebra::Supernodes& order, const Problem& problem) {
   constexpr double kElement = 1.6e-6;  // its tangent
-  constexpr double kAllowance = 4;     // as above
-  return kAllowance *
+  return kAllowanceOfAThread *
          (2 * multiply_adds(order) / kFactorFlops + kElement * real(problem.mesh().tets.size()));
 }
 

@@ -101,4 +101,16 @@ struct FrameCost {
 [[nodiscard]] double seconds_of_a_tangent(const linear_algebra::Supernodes& order,
                                           const Problem& problem);
 
+/// What a step of a body is made of by laws of finite deformation or in motion, on the host.
+struct LawCost {
+  double back_solve_ms = 0, forces_ms = 0, stress_ms = 0;  ///< of one each
+  double tangent_ms = 0;  ///< assembled and factored, beside the steps
+  double quiet_ms = 0;    ///< a step of the usual count of back-solves
+  double torn_ms = 0;     ///< after a rupture
+};
+
+/// `dense`: unknowns of a dense inverse that is the base; 0: the factor is.
+[[nodiscard]] LawCost law_cost(const linear_algebra::Supernodes& order, const Problem& problem,
+                               std::size_t dense);
+
 }  // namespace sunder::solver

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -382,6 +383,24 @@ class Checks(unittest.TestCase):
             (found,) = self.bad(**parts)
             self.assertIn(text, found)
         self.assertEqual(self.bad(rows=[peer, told]), [])
+
+
+    def test_a_random_hand_leaves_numbers_and_neo_hookean_inverts_nothing(self):
+        def hand(law, **counters):
+            made = dict(row(f"motion_hand/{law}/iterations:1/manual_time"), program="bench_motion")
+            return dict(made, counters=dict({"nan": 0.0, "inverted": 0.0}, **counters))
+        good = every_part()["rows"]
+        self.assertEqual(self.bad(rows=good + [hand("neo-hookean"), hand("corotated", inverted=9.0)]), [])
+        for text, bad in (("nan in 1 steps", hand("corotated", nan=1.0)),
+                          ("inverted in 3 steps", hand("neo-hookean", inverted=3.0))):
+            (found,) = self.bad(rows=good + [bad])
+            self.assertIn(text, found)
+
+    def test_a_full_run_has_motion_in_short_steps_and_of_large_bodies(self):
+        rows = [s.rows for p, s in programs.planned("full") if p.name == "bench_motion"]
+        for name in ("motion/30246/dt 200/sunder", "motion/1944/dt 1000/newton cholmod/1e-04",
+                     "motion_rest/1944", "motion_hand/neo-hookean"):
+            self.assertEqual(sum(bool(re.search(r, name)) for r in rows), 1, name)
 
 
 class FiniteDeformation(unittest.TestCase):

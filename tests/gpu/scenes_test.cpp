@@ -147,6 +147,46 @@ INSTANTIATE_TEST_SUITE_P(All, Scenes,
                            return name + "_" + name_of(std::get<1>(tested.param));
                          });
 
+/// Scenes in motion, their first steps, both promised far better than what they may be apart by.
+class MotionScenes : public WithVulkan<testing::TestWithParam<std::string>> {};
+
+TEST_P(MotionScenes, GoAsTheReferenceGoes) {
+  constexpr int kSteps = 6;
+  Scene scene = scene_of("motion/" + GetParam());
+  scene.solver = {.backend = "cpu", .tolerance = 1e-10};
+  const auto reference = std::make_shared<const Problem>(scene);
+  const WatchedBackend vulkan(scene, {.precision = Precision::fp64, .tolerance = 1e-10});
+  std::vector<std::vector<Vec3>> u;
+  std::vector<std::vector<Voigt>> stress;
+  Fractures expected;
+  for (const bool on_device : {false, true}) {
+    Simulation simulation(
+        on_device ? vulkan.problem : reference,
+        on_device ? vulkan.create() : cpu_reference::create(reference, needs_of(*reference)));
+    EXPECT_EQ(simulation.backend().info().backend, on_device ? "vulkan" : "cpu");
+    for (int i = 0; i < kSteps; ++i) simulation.step();
+    u.push_back(simulation.displacement());
+    stress.push_back(simulation.stress());
+    if (on_device) {
+      EXPECT_FALSE(parting(expected, simulation.destroyed()));
+    }
+    expected = simulation.destroyed();
+  }
+  std::vector<std::uint8_t> gone(scene.mesh.tets.size(), 0);
+  for (const DestroyedElement& d : expected) gone[static_cast<std::size_t>(d.element)] = 1;
+  const auto values = [](const std::vector<Vec3>& of) {
+    return std::span<const double>(of.front().data(), 3 * of.size());
+  };
+  const double of_u = displacement_error(scene.mesh, gone, values(u[1]), values(u[0])),
+               of_stress = stress_error(gone, stress[1], stress[0]);
+  std::printf("%zu gone: errors of u %.1e, of stress %.1e\n", expected.size(), of_u, of_stress);
+  EXPECT_LE(of_u, kCrackTolerance);
+  EXPECT_LE(of_stress, kCrackTolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MotionScenes, testing::Values("board", "sheet", "liver"),
+                         [](const auto& tested) { return tested.param; });
+
 /// The yield that the worst element of the board reaches to within a part in 1e12.
 TEST(ScenesAtTheLimit, PartOnlyWithinTheBandAndSayWhy) {
   if (std::getenv("SUNDER_EXPECT_NO_VULKAN")) GTEST_SKIP() << "no Vulkan device is expected";

@@ -56,6 +56,35 @@ TEST(MotionRun, SaysWhereItsWorkWent) {
   }
 }
 
+// The sheet and the liver of scenes/motion to where they have begun to tear, their hands as quick
+// as in the whole scenes.
+TEST(MotionRun, SheetAndLiverTear) {
+  struct Scene {
+    const char* name;
+    std::vector<std::string> how;
+  };
+  const Scene scenes[] = {{"sheet", {"--steps", "60"}},
+                          {"liver", {"--steps", "80", "--set", "instrument.0.ramp=[0, 1.5]"}}};
+  for (const Scene& scene : scenes) {
+    const TempFolder folder;
+    std::vector<std::string> arguments = {
+        "run", std::string(SUNDER_SOURCE "/scenes/motion/") + scene.name + ".toml", "--out",
+        (folder / "out").string(), "--quiet"};
+    arguments.insert(arguments.end(), scene.how.begin(), scene.how.end());
+    const Outcome run = run_program(arguments);
+    ASSERT_EQ(run.exit_code, 0) << scene.name << ": " << run.err;
+    const auto frames = read_csv(folder / "out" / "frames.csv");
+    double ruptures = 0;
+    for (const char* of : {"work", "kinetic", "strain_energy", "dissipated", "events"}) {
+      for (double value : numbers(frames, of)) {
+        EXPECT_TRUE(std::isfinite(value)) << scene.name << ", " << of;
+        if (std::string(of) == "events") ruptures += value;
+      }
+    }
+    EXPECT_GT(ruptures, 5) << scene.name;  // the blade's cuts are five
+  }
+}
+
 TEST(MotionRun, RouteThatKnowsNoMotionSaysWhatDoes) {
   const TempFolder folder;
   const Outcome run =

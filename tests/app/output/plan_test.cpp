@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 
 #include "app/output/program.hpp"
@@ -15,13 +16,15 @@ namespace {
 
 constexpr std::size_t kNodes = 242, kElements = 500, kUnknowns = 3 * (kNodes - 22);
 
-/// The program's plan of the tearing board with some overrides.
+/// The program's plan of the tearing board with some overrides, or of a scene of scenes/.
 class Plan {
  public:
-  explicit Plan(const std::vector<std::string>& overrides) {
+  explicit Plan(const std::vector<std::string>& overrides, const char* scene = nullptr) {
     const TempFolder folder;
     const TearingBoard board(folder);
-    std::vector<std::string> arguments = {"plan", board.scene.string(), "--backend", "cpu"};
+    const std::string path =
+        scene ? std::string(SUNDER_SOURCE "/scenes/") + scene : board.scene.string();
+    std::vector<std::string> arguments = {"plan", path, "--backend", "cpu"};
     for (const std::string& o : overrides) arguments.insert(arguments.end(), {"--set", o});
     const Outcome outcome = run_program(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -99,6 +102,29 @@ TEST(Plan, OfABoardThatTears) {
   ASSERT_EQ(std::sscanf(ms.c_str(), "%lf quiet, %lf with a fracture", &quiet, &fracture), 2) << ms;
   EXPECT_GT(quiet, 0);
   EXPECT_GT(fracture, quiet);
+}
+
+// By what a step of motion is made of: back-solves with their passes over the elements, and the
+// base beside it, which takes longer than any of them.
+TEST(Plan, SaysWhatMotionCosts) {
+  for (const char* scene : {"motion/board.toml", "finite/liver.toml"}) {
+    const Plan plan({}, scene);
+    const auto cost = [&](const std::string& kernel) {
+      const std::string does = plan.of("Kernels of a frame", kernel);
+      const std::size_t at = does.find("about ");
+      return at == std::string::npos ? 0 : std::strtod(does.c_str() + at + 6, nullptr);
+    };
+    const double forces = cost("internal forces"), base = cost("base"), fresh = cost("new base");
+    EXPECT_GT(forces, 0) << plan.text();
+    EXPECT_GT(base, 0);
+    EXPECT_GT(fresh, 5 * base);
+    const std::string ms = plan.of("Engine", "predicted frame [ms]");
+    double quiet = 0, torn = 0;
+    ASSERT_EQ(std::sscanf(ms.c_str(), "%lf quiet, %lf with a fracture", &quiet, &torn), 2) << ms;
+    EXPECT_GT(quiet, 5 * (forces + base));
+    EXPECT_LT(quiet, 12 * (forces + base));
+    EXPECT_GT(torn, 1.5 * quiet);
+  }
 }
 
 TEST(Plan, NamesTheKernelsOfTheRoute) {
