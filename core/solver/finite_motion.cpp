@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "material/linear.hpp"
 #include "solver/frame_cost.hpp"
@@ -466,6 +467,9 @@ void FiniteMotion::stay_within(const FiniteTarget& end, const Scheme& by, std::v
   };
   if (keeps()) return;
   const std::vector<double> whole = next_.u;
+  // Grips that go ahead alone strain the body: then only a better end of the step is a way out.
+  const double most =
+      potential_.grips(u_) == end.grips ? std::numeric_limits<double>::max() : next_.potential;
   const auto go = [&](double part) {
     next_.u = whole;
     for (std::size_t i = 0; part < 1 && i < u_.size(); ++i) {
@@ -474,7 +478,7 @@ void FiniteMotion::stay_within(const FiniteTarget& end, const Scheme& by, std::v
       next_.u[i] = u_[i] + part * (whole[i] - u_[i]);
     }
     potential_.evaluate(end, false, next_);
-    if (!std::isfinite(next_.potential)) return false;
+    if (part < 1 && !(next_.potential <= most)) return false;
     v = velocity_of(next_, by);
     report.balance = balance(end, by, v);
     return keeps();
