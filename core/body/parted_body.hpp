@@ -16,6 +16,10 @@
 
 namespace sunder::fem {
 
+/// The body as a mesh of its own, its new nodes with unknowns like any other's. Elements that have
+/// another form than by their corners are as the mesh has them.
+[[nodiscard]] std::shared_ptr<const Problem> parted_problem(const DamagedBody& body);
+
 /// Whether new nodes of a body can be nodes of a mesh: each has an element, none is tied to its
 /// parent or kept to one that a grip moves, and no element has another form than by its corners.
 [[nodiscard]] bool can_be_parted(const DamagedBody& body);

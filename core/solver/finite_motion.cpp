@@ -96,6 +96,19 @@ void FiniteMotion::go_on_from(const FiniteMotionPast& past) {
   sum_ = past.sum;
 }
 
+void FiniteMotion::go_on_from(const FiniteMotion& before, const fem::Parting& parting) {
+  FiniteMotionPast past = before.past();
+  for (auto* of : {&past.u, &past.v, &past.u_before, &past.v_before, &past.viscous}) {
+    parting.nodal(*of);
+  }
+  for (auto* of : {&past.load, &past.reaction, &past.felt}) parting.forces(*of);
+  past.euler = kEulerSteps;
+  go_on_from(past);
+  rate_ = before.rate_;
+  sum_ = before.sum_;
+  broken_ = before.broken_;
+}
+
 Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
   if (!base_ || rate_ == 0) return {};
   const GripTangent of{{rate_ * (rate_ + options_.damping), mass_},

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "body/parting.hpp"
 #include "solver/finite_minimiser.hpp"
 #include "solver/finite_renewal.hpp"
 
@@ -128,6 +129,9 @@ class FiniteMotion {
   }
   /// Goes on from there, of the body as it is now.
   void go_on_from(const FiniteMotionPast& past);
+
+  /// The same from another one's state: of the same body before nodes parted.
+  void go_on_from(const FiniteMotion& before, const fem::Parting& parting);
 
   [[nodiscard]] double time() const { return time_; }                   ///< sum of the steps [s]
   [[nodiscard]] double strain_energy() const { return state_.energy; }  ///< [N mm]

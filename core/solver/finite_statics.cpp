@@ -67,6 +67,20 @@ void FiniteStatics::update_parts() {
   path_.body_changed();
 }
 
+void FiniteStatics::go_on_from(const FiniteStatics& before, const fem::Parting& parting) {
+  u_ = before.u_;
+  parting.nodal(u_);
+  reached_ = before.reached_;
+  parting.forces(reached_.force);
+  fem::add_parted_grips(body_.problem, reached_.grips);
+  first_ = before.first_;
+  suspected_ = before.suspected_;
+  since_check_ = before.since_check_;
+  check_after_ = before.check_after_;
+  shown_.u = u_;
+  potential_.evaluate(reached_, false, shown_);
+}
+
 void FiniteStatics::destroyed(std::span<const Index>) { update_parts(); }
 
 Eigen::MatrixXd FiniteStatics::grip_compliance() {

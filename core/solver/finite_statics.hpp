@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "body/parting.hpp"
 #include "solver/damped_path.hpp"
 #include "solver/finite_minimiser.hpp"
 #include "solver/finite_renewal.hpp"
@@ -78,6 +79,9 @@ class FiniteStatics {
 
   /// The device is gone: from the last state at rest on by the host.
   void leave_device();
+
+  /// Goes on from another one's last rest: of the same body before nodes parted.
+  void go_on_from(const FiniteStatics& before, const fem::Parting& parting);
 
   /// These have just left; the body says so already.
   void destroyed(std::span<const Index> elements);

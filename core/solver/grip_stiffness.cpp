@@ -106,6 +106,19 @@ class BlockConjugateGradients {
   FiniteBase& base_;
 };
 
+/// Grips of nodes that have parted go with those of the others.
+Eigen::MatrixXd of_whole_grips(const Problem& problem, Eigen::MatrixXd s) {
+  const auto parted = problem.parted_grips();
+  const Eigen::Index whole = s.rows() - static_cast<Eigen::Index>(parted.size());
+  for (std::size_t i = 0; i < parted.size(); ++i) {
+    s.row(parted[i]) += s.row(whole + static_cast<Eigen::Index>(i));
+  }
+  for (std::size_t i = 0; i < parted.size(); ++i) {
+    s.col(parted[i]) += s.col(whole + static_cast<Eigen::Index>(i));
+  }
+  return s.topLeftCorner(whole, whole);
+}
+
 }  // namespace
 
 Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u,
@@ -136,7 +149,7 @@ Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u
       s(i, i) += of.inertia.of(gripped[g]);
     }
   }
-  return (s + s.transpose()) / 2;
+  return of_whole_grips(problem, (s + s.transpose()) / 2);
 }
 
 Eigen::MatrixXd compliance_factor(const Eigen::MatrixXd& stiffness,

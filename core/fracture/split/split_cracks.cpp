@@ -125,7 +125,9 @@ void SplitCracks::decide(const FractureState& state, Decision& decision) {
   }
   for (const Driven& driven : driven_) grow(driven, state, decision);
   if (decision.change.come.empty()) bear(state, decision);
-  if (ran_through_) tie_what_is_loose(state, decision);
+  // At finite deformation what is loose is frozen, in motion it moves on.
+  const bool ties = !problem_.finite() && !problem_.moves();
+  if (ran_through_ && ties) tie_what_is_loose(state, decision);
   decision.change.held = true;
   std::sort(decision.excluded.begin(), decision.excluded.end());
 }
