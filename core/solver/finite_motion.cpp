@@ -96,7 +96,7 @@ void FiniteMotion::go_on_from(const FiniteMotionPast& past) {
   sum_ = past.sum;
 }
 
-void FiniteMotion::go_on_from(const FiniteMotion& before, const fem::Parting& parting) {
+void FiniteMotion::go_on_from(FiniteMotion& before, const fem::Parting& parting) {
   FiniteMotionPast past = before.past();
   for (auto* of : {&past.u, &past.v, &past.u_before, &past.v_before, &past.viscous}) {
     parting.nodal(*of);
@@ -107,6 +107,9 @@ void FiniteMotion::go_on_from(const FiniteMotion& before, const fem::Parting& pa
   rate_ = before.rate_;
   sum_ = before.sum_;
   broken_ = before.broken_;
+  parted_ = true;
+  base_ = std::move(before.base_);
+  if (base_) base_->part(potential_.problem(), parting, mass_);
 }
 
 Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
@@ -266,7 +269,7 @@ bool FiniteMotion::better_where_it_is(const FiniteTarget& target) const {
 bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
                          Report& report) {
   base_ = projected_base(moving_.body(), u, pattern(), report.factors, {}, inertia);
-  if (base_ && options_.inverse) base_->keep_inverse();
+  if (base_ && options_.inverse && !parted_) base_->keep_inverse();
   return base_ != nullptr;
 }
 

@@ -130,8 +130,8 @@ class FiniteMotion {
   /// Goes on from there, of the body as it is now.
   void go_on_from(const FiniteMotionPast& past);
 
-  /// The same from another one's state: of the same body before nodes parted.
-  void go_on_from(const FiniteMotion& before, const fem::Parting& parting);
+  /// The same from another one's state, with its base: of the same body before nodes parted.
+  void go_on_from(FiniteMotion& before, const fem::Parting& parting);
 
   [[nodiscard]] double time() const { return time_; }                   ///< sum of the steps [s]
   [[nodiscard]] double strain_energy() const { return state_.energy; }  ///< [N mm]
@@ -202,6 +202,7 @@ class FiniteMotion {
   bool linear_;  // by law "linear" alone
   FiniteState state_, next_;
   std::unique_ptr<FiniteBase> base_;
+  bool parted_ = false;    // a base that is made within a step keeps no inverse
   int until_taken_ = 0;    // steps, of the base that has been asked for
   FiniteRenewal renewal_;  // last: its thread reads pattern_ and mass_
 };

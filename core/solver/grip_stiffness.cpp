@@ -60,8 +60,9 @@ AtGrips tangent_at_grips(const RestingBody& now,
 /// step wins next to nothing of its energy, or finds a direction without stiffness.
 class BlockConjugateGradients {
  public:
-  BlockConjugateGradients(const linear_algebra::SparseMatrix& k, FiniteBase& base)
-      : k_(k), base_(base) {}
+  BlockConjugateGradients(const linear_algebra::SparseMatrix& k,
+                          const linear_algebra::Supernodes& order, FiniteBase& base)
+      : k_(k), order_(order), base_(base) {}
 
   void solve(const RowMajor& b, RowMajor& x) {
     using Row = Eigen::RowVectorXd;
@@ -71,7 +72,7 @@ class BlockConjugateGradients {
     std::vector<std::uint8_t> done(static_cast<std::size_t>(b.cols()), 0);
     for (int i = 0; i < kMostFollowing; ++i) {
       z = r;
-      base_.solve_ordered(z);
+      base_.solve_ordered(order_, z);
       const Row now = (r.array() * z.array()).colwise().sum();
       if (i == 0) {
         p = z;
@@ -103,6 +104,7 @@ class BlockConjugateGradients {
 
  private:
   const linear_algebra::SparseMatrix& k_;
+  const linear_algebra::Supernodes& order_;
   FiniteBase& base_;
 };
 
@@ -137,7 +139,7 @@ Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u
   }
   base.turn(now, u);
   RowMajor follows;
-  BlockConjugateGradients(k, base).solve(-at.between, follows);
+  BlockConjugateGradients(k, order, base).solve(-at.between, follows);
   // Rayleigh and Ritz: an error of how the rest follows enters squared.
   const RowMajor forces = at.between + RowMajor(k.selfadjointView<Eigen::Lower>() * follows);
   Eigen::MatrixXd s = at.within + at.between.transpose() * follows;
