@@ -31,7 +31,9 @@ struct OpenDevice {
 }  // namespace
 
 finite::Machine law_machine(const Problem& problem, const VulkanOptions& options) {
-  const std::string whom = problem.moves() ? "motion" : "laws of finite deformation";
+  const std::string whom = problem.moves()    ? "motion"
+                           : problem.finite() ? "laws of finite deformation"
+                                              : "cracks that split";
   if (options.lent) {
     throw DeviceError("backend vulkan computes " + whom +
                       " on a device of its own, not on a host's; use backend cpu or auto");

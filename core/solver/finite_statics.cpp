@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "material/linear.hpp"
 #include "solver/finite_start.hpp"
 #include "solver/grip_stiffness.hpp"
 #include "solver/instrument_block.hpp"
@@ -50,7 +51,8 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       reached_(potential_.target({})),
       check_after_(options.check_after),
       path_(potential_, minimiser_, pattern_),
-      renewal_(options.rest, options.inverse) {
+      renewal_(options.rest, options.inverse),
+      linear_(std::ranges::all_of(body.law_of_volume, [](const Law* l) { return l == &kLinear; })) {
   shown_.u = u_;
   shown_.f.assign(u_.size(), 0.0);
 }
@@ -378,7 +380,8 @@ void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   worn_ += std::max(0, report.back_solves - kOfAGoodBase);
   const bool hard = worn_ > options_.renew_after || report.rank > options_.most_rank / 2;
   if (hard) check_after_ = options_.check_after;
-  const bool check = first_ || since_check_ >= check_after_;
+  // The linear law has one rest, which is stable.
+  const bool check = !linear_ && (first_ || since_check_ >= check_after_);
   if (options_.taken_after > 0 && !first_) {
     ask(hard, check);
     return;

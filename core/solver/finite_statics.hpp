@@ -134,7 +134,8 @@ class FiniteStatics {
   int since_check_ = 0, since_asked_ = 0, check_after_;
   bool judged_alone_ = false;  // what is asked for is no base
   DampedPath path_;
-  FiniteRenewal renewal_;  // last: its thread reads pattern_
+  FiniteRenewal renewal_;  // its thread reads pattern_
+  bool linear_;            // by law "linear" alone
 };
 
 }  // namespace sunder::solver
