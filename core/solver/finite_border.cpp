@@ -7,7 +7,7 @@ namespace sunder::solver {
 namespace {
 
 // Of S, squared diagonal of its factor against C: what is left holds by rounding alone.
-constexpr double kLeastLeft = 1e-10;
+constexpr double kLeastOfBorder = 1e-10;
 
 }  // namespace
 
@@ -102,7 +102,7 @@ bool FiniteBorder::follow(const Base& base, const Eigen::MatrixXd& m,
   s_.compute((s + s.transpose()) / 2);
   if (s_.info() != Eigen::Success) return false;
   const Eigen::ArrayXd left = s_.matrixLLT().diagonal().array().square();
-  return (left > kLeastLeft * c.diagonal().array()).all();
+  return (left > kLeastOfBorder * c.diagonal().array()).all();
 }
 
 void FiniteBorder::gather(const Eigen::VectorXd& forces, Eigen::VectorXd& on_base) const {

@@ -9,6 +9,7 @@
 #include "solver/frame_cost.hpp"
 #include "solver/grip_stiffness.hpp"
 #include "solver/instrument_block.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::solver {
 namespace {
@@ -26,6 +27,8 @@ constexpr double kFewestStepsOfABase = 2, kMostStepsOfABase = 12;
 // steps makes more of the tangent, so that fewer do.
 constexpr int kMostOnAGoodBase = 8, kMostOfShortSteps = 5;
 constexpr double kShortStep = 1.0 / 500;  // [s]
+// On a factor that was made where the base before it stalled.
+constexpr int kOnAnExactFactor = 10;
 // What of its way a step is left that its cap ended with too much energy.
 constexpr double kPartsOfAWay[] = {0.5, 0.25, 0.125, 0};
 // A step that would leave no more than this of the forces that act, times the tolerance of stress,
@@ -311,10 +314,25 @@ bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
   if (once(options_.most_back_solves)) return true;
   if (!needs_base()) return false;
   for (int i = 0; i < options_.most_factors; ++i) {
-    if (!renew(next_.u, inertia_of_base(target), report)) return false;
-    if (once(options_.most_back_solves)) return true;
+    if (!take_exact(next_.u, inertia_of_base(target), report) &&
+        !renew(next_.u, inertia_of_base(target), report)) {
+      return false;
+    }
+    if (once(kOnAnExactFactor)) return true;
   }
   return false;
+}
+
+/// A base of the exact tangent, for the state in work alone; false: it is not positive definite.
+bool FiniteMotion::take_exact(const std::vector<double>& u, const fem::Inertia& inertia,
+                              Report& report) {
+  ++report.factors;
+  try {
+    base_ = std::make_unique<FiniteBase>(moving_.body(), u, fem::Tangent::exact, pattern(), inertia);
+    return true;
+  } catch (const NumericalError&) {
+    return false;
+  }
 }
 
 FiniteMotionReport FiniteMotion::step(const Load& load, double dt) {

@@ -27,7 +27,7 @@ struct FiniteMotionOptions {
   int most_iterations = 0;      ///< back-solves of a step; 0: as many as it takes
   int pairs = 5;                ///< of L-BFGS
   int most_back_solves = 25;    ///< on one base
-  int most_factors = 12;        ///< of one step, made where the base stalls; not under a cap
+  int most_factors = 20;        ///< of one step, made where the base stalls; not under a cap
   bool turn = true;             ///< the base by the nodes' rotations
   Index most_rank = 300;        ///< unknowns that what has left touches, before a new base is made
   /// Back-solves of a step after which the base is renewed beside the steps; none: 8, of steps
@@ -165,6 +165,8 @@ class FiniteMotion {
   [[nodiscard]] bool renew(const std::vector<double>& u, const fem::Inertia& inertia,
                            Report& report);
   [[nodiscard]] bool minimise(const FiniteTarget& target, Report& report);
+  [[nodiscard]] bool take_exact(const std::vector<double>& u, const fem::Inertia& inertia,
+                                Report& report);
   void take(const FiniteTarget& end, const Scheme& by, double dt, Report& report);
   [[nodiscard]] std::vector<double> velocity_of(const FiniteState& state, const Scheme& by) const;
   [[nodiscard]] FiniteMotionBalance balance(const FiniteTarget& end, const Scheme& by,
