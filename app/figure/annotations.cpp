@@ -171,8 +171,7 @@ std::string crack_paths(const Problem& problem, const BoardPlane& plane, const P
     if (state.split) {  // its lips show the path, and where they are far apart it lies nowhere
       for (const CrackTip& tip : crack.tips) {
         if (tip.ended) continue;
-        const Vec2 at =
-            canvas.map(drawn_point(problem, plane, pose, state, crack, tip.position));
+        const Vec2 at = canvas.map(drawn_point(problem, plane, pose, state, crack, tip.position));
         out += svg::circle(at, 3.6, "fill=\"#fff\" stroke=\"#0a84ff\" stroke-width=\"1.8\"");
       }
       continue;

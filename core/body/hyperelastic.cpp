@@ -7,7 +7,6 @@
 #include "body/deformation.hpp"
 #include "body/law_stress.hpp"
 #include "material/linear.hpp"
-#include "material/linear.hpp"
 
 namespace sunder::fem {
 namespace {

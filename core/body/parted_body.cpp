@@ -36,7 +36,8 @@ bool can_be_parted(const DamagedBody& body) {
          });
 }
 
-PartedBody::PartedBody(const DamagedBody& body) : whole_(body.problem()), body_(parted_problem(body)) {
+PartedBody::PartedBody(const DamagedBody& body)
+    : whole_(body.problem()), body_(parted_problem(body)) {
   for (const NewNode& node : body.forms().new_nodes()) add(node, kNone);
   std::vector<Index> gone;
   for (Index e = 0; e < whole_.tet_count(); ++e) {

@@ -104,7 +104,7 @@ BackendInfo LawBackend::info() const {
   } else {
     info.why = say.what + ": by the " + (by_inverse() ? "dense inverse" : "factor") + " of " +
                say.tangent +
-               (!now_.device       ? ""
+               (!now_.device   ? ""
                 : by_inverse() ? ", made by the host; forces, stress and L-BFGS on the device"
                                : ", by the host; forces and stress on the device");
   }

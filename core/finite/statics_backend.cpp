@@ -31,8 +31,7 @@ solver::FiniteStaticsOptions statics_options(const Problem& problem, bool invers
 class StaticsBackend final : public LawBackend {
  public:
   StaticsBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine)
-      : LawBackend(shared, std::move(needs), std::move(machine)),
-        statics_(statics()) {
+      : LawBackend(shared, std::move(needs), std::move(machine)), statics_(statics()) {
     if (this->needs().pristine) {
       pristine_.emplace(intact(), statics_options(*shared, by_inverse()), device_of_intact());
     }
@@ -56,8 +55,8 @@ class StaticsBackend final : public LawBackend {
             "a recent tangent", ", once an iteration of L-BFGS"};
   }
   [[nodiscard]] std::unique_ptr<solver::FiniteStatics> statics() const {
-    return std::make_unique<solver::FiniteStatics>(
-        body(), statics_options(problem(), by_inverse()), device());
+    return std::make_unique<solver::FiniteStatics>(body(), statics_options(problem(), by_inverse()),
+                                                   device());
   }
   void leave_device() override {
     statics_->leave_device();

@@ -103,9 +103,9 @@ bool FiniteBase::follow_border() {
   const auto tangent = [this](Index e) {
     return fem::element_tangent({*problem_, laws_}, e, u_, kind_);
   };
-  return border_.follow({tangent, [this](Eigen::MatrixXd& of) { solve_columns(of); }, out_,
-                         coupled_, inertia_},
-                        m_, touched_);
+  return border_.follow(
+      {tangent, [this](Eigen::MatrixXd& of) { solve_columns(of); }, out_, coupled_, inertia_}, m_,
+      touched_);
 }
 
 /// By A alone, nothing lost and nothing turned.
@@ -169,7 +169,8 @@ void FiniteBase::push_group(std::span<const Index> unknowns) {
   block_.resize(columns_.size(), kColumnGroup);
   columns_.multiply(path_, rows_, full_vectors(count), block_);
   g_.block(0, first, touched_count(), count) = block_.topLeftCorner(touched_count(), count);
-  g_.block(first, 0, count, touched_count()) = block_.topLeftCorner(touched_count(), count).transpose();
+  g_.block(first, 0, count, touched_count()) =
+      block_.topLeftCorner(touched_count(), count).transpose();
   for (Index s : path_) rows_.middleRows(nodes.first[s], nodes.width(s)).setZero();
 }
 

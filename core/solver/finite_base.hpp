@@ -6,8 +6,8 @@
 // With T the unknowns of elements that have left, G = (A^-1)_TT and D the sum of their tangents at
 // the base's state, (A - D)^-1 = A^-1 + A^-1 E_T M E_T^T A^-1, where M = D + D R S^-1 R^T D,
 // G = R R^T, S = I - R^T D R: the tangent without them is positive definite where S is. Unknowns Z
-// that nothing reaches any more are held still: G without them is their Schur complement. Nodes that
-// have parted since are a border of all this (finite_border.hpp).
+// that nothing reaches any more are held still: G without them is their Schur complement. Nodes
+// that have parted since are a border of all this (finite_border.hpp).
 #pragma once
 
 #include <Eigen/Core>

@@ -26,7 +26,8 @@ void FiniteBorder::part(const Problem& now, std::span<const double> mass) {
       if (is[a] == corners(e)[a]) continue;
       for (int axis = 0; axis < 3; ++axis) {
         const Index own = now.dof(is[a], axis);
-        if (own != kNone) from_[static_cast<std::size_t>(own - own_)] = now.dof(corners(e)[a], axis);
+        if (own != kNone)
+          from_[static_cast<std::size_t>(own - own_)] = now.dof(corners(e)[a], axis);
       }
     }
   }
@@ -92,7 +93,8 @@ bool FiniteBorder::follow(const Base& base, const Eigen::MatrixXd& m,
   }
   Eigen::MatrixXd s = c;
   for (Index i = 0; i < count; ++i) {
-    for (const auto& [row, value] : b_[static_cast<std::size_t>(i)]) s.row(i) -= value * z_.row(row);
+    for (const auto& [row, value] : b_[static_cast<std::size_t>(i)])
+      s.row(i) -= value * z_.row(row);
   }
   z_touched_.resize(static_cast<Eigen::Index>(touched.size()), count);
   for (std::size_t i = 0; i < touched.size(); ++i) {

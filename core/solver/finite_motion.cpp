@@ -328,7 +328,8 @@ bool FiniteMotion::take_exact(const std::vector<double>& u, const fem::Inertia& 
                               Report& report) {
   ++report.factors;
   try {
-    base_ = std::make_unique<FiniteBase>(moving_.body(), u, fem::Tangent::exact, pattern(), inertia);
+    base_ =
+        std::make_unique<FiniteBase>(moving_.body(), u, fem::Tangent::exact, pattern(), inertia);
     return true;
   } catch (const NumericalError&) {
     return false;

@@ -127,7 +127,7 @@ class FiniteStatics {
   FiniteState shown_, state_, probe_;
   Eigen::VectorXd motion_, following_;
   std::unique_ptr<FiniteBase> base_;
-  bool parted_ = false;  // a base that is made within a step keeps no inverse
+  bool parted_ = false;     // a base that is made within a step keeps no inverse
   bool suspected_ = false;  // the last state at rest may be unstable
   bool first_ = true;       // nothing has come to rest so far
   int worn_ = 0;            // back-solves beyond a few a step since the base was made or asked for

@@ -96,8 +96,8 @@ class SplitCracksOnTheDevice : public WithVulkan<testing::TestWithParam<Torn>> {
 TEST_P(SplitCracksOnTheDevice, GrowAsOnTheHost) {
   const Torn& of = GetParam();
   const Scene scene = scene_of(of);
-  WatchedBackend watched(
-      scene, {.precision = of.precision, .tolerance = kTight, .route = of.route});
+  WatchedBackend watched(scene,
+                         {.precision = of.precision, .tolerance = kTight, .route = of.route});
   const Course found = run(watched.problem, watched.create(), of.growths);
   EXPECT_EQ(found.info.backend, "vulkan");
   EXPECT_EQ(found.info.why.find("took over"), std::string::npos) << found.info.why;

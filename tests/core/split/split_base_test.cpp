@@ -25,8 +25,8 @@ TEST_P(SplitBase, SolvesAsAFreshFactorOfTheSplitTangentDoes) {
                 GetParam() % 3 == 0};
   std::mt19937 random(11);
   const Mesh mesh = shaken_board({10, 8, 2, 10, 8, 2}, random, 0.2);
-  const auto problem = std::make_shared<const Problem>(
-      scene_of({Route::factor, true, 0.3, false}, mesh));
+  const auto problem =
+      std::make_shared<const Problem>(scene_of({Route::factor, true, 0.3, false}, mesh));
   fem::DamagedBody damaged(problem);
   const std::vector<const Law*> laws = fem::one_law(*problem, way.law);
   const auto masses = [](const Problem& of) {

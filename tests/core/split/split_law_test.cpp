@@ -39,13 +39,13 @@ Scene scene_of(const LawCase& c, const Mesh& mesh) {
 
 class SplitLaw : public ::testing::TestWithParam<LawCase> {};
 
-INSTANTIATE_TEST_SUITE_P(
-    All, SplitLaw,
-    ::testing::Values(LawCase{MaterialLaw::corotated, Route::factor, false},
-                      LawCase{MaterialLaw::corotated, Route::inverse, true},
-                      LawCase{MaterialLaw::neo_hookean, Route::factor, true},
-                      LawCase{MaterialLaw::neo_hookean, Route::inverse, false}),
-    name_of);
+INSTANTIATE_TEST_SUITE_P(All, SplitLaw,
+                         ::testing::Values(LawCase{MaterialLaw::corotated, Route::factor, false},
+                                           LawCase{MaterialLaw::corotated, Route::inverse, true},
+                                           LawCase{MaterialLaw::neo_hookean, Route::factor, true},
+                                           LawCase{MaterialLaw::neo_hookean, Route::inverse,
+                                                   false}),
+                         name_of);
 
 /// Displacements of the grips, of those too that have parted.
 std::vector<double> grips_of(const Problem& problem, const Problem& fresh) {
