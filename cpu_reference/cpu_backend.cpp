@@ -28,6 +28,7 @@ solver::PlanDevice plan_device(std::size_t memory) {
   device.routes = {Route::inverse, Route::condensed, Route::factor, Route::cg};
   device.memory = memory;
   device.splits = true;
+  device.presses_lips = true;
   return device;
 }
 

@@ -225,6 +225,10 @@ std::size_t LawBackend::check_options() {
     refuse("fracture.crack = \"split\"", "tangents have no new unknowns yet",
            "law \"linear\" in statics, or crack \"destroyed\"");
   }
+  if (needs().contact) {
+    refuse("fracture.contact = true", "what keeps lips apart belongs to the small matrix",
+           "law \"linear\" in statics, or contact false");
+  }
   if (solver.precision == Precision::fp32 && !on_device) {
     refuse("precision fp32", "backend cpu computes in fp64 only", "precision fp64 or auto");
   }

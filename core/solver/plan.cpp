@@ -89,6 +89,11 @@ void check_split(const Needs& needs, const SolverOptions& solver, const PlanDevi
                       " does not follow cracks that split; use backend cpu, or fracture.crack "
                       "\"destroyed\"");
   }
+  if (needs.contact && !device.presses_lips) {
+    throw DeviceError("backend " + device.backend +
+                      " does not keep the lips of split cracks apart; use backend cpu, or "
+                      "fracture.contact = false");
+  }
   if (solver.update == Update::eager) {
     throw DeviceError(
         "update eager writes over an inverse that has no room for the unknowns which split nodes "

@@ -22,6 +22,7 @@ struct PlanDevice {
   bool fp32 = false;           ///< stores in fp32 too, with sums in fp64
   bool fp64 = true;            ///< computes in fp64
   bool splits = false;         ///< follows cracks that split
+  bool presses_lips = false;   ///< keeps their lips apart
   bool displayed = false;      ///< a host draws the whole body's fields from it
   Index inverts_from = kNone;  ///< unknowns from which on it computes an inverse itself
   FrameRates rates;
