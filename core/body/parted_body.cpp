@@ -18,6 +18,8 @@ std::shared_ptr<const Problem> parted_problem(const DamagedBody& body) {
 
 bool can_be_parted(const DamagedBody& body) {
   const Problem& problem = body.problem();
+  // Springs between lips are ties of offsets, at any later time.
+  if (problem.scene().fracture.contact) return false;
   std::vector<std::uint8_t> used(body.forms().new_nodes().size(), 0);
   for (const auto& [element, form] : body.forms().came()) {
     for (Index n : form.corners) {

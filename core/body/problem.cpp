@@ -217,7 +217,13 @@ void Problem::check_crack(const FractureOptions& f, const FractureModelRow& mode
                      "fracture.max_new_nodes = " + std::to_string(f.max_new_nodes) +
                          "; it must be at least 0, the default");
   }
-  if (f.crack != CrackWay::split) return;
+  if (f.crack != CrackWay::split) {
+    if (!f.contact) return;
+    throw InputError(
+        InputFault::out_of_range,
+        "fracture.contact = true needs fracture.crack = \"split\", whose lips it keeps "
+        "apart");
+  }
   if (!model.grows_cracks) {
     throw InputError(InputFault::out_of_range,
                      "fracture.crack = \"split\" needs model \"B\", which grows cracks; model " +

@@ -276,6 +276,10 @@ std::size_t LawBackend::check_options() {
                           const std::string& instead) {
     throw DeviceError(what + " cannot serve " + whom + ": " + why + "; use " + instead);
   };
+  if (needs().contact) {
+    refuse("fracture.contact = true", "what keeps lips apart belongs to the small matrix of one base",
+           "law \"linear\" in statics on backend cpu, or contact false");
+  }
   if (solver.precision == Precision::fp32 && !on_device) {
     refuse("precision fp32", "backend cpu computes in fp64 only", "precision fp64 or auto");
   }

@@ -231,6 +231,7 @@ TEST(SplitRun, ANewRunTakesItsFilesAway) {
   const auto summary = read_json(folder / "out" / "summary.json");
   EXPECT_EQ(summary["crack"], "destroyed");
   EXPECT_TRUE(summary["crack_area"].is_null());
+  EXPECT_TRUE(summary["lip_overlap"].is_null());
   EXPECT_EQ(summary["new_nodes"], 0);
 }
 
@@ -240,7 +241,7 @@ TEST(SplitRun, NodesThatAreSpentLeaveTheTipsAtRest) {
                                    "--set", "fracture.max_new_nodes=5"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto summary = read_json(folder / "out" / "summary.json");
-  EXPECT_LT(summary["new_nodes"], torn().summary["new_nodes"]);
+  EXPECT_LE(summary["new_nodes"], 5);
   EXPECT_TRUE(mentions(summary["warnings"].dump(), "max_new_nodes")) << summary["warnings"].dump();
 }
 
