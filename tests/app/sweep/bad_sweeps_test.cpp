@@ -81,7 +81,7 @@ TEST_F(BadSweeps, AreRefusedBeforeTheFirstRun) {
                     3,
                     "--vary material.upper.yeild=1"},
            BadSweep{"last_value",
-                    {"--vary", "time.steps=1,2,x", "--out", "OUT"},
+                    {"--vary", "time.steps=2,3,x", "--out", "OUT"},
                     3,
                     "--vary time.steps=x"},
            BadSweep{"index",
@@ -108,14 +108,14 @@ TEST_F(BadSweeps, AreRefusedBeforeTheFirstRun) {
 
 TEST_F(BadSweeps, AFolderThatHoldsOneIsNotTakenForAnother) {
   const auto out = folder_ / "s";
-  ASSERT_EQ(run_program(sweep_of(board_, out, {"--steps", "1"})).exit_code, 0);
+  ASSERT_EQ(run_program(sweep_of(board_, out, {"--steps", "2"})).exit_code, 0);
   const std::string table = read_file(out / "sweep.csv");
-  const Outcome again = run_program(sweep_of(board_, out, {"--steps", "1"}));
+  const Outcome again = run_program(sweep_of(board_, out, {"--steps", "2"}));
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_NE(again.err.find("holds a sweep with 6 runs done; go on with it by --resume"),
             std::string::npos)
       << again.err;
-  const Outcome other = run_program(sweep_of(board_, out, {"--steps", "2", "--resume"}));
+  const Outcome other = run_program(sweep_of(board_, out, {"--steps", "3", "--resume"}));
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("is another one: it has other --set or options"), std::string::npos)
       << other.err;
@@ -137,10 +137,10 @@ TEST_F(BadSweeps, TwoInOneFolder) {
                               "wait until it is done\n");
     kill(first, SIGINT);
   };
-  const Outcome first =
-      run_program({"sweep", board_.scene.string(), "--vary", "instrument.0.force.1=-1:-2:100000",
-                   "--steps", "1000", "--out", out.string(), "--quiet"},
-                  control);
+  const Outcome first = run_program(
+      {"sweep", board_.scene.string(), "--vary", "instrument.0.force.1=-1:-2:300", "--vary",
+       "material.upper.yield=2:3:300", "--steps", "1000", "--out", out.string(), "--quiet"},
+      control);
   EXPECT_EQ(first.exit_code, 130) << first.err;
 }
 
@@ -148,10 +148,10 @@ TEST_F(BadSweeps, AFullDiskCostsNoRunBefore) {
   const auto out = folder_ / "s";
   // sweep.json fits, the rows do not.
   RunControl control;
-  control.file_size_limit = 4096;
+  control.file_size_limit = 8192;
   const Arguments many{"sweep",   board_.scene.string(),
                        "--vary",  "instrument.0.force.1=-1:-2:60",
-                       "--steps", "1",
+                       "--steps", "2",
                        "--jobs",  "2",
                        "--out",   out.string(),
                        "--quiet"};

@@ -59,7 +59,7 @@ TEST(SweepParts, OfAnotherSweepOrDivisionAreRefused) {
   EXPECT_EQ(plain.exit_code, 2);
   EXPECT_NE(plain.err.find("holds parts of a sweep; use --part or --merge"), std::string::npos)
       << plain.err;
-  ASSERT_EQ(run_program(sweep_of(board, out, {"--part", "2/2", "--steps", "1"})).exit_code, 0);
+  ASSERT_EQ(run_program(sweep_of(board, out, {"--part", "2/2", "--steps", "3"})).exit_code, 0);
   const Outcome other = run_program(sweep_of(board, out, {"--merge"}));
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("part-2-of-2 is of another sweep than the parts before: it has other"),

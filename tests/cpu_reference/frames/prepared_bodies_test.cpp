@@ -92,7 +92,7 @@ TEST(PreparedBodies, AreOnesOfTheirOwnWhereTheStiffnessIs) {
   EXPECT_TRUE(same([](Scene& s) { s.instruments.clear(); }));
   EXPECT_FALSE(same([](Scene& s) { s.materials.at("upper").young = 6; }));
   EXPECT_FALSE(same([](Scene& s) { s.materials.at("upper").poisson = 0.3; }));
-  EXPECT_FALSE(same([](Scene& s) { s.supports.front().axes = Axes{6}; }));
+  EXPECT_FALSE(same([](Scene& s) { s.supports.push_back({lower_right_corner(), Axes{4}}); }));
   EXPECT_FALSE(same([](Scene& s) { s.mesh.nodes[100].z() += 1e-3; }));
   EXPECT_FALSE(same([](Scene& s) { std::swap(s.mesh.tets[0], s.mesh.tets[1]); }));
 }
