@@ -158,8 +158,13 @@ SweepArguments sweep_arguments(const Options& o) {
   arguments.vary = o.vary;
   if (!o.out || o.out->empty()) throw UsageError("sunder sweep needs --out, a folder of its own");
   arguments.out = *o.out;
+  constexpr int kMostJobs = 1024;
   arguments.jobs = o.jobs ? whole_number("--jobs", *o.jobs, 1)
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (arguments.jobs > kMostJobs) {
+    throw UsageError("--jobs is " + in_quotes(*o.jobs) + "; allowed are at most " +
+                     std::to_string(kMostJobs) + ", and a processor each is enough");
+  }
   if (o.part) std::tie(arguments.part, arguments.parts) = part_of(*o.part);
   if (o.merge && (o.part || o.resume)) {
     throw UsageError("--merge takes neither --part nor --resume");

@@ -14,6 +14,7 @@
 #include "app/commands/progress.hpp"
 #include "app/commands/waiting.hpp"
 #include "app/output/text.hpp"
+#include "app/sweep/csv.hpp"
 #include "app/sweep/order.hpp"
 #include "app/sweep/outcome.hpp"
 #include "app/sweep/parts.hpp"
@@ -40,12 +41,14 @@ void write_tables(ResultFolder& folder, const Description& sweep, const Rows& ro
   folder.write("sweep.html", sweep_html(sweep, rows, note));
 }
 
-/// The first of them by number that has failed; 0: none.
+/// The first of them by number that has failed, or the end.
+Rows::const_iterator first_failed(const Rows& rows) {
+  return std::ranges::find_if(rows, [](const auto& row) { return exit_code_of(row.second) != 0; });
+}
+
 int exit_code_of_all(const Rows& rows) {
-  for (const auto& [run, row] : rows) {
-    if (const int exit_code = exit_code_of(row)) return exit_code;
-  }
-  return 0;
+  const auto first = first_failed(rows);
+  return first == rows.end() ? 0 : exit_code_of(first->second);
 }
 
 long long failed_count(const Rows& rows) {
@@ -127,7 +130,8 @@ void Sweep::work() {
 
 void Sweep::compute() {
   std::vector<std::thread> threads;
-  for (int job = 1; job < arguments_.jobs; ++job) threads.emplace_back([this] { work(); });
+  const auto jobs = std::min(static_cast<std::size_t>(arguments_.jobs), order_.size());
+  for (std::size_t job = 1; job < jobs; ++job) threads.emplace_back([this] { work(); });
   work();
   for (std::thread& thread : threads) thread.join();
 }
@@ -171,7 +175,11 @@ void Sweep::print_summary(long long failed) const {
   std::cout << counted(computed, "run") << " in " << rounded(seconds, 3) << " s by "
             << counted(arguments_.jobs, "job");
   if (before_ > 0) std::cout << ", " << grouped(before_) << " were there before";
-  std::cout << ": " << counted(failed, "run") << " failed\n  results in " << folder_.path().string()
+  std::cout << ": " << counted(failed, "run") << " failed\n";
+  if (const auto first = first_failed(rows_); first != rows_.end()) {
+    std::cout << "  run " << first->first << ": " << csv_cells(first->second).back() << "\n";
+  }
+  std::cout << "  results in " << folder_.path().string()
             << ": sweep.csv sweep.html sweep.json sweep.rows" << std::endl;
 }
 

@@ -94,7 +94,7 @@ TEST(Sweep, ARunThatFailsIsARowAndTheOthersGoOn) {
     EXPECT_EQ(rows[i].at("status"), i < 2 ? "done" : "numerical");
     EXPECT_EQ(rows[i].at("message").empty(), i < 2);
   }
-  EXPECT_NE(run.out.find("2 runs failed"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("2 runs failed\n  run 2: "), std::string::npos) << run.out;
 }
 
 }  // namespace
