@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "cpu_reference/cpu_reference.hpp"
+#include "cpu_reference/prepared_bodies.hpp"
 #ifdef SUNDER_GPU
 #include "gpu/vulkan_backend.hpp"
 #endif
@@ -113,6 +115,23 @@ CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs need
   std::string names;
   for (const std::string& n : backend_names()) names += (names.empty() ? "" : ", ") + n;
   throw DeviceError("there is no backend \"" + name + "\"; this build has " + names);
+}
+
+std::shared_ptr<cpu_reference::PreparedBodies> prepared_bodies(std::size_t most) {
+  return std::make_shared<cpu_reference::PreparedBodies>(most);
+}
+
+CreatedBackend create_prepared_backend(std::shared_ptr<const Problem> problem, Needs needs,
+                                       std::shared_ptr<cpu_reference::PreparedBodies> prepared) {
+  if (!problem) throw UsageError("a backend needs a problem");
+  const std::string& name = problem->scene().solver.backend;
+  if (name != "cpu" && name != "auto") {
+    throw DeviceError("prepared bodies are shared by backend \"cpu\" alone, not by \"" + name +
+                      "\"");
+  }
+  cpu_reference::CpuOptions options;
+  options.prepared = std::move(prepared);
+  return {cpu_reference::create(std::move(problem), std::move(needs), options), {}};
 }
 
 }  // namespace sunder

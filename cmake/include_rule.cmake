@@ -29,7 +29,8 @@ set(rooms
   "app/figure:core/sunder app/output"
   "app/report:core/sunder app/output app/figure"
   "app/reproduce:core/sunder api/sunder app/input app/output app/figure app/report"
-  "app/commands:core/sunder api/sunder app/input app/mesh_board app/output app/figure app/report app/reproduce"
+  "app/sweep:core/sunder api/sunder app/input app/output app/report"
+  "app/commands:core/sunder api/sunder app/input app/mesh_board app/output app/figure app/report app/reproduce app/sweep"
   "app/cli:core/sunder api/sunder app/input app/commands"
 )
 # Where the headers of a room are looked for: "body/element.hpp" is core/body/element.hpp.

@@ -8,6 +8,7 @@
 #include "cpu_reference/cpu_reference.hpp"
 #include "cpu_reference/frame_fields.hpp"
 #include "cpu_reference/frame_kernels.hpp"
+#include "cpu_reference/prepared_bodies.hpp"
 #include "cpu_reference/routes.hpp"
 #include "finite/law_backend.hpp"
 #include "solver/available_memory.hpp"
@@ -30,23 +31,26 @@ solver::PlanDevice plan_device(std::size_t memory) {
   return device;
 }
 
-/// The factor of the intact body, where it fits the memory.
+/// The factor of the intact body, where it fits the memory; `prepared` may have it, and null not.
 std::optional<IntactBody> intact_body(const Problem& problem, const Needs& needs,
-                                      solver::Plan& plan) {
+                                      solver::Plan& plan, PreparedBody* prepared) {
   const auto analysis = std::move(plan.analysis);
   if (!analysis) return std::nullopt;
   const bool rebases =
       needs.damage && !plan.eager && plan.route != Route::condensed && plan.route != Route::cg;
-  return std::optional<IntactBody>(std::in_place, problem, rebases, *analysis);
+  std::optional<IntactBody> body(std::in_place, problem, rebases, *analysis,
+                                 prepared ? prepared->factor() : factor_of(*analysis));
+  if (prepared && plan.route == Route::inverse && !plan.eager) body->inverse = prepared->inverse();
+  return body;
 }
 
 class CpuBackend final : public Backend {
  public:
   CpuBackend(std::shared_ptr<const Problem> problem, Needs needs, solver::Plan plan,
-             std::chrono::milliseconds rest)
+             std::chrono::milliseconds rest, PreparedBody* prepared)
       : Backend(problem, std::move(needs)),
         plan_(std::move(plan)),
-        intact_(intact_body(*problem, this->needs(), plan_)),
+        intact_(intact_body(*problem, this->needs(), plan_, prepared)),
         fields_(damaged_body(), this->needs(), plan_.region),
         route_(make_route(rest)),
         frame_(damaged_body(), *route_, fields_, yardstick(), fall_back()),
@@ -317,9 +321,13 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
   if (problem->moves() || problem->finite()) {
     return finite::create(std::move(problem), std::move(needs), {info_of_device(), memory});
   }
-  solver::Plan plan = solver::make_plan(*problem, needs, plan_device(memory));
+  solver::PlanDevice device = plan_device(memory);
+  const std::shared_ptr<PreparedBody> prepared =
+      options.prepared ? options.prepared->of(problem) : nullptr;
+  if (prepared) device.analysis = [&] { return prepared->analysis(); };
+  solver::Plan plan = solver::make_plan(*problem, needs, device);
   return std::make_unique<CpuBackend>(std::move(problem), std::move(needs), std::move(plan),
-                                      options.rest);
+                                      options.rest, prepared.get());
 }
 
 }  // namespace sunder::cpu_reference

@@ -15,12 +15,16 @@ namespace sunder::cpu_reference {
 /// What every backend on it says of itself; route, update and the rest are still to come.
 [[nodiscard]] BackendInfo info_of_device();
 
-/// What a test sets beside the scene's options.
+class PreparedBodies;
+
+/// What is set beside the scene's options, most of it by tests.
 struct CpuOptions {
   std::size_t memory = 0;  ///< bytes that it may take; 0: those that are free
   /// The thread that makes new bases rests so long before each thing that it does: no result may
   /// depend on how long it takes.
   std::chrono::milliseconds rest{0};
+  /// Null: this backend shares nothing with others.
+  std::shared_ptr<PreparedBodies> prepared = {};
 };
 
 /// Creates it for a problem. Throws DeviceError for a route or precision that it does not offer,

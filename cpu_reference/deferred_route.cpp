@@ -30,7 +30,9 @@ class DeferredRoute final : public InverseRoute {
     std::iota(all_.begin(), all_.end(), 0);
     std::unique_ptr<solver::Base> base;
     if (dense) {
-      base = std::make_unique<solver::InverseBase>(intact.factor);
+      base = intact.inverse
+                 ? std::make_unique<solver::InverseBase>(intact.factor, std::move(intact.inverse))
+                 : std::make_unique<solver::InverseBase>(intact.factor);
     } else {
       base = std::make_unique<solver::FactorBase>(intact.factor);
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "sunder/error.hpp"
 
@@ -14,6 +15,11 @@ int machine_threads() {
 }
 
 }  // namespace
+
+std::shared_ptr<const linear_algebra::Factor> factor_of(const fem::Analysis& analysis) {
+  return std::make_shared<const linear_algebra::Factor>(
+      analysis.nodes, analysis.ordered, linear_algebra::FactorWork{.threads = machine_threads()});
+}
 
 void Grips::set_columns(Eigen::MatrixXd columns) {
   columns_ = std::move(columns);
@@ -54,8 +60,11 @@ void Grips::hold(Eigen::VectorXd& x, std::span<const double> displacement) const
 }
 
 IntactBody::IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis)
-    : factor(analysis.nodes, analysis.ordered, {.threads = machine_threads()}),
-      grips(problem.gripped_dofs()) {
+    : IntactBody(problem, rebases, analysis, factor_of(analysis)) {}
+
+IntactBody::IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis,
+                       std::shared_ptr<const linear_algebra::Factor> of)
+    : factor_(std::move(of)), factor(*factor_), grips(problem.gripped_dofs()) {
   if (rebases) {
     stiffness = std::make_unique<fem::OrderedStiffness>(problem, analysis.nodes, analysis.ordered);
   }

@@ -40,17 +40,31 @@ class Grips {
   mutable Eigen::VectorXd gap_;                               // room to work in
 };
 
+/// Throws NumericalError when the stiffness is not positive definite in double precision.
+[[nodiscard]] std::shared_ptr<const linear_algebra::Factor> factor_of(
+    const fem::Analysis& analysis);
+
 /// The intact body's factor with its grips; the preconditioner of the CG route where it fits the
 /// memory.
 struct IntactBody {
   /// `rebases`: factors of the damaged body are to follow.
   IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis);
+  /// With a factor that is there already, and others may read too.
+  IntactBody(const Problem& problem, bool rebases, const fem::Analysis& analysis,
+             std::shared_ptr<const linear_algebra::Factor> of);
   /// x = K0^-1 f with x_G = displacement (empty: 0). By one thread at a time.
   void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
              Eigen::VectorXd& x) const;
-  linear_algebra::Factor factor;
+
+ private:
+  std::shared_ptr<const linear_algebra::Factor> factor_;
+
+ public:
+  const linear_algebra::Factor& factor;
   Grips grips;
   std::unique_ptr<fem::OrderedStiffness> stiffness;  // empty without `rebases`, or handed on
+  /// The whole inverse where it is there already; empty: nobody has made it, or handed on.
+  std::shared_ptr<const Eigen::MatrixXd> inverse;
 
  private:
   mutable linear_algebra::SolveWork work_;

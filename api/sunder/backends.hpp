@@ -2,6 +2,7 @@
 // The ONE list of backends. A further backend is one entry in create_backend.cpp.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,8 +21,22 @@ struct CreatedBackend {
   std::vector<std::string> warnings;  ///< e.g. why "auto" fell back
 };
 
+namespace cpu_reference {
+class PreparedBodies;
+}
+
+/// For create_prepared_backend(): at most so many intact bodies (1 or more), those asked for last.
+[[nodiscard]] std::shared_ptr<cpu_reference::PreparedBodies> prepared_bodies(std::size_t most);
+
 /// Creates the backend that the problem's solver options ask for. Throws DeviceError when there is
 /// no such backend or device, or when it offers no such route or precision.
 [[nodiscard]] CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs needs);
+/// As create_backend() by the backend cpu, and no result other by a bit. Problems of one intact
+/// stiffness share what is made of it: its order, its factor and the dense inverse (a law of finite
+/// deformation and motion: nothing). By any number of threads at once. Throws DeviceError where the
+/// scene asks for another backend than "cpu" or "auto".
+[[nodiscard]] CreatedBackend create_prepared_backend(
+    std::shared_ptr<const Problem> problem, Needs needs,
+    std::shared_ptr<cpu_reference::PreparedBodies> prepared);
 
 }  // namespace sunder

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/options.hpp"
 
+#include <algorithm>
+#include <thread>
+#include <tuple>
+#include <utility>
+
 #include "app/cli/values.hpp"
 #include "app/commands/commands.hpp"
 #include "sunder/backends.hpp"
@@ -66,6 +71,24 @@ void add_reproduce_options(CLI::App& command, Options& o) {
   command.add_flag("--quiet", o.quiet, "No progress on stderr");
 }
 
+void add_sweep_options(CLI::App& command, Options& o) {
+  command
+      .add_option("--vary", o.vary,
+                  "A key of the scene with its values, KEY.PATH=A,B,C or KEY.PATH=LOW:HIGH:COUNT; "
+                  "several multiply, the first the slowest")
+      ->type_name("KEY.PATH=VALUES")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--out", o.out, "Folder for the table (needed)")->type_name("DIR");
+  command.add_option("--jobs", o.jobs, "Runs at a time (default: one a processor)")->type_name("N");
+  command.add_option("--part", o.part, "Part i of n: every n-th run, into DIR/part-i-of-n")
+      ->type_name("I/N");
+  command.add_flag("--merge", o.merge, "Make the one table of the parts that are there");
+  command.add_flag("--resume", o.resume, "Go on with the sweep that is in the folder");
+  command.add_flag("--quiet", o.quiet, "No progress and no warnings on stderr");
+}
+
 SceneArguments scene_arguments(const Options& o) {
   SceneArguments arguments;
   arguments.scene = o.scene;
@@ -110,6 +133,48 @@ ReproduceArguments reproduce_arguments(const Options& o) {
   return arguments;
 }
 
+/// "2/8".
+std::pair<int, int> part_of(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto refuse = [&] {
+    throw UsageError("--part is " + in_quotes(text) +
+                     "; allowed is I/N with I from 1 to N such as 2/8");
+  };
+  if (slash == std::string::npos) refuse();
+  int i = 0, n = 0;
+  try {
+    i = whole_number("--part", text.substr(0, slash), 1);
+    n = whole_number("--part", text.substr(slash + 1), 1);
+  } catch (const UsageError&) {
+    refuse();
+  }
+  if (i > n) refuse();
+  return {i, n};
+}
+
+SweepArguments sweep_arguments(const Options& o) {
+  SweepArguments arguments;
+  arguments.scene = scene_arguments(o);
+  arguments.vary = o.vary;
+  if (!o.out || o.out->empty()) throw UsageError("sunder sweep needs --out, a folder of its own");
+  arguments.out = *o.out;
+  constexpr int kMostJobs = 1024;
+  arguments.jobs = o.jobs ? whole_number("--jobs", *o.jobs, 1)
+                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (arguments.jobs > kMostJobs) {
+    throw UsageError("--jobs is " + in_quotes(*o.jobs) + "; allowed are at most " +
+                     std::to_string(kMostJobs) + ", and a processor each is enough");
+  }
+  if (o.part) std::tie(arguments.part, arguments.parts) = part_of(*o.part);
+  if (o.merge && (o.part || o.resume)) {
+    throw UsageError("--merge takes neither --part nor --resume");
+  }
+  arguments.merge = o.merge;
+  arguments.resume = o.resume;
+  arguments.quiet = o.quiet;
+  return arguments;
+}
+
 BoardArguments board_arguments(const Options& o) {
   BoardArguments arguments;
   BoardOptions& board = arguments.options;
@@ -135,6 +200,10 @@ void add_commands(CLI::App& app, Options& options) {
   add_output_options(plan_command, options);
   plan_command.add_flag("--measure", options.measure,
                         "Run the first steps and print the time of every stage and device pass");
+  CLI::App& sweep_command =
+      *app.add_subcommand("sweep", "Many runs of a scene with other values, in one table");
+  add_scene_options(sweep_command, options);
+  add_sweep_options(sweep_command, options);
   add_reproduce_options(
       *app.add_subcommand("reproduce", "The paper's experiments with figures and verdicts"),
       options);
@@ -150,6 +219,7 @@ void add_commands(CLI::App& app, Options& options) {
 int carry_out(const CLI::App& app, const Options& options, Interruption& interruption) {
   if (app.got_subcommand("run")) return run(run_arguments(options), interruption);
   if (app.got_subcommand("plan")) return plan(run_arguments(options).scene, options.measure);
+  if (app.got_subcommand("sweep")) return sweep_scene(sweep_arguments(options), interruption);
   if (app.got_subcommand("reproduce"))
     return reproduce_paper(reproduce_arguments(options), interruption);
   if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options), interruption);

@@ -18,6 +18,10 @@ struct Options {
   Text out, backend, device, route, update, precision, steps, snapshots;
   std::vector<std::string> set;
   bool series = false, quiet = false, measure = false;
+  // sweep
+  std::vector<std::string> vary;
+  Text jobs, part;
+  bool merge = false, resume = false;
   // reproduce
   bool quick = false;
   // mesh board

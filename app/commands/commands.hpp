@@ -35,6 +35,15 @@ struct ReproduceArguments {
   bool quiet = false;
 };
 
+struct SweepArguments {
+  SceneArguments scene;
+  std::vector<std::string> vary;  ///< "key.path=a,b,c" or "key.path=lo:hi:n"
+  std::filesystem::path out;
+  int jobs = 1;
+  int part = 1, parts = 1;
+  bool merge = false, resume = false, quiet = false;
+};
+
 int run(const RunArguments& arguments, Interruption& interruption);
 /// `measure`: run the first steps and print the time of each stage and pass.
 int plan(const SceneArguments& arguments, bool measure);
@@ -42,6 +51,7 @@ int list_devices();
 /// The tissues that a material's `preset` may name, each number with its source.
 int list_materials();
 int reproduce_paper(const ReproduceArguments& arguments, Interruption& interruption);
+int sweep_scene(const SweepArguments& arguments, Interruption& interruption);
 int mesh_board(const BoardArguments& arguments, Interruption& interruption);
 
 }  // namespace sunder::app

@@ -17,20 +17,21 @@ double seconds_between(auto a, auto b) { return std::chrono::duration<double>(b 
 
 }  // namespace
 
-Progress::Progress(int steps, bool shown, std::string counts)
+Progress::Progress(int steps, bool shown, std::string counts, std::string unit)
     : steps_(steps),
       counts_(std::move(counts)),
+      unit_(std::move(unit)),
       shown_(shown),
       terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() { finish(); }
 
 std::string Progress::line(int steps_done, int broken, double seconds) const {
-  std::string text = "step " + std::to_string(steps_done) + "/" + std::to_string(steps_) + ", " +
+  std::string text = unit_ + " " + std::to_string(steps_done) + "/" + std::to_string(steps_) + ", " +
                      std::to_string(broken) + " " + counts_;
   if (steps_done == 0 || !(seconds > 0)) return text;
   const double rate = steps_done / seconds;
-  return text + ", " + rounded(rate, 3) + " steps/s, " + rounded((steps_ - steps_done) / rate, 2) +
+  return text + ", " + rounded(rate, 3) + " " + unit_ + "s/s, " + rounded((steps_ - steps_done) / rate, 2) +
          " s left";
 }
 

@@ -10,8 +10,9 @@ namespace sunder::app {
 
 class Progress {
  public:
-  /// `shown` false: silent. `counts`: what it says of the number beside the step, "destroyed".
-  Progress(int steps, bool shown, std::string counts);
+  /// `shown` false: silent. `counts`: what it says of the number beside the step, "destroyed";
+  /// `unit`: what the steps are.
+  Progress(int steps, bool shown, std::string counts, std::string unit = "step");
   ~Progress();
 
   /// After a step, and within one after each event (then `steps_done` has not grown).
@@ -24,7 +25,7 @@ class Progress {
   [[nodiscard]] std::string line(int steps_done, int broken, double seconds) const;
 
   int steps_;
-  std::string counts_;
+  std::string counts_, unit_;
   bool shown_, terminal_;
   bool open_ = false;  ///< a line on the terminal has no end yet
   Clock::time_point start_ = Clock::now(), last_ = start_;

@@ -6,7 +6,6 @@
 #include "app/input/scene_toml.hpp"
 
 namespace sunder::app {
-namespace {
 
 std::vector<std::string> overrides_of(const SceneArguments& arguments) {
   std::vector<std::string> all = arguments.set;
@@ -24,8 +23,6 @@ std::vector<std::string> overrides_of(const SceneArguments& arguments) {
   add_number("time.steps", arguments.steps);
   return all;
 }
-
-}  // namespace
 
 OpenedScene open_scene(const SceneArguments& arguments) {
   OpenedScene opened;

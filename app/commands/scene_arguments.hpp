@@ -19,6 +19,9 @@ struct SceneArguments {
   std::vector<std::string> set;  ///< "key.path=value"
 };
 
+/// All of them as texts of --set, the named options last.
+[[nodiscard]] std::vector<std::string> overrides_of(const SceneArguments& arguments);
+
 struct OpenedScene {
   std::shared_ptr<const Problem> problem;
   std::vector<std::string> warnings;  ///< of reading; the problem's own come on top

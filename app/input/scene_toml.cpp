@@ -30,7 +30,7 @@ toml::table parse_toml(std::string_view text, const std::string& source) {
 ParsedScene read_with_mesh(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides,
                            std::vector<std::string>* warnings) {
-  ParsedScene parsed = parse_scene(read_file(path, kLargestScene), path.string(), overrides);
+  ParsedScene parsed = parse_scene(scene_text(path), path.string(), overrides);
   parsed.scene.mesh = import_mesh(path.parent_path() / parsed.mesh_path, warnings);
   return parsed;
 }
@@ -38,9 +38,11 @@ ParsedScene read_with_mesh(const std::filesystem::path& path,
 }  // namespace
 
 ParsedScene parse_scene(std::string_view text, const std::string& source,
-                        const std::vector<std::string>& overrides) {
+                        const std::vector<std::string>& overrides,
+                        const std::vector<std::string>& varied) {
   toml::table parsed = parse_toml(text, source);
   for (const std::string& override_text : overrides) apply_override(parsed, override_text);
+  for (const std::string& override_text : varied) apply_override(parsed, override_text, "--vary");
 
   const TomlTable root(parsed, source, "", key_names(""));
   ParsedScene result;
@@ -64,6 +66,8 @@ ParsedScene parse_scene(std::string_view text, const std::string& source,
   result.places = collect_places(parsed, source);
   return result;
 }
+
+std::string scene_text(const std::filesystem::path& path) { return read_file(path, kLargestScene); }
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                  std::vector<std::string>* warnings) {

@@ -33,8 +33,13 @@ struct ParsedScene {
   ScenePlaces places;
 };
 
-/// `source` (the file) begins messages. Throws InputError.
+/// `source` (the file) begins messages; `varied` are overrides of --vary, which come last. Throws
+/// InputError.
 [[nodiscard]] ParsedScene parse_scene(std::string_view text, const std::string& source,
-                                      const std::vector<std::string>& overrides = {});
+                                      const std::vector<std::string>& overrides = {},
+                                      const std::vector<std::string>& varied = {});
+
+/// The text of a scene's file. Throws InputError.
+[[nodiscard]] std::string scene_text(const std::filesystem::path& path);
 
 }  // namespace sunder::app

@@ -29,7 +29,8 @@ std::string quoted_path(const std::string& path) {
 }  // namespace
 
 std::string location(const toml::source_region& region, const std::string& file) {
-  if (region.path && region.path->starts_with("--set "))
+  // Of an option: an override.
+  if (region.path && region.path->starts_with("--"))
     return shortened(*region.path, kLongestOverride);
   if (region.begin.line == 0) return file;
   return file + ":" + std::to_string(region.begin.line) + ":" + std::to_string(region.begin.column);

@@ -77,7 +77,7 @@ class TomlTable {
   std::vector<std::string> allowed_;
 };
 
-/// "file:line:column", the file alone when the region has no line, or the --set text that made it.
+/// "file:line:column", the file alone when the region has no line, or the option that made it.
 [[nodiscard]] std::string location(const toml::source_region& region, const std::string& file);
 
 /// `path.key`, the key in quotes where TOML wants it so ("", "a b").

@@ -3,21 +3,27 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "solver/columns.hpp"
 
 namespace sunder::solver {
 
-InverseBase::InverseBase(const linear_algebra::Factor& factor) : factor_(factor) {
+// Not made symmetric: each column as solved is good to 1e-12 of stress, the mean of column and row
+// to 3e-11.
+Eigen::MatrixXd InverseBase::inverse_of(const linear_algebra::Factor& factor) {
   std::vector<Index> all(static_cast<std::size_t>(factor.cholesky().size()));
   std::iota(all.begin(), all.end(), 0);
-  // Not made symmetric: each column as solved is good to 1e-12 of stress, the mean of column and
-  // row to 3e-11.
-  x_ = factor.inverse_columns(all);
-  of_load_.setZero(x_.rows());
-  right_side_.setZero(x_.rows());
+  return factor.inverse_columns(all);
+}
+
+InverseBase::InverseBase(const linear_algebra::Factor& factor,
+                         std::shared_ptr<const Eigen::MatrixXd> inverse)
+    : factor_(factor), x_(std::move(inverse)) {
+  of_load_.setZero(x_->rows());
+  right_side_.setZero(x_->rows());
   projected_.resize(1024);
-  place_.assign(static_cast<std::size_t>(x_.rows()), kNone);
+  place_.assign(static_cast<std::size_t>(x_->rows()), kNone);
   touched_.reserve(place_.size());
   forces_.reserve(place_.size());
   vectors_.reserve(1024);
@@ -40,8 +46,8 @@ void InverseBase::push(std::span<const Difference> vectors, linear_algebra::RowM
     }
   }
   for (std::size_t j = 0; j < vectors.size(); ++j) {
-    const double* a = x_.col(vectors[j].dof).data();
-    const double* b = vectors[j].other == kNone ? nullptr : x_.col(vectors[j].other).data();
+    const double* a = x_->col(vectors[j].dof).data();
+    const double* b = vectors[j].other == kNone ? nullptr : x_->col(vectors[j].other).data();
     for (std::size_t i = 0; i < vectors_.size(); ++i) {
       const auto [dof, other] = vectors_[i];
       double value = b ? a[dof] - b[dof] : a[dof];
@@ -73,7 +79,7 @@ void InverseBase::apply(std::span<const Index> dofs, std::span<const double> val
     factor_.solve(right_side_, u, work_);
   } else {
     u.setZero(size());
-    add_columns(x_, dofs, values, u);
+    add_columns(*x_, dofs, values, u);
   }
 }
 
@@ -104,7 +110,7 @@ void InverseBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
 }
 
 std::vector<BufferPlan> InverseBase::buffers() const {
-  return {{"inverse (dense, n x n)", static_cast<std::size_t>(x_.size()) * sizeof(double)}};
+  return {{"inverse (dense, n x n)", static_cast<std::size_t>(x_->size()) * sizeof(double)}};
 }
 
 }  // namespace sunder::solver

@@ -110,13 +110,14 @@ void require(const RouteRow& row, const Question& q) {
 }
 
 /// Counts what all routes of a host are made by, before it is computed.
-std::unique_ptr<const fem::Analysis> analyse(Question& q) {
+std::shared_ptr<const fem::Analysis> analyse(Question& q) {
   const std::size_t least =
       static_cast<std::size_t>(q.problem.tet_count()) * (kAssembly + kElement);
   if (least > q.device.memory) {
     refuse("even route cg", least, q, "use a coarser mesh or a larger machine");
   }
-  auto analysis = fem::analyse(q.problem);
+  std::shared_ptr<const fem::Analysis> analysis =
+      q.device.analysis ? q.device.analysis() : fem::analyse(q.problem);
   q.factor_entries = analysis->entries();
   q.factor_bytes = factor_bytes(*analysis, q.needs);
   return analysis;

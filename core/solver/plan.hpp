@@ -2,6 +2,7 @@
 // Which route, update and precision carry a scene on a device, and why: one rule for every device.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,8 @@ struct PlanDevice {
   bool displayed = false;      ///< a host draws the whole body's fields from it
   Index inverts_from = kNone;  ///< unknowns from which on it computes an inverse itself
   FrameRates rates;
+  /// Of the problem that is planned for, from whoever may have it already; empty: fem::analyse.
+  std::function<std::shared_ptr<const fem::Analysis>()> analysis = {};
   [[nodiscard]] bool has(Route route) const;
 };
 
@@ -38,7 +41,7 @@ struct Plan {
   std::vector<std::string> left_out;  ///< by that route, in words
   /// Of the intact body's factor, where the device has route factor; empty: there is no room for
   /// it, and an incomplete one preconditions conjugate gradients.
-  std::unique_ptr<const fem::Analysis> analysis;
+  std::shared_ptr<const fem::Analysis> analysis;
 
   /// Of a frame, as far as the plan knows it.
   [[nodiscard]] FrameShape shape(const Problem& problem, const Needs& needs) const;

@@ -31,7 +31,7 @@ TEST_P(WrongUsageTest, IsOneSentenceAndExitCode2) {
 }
 
 const std::string kCommands =
-    R"(allowed is "run", "plan", "reproduce", "mesh", "devices", "materials" or "help")";
+    R"(allowed is "run", "plan", "sweep", "reproduce", "mesh", "devices", "materials" or "help")";
 
 INSTANTIATE_TEST_SUITE_P(
     All, WrongUsageTest,
@@ -79,6 +79,19 @@ INSTANTIATE_TEST_SUITE_P(
                    {"run", "a.toml", "--set", "time.steps"},
                    "--set is \"time.steps\"; allowed is KEY.PATH=VALUE"},
         WrongUsage{"out_empty", {"run", "a.toml", "--out", ""}, "--out is \"\""},
+        WrongUsage{"sweep_jobs",
+                   {"sweep", "a.toml", "--out", "x", "--jobs", "two"},
+                   "--jobs is \"two\"; allowed is a whole number from 1"},
+        WrongUsage{"sweep_threads",
+                   {"sweep", "a.toml", "--out", "x", "--jobs", "99999"},
+                   "--jobs is \"99999\"; allowed are at most 1024"},
+        WrongUsage{"sweep_part",
+                   {"sweep", "a.toml", "--out", "x", "--part", "0/2"},
+                   "--part is \"0/2\"; allowed is I/N"},
+        WrongUsage{"sweep_out", {"sweep", "a.toml", "--vary", "a=1"}, "needs --out"},
+        WrongUsage{"sweep_vary",
+                   {"sweep", "a.toml", "--out", "x"},
+                   "a sweep needs --vary; allowed is KEY.PATH=A,B,C"},
         WrongUsage{"mesh", {"mesh"}, "sunder mesh needs a command; allowed is \"board\""},
         WrongUsage{"mesh_cube", {"mesh", "cube"}, "no command \"cube\"; allowed is \"board\""},
         WrongUsage{"mesh_file", {"mesh", "board"}, "--output is required"},

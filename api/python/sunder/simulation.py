@@ -1,0 +1,402 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A run: its steps, its fields, what broke."""
+from __future__ import annotations
+
+import ctypes as c
+from typing import Any, Callable, Iterator
+
+import numpy as np
+
+from . import _arrays, _c, _words
+from .errors import HandleError, InputError, check
+from .scene import Scene, as_dict, text_of
+
+_lib = _c.library
+_CAUSES = {0: "mss", 1: "sif", 2: "preset", 3: "script", 4: "principal"}
+
+
+class Step(_c.structs["sunder_step"]):
+    """What a step has come to; members as in sunder.h: step, load_factor, events, destroyed,
+    compliance [N mm], error, max_yield_ratio, ms_total, strain_max, time [s], kinetic ..."""
+    _sized = True
+
+    def as_dict(self) -> dict[str, Any]:
+        """All members by name."""
+        return as_dict(self)
+
+    def __repr__(self):
+        return (f"Step(step={self.step}, load_factor={self.load_factor:.6g}, events={self.events}, "
+                f"destroyed={self.destroyed}, error={self.error:.3g})")
+
+
+def _dtype(name, *left_out):
+    """A struct of results as numpy's, whose records can lie in the library's own form."""
+    struct = _c.structs[name]
+    kinds = {"names": [], "formats": [], "offsets": [], "itemsize": c.sizeof(struct)}
+    for member, kind in struct._fields_:
+        if member in ("struct_size", "reserved", *left_out):
+            continue
+        kinds["names"].append(member)
+        text = getattr(kind, "_type_", None) is c.c_char
+        kinds["formats"].append(f"S{c.sizeof(kind)}" if text else np.dtype(kind))
+        kinds["offsets"].append(getattr(struct, member).offset)
+    return np.dtype(kinds)
+
+
+# A step is to cost no more than its frame: what Python does for one is some microseconds.
+_STEP = bytes(Step())
+_new_step, _step, _byref = Step.from_buffer_copy, _lib.sunder_simulation_step, c.byref
+
+EVENT = _dtype("sunder_event")
+CRACK = _dtype("sunder_crack")
+TIP = _dtype("sunder_tip")
+
+
+class Simulation:
+    """A scene that runs. A context manager; closing twice does no harm.
+
+    scene: a Scene, or what Scene() takes.
+    log: called with (level, text), level 0 info, 1 warning, 2 error.
+    progress: called with a dict (phase, step, steps, events, destroyed) before each phase of the
+        set-up and after each event of a step; a true result cancels (Cancelled).
+
+    Shapes are by the mesh at creation, n nodes and m tetrahedra. Each field takes `out`, an array of
+    its shape and type, into which the library writes; without it is a new one. The library keeps its
+    state where it computes, so a field is one copy of it and never two.
+    """
+
+    def __init__(self, scene: Scene | Any, *,
+                 log: Callable[[int, str], None] | None = None,
+                 progress: Callable[[dict[str, int]], Any] | None = None):
+        self._handle = None
+        self._open_grips: Grips | None = None
+        if not isinstance(scene, Scene):
+            with Scene(scene) as made:
+                self._create(made, log, progress)
+        else:
+            self._create(scene, log, progress)
+
+    def _create(self, scene, log, progress):
+        scene._give_materials()
+        if scene.mesh is None:
+            raise InputError("the scene has no mesh")
+        self.mesh = scene.mesh
+        self.title = scene.title
+        self.instruments = list(scene.instruments)
+        self._raised: BaseException | None = None
+        self._callbacks = self._make_callbacks(log, progress)
+        handle = c.c_void_p()
+        status = _lib.sunder_simulation_create(scene.handle, c.byref(self._callbacks), c.byref(handle))
+        self._check(status)
+        self._handle = handle.value
+
+    def _make_callbacks(self, log, progress):
+        callbacks = _c.structs["sunder_callbacks"]()
+        kinds = dict(_c.structs["sunder_callbacks"]._fields_)
+        # What a callback raises ends the call that it was made in, and comes out of that.
+        if log is not None:
+            def on_log(_, level, text):
+                try:
+                    log(level, (text or b"").decode("utf-8", "replace"))
+                except BaseException as error:
+                    self._raised = error
+            self._on_log = kinds["log"](on_log)
+            callbacks.log = self._on_log
+        if progress is not None:
+            def on_progress(_, where):
+                try:
+                    state = _c.structs["sunder_progress"].from_address(where)
+                    return 1 if self._raised or progress(as_dict(state)) else 0
+                except BaseException as error:
+                    self._raised = error
+                    return 1
+            self._on_progress = kinds["progress"](on_progress)
+            callbacks.progress = self._on_progress
+        return callbacks
+
+    def _check(self, status):
+        raised, self._raised = self._raised, None
+        if raised is not None:
+            raise raised
+        if status:
+            check(status)
+
+    def __enter__(self) -> "Simulation":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def __del__(self):
+        self.close()
+
+    def close(self) -> None:
+        """Gives its memory back."""
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            _lib.sunder_simulation_destroy(handle)
+
+    @property
+    def handle(self) -> int:
+        """The number by which the C interface knows it."""
+        if not self._handle:
+            raise HandleError("the simulation is closed")
+        return self._handle
+
+    # ---- steps
+
+    def step(self) -> Step:
+        """The next step: loads, displacement, stress, decision, update, until nothing breaks. Raises
+        OrderError when all are done, NumericalError (the last good results can be read), Cancelled."""
+        step = _new_step(_STEP)
+        status = _step(self._handle, _byref(step))
+        if status or self._raised:
+            self._check(status)
+        return step
+
+    def step_by(self, dt: float) -> Step:
+        """In motion: the next step, of `dt` [s] in place of the scene's."""
+        step = Step()
+        self._check(_lib.sunder_simulation_step_by(self._handle, dt, c.byref(step)))
+        return step
+
+    def steps(self) -> Iterator[Step]:
+        """The steps that are left, one after the other."""
+        from .errors import OrderError
+        while True:
+            try:
+                step = self.step()
+            except OrderError:
+                return
+            yield step
+
+    def run(self, progress: bool | Callable[[Step], Any] = False) -> list[Step]:
+        """All steps that are left. progress: True shows a line on a terminal or in a notebook."""
+        from ._progress import Line
+        show = Line(self.title) if progress is True else progress or (lambda step: None)
+        done = []
+        try:
+            for step in self.steps():
+                done.append(step)
+                show(step)
+        finally:
+            if isinstance(show, Line):
+                show.close()
+        return done
+
+    def cancel(self) -> None:
+        """Ends the running step after its current event; from any thread."""
+        check(_lib.sunder_simulation_cancel(self.handle))
+
+    def drive(self, instrument: int | str, value: Any) -> None:
+        """By hand from the next step on: force [N] or displacement [mm], (3,)."""
+        check(_lib.sunder_simulation_drive(self.handle, self._number(instrument), _three(value, "value")))
+
+    def turn(self, instrument: int | str, turn: Any) -> None:
+        """A rigid grip by hand from the next step on: rotation vector (3,) [deg]."""
+        check(_lib.sunder_simulation_turn(self.handle, self._number(instrument), _three(turn, "turn")))
+
+    def _number(self, instrument):
+        if isinstance(instrument, str):
+            if instrument not in self.instruments:
+                raise InputError(f'there is no instrument "{instrument}"; there are {self.instruments}')
+            return self.instruments.index(instrument)
+        return int(_arrays.ids(instrument, "instrument", ()))
+
+    def grips(self) -> "Grips":
+        """Forces of the grips between steps, for another thread; one at a time."""
+        return Grips(self)
+
+    @property
+    def engine(self) -> dict[str, Any]:
+        """Sizes, device, precision, route, update and why."""
+        engine = _c.structs["sunder_engine"]()
+        check(_lib.sunder_simulation_engine(self.handle, c.byref(engine)))
+        return as_dict(engine)
+
+    # ---- fields
+
+    def _field(self, function, what, shape, out, dtype=np.float64):
+        array = _arrays.room(out, what, shape, dtype)
+        check(function(self.handle, array.ctypes.data, array.size))
+        return array
+
+    @property
+    def _nodes(self):
+        return len(self.mesh.nodes)
+
+    @property
+    def _tets(self):
+        return len(self.mesh.tets)
+
+    def displacement(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(n, 3) float64 [mm]; zero before the first step."""
+        return self._field(_lib.sunder_simulation_displacement, "displacement", (self._nodes, 3), out)
+
+    def velocity(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(n, 3) float64 [mm/s], in motion."""
+        return self._field(_lib.sunder_simulation_velocity, "velocity", (self._nodes, 3), out)
+
+    def set_velocity(self, velocity: Any) -> None:
+        """The body goes on with these, (n, 3) [mm/s]; what supports hold stays."""
+        v = _arrays.reals(velocity, "velocity", (self._nodes, 3))
+        check(_lib.sunder_simulation_set_velocity(self.handle, v.ctypes.data, v.size))
+
+    def stress(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(m, 6) float64 [MPa]: xx yy zz xy yz zx."""
+        return self._field(_lib.sunder_simulation_stress, "stress", (self._tets, 6), out)
+
+    def max_shear(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(m,) float64: maximum shear stress [MPa]."""
+        return self._field(_lib.sunder_simulation_max_shear, "max_shear", (self._tets,), out)
+
+    def yield_ratio(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(m,) float64: yield measure over yield stress; 0 where unbreakable or destroyed."""
+        return self._field(_lib.sunder_simulation_yield_ratio, "yield_ratio", (self._tets,), out)
+
+    def destroyed(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(m,) bool."""
+        return self._field(_lib.sunder_simulation_destroyed, "destroyed", (self._tets,), out, np.bool_)
+
+    def reactions(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(instruments, 3) float64: force of each instrument on the body [N]."""
+        shape = (len(self.instruments), 3)
+        return self._field(_lib.sunder_simulation_reactions, "reactions", shape, out)
+
+    def support_reaction(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(3,) float64: force of the supports on the body [N]."""
+        return self._field(_lib.sunder_simulation_support_reaction, "support_reaction", (3,), out)
+
+    # ---- the body as split cracks leave it
+
+    @property
+    def body(self) -> dict[str, int]:
+        """version, node_count, tet_count, crack_face_count."""
+        body = _c.structs["sunder_body"]()
+        check(_lib.sunder_simulation_body(self.handle, c.byref(body)))
+        return as_dict(body)
+
+    def body_corners(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(m, 4) int32: nodes of each element now."""
+        return self._field(_lib.sunder_simulation_body_corners, "body_corners", (self._tets, 4), out,
+                           np.int32)
+
+    def body_parents(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(node_count,) int32: the mesh's node that lies where each node lies."""
+        return self._field(_lib.sunder_simulation_body_parents, "body_parents",
+                           (self.body["node_count"],), out, np.int32)
+
+    def body_displacement(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(node_count, 3) float64 [mm]."""
+        return self._field(_lib.sunder_simulation_body_displacement, "body_displacement",
+                           (self.body["node_count"], 3), out)
+
+    def crack_faces(self, out: np.ndarray | None = None) -> np.ndarray:
+        """(crack_face_count, 7) int32: the crack's id, three nodes of each lip."""
+        return self._field(_lib.sunder_simulation_crack_faces, "crack_faces",
+                           (self.body["crack_face_count"], 7), out, np.int32)
+
+    # ---- what broke, and why
+
+    def _records(self, count_of, at, dtype, struct):
+        count = c.c_int32()
+        check(count_of(self.handle, c.byref(count)))
+        records = np.zeros(count.value, dtype)
+        raw = records.view(np.uint8).reshape(count.value, dtype.itemsize)
+        raw[:, :4] = np.frombuffer(np.uint32(c.sizeof(struct)).tobytes(), np.uint8)
+        for i in range(count.value):
+            check(at(self.handle, i, records.ctypes.data + i * dtype.itemsize))
+        return records
+
+    def events(self) -> np.ndarray:
+        """One record per destroyed element, growth or birth of a crack: members as sunder_event has
+        them (order, step, event, element, cause, crack, load_factor, ratio, k [MPa sqrt(mm)],
+        theta [deg] ...). cause_name() has the words."""
+        return self._records(_lib.sunder_simulation_event_count, _lib.sunder_simulation_event_at,
+                             EVENT, _c.structs["sunder_event"])
+
+    def cracks(self) -> np.ndarray:
+        """One record per crack: id, kind, tip_count, mouth, tips, directions, length [mm] ..."""
+        return self._records(_lib.sunder_simulation_crack_count, _lib.sunder_simulation_crack_at,
+                             CRACK, _c.structs["sunder_crack"])
+
+    def crack_path(self, crack: int) -> np.ndarray:
+        """(points, 3) float64 [mm], from the mouth or the first tip."""
+        count = self._crack(crack).path_count
+        array = np.empty((count, 3))
+        check(_lib.sunder_simulation_crack_path(self.handle, crack, array.ctypes.data, array.size))
+        return array
+
+    def crack_elements(self, crack: int) -> np.ndarray:
+        """(elements,) int32, in the order of destruction."""
+        count = self._crack(crack).element_count
+        array = np.empty(count, np.int32)
+        check(_lib.sunder_simulation_crack_elements(self.handle, crack, array.ctypes.data, array.size))
+        return array
+
+    def _crack(self, crack):
+        struct = _c.structs["sunder_crack"]()
+        check(_lib.sunder_simulation_crack_at(self.handle, crack, c.byref(struct)))
+        return struct
+
+    def tips(self) -> np.ndarray:
+        """One record per tip as the last solve leaves it: crack, tip, ended, known (a sum of
+        constants["SUNDER_TIP_..."]), position [mm], k [MPa sqrt(mm)], theta [deg], j [N/mm] ..."""
+        return self._records(_lib.sunder_simulation_measure_tips, _lib.sunder_simulation_tip_at, TIP,
+                             _c.structs["sunder_tip"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """A sentence each."""
+        count = c.c_int32()
+        check(_lib.sunder_simulation_warning_count(self.handle, c.byref(count)))
+        return [text_of(_lib.sunder_simulation_warning_at, self.handle, i) for i in range(count.value)]
+
+    def plot(self, **options: Any) -> Any:
+        """A picture of the body as it is now; sunder.plot() says what it takes."""
+        from .plotting import plot
+        return plot(self, **options)
+
+
+def cause_name(cause: int) -> str:
+    """Of an event: "mss", "sif", "preset", "script" or "principal"."""
+    return _CAUSES[int(cause)]
+
+
+def _three(value, what):
+    return _arrays.reals(value, what, (3,)).ctypes.data_as(c.c_void_p)
+
+
+class Grips:
+    """Forces of the grips between steps, for a thread of its own: a call neither waits for a step nor
+    makes one wait."""
+
+    def __init__(self, simulation: Simulation):
+        handle = c.c_void_p()
+        self._handle = None
+        check(_lib.sunder_grips_create(simulation.handle, c.byref(handle)))
+        self._handle = handle.value
+        self._shape = (len(simulation.instruments), 3)
+
+    def forces(self, displacements: Any, out: np.ndarray | None = None) -> np.ndarray:
+        """(instruments, 3) [N] if the grips were at (instruments, 3) [mm]."""
+        if not self._handle:
+            raise HandleError("the grips are closed")
+        d = _arrays.reals(displacements, "displacements", self._shape)
+        array = _arrays.room(out, "forces", self._shape, np.float64)
+        check(_lib.sunder_grips_forces(self._handle, d.ctypes.data, array.ctypes.data, array.size))
+        return array
+
+    def close(self) -> None:
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            _lib.sunder_grips_destroy(handle)
+
+    def __enter__(self) -> "Grips":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def __del__(self):
+        self.close()

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sunder/same_stiffness.hpp"
+
+#include <algorithm>
+
+namespace sunder {
+namespace {
+
+bool same_elasticity(const SmallStrain& a, const SmallStrain& b) {
+  return a.lambda == b.lambda && a.mu == b.mu && a.young == b.young && a.poisson == b.poisson;
+}
+
+}  // namespace
+
+bool same_stiffness(const Problem& a, const Problem& b) {
+  if (a.mesh().nodes != b.mesh().nodes || a.mesh().tets != b.mesh().tets) return false;
+  if (!std::ranges::equal(a.dofs(), b.dofs())) return false;
+  if (a.anchor_stiffness() != b.anchor_stiffness() ||
+      !std::ranges::equal(a.anchored_dofs(), b.anchored_dofs())) {
+    return false;
+  }
+  for (Index e = 0; e < a.tet_count(); ++e) {
+    if (!same_elasticity(a.small_strain(e), b.small_strain(e))) return false;
+  }
+  return true;
+}
+
+}  // namespace sunder

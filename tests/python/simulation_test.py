@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Simulations: fields, records, callbacks, what the C interface has."""
+import ctypes as c
+import gc
+import os
+import pathlib
+import re
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import sunder
+from sunder import _c
+from support import SCENES, SOURCE, program_run, two_tets
+
+# Not of Python: a host's own Vulkan device, what stands in for macros and struct sizes.
+NOT_WRAPPED = {"sunder_status_text", "sunder_error_of"}
+
+
+class Fields(unittest.TestCase):
+    def test_pulls_as_hooke_says(self):
+        # A bar of 1 x 1 x 4 in 24 tetrahedra, pulled at its end, poisson 0: u = F z / (E A).
+        nodes = np.array([[x, y, z] for z in range(5) for y in range(2) for x in range(2)], float)
+        six = np.array([[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]])
+        tets = np.concatenate([six + 4 * z for z in range(4)])
+        # Nodal forces of an even traction: each end face is two triangles, corners 0 and 3 have both.
+        with sunder.Scene(mesh=(nodes, tets)) as scene:
+            scene.add_material(young=8, poisson=0)
+            scene.add_support(nodes=[0, 1, 2, 3])
+            for name, ids, force in (("both", [16, 19], 2 * 0.1 / 3), ("one", [17, 18], 0.1 / 3)):
+                scene.add_instrument(name, force=[0, 0, force], nodes=ids)
+            with sunder.Simulation(scene) as simulation:
+                simulation.step()
+                u, stress = simulation.displacement(), simulation.stress()
+                reaction = simulation.support_reaction()
+        np.testing.assert_allclose(u[:, 2], 0.1 * nodes[:, 2] / 8, atol=1e-12)
+        np.testing.assert_allclose(u[:, :2], 0, atol=1e-12)
+        np.testing.assert_allclose(stress[:, 2], 0.1, atol=1e-12)
+        np.testing.assert_allclose(reaction, [0, 0, -0.1], atol=1e-12)
+
+    def test_out_takes_what_the_library_writes(self):
+        with sunder.Simulation(two_tets()) as simulation:
+            simulation.step()
+            for name, shape, kind in (("displacement", (5, 3), "f8"), ("stress", (2, 6), "f8"),
+                                      ("max_shear", (2,), "f8"), ("yield_ratio", (2,), "f8"),
+                                      ("destroyed", (2,), "?"), ("reactions", (1, 3), "f8"),
+                                      ("support_reaction", (3,), "f8"), ("body_corners", (2, 4), "i4"),
+                                      ("body_parents", (5,), "i4"), ("body_displacement", (5, 3), "f8")):
+                with self.subTest(name):
+                    field = getattr(simulation, name)
+                    mine = np.zeros(shape, kind)
+                    self.assertIs(field(out=mine), mine)
+                    new = field()
+                    self.assertEqual((new.shape, new.dtype), (shape, np.dtype(kind)))
+                    self.assertTrue((new == mine).all())
+                    for wrong in (np.zeros(shape, "f4"), np.zeros(shape + (1,), kind),
+                                  np.zeros((*shape, 2), kind)[..., 0], mine.tolist()):
+                        with self.assertRaises(sunder.InputError):
+                            field(out=wrong)
+                    mine.flags.writeable = False
+                    with self.assertRaisesRegex(sunder.InputError, "read-only"):
+                        field(out=mine)
+
+    def test_what_tore_is_what_the_program_says(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = SCENES / "board-pull-b.toml"
+            summary, _, events = program_run(path, pathlib.Path(folder), "--backend", "cpu", "--steps", "20")
+        with sunder.run(path, set={"time.steps": 20, "solver.backend": "cpu"}) as simulation:
+            mine, cracks, tips = simulation.events(), simulation.cracks(), simulation.tips()
+            self.assertEqual(len(mine), len(events))
+            for event, row in zip(mine, events):
+                self.assertEqual(str(event["element"]), row["element"])
+                self.assertEqual(sunder.cause_name(event["cause"]), row["criterion"])
+                self.assertEqual(event["load_factor"], float(row["load_factor"]))
+                if row["K"]:
+                    self.assertEqual(event["k"], float(row["K"]))
+            (crack,) = summary["cracks"]
+            self.assertEqual(cracks["length"].tolist(), [crack["length"]])
+            np.testing.assert_array_equal(simulation.crack_path(0), crack["path_xyz"])
+            self.assertEqual(len(simulation.crack_elements(0)), cracks["element_count"][0])
+            self.assertEqual(len(tips), 1)
+            self.assertEqual(simulation.warnings, [w for w in summary["warnings"] if "GPU" not in w])
+            self.assertEqual(np.flatnonzero(simulation.destroyed()).tolist(), sorted(summary["destroyed"]))
+            self.assertEqual(simulation.engine["route"], "inverse")
+            np.testing.assert_array_equal(simulation.reactions()[0], summary["reactions"]["right forceps"])
+
+    def test_split_cracks_bring_nodes(self):
+        with sunder.run(SCENES / "split/board-split.toml", set={"time.steps": 40}) as simulation:
+            body = simulation.body
+            self.assertGreater(body["node_count"], len(simulation.mesh.nodes))
+            faces, parents = simulation.crack_faces(), simulation.body_parents()
+            self.assertEqual(faces.shape, (body["crack_face_count"], 7))
+            # Both lips lie at the same places.
+            np.testing.assert_array_equal(parents[faces[:, 1:4]], parents[faces[:, 4:]])
+            self.assertTrue((simulation.events()["lives"] == 1).any())
+
+    def test_motion(self):
+        with sunder.Simulation(sunder.Scene(SCENES / "motion/board.toml")) as simulation:
+            first = simulation.step()
+            self.assertEqual((first.moves, simulation.velocity().shape), (1, simulation.displacement().shape))
+            simulation.set_velocity(np.zeros_like(simulation.velocity()))
+            self.assertEqual(abs(simulation.velocity()).max(), 0)
+            second = simulation.step_by(1e-4)
+            self.assertAlmostEqual(second.time, first.time + 1e-4, places=12)
+
+    def test_grips_answer_beside_the_steps(self):
+        with sunder.Simulation(SCENES / "board-grip-b.toml") as simulation:
+            step = simulation.step()
+            with simulation.grips() as grips:
+                at = np.array([[0, -28 / 50 / 0.9, 0]])
+                self.assertEqual(step.load_factor, 1 / 50)
+                np.testing.assert_allclose(grips.forces(at), simulation.reactions(), rtol=1e-9)
+                np.testing.assert_allclose(grips.forces(2 * at), 2 * simulation.reactions(), rtol=1e-6)
+            with self.assertRaises(sunder.HandleError):
+                grips.forces(at)
+
+    def test_by_hand(self):
+        with sunder.Simulation(two_tets(force=1, steps=3)) as simulation:
+            simulation.step()
+            one = simulation.displacement()
+            simulation.drive("forceps", [3, 0, 0])
+            simulation.step()
+            np.testing.assert_allclose(simulation.displacement(), 3 * one, rtol=1e-12)
+            with self.assertRaisesRegex(sunder.InputError, "no instrument"):
+                simulation.drive("scalpel", [1, 0, 0])
+            with self.assertRaises(sunder.AllowedError):
+                simulation.drive(1, [1, 0, 0])
+            with self.assertRaises(sunder.AllowedError):
+                simulation.turn(0, [1, 0, 0])
+
+    def test_a_picture(self):
+        with tempfile.TemporaryDirectory() as folder, sunder.Simulation(two_tets()) as simulation:
+            simulation.step()
+            for field in ("max_shear", "yield_ratio", "displacement"):
+                path = pathlib.Path(folder) / f"{field}.png"
+                simulation.plot(field=field, path=path)
+                self.assertEqual(path.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+            with self.assertRaisesRegex(sunder.InputError, "field is 'colour'"):
+                simulation.plot(field="colour")
+
+
+class Running(unittest.TestCase):
+    def test_callbacks_see_the_phases_and_can_cancel(self):
+        seen, logged = [], []
+        with sunder.Simulation(two_tets(model="A"), log=lambda level, text: logged.append((level, text)),
+                               progress=lambda p: seen.append(p["phase"])) as simulation:
+            simulation.step()
+        self.assertEqual(seen[:2], [0, 1])
+        self.assertIn(2, seen)
+        with self.assertRaises(sunder.Cancelled):
+            sunder.Simulation(two_tets(), progress=lambda p: True)
+
+    def test_what_a_callback_raises_comes_out(self):
+        def fail(progress):
+            raise KeyError("mine")
+        with self.assertRaisesRegex(KeyError, "mine"):
+            sunder.Simulation(two_tets(), progress=fail)
+
+    def test_done_closed_and_out_of_order(self):
+        simulation = sunder.Simulation(two_tets())
+        simulation.step()
+        with self.assertRaises(sunder.OrderError):
+            simulation.step()
+        with self.assertRaises(sunder.OrderError):
+            simulation.velocity()
+        simulation.close()
+        simulation.close()
+        for use in (simulation.step, simulation.displacement, simulation.events, lambda: simulation.body):
+            with self.assertRaises(sunder.HandleError):
+                use()
+        scene = two_tets()
+        scene.close()
+        with self.assertRaises(sunder.HandleError):
+            scene.set_steps(2)
+
+    def test_a_second_thread_finds_it_busy_and_the_lock_is_free_meanwhile(self):
+        scene = sunder.Scene(SCENES / "finite/liver.toml", set={"solver.backend": "cpu"})
+        with scene, sunder.Simulation(scene) as simulation:
+            thread = threading.Thread(target=simulation.step)
+            busy, counted = 0, 0
+            thread.start()
+            while thread.is_alive():
+                counted += 1
+                try:
+                    simulation.warnings
+                except sunder.BusyError:
+                    busy += 1
+            thread.join()
+        self.assertGreater(counted, 10, "Python stood still while the library computed")
+        self.assertGreater(busy, 0)
+
+    def test_nothing_is_left_behind(self):
+        def resident():
+            return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+        def work(times):
+            for _ in range(times):
+                with sunder.run(SCENES / "notch-b.toml", set={"time.steps": 1}) as simulation:
+                    simulation.events(), simulation.stress()
+                sunder.Simulation(two_tets()).step()  # given back without close()
+            gc.collect()
+        work(5)
+        before = resident()
+        work(25)
+        # One of these bodies takes 20 MB and more.
+        self.assertLess(resident() - before, 30e6)
+
+    def test_a_step_costs_what_the_frame_costs(self):
+        # Beside the same call by ctypes alone; the least of several, since others compute here too.
+        step_of_c = _c.library.sunder_simulation_step
+        count, ours, bare = 3000, [], []
+        with sunder.Simulation(two_tets(force=1, steps=2**31 - 1)) as simulation:
+            struct, handle = _c.structs["sunder_step"](), simulation.handle
+            address = c.byref(struct)
+            for _ in range(12):
+                start = time.perf_counter()
+                for _ in range(count):
+                    simulation.step()
+                middle = time.perf_counter()
+                for _ in range(count):
+                    step_of_c(handle, address)
+                ours.append((middle - start) / count)
+                bare.append((time.perf_counter() - middle) / count)
+        over = (min(ours) - min(bare)) * 1e6
+        print(f"\na step of two tetrahedra: {min(ours) * 1e6:.2f} us, by ctypes alone "
+              f"{min(bare) * 1e6:.2f} us: {over:.2f} us over it", end=" ")
+        self.assertLess(over, 10)
+
+    def test_every_function_of_the_header_is_used(self):
+        text = "".join(p.read_text(encoding="utf-8")
+                       for p in pathlib.Path(sunder.__file__).parent.glob("*.py"))
+        used = set(re.findall(r"\b(sunder_\w+)\b", text))
+        used |= {f"{name}_init" for name in used}
+        left = set(_c.header.functions) - used - NOT_WRAPPED
+        self.assertEqual(left, set())
+        header = (SOURCE / "api/sunder/sunder.h").read_text(encoding="utf-8")
+        self.assertEqual(set(re.findall(r"SUNDER_API [\w* ]+?\*?(sunder_\w+)\(", header)),
+                         set(_c.header.functions))
+
+
+if __name__ == "__main__":
+    unittest.main()
