@@ -49,7 +49,7 @@ Needs needs_of(const Problem& problem) {
   Needs needs;
   needs.stress = breaks || scene.output.stress;
   needs.yield = needs.stress && any(problem, &Problem::breakable);
-  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
+  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty() || scene.live;
   needs.split = breaks && scene.fracture.crack == CrackWay::split;
   needs.pristine =
       breaks && !needs.split && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
