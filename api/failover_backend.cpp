@@ -35,6 +35,7 @@ class FailoverBackend final : public Backend {
   }
   bool prepares() const override { return current_->prepares(); }
   PreparationReport preparation() const override { return current_->preparation(); }
+  bool can_destroy(Index element) const override { return current_->can_destroy(element); }
   void time_passes(bool on) override { current_->time_passes(on); }
   std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
   std::shared_ptr<InstrumentForces> instrument_forces() override {

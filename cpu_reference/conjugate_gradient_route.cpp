@@ -35,6 +35,12 @@ class ConjugateGradientRoute final : public InverseRoute {
 
   void follow(const fem::Event&) override {}  // K u is computed element by element
 
+  // It goes on from nothing.
+  std::unique_ptr<solver::RouteState> state() const override {
+    return std::make_unique<solver::RouteState>();
+  }
+  bool go_back(const solver::RouteState&, std::size_t) override { return true; }
+
   std::vector<BufferPlan> buffers() const override {
     return {{"conjugate gradient vectors (5 n)",
              5 * static_cast<std::size_t>(body_.problem().dof_count()) * sizeof(double)}};

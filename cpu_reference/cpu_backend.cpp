@@ -221,11 +221,13 @@ class CpuBackend final : public Backend {
     publish();
     report.waited_ms = route_->waited_ms() - waited_ms_;
     waited_ms_ = route_->waited_ms();
-    if (instruments_) {
-      instruments_->publish(route_->deferred()->grip_factor(), frame_.reactions(),
-                            frame_.load().displacements);
-    }
+    if (instruments_) publish_instruments();
     return report;
+  }
+
+  void publish_instruments() {
+    instruments_->publish(route_->deferred()->grip_factor(), frame_.reactions(),
+                          frame_.load().displacements);
   }
 
   StressSummary do_stress() override { return fields_.publish_stress(); }
@@ -241,6 +243,38 @@ class CpuBackend final : public Backend {
     }
     solver_.event();
     route_->follow({.leave = elements});
+  }
+
+  struct State final : BackendState {
+    FrameFields::State fields;
+    solver::HostFrame::State frame;
+    std::shared_ptr<const solver::FrameSolver::State> solver;
+    std::unique_ptr<solver::RouteState> route;
+  };
+
+  std::unique_ptr<BackendState> do_save() const override {
+    if (needs().split) return nullptr;
+    auto state = std::make_unique<State>();
+    state->route = route_->state();
+    if (!state->route) return nullptr;
+    state->fields = fields_.state();
+    state->frame = frame_.state();
+    state->solver = solver_.state();
+    return state;
+  }
+
+  bool do_restore(const BackendState& of, std::size_t events) override {
+    const auto& state = dynamic_cast<const State&>(of);
+    if (!route_->go_back(*state.route, events)) return false;
+    fields_.restore(state.fields, damaged_body().changed(events, damaged_body().events()));
+    frame_.restore(state.frame);
+    solver_.restore(*state.solver);
+    if (instruments_ && route_->deferred()) publish_instruments();
+    return true;
+  }
+
+  bool can_destroy(Index element) const override {
+    return needs().damage && (!fields_.region() || fields_.region()->holds(element));
   }
 
   void do_change(const fem::Change& change) override {

@@ -97,6 +97,17 @@ class DeferredRoute final : public InverseRoute {
   }
   bool rebase() override { return update_->rebase(); }
 
+  std::unique_ptr<solver::RouteState> state() const override {
+    if (split()) return nullptr;
+    auto state = std::make_unique<State>();
+    state->update = update_->state();
+    return state;
+  }
+  bool go_back(const solver::RouteState& state, std::size_t events) override {
+    update_->go_back(dynamic_cast<const State&>(state).update, events);
+    return true;
+  }
+
   // A column of the dense inverse is at hand without.
   bool prepares() const override { return !dense_ || update_->factor(); }
   void prepare(std::span<const Index> elements) override { update_->deferred().prepare(elements); }
@@ -118,6 +129,10 @@ class DeferredRoute final : public InverseRoute {
   }
 
  private:
+  struct State final : solver::RouteState {
+    solver::RenewedUpdate::State update;
+  };
+
   /// There are unknowns beyond the mesh's.
   [[nodiscard]] bool split() const {
     return update_->parted() || update_->deferred().offsets().size() > 0;

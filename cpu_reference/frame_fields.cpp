@@ -126,6 +126,25 @@ void FrameFields::destroy(std::span<const Index> elements) {
   if (kernel_) kernel_->destroy(elements);
 }
 
+FrameFields::State FrameFields::state() const {
+  State state{nodal_, {}, excluded_, {}};
+  if (condensed_) state.condensed = condensed_->state();
+  if (kernel_) state.cut_off = kernel_->taken_out();
+  return state;
+}
+
+void FrameFields::restore(const State& state, std::span<const Index> revived) {
+  nodal_ = state.nodal;
+  if (condensed_) condensed_->restore(*state.condensed);
+  excluded_ = state.excluded;
+  fresh_ = false;
+  if (!kernel_) return;
+  kernel_->revive(revived);
+  kernel_->take_out_only(state.cut_off);
+  kernel_->run(nodal_, next_stress_);
+  std::swap(stress_, next_stress_);
+}
+
 void FrameFields::change(const fem::Change& change) {
   offsets_.follow(body_.forms());
   const std::size_t all = problem_.dofs().size() + 3 * offsets_.nodes().size();

@@ -46,6 +46,16 @@ class FrameFields final : public solver::HostFields {
   /// Follows a change that the body has recorded: elements with corners at new nodes.
   void change(const fem::Change& change);
 
+  /// What is published and what destroying has left, to go back to.
+  struct State {
+    std::vector<double> nodal;
+    std::optional<solver::CondensedFields::State> condensed;
+    std::vector<std::uint8_t> excluded, cut_off;
+  };
+  [[nodiscard]] State state() const;
+  /// `revived`: elements destroyed since. The stress is computed anew, the same bits.
+  void restore(const State& state, std::span<const Index> revived);
+
   /// What is published, at all nodes and elements or some; outside a region at the price of a
   /// solve.
   void read_displacement(std::span<double> displacement) const;

@@ -64,6 +64,16 @@ class IncompleteRoute final : public InverseRoute {
 
   void follow(const fem::Event&) override {}  // K u is computed element by element
 
+  std::unique_ptr<solver::RouteState> state() const override {
+    auto state = std::make_unique<State>();
+    state->last = last_;
+    return state;
+  }
+  bool go_back(const solver::RouteState& state, std::size_t) override {
+    last_ = dynamic_cast<const State&>(state).last;
+    return true;
+  }
+
   std::vector<BufferPlan> buffers() const override {
     return {{"conjugate gradient vectors (6 n)",
              6 * static_cast<std::size_t>(last_.size()) * sizeof(double)},
@@ -71,6 +81,10 @@ class IncompleteRoute final : public InverseRoute {
   }
 
  private:
+  struct State final : solver::RouteState {
+    Eigen::VectorXd last;
+  };
+
   CgResult run(const Eigen::VectorXd& r, CgStop stop, Eigen::VectorXd& x) {
     stop.max_iterations = kMostIterations;
     return conjugate_gradient(

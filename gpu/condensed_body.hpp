@@ -53,7 +53,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   Fields fields_;
   vulkan::Commands commands_;
   IntactInverse intact_;                        // its factor
-  std::unique_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
+  std::shared_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
   std::unique_ptr<solver::InverseRoute> route_;
   solver::HostFrame frame_;
   mutable solver::CondensedFields outside_;  // computes what is read

@@ -20,7 +20,7 @@ solver::Based based_on(const fem::Forms& in_base, std::shared_ptr<const HostInve
 
 }  // namespace
 
-std::unique_ptr<solver::Deferred> intact_update(const Problem& problem,
+std::shared_ptr<solver::Deferred> intact_update(const Problem& problem,
                                                 std::shared_ptr<const HostInverse> intact) {
   return std::move(based_on(fem::Forms(problem), std::move(intact), false).deferred);
 }

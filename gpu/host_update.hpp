@@ -15,7 +15,7 @@ namespace sunder::gpu {
 inline constexpr std::size_t kExactLoads = 64;
 
 /// Over the intact body's inverse, without damage.
-[[nodiscard]] std::unique_ptr<solver::Deferred> intact_update(
+[[nodiscard]] std::shared_ptr<solver::Deferred> intact_update(
     const Problem& problem, std::shared_ptr<const HostInverse> intact);
 
 /// The same for a body that can be damaged; a dense inverse is made anew beside the frames.

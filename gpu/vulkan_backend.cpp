@@ -90,6 +90,9 @@ class VulkanBackend final : public Backend {
     }
     return instruments_ ? instruments_->forces() : nullptr;
   }
+  bool can_destroy(Index element) const override {
+    return needs().damage && (!plan_.region || plan_.region->holds(element));
+  }
   void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override {
     if (instrument_forces()) instruments_->take_over(std::move(forces));
   }

@@ -49,7 +49,7 @@ class WholeBody final : public DeviceBody {
   const Problem& problem_;
   const fem::DamagedBody& damaged_;
   Fields fields_;
-  std::unique_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
+  std::shared_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
   std::unique_ptr<DeviceRoute> route_;
   std::optional<DeviceFrame> frame_;
   std::vector<Index> loaded_;  // unknowns of the last load

@@ -63,6 +63,8 @@ sunder::SolverOptions to_solver(const sunder_solver_options& given) {
   require_finite(given.tolerance, "tolerance");
   s.tolerance = given.tolerance;
   s.prepare = given.no_preparation == 0;
+  require_finite(given.max_ms, "max_ms");
+  s.max_ms = given.max_ms;
   return s;
 }
 
@@ -134,6 +136,10 @@ sunder_status sunder_scene_set_dynamics(sunder_scene scene, const sunder_dynamic
     object.scene.dynamics =
         to_dynamics(read_struct(dynamics, sized<sunder_dynamics>(), "dynamics"));
   });
+}
+
+sunder_status sunder_scene_set_live(sunder_scene scene, int32_t live) {
+  return call<SceneObject>(scene, [&](SceneObject& object) { object.scene.live = live != 0; });
 }
 
 sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted) {

@@ -39,6 +39,7 @@ sunder_step to_step(const sunder::StepReport& report) {
     step.inverted = report.deformation->inverted;
   }
   step.capped = report.capped ? 1 : 0;
+  step.out_of_time = report.out_of_time ? 1 : 0;
   if (report.motion) {
     step.moves = 1;
     step.time = report.motion->time;
@@ -54,10 +55,10 @@ sunder_step to_step(const sunder::StepReport& report) {
   return step;
 }
 
-/// `dt`: none: the scene's own.
-void take_step(SimulationObject& object, std::optional<double> dt, sunder_step* step) {
+template <class Step>
+void take_step(SimulationObject& object, sunder_step* step, Step&& take) {
   if (step) static_cast<void>(stated_size(step, "step"));
-  const sunder::StepReport report = object.step(dt);
+  const sunder::StepReport report = take();
   if (step) write_struct(step, to_step(report), "step");
   if (object.simulation().interrupted()) {
     throw Failure(SUNDER_ERROR_CANCELLED, "step " + std::to_string(report.step) +
@@ -78,12 +79,13 @@ void require_motion(const SimulationObject& object, const char* what) {
 }
 
 void create_simulation(const SceneObject& scene, const sunder_callbacks* callbacks,
-                       const SimulationObject::Create& create, sunder_simulation* simulation) {
+                       const SimulationObject::Create& create, bool again,
+                       sunder_simulation* simulation) {
   require(simulation, "simulation");
   auto given = sized<sunder_callbacks>();
   if (callbacks) given = read_struct(callbacks, given, "callbacks");
-  *simulation =
-      new_handle<sunder_simulation>(std::make_shared<SimulationObject>(scene, given, create));
+  *simulation = new_handle<sunder_simulation>(
+      std::make_shared<SimulationObject>(scene, given, create, again));
 }
 
 }  // namespace sunder::c
@@ -93,7 +95,7 @@ extern "C" {
 sunder_status sunder_simulation_create(sunder_scene scene, const sunder_callbacks* callbacks,
                                        sunder_simulation* simulation) {
   return call<SceneObject>(scene, [&](SceneObject& object) {
-    create_simulation(object, callbacks, sunder::create_backend, simulation);
+    create_simulation(object, callbacks, sunder::create_backend, true, simulation);
   });
 }
 
@@ -112,8 +114,20 @@ sunder_status sunder_simulation_engine(sunder_simulation simulation, sunder_engi
 }
 
 sunder_status sunder_simulation_step(sunder_simulation simulation, sunder_step* step) {
-  return call<SimulationObject>(
-      simulation, [&](SimulationObject& object) { take_step(object, std::nullopt, step); });
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    take_step(object, step, [&] { return object.step(std::nullopt); });
+  });
+}
+
+sunder_status sunder_simulation_step_within(sunder_simulation simulation, double max_ms,
+                                            sunder_step* step) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    if (!(max_ms >= 0) || !std::isfinite(max_ms)) {
+      throw Failure(SUNDER_ERROR_VALUE,
+                    "max_ms = " + std::to_string(max_ms) + " is not a time in ms, nor 0 for none");
+    }
+    take_step(object, step, [&] { return object.step_within(max_ms); });
+  });
 }
 
 sunder_status sunder_simulation_step_by(sunder_simulation simulation, double dt,
@@ -124,7 +138,7 @@ sunder_status sunder_simulation_step_by(sunder_simulation simulation, double dt,
       throw Failure(SUNDER_ERROR_VALUE,
                     "dt = " + std::to_string(dt) + " is not a time in seconds above 0");
     }
-    take_step(object, dt, step);
+    take_step(object, step, [&] { return object.step(dt); });
   });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -10,6 +11,8 @@
 #include "c/scene.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/simulation.hpp"
+#include "sunder/skin.hpp"
+#include "sunder/surface.hpp"
 
 namespace sunder::c {
 
@@ -20,12 +23,15 @@ class SimulationObject final : public Object {
   /// Makes the backend of a problem.
   using Create = std::function<CreatedBackend(std::shared_ptr<const Problem>, Needs)>;
 
+  /// `again`: `create` can be called later on as well, for a history that needs another backend.
   SimulationObject(const SceneObject& scene, const sunder_callbacks& callbacks,
-                   const Create& create);
+                   const Create& create, bool again);
 
   /// Throws SUNDER_ERROR_CANCELLED, besides what Simulation::step throws. In motion `dt` [s] may
   /// take the place of the scene's step.
   [[nodiscard]] StepReport step(std::optional<double> dt);
+  [[nodiscard]] StepReport step_within(double max_ms);
+  void keep_history(int quick);
   void cancel() noexcept { cancelled_.store(true); }
 
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
@@ -34,12 +40,18 @@ class SimulationObject final : public Object {
   [[nodiscard]] bool solved() const { return solved_; }
   [[nodiscard]] std::vector<std::string> warnings() const;
 
-  std::vector<TipState> tips;   ///< as last measured
-  std::weak_ptr<Object> grips;  ///< the handle for forces between frames: one thread may ask
+  std::vector<TipState> tips;  ///< as last measured
+  std::map<std::int32_t, Mark> marks;
+  std::int32_t last_mark = 0;
+  std::unique_ptr<Surface> surface;  ///< null: not asked for yet
+  std::unique_ptr<Skin> skin;        ///< null: none was given
+  std::weak_ptr<Object> grips;       ///< the handle for forces between frames: one thread may ask
   /// Destroyed by the host, though a call of another thread may hold this object a little longer.
   const std::shared_ptr<std::atomic<bool>> gone = std::make_shared<std::atomic<bool>>(false);
 
  private:
+  template <class Step>
+  [[nodiscard]] StepReport take(Step&& step);
   void log(std::int32_t level, const std::string& text) const;
   void log_warnings();
   /// False: the host cancels.
@@ -47,6 +59,7 @@ class SimulationObject final : public Object {
   void enter(std::int32_t phase) const;
 
   sunder_callbacks callbacks_;
+  Create create_;  // empty: once is all
   std::unique_ptr<Simulation> simulation_;
   std::vector<std::string> creation_warnings_;
   std::set<std::string> told_;

@@ -13,11 +13,9 @@ using sunder::Index;
 using sunder::Mesh;
 using sunder::Vec3;
 
-/// Another one after each event that has split something.
+/// Another one after each event that has split something, taken back ones included.
 std::int32_t version_of(const sunder::Simulation& simulation) {
-  const auto& rows = simulation.destroyed();
-  const auto last = std::find_if(rows.rbegin(), rows.rend(), [](const auto& d) { return d.lives; });
-  return last == rows.rend() ? 0 : last->event + 1;
+  return simulation.corners().empty() ? 0 : static_cast<std::int32_t>(simulation.looks());
 }
 
 sunder_body to_body(const sunder::Simulation& simulation) {

@@ -9,8 +9,8 @@
 namespace sunder::c {
 
 SimulationObject::SimulationObject(const SceneObject& scene, const sunder_callbacks& callbacks,
-                                   const Create& create)
-    : callbacks_(callbacks), steps_(scene.scene.steps) {
+                                   const Create& create, bool again)
+    : callbacks_(callbacks), create_(again ? create : Create()), steps_(scene.scene.steps) {
   enter(SUNDER_PHASE_CHECK);
   const auto problem = scene.problem();
   enter(SUNDER_PHASE_PREPARE);
@@ -29,10 +29,28 @@ SimulationObject::SimulationObject(const SceneObject& scene, const sunder_callba
 }
 
 StepReport SimulationObject::step(std::optional<double> dt) {
+  return take([&] { return dt ? simulation_->step(*dt) : simulation_->step(); });
+}
+
+StepReport SimulationObject::step_within(double max_ms) {
+  return take([&] { return simulation_->step_within(max_ms); });
+}
+
+void SimulationObject::keep_history(int quick) {
+  Simulation::MakeBackend make;
+  if (create_) {
+    make = [create = create_, problem = simulation_->shared_problem(),
+            needs = simulation_->backend().needs()] { return create(problem, needs).backend; };
+  }
+  simulation_->keep_history(std::move(make), quick);
+}
+
+template <class Step>
+StepReport SimulationObject::take(Step&& step) {
   events_ = 0;
   StepReport report;
   try {
-    report = dt ? simulation_->step(*dt) : simulation_->step();
+    report = step();
   } catch (const NumericalError& error) {
     log(SUNDER_LOG_ERROR, error.what());
     throw;

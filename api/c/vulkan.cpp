@@ -140,6 +140,7 @@ sunder_status sunder_vulkan_create(sunder_scene scene, const sunder_vulkan_host*
           return sunder::CreatedBackend{
               sunder::gpu::create(std::move(problem), std::move(needs), to_options(given)), {}};
         },
+        false,  // the buffers that it shares are there once
         simulation);
 #else
     static_cast<void>(given);

@@ -324,12 +324,13 @@ typedef struct sunder_solver_options {
   double tolerance;        ///< promised relative stress error of every frame, 1e-4
   int32_t no_preparation;  ///< 1: prepare no fracture after a quiet step; no result depends on it
   int32_t reserved;
+  double max_ms;  ///< a step ends after the event that found it so long [ms], 0: none
 } sunder_solver_options;
 
 #define SUNDER_SOLVER_OPTIONS_INIT                                                                 \
   {                                                                                                \
     sizeof(sunder_solver_options), SUNDER_BACKEND_AUTO, -1, SUNDER_ROUTE_AUTO, SUNDER_UPDATE_AUTO, \
-        SUNDER_PRECISION_AUTO, 1e-4, 0, 0                                                          \
+        SUNDER_PRECISION_AUTO, 1e-4, 0, 0, 0                                                       \
   }
 
 SUNDER_API void sunder_solver_options_init(sunder_solver_options* options);
@@ -359,6 +360,9 @@ SUNDER_API void sunder_dynamics_init(sunder_dynamics* dynamics);
 /// Null: statics, the default.
 SUNDER_API sunder_status sunder_scene_set_dynamics(sunder_scene scene,
                                                    const sunder_dynamics* dynamics);
+/// Whether a host may remove elements and cut at any time (default 0). Needed where the scene has
+/// neither a fracture model nor removals; on route condensed all of the body is computed then.
+SUNDER_API sunder_status sunder_scene_set_live(sunder_scene scene, int32_t live);
 /// Whether stress is wanted (default 1). With 0 it is left out unless the fracture model needs it.
 SUNDER_API sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted);
 
@@ -463,14 +467,14 @@ typedef struct sunder_step {
   double work, dissipated;
   double momentum[3];          ///< [t mm/s]
   double angular_momentum[3];  ///< about the origin [t mm^2/s]
+  int32_t out_of_time;         ///< 1: ended by time: what was still to break is left to the next
+  int32_t reserved;
 } sunder_step;
 
 #define SUNDER_STEP_INIT                                                                         \
   {                                                                                              \
     sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0, 0, {0, 0, 0}, {                                                              \
-      0, 0, 0                                                                                    \
-    }                                                                                            \
+        0, 0, 0, 0, 0, {0, 0, 0}, {0, 0, 0}, 0, 0                                                \
   }
 
 /// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
@@ -700,6 +704,115 @@ SUNDER_API sunder_status sunder_simulation_warning_count(sunder_simulation simul
                                                          int32_t* count);
 SUNDER_API sunder_status sunder_simulation_warning_at(sunder_simulation simulation, int32_t index,
                                                       char* text, size_t capacity, size_t* length);
+
+/* ---- A live body: cut, go back and forth, draw (docs/embedding.md "A live body") --------------
+ */
+
+/// The next step with a bound on its time in place of that of the solver options: once max_ms [ms]
+/// have passed at the end of an event, the step ends with the solution that follows, as
+/// `out_of_time`; what is still to break is left to the next one. 0: none.
+SUNDER_API sunder_status sunder_simulation_step_within(sunder_simulation simulation, double max_ms,
+                                                       sunder_step* step);
+/// Before the first step: does once, under no load, what a step does first, so that the first one
+/// costs what the second does. No result changes. Later on, and in motion: nothing.
+SUNDER_API sunder_status sunder_simulation_warm_up(sunder_simulation simulation);
+
+/// Takes live elements out between two steps, by one event with SUNDER_CAUSE_SCRIPT. In statics,
+/// after the first step, fields and forces are those of the new body at once, under the same load.
+/// SUNDER_ERROR_ORDER, and nothing changes: an element that is not there, named twice, gone already
+/// or out of this route's reach; nothing can be removed (sunder_scene_set_live).
+SUNDER_API sunder_status sunder_simulation_remove(sunder_simulation simulation,
+                                                  const int32_t* elements, size_t count);
+/// Removes the live elements that a blade has passed: those whose inside, as it is now, any of the
+/// triangles meets. (triangles x 3 x 3) [mm], size 9 * triangles; two places of a blade's edge one
+/// after the other make two. `removed`, how many, may be null. SUNDER_ERROR_ORDER where cracks
+/// split.
+SUNDER_API sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* swept,
+                                               size_t size, int32_t* removed);
+
+/// Keeps what is done from now on, so that it can be undone; before the first step. `quick`: the
+/// last so many steps and removals in which something broke are taken back by what the solver has
+/// kept of each; others, and all where route or law keep nothing, by doing again what was done
+/// before. SUNDER_ERROR_ORDER later on.
+SUNDER_API sunder_status sunder_simulation_keep_history(sunder_simulation simulation,
+                                                        int32_t quick);
+/// How many steps and removals can be taken back and done again.
+SUNDER_API sunder_status sunder_simulation_history(sunder_simulation simulation, int32_t* undos,
+                                                   int32_t* redos);
+/// Takes back the last `actions` steps and removals in which something broke, with all that came
+/// after, driving included; every later result is bit by bit what it would have been then. `events`
+/// that went, and whether it was done by doing again what was done before (`replayed`), may be
+/// null. SUNDER_ERROR_ORDER, and nothing changes: there are fewer.
+SUNDER_API sunder_status sunder_simulation_undo(sunder_simulation simulation, int32_t actions,
+                                                int32_t* events, int32_t* replayed);
+/// Does again what was taken back, until the next step or action. `events` that came, may be null.
+SUNDER_API sunder_status sunder_simulation_redo(sunder_simulation simulation, int32_t actions,
+                                                int32_t* events);
+/// Marks the state of now: a number, from 1 on, of this simulation.
+SUNDER_API sunder_status sunder_simulation_save(sunder_simulation simulation, int32_t* mark);
+/// Comes back to a marked state, from wherever. `replayed` as above. SUNDER_ERROR_VALUE: no such
+/// mark.
+SUNDER_API sunder_status sunder_simulation_restore(sunder_simulation simulation, int32_t mark,
+                                                   int32_t* replayed);
+/// Lets a mark and what it holds go.
+SUNDER_API sunder_status sunder_simulation_forget(sunder_simulation simulation, int32_t mark);
+/// The history as bytes: what was done, not the body. As sunder_error_of() does with a text:
+/// `length` is how many there are; they are written where `capacity` is enough, else
+/// SUNDER_ERROR_SIZE. `bytes` may be null with capacity 0: then `length` alone is asked for.
+SUNDER_API sunder_status sunder_simulation_store(sunder_simulation simulation, void* bytes,
+                                                 size_t capacity, size_t* length);
+/// Does what such bytes tell, from the beginning. SUNDER_ERROR_INPUT, and nothing changes: damaged,
+/// of another version, of another body, scene or solver.
+SUNDER_API sunder_status sunder_simulation_load(sunder_simulation simulation, const void* bytes,
+                                                size_t length);
+
+/// Where live tissue ends, as triangles.
+typedef struct sunder_surface {
+  uint32_t struct_size;
+  int32_t triangle_count;
+  int32_t node_count;  ///< of the body (sunder_simulation_body)
+  int32_t reserved;
+  uint64_t version;  ///< from 1 on; another one where a triangle has changed
+} sunder_surface;
+
+#define SUNDER_SURFACE_INIT \
+  { sizeof(sunder_surface), 0, 0, 0, 0 }
+
+/// Follows what has happened since the last call, at a price that grows with it; the first call
+/// looks at the whole body.
+SUNDER_API sunder_status sunder_simulation_surface(sunder_simulation simulation,
+                                                   sunder_surface* surface);
+
+/// In a place of its own, until it goes; then the last one takes its place.
+typedef struct sunder_triangle {
+  int32_t place;
+  int32_t nodes[3];  ///< of the body, anticlockwise seen from outside
+  int32_t element;   ///< behind it
+  int32_t piece;     ///< that it belongs to, by its first element; -1: the one that is held
+  int32_t opened;    ///< 1: a lip of a cut or crack, where the mesh had another element
+} sunder_triangle;
+
+/// Triangles, as the last sunder_simulation_surface found them, that have changed or come since a
+/// version; 0: all. Those in places from triangle_count on are gone. `count` is how many there are;
+/// `triangles` may be null with capacity 0: then that alone is asked for. SUNDER_ERROR_SIZE: more
+/// than `capacity`. SUNDER_ERROR_ORDER before the first sunder_simulation_surface.
+SUNDER_API sunder_status sunder_simulation_surface_changes(sunder_simulation simulation,
+                                                           uint64_t since,
+                                                           sunder_triangle* triangles,
+                                                           size_t capacity, size_t* count);
+/// (node_count x 3) each, size 3 * node_count: where the body's nodes are now [mm] and their unit
+/// normals, weighted by area; 0 for nodes inside. Either may be null.
+SUNDER_API sunder_status sunder_simulation_surface_points(sunder_simulation simulation,
+                                                          float* places, float* normals,
+                                                          size_t size);
+/// A fine mesh of the host's own, carried by the tetrahedra: (vertices x 3) where its vertices lie
+/// in the undeformed body [mm], size 3 * vertices; in place of one before.
+SUNDER_API sunder_status sunder_simulation_set_skin(sunder_simulation simulation,
+                                                    const double* vertices, size_t size);
+/// (vertices x 3), size 3 * vertices: where they are now [mm]. `lives`, (vertices): 0 where the
+/// element that carries a vertex is destroyed; may be null. SUNDER_ERROR_ORDER without a skin.
+SUNDER_API sunder_status sunder_simulation_skin(sunder_simulation simulation, float* places,
+                                                size_t size, uint8_t* lives);
 
 #ifdef __cplusplus
 }

@@ -10,9 +10,9 @@
 namespace sunder::app::sweep {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-constexpr const char* kFile = "sweep.json";
+constexpr const char* kDescriptionFile = "sweep.json";
 constexpr int kVersion = 1;
 
 }  // namespace
@@ -22,11 +22,11 @@ std::string Part::folder() const {
 }
 
 std::string Description::json() const {
-  Json out;
+  OrderedJson out;
   out["version"] = kVersion;
   out["scene"] = scene;
   out["runs"] = run_count(axes);
-  Json keys = Json::array();
+  OrderedJson keys = OrderedJson::array();
   for (const Axis& axis : axes) keys.push_back({{"key", axis.key}, {"values", axis.values}});
   out["vary"] = keys;
   out["set"] = overrides;
@@ -34,15 +34,15 @@ std::string Description::json() const {
   out["instruments"] = instruments;
   out["meshes"] = meshes;
   out["text"] = text;
-  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return out.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::optional<Description> read_description(const std::filesystem::path& folder) {
-  std::ifstream in(folder / kFile);
+  std::ifstream in(folder / kDescriptionFile);
   if (!in) return {};
-  const std::string name = (folder / kFile).string();
+  const std::string name = (folder / kDescriptionFile).string();
   try {
-    const Json json = Json::parse(in);
+    const OrderedJson json = OrderedJson::parse(in);
     if (json.at("version").get<int>() != kVersion) {
       throw UsageError(name + " is of another version of sunder");
     }
@@ -51,14 +51,14 @@ std::optional<Description> read_description(const std::filesystem::path& folder)
     d.text = json.at("text").get<std::string>();
     d.meshes = json.at("meshes").get<std::vector<std::string>>();
     d.overrides = json.at("set").get<std::vector<std::string>>();
-    for (const Json& axis : json.at("vary")) {
+    for (const OrderedJson& axis : json.at("vary")) {
       d.axes.push_back(
           {axis.at("key").get<std::string>(), axis.at("values").get<std::vector<std::string>>()});
     }
     d.instruments = json.at("instruments").get<int>();
     d.part = {json.at("part").at(0).get<int>(), json.at("part").at(1).get<int>()};
     return d;
-  } catch (const Json::exception&) {
+  } catch (const OrderedJson::exception&) {
     throw UsageError(name + " is not what a sweep writes; remove the folder or name another one");
   }
 }

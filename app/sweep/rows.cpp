@@ -16,7 +16,7 @@
 namespace sunder::app::sweep {
 namespace {
 
-constexpr const char* kFile = "sweep.rows";
+constexpr const char* kRowFile = "sweep.rows";
 
 std::string whole_lines(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -28,7 +28,7 @@ std::string whole_lines(const std::filesystem::path& path) {
 }  // namespace
 
 Rows read_rows(const std::filesystem::path& folder, std::size_t cells) {
-  const std::string text = whole_lines(folder / kFile);
+  const std::string text = whole_lines(folder / kRowFile);
   Rows rows;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
@@ -44,7 +44,7 @@ Rows read_rows(const std::filesystem::path& folder, std::size_t cells) {
   return rows;
 }
 
-RowFile::RowFile(const std::filesystem::path& folder, bool anew) : path_(folder / kFile) {
+RowFile::RowFile(const std::filesystem::path& folder, bool anew) : path_(folder / kRowFile) {
   if (!anew) size_ = whole_lines(path_).size();
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0 || ::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) {

@@ -46,6 +46,8 @@ PROGRAMS = [
             Share(14, repetitions=3), Share(24)),
     Program("bench_c_abi", "a step through the C interface",
             Share(6, repetitions=1), Share(2, repetitions=3)),
+    Program("bench_live", "undo, removal, cuts and the surface of a live body",
+            Share(10, "/1944", 1), Share(150, repetitions=3)),
     Program("bench_engine", "the engine against CHOLMOD, event by event",
             Share(6, "/1944/k", 3), Share(200, "-inverse_deferred/30246/", 3)),
     Program("bench_frame_parts", "where a frame goes, from the first to 640 fractures",

@@ -95,6 +95,19 @@ void DamagedBody::follow(std::size_t events) {
   }
 }
 
+void DamagedBody::take_back(std::size_t events) {
+  if (events == events_) return;
+  DamagedBody body = as_of(events);
+  {
+    const std::lock_guard lock(record_->mutex);
+    while (record_->damage.size() > events) record_->damage.take_back();
+  }
+  forms_ = std::move(body.forms_);
+  scale_.swap(body.scale_);
+  others_.swap(body.others_);
+  events_ = events;
+}
+
 DamagedBody DamagedBody::as_of(std::size_t events) const {
   DamagedBody body(problem_);
   body.record_ = record_;

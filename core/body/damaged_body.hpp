@@ -35,6 +35,9 @@ class DamagedBody {
   [[nodiscard]] std::size_t events() const { return events_; }
   /// Follows the record up to so many events, no fewer than now.
   void follow(std::size_t events);
+  /// Drops all events but so many, as if they had not been. On the body that began the record
+  /// alone, and only while no copy of it has followed more.
+  void take_back(std::size_t events);
   /// The body after so many of its events.
   [[nodiscard]] DamagedBody as_of(std::size_t events) const;
   /// An event of the record.

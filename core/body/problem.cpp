@@ -271,6 +271,11 @@ void Problem::check_options() {
                      "solver.tolerance = " + in_digits(scene_.solver.tolerance) +
                          "; it must lie above 0 and below 1");
   }
+  if (!(scene_.solver.max_ms >= 0 && std::isfinite(scene_.solver.max_ms))) {
+    throw InputError(InputFault::out_of_range,
+                     "solver.max_ms = " + in_digits(scene_.solver.max_ms) +
+                         "; it must be finite and at least 0 ms (0: no bound)");
+  }
   if (scene_.steps < 1) {
     throw InputError(InputFault::out_of_range,
                      "time.steps = " + std::to_string(scene_.steps) + "; it must be at least 1");

@@ -27,6 +27,9 @@ class AveragedStrength {
   void over(std::span<const std::uint8_t> destroyed, std::vector<Worst>& found) const;
   /// Takes elements out of the candidates for good.
   void exclude(std::span<const Index> elements);
+  /// Per element, to go back to.
+  [[nodiscard]] const std::vector<std::uint8_t>& excluded() const { return excluded_; }
+  void exclude_only(const std::vector<std::uint8_t>& elements) { excluded_ = elements; }
 
  private:
   /// A node, as a corner of elements of one material: those round it are averaged.

@@ -103,7 +103,32 @@ Combined::Combined(const Problem& problem)
   untold_.reserve(driven_.capacity());
 }
 
+std::shared_ptr<const CriterionState> Combined::state() const {
+  if (!kept_) kept_ = std::make_shared<const Kept>(Kept{cracks_, excluded_});
+  auto state = std::make_shared<State>();
+  state->kept = kept_;
+  state->driven = driven_;
+  return state;
+}
+
+/// Cracks keep the room that they have; what was born since goes.
+void Combined::restore(const CriterionState& of) {
+  const auto& state = dynamic_cast<const State&>(of);
+  const std::vector<Crack>& cracks = state.kept->cracks;
+  const std::size_t same = std::min(cracks.size(), cracks_.size());
+  cracks_.erase(cracks_.begin() + static_cast<std::ptrdiff_t>(same), cracks_.end());
+  std::copy_n(cracks.begin(), same, cracks_.begin());
+  for (std::size_t c = same; c < cracks.size(); ++c) {
+    cracks_.emplace_back(&lists_);
+    cracks_.back() = cracks[c];
+  }
+  excluded_ = state.kept->excluded;
+  driven_ = state.driven;
+  kept_ = state.kept;
+}
+
 Decision Combined::preset() {
+  kept_.reset();
   const auto& presets = problem_.scene().cracks;
   for (std::size_t c = 0; c < presets.size(); ++c)
     cracks_.push_back(preset_crack(board_, presets[c], static_cast<int>(c),
@@ -284,6 +309,7 @@ void Combined::add_other_terms(const FractureState& state) {
 }
 
 void Combined::take(const DestroyedElement& row, Decision& decision) {
+  kept_.reset();
   taken_[row.element] = 1;
   decision.elements.push_back(row);
 }
@@ -298,6 +324,7 @@ void Combined::grow(const DrivenTip& driven, const FractureState& state, Decisio
   const ElementView view{state.destroyed, yields_, taken_, false, toughness};
   const Band& band = bands_.find(ray, view);
   if (band.elements.empty()) {
+    kept_.reset();
     tip.ended = true;
     return;
   }

@@ -31,11 +31,23 @@ class Combined final : public FractureCriterion {
   [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
                                            std::span<const std::uint8_t> destroyed) const override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }
+  [[nodiscard]] std::shared_ptr<const CriterionState> state() const override;
+  void restore(const CriterionState& state) override;
 
  private:
   struct DrivenTip {
     int crack;
     TipGrowth growth;
+  };
+
+  /// What events alone change; states between two of them share it.
+  struct Kept {
+    std::vector<Crack> cracks;
+    std::vector<std::uint8_t> excluded;
+  };
+  struct State final : CriterionState {
+    std::shared_ptr<const Kept> kept;
+    std::vector<DrivenTip> driven;
   };
 
   void reserve(Decision& decision) const;
@@ -82,6 +94,7 @@ class Combined final : public FractureCriterion {
   std::vector<std::uint8_t> taken_;  // per element
   std::vector<std::pair<Index, std::int8_t>> labels_;
   std::vector<Finding> untold_;
+  mutable std::shared_ptr<const Kept> kept_;  // as of the last state(); null: changed since
 };
 
 }  // namespace sunder::fracture

@@ -86,6 +86,12 @@ struct PressedNodes {
   [[nodiscard]] std::span<const Index> list() const { return {nodes.data(), count}; }
 };
 
+/// What decisions go on from: the cracks and whatever a criterion keeps beside them.
+class CriterionState {
+ public:
+  virtual ~CriterionState() = default;
+};
+
 class FractureCriterion {
  public:
   virtual ~FractureCriterion() = default;
@@ -112,6 +118,10 @@ class FractureCriterion {
   [[nodiscard]] virtual std::vector<CrackFace> faces() const { return {}; }
   /// Of all elements, where cracks split them; empty: as the mesh has them.
   [[nodiscard]] virtual std::span<const std::array<Index, 4>> corners() const { return {}; }
+  /// The state of now; null: this criterion keeps none to go back to.
+  [[nodiscard]] virtual std::shared_ptr<const CriterionState> state() const { return nullptr; }
+  /// Goes back to one that state() gave, so that later decisions are bit by bit those of then.
+  virtual void restore(const CriterionState&) {}
 };
 
 /// The criterion of problem.scene().fracture.model; never null (model none: never breaks anything).

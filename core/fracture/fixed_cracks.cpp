@@ -18,6 +18,18 @@ Decision FixedCracks::preset() {
   return decision;
 }
 
+std::shared_ptr<const CriterionState> FixedCracks::state() const {
+  auto state = std::make_shared<State>();
+  state->cracks = cracks_.size();
+  return state;
+}
+
+/// Before the presets there were none, since then they are as they are.
+void FixedCracks::restore(const CriterionState& state) {
+  const auto cracks = static_cast<std::ptrdiff_t>(dynamic_cast<const State&>(state).cracks);
+  cracks_.erase(cracks_.begin() + cracks, cracks_.end());
+}
+
 void FixedCracks::tips(const FractureState& state, std::vector<TipState>& tips,
                        std::vector<Finding>& findings) {
   if (cracks_.empty()) return;

@@ -21,8 +21,14 @@ class FixedCracks final : public FractureCriterion {
   [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
                                            std::span<const std::uint8_t> destroyed) const override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }
+  [[nodiscard]] std::shared_ptr<const CriterionState> state() const override;
+  void restore(const CriterionState& state) override;
 
  private:
+  struct State final : CriterionState {
+    std::size_t cracks = 0;
+  };
+
   const Problem& problem_;
   std::optional<Board> board_;                // built only when there are cracks
   std::optional<FieldIntensityMeter> meter_;  // only when somebody asks for K

@@ -37,6 +37,11 @@ Decision WorstElement::preset() {
   return decision;
 }
 
+/// Whatever was decided, the next decision looks at the body alone.
+std::shared_ptr<const CriterionState> WorstElement::state() const {
+  return std::make_shared<const CriterionState>();
+}
+
 /// Without crack records there is no face to press on.
 PressedNodes WorstElement::pressed_nodes(const Press&, std::span<const std::uint8_t>) const {
   return {};

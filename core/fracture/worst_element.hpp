@@ -20,6 +20,7 @@ class WorstElement final : public FractureCriterion {
   [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
                                            std::span<const std::uint8_t> destroyed) const override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return none_; }
+  [[nodiscard]] std::shared_ptr<const CriterionState> state() const override;
 
  private:
   const Problem& problem_;

@@ -149,6 +149,25 @@ void Backend::change(const fem::Change& change) {
   if (stage_ != Stage::created && !problem_->moves()) stage_ = Stage::loaded;
 }
 
+std::shared_ptr<const BackendState> Backend::save() const {
+  std::unique_ptr<BackendState> state = do_save();
+  if (!state) return nullptr;
+  state->owner_ = self_;
+  state->events_ = damaged_body_->events();
+  state->stage_ = static_cast<int>(stage_);
+  state->stress_known_ = stress_known_;
+  return state;
+}
+
+bool Backend::restore(const BackendState& state) {
+  if (state.owner_.lock() != self_ || state.events_ > damaged_body_->events()) return false;
+  if (!do_restore(state, state.events_)) return false;
+  damaged_body_->take_back(state.events_);
+  stage_ = static_cast<Stage>(state.stage_);
+  stress_known_ = state.stress_known_;
+  return true;
+}
+
 Index Backend::node_count() const { return damaged_body_->forms().node_count(); }
 
 void Backend::do_change(const fem::Change&) {

@@ -62,6 +62,14 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   }
 }
 
+void Loads::restore(const State& state) {
+  pressed_ = state.pressed;
+  driven_ = state.driven;
+  turned_ = state.turned;
+  std::ranges::fill(forces_, Vec3::Zero());
+  acting_.clear();
+}
+
 /// Whatever acts at a time, a frame allocates nothing.
 void Loads::reserve() {
   constexpr std::size_t kPressed = std::tuple_size_v<decltype(PressedNodes::nodes)>;

@@ -30,6 +30,14 @@ class Loads {
   /// Force or displacement of instrument i at a scene time, its turn left out.
   [[nodiscard]] Vec3 value(std::size_t instrument, double time) const;
 
+  /// What a host and cracks have made of the instruments, to go back to; update() follows.
+  struct State {
+    std::vector<std::vector<Index>> pressed;
+    std::vector<std::optional<Vec3>> driven, turned;
+  };
+  [[nodiscard]] State state() const { return {pressed_, driven_, turned_}; }
+  void restore(const State& state);
+
   [[nodiscard]] const Load& load() const { return all_; }
   /// Without the pressing instruments (the pristine field's load).
   [[nodiscard]] const Load& expansion() const { return expansion_; }

@@ -50,7 +50,7 @@ Needs needs_of(const Problem& problem) {
   Needs needs;
   needs.stress = breaks || scene.output.stress;
   needs.yield = needs.stress && any(problem, &Problem::breakable);
-  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
+  needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty() || scene.live;
   needs.split = breaks && scene.fracture.crack == CrackWay::split;
   needs.contact = needs.split && scene.fracture.contact;
   needs.pristine =

@@ -39,50 +39,54 @@ std::vector<std::string> Simulation::warnings() const {
     std::string words = sentence(found, problem_->scene());
     if (std::ranges::find(all, words) == all.end()) all.push_back(std::move(words));
   }
-  if (capped_.count > 0) {
-    all.push_back(capped_.sentence("ended at fracture.max_events = " +
-                                   count_of(problem_->scene().fracture.max_events, "event") +
-                                   "; more may have been ready to break"));
+  if (now_.capped.count > 0) {
+    all.push_back(now_.capped.sentence("ended at fracture.max_events = " +
+                                       count_of(problem_->scene().fracture.max_events, "event") +
+                                       "; more may have been ready to break"));
   }
-  if (cut_short_.count > 0) {
-    all.push_back(cut_short_.sentence(
+  if (now_.cut_short.count > 0) {
+    all.push_back(now_.cut_short.sentence(
         "ended at dynamics.max_iterations = " +
         std::to_string(problem_->scene().dynamics->max_iterations) +
         ": the stress error there is only estimated, not under solver.tolerance"));
   }
-  if (polished_.count > 0) {
-    all.push_back(polished_.sentence("had a frame over the tolerance, which was polished"));
+  if (now_.polished.count > 0) {
+    all.push_back(now_.polished.sentence("had a frame over the tolerance, which was polished"));
   }
-  if (unfinished_.count > 0) {
-    all.push_back(unfinished_.sentence(
+  if (now_.unfinished.count > 0) {
+    all.push_back(now_.unfinished.sentence(
         "ended before the body was at rest: nothing was decided there, the next step went on from "
         "it"));
   }
+  if (now_.out_of_time.count > 0) {
+    all.push_back(now_.out_of_time.sentence(
+        "ended by time, before nothing broke any more: the bits of this run depend on the clock"));
+  }
   add_deformation_warnings(all);
   if (problem_->moves()) {
-    if (loose_pieces_ > 0) {
-      all.push_back(count_of(static_cast<long long>(loose_pieces_), "piece") + " with " +
-                    count_of(static_cast<long long>(loose_elements_), "element") +
-                    (loose_pieces_ == 1 ? " moves on by itself" : " move on by themselves") +
-                    " (since step " + std::to_string(loose_pieces_step_) +
-                    "): no support and no grip holds " + (loose_pieces_ == 1 ? "it" : "them"));
+    if (now_.loose_pieces > 0) {
+      all.push_back(count_of(static_cast<long long>(now_.loose_pieces), "piece") + " with " +
+                    count_of(static_cast<long long>(now_.loose_elements), "element") +
+                    (now_.loose_pieces == 1 ? " moves on by itself" : " move on by themselves") +
+                    " (since step " + std::to_string(now_.loose_pieces_step) +
+                    "): no support and no grip holds " + (now_.loose_pieces == 1 ? "it" : "them"));
     }
     return all;
   }
   const std::string so =
       problem_->finite() ? " displacement stays as it was" : " displacement has no meaning";
-  if (loose_nodes_ > 0) {
-    all.push_back(count_of(static_cast<long long>(loose_nodes_), "node is", "nodes are") +
+  if (now_.loose_nodes > 0) {
+    all.push_back(count_of(static_cast<long long>(now_.loose_nodes), "node is", "nodes are") +
                   " held by destroyed elements only (since step " +
-                  std::to_string(loose_nodes_step_) + "); " +
-                  (loose_nodes_ == 1 ? "its" : "their") + so);
+                  std::to_string(now_.loose_nodes_step) + "); " +
+                  (now_.loose_nodes == 1 ? "its" : "their") + so);
   }
-  if (loose_pieces_ > 0) {
-    const bool one = loose_pieces_ == 1;
-    all.push_back(count_of(static_cast<long long>(loose_pieces_), "piece") + " with " +
-                  count_of(static_cast<long long>(loose_elements_), "element") +
+  if (now_.loose_pieces > 0) {
+    const bool one = now_.loose_pieces == 1;
+    all.push_back(count_of(static_cast<long long>(now_.loose_pieces), "piece") + " with " +
+                  count_of(static_cast<long long>(now_.loose_elements), "element") +
                   (one ? " is" : " are") + " cut off (since step " +
-                  std::to_string(loose_pieces_step_) + "); only destroyed elements hold " +
+                  std::to_string(now_.loose_pieces_step) + "); only destroyed elements hold " +
                   (one ? "it and its" : "them and their") + so);
   }
   return all;
@@ -103,13 +107,13 @@ void Simulation::add_deformation_warnings(std::vector<std::string>& all) const {
     return out.str();
   };
   const std::string verb = " live tissue by over ";
-  add(strained_, "strained" + verb + three(100 * kSmallStrain) + " %",
-      three(100 * strained_.most) + " %",
+  add(now_.strained, "strained" + verb + three(100 * kSmallStrain) + " %",
+      three(100 * now_.strained.most) + " %",
       "the law is linear, for small strains, and the figures there are no longer those of tissue");
-  add(turned_, "turned" + verb + three(kSmallRotationDeg) + " deg", three(turned_.most) + " deg",
-      "the theory of small strains takes a rotation for strain");
-  add(inverted_, "turned live elements inside out",
-      three(inverted_.most) + (inverted_.most > 1 ? " elements" : " element"),
+  add(now_.turned, "turned" + verb + three(kSmallRotationDeg) + " deg",
+      three(now_.turned.most) + " deg", "the theory of small strains takes a rotation for strain");
+  add(now_.inverted, "turned live elements inside out",
+      three(now_.inverted.most) + (now_.inverted.most > 1 ? " elements" : " element"),
       "with det(I + grad u) <= 0 no body has that shape");
 }
 

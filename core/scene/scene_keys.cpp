@@ -368,6 +368,11 @@ std::span<const MemberKey<SolverOptions>> solver_keys() {
                       "below 0: error; no such device: exit code 4"),
       row<&S::prepare>("solver", "prepare",
                        "a quiet frame prepares the fractures next in line (no result changes)", ""),
+      row<&S::max_ms>("solver", "max_ms",
+                      "a step ends after the event that found it so long [ms], 0: none; the next "
+                      "step goes on",
+                      "not finite or below 0: error; reached: warning that the bits depend on the "
+                      "clock"),
   };
   return keys;
 }

@@ -103,6 +103,28 @@ void BackgroundRebase::give_up() {
   unwanted_ = false;
 }
 
+void BackgroundRebase::go_back(std::size_t events) {
+  give_up();
+  const std::lock_guard lock(mutex_);
+  if (body_.events() > events) body_ = body_.as_of(events);
+  recorded_ = events;
+  at_ = std::min(at_, events);
+}
+
+void BackgroundRebase::start_again(std::size_t start, const Load& load, MakeBase make) {
+  making_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    if (body_.events() > start) body_ = body_.as_of(start);
+    load_ = load;
+    make_ = std::move(make);
+    phase_ = Phase::asked;
+    start_ = start;
+    followed_ = static_cast<int>(recorded_ - start);
+  }
+  asked_.notify_one();
+}
+
 bool BackgroundRebase::work_waits() const {
   return quit_ || old_.deferred || phase_ == Phase::asked ||
          (phase_ == Phase::following && at_ < recorded_);

@@ -34,7 +34,7 @@ struct Based {
   std::shared_ptr<fem::PartedBody> parted;
   std::shared_ptr<const linear_algebra::Factor>
       factor;  // what the base reads; empty: it is the intact one
-  std::unique_ptr<Deferred> deferred;
+  std::shared_ptr<Deferred> deferred;  // states to go back to hold it as well
 };
 
 /// Makes a base of a body with no damage over it yet, and checks it by a load; `work` is for a
@@ -60,6 +60,14 @@ class BackgroundRebase {
   /// takes it.
   void start(const Load& load, MakeBase make);
   [[nodiscard]] bool making() const { return making_; }
+  /// Events that the body has recorded since the start of what is being made.
+  [[nodiscard]] int followed() const { return followed_; }
+  /// The body is about to go back to the first `events` events, which it still records beyond: what
+  /// is being made is given up.
+  void go_back(std::size_t events);
+  /// Once it has gone back: starts again what was being made then, of the body after `start`
+  /// events.
+  void start_again(std::size_t start, const Load& load, MakeBase make);
   /// Whether the next event is to find the base that is being made in place.
   [[nodiscard]] bool due() const { return making_ && followed_ >= events_; }
   /// Waits until every event is followed; `based` goes to the thread to be freed, which takes as

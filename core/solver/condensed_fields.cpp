@@ -51,6 +51,13 @@ void CondensedFields::solve(Solution& solution) {
   solution.everywhere = true;
 }
 
+void CondensedFields::restore(const State& state) {
+  displacement_ = state.displacement;
+  of_stress_ = state.of_stress;
+  events_ = state.events;
+  stress_known_ = false;
+}
+
 void CondensedFields::complete(std::span<double> nodal) {
   solve(displacement_);
   for (std::size_t n = 0; n < region_.inside.size(); ++n) {

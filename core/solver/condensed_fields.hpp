@@ -42,6 +42,17 @@ class CondensedFields {
     std::vector<double> nodal;
     bool everywhere = false;  // `nodal` is filled
   };
+
+ public:
+  /// What stands behind what is published, to go back to.
+  struct State {
+    Solution displacement, of_stress;
+    std::size_t events = 0;
+  };
+  [[nodiscard]] State state() const { return {displacement_, of_stress_, events_}; }
+  void restore(const State& state);
+
+ private:
   void solve(Solution& solution);
 
   const fem::DamagedBody& body_;

@@ -11,6 +11,7 @@
 #include "solver/condensed_update.hpp"
 #include "solver/load_room.hpp"
 #include "solver/whole_solution.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::solver {
 namespace {
@@ -223,12 +224,39 @@ class CondensedRoute final : public InverseRoute {
       rebase();
     } else if (begins()) {
       started_ = body_.events();
+      start_load_ = load_;
       next_->begin(based_, factored_);
-      coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
-                                   const linear_algebra::FactorWork& work) {
-        return next_->make(body, load, work);
-      });
+      coming_->start(load_, make_next());
     }
+  }
+
+  std::unique_ptr<RouteState> state() const override {
+    auto state = std::make_unique<State>();
+    state->based = based_;
+    state->factored = factored_;
+    state->bases = bases_;
+    state->laid = based_.deferred->events();
+    state->loaded = load_;
+    if (!coming_ || !coming_->making()) return state;
+    state->making = true;
+    state->start = started_;
+    state->load = start_load_;
+    return state;
+  }
+
+  bool go_back(const RouteState& of, std::size_t events) override {
+    const auto& state = dynamic_cast<const State&>(of);
+    if (coming_) {
+      coming_->go_back(events);
+      next_->release();
+    }
+    based_ = state.based;
+    factored_ = state.factored;
+    bases_ = state.bases;
+    based_.deferred->take_back(based_.deferred->events() - state.laid);
+    load_ = state.loaded;
+    if (state.making) make_again(state, events);
+    return true;
   }
 
   bool rebase() override {
@@ -264,6 +292,37 @@ class CondensedRoute final : public InverseRoute {
   }
 
  private:
+  struct State final : RouteState {
+    Based based;  // held on to: its memory with it
+    std::size_t factored = 0;
+    int bases = 1;
+    Index laid = 0;  // events over the base
+    bool making = false;
+    std::size_t start = 0;  // events before the base that was being made
+    Load load;              // by which that was checked
+    Load loaded;
+  };
+
+  [[nodiscard]] MakeBase make_next() {
+    return [this](const fem::DamagedBody& body, const Load& load,
+                  const linear_algebra::FactorWork& work) { return next_->make(body, load, work); };
+  }
+
+  /// The base that was being made begins from the damage that there was when it was begun.
+  void make_again(const State& state, std::size_t events) {
+    Deferred& deferred = *based_.deferred;
+    deferred.take_back(static_cast<Index>(events - state.start));
+    started_ = state.start;
+    start_load_ = state.load;
+    next_->begin(based_, factored_);
+    fem::Change event;
+    for (std::size_t i = state.start; i < events; ++i) {
+      body_.read(i, event);
+      if (!deferred.follow(event)) throw NumericalError("an event cannot be followed again");
+    }
+    coming_->start_again(state.start, state.load, make_next());
+  }
+
   [[nodiscard]] std::size_t dof_count() const {
     return static_cast<std::size_t>(body_.problem().dof_count());
   }
@@ -296,7 +355,8 @@ class CondensedRoute final : public InverseRoute {
   const fem::DamagedBody& body_;
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
   const linear_algebra::Factor* intact_ = nullptr;
-  Load load_;  // of the last solution
+  Load load_;        // of the last solution
+  Load start_load_;  // of the one before coming_ started
   Based based_;
   std::size_t factored_ = 0, started_ = 0;  // events in based_.factor; before coming_ started
   Equilibrium whole_;

@@ -207,9 +207,10 @@ void Deferred::pop() {
   base_->pop();
 }
 
-void Deferred::take_back() {
-  if (before_.empty()) throw UsageError("there is no event to take back");
-  pop();
+void Deferred::take_back(Index events) {
+  if (this->events() < events) throw UsageError("there is no event to take back");
+  if (events == 0) return;
+  for (Index i = 0; i < events; ++i) pop();
   if (!replay()) throw NumericalError("the stiffness of the new unknowns is singular");
   if (!factor_grips()) throw NumericalError("the compliance of the gripped nodes is singular");
 }

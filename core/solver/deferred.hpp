@@ -57,8 +57,8 @@ class Deferred {
   /// Prepares the base for the removal of live elements, each by itself.
   void prepare(std::span<const Index> elements);
   [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
-  /// Takes the last event back: every later result is bit by bit what it was before the event.
-  void take_back();
+  /// Takes the last events back: every later result is bit by bit what it was before them.
+  void take_back(Index events = 1);
 
   /// u = A^-1 f with u_G = displacement (empty: 0). The forces of the damage are refined until
   /// what they lack has no more energy than `energy_tolerance` [N mm], or rounding. A force on a

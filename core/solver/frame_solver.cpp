@@ -50,6 +50,19 @@ void FrameSolver::event() {
   for (EnergyCheck& check : energy_checks_->all()) check.event();
 }
 
+std::shared_ptr<const FrameSolver::State> FrameSolver::state() const {
+  return std::make_shared<const State>(*this);
+}
+
+void FrameSolver::restore(const State& state) {
+  if (state.checks_) checks_.emplace(*state.checks_);
+  if (state.energy_checks_) energy_checks_.emplace(*state.energy_checks_);
+  kept_error_ = state.kept_error_;
+  last_ = state.last_;
+  check_ = nullptr;
+  load_ = nullptr;
+}
+
 SolveReport FrameSolver::solve(const Load& load) {
   load_ = &load;
   everywhere_ = true;

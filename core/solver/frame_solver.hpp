@@ -3,6 +3,7 @@
 // error is under the scene's tolerance.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "solver/energy_check.hpp"
@@ -26,6 +27,11 @@ class FrameSolver {
   [[nodiscard]] bool everywhere() const { return everywhere_; }
   /// An event has changed the body.
   void event();
+
+  /// What is known of loads so far, to go back to: the next solution refines as it would have then.
+  class State;
+  [[nodiscard]] std::shared_ptr<const State> state() const;
+  void restore(const State& state);
 
  private:
   SolveReport solve_everywhere(const Load& load);
@@ -66,6 +72,22 @@ class FrameSolver {
     SolveReport report;
     bool holds = false;
   };
+  Last last_;
+};
+
+class FrameSolver::State {
+ public:
+  explicit State(const FrameSolver& of)
+      : checks_(of.checks_),
+        energy_checks_(of.energy_checks_),
+        kept_error_(of.kept_error_),
+        last_(of.last_) {}
+
+ private:
+  friend class FrameSolver;
+  std::optional<RecentChecks<FrameCheck>> checks_;
+  std::optional<RecentChecks<EnergyCheck>> energy_checks_;
+  double kept_error_;
   Last last_;
 };
 

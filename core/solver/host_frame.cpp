@@ -45,6 +45,14 @@ void HostFrame::set_load(const Load& load) {
   for (std::size_t i = 0; i < load.forces.size(); ++i) force_[load.force_dofs[i]] = load.forces[i];
 }
 
+void HostFrame::restore(const State& state) {
+  set_load(state.load);
+  u_ = state.u;
+  reactions_ = state.reactions;
+  load_squared_ = state.load_squared;
+  largest_ = state.largest;
+}
+
 /// Offsets of new nodes bear no load.
 void HostFrame::make_room_for_offsets() {
   offsets_.follow(body_.forms());

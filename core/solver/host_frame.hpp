@@ -26,6 +26,15 @@ class HostFrame final : public FrameDevice {
             bool yardstick = false, MakeRoute fall_back = {});
 
   void set_load(const Load& load);
+  /// Load and solution, to go back to.
+  struct State {
+    Load load;
+    Eigen::VectorXd u;
+    std::vector<double> reactions;
+    double load_squared = 0, largest = 0;
+  };
+  [[nodiscard]] State state() const { return {load_, u_, reactions_, load_squared_, largest_}; }
+  void restore(const State& state);
   [[nodiscard]] const Load& load() const { return load_; }
   /// The solution in work, over all unknowns, offsets of new nodes last; solve_region() fills those
   /// of the region alone.

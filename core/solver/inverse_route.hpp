@@ -17,6 +17,12 @@ struct Applied {
   bool converged = true;
 };
 
+/// What a route keeps of a state, to go back to it.
+class RouteState {
+ public:
+  virtual ~RouteState() = default;
+};
+
 /// One way to apply the inverse of the damaged stiffness, grips held at zero.
 class InverseRoute {
  public:
@@ -31,6 +37,11 @@ class InverseRoute {
   virtual bool equilibrium(Equilibrium&) const { return false; }
   /// Follows an event that the body has recorded already.
   virtual void follow(const fem::Event& event) = 0;
+  /// The state of now; null: this route keeps none to go back to.
+  [[nodiscard]] virtual std::unique_ptr<RouteState> state() const { return nullptr; }
+  /// Goes back to one that it gave, after the first `events` events of the body, which still
+  /// records those since. False, and nothing changes: it cannot.
+  virtual bool go_back(const RouteState&, std::size_t /*events*/) { return false; }
   /// Whether prepare() is worth calling.
   [[nodiscard]] virtual bool prepares() const { return false; }
   virtual void prepare(std::span<const Index>) {}

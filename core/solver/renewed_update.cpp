@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/renewed_update.hpp"
 
+#include <functional>
+
 #include "solver/load_room.hpp"
 #include "sunder/error.hpp"
 
@@ -26,13 +28,42 @@ void RenewedUpdate::follow(const fem::Event& event, bool anew) {
   if (anew || !based_.follow(event)) {
     if (!rebase()) throw NumericalError("the update of the split body is singular");
   } else if (begins()) {
-    coming_->start(load_, [this](const fem::DamagedBody& body, const Load& load,
-                                 const linear_algebra::FactorWork& work) {
-      Based based = make_(body, work);
-      check_base(based, based.parted ? based.parted->body() : body, load, [](Eigen::VectorXd&) {});
-      return based;
-    });
+    start_load_ = load_;
+    start_events_ = body_.events();
+    coming_->start(load_, std::bind_front(&RenewedUpdate::make_checked, this));
   }
+}
+
+Based RenewedUpdate::make_checked(const fem::DamagedBody& body, const Load& load,
+                                  const linear_algebra::FactorWork& work) const {
+  Based based = make_(body, work);
+  check_base(based, based.parted ? based.parted->body() : body, load, [](Eigen::VectorXd&) {});
+  return based;
+}
+
+RenewedUpdate::State RenewedUpdate::state() const {
+  State state{based_, bases_, threshold_, based_.deferred->events(), false, 0, {}, load_};
+  if (!coming_ || !coming_->making()) return state;
+  state.making = true;
+  state.start = start_events_;
+  state.load = start_load_;
+  return state;
+}
+
+void RenewedUpdate::go_back(const State& state, std::size_t events) {
+  if (coming_) coming_->go_back(events);
+  saved_ms_ = saved_ms();
+  based_ = state.based;
+  saved_ms_ -= based_.deferred->saved_ms();
+  bases_ = state.bases;
+  threshold_ = state.threshold;
+  based_.deferred->take_back(based_.deferred->events() - state.laid);
+  load_ = state.loaded;
+  if (!state.making) return;
+  start_load_ = state.load;
+  start_events_ = state.start;
+  coming_->start_again(state.start, state.load,
+                       std::bind_front(&RenewedUpdate::make_checked, this));
 }
 
 /// Elements that come with another form need no mesh of their own.

@@ -40,6 +40,21 @@ class RenewedUpdate {
   /// there that no base takes over (parted_body.hpp).
   bool rebase();
 
+  /// What of a state bases and what is laid over them go back to.
+  struct State {
+    Based based;  // held on to: its memory with it
+    int bases = 1;
+    std::size_t threshold = 0;
+    Index laid = 0;  // events over the base
+    bool making = false;
+    std::size_t start = 0;  // events before the base that is being made
+    Load load;              // by which that is checked
+    Load loaded;
+  };
+  [[nodiscard]] State state() const;
+  /// The body still records later events than the first `events`.
+  void go_back(const State& state, std::size_t events);
+
   [[nodiscard]] Deferred& deferred() { return *based_.deferred; }
   [[nodiscard]] const Deferred& deferred() const { return *based_.deferred; }
   /// The body in whose terms deferred() is; null: in those of the body itself.
@@ -54,11 +69,15 @@ class RenewedUpdate {
  private:
   [[nodiscard]] bool can_be_renewed() const;
   [[nodiscard]] bool begins() const;
+  [[nodiscard]] Based make_checked(const fem::DamagedBody& body, const Load& load,
+                                   const linear_algebra::FactorWork& work) const;
   void take_base();
   void renewed();
 
   const fem::DamagedBody& body_;
   Load load_;
+  Load start_load_;               // of the base that is being made
+  std::size_t start_events_ = 0;  // before it
   Based based_;
   Renewal renewal_;
   Make make_;

@@ -74,16 +74,29 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
     for (int g = 0; g < 9; ++g) b.gradient[g][l] = problem_->shape(e).gradient(g % 3, g / 3 + 1);
     b.mu[l] = problem_->small_strain(e).mu;
     b.lambda[l] = problem_->small_strain(e).lambda;
-    b.scale[l] = 1;
-    b.live[l] = kLive;
-    b.softness[l] = 1 / (2 * b.mu[l] * b.mu[l]);
     b.volume[l] = problem_->shape(e).volume;
-    const double yield = problem_->yield(e);
-    b.strength[l] = yield > 0 ? 1 / (yield * yield) : 0;
+    bring(b, l, e);
     for (int a = 0; a < 4; ++a) b.corner[a][l] = 3 * problem_->mesh().tets[e][a];
   }
   workers_ = std::make_unique<Workers>(threads > 0 ? threads : threads_for(elements.size()));
   partials_.resize(static_cast<std::size_t>(workers_->count()));
+}
+
+/// What destroying an element takes away.
+void StressKernel::bring(Block& b, std::size_t l, Index e) const {
+  const double yield = problem_->yield(e);
+  b.scale[l] = 1;
+  b.live[l] = kLive;
+  b.softness[l] = 1 / (2 * b.mu[l] * b.mu[l]);
+  b.strength[l] = yield > 0 ? 1 / (yield * yield) : 0;
+}
+
+void StressKernel::revive(std::span<const Index> elements) {
+  for (Index e : elements) {
+    if (place_[e] == kNone) continue;
+    const auto at = static_cast<std::size_t>(place_[e]);
+    bring(blocks_[at / kLanes], at % kLanes, e);
+  }
 }
 
 void StressKernel::keep_bounds() { bounds_.assign(blocks_.size() * kLanes, 0.0); }

@@ -24,6 +24,8 @@ class StressKernel {
 
   /// Follows the removal of elements: their stress is scaled and no longer counts.
   void destroy(std::span<const Index> elements);
+  /// Follows the return of elements as they were at first.
+  void revive(std::span<const Index> elements);
 
   /// Follows elements that come as they were but for their corners.
   void change(std::span<const fem::Coming> come);
@@ -44,6 +46,9 @@ class StressKernel {
   [[nodiscard]] Deformation deformation(std::span<const double> u) const;
   /// Takes elements out of deformation().
   void cut_off(std::span<const Index> elements);
+  /// Those taken out, per element; empty: deformation() is not asked for.
+  [[nodiscard]] const std::vector<std::uint8_t>& taken_out() const { return cut_off_; }
+  void take_out_only(const std::vector<std::uint8_t>& elements) { cut_off_ = elements; }
 
   /// Where run() puts the stress of an element; kNone: it is not listed.
   [[nodiscard]] Index place(Index element) const { return place_[element]; }
@@ -106,6 +111,7 @@ class StressKernel {
     GroupBounds* groups = nullptr;
     bool principal = false;  // the bounds are of the largest principal stress
   };
+  void bring(Block& block, std::size_t lane, Index element) const;
   static void run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                          Partial& partial);
   static void run_and_bound(const Block* blocks, std::size_t count, const double* u, Stores to,

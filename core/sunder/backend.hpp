@@ -141,6 +141,19 @@ struct PreparationReport {
   double saved_ms = 0;  ///< in frames with a fracture: what the columns found ready had cost
 };
 
+/// A state of a backend, to go back to (Backend::save).
+class BackendState {
+ public:
+  virtual ~BackendState() = default;
+
+ private:
+  friend class Backend;
+  std::weak_ptr<const int> owner_;
+  std::size_t events_ = 0;
+  int stage_ = 0;
+  bool stress_known_ = false;
+};
+
 class Backend {
  public:
   virtual ~Backend();
@@ -231,6 +244,16 @@ class Backend {
   /// Force that the grips exert on the body, one per gripped dof, N.
   void read_reactions(std::span<double> reactions) const;
 
+  /// The state of now, to go back to; null: this backend keeps none for this route, law or scene.
+  [[nodiscard]] std::shared_ptr<const BackendState> save() const;
+  /// Goes back to a state that save() of this backend gave and from which all since then began:
+  /// events are taken back, load and solution are those of then, and every later result is bit by
+  /// bit what it would have been. False, and nothing changes: it is another backend's, or cannot be
+  /// gone back to. A state holds on to the base that it rests on.
+  [[nodiscard]] bool restore(const BackendState& state);
+  /// Whether destroy() can take an element: on route condensed those of its region.
+  [[nodiscard]] virtual bool can_destroy(Index) const { return needs_.damage; }
+
   [[nodiscard]] const Problem& problem() const { return *problem_; }
   [[nodiscard]] const Needs& needs() const { return needs_; }
   /// 1 for destroyed elements, per element.
@@ -257,6 +280,9 @@ class Backend {
   virtual void do_destroy(std::span<const Index> elements) = 0;  // damaged_body() knows them
   virtual void do_change(const fem::Change& change);             // damaged_body() knows it
   virtual void do_prepare(std::span<const Index>) {}
+  [[nodiscard]] virtual std::unique_ptr<BackendState> do_save() const { return nullptr; }
+  /// damaged_body() still knows all events; it goes back to the first `events` of them after it.
+  virtual bool do_restore(const BackendState&, std::size_t /*events*/) { return false; }
   virtual void do_exclude_candidates(std::span<const Index> elements) = 0;
   virtual void do_solve_pristine(const Load& load, std::span<double> displacement) = 0;
   virtual void do_read_displacement(std::span<double> displacement) const = 0;
@@ -276,7 +302,8 @@ class Backend {
   Needs needs_;
   std::unique_ptr<fem::DamagedBody> damaged_body_;
   Stage stage_ = Stage::created;
-  bool stress_known_ = false;  // some stress() has succeeded
+  bool stress_known_ = false;                                         // some stress() has succeeded
+  std::shared_ptr<const int> self_ = std::make_shared<const int>(0);  // owner of its states
 };
 
 }  // namespace sunder

@@ -56,6 +56,8 @@ struct StepReport {
   bool unfinished = false;  ///< not at rest: nothing was decided, the next step goes on from it
   bool polished = false;
   bool capped = false;  ///< in motion: ended by dynamics.max_iterations, its error not promised
+  /// Ended by time between two events: what was still to break is left to the next step.
+  bool out_of_time = false;
   StageTimes times;
   /// Device time per pass of all solves and updates of the step; empty without a device clock
   /// (Backend::time_passes).

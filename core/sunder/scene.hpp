@@ -163,6 +163,8 @@ struct SolverOptions {
   double tolerance = 1e-4;  ///< promised relative stress error of every frame
   /// Prepares in quiet frames what the fractures next in line will need; no result changes.
   bool prepare = true;
+  /// A step ends after the event that found so much of it passed [ms], finite and >= 0; 0: none.
+  double max_ms = 0;
 };
 
 struct OutputOptions {
@@ -185,6 +187,7 @@ struct Scene {
   OutputOptions output;
   Vec3 gravity = Vec3::Zero();       ///< [mm/s^2]
   std::optional<Dynamics> dynamics;  ///< none: statics
+  bool live = false;  ///< a host may remove any element at any time (Simulation::remove)
 };
 
 }  // namespace sunder

@@ -2,8 +2,12 @@
 // The frame: loads -> displacement -> stress -> decision -> update, repeated until nothing breaks.
 #pragma once
 
+#include <array>
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +18,8 @@
 
 namespace sunder {
 
+struct Action;
+struct MarkedState;
 class FractureCriterion;
 class Loads;
 class LooseSearch;
@@ -27,6 +33,16 @@ struct NodalForce;
 
 /// Derives from a problem what a backend must offer and what it may leave out.
 [[nodiscard]] Needs needs_of(const Problem& problem);
+
+/// A state that a simulation was in, to come back to: Simulation::save. Cheap to copy; it holds on
+/// to some memory of the solver's while it lives.
+using Mark = std::shared_ptr<const MarkedState>;
+
+/// What going back or forward has done.
+struct Travel {
+  int events = 0;         ///< taken back, or done again
+  bool replayed = false;  ///< by doing again what led there from the start, at its price
+};
 
 class Simulation {
  public:
@@ -54,6 +70,49 @@ class Simulation {
   /// UsageError for any other instrument.
   void turn(std::size_t instrument, const Vec3& rotation);
 
+  /// Takes live elements out between two steps, by one event with cause script: the same change as
+  /// a rupture. Where there has been a solution, in statics, it is computed anew under the same
+  /// load, and what is read and felt follows at once; what breaks by it breaks in the next step.
+  /// Throws UsageError, and nothing changes, for an element that is not there, named twice, gone
+  /// already or out of this route's reach, and where nothing can be destroyed (Scene::live). Throws
+  /// NumericalError where the body has no solution: the elements are gone then.
+  void remove(std::span<const Index> elements);
+
+  /// Removes the live elements that a blade has passed: those whose inside, as displacement leaves
+  /// them now, any of these triangles [mm] meets. Two places of a blade's edge one after the other
+  /// make two triangles. Returns how many. Where cracks split faces would have to open: UsageError.
+  int cut(std::span<const std::array<Vec3, 3>> swept);
+
+  /// Makes the backend of the same problem once more, as it was before the first step.
+  using MakeBackend = std::function<std::unique_ptr<Backend>()>;
+  /// Keeps what is done from now on, so that it can be undone; before the first step and action.
+  /// `quick`: the last so many actions in which something broke keep what the solver needs to go
+  /// back without a new base: all but the mesh's nodes, some lists and loads is shared. Going
+  /// further, or where the route or law keeps nothing (docs/embedding.md), does again what was done
+  /// before, on a backend by `make`; without it that is refused. Each step and action adds some 100
+  /// bytes. Throws UsageError later on.
+  void keep_history(MakeBackend make = {}, int quick = 100);
+  /// The state of now. Throws UsageError without keep_history().
+  [[nodiscard]] Mark save();
+  /// Comes back to a state, from wherever: every later result is bit by bit what it would have been
+  /// there. Throws UsageError for a mark of another simulation, or where that needs a new backend.
+  Travel restore(const Mark& mark);
+  /// Takes back the last `actions` steps and removals in which something broke, with all steps
+  /// since. Throws UsageError, and nothing changes, where there are fewer.
+  Travel undo(int actions = 1);
+  /// Does again what undo() took back. Throws UsageError where there is less, as after any step or
+  /// action since.
+  Travel redo(int actions = 1);
+  /// The history as bytes: what was done, with where steps ended; not the body. Throws UsageError
+  /// without keep_history().
+  [[nodiscard]] std::vector<std::uint8_t> store() const;
+  /// Does what such bytes tell, from the beginning: the same bits on the same backend. Throws
+  /// InputError, and nothing changes, where they are damaged, of another version or another body.
+  Travel load(std::span<const std::uint8_t> bytes);
+  /// How many steps and removals undo() and redo() can take.
+  [[nodiscard]] int undos() const;
+  [[nodiscard]] int redos() const;
+
   /// Says of each rupture which instrument caused it (DestroyedElement::instrument). Two more
   /// solves an event. Throws UsageError for a law of finite deformation: it rests on superposition.
   void attribute_events(bool wanted);
@@ -66,15 +125,25 @@ class Simulation {
   /// the next step on.
   StepReport step(double dt);
 
+  /// The same with a bound on its time in place of solver.max_ms: once `max_ms` [ms] have passed at
+  /// the end of an event the step ends with the solution that follows (StepReport::out_of_time);
+  /// what is still to break is left to the next one. 0: none. Throws UsageError for any other value
+  /// that is not finite and above 0.
+  StepReport step_within(double max_ms);
+  /// Before the first step: does once what a step does first, under no load, so that the first step
+  /// costs what the second does. No later result changes by a bit. Nothing in motion, or later on.
+  void warm_up();
+
   /// Within a step, for its observers: what its report would say by now, the device's times and
   /// the total left out. Otherwise zeros.
   [[nodiscard]] StepReport so_far();
 
-  [[nodiscard]] int steps_done() const { return next_step_; }
-  [[nodiscard]] bool done() const { return next_step_ >= problem_->scene().steps; }
-  [[nodiscard]] bool interrupted() const { return interrupted_; }
+  [[nodiscard]] int steps_done() const { return now_.next_step; }
+  [[nodiscard]] bool done() const { return now_.next_step >= problem_->scene().steps; }
+  [[nodiscard]] bool interrupted() const { return now_.interrupted; }
 
   [[nodiscard]] const Problem& problem() const { return *problem_; }
+  [[nodiscard]] const std::shared_ptr<const Problem>& shared_problem() const { return problem_; }
   [[nodiscard]] const Backend& backend() const { return *backend_; }
   [[nodiscard]] Backend& backend() { return *backend_; }
   [[nodiscard]] const std::vector<DestroyedElement>& destroyed() const { return destroyed_; }
@@ -106,7 +175,15 @@ class Simulation {
   [[nodiscard]] Mesh mesh() const;
   /// How far lips of split cracks have overlapped in any step so far, in the direction across the
   /// ideal path [mm]; 0: nowhere.
-  [[nodiscard]] double lip_overlap() const { return lip_overlap_; }
+  [[nodiscard]] double lip_overlap() const { return now_.lip_overlap; }
+  /// Corners of all elements where split cracks have changed them, nodes of mesh(); empty: as the
+  /// problem's mesh has them.
+  [[nodiscard]] std::span<const std::array<Index, 4>> corners() const;
+  /// Piece that an element belongs to, by its first element: kNone: supports and grips hold it, or
+  /// it is destroyed. As of the last step or removal in which something broke.
+  [[nodiscard]] Index piece_of(Index element) const;
+  /// How often pieces have been looked for.
+  [[nodiscard]] std::uint64_t looks() const { return looks_; }
   /// Faces that split cracks have opened (nodes of mesh()), by crack.
   [[nodiscard]] std::vector<CrackFace> crack_faces() const;
 
@@ -182,24 +259,56 @@ class Simulation {
   std::vector<NodalForce> instrument_forces_;
   std::vector<Worst> over_;
   Reactions reactions_;
-  int next_step_ = 0;
-  double time_ = 0, scene_time_ = 0;  // [s] of the last step; of the step in work or the last
-  bool even_ = true;                  // all steps so far were the scene's own
-  int next_event_ = 0;
-  int gone_ = 0;  // elements destroyed so far
+  /// Where the run is: what a state of it is made of beside cracks, loads and the backend.
+  struct Now {
+    int next_step = 0;
+    double time = 0, scene_time = 0;  // [s] of the last step; of the step in work or the last
+    bool even = true;                 // all steps so far were the scene's own
+    bool preset = false;              // presets are out
+    int next_event = 0;
+    int gone = 0;  // elements destroyed so far
+    bool interrupted = false, out_of_time_now = false;
+    bool attribute = false;
+    Steps capped, cut_short, polished, unfinished, out_of_time;
+    Beyond strained, turned, inverted;
+    double lip_overlap = 0;
+    std::vector<std::uint8_t> cut_off;  // per element; empty: none yet
+    bool solved = false;                // the backend holds fields
+    std::size_t loose_nodes = 0, loose_pieces = 0, loose_elements = 0;
+    int loose_nodes_step = kNone, loose_pieces_step = kNone;  // first seen
+  };
+  struct Kept;
+  struct History;
+  friend struct MarkedState;
+  using Actions = std::vector<std::shared_ptr<const Action>>;
+
+  void set_up();
+  template <class Do>
+  void act(Action action, Do&& body);
+  void record(Action action, std::shared_ptr<const Kept> before, int events_before);
+  void perform(const std::shared_ptr<const Action>& action);
+  StepReport take_step(std::optional<double> dt, double max_ms);
+  void take_out(std::span<const Index> elements);
+  void check_removal(std::span<const Index> elements) const;
+  void follow_removal();
+  [[nodiscard]] std::shared_ptr<const Kept> keep() const;
+  [[nodiscard]] bool go_back(const Kept& kept);
+  void begin_anew();
+  [[nodiscard]] bool go_to(const Actions& actions, const std::shared_ptr<const Kept>& kept);
+  void require_history() const;
+  [[nodiscard]] bool replaying() const;
+  void end_step_early();
+  [[nodiscard]] bool ended_early() const { return now_.interrupted || now_.out_of_time_now; }
+
+  Now now_;
   int events_this_step_ = 0;
   int decisions_this_step_ = 0;
   const StepReport* in_work_ = nullptr;  // of step()
-  bool interrupted_ = false;
-  bool attribute_ = false;
-  Steps capped_, cut_short_, polished_, unfinished_;
-  Beyond strained_, turned_, inverted_;
-  double lip_overlap_ = 0;
-  std::vector<std::uint8_t> cut_off_;  // per element; empty: none yet
   std::vector<Index> newly_cut_off_;
-  bool solved_ = false;  // the backend holds fields
-  std::size_t loose_nodes_ = 0, loose_pieces_ = 0, loose_elements_ = 0;
-  int loose_nodes_step_ = kNone, loose_pieces_step_ = kNone;  // first seen
+  std::uint64_t looks_ = 0;
+  std::unique_ptr<History> history_;  // null: none is kept
+  double max_ms_ = 0;                 // of the step in work
+  std::chrono::steady_clock::time_point began_;
 };
 
 }  // namespace sunder

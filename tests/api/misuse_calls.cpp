@@ -38,6 +38,13 @@ std::vector<Misuse> handles() {
        }},
       {"simulation_for_grips", SUNDER_ERROR_HANDLE, "grips",
        [](World& w) { return sunder_grips_destroy(reinterpret_cast<sunder_grips>(w.simulation)); }},
+      {"undo_null", SUNDER_ERROR_HANDLE, "simulation",
+       [](World&) { return sunder_simulation_undo(nullptr, 1, nullptr, nullptr); }},
+      {"surface_of_a_scene", SUNDER_ERROR_HANDLE, "simulation",
+       [](World& w) {
+         sunder_surface surface = SUNDER_SURFACE_INIT;
+         return sunder_simulation_surface(reinterpret_cast<sunder_simulation>(w.scene), &surface);
+       }},
       {"pointer_to_something_else", SUNDER_ERROR_HANDLE, "simulation",
        [](World& w) { return sunder_simulation_destroy(reinterpret_cast<sunder_simulation>(&w)); }},
   };
@@ -97,6 +104,24 @@ std::vector<Misuse> null_pointers() {
        [](World& w) { return sunder_simulation_body_corners(w.simulation, nullptr, 384); }},
       {"body_displacement_null", SUNDER_ERROR_NULL, "values",
        [](World& w) { return sunder_simulation_body_displacement(w.simulation, nullptr, 150); }},
+      {"removed_null", SUNDER_ERROR_NULL, "elements",
+       [](World& w) { return sunder_simulation_remove(w.simulation, nullptr, 3); }},
+      {"swept_null", SUNDER_ERROR_NULL, "swept",
+       [](World& w) { return sunder_simulation_cut(w.simulation, nullptr, 9, nullptr); }},
+      {"mark_null", SUNDER_ERROR_NULL, "mark",
+       [](World& w) { return sunder_simulation_save(w.simulation, nullptr); }},
+      {"store_length_null", SUNDER_ERROR_NULL, "length",
+       [](World& w) { return sunder_simulation_store(w.simulation, nullptr, 0, nullptr); }},
+      {"load_null", SUNDER_ERROR_NULL, "bytes",
+       [](World& w) { return sunder_simulation_load(w.simulation, nullptr, 9); }},
+      {"surface_null", SUNDER_ERROR_NULL, "surface",
+       [](World& w) { return sunder_simulation_surface(w.simulation, nullptr); }},
+      {"surface_changes_null", SUNDER_ERROR_NULL, "count",
+       [](World& w) {
+         return sunder_simulation_surface_changes(w.simulation, 0, nullptr, 0, nullptr);
+       }},
+      {"skin_vertices_null", SUNDER_ERROR_NULL, "vertices",
+       [](World& w) { return sunder_simulation_set_skin(w.simulation, nullptr, 3); }},
       {"warning_count_null", SUNDER_ERROR_NULL, "count",
        [](World& w) { return sunder_simulation_warning_count(w.simulation, nullptr); }},
       {"crack_count_null", SUNDER_ERROR_NULL, "count",
@@ -126,6 +151,10 @@ std::vector<Misuse> sizes() {
          return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 12, w.arrays.tets.data(), 5,
                                       nullptr, 0);
        }},
+      {"swept_not_triangles", SUNDER_ERROR_SIZE, "swept has 8",
+       [](World& w) { return sunder_simulation_cut(w.simulation, w.values, 8, nullptr); }},
+      {"vertices_not_triples", SUNDER_ERROR_SIZE, "vertices has 7",
+       [](World& w) { return sunder_simulation_set_skin(w.simulation, w.values, 7); }},
       {"no_nodes", SUNDER_ERROR_SIZE, "nodes has 0",
        [](World& w) {
          return sunder_scene_set_mesh(w.scene, w.arrays.nodes.data(), 0, w.arrays.tets.data(), 4,

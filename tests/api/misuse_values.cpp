@@ -193,6 +193,47 @@ std::vector<Misuse> order() {
          sunder_grips grips = nullptr;
          return sunder_grips_create(w.simulation, &grips);
        }},
+      {"undo_without_history", SUNDER_ERROR_ORDER, "keeps no history",
+       [](World& w) { return sunder_simulation_undo(w.simulation, 1, nullptr, nullptr); }},
+      {"save_without_history", SUNDER_ERROR_ORDER, "keeps no history",
+       [](World& w) {
+         std::int32_t mark = 0;
+         return sunder_simulation_save(w.simulation, &mark);
+       }},
+      {"history_late", SUNDER_ERROR_ORDER, "before the first step",
+       [](World& w) {
+         EXPECT_OK(sunder_simulation_step(w.simulation, nullptr));
+         return sunder_simulation_keep_history(w.simulation, 1);
+       }},
+      {"history_twice", SUNDER_ERROR_ORDER, "already",
+       [](World& w) {
+         EXPECT_OK(sunder_simulation_keep_history(w.simulation, 1));
+         return sunder_simulation_keep_history(w.simulation, 1);
+       }},
+      {"nothing_to_undo", SUNDER_ERROR_ORDER, "there are 0",
+       [](World& w) {
+         EXPECT_OK(sunder_simulation_keep_history(w.simulation, 1));
+         return sunder_simulation_undo(w.simulation, 1, nullptr, nullptr);
+       }},
+      {"remove_beyond", SUNDER_ERROR_ORDER, "element 96",
+       [](World& w) {
+         const std::int32_t element = 96;
+         return sunder_simulation_remove(w.simulation, &element, 1);
+       }},
+      {"remove_twice", SUNDER_ERROR_ORDER, "named twice",
+       [](World& w) {
+         const std::int32_t elements[] = {4, 4};
+         return sunder_simulation_remove(w.simulation, elements, 2);
+       }},
+      {"skin_without_one", SUNDER_ERROR_ORDER, "no skin",
+       [](World& w) {
+         float places[3];
+         return sunder_simulation_skin(w.simulation, places, 3, nullptr);
+       }},
+      {"points_before_the_surface", SUNDER_ERROR_ORDER, "surface",
+       [](World& w) {
+         return sunder_simulation_surface_points(w.simulation, nullptr, nullptr, 150);
+       }},
       {"step_when_done", SUNDER_ERROR_ORDER, "all steps",
        [](World& w) {
          for (int i = 0; i < 4; ++i) EXPECT_OK(sunder_simulation_step(w.simulation, nullptr));
@@ -315,6 +356,28 @@ std::vector<Misuse> not_finite() {
       {"tolerance_infinite", SUNDER_ERROR_VALUE, "tolerance = inf",
        [](World& w) {
          return w.set_solver([](sunder_solver_options& s) { s.tolerance = kInfinity; });
+       }},
+      {"max_ms_nan", SUNDER_ERROR_VALUE, "max_ms = nan",
+       [](World& w) { return w.set_solver([](sunder_solver_options& s) { s.max_ms = kNaN; }); }},
+      {"step_within_nan", SUNDER_ERROR_VALUE, "max_ms = nan",
+       [](World& w) { return sunder_simulation_step_within(w.simulation, kNaN, nullptr); }},
+      {"step_within_negative", SUNDER_ERROR_VALUE, "max_ms = -1",
+       [](World& w) { return sunder_simulation_step_within(w.simulation, -1, nullptr); }},
+      {"history_negative", SUNDER_ERROR_VALUE, "quick = -1",
+       [](World& w) { return sunder_simulation_keep_history(w.simulation, -1); }},
+      {"undo_none", SUNDER_ERROR_VALUE, "actions = 0",
+       [](World& w) { return sunder_simulation_undo(w.simulation, 0, nullptr, nullptr); }},
+      {"mark_unknown", SUNDER_ERROR_VALUE, "mark 3",
+       [](World& w) { return sunder_simulation_restore(w.simulation, 3, nullptr); }},
+      {"swept_nan", SUNDER_ERROR_VALUE, "swept[2] = nan",
+       [](World& w) {
+         double swept[9] = {0, 1, kNaN};
+         return sunder_simulation_cut(w.simulation, swept, 9, nullptr);
+       }},
+      {"vertices_nan", SUNDER_ERROR_VALUE, "vertices[0] = nan",
+       [](World& w) {
+         const double vertices[3] = {kNaN, 0, 0};
+         return sunder_simulation_set_skin(w.simulation, vertices, 3);
        }},
       {"drive_nan", SUNDER_ERROR_VALUE, "value[1] = nan",
        [](World& w) {

@@ -44,6 +44,7 @@ const std::map<std::string, Member<sunder_solver_options>>& solver_members() {
       {"backend", &O::backend},        {"route", &O::route},         {"update", &O::update},
       {"precision", &O::precision},    {"tolerance", &O::tolerance}, {"device", &O::device},
       {"prepare", &O::no_preparation},  // the other way round
+      {"max_ms", &O::max_ms},
   };
   return members;
 }

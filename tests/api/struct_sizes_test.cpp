@@ -79,6 +79,10 @@ std::vector<Struct> results() {
        }},
       {"body", sizeof(sunder_body), 24,
        [](World& w, void* to) { return sunder_simulation_body(w.torn, as<sunder_body>(to)); }},
+      {"surface", sizeof(sunder_surface), 24,
+       [](World& w, void* to) {
+         return sunder_simulation_surface(w.torn, as<sunder_surface>(to));
+       }},
       {"crack", sizeof(sunder_crack), 160,
        [](World& w, void* to) {
          return sunder_simulation_crack_at(w.torn, 0, as<sunder_crack>(to));

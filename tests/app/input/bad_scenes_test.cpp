@@ -418,6 +418,8 @@ TEST(BadScenes, WhatTheMeshContradicts) {
           {"alpha = 1e-6", "alpha = 0", F::out_of_range, {"bad.toml:57:9", "fracture.alpha"}},
           {"alpha = 1e-6", "alpha = 1", F::out_of_range, {"bad.toml:57:9", "fracture.alpha"}},
           {"tolerance = 1e-4", "tolerance = 0", F::out_of_range, {"bad.toml:70:13", "tolerance"}},
+          {"tolerance = 1e-4", "max_ms = -1", F::out_of_range, {"bad.toml:70:10", "max_ms = -1"}},
+          {"tolerance = 1e-4", "max_ms = inf", F::out_of_range, {"bad.toml:70:10", "max_ms"}},
           {"ramp = [0.0, 1.0]",
            "ramp = [1.0, 0.0]",
            F::out_of_range,

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a host told a simulation to do, in order, and states on the way. Done again on a fresh
+// simulation, the actions give the same bits: neither the clock nor an observer decides then.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "fracture/criterion.hpp"
+#include "frame/loads.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder {
+
+namespace action {
+struct Drive {
+  std::size_t instrument = 0;
+  Vec3 value;
+};
+struct Turn {
+  std::size_t instrument = 0;
+  Vec3 rotation;
+};
+struct Attribute {
+  bool wanted = false;
+};
+struct Velocity {
+  std::vector<Vec3> velocity;
+};
+struct Step {
+  std::optional<double> dt;  // as it was asked for
+  int events = kNone;        // that ended it, by observers or by time; none: it ended by itself
+  bool by_time = false;
+};
+struct Remove {
+  std::vector<Index> elements;
+};
+}  // namespace action
+
+struct Action {
+  using Drive = action::Drive;
+  using Turn = action::Turn;
+  using Attribute = action::Attribute;
+  using Velocity = action::Velocity;
+  using Step = action::Step;
+  using Remove = action::Remove;
+  std::variant<Drive, Turn, Attribute, Velocity, Step, Remove> what;
+  bool failed = false;  // with a NumericalError
+  bool broke = false;   // something
+};
+
+/// A state that the backend can go back to by itself.
+struct Simulation::Kept {
+  std::shared_ptr<const BackendState> backend;
+  std::shared_ptr<const CriterionState> criterion;
+  Loads::State loads;
+  std::vector<std::uint8_t> averaged;  // empty: strength is judged by element
+  Now now;
+  std::size_t destroyed = 0, findings = 0;
+};
+
+/// An action that has been done is at one place in one past alone: the same pointer, the same past.
+struct MarkedState {
+  std::shared_ptr<const int> owner;
+  Simulation::Actions actions;
+  std::shared_ptr<const Simulation::Kept> kept;  // null: the backend keeps none
+  int events = 0;                                // of the run so far
+};
+
+struct Simulation::History {
+  /// Before an action in which something broke.
+  struct Point {
+    std::size_t actions = 0;
+    std::shared_ptr<const Kept> kept;
+    int events = 0;
+  };
+  MakeBackend make;
+  std::size_t quick = 0;
+  Actions done, undone;
+  std::vector<Point> points;
+  std::shared_ptr<const int> self = std::make_shared<const int>(0);  // owner of the marks
+  const Action* again = nullptr;                                     // that is being done
+  bool travels = false;          // what is done was done before: nobody watches, and `undone` stays
+  std::size_t undone_broke = 0;  // of `undone`: how many actions in which something broke
+};
+
+}  // namespace sunder

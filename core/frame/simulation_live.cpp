@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a host does to a simulation: steps, instruments by hand, elements that it removes.
+#include <algorithm>
+#include <cmath>
+
+#include "body/triangle_crossing.hpp"
+#include "fracture/averaged_strength.hpp"
+#include "fracture/finding.hpp"
+#include "frame/history.hpp"
+#include "sunder/error.hpp"
+#include "sunder/in_quotes.hpp"
+
+namespace sunder {
+
+/// Does something and, where a history is kept, takes it down.
+template <class Do>
+void Simulation::act(Action action, Do&& body) {
+  if (!history_) {
+    body(action);
+    return;
+  }
+  const bool breaks = std::holds_alternative<Action::Step>(action.what) ||
+                      std::holds_alternative<Action::Remove>(action.what);
+  const auto before = breaks && history_->quick > 0 ? keep() : nullptr;
+  const int events = now_.next_event;
+  try {
+    body(action);
+  } catch (const NumericalError&) {
+    action.failed = true;
+    record(std::move(action), before, events);
+    throw;
+  }
+  record(std::move(action), before, events);
+}
+
+void Simulation::drive(std::size_t instrument, const Vec3& value) {
+  if (instrument >= problem_->scene().instruments.size()) {
+    throw UsageError("there is no instrument " + std::to_string(instrument));
+  }
+  if (!value.allFinite()) throw UsageError("an instrument's value must be finite");
+  act({Action::Drive{instrument, value}}, [&](Action&) { loads_->drive(instrument, value); });
+}
+
+void Simulation::turn(std::size_t instrument, const Vec3& rotation) {
+  const auto& instruments = problem_->scene().instruments;
+  const auto* grip = instrument < instruments.size()
+                         ? std::get_if<Grip>(&instruments[instrument].action)
+                         : nullptr;
+  if (!grip || !grip->rigid) {
+    throw UsageError("instrument " + std::to_string(instrument) + " is no rigid grip");
+  }
+  if (!rotation.allFinite()) throw UsageError("a grip's turn must be finite");
+  act({Action::Turn{instrument, rotation}}, [&](Action&) { loads_->turn(instrument, rotation); });
+}
+
+void Simulation::attribute_events(bool wanted) {
+  if (wanted && problem_->finite()) {
+    throw UsageError("which instrument broke an element cannot be said by law " +
+                     in_quotes(problem_->law()) +
+                     ": it rests on superposition; leave attribution out, or take law \"linear\"");
+  }
+  act({Action::Attribute{wanted}}, [&](Action&) { now_.attribute = wanted; });
+}
+
+void Simulation::set_velocity(std::span<const Vec3> velocity) {
+  if (velocity.size() != problem_->mesh().nodes.size()) {
+    throw UsageError("one velocity per node");
+  }
+  act({Action::Velocity{{velocity.begin(), velocity.end()}}}, [&](Action&) {
+    backend_->set_velocity({velocity.front().data(), 3 * velocity.size()});
+  });
+}
+
+StepReport Simulation::take_step(std::optional<double> dt, double max_ms) {
+  if (done()) throw UsageError("all steps of the scene are done");
+  StepReport report;
+  max_ms_ = max_ms;
+  began_ = std::chrono::steady_clock::now();
+  act({Action::Step{dt}}, [&](Action& action) {
+    const auto note_end = [&] {
+      auto& step = std::get<Action::Step>(action.what);
+      if (ended_early()) step.events = events_this_step_;
+      step.by_time = now_.out_of_time_now;
+    };
+    const double own = problem_->moves() ? problem_->scene().dynamics->time_step : 0;
+    try {
+      report = compute_step(dt.value_or(own));
+    } catch (const NumericalError&) {
+      note_end();
+      throw;
+    }
+    note_end();
+  });
+  return report;
+}
+
+bool Simulation::replaying() const { return history_ && history_->travels; }
+
+/// After an event: whether the step in work is to end with the solution that follows.
+void Simulation::end_step_early() {
+  if (replaying()) {
+    const auto* step = std::get_if<Action::Step>(&history_->again->what);
+    if (!step || step->events != events_this_step_) return;
+    (step->by_time ? now_.out_of_time_now : now_.interrupted) = true;
+    if (step->by_time) now_.out_of_time.add(now_.next_step);
+    return;
+  }
+  if (observer_ && !observer_(decision_->elements)) now_.interrupted = true;
+  if (!in_work_ || !(max_ms_ > 0) || problem_->moves() || now_.interrupted) return;
+  using Milliseconds = std::chrono::duration<double, std::milli>;
+  if (Milliseconds(std::chrono::steady_clock::now() - began_).count() < max_ms_) return;
+  now_.out_of_time_now = true;
+  now_.out_of_time.add(now_.next_step);
+}
+
+void Simulation::check_removal(std::span<const Index> elements) const {
+  if (!backend_->needs().damage) {
+    throw UsageError(
+        "nothing can be removed: the scene has neither fracture nor removals, and was not told "
+        "that "
+        "it is live before the simulation was made");
+  }
+  std::vector<Index> sorted(elements.begin(), elements.end());
+  std::ranges::sort(sorted);
+  const auto twice = std::ranges::adjacent_find(sorted);
+  const auto refuse = [](Index e, const std::string& why) {
+    throw UsageError("element " + std::to_string(e) + " cannot be removed: " + why);
+  };
+  if (twice != sorted.end()) refuse(*twice, "it is named twice");
+  for (Index e : elements) {
+    if (e < 0 || e >= problem_->tet_count()) refuse(e, "the mesh has none of that number");
+    if (backend_->destroyed()[e]) refuse(e, "it is gone already");
+    if (!backend_->can_destroy(e)) {
+      refuse(e, "route " + backend_->info().route +
+                    " computes a region that it lies outside of; take route factor or inverse, or "
+                    "a scene that is live");
+    }
+  }
+  if (now_.preset) return;
+  for (const auto& crack : problem_->crack_elements()) {
+    for (Index e : crack) {
+      if (std::ranges::binary_search(sorted, e)) refuse(e, "it belongs to a preset crack");
+    }
+  }
+}
+
+void Simulation::remove(std::span<const Index> elements) {
+  check_removal(elements);
+  if (elements.empty()) return;
+  act({Action::Remove{{elements.begin(), elements.end()}}}, [&](Action&) { take_out(elements); });
+}
+
+int Simulation::cut(std::span<const std::array<Vec3, 3>> swept) {
+  if (backend_->needs().split) {
+    throw UsageError(
+        "a blade cannot open the faces of split cracks yet; take fracture.crack = \"destroyed\"");
+  }
+  for (const auto& triangle : swept) {
+    for (const Vec3& p : triangle) {
+      if (!p.allFinite()) throw UsageError("the places of a blade must be finite");
+    }
+  }
+  std::vector<Index> passed;
+  const std::vector<Vec3> moved = displacement();
+  std::vector<std::uint8_t> gone(backend_->destroyed().begin(), backend_->destroyed().end());
+  for (const auto& crack : problem_->crack_elements()) {
+    for (Index e : crack) gone[static_cast<std::size_t>(e)] = 1;
+  }
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    if (gone[static_cast<std::size_t>(e)]) continue;
+    std::array<Vec3, 4> corners;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto n = static_cast<std::size_t>(problem_->mesh().tets[e][a]);
+      corners[a] = problem_->mesh().nodes[n] + moved[n];
+    }
+    const auto passes = [&](const auto& triangle) { return fem::crosses(triangle, corners); };
+    if (std::ranges::any_of(swept, passes)) passed.push_back(e);
+  }
+  remove(passed);
+  return static_cast<int>(passed.size());
+}
+
+void Simulation::take_out(std::span<const Index> elements) {
+  now_.interrupted = now_.out_of_time_now = false;
+  events_this_step_ = 0;
+  if (!now_.preset) apply_presets();
+  decision_->clear();
+  for (Index e : elements) {
+    DestroyedElement row;
+    row.element = e;
+    row.cause = Cause::script;
+    decision_->elements.push_back(row);
+  }
+  apply_event();
+  find_loose();
+  if (now_.solved && !problem_->moves()) follow_removal();
+}
+
+/// The solution of the last load without what has been removed.
+void Simulation::follow_removal() {
+  of_loads_.clear();
+  loads_->update(now_.scene_time, *criterion_, backend_->destroyed(), of_loads_);
+  for (const Finding& found : of_loads_) note(found);
+  backend_->set_load(loads_->load());
+  pristine_.clear();
+  if (backend_->solve().polished) now_.polished.add(now_.next_step);
+  if (!backend_->needs().stress) return;
+  backend_->stress();
+  if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
+}
+
+void Simulation::warm_up() {
+  if (now_.next_step > 0 || now_.solved || problem_->moves()) return;
+  const auto before = backend_->save();
+  Load none;
+  none.displacements.assign(problem_->gripped_dofs().size(), 0.0);
+  backend_->set_load(none);
+  backend_->solve();
+  if (backend_->needs().stress) {
+    backend_->stress();
+    static_cast<void>(backend_->deformation());
+    if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
+  }
+  if (backend_->needs().pristine) {
+    std::vector<double> displacement(3 * problem_->mesh().nodes.size());
+    backend_->solve_pristine(none, displacement);
+  }
+  if (before) static_cast<void>(backend_->restore(*before));
+}
+
+}  // namespace sunder

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is read of a simulation.
+#include <numeric>
+
+#include "body/law_stress.hpp"
+#include "body/pieces.hpp"
+#include "fracture/criterion.hpp"
+#include "fracture/finding.hpp"
+#include "frame/loads.hpp"
+#include "sunder/error.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder {
+
+const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
+
+Mesh Simulation::mesh() const {
+  Mesh mesh = problem_->mesh();
+  const auto corners = criterion_->corners();
+  if (corners.empty()) return mesh;
+  mesh.nodes.resize(static_cast<std::size_t>(backend_->node_count()));
+  for (std::size_t e = 0; e < corners.size(); ++e) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      mesh.nodes[static_cast<std::size_t>(corners[e][a])] =
+          problem_->mesh().nodes[static_cast<std::size_t>(problem_->mesh().tets[e][a])];
+    }
+    mesh.tets[e] = corners[e];
+  }
+  return mesh;
+}
+
+std::span<const std::array<Index, 4>> Simulation::corners() const { return criterion_->corners(); }
+
+Index Simulation::piece_of(Index element) const {
+  return looks_ == 0 || backend_->destroyed()[element] ? kNone : loose_->piece_of(element);
+}
+
+std::vector<CrackFace> Simulation::crack_faces() const { return criterion_->faces(); }
+
+std::vector<TipState> Simulation::tips() {
+  std::vector<TipState> tips;
+  if (!now_.solved) return tips;
+  std::vector<Finding> found;
+  criterion_->tips(fracture_state({}), tips, found);
+  for (const Finding& finding : found) note(finding);
+  return tips;
+}
+
+std::vector<Vec3> Simulation::reactions() const {
+  Reactions r;
+  read(r);
+  return r.forces;
+}
+
+void Simulation::read(Reactions& r) const {
+  r.forces.clear();
+  for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
+    r.forces.push_back(loads_->force(i));
+  }
+  r.grips.resize(problem_->gripped_dofs().size());
+  if (r.grips.empty()) return;
+  backend_->read_reactions(r.grips);
+  for (std::size_t g = 0; g < r.grips.size(); ++g) {
+    r.grips[g] -= loads_->weight_on_grip(g);
+    const auto& of = loads_->gripped()[g];
+    r.forces[of.instrument][of.axis] += r.grips[g];
+  }
+}
+
+Vec3 Simulation::support_reaction() const {
+  const std::vector<Vec3> displacement = this->displacement();
+  std::vector<double> u(3 * problem_->mesh().nodes.size());  // of the element in work
+  const auto destroyed = backend_->destroyed();
+  const auto split = criterion_->corners();
+  Vec3 sum = -loads_->force_on_supports();
+  if (problem_->moves()) sum += backend_->held_beside();
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    const auto& tet = problem_->mesh().tets[e];
+    const auto& corners = split.empty() ? tet : split[static_cast<std::size_t>(e)];
+    const auto held = [&](int a, int axis) { return problem_->dof(tet[a], axis) == kNone; };
+    Eigen::Matrix<double, 3, 4> forces;
+    bool known = false;
+    for (int a = 0; a < 4; ++a) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!held(a, axis)) continue;
+        if (!known) {
+          for (std::size_t c = 0; c < 4; ++c) {
+            std::copy_n(displacement[static_cast<std::size_t>(corners[c])].data(), 3,
+                        u.data() + 3 * static_cast<std::size_t>(tet[c]));
+          }
+          forces = fem::corner_forces(*problem_, e, u, destroyed[e] != 0);
+        }
+        known = true;
+        sum[axis] += forces(axis, a);
+      }
+    }
+  }
+  return sum;
+}
+
+std::vector<Index> Simulation::acting_nodes(std::size_t instrument) const {
+  const auto nodes = loads_->nodes(instrument);
+  return {nodes.begin(), nodes.end()};
+}
+
+/// Of a rigid grip: what its forces do beyond their resultant.
+double Simulation::work_of_turn(std::size_t instrument, const Vec3& displacement) const {
+  double work = 0;
+  for (std::size_t g = 0; g < loads_->gripped().size(); ++g) {
+    const auto& of = loads_->gripped()[g];
+    if (of.instrument != instrument) continue;
+    work += reactions_.grips[g] * (loads_->load().displacements[g] - displacement[of.axis]);
+  }
+  return work;
+}
+
+double Simulation::compliance() {
+  read(reactions_);
+  const std::vector<Vec3>& forces = reactions_.forces;
+  std::vector<Vec3>& u = reactions_.displacement;
+  double work = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (problem_->scene().instruments.empty()) break;
+    const auto* grip = std::get_if<Grip>(&problem_->scene().instruments[i].action);
+    if (grip) {
+      const Vec3 displacement = loads_->value(i, now_.scene_time);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (grip->axes.has(axis)) work += forces[i][axis] * displacement[axis];
+      }
+      if (grip->rigid) work += work_of_turn(i, displacement);
+      continue;
+    }
+    const auto nodes = loads_->nodes(i);
+    if (nodes.empty()) continue;
+    u.resize(nodes.size());
+    backend_->read_displacement(nodes, u);
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& v : u) mean += v;
+    work += forces[i].dot(mean) / static_cast<double>(nodes.size());
+  }
+  return work;
+}
+
+std::vector<Vec3> Simulation::velocity() const {
+  std::vector<Vec3> result(problem_->mesh().nodes.size());
+  backend_->read_velocity({result.front().data(), 3 * result.size()});
+  return result;
+}
+
+std::vector<Vec3> Simulation::displacement() const {
+  std::vector<Vec3> result(problem_->mesh().nodes.size(), Vec3::Zero());
+  if (!now_.solved) return result;
+  if (backend_->node_count() > problem_->node_count()) {
+    result.resize(static_cast<std::size_t>(backend_->node_count()));
+    std::vector<Index> nodes(result.size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    backend_->read_displacement(nodes, result);
+    return result;
+  }
+  std::vector<double> flat(3 * result.size());
+  backend_->read_displacement(flat);
+  for (std::size_t n = 0; n < result.size(); ++n) {
+    result[n] = Vec3(flat[3 * n], flat[3 * n + 1], flat[3 * n + 2]);
+  }
+  return result;
+}
+
+std::vector<Voigt> Simulation::stress() const {
+  std::vector<Voigt> result(problem_->mesh().tets.size(), Voigt::Zero());
+  if (!backend_->needs().stress) throw UsageError("stress was left out of this simulation");
+  if (now_.solved) backend_->read_stress(result);
+  return result;
+}
+
+}  // namespace sunder
