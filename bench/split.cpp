@@ -2,8 +2,8 @@
 // Cracks that split beside cracks that destroy elements: the same straight tear through the same
 // board, one advance an event, on the factor and one thread. Of the n-th advance: the event (the
 // update of the small matrix, its border and, where an inverse is there, columns of it), the frame
-// (event and the solution of a load that is new to it), and the touched unknowns after it: what
-// later frames pay by.
+// (event and the solution of a load that is new to it), the touched unknowns after it and the new
+// ones: what later frames pay by.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -114,7 +114,7 @@ void row(benchmark::State& state, bool split, std::size_t count) {
   std::vector<double> of_event, of_frame;
   std::vector<double> values = torn().values;
   Eigen::VectorXd u;
-  Index touched = 0;
+  Index touched = 0, added = 0;
   for (auto _ : state) {
     for (double& f : values) f = -f;  // new to the event
     const auto start = Clock::now();
@@ -126,7 +126,8 @@ void row(benchmark::State& state, bool split, std::size_t count) {
     of_event.push_back(std::chrono::duration<double, std::milli>(between - start).count());
     of_frame.push_back(std::chrono::duration<double, std::milli>(end - start).count());
     state.SetIterationTime(of_frame.back() / 1e3);
-    touched = deferred.rank() + static_cast<Index>(deferred.offsets().size());
+    touched = deferred.rank();
+    added = static_cast<Index>(deferred.offsets().size());
     deferred.take_back();
   }
   const auto median = [](std::vector<double>& of) {
@@ -136,6 +137,7 @@ void row(benchmark::State& state, bool split, std::size_t count) {
   state.counters["median_ms"] = median(of_frame);
   state.counters["event_ms"] = median(of_event);
   state.counters["touched"] = touched;
+  state.counters["new"] = added;
 }
 
 void register_rows() {

@@ -98,8 +98,8 @@ TEST(SceneToml, EveryPresetIsAMaterial) {
 }
 
 TEST(SceneToml, ReadsHowCracksSplit) {
-  const Scene scene =
-      parse(with(good_scene(), "alpha = 1e-6", "crack = \"split\"\ncontact = true\nmax_new_nodes = 77"));
+  const Scene scene = parse(
+      with(good_scene(), "alpha = 1e-6", "crack = \"split\"\ncontact = true\nmax_new_nodes = 77"));
   EXPECT_EQ(scene.fracture.crack, CrackWay::split);
   EXPECT_TRUE(scene.fracture.contact);
   EXPECT_EQ(scene.fracture.max_new_nodes, 77);
