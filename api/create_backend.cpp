@@ -40,8 +40,8 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 #ifdef SUNDER_GPU
   auto primary = gpu::create(problem, needs);
   warnings = gpu::warnings(*primary);
-  // Bodies by their laws go on by the host themselves, which has their state.
-  if (problem->finite() || problem->moves()) return primary;
+  // Bodies by their laws, and those that part, go on by the host themselves, which has their state.
+  if (problem->finite() || problem->moves() || needs.split) return primary;
   return with_failover(problem, std::move(primary),
                        [problem, needs] { return create_replacement(*problem, needs); });
 #else
@@ -57,8 +57,8 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, const Needs& needs) {
   CreatedBackend created;
   // Laws and motion are the processor's: its factor is quicker than any device's dense inverse so
-  // far (bench_motion).
-  if (problem->finite() || problem->moves()) {
+  // far (bench_motion). So are cracks that split: its border asks for no new buffers.
+  if (problem->finite() || problem->moves() || needs.split) {
     created.backend = cpu_reference::create(problem, needs);
     return created;
   }

@@ -28,7 +28,6 @@ solver::PlanDevice plan_device(std::size_t memory) {
   device.backend = "cpu";
   device.routes = {Route::inverse, Route::condensed, Route::factor, Route::cg};
   device.memory = memory;
-  device.splits = true;
   return device;
 }
 

@@ -31,7 +31,9 @@ struct OpenDevice {
 }  // namespace
 
 finite::Machine law_machine(const Problem& problem, const VulkanOptions& options) {
-  const std::string whom = problem.moves() ? "motion" : "laws of finite deformation";
+  const std::string whom = problem.moves()    ? "motion"
+                           : problem.finite() ? "laws of finite deformation"
+                                              : "cracks that split";
   if (options.lent) {
     throw DeviceError("backend vulkan computes " + whom +
                       " on a device of its own, not on a host's; use backend cpu or auto");
@@ -55,8 +57,8 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
   machine.device = [open](const fem::HyperelasticBody& body, Route route, int pairs) {
     const Scene& scene = body.problem.scene();
     const bool viscous = scene.dynamics && scene.dynamics->stiffness_damping > 0;
-    const FiniteDevice::Options options{route, scene.fracture.stress, pairs, viscous};
-    return std::make_unique<FiniteDevice>(open->kernels, body, options, open);
+    const FiniteDevice::Options of_device{route, scene.fracture.stress, pairs, viscous};
+    return std::make_unique<FiniteDevice>(open->kernels, body, of_device, open);
   };
   return machine;
 }

@@ -279,7 +279,8 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
                                 const VulkanOptions& options) {
   if (!problem) throw UsageError("a backend needs a problem");
-  if (problem->moves() || problem->finite()) {
+  // New nodes and unknowns come with tangents of the body as it is, whatever its law.
+  if (problem->moves() || problem->finite() || needs.split) {
     finite::Machine machine = law_machine(*problem, options);
     return finite::create(std::move(problem), std::move(needs), std::move(machine));
   }

@@ -106,8 +106,12 @@ void main() {
     const bool acts = !isinf(found.energy) && !isnan(found.energy);
     energy = volume * found.energy;
     put(e, acts ? volume * found.p : dmat3(0.0LF), false);
-    const dmat3 s = p.biot != 0u ? symmetric(transpose(of.r) * found.p)
-                                 : symmetric(found.p * transpose(f)) * (1.0LF / j);
+    // The linear law (0) knows one measure alone.
+    dmat3 s = found.p;
+    if (law != 0u) {
+      s = p.biot != 0u ? symmetric(transpose(of.r) * found.p)
+                       : symmetric(found.p * transpose(f)) * (1.0LF / j);
+    }
     const double none = found.energy - found.energy;
     const dvec3 normal = dvec3(s[0][0], s[1][1], s[2][2]) + none,
                 shear = dvec3(s[1][0], s[2][1], s[0][2]) + none;

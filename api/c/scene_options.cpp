@@ -40,6 +40,7 @@ sunder::FractureOptions to_fracture(const sunder_fracture_options& given) {
   f.averaging = given.averaging;
   f.crack = word<sunder::CrackWay>(given.crack, "fracture", "crack");
   f.max_new_nodes = given.max_new_nodes;
+  f.contact = given.contact != 0;
   f.stress = word<sunder::StressMeasure>(given.stress, "fracture", "stress");
   if (given.has_plane_normal) {
     require_finite(given.plane_normal, 3, "plane_normal");

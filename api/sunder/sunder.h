@@ -290,7 +290,7 @@ typedef struct sunder_fracture_options {
   int32_t crack;     ///< SUNDER_CRACK_*: what a crack of model B leaves
   int32_t
       max_new_nodes;  ///< with SUNDER_CRACK_SPLIT: how many may come; 0: as many as the mesh has
-  int32_t reserved;
+  int32_t contact;    ///< with SUNDER_CRACK_SPLIT: 1 keeps the lips of cracks apart
 } sunder_fracture_options;
 
 #define SUNDER_FRACTURE_OPTIONS_INIT                                                             \

@@ -168,6 +168,14 @@ std::string crack_paths(const Problem& problem, const BoardPlane& plane, const P
                         const State& state, const Canvas& canvas) {
   std::string out;
   for (const Crack& crack : state.cracks) {
+    if (state.split) {  // its lips show the path, and where they are far apart it lies nowhere
+      for (const CrackTip& tip : crack.tips) {
+        if (tip.ended) continue;
+        const Vec2 at = canvas.map(drawn_point(problem, plane, pose, state, crack, tip.position));
+        out += svg::circle(at, 3.6, "fill=\"#fff\" stroke=\"#0a84ff\" stroke-width=\"1.8\"");
+      }
+      continue;
+    }
     std::vector<Vec2> points;
     for (const Vec2& p : crack.path)
       points.push_back(canvas.map(drawn_point(problem, plane, pose, state, crack, p)));
@@ -230,7 +238,9 @@ std::string caption(const Problem& problem, const Pose& pose, const State& state
                            rounded(state.load_factor, 4) + ": " + what_happened(problem, state);
   std::string legend = "Dashed: undeformed";
   if (shows_frame(problem)) legend += "; grey: unbreakable";
-  if (!state.cracks.empty()) legend += "; blue line: crack path";
+  if (!state.cracks.empty()) {
+    legend += state.split ? "; blue circle: crack tip" : "; blue line: crack path";
+  }
   if (!state.instruments.empty()) legend += "; yellow: instruments";
   legend += "; thick line: held.";
   const double left = canvas.corner().x();

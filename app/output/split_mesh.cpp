@@ -86,6 +86,24 @@ std::vector<Vec3> on_ideal_paths(const Mesh& mesh, std::span<const CrackFace> fa
   return drawn;
 }
 
+std::vector<double> face_areas(std::span<const Vec3> drawn, std::span<const CrackFace> faces,
+                               std::span<const Crack> cracks, const BoardPlane& plane) {
+  std::vector<double> areas;
+  for (const CrackFace& face : faces) {
+    const auto at = [&](std::size_t i) -> const Vec3& {
+      return drawn[static_cast<std::size_t>(face.left[i])];
+    };
+    const Vec3 area = (at(1) - at(0)).cross(at(2) - at(0)) / 2;
+    const auto& path = cracks[static_cast<std::size_t>(face.crack)].path;
+    const Vec2 middle = plane.project((at(0) + at(1) + at(2)) / 3);
+    const Vec2 along = foot_on_path({path.data(), path.size()}, middle).along;
+    // The left lip's nodes turn so that its normal leaves its tissue, to the right.
+    const double to_right = area.dot(plane.lift_direction({along.y(), -along.x()}));
+    areas.push_back(std::copysign(area.norm(), to_right));
+  }
+  return areas;
+}
+
 std::vector<double> openings(const SplitMesh& split, std::span<const Vec3> displacement) {
   std::vector<double> opening(split.mesh.nodes.size(), 0.0);
   for (const CrackFace& face : split.faces) {
@@ -102,12 +120,8 @@ std::vector<double> openings(const SplitMesh& split, std::span<const Vec3> displ
 
 double crack_area(const SplitMesh& split, int crack) {
   double sum = 0;
-  for (const CrackFace& face : split.faces) {
-    if (crack != kNone && face.crack != crack) continue;
-    const auto at = [&](int i) -> const Vec3& {
-      return split.drawn[static_cast<std::size_t>(face.left[static_cast<std::size_t>(i)])];
-    };
-    sum += (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2;
+  for (std::size_t f = 0; f < split.faces.size(); ++f) {
+    if (crack == kNone || split.faces[f].crack == crack) sum += split.area[f];
   }
   return sum;
 }
@@ -126,9 +140,9 @@ std::shared_ptr<const SplitMesh> split_mesh(const Simulation& simulation) {
       split->in_file[static_cast<std::size_t>(split->mesh.tets[e][a])] = file.tets[e][a];
     }
   }
-  split->drawn =
-      on_ideal_paths(split->mesh, split->faces, simulation.cracks(),
-                     board_plane(file, simulation.problem().scene().fracture.plane_normal));
+  const BoardPlane plane = board_plane(file, simulation.problem().scene().fracture.plane_normal);
+  split->drawn = on_ideal_paths(split->mesh, split->faces, simulation.cracks(), plane);
+  split->area = face_areas(split->drawn, split->faces, simulation.cracks(), plane);
   return split;
 }
 

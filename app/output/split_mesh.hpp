@@ -17,6 +17,7 @@ struct SplitMesh {
   std::vector<Index> in_file;    ///< per node: the file's node at its place
   std::vector<CrackFace> faces;  ///< open ones, by crack
   std::vector<Vec3> drawn;       ///< the nodes, those of `faces` moved onto the ideal paths
+  std::vector<double> area;      ///< of each face, by face_areas() [mm^2]
 };
 
 /// Null while no crack has opened a face.
@@ -30,6 +31,13 @@ struct SplitMesh {
 [[nodiscard]] std::vector<Vec3> on_ideal_paths(const Mesh& mesh, std::span<const CrackFace> faces,
                                                std::span<const Crack> cracks,
                                                const BoardPlane& plane);
+
+/// Area of each open face's left lip on the ideal path; under 0 where a jagged crack folds back,
+/// which others cover a second time.
+[[nodiscard]] std::vector<double> face_areas(std::span<const Vec3> drawn,
+                                             std::span<const CrackFace> faces,
+                                             std::span<const Crack> cracks,
+                                             const BoardPlane& plane);
 
 /// How far the lips are apart at each node of `split` [mm]: the jump of the displacement across the
 /// faces there, the largest of several; 0 where no face is open.

@@ -40,6 +40,7 @@ State capture(const Simulation& simulation, int step) {
     ++(row.lives ? state.split_count : state.destroyed_count);
   }
   state.split = split_mesh(simulation);
+  state.lip_overlap = simulation.lip_overlap();
   state.cracks = simulation.cracks();
   state.growths = last_growths(simulation.destroyed());
   const std::vector<Vec3> forces = simulation.reactions();

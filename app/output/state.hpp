@@ -32,6 +32,7 @@ struct State {
   int destroyed_count = 0;                 ///< elements
   int split_count = 0;                     ///< rows of events in which a crack has split
   std::shared_ptr<const SplitMesh> split;  ///< null: the body has the problem's mesh
+  double lip_overlap = 0;                  ///< of split cracks, the largest so far [mm]
   std::vector<Crack> cracks;
   std::vector<LastGrowth> growths;  ///< of every tip that has grown, in order of its first growth
   std::vector<InstrumentState> instruments;

@@ -143,6 +143,7 @@ void add_split(const RunRecord& run, Json& out) {
   const SplitMesh* mesh = run.last.split.get();
   out["crack"] = key_words("fracture", "crack")[static_cast<std::size_t>(scene.fracture.crack)];
   out["crack_area"] = !split ? Json(nullptr) : Json(mesh ? crack_area(*mesh) : 0.0);
+  out["lip_overlap"] = split ? Json(run.last.lip_overlap) : Json(nullptr);
   out["new_nodes"] = mesh ? mesh->mesh.node_count() - run.problem.node_count() : 0;
 }
 

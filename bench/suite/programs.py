@@ -50,6 +50,8 @@ PROGRAMS = [
             Share(6, "/1944/k", 3), Share(200, "-inverse_deferred/30246/", 3)),
     Program("bench_frame_parts", "where a frame goes, from the first to 640 fractures",
             Share(5, "/1944/", 1), Share(300, repetitions=3)),
+    Program("bench_split", "a tear that splits beside one that destroys elements",
+            Share(4, "/k(1|10)/", 1), Share(40, repetitions=3)),
     Program("bench_inversion", "the intact inverse against OpenBLAS and Eigen",
             Share(4, "/(486|1944)/", 3), Share(40, repetitions=3)),
     Program("bench_reconstruction", "inverse reconstruction by everyone",

@@ -99,7 +99,9 @@ void Forms::add(std::span<const NewNode> nodes) {
 
 void Forms::follow(const Event& event) {
   for (const Tie& tie : event.ties) {
-    nodes_[static_cast<std::size_t>(tie.node - problem_->node_count())].tie = tie.stiffness;
+    NewNode& node = nodes_[static_cast<std::size_t>(tie.node - problem_->node_count())];
+    node.tie = tie.stiffness;
+    node.spring = tie.spring;
   }
   const double alpha = problem_->scene().fracture.alpha;
   for (Index e : event.leave) {
@@ -178,6 +180,9 @@ void check(const Forms& forms, const Event& change) {
     if (!(tie.stiffness >= 0 && std::isfinite(tie.stiffness))) {
       refuse("node", tie.node, "cannot be tied: the stiffness must be 0 or more");
     }
+    if (!tie.spring.allFinite()) {
+      refuse("node", tie.node, "cannot be kept apart: the spring must be finite");
+    }
   }
   Index beyond = forms.element_count();
   for (const Coming& c : change.come) {
@@ -208,7 +213,8 @@ Change reverse(Forms before, const Damage& damage, std::size_t i) {
   for (const Tie& tie : event.ties) {
     const auto at = static_cast<std::size_t>(tie.node - before.problem().node_count());
     const bool is_new = at >= before.new_nodes().size();
-    change.ties.push_back({tie.node, is_new ? 0.0 : before.new_nodes()[at].tie});
+    const NewNode had = is_new ? NewNode{} : before.new_nodes()[at];
+    change.ties.push_back({tie.node, had.tie, had.spring});
   }
   return change;
 }
@@ -220,7 +226,7 @@ bool reverses_last(const Forms& first, const Damage& damage, const Forms& forms,
   const Change reversed = reverse(first, damage, damage.size() - 1);
   const auto back = outcome(forms, reversed);
   const auto same_tie = [](const Tie& a, const Tie& b) {
-    return a.node == b.node && a.stiffness == b.stiffness;
+    return a.node == b.node && a.stiffness == b.stiffness && a.spring == b.spring;
   };
   if (!std::ranges::equal(change.ties, reversed.ties, same_tie)) return false;
   return std::ranges::equal(asked, back, [](const auto& a, const auto& b) {

@@ -33,12 +33,17 @@ struct NewNode {
   Index parent = 0;
   Axes axes;
   double tie = 0;  ///< what holds both together [N/mm], on each of those axes
+  /// A spring along one direction beside it: unit vector times the root of its stiffness
+  /// [(N/mm)^1/2]; what keeps closed lips apart.
+  Vec3 spring = Vec3::Zero();
 };
 /// Holds a new node to its parent where faces that have opened leave a piece loose: in statics it
-/// would have no place. A share alpha of the stiffness, as a destroyed element leaves.
+/// would have no place. A share alpha of the stiffness, as a destroyed element leaves. Or
+/// keeps both apart where lips have closed, along one direction.
 struct Tie {
-  Index node = 0;        ///< a new one
-  double stiffness = 0;  ///< from now on [N/mm]
+  Index node = 0;              ///< a new one
+  double stiffness = 0;        ///< from now on [N/mm], as NewNode::tie
+  Vec3 spring = Vec3::Zero();  ///< from now on, as NewNode::spring
 };
 /// A change that somebody else holds.
 struct Event {

@@ -83,7 +83,8 @@ void element_stresses(const HyperelasticBody& body, std::span<const double> u,
     const Mat3 f = deformation_gradient(body, e, u);
     const SmallStrain& constants = body.problem.small_strain(e);
     if (!std::isfinite(body.law(e).energy(constants, f))) continue;
-    stresses[e] = stress(body.law(e).stress(constants, f), f);
+    const Mat3 p = body.law(e).stress(constants, f);
+    stresses[e] = stress(p, &body.law(e) == &kLinear ? Mat3(Mat3::Identity()) : f);
   }
 }
 

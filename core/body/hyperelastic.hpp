@@ -39,7 +39,8 @@ double internal_forces(const HyperelasticBody& body, std::span<const double> u,
 
 /// A stress by P and F: cauchy_stress or biot_stress (material/finite_stress.hpp).
 using StressFunction = Voigt (*)(const Mat3& p, const Mat3& f);
-/// Of live elements; others, and those in no state of their law, get 0.
+/// Of live elements; others, and those in no state of their law, get 0. The linear law knows one
+/// measure alone, P.
 void element_stresses(const HyperelasticBody& body, std::span<const double> u,
                       StressFunction stress, std::span<Voigt> stresses);
 

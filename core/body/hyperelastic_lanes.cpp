@@ -214,13 +214,26 @@ SUNDER_IN_LANES void store(const lanes::Symmetric& of, Lanes<6>& s, int l) {
   s[5][l] = of.zx;
 }
 
-/// By the chosen measure; of what is in no state of its law no number, of what is gone 0.
+/// The symmetric part.
+SUNDER_IN_LANES lanes::Symmetric symmetric_part(const Matrix& of) {
+  const auto mean = [&](int i, int j) { return (of.at[i][j] + of.at[j][i]) / 2; };
+  return {of.at[0][0], of.at[1][1], of.at[2][2], mean(0, 1), mean(1, 2), mean(2, 0)};
+}
+
+/// By the chosen measure, of the linear law its only one, P; of what is in no state of its law no
+/// number, of what is gone 0.
+template <LaneLaw kLaw>
 SUNDER_IN_LANES void stresses(const ElementBlock& b, const Lanes<9>& f, const Lanes<9>& r,
                               const Lanes<9>& p, const double (&energy)[kLanes],
                               const LaneOutputs& to, GroupFound& found) {
   Lanes<6> s;
   double one_over[kLanes];
-  if (to.measure == StressMeasure::cauchy) {
+  if constexpr (kLaw == LaneLaw::linear) {
+    for (int l = 0; l < kLanes; ++l) {
+      store(symmetric_part(at_lane(p, l)), s, l);
+      one_over[l] = 1;
+    }
+  } else if (to.measure == StressMeasure::cauchy) {
     for (int l = 0; l < kLanes; ++l) {
       const Matrix at = at_lane(f, l);
       const lanes::Symmetric of = lanes::symmetric_product_by_rows(at_lane(p, l), at);
@@ -257,6 +270,8 @@ SUNDER_IN_LANES void stresses(const ElementBlock& b, const Lanes<9>& f, const La
   }
 }
 
+/// Strain U - I, by the linear law that of small strains.
+template <LaneLaw kLaw>
 SUNDER_IN_LANES void deformations(const ElementBlock& b, const Lanes<9>& f, const Lanes<9>& r,
                                   GroupFound& found) {
   double strain[kLanes], turn[kLanes], inverted[kLanes];
@@ -266,7 +281,14 @@ SUNDER_IN_LANES void deformations(const ElementBlock& b, const Lanes<9>& f, cons
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) apart.at[i][j] = at.at[i][j] - turned.at[i][j];
     }
-    const double most = lanes::largest_principal(lanes::symmetric_product(turned, apart));
+    lanes::Symmetric of = lanes::symmetric_product(turned, apart);
+    if constexpr (kLaw == LaneLaw::linear) {
+      of = symmetric_part(at);
+      of.xx -= 1;
+      of.yy -= 1;
+      of.zz -= 1;
+    }
+    const double most = lanes::largest_principal(of);
     const double angle = lanes::one_less_cosine(turned);
     const double volume = lanes::determinant(at, lanes::cofactor(at));
     const bool counts = b.counts[l] != 0;
@@ -308,8 +330,8 @@ SUNDER_IN_LANES void run_blocks(const Range& of, const double* u, const LaneOutp
     responses<kLaw>(of.problem, of.law, b, f, r, trace, p, w);
     for (int l = 0; l < kLanes; ++l) energy[l] += b.live[l] != 0 ? b.volume[l] * w[l] : 0.0;
     if (to.forces) corner_forces(b, p, w, to.forces + k * 12 * kLanes);
-    if (stressed) stresses(b, f, r, p, w, to, found);
-    if (to.deformation) deformations(b, f, r, found);
+    if (stressed) stresses<kLaw>(b, f, r, p, w, to, found);
+    if (to.deformation) deformations<kLaw>(b, f, r, found);
   }
   for (int l = 0; l < kLanes; ++l) found.energy[l] = energy[l];
 }

@@ -13,7 +13,10 @@ void Offsets::follow(const Forms& forms) {
   const bool grown =
       all.size() >= nodes_.size() && std::equal(nodes_.begin(), nodes_.end(), all.begin(), same);
   if (!grown) *this = {};  // an event was taken back
-  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].tie = all[i].tie;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    nodes_[i].tie = all[i].tie;
+    nodes_[i].spring = all[i].spring;
+  }
   for (std::size_t i = nodes_.size(); i < all.size(); ++i) {
     nodes_.push_back(all[i]);
     auto& own = unknowns_.emplace_back();
@@ -38,11 +41,18 @@ void Offsets::gather(std::span<const double> nodal, std::span<const double> d,
                      std::span<double> forces) const {
   const double* at = nodal.data() + nodal.size() - 3 * nodes_.size();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const NewNode& node = nodes_[i];
+    double pressed = 0;  // the spring's length, times the root of its stiffness
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Index own = unknowns_[i][axis];
+      if (own == kNone) continue;
+      pressed += node.spring[static_cast<Eigen::Index>(axis)] * d[static_cast<std::size_t>(own)];
+    }
     for (std::size_t axis = 0; axis < 3; ++axis, ++at) {
       const Index own = unknowns_[i][axis];
       if (own == kNone) continue;
       const auto o = static_cast<std::size_t>(own);
-      forces[o] = *at + nodes_[i].tie * d[o];
+      forces[o] = *at + node.tie * d[o] + node.spring[static_cast<Eigen::Index>(axis)] * pressed;
     }
   }
 }

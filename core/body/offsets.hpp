@@ -29,7 +29,8 @@ class Offsets {
   /// Displacement at new nodes, `nodal` (3 * all nodes) having that of the mesh's: the parent's and
   /// the offset `d`.
   void move(std::span<const double> d, std::span<double> nodal) const;
-  /// Forces on offsets from those on all nodes, and those of the ties under the offsets `d`.
+  /// Forces on offsets from those on all nodes, and those of the ties and springs under
+  /// the offsets `d`.
   void gather(std::span<const double> nodal, std::span<const double> d,
               std::span<double> forces) const;
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 
 namespace sunder::fem {
-namespace {
 
-std::shared_ptr<const Problem> parted(const DamagedBody& body) {
+std::shared_ptr<const Problem> parted_problem(const DamagedBody& body) {
   const Problem& problem = body.problem();
   std::vector<std::array<Index, 4>> corners = problem.mesh().tets;
   for (const auto& [element, form] : body.forms().came()) {
@@ -17,10 +16,10 @@ std::shared_ptr<const Problem> parted(const DamagedBody& body) {
   return std::make_shared<const Problem>(problem, std::move(corners), nodes);
 }
 
-}  // namespace
-
 bool can_be_parted(const DamagedBody& body) {
   const Problem& problem = body.problem();
+  // Springs between lips are ties of offsets, at any later time.
+  if (problem.scene().fracture.contact) return false;
   std::vector<std::uint8_t> used(body.forms().new_nodes().size(), 0);
   for (const auto& [element, form] : body.forms().came()) {
     for (Index n : form.corners) {
@@ -39,7 +38,8 @@ bool can_be_parted(const DamagedBody& body) {
          });
 }
 
-PartedBody::PartedBody(const DamagedBody& body) : whole_(body.problem()), body_(parted(body)) {
+PartedBody::PartedBody(const DamagedBody& body)
+    : whole_(body.problem()), body_(parted_problem(body)) {
   for (const NewNode& node : body.forms().new_nodes()) add(node, kNone);
   std::vector<Index> gone;
   for (Index e = 0; e < whole_.tet_count(); ++e) {

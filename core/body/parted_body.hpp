@@ -16,8 +16,13 @@
 
 namespace sunder::fem {
 
+/// The body as a mesh of its own, its new nodes with unknowns like any other's. Elements that have
+/// another form than by their corners are as the mesh has them.
+[[nodiscard]] std::shared_ptr<const Problem> parted_problem(const DamagedBody& body);
+
 /// Whether new nodes of a body can be nodes of a mesh: each has an element, none is tied to its
-/// parent or kept to one that a grip moves, and no element has another form than by its corners.
+/// parent or kept to one that a grip moves, no element has another form than by its corners, and
+/// lips are not to be kept apart.
 [[nodiscard]] bool can_be_parted(const DamagedBody& body);
 
 class PartedBody {

@@ -201,7 +201,12 @@ Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners
   for (const NodeThatParts& node : nodes) {
     mesh.nodes.push_back(Vec3(mesh.nodes[static_cast<std::size_t>(node.parent)]));
     for (int axis = 0; axis < 3; ++axis) {
-      dof_.push_back(node.axes.has(axis) ? dof_count_++ : kNone);
+      const auto grip = std::ranges::lower_bound(whole.gripped_dofs_, dof(node.parent, axis));
+      const bool gripped = grip != whole.gripped_dofs_.end() && *grip == dof(node.parent, axis);
+      dof_.push_back(node.axes.has(axis) || gripped ? dof_count_++ : kNone);
+      if (!gripped) continue;
+      gripped_dofs_.push_back(dof_.back());
+      parted_grips_.push_back(static_cast<Index>(grip - whole.gripped_dofs_.begin()));
     }
   }
 }
@@ -212,7 +217,13 @@ void Problem::check_crack(const FractureOptions& f, const FractureModelRow& mode
                      "fracture.max_new_nodes = " + std::to_string(f.max_new_nodes) +
                          "; it must be at least 0, the default");
   }
-  if (f.crack != CrackWay::split) return;
+  if (f.crack != CrackWay::split) {
+    if (!f.contact) return;
+    throw InputError(
+        InputFault::out_of_range,
+        "fracture.contact = true needs fracture.crack = \"split\", whose lips it keeps "
+        "apart");
+  }
   if (!model.grows_cracks) {
     throw InputError(InputFault::out_of_range,
                      "fracture.crack = \"split\" needs model \"B\", which grows cracks; model " +

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,20 @@ class TangentPattern {
   std::shared_ptr<const linear_algebra::Supernodes> supernodes_;
   linear_algebra::SparseMatrix zero_;  // the diagonal is the first entry of a column
   std::vector<Index> places_;          // of each element's lower triangle; kNone: not among them
+};
+
+/// Found when it is first asked for: a base that follows what parts needs none.
+class PatternOnDemand {
+ public:
+  explicit PatternOnDemand(const Problem& problem) : problem_(problem) {}
+  [[nodiscard]] const TangentPattern& get() {
+    if (!pattern_) pattern_.emplace(problem_);
+    return *pattern_;
+  }
+
+ private:
+  const Problem& problem_;
+  std::optional<TangentPattern> pattern_;
 };
 
 }  // namespace sunder::fem

@@ -5,6 +5,9 @@
 #include <cstdio>
 
 #include "body/analysis.hpp"
+#include "body/damaged_body.hpp"
+#include "body/parted_body.hpp"
+#include "body/parting.hpp"
 #include "body/stress_summary.hpp"
 #include "finite/motion_backend.hpp"
 #include "finite/statics_backend.hpp"
@@ -15,27 +18,79 @@
 #include "sunder/words.hpp"
 
 namespace sunder::finite {
+namespace {
+
+/// Of L-BFGS.
+int pairs_of(const Problem& problem) {
+  return problem.moves() ? solver::FiniteMotionOptions{}.pairs
+                         : solver::FiniteStaticsOptions{}.pairs;
+}
+
+}  // namespace
+
 LawBackend::LawBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine)
     : Backend(shared, std::move(needs)),
       u_(shared->dofs().size(), 0.0),
       laws_(fem::laws_of(*shared)),
-      body_{*shared, laws_, destroyed()},
       intact_{*shared, laws_},
       machine_(std::move(machine)),
       route_(chosen_route()),
       factor_entries_(check_options()),
-      pass_(body_) {
+      now_(computed_as(shared)) {
   const std::size_t elements = shared->mesh().tets.size();
   if (this->needs().stress) stress_.assign(elements, Voigt::Zero());
   if (this->needs().yield) excluded_.assign(elements, 0);
   if (route_ == Route::cg) {
     leave_out("forces of grips between frames: route cg has no base to find them by");
   }
-  if (!machine_.device) return;
-  const int pairs =
-      shared->moves() ? solver::FiniteMotionOptions{}.pairs : solver::FiniteStaticsOptions{}.pairs;
-  device_ = machine_.device(body_, route_, pairs);
-  if (this->needs().pristine) device_of_intact_ = machine_.device(intact_, route_, pairs);
+  if (machine_.device && this->needs().pristine) {
+    device_of_intact_ = machine_.device(intact_, route_, pairs_of(*shared));
+  }
+}
+
+LawBackend::Computed LawBackend::computed_as(std::shared_ptr<const Problem> problem) {
+  Computed as;
+  as.problem = std::move(problem);
+  as.body = std::make_unique<const fem::HyperelasticBody>(
+      fem::HyperelasticBody{*as.problem, laws_, destroyed()});
+  as.pass = std::make_unique<fem::HyperelasticPass>(*as.body);
+  if (machine_.device && lost_.empty()) {
+    as.device = machine_.device(*as.body, route_, pairs_of(*as.problem));
+  }
+  return as;
+}
+
+LawBackend::Computed LawBackend::part() {
+  Computed next;
+  const auto parted = fem::parted_problem(damaged_body());
+  try {
+    next = computed_as(parted);
+  } catch (const DeviceLost& error) {
+    if (!now_.device) throw;
+    lost_ = error.what();
+    next = computed_as(parted);
+  }
+  next.pass->cut_off(cut_off_);
+  const fem::Parting parting(computed(), *parted);
+  parting.nodal(u_);
+  fem::add_parted_grips(*parted, load_.displacements);
+  deformation_.reset();
+  std::swap(now_, next);
+  return next;
+}
+
+void LawBackend::do_set_load(const Load& load) {
+  load_ = load;
+  fem::add_parted_grips(computed(), load_.displacements);
+}
+
+void LawBackend::sum_grips(const Eigen::VectorXd& forces, std::span<double> reactions) const {
+  const auto gripped = computed().gripped_dofs();
+  const auto parted = computed().parted_grips();
+  for (std::size_t g = 0; g < reactions.size(); ++g) reactions[g] = forces[gripped[g]];
+  for (std::size_t i = 0; i < parted.size(); ++i) {
+    reactions[static_cast<std::size_t>(parted[i])] += forces[gripped[reactions.size() + i]];
+  }
 }
 
 BackendInfo LawBackend::info() const {
@@ -45,17 +100,17 @@ BackendInfo LawBackend::info() const {
   const Words say = words();
   if (route_ == Route::cg) {
     info.why = say.what + ": by conjugate gradients on the tangent of every state" +
-               (device_ ? ", on the device with forces, stress and line search" : "");
+               (now_.device ? ", on the device with forces, stress and line search" : "");
   } else {
     info.why = say.what + ": by the " + (by_inverse() ? "dense inverse" : "factor") + " of " +
                say.tangent +
-               (!device_       ? ""
+               (!now_.device   ? ""
                 : by_inverse() ? ", made by the host; forces, stress and L-BFGS on the device"
                                : ", by the host; forces and stress on the device");
   }
   if (!lost_.empty()) info.why += "; the host took over from the device: " + lost_;
-  info.quiet_ms = device_ ? 0 : cost_.quiet_ms;
-  if (needs().damage && !device_) info.fracture_ms = cost_.torn_ms;
+  info.quiet_ms = now_.device ? 0 : cost_.quiet_ms;
+  if (needs().damage && !now_.device) info.fracture_ms = cost_.torn_ms;
   for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
   return info;
 }
@@ -79,10 +134,10 @@ std::vector<BufferPlan> LawBackend::buffers() const {
   if (needs().pristine && route_ != Route::cg) {
     plan.push_back({"factor of the intact body's tangent", factor + dense});
   }
-  for (const auto* device : {device_.get(), device_of_intact_.get()}) {
+  for (const auto* device : {now_.device.get(), device_of_intact_.get()}) {
     if (!device) continue;
     for (BufferPlan& buffer : device->buffers()) {
-      if (device != device_.get()) buffer.name += ", of the intact body";
+      if (device != now_.device.get()) buffer.name += ", of the intact body";
       plan.push_back(std::move(buffer));
     }
   }
@@ -90,7 +145,7 @@ std::vector<BufferPlan> LawBackend::buffers() const {
 }
 
 std::vector<KernelPlan> LawBackend::kernels() const {
-  if (device_) return device_->kernels();
+  if (now_.device) return now_.device->kernels();
   const auto elements = std::to_string(problem().tet_count());
   const Words say = words();
   const auto about = [](double ms) {
@@ -135,7 +190,7 @@ void LawBackend::take_over_instrument_forces(std::shared_ptr<InstrumentForces> f
 }
 
 void LawBackend::publish_instruments() {
-  if (!instruments_ || load_.displacements.size() != reactions_.size()) return;
+  if (!instruments_ || load_.displacements.size() < reactions_.size()) return;
   const Eigen::MatrixXd l = grip_compliance();
   if (l.size() == 0) return;
   read_reactions(reactions_);
@@ -145,14 +200,14 @@ void LawBackend::publish_instruments() {
 StressSummary LawBackend::do_stress() {
   attempt([&] {
     if (stress_known_) return;  // nothing has moved
-    if (device_) {
-      device_->stress(u_, stress_);
+    if (now_.device) {
+      now_.device->stress(u_, stress_);
       return;
     }
     fem::HyperelasticPass::Wanted wanted;
     wanted.stress = stress_;
     wanted.measure = problem().scene().fracture.stress;
-    pass_.run(u_, wanted);
+    now_.pass->run(u_, wanted);
   });
   stress_known_ = true;
   const auto none = without_stress();
@@ -167,7 +222,7 @@ Deformation LawBackend::do_deformation() {
   if (!deformation_) {
     fem::HyperelasticPass::Wanted wanted;
     wanted.deformation = true;
-    deformation_ = pass_.run(u_, wanted).deformation;
+    deformation_ = now_.pass->run(u_, wanted).deformation;
   }
   return *deformation_;
 }
@@ -179,7 +234,7 @@ void LawBackend::moved_to(const std::vector<double>& u) {
 }
 
 void LawBackend::do_destroy(std::span<const Index> elements) {
-  pass_.destroy(elements);
+  now_.pass->destroy(elements);
   deformation_.reset();
   if (!needs().stress) return;
   for (Index e : elements) stress_[e].setZero();
@@ -190,7 +245,7 @@ void LawBackend::do_exclude_candidates(std::span<const Index> elements) {
 }
 
 void LawBackend::do_read_displacement(std::span<double> displacement) const {
-  std::ranges::copy(u_, displacement.begin());
+  std::copy_n(u_.begin(), displacement.size(), displacement.begin());
 }
 
 void LawBackend::do_read_displacement(std::span<const Index> nodes,
@@ -221,9 +276,9 @@ std::size_t LawBackend::check_options() {
                           const std::string& instead) {
     throw DeviceError(what + " cannot serve " + whom + ": " + why + "; use " + instead);
   };
-  if (needs().split) {
-    refuse("fracture.crack = \"split\"", "tangents have no new unknowns yet",
-           "law \"linear\" in statics, or crack \"destroyed\"");
+  if (needs().contact) {
+    refuse("fracture.contact = true", "what keeps lips apart belongs to the small matrix of one base",
+           "law \"linear\" in statics on backend cpu, or contact false");
   }
   if (solver.precision == Precision::fp32 && !on_device) {
     refuse("precision fp32", "backend cpu computes in fp64 only", "precision fp64 or auto");

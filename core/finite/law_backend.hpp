@@ -49,10 +49,13 @@ class LawBackend : public Backend {
   /// Inverse, factor, or (in motion on a device) cg.
   [[nodiscard]] Route route() const { return route_; }
   [[nodiscard]] bool by_inverse() const { return route_ == Route::inverse; }
-  [[nodiscard]] const fem::HyperelasticBody& body() const { return body_; }
+  /// What is computed: the problem, or what it becomes where cracks split: new nodes and unknowns
+  /// come after its own, which keep their numbers.
+  [[nodiscard]] const Problem& computed() const { return *now_.problem; }
+  [[nodiscard]] const fem::HyperelasticBody& body() const { return *now_.body; }
   [[nodiscard]] const fem::HyperelasticBody& intact() const { return intact_; }
   /// Null: the host.
-  [[nodiscard]] solver::FiniteDevice* device() const { return device_.get(); }
+  [[nodiscard]] solver::FiniteDevice* device() const { return now_.device.get(); }
   [[nodiscard]] solver::FiniteDevice* device_of_intact() const { return device_of_intact_.get(); }
 
   /// What moves or rests, for the texts: "motion", "a recent tangent with inertia" and so on.
@@ -69,10 +72,10 @@ class LawBackend : public Backend {
     try {
       return operation();
     } catch (const DeviceLost& error) {
-      if (!device_) throw;
+      if (!now_.device) throw;
       lost_ = error.what();
       leave_device();
-      device_.reset();
+      now_.device.reset();
       device_of_intact_.reset();
     }
     return operation();
@@ -84,16 +87,30 @@ class LawBackend : public Backend {
   void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override;
   /// Of the last solution, as InstrumentBlock::publish takes it; empty: unknown.
   [[nodiscard]] virtual Eigen::MatrixXd grip_compliance() = 0;
+  /// What computes the fields of a body.
+  struct Computed {
+    std::shared_ptr<const Problem> problem;
+    std::unique_ptr<const fem::HyperelasticBody> body;
+    std::unique_ptr<fem::HyperelasticPass> pass;
+    std::unique_ptr<solver::FiniteDevice> device;  ///< null: the host alone
+  };
+  /// To be called where nodes have parted: from now on the body is computed as it is now. Returns
+  /// what was before, which must live while anything reads it.
+  [[nodiscard]] Computed part();
+  /// Forces of grips on `computed()`, per unknown, as those of the problem's gripped dofs.
+  void sum_grips(const Eigen::VectorXd& forces, std::span<double> reactions) const;
+
   /// The last solution; fields of the one before no longer hold.
   void moved_to(const std::vector<double>& u);
   /// After a solution: to who has asked for the forces of grips.
   void publish_instruments();
 
-  void do_set_load(const Load& load) override { load_ = load; }
+  void do_set_load(const Load& load) override;
   StressSummary do_stress() override;
   Deformation do_deformation() override;
   void do_cut_off(std::span<const Index> elements) override {
-    pass_.cut_off(elements);
+    now_.pass->cut_off(elements);
+    cut_off_.insert(cut_off_.end(), elements.begin(), elements.end());
     deformation_.reset();
   }
   void do_destroy(std::span<const Index> elements) override;
@@ -104,10 +121,11 @@ class LawBackend : public Backend {
   void do_read_stress(std::span<Voigt> stress) const override;
   Voigt do_read_stress(Index element) const override { return stress_[element]; }
 
-  Load load_;
+  Load load_;              // on computed()
   std::vector<double> u_;  // of the last solution
 
  private:
+  [[nodiscard]] Computed computed_as(std::shared_ptr<const Problem> problem);
   [[nodiscard]] Route chosen_route() const;
   std::size_t check_options();
 
@@ -115,14 +133,15 @@ class LawBackend : public Backend {
   bool stress_known_ = false;               // it is that of u_
   std::optional<Deformation> deformation_;  // of u_, once asked for
   std::vector<const Law*> laws_;
-  fem::HyperelasticBody body_, intact_;
+  fem::HyperelasticBody intact_;
   Machine machine_;
   Route route_;
   solver::LawCost cost_;  // of the host alone
   std::size_t factor_entries_ = 0;
-  fem::HyperelasticPass pass_;
-  std::unique_ptr<solver::FiniteDevice> device_, device_of_intact_;
   std::string lost_;  // why the device is gone; empty: it is not
+  Computed now_;
+  std::unique_ptr<solver::FiniteDevice> device_of_intact_;
+  std::vector<Index> cut_off_;  // elements
   std::vector<std::uint8_t> excluded_;
   std::optional<solver::InstrumentBlock> instruments_;  // once asked for
   std::vector<double> reactions_;

@@ -5,7 +5,9 @@
 #include <optional>
 #include <utility>
 
+#include "body/damaged_body.hpp"
 #include "body/lumped_mass.hpp"
+#include "body/parting.hpp"
 #include "solver/finite_motion.hpp"
 #include "sunder/error.hpp"
 #include "sunder/words.hpp"
@@ -32,7 +34,7 @@ class MotionBackend final : public LawBackend {
   MotionBackend(std::shared_ptr<const Problem> shared, Needs needs, Machine machine)
       : LawBackend(shared, std::move(needs), std::move(machine)),
         mass_(fem::lumped_masses(*shared)),
-        motion_(body(), mass_, motion_options(*shared, by_inverse()), device()) {
+        motion_(motion()) {
     if (this->needs().pristine) {
       pristine_.emplace(intact(), mass_, motion_options(*shared, by_inverse()), device_of_intact());
     }
@@ -69,13 +71,17 @@ class MotionBackend final : public LawBackend {
                 (cap == 0 ? "" : ", at most " + std::to_string(cap) + " a step")};
   }
 
+  [[nodiscard]] std::unique_ptr<solver::FiniteMotion> motion() const {
+    return std::make_unique<solver::FiniteMotion>(
+        body(), mass_, motion_options(problem(), by_inverse()), device());
+  }
   void remember() {
     if (!device()) return;
-    past_ = motion_.past();
+    past_ = motion_->past();
     if (pristine_) past_of_intact_ = pristine_->past();
   }
   void leave_device() override {
-    motion_.leave_device(past_);
+    motion_->leave_device(past_);
     if (pristine_) pristine_->leave_device(past_of_intact_);
   }
 
@@ -87,9 +93,9 @@ class MotionBackend final : public LawBackend {
     const bool as_long = std::exchange(dt_, dt) == dt;
     intact_known_ = false;
     remember();
-    const auto found = attempt([&] { return motion_.step(load_, dt); });
+    const auto found = attempt([&] { return motion_->step(load_, dt); });
     if (found.stuck) fail(found, dt);
-    if (!found.still) moved_to(motion_.displacement());
+    if (!found.still) moved_to(motion_->displacement());
     // At rest they stay as they are, once the scheme too is that of the step before.
     if (!(found.still && still_ && as_long)) publish_instruments();
     still_ = found.still && found.second_order;
@@ -108,13 +114,22 @@ class MotionBackend final : public LawBackend {
   }
 
   Eigen::MatrixXd grip_compliance() override {
-    return motion_.grip_compliance(problem().scene().dynamics->felt_inertia);
+    return motion_->grip_compliance(problem().scene().dynamics->felt_inertia);
   }
 
   void do_destroy(std::span<const Index> elements) override {
     remember();
-    attempt([&] { motion_.destroyed(elements); });
+    attempt([&] { motion_->destroyed(elements); });
     LawBackend::do_destroy(elements);
+  }
+
+  void do_change(const fem::Change&) override {
+    const Computed before = part();  // first: it goes last
+    mass_ = fem::lumped_masses(computed());
+    auto parted = motion();
+    parted->go_on_from(*motion_, fem::Parting(*before.problem, computed()));
+    motion_ = std::move(parted);
+    still_ = false;
   }
 
   /// The intact body, at rest at first as the real one was, goes the same way.
@@ -129,33 +144,37 @@ class MotionBackend final : public LawBackend {
   }
 
   MotionState do_motion() const override {
-    const solver::FiniteMotionBalance sum = motion_.sum();
-    return {.time = motion_.time(),
-            .kinetic = motion_.kinetic_energy(),
-            .strain_energy = motion_.strain_energy(),
-            .work = sum.work - motion_.gravity_energy(),
+    const solver::FiniteMotionBalance sum = motion_->sum();
+    return {.time = motion_->time(),
+            .kinetic = motion_->kinetic_energy(),
+            .strain_energy = motion_->strain_energy(),
+            .work = sum.work - motion_->gravity_energy(),
             .damped = sum.damped,
             .scheme = sum.scheme,
             .broken = sum.broken,
             .unsolved = sum.unsolved,
-            .momentum = motion_.momentum(),
-            .angular_momentum = motion_.angular_momentum()};
+            .momentum = motion_->momentum(),
+            .angular_momentum = motion_->angular_momentum()};
   }
 
   void do_read_velocity(std::span<double> velocity) const override {
-    std::ranges::copy(motion_.velocity(), velocity.begin());
+    std::copy_n(motion_->velocity().begin(), velocity.size(), velocity.begin());
   }
 
   void do_set_velocity(std::span<const double> velocity) override {
-    motion_.set_velocity(velocity);
+    std::vector<double> all(velocity.begin(), velocity.end());
+    for (const fem::NewNode& node : damaged_body().forms().new_nodes()) {
+      for (Index axis = 0; axis < 3; ++axis) all.push_back(velocity[3 * node.parent + axis]);
+    }
+    motion_->set_velocity(all);
     if (pristine_) pristine_->set_velocity(velocity);
   }
 
   Vec3 do_held_beside() const override {
     Vec3 sum = Vec3::Zero();
-    const std::vector<double>& viscous = motion_.viscous_forces();
-    for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
-      if (problem().dofs()[i] != kNone) continue;
+    const std::vector<double>& viscous = motion_->viscous_forces();
+    for (std::size_t i = 0; i < computed().dofs().size(); ++i) {
+      if (computed().dofs()[i] != kNone) continue;
       const auto axis = static_cast<Eigen::Index>(i % 3);
       sum[axis] -= mass_[i / 3] * problem().scene().gravity[axis];
       if (!viscous.empty()) sum[axis] += viscous[i];
@@ -164,13 +183,11 @@ class MotionBackend final : public LawBackend {
   }
 
   void do_read_reactions(std::span<double> reactions) const override {
-    const auto gripped = problem().gripped_dofs();
-    const Eigen::VectorXd& forces = motion_.grip_forces(problem().scene().dynamics->felt_inertia);
-    for (std::size_t g = 0; g < gripped.size(); ++g) reactions[g] = forces[gripped[g]];
+    sum_grips(motion_->grip_forces(problem().scene().dynamics->felt_inertia), reactions);
   }
 
   std::vector<double> mass_;  // per node
-  solver::FiniteMotion motion_;
+  std::unique_ptr<solver::FiniteMotion> motion_;
   std::optional<solver::FiniteMotion> pristine_;
   solver::FiniteMotionPast past_, past_of_intact_;  // before what the device does
   double dt_ = 0;                                   // of the last step

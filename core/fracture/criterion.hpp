@@ -71,6 +71,14 @@ struct Decision {
   }
 };
 
+/// How the lips of split cracks lie to each other.
+struct LipState {
+  double overlap = 0;  ///< the largest, across the ideal path [mm]
+  /// Where lips are to be kept apart: springs that come or go; no ties: they are at rest.
+  fem::Change change;
+  std::vector<Finding> findings;
+};
+
 /// At most one node of each surface.
 struct PressedNodes {
   std::array<Index, 2> nodes{kNone, kNone};
@@ -98,6 +106,8 @@ class FractureCriterion {
   [[nodiscard]] virtual PressedNodes pressed_nodes(
       const Press& press, std::span<const std::uint8_t> destroyed) const = 0;
   [[nodiscard]] virtual const std::vector<Crack>& cracks() const = 0;
+  /// Of split cracks, in this state. The caller always carries the change out.
+  [[nodiscard]] virtual LipState look_at_lips(const FractureState&) { return {}; }
   /// Faces that split cracks have opened, by crack.
   [[nodiscard]] virtual std::vector<CrackFace> faces() const { return {}; }
   /// Of all elements, where cracks split them; empty: as the mesh has them.

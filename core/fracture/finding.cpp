@@ -86,6 +86,13 @@ std::string sentence(const Finding& f, const Scene& scene) {
     case Finding::Kind::nodes_spent:
       return "as many nodes have come as fracture.max_new_nodes allows: tips rest from here on; "
              "raise it";
+    case Finding::Kind::lips_overlap:
+      return "the lips of crack " + std::to_string(f.subject) +
+             " pass through each other where they close; fracture.contact = true keeps them apart";
+    case Finding::Kind::lips_unsettled:
+      return "step " + std::to_string(f.subject) +
+             ": which lips of split cracks touch had not settled after twenty solutions; they may "
+             "overlap there";
   }
   return {};
 }

@@ -24,6 +24,8 @@ struct Finding {
     formula_notch,     ///< crack
     formula_split,     ///< crack
     nodes_spent,
+    lips_overlap,    ///< crack
+    lips_unsettled,  ///< step
   };
   Kind kind;
   int subject = 0;            ///< the first of what the kind names

@@ -36,6 +36,7 @@ void check_needs(const Needs& scene, const Needs& backend) {
   check(scene.yield, backend.yield, "the yield summary");
   check(scene.damage, backend.damage, "damage");
   check(scene.split, backend.split, "new nodes");
+  check(scene.contact, backend.contact, "lips that are kept apart");
   check(scene.pristine, backend.pristine, "the intact body's field");
 }
 
@@ -51,6 +52,7 @@ Needs needs_of(const Problem& problem) {
   needs.yield = needs.stress && any(problem, &Problem::breakable);
   needs.damage = breaks || !scene.cracks.empty() || !scene.removals.empty();
   needs.split = breaks && scene.fracture.crack == CrackWay::split;
+  needs.contact = needs.split && scene.fracture.contact;
   needs.pristine =
       breaks && !needs.split && model.pristine && scene.fracture.sigma0 != RemoteStress::present;
   if (!needs.stress) {

@@ -146,6 +146,7 @@ StepReport Simulation::compute_step(double dt) {
         times.stress += solved.stress_ms;
         record_solve(solved, report);
       }
+      if (backend_->needs().split) settle_lips(report);
       {
         const Timer timer(times.stress);
         summary = backend_->needs().stress ? backend_->stress() : StressSummary{};
@@ -185,6 +186,29 @@ StepReport Simulation::compute_step(double dt) {
   ++next_step_;
   prepare_next(summary);
   return report;
+}
+
+/// Looks at the lips of split cracks; where they are to be kept apart, springs come and go until
+/// those that are there press and no other lips overlap.
+void Simulation::settle_lips(StepReport& report) {
+  constexpr int kSolutions = 20;
+  LipState lips;
+  for (int i = 0;; ++i) {
+    lips = criterion_->look_at_lips(fracture_state({}));
+    if (lips.change.ties.empty()) break;
+    if (i == kSolutions) {
+      note({Finding::Kind::lips_unsettled, next_step_});
+      break;
+    }
+    {
+      const Timer timer(report.times.update);
+      backend_->change(lips.change);
+    }
+    const Timer timer(report.times.solve);
+    record_solve(solve(), report);
+  }
+  for (const Finding& found : lips.findings) note(found);
+  lip_overlap_ = std::max(lip_overlap_, lips.overlap);
 }
 
 /// The last step has nobody to go on from it: it is finished, or the backend refuses it.

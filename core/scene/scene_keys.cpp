@@ -328,7 +328,12 @@ std::span<const MemberKey<FractureOptions>> fracture_keys() {
       row<&F::max_new_nodes>("fracture", "max_new_nodes",
                              "crack \"split\": how many nodes may come; left out: as many as the "
                              "mesh has, at least 1,000",
-                             "below 0: error; reached: tips rest, with a warning"),
+                             "below 0: error; no more come: tips rest, with a warning"),
+      row<&F::contact>("fracture", "contact",
+                       "crack \"split\": the lips of cracks are kept apart where they close "
+                       "(method.md \"Split cracks\")",
+                       "true without crack \"split\": error; a backend or law that cannot: exit "
+                       "code 4"),
       row<&F::averaging>("fracture", "averaging",
                          "radius of the mean stress that strength is judged by [mm]; 0: by element "
                          "(method.md \"Averaged strength\")",

@@ -86,10 +86,21 @@ void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::In
     const bool at_new = std::ranges::any_of(form.corners, [&](Index n) { return n >= first; });
     if (at_new && form.share > 0) add(forms, form, basis, grips, from);
   }
+  add_ties(from);
+}
+
+/// Ties and springs between new nodes and their parents join F.
+void Border::add_ties(Index from) {
   for (std::size_t i = 0; i < unknowns_.nodes().size(); ++i) {
+    const fem::NewNode& node = unknowns_.nodes()[i];
     for (int axis = 0; axis < 3; ++axis) {
       const Index column = unknowns_.unknown(static_cast<Index>(i), axis);
-      if (column >= from) f_(column, column) += unknowns_.nodes()[i].tie;
+      if (column < from) continue;  // kNone too
+      f_(column, column) += node.tie;
+      for (int other = 0; other <= axis; ++other) {
+        const Index row = unknowns_.unknown(static_cast<Index>(i), other);
+        if (row != kNone) f_(column, row) += node.spring[axis] * node.spring[other];
+      }
     }
   }
 }

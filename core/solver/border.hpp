@@ -72,6 +72,7 @@ class Border {
                                           const std::array<Index, 4>& corners) const;
   void resize(Eigen::Index rows);
   void assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips, Index from);
+  void add_ties(Index from);
   void add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
            Eigen::Index grips, Index from);
   void multiply(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,

@@ -40,7 +40,7 @@ void DampedPath::begin(const std::vector<double>& u) {
   steps_ = 0;
   kinetic_ = 0;
   dt_ = 1;
-  inertia_ = kFirstInertia * median_stiffness(potential_.resting(), u, pattern_);
+  inertia_ = kFirstInertia * median_stiffness(potential_.resting(), u, pattern_.get());
   velocity_.setZero(potential_.problem().dof_count());
   state_.u = u;
   base_.reset();
@@ -51,7 +51,7 @@ bool DampedPath::renew(Cost& cost) {
   try {
     base_ =
         std::make_unique<FiniteBase>(potential_.resting().body(), state_.u, fem::Tangent::projected,
-                                     pattern_, fem::Inertia{inertia_ / (dt_ * dt_)});
+                                     pattern_.get(), fem::Inertia{inertia_ / (dt_ * dt_)});
   } catch (const NumericalError&) {
     base_.reset();
   }

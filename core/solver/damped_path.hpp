@@ -15,7 +15,7 @@ namespace sunder::solver {
 class DampedPath {
  public:
   DampedPath(const FinitePotential& potential, FiniteMinimiser& minimiser,
-             const fem::TangentPattern& pattern)
+             fem::PatternOnDemand& pattern)
       : potential_(potential), minimiser_(minimiser), pattern_(pattern) {}
 
   struct Cost {
@@ -42,7 +42,7 @@ class DampedPath {
 
   const FinitePotential& potential_;
   FiniteMinimiser& minimiser_;
-  const fem::TangentPattern& pattern_;
+  fem::PatternOnDemand& pattern_;
   bool running_ = false, paused_ = false, easy_ = false, hard_ = false;
   int steps_ = 0;
   double inertia_ = 0;  // mass over dt squared [N/mm]

@@ -34,27 +34,28 @@ Index full_vectors(Index columns) { return (columns + 7) / 8 * 8; }
 FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
                        const fem::TangentPattern& pattern, const fem::Inertia& inertia,
                        const linear_algebra::FactorWork& work)
-    : problem_(body.problem),
+    : problem_(&body.problem),
+      border_(body.problem),
       laws_(body.law_of_volume.begin(), body.law_of_volume.end()),
-      out_(problem_.mesh().tets.size(), 0),
+      out_(problem_->mesh().tets.size(), 0),
       u_(std::move(u)),
       kind_(kind),
       inertia_(inertia.factor),
       factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
       columns_(factor_.cholesky().supernodes()),
-      column_(static_cast<std::size_t>(problem_.dof_count()), kNone),
+      column_(static_cast<std::size_t>(problem_->dof_count()), kNone),
       coupled_(column_.size(), 0),
       stamps_{next_stamp(), next_stamp(), next_stamp()} {
   std::ranges::copy(body.destroyed, out_.begin());
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (out_[e]) continue;
-    for (Index n : problem_.mesh().tets[e]) {
+    for (Index n : problem_->mesh().tets[e]) {
       for (int axis = 0; axis < 3; ++axis) {
-        if (problem_.dof(n, axis) != kNone) coupled_[problem_.dof(n, axis)] = 1;
+        if (problem_->dof(n, axis) != kNone) coupled_[problem_->dof(n, axis)] = 1;
       }
     }
   }
-  for (Index d : problem_.gripped_dofs()) coupled_[d] = 0;
+  for (Index d : problem_->gripped_dofs()) coupled_[d] = 0;
 }
 
 void FiniteBase::keep_inverse() {
@@ -64,24 +65,73 @@ void FiniteBase::keep_inverse() {
 
 bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
   std::vector<Index> lost, fresh;
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (now.out()[e] == out_[e]) continue;
     if (!now.out()[e]) return false;
     lost.push_back(e);
-    for (Index n : problem_.mesh().tets[e]) {
+    for (Index n : border_.corners(e)) {
       for (int axis = 0; axis < 3; ++axis) {
-        const Index d = problem_.dof(n, axis);
+        const Index d = problem_->dof(n, axis);
         if (d == kNone || !coupled_[d] || column_[d] != kNone) continue;
         column_[d] = static_cast<Index>(touched_.size() + fresh.size());
         fresh.push_back(d);
       }
     }
   }
-  if (lost.empty()) return true;
-  if (touched_.size() + fresh.size() > static_cast<std::size_t>(most_rank)) return false;
+  if (lost.empty() && !parted_) return true;
+  const std::size_t rank =
+      touched_.size() + fresh.size() + static_cast<std::size_t>(border_.size());
+  if (rank > static_cast<std::size_t>(most_rank)) return false;
   touch(fresh);
   for (Index e : lost) lose(e);
-  return correct(now);
+  if (!lost.empty() && !correct(now)) return false;
+  return border_.empty() || follow_border();
+}
+
+void FiniteBase::part(const Problem& now, const fem::Parting& parting,
+                      std::span<const double> mass) {
+  problem_ = &now;
+  parting.nodal(u_);
+  border_.part(now, mass);
+  parted_ = true;
+  coupled_.resize(static_cast<std::size_t>(now.dof_count()), 1);
+  for (Index d : now.gripped_dofs()) coupled_[d] = 0;
+}
+
+bool FiniteBase::follow_border() {
+  parted_ = false;
+  const auto tangent = [this](Index e) {
+    return fem::element_tangent({*problem_, laws_}, e, u_, kind_);
+  };
+  return border_.follow(
+      {tangent, [this](Eigen::MatrixXd& of) { solve_columns(of); }, out_, coupled_, inertia_}, m_,
+      touched_);
+}
+
+/// By A alone, nothing lost and nothing turned.
+void FiniteBase::solve_columns(Eigen::MatrixXd& of) {
+  if (inverse_.size() > 0) {
+    of = inverse_ * of;
+    return;
+  }
+  const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
+  const auto& place = l.supernodes().place;
+  std::vector<Index> all(static_cast<std::size_t>(l.supernodes().count()));
+  std::iota(all.begin(), all.end(), 0);
+  l.make_room(kColumnGroup, work_);
+  for (Eigen::Index first = 0; first < of.cols(); first += kColumnGroup) {
+    const Eigen::Index count = std::min<Eigen::Index>(kColumnGroup, of.cols() - first);
+    linear_algebra::RowMajor y =
+        linear_algebra::RowMajor::Zero(of.rows(), full_vectors(static_cast<Index>(count)));
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      y.row(place[i]).head(count) = of.row(static_cast<Eigen::Index>(i)).segment(first, count);
+    }
+    l.forward(all, y, work_);
+    l.backward(y, work_);
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      of.row(static_cast<Eigen::Index>(i)).segment(first, count) = y.row(place[i]).head(count);
+    }
+  }
 }
 
 /// Appends columns of L^-1 E_T, and of G.
@@ -106,7 +156,7 @@ void FiniteBase::touch(std::span<const Index> unknowns) {
 void FiniteBase::push_group(std::span<const Index> unknowns) {
   const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
   const auto& nodes = l.supernodes();
-  const auto count = static_cast<Index>(unknowns.size()), first = rank();
+  const auto count = static_cast<Index>(unknowns.size()), first = touched_count();
   places_.clear();
   for (Index i = 0; i < count; ++i) {
     places_.push_back(nodes.place[unknowns[i]]);
@@ -118,17 +168,18 @@ void FiniteBase::push_group(std::span<const Index> unknowns) {
   touched_.insert(touched_.end(), unknowns.begin(), unknowns.end());
   block_.resize(columns_.size(), kColumnGroup);
   columns_.multiply(path_, rows_, full_vectors(count), block_);
-  g_.block(0, first, rank(), count) = block_.topLeftCorner(rank(), count);
-  g_.block(first, 0, count, rank()) = block_.topLeftCorner(rank(), count).transpose();
+  g_.block(0, first, touched_count(), count) = block_.topLeftCorner(touched_count(), count);
+  g_.block(first, 0, count, touched_count()) =
+      block_.topLeftCorner(touched_count(), count).transpose();
   for (Index s : path_) rows_.middleRows(nodes.first[s], nodes.width(s)).setZero();
 }
 
 /// Adds an element's tangent to D.
 void FiniteBase::lose(Index element) {
-  const fem::ElementMatrix k = fem::element_tangent({problem_, laws_}, element, u_, kind_);
+  const fem::ElementMatrix k = fem::element_tangent({*problem_, laws_}, element, u_, kind_);
   std::array<Index, 12> at;
   for (int i = 0; i < 12; ++i) {
-    const Index d = problem_.dof(problem_.mesh().tets[element][i / 3], i % 3);
+    const Index d = problem_->dof(border_.corners(element)[i / 3], i % 3);
     at[i] = d == kNone ? kNone : column_[d];
   }
   for (int j = 0; j < 12; ++j) {
@@ -142,7 +193,7 @@ void FiniteBase::lose(Index element) {
 /// M of the head comment, unknowns that are held still first.
 bool FiniteBase::correct(const RestingBody& now) {
   std::vector<Index> in_order, moving;
-  for (Index i = 0; i < rank(); ++i) {
+  for (Index i = 0; i < touched_count(); ++i) {
     (now.frozen()[touched_[i]] ? in_order : moving).push_back(i);
   }
   const auto held = static_cast<Eigen::Index>(in_order.size()),
@@ -168,7 +219,7 @@ bool FiniteBase::correct(const RestingBody& now) {
   const auto corner = root.topLeftCorner(held, held).triangularView<Eigen::Lower>();
   Eigen::MatrixXd c = root.bottomLeftCorner(free, held).transpose();
   corner.transpose().solveInPlace(c);
-  Eigen::MatrixXd whole(rank(), rank());
+  Eigen::MatrixXd whole(touched_count(), touched_count());
   whole.bottomRightCorner(free, free) = of_moving;
   const Eigen::MatrixXd between = -c * of_moving;
   whole.topRightCorner(held, free) = between;
@@ -176,7 +227,7 @@ bool FiniteBase::correct(const RestingBody& now) {
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(held, held);
   corner.solveInPlace(inverse);
   whole.topLeftCorner(held, held) = -(inverse.transpose() * inverse) - between * c.transpose();
-  m_.resize(rank(), rank());
+  m_.resize(touched_count(), touched_count());
   m_(in_order, in_order) = whole;
   stamps_.small = next_stamp();
   return true;
@@ -185,15 +236,15 @@ bool FiniteBase::correct(const RestingBody& now) {
 void FiniteBase::turn(const RestingBody& now, std::span<const double> u) {
   turned_.clear();
   largest_turn_ = 0;
-  const Mesh& mesh = problem_.mesh();
+  const Mesh& mesh = problem_->mesh();
   std::vector<Mat3> sum(mesh.nodes.size(), Mat3::Zero());
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (now.out()[e]) continue;
-    const double volume = problem_.shape(e).volume;
-    const Mat3 from = Mat3::Identity() + fem::displacement_gradient(problem_, e, u_),
-               to = Mat3::Identity() + fem::displacement_gradient(problem_, e, u);
+    const double volume = problem_->shape(e).volume;
+    const Mat3 from = Mat3::Identity() + fem::displacement_gradient(*problem_, e, u_),
+               to = Mat3::Identity() + fem::displacement_gradient(*problem_, e, u);
     // The linear law's stiffness does not turn.
-    const bool turns = laws_[problem_.mesh().volume_of[e]] != &kLinear;
+    const bool turns = laws_[problem_->mesh().volume_of[e]] != &kLinear;
     const Mat3 both = volume * (turns ? Mat3(to * from.transpose()) : Mat3::Identity());
     for (Index n : mesh.tets[e]) sum[n] += both;
   }
@@ -201,7 +252,7 @@ void FiniteBase::turn(const RestingBody& now, std::span<const double> u) {
     std::array<Index, 3> at;
     bool free = true;
     for (int axis = 0; axis < 3; ++axis) {
-      at[axis] = problem_.dof(n, axis);
+      at[axis] = problem_->dof(n, axis);
       free = free && at[axis] != kNone && coupled_[at[axis]] && !now.frozen()[at[axis]];
     }
     if (!free || sum[n].isZero()) continue;  // none left around it: nothing to turn
@@ -228,14 +279,34 @@ void FiniteBase::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     rotate(b, true, back_);
     of = &back_;
   }
-  inverse_.size() > 0 ? solve_by_inverse(*of, x) : solve_by_factor(*of, x);
+  if (border_.empty()) {
+    inverse_.size() > 0 ? solve_by_inverse(*of, x) : solve_by_factor(*of, x);
+  } else {
+    border_.gather(*of, on_base_);
+    inverse_.size() > 0 ? solve_by_inverse(on_base_, x, of) : solve_by_factor(on_base_, x, of);
+    border_.add(offsets_, x);
+  }
   if (!turned_.empty()) {
     back_ = x;
     rotate(back_, false, x);
   }
 }
 
-void FiniteBase::solve_ordered(linear_algebra::RowMajor& b) {
+void FiniteBase::solve_ordered(const linear_algebra::Supernodes& order,
+                               linear_algebra::RowMajor& b) {
+  if (&order != &factor_.cholesky().supernodes()) {  // it is of a body that has parted since
+    Eigen::VectorXd f(b.rows()), x;
+    for (Eigen::Index column = 0; column < b.cols(); ++column) {
+      for (std::size_t i = 0; i < order.place.size(); ++i) {
+        f[static_cast<Eigen::Index>(i)] = b(order.place[i], column);
+      }
+      solve(f, x);
+      for (std::size_t i = 0; i < order.place.size(); ++i) {
+        b(order.place[i], column) = x[static_cast<Eigen::Index>(i)];
+      }
+    }
+    return;
+  }
   for (Eigen::Index column = 0; column < b.cols(); column += kColumnGroup) {
     solve_group(b.middleCols(column, std::min<Eigen::Index>(kColumnGroup, b.cols() - column)));
   }
@@ -265,9 +336,9 @@ void FiniteBase::solve_group(Eigen::Ref<linear_algebra::RowMajor> b) {
   std::iota(all.begin(), all.end(), 0);
   l.make_room(kColumnGroup, work_);
   l.forward(all, y, work_);
-  if (rank() > 0) {
+  if (touched_count() > 0) {
     columns_.make_room();
-    linear_algebra::RowMajor with(rank(), y.cols());
+    linear_algebra::RowMajor with(touched_count(), y.cols());
     columns_.multiply(all, y, static_cast<Index>(y.cols()), with);
     for (Eigen::Index column = 0; column < b.cols(); ++column) {
       c_.noalias() = m_ * with.col(column);
@@ -281,15 +352,19 @@ void FiniteBase::solve_group(Eigen::Ref<linear_algebra::RowMajor> b) {
   b = y.leftCols(b.cols());
 }
 
-void FiniteBase::solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+/// `forces`: where there are offsets, on all unknowns; b has those on the base's.
+void FiniteBase::solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x,
+                                 const Eigen::VectorXd* forces) {
   const linear_algebra::SupernodalCholesky& l = factor_.cholesky();
   const auto& place = l.supernodes().place;
   y_.resize(b.size());
   for (std::size_t i = 0; i < place.size(); ++i) y_[place[i]] = b[static_cast<Eigen::Index>(i)];
   l.forward(y_, work_);
-  if (rank() > 0) {
-    columns_.project(y_, 0, p_);
-    c_.noalias() = m_ * p_.head(rank());
+  if (touched_count() > 0) columns_.project(y_, 0, p_);
+  p_.conservativeResize(touched_count());
+  if (forces) border_.solve(*forces, b, m_, p_, offsets_);
+  if (touched_count() > 0) {
+    c_.noalias() = m_ * p_;
     columns_.add(c_, y_);
   }
   l.backward(y_, work_);
@@ -297,12 +372,14 @@ void FiniteBase::solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y_[place[i]];
 }
 
-void FiniteBase::solve_by_inverse(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+void FiniteBase::solve_by_inverse(const Eigen::VectorXd& b, Eigen::VectorXd& x,
+                                  const Eigen::VectorXd* forces) {
   x.noalias() = inverse_ * b;
-  if (rank() == 0) return;
   p_ = x(touched_);
+  if (forces) border_.solve(*forces, b, m_, p_, offsets_);
+  if (touched_count() == 0) return;
   c_.noalias() = m_ * p_;
-  for (Index i = 0; i < rank(); ++i) x += c_[i] * inverse_.col(touched_[i]);
+  for (Index i = 0; i < touched_count(); ++i) x += c_[i] * inverse_.col(touched_[i]);
 }
 
 }  // namespace sunder::solver

@@ -6,14 +6,17 @@
 // With T the unknowns of elements that have left, G = (A^-1)_TT and D the sum of their tangents at
 // the base's state, (A - D)^-1 = A^-1 + A^-1 E_T M E_T^T A^-1, where M = D + D R S^-1 R^T D,
 // G = R R^T, S = I - R^T D R: the tangent without them is positive definite where S is. Unknowns Z
-// that nothing reaches any more are held still: G without them is their Schur complement.
+// that nothing reaches any more are held still: G without them is their Schur complement. Nodes
+// that have parted since are a border of all this (finite_border.hpp).
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
+#include "body/parting.hpp"
 #include "body/tangent_pattern.hpp"
 #include "linear_algebra/factor.hpp"
+#include "solver/finite_border.hpp"
 #include "solver/path_columns.hpp"
 #include "solver/resting_body.hpp"
 
@@ -32,16 +35,21 @@ class FiniteBase {
   /// more than `most_rank` unknowns are touched, or the tangent without what left is not positive
   /// definite; then another base is needed.
   [[nodiscard]] bool follow(const RestingBody& now, Index most_rank);
+  /// The body has parted into another one, whose problem must outlive it, as must its masses (per
+  /// unknown; empty: none). follow() comes next.
+  void part(const Problem& now, const fem::Parting& parting, std::span<const double> mass);
   /// From now on x = Q A^-1 Q^T b, Q the rotations of the nodes from the base's state to u.
   void turn(const RestingBody& now, std::span<const double> u);
   /// Computes A^-1, dense: from now on solve() multiplies by it. What follows is the same.
   void keep_inverse();
   /// x = A^-1 b.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
-  /// The same of several right sides at once, in their place, the unknowns in the factor's order.
-  void solve_ordered(linear_algebra::RowMajor& b);
+  /// The same of several right sides at once, in their place, the unknowns in an order of the
+  /// body's: best the factor's.
+  void solve_ordered(const linear_algebra::Supernodes& order, linear_algebra::RowMajor& b);
 
-  [[nodiscard]] bool has_inverse() const { return inverse_.size() > 0; }
+  /// Of the whole body: not where nodes have parted since.
+  [[nodiscard]] bool has_inverse() const { return inverse_.size() > 0 && border_.empty(); }
   /// What a device needs to apply the base as solve() does: x = Q (A^-1 + A^-1 E_T M E_T^T A^-1)
   /// Q^T b.
   struct Turned {
@@ -58,8 +66,8 @@ class FiniteBase {
   };
   [[nodiscard]] const Stamps& stamps() const { return stamps_; }
 
-  /// Unknowns that what has left touches.
-  [[nodiscard]] Index rank() const { return static_cast<Index>(touched_.size()); }
+  /// Unknowns that what has left touches, and new ones.
+  [[nodiscard]] Index rank() const { return touched_count() + border_.size(); }
   [[nodiscard]] double inertia() const { return inertia_; }            ///< its factor
   [[nodiscard]] double largest_turn() const { return largest_turn_; }  ///< [rad]
 
@@ -68,12 +76,19 @@ class FiniteBase {
   void push_group(std::span<const Index> unknowns);
   void lose(Index element);
   [[nodiscard]] bool correct(const RestingBody& now);
-  void solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x);
-  void solve_by_inverse(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+  [[nodiscard]] bool follow_border();
+  [[nodiscard]] Index touched_count() const { return static_cast<Index>(touched_.size()); }
+  void solve_columns(Eigen::MatrixXd& of);
+  void solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x,
+                       const Eigen::VectorXd* forces = nullptr);
+  void solve_by_inverse(const Eigen::VectorXd& b, Eigen::VectorXd& x,
+                        const Eigen::VectorXd* forces = nullptr);
   void solve_group(Eigen::Ref<linear_algebra::RowMajor> b);
   void rotate(const Eigen::VectorXd& from, bool back, Eigen::VectorXd& to) const;
 
-  const Problem& problem_;
+  const Problem* problem_;  // as it has parted
+  FiniteBorder border_;
+  bool parted_ = false;  // since the border was read
   std::vector<const Law*> laws_;
   std::vector<std::uint8_t> out_;  // per element: not in the base
   std::vector<double> u_;          // of the base
@@ -91,7 +106,7 @@ class FiniteBase {
   std::vector<Turned> turned_;
   Stamps stamps_;
   double largest_turn_ = 0;
-  Eigen::VectorXd y_, p_, c_, back_;
+  Eigen::VectorXd y_, p_, c_, back_, on_base_, offsets_;
   linear_algebra::SolveWork work_;
 };
 

@@ -9,6 +9,7 @@
 #include "solver/frame_cost.hpp"
 #include "solver/grip_stiffness.hpp"
 #include "solver/instrument_block.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::solver {
 namespace {
@@ -26,6 +27,8 @@ constexpr double kFewestStepsOfABase = 2, kMostStepsOfABase = 12;
 // steps makes more of the tangent, so that fewer do.
 constexpr int kMostOnAGoodBase = 8, kMostOfShortSteps = 5;
 constexpr double kShortStep = 1.0 / 500;  // [s]
+// On a factor that was made where the base before it stalled.
+constexpr int kOnAnExactFactor = 10;
 // What of its way a step is left that its cap ended with too much energy.
 constexpr double kPartsOfAWay[] = {0.5, 0.25, 0.125, 0};
 // A step that would leave no more than this of the forces that act, times the tolerance of stress,
@@ -94,6 +97,22 @@ void FiniteMotion::go_on_from(const FiniteMotionPast& past) {
   viscous_ = past.viscous;
   broken_ = 0;
   sum_ = past.sum;
+}
+
+void FiniteMotion::go_on_from(FiniteMotion& before, const fem::Parting& parting) {
+  FiniteMotionPast past = before.past();
+  for (auto* of : {&past.u, &past.v, &past.u_before, &past.v_before, &past.viscous}) {
+    parting.nodal(*of);
+  }
+  for (auto* of : {&past.load, &past.reaction, &past.felt}) parting.forces(*of);
+  past.euler = kEulerSteps;
+  go_on_from(past);
+  rate_ = before.rate_;
+  sum_ = before.sum_;
+  broken_ = before.broken_;
+  parted_ = true;
+  base_ = std::move(before.base_);
+  if (base_) base_->part(potential_.problem(), parting, mass_);
 }
 
 Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
@@ -253,7 +272,7 @@ bool FiniteMotion::better_where_it_is(const FiniteTarget& target) const {
 bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
                          Report& report) {
   base_ = projected_base(moving_.body(), u, pattern(), report.factors, {}, inertia);
-  if (base_ && options_.inverse) base_->keep_inverse();
+  if (base_ && options_.inverse && !parted_) base_->keep_inverse();
   return base_ != nullptr;
 }
 
@@ -295,10 +314,26 @@ bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
   if (once(options_.most_back_solves)) return true;
   if (!needs_base()) return false;
   for (int i = 0; i < options_.most_factors; ++i) {
-    if (!renew(next_.u, inertia_of_base(target), report)) return false;
-    if (once(options_.most_back_solves)) return true;
+    if (!take_exact(next_.u, inertia_of_base(target), report) &&
+        !renew(next_.u, inertia_of_base(target), report)) {
+      return false;
+    }
+    if (once(kOnAnExactFactor)) return true;
   }
   return false;
+}
+
+/// A base of the exact tangent, for the state in work alone; false: it is not positive definite.
+bool FiniteMotion::take_exact(const std::vector<double>& u, const fem::Inertia& inertia,
+                              Report& report) {
+  ++report.factors;
+  try {
+    base_ =
+        std::make_unique<FiniteBase>(moving_.body(), u, fem::Tangent::exact, pattern(), inertia);
+    return true;
+  } catch (const NumericalError&) {
+    return false;
+  }
 }
 
 FiniteMotionReport FiniteMotion::step(const Load& load, double dt) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "body/parting.hpp"
 #include "solver/finite_minimiser.hpp"
 #include "solver/finite_renewal.hpp"
 
@@ -26,7 +27,7 @@ struct FiniteMotionOptions {
   int most_iterations = 0;      ///< back-solves of a step; 0: as many as it takes
   int pairs = 5;                ///< of L-BFGS
   int most_back_solves = 25;    ///< on one base
-  int most_factors = 12;        ///< of one step, made where the base stalls; not under a cap
+  int most_factors = 20;        ///< of one step, made where the base stalls; not under a cap
   bool turn = true;             ///< the base by the nodes' rotations
   Index most_rank = 300;        ///< unknowns that what has left touches, before a new base is made
   /// Back-solves of a step after which the base is renewed beside the steps; none: 8, of steps
@@ -129,6 +130,9 @@ class FiniteMotion {
   /// Goes on from there, of the body as it is now.
   void go_on_from(const FiniteMotionPast& past);
 
+  /// The same from another one's state, with its base: of the same body before nodes parted.
+  void go_on_from(FiniteMotion& before, const fem::Parting& parting);
+
   [[nodiscard]] double time() const { return time_; }                   ///< sum of the steps [s]
   [[nodiscard]] double strain_energy() const { return state_.energy; }  ///< [N mm]
   [[nodiscard]] double kinetic_energy() const;                          ///< [N mm]
@@ -161,6 +165,8 @@ class FiniteMotion {
   [[nodiscard]] bool renew(const std::vector<double>& u, const fem::Inertia& inertia,
                            Report& report);
   [[nodiscard]] bool minimise(const FiniteTarget& target, Report& report);
+  [[nodiscard]] bool take_exact(const std::vector<double>& u, const fem::Inertia& inertia,
+                                Report& report);
   void take(const FiniteTarget& end, const Scheme& by, double dt, Report& report);
   [[nodiscard]] std::vector<double> velocity_of(const FiniteState& state, const Scheme& by) const;
   [[nodiscard]] FiniteMotionBalance balance(const FiniteTarget& end, const Scheme& by,
@@ -198,6 +204,7 @@ class FiniteMotion {
   bool linear_;  // by law "linear" alone
   FiniteState state_, next_;
   std::unique_ptr<FiniteBase> base_;
+  bool parted_ = false;    // a base that is made within a step keeps no inverse
   int until_taken_ = 0;    // steps, of the base that has been asked for
   FiniteRenewal renewal_;  // last: its thread reads pattern_ and mass_
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "material/linear.hpp"
 #include "solver/finite_start.hpp"
 #include "solver/grip_stiffness.hpp"
 #include "solver/instrument_block.hpp"
@@ -50,7 +51,8 @@ FiniteStatics::FiniteStatics(const fem::HyperelasticBody& body, FiniteStaticsOpt
       reached_(potential_.target({})),
       check_after_(options.check_after),
       path_(potential_, minimiser_, pattern_),
-      renewal_(options.rest, options.inverse) {
+      renewal_(options.rest, options.inverse),
+      linear_(std::ranges::all_of(body.law_of_volume, [](const Law* l) { return l == &kLinear; })) {
   shown_.u = u_;
   shown_.f.assign(u_.size(), 0.0);
 }
@@ -67,11 +69,29 @@ void FiniteStatics::update_parts() {
   path_.body_changed();
 }
 
+void FiniteStatics::go_on_from(FiniteStatics& before, const fem::Parting& parting) {
+  u_ = before.u_;
+  parting.nodal(u_);
+  reached_ = before.reached_;
+  parting.forces(reached_.force);
+  fem::add_parted_grips(body_.problem, reached_.grips);
+  first_ = before.first_;
+  suspected_ = before.suspected_;
+  since_check_ = before.since_check_;
+  check_after_ = before.check_after_;
+  shown_.u = u_;
+  potential_.evaluate(reached_, false, shown_);
+  parted_ = true;
+  worn_ = before.worn_;
+  base_ = std::move(before.base_);
+  if (base_) base_->part(body_.problem, parting, {});
+}
+
 void FiniteStatics::destroyed(std::span<const Index>) { update_parts(); }
 
 Eigen::MatrixXd FiniteStatics::grip_compliance() {
   if (!base_) return {};
-  return compliance_factor(grip_stiffness(resting_, shown_.u, pattern_, *base_, {}),
+  return compliance_factor(grip_stiffness(resting_, shown_.u, pattern_.get(), *base_, {}),
                            anchors_of(body_.problem));
 }
 
@@ -84,12 +104,12 @@ void FiniteStatics::body_changed() {
 /// Makes a base; false: the tangent is not positive definite.
 bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Report& report) {
   if (kind == fem::Tangent::projected) {
-    base_ = projected_base(resting_.body(), u, pattern_, report.factors);
+    base_ = projected_base(resting_.body(), u, pattern_.get(), report.factors);
     return base_ != nullptr;
   }
   ++report.factors;
   try {
-    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, pattern_);
+    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, pattern_.get());
   } catch (const NumericalError&) {
     base_.reset();
   }
@@ -101,7 +121,7 @@ bool FiniteStatics::ensure_base(const std::vector<double>& u, Report& report) {
   if (base_ && !base_->follow(resting_, options_.most_rank)) base_.reset();
   if (!base_) {
     if (!renew(u, fem::Tangent::projected, report)) return false;
-    if (options_.inverse) base_->keep_inverse();
+    if (options_.inverse && !parted_) base_->keep_inverse();
   }
   report.rank = std::max(report.rank, base_->rank());
   return true;
@@ -201,7 +221,7 @@ void FiniteStatics::rest_at(const FiniteTarget& target) {
 bool FiniteStatics::leave_saddle(const FiniteTarget& target, Report& report) {
   suspected_ = false;
   for (int i = 0; i < kMostPushes; ++i) {
-    const LowestMode mode = lowest_mode(resting_, state_.u, pattern_);
+    const LowestMode mode = lowest_mode(resting_, state_.u, pattern_.get());
     report.factors += mode.factors;
     if (!(mode.stiffness < 0) || !push(target, mode.shape)) return true;
     ++report.buckled;
@@ -350,7 +370,7 @@ void FiniteStatics::ask(bool base, bool judgement) {
   since_asked_ = 0;
   judged_alone_ = !base;
   if (base) worn_ = 0;
-  renewal_.ask(resting_.body(), u_, pattern_, base, judgement);
+  renewal_.ask(resting_.body(), u_, pattern_.get(), base, judgement);
 }
 
 /// After a step that came to rest: a base of that state where steps have become hard, and at times
@@ -360,7 +380,8 @@ void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   worn_ += std::max(0, report.back_solves - kOfAGoodBase);
   const bool hard = worn_ > options_.renew_after || report.rank > options_.most_rank / 2;
   if (hard) check_after_ = options_.check_after;
-  const bool check = first_ || since_check_ >= check_after_;
+  // The linear law has one rest, which is stable.
+  const bool check = !linear_ && (first_ || since_check_ >= check_after_);
   if (options_.taken_after > 0 && !first_) {
     ask(hard, check);
     return;
@@ -368,13 +389,13 @@ void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   if (!hard && !check) return;
   first_ = false;
   worn_ = 0;
-  if (auto base = base_at_rest(resting_.body(), u_, pattern_, report.factors)) {
+  if (auto base = base_at_rest(resting_.body(), u_, pattern_.get(), report.factors)) {
     if (options_.inverse) base->keep_inverse();
     base_ = std::move(base);
   }
   if (!check) return;
   ++report.factors;
-  judged(is_stable(resting_.body(), u_, pattern_));
+  judged(is_stable(resting_.body(), u_, pattern_.get()));
   if (!suspected_) return;
   state_ = shown_;
   const Report at_rest = report;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "body/parting.hpp"
 #include "solver/damped_path.hpp"
 #include "solver/finite_minimiser.hpp"
 #include "solver/finite_renewal.hpp"
@@ -79,6 +80,9 @@ class FiniteStatics {
   /// The device is gone: from the last state at rest on by the host.
   void leave_device();
 
+  /// Goes on from another one's last rest, with its base: of the same body before nodes parted.
+  void go_on_from(FiniteStatics& before, const fem::Parting& parting);
+
   /// These have just left; the body says so already.
   void destroyed(std::span<const Index> elements);
   /// Anything else about the body has changed: elements are back, laws are others.
@@ -112,7 +116,7 @@ class FiniteStatics {
   FinitePotential potential_;
   FiniteMinimiser minimiser_;
   FiniteScale scale_;
-  fem::TangentPattern pattern_;
+  fem::PatternOnDemand pattern_;
   std::vector<double> u_;           // the last state at rest
   std::vector<double> before_;      // the one before it; empty: the body has changed since
   FiniteTarget reached_, begin_;    // their loads
@@ -123,13 +127,15 @@ class FiniteStatics {
   FiniteState shown_, state_, probe_;
   Eigen::VectorXd motion_, following_;
   std::unique_ptr<FiniteBase> base_;
+  bool parted_ = false;     // a base that is made within a step keeps no inverse
   bool suspected_ = false;  // the last state at rest may be unstable
   bool first_ = true;       // nothing has come to rest so far
   int worn_ = 0;            // back-solves beyond a few a step since the base was made or asked for
   int since_check_ = 0, since_asked_ = 0, check_after_;
   bool judged_alone_ = false;  // what is asked for is no base
   DampedPath path_;
-  FiniteRenewal renewal_;  // last: its thread reads pattern_
+  FiniteRenewal renewal_;  // its thread reads pattern_
+  bool linear_;            // by law "linear" alone
 };
 
 }  // namespace sunder::solver

@@ -60,8 +60,9 @@ AtGrips tangent_at_grips(const RestingBody& now,
 /// step wins next to nothing of its energy, or finds a direction without stiffness.
 class BlockConjugateGradients {
  public:
-  BlockConjugateGradients(const linear_algebra::SparseMatrix& k, FiniteBase& base)
-      : k_(k), base_(base) {}
+  BlockConjugateGradients(const linear_algebra::SparseMatrix& k,
+                          const linear_algebra::Supernodes& order, FiniteBase& base)
+      : k_(k), order_(order), base_(base) {}
 
   void solve(const RowMajor& b, RowMajor& x) {
     using Row = Eigen::RowVectorXd;
@@ -71,7 +72,7 @@ class BlockConjugateGradients {
     std::vector<std::uint8_t> done(static_cast<std::size_t>(b.cols()), 0);
     for (int i = 0; i < kMostFollowing; ++i) {
       z = r;
-      base_.solve_ordered(z);
+      base_.solve_ordered(order_, z);
       const Row now = (r.array() * z.array()).colwise().sum();
       if (i == 0) {
         p = z;
@@ -103,8 +104,22 @@ class BlockConjugateGradients {
 
  private:
   const linear_algebra::SparseMatrix& k_;
+  const linear_algebra::Supernodes& order_;
   FiniteBase& base_;
 };
+
+/// Grips of nodes that have parted go with those of the others.
+Eigen::MatrixXd of_whole_grips(const Problem& problem, Eigen::MatrixXd s) {
+  const auto parted = problem.parted_grips();
+  const Eigen::Index whole = s.rows() - static_cast<Eigen::Index>(parted.size());
+  for (std::size_t i = 0; i < parted.size(); ++i) {
+    s.row(parted[i]) += s.row(whole + static_cast<Eigen::Index>(i));
+  }
+  for (std::size_t i = 0; i < parted.size(); ++i) {
+    s.col(parted[i]) += s.col(whole + static_cast<Eigen::Index>(i));
+  }
+  return s.topLeftCorner(whole, whole);
+}
 
 }  // namespace
 
@@ -124,7 +139,7 @@ Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u
   }
   base.turn(now, u);
   RowMajor follows;
-  BlockConjugateGradients(k, base).solve(-at.between, follows);
+  BlockConjugateGradients(k, order, base).solve(-at.between, follows);
   // Rayleigh and Ritz: an error of how the rest follows enters squared.
   const RowMajor forces = at.between + RowMajor(k.selfadjointView<Eigen::Lower>() * follows);
   Eigen::MatrixXd s = at.within + at.between.transpose() * follows;
@@ -136,7 +151,7 @@ Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u
       s(i, i) += of.inertia.of(gripped[g]);
     }
   }
-  return (s + s.transpose()) / 2;
+  return of_whole_grips(problem, (s + s.transpose()) / 2);
 }
 
 Eigen::MatrixXd compliance_factor(const Eigen::MatrixXd& stiffness,

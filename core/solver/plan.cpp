@@ -81,14 +81,9 @@ void check_options(const SolverOptions& solver, const PlanDevice& device) {
   }
 }
 
-/// What cracks that split ask of a device.
-void check_split(const Needs& needs, const SolverOptions& solver, const PlanDevice& device) {
+/// What cracks that split ask of an update.
+void check_split(const Needs& needs, const SolverOptions& solver) {
   if (!needs.split) return;
-  if (!device.splits) {
-    throw DeviceError("backend " + device.backend +
-                      " does not follow cracks that split; use backend cpu, or fracture.crack "
-                      "\"destroyed\"");
-  }
   if (solver.update == Update::eager) {
     throw DeviceError(
         "update eager writes over an inverse that has no room for the unknowns which split nodes "
@@ -213,7 +208,7 @@ bool PlanDevice::has(Route route) const { return std::ranges::find(routes, route
 Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& device) {
   const SolverOptions& solver = problem.scene().solver;
   check_options(solver, device);
-  check_split(needs, solver, device);
+  check_split(needs, solver);
   Plan plan;
   plan.eager = solver.update == Update::eager;
   const std::string precision = device.fp32 ? choose_precision(problem, device, plan) : "";

@@ -22,7 +22,6 @@ struct PlanDevice {
   std::size_t memory = 0;      ///< bytes that can be had
   bool fp32 = false;           ///< stores in fp32 too, with sums in fp64
   bool fp64 = true;            ///< computes in fp64
-  bool splits = false;         ///< follows cracks that split
   bool displayed = false;      ///< a host draws the whole body's fields from it
   Index inverts_from = kNone;  ///< unknowns from which on it computes an inverse itself
   FrameRates rates;

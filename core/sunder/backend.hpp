@@ -29,6 +29,7 @@ struct Needs {
   bool damage = false;    ///< elements may be destroyed
   bool pristine = false;  ///< displacement of the intact body (method B's remote stress)
   bool split = false;     ///< cracks open faces: elements change corners, nodes come (change())
+  bool contact = false;   ///< their lips are kept apart: ties come and go (change())
   std::vector<std::string> left_out;  ///< what this scene does not need, in words
 };
 

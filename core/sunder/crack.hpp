@@ -73,7 +73,8 @@ struct SifTerms {
 };
 
 /// A face of a split crack that has opened: two triangles that were one. Nodes of the body as it
-/// is, in the same order on both lips; the lip left of the path (seen from above) first.
+/// is, in the same order on both lips; the lip left of the path (seen from above) first, so turned
+/// that its normal leaves its own tissue.
 struct CrackFace {
   int crack = 0;
   std::array<Index, 3> left{}, right{};

@@ -32,7 +32,8 @@ struct InstrumentNodes {
   std::vector<Index> nodes;  ///< ascending
 };
 
-/// A node that comes where another lies: held on the axes that it has not.
+/// A node that comes where another lies: on the axes that it has not it is held, or gripped, as the
+/// other is.
 struct NodeThatParts {
   Index parent = 0;
   Axes axes;
@@ -104,6 +105,9 @@ class Problem {
   /// spring's force is known and is taken off the reaction.
   [[nodiscard]] double anchor_stiffness() const { return anchor_stiffness_; }
   [[nodiscard]] std::span<const Index> anchored_dofs() const { return anchored_dofs_; }
+  /// The last gripped dofs are those of nodes that have parted: for each of them the place in
+  /// gripped_dofs() of the one whose displacement it has.
+  [[nodiscard]] std::span<const Index> parted_grips() const { return parted_grips_; }
 
   [[nodiscard]] const std::vector<InstrumentNodes>& instrument_nodes() const {
     return instrument_nodes_;
@@ -148,7 +152,7 @@ class Problem {
   bool reads_toughness_ = false;  // the fracture model grows cracks
   std::vector<Index> dof_;
   Index dof_count_ = 0;
-  std::vector<Index> gripped_dofs_, anchored_dofs_;
+  std::vector<Index> gripped_dofs_, anchored_dofs_, parted_grips_;
   double anchor_stiffness_ = 0;
   std::vector<InstrumentNodes> instrument_nodes_;
   std::vector<std::vector<Index>> crack_elements_, removal_elements_;

@@ -142,6 +142,7 @@ struct FractureOptions {
   SifSource sif = SifSource::formula;
   CrackWay crack = CrackWay::destroyed;
   int max_new_nodes = 0;   ///< with split: how many may come; 0: as many as the mesh has, or 1,000
+  bool contact = false;    ///< with split: keeps the lips of cracks apart
   int max_events = 10000;  ///< of one step
   std::optional<Vec3> plane_normal;  ///< overrides the third axis of the bounding box
   double averaging = 0;  ///< radius of the mean that strength is judged by [mm], 0: by element

@@ -104,6 +104,9 @@ class Simulation {
   /// The body as split cracks leave it: the problem's mesh with nodes that have come after its own
   /// and the corners that elements have now. Element ids never change.
   [[nodiscard]] Mesh mesh() const;
+  /// How far lips of split cracks have overlapped in any step so far, in the direction across the
+  /// ideal path [mm]; 0: nowhere.
+  [[nodiscard]] double lip_overlap() const { return lip_overlap_; }
   /// Faces that split cracks have opened (nodes of mesh()), by crack.
   [[nodiscard]] std::vector<CrackFace> crack_faces() const;
 
@@ -117,6 +120,7 @@ class Simulation {
   void apply_removals();
   StepReport compute_step(double dt);
   SolveReport solve();
+  void settle_lips(StepReport& report);
   [[nodiscard]] std::span<const Worst> over_yield();
   void record_solve(const SolveReport& solve, StepReport& report);
   [[nodiscard]] FractureState fracture_state(const StressSummary& summary);
@@ -190,6 +194,7 @@ class Simulation {
   bool attribute_ = false;
   Steps capped_, cut_short_, polished_, unfinished_;
   Beyond strained_, turned_, inverted_;
+  double lip_overlap_ = 0;
   std::vector<std::uint8_t> cut_off_;  // per element; empty: none yet
   std::vector<Index> newly_cut_off_;
   bool solved_ = false;  // the backend holds fields

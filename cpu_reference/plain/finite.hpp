@@ -31,7 +31,7 @@ class FiniteBody : public Body {
   [[nodiscard]] Solution solve(const Load& load, std::span<const double> start = {}) const;
   /// Of live elements, in Voigt order; P itself where the law is linear.
   [[nodiscard]] std::vector<Voigt> stress(std::span<const double> u, StressMeasure measure) const;
-  /// Strain U - I; over live elements that are not left out.
+  /// Strain U - I, of the linear law sym grad u; over live elements that are not left out.
   [[nodiscard]] Deformation deformation(std::span<const double> u,
                                         std::span<const std::uint8_t> left_out) const;
 

@@ -126,7 +126,9 @@ Deformation FiniteBody::deformation(std::span<const double> u,
     const Element& e = elements_[id];
     if (e.share < 1 || left_out[id]) continue;
     const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
-    for (const Real stretch : principal_values(rotation(f).transpose() * f)) {
+    const Real3x3 stretch_of =
+        laws_[id] == &kLinear ? Real3x3((f + f.transpose()) / 2) : rotation(f).transpose() * f;
+    for (const Real stretch : principal_values(stretch_of)) {
       const auto strain = static_cast<double>(stretch - 1);
       if (std::abs(strain) > std::abs(most.strain)) most.strain = strain;
     }

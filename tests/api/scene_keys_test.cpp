@@ -33,6 +33,7 @@ const std::map<std::string, Member<sunder_fracture_options>>& fracture_members()
       {"stress", &O::stress},
       {"crack", &O::crack},
       {"max_new_nodes", &O::max_new_nodes},
+      {"contact", &O::contact},
   };
   return members;
 }
@@ -50,7 +51,8 @@ const std::map<std::string, Member<sunder_solver_options>>& solver_members() {
 /// A key's default as its member in C has it.
 double in_c(const std::optional<KeyValue>& standard) {
   if (!standard) return 0;
-  if (const auto* flag = std::get_if<bool>(&*standard)) return *flag ? 0 : 1;
+  // Off: of a key that is on by default the member is the other way round.
+  if (std::holds_alternative<bool>(*standard)) return 0;
   if (const auto* count = std::get_if<int>(&*standard)) return *count;
   if (const auto* number = std::get_if<double>(&*standard)) return *number;
   EXPECT_EQ(std::get<std::string>(*standard), "auto");

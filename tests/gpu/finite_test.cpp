@@ -45,8 +45,8 @@ struct Torn {
     std::uniform_real_distribution<double> of(-noise, noise);
     std::vector<double> u;
     for (const Vec3& x : problem.mesh().nodes) {
-      const double turn = 80 * std::numbers::pi / 180 * x.x() / 6, out = 6 + 2 - x.y();
-      const Vec3 to(out * std::sin(turn), 8 - out * std::cos(turn), x.z() * 1.1);
+      const double turn = 80 * std::numbers::pi / 180 * x.x() / 6, radius = 6 + 2 - x.y();
+      const Vec3 to(radius * std::sin(turn), 8 - radius * std::cos(turn), x.z() * 1.1);
       for (int axis = 0; axis < 3; ++axis) u.push_back(to[axis] - x[axis] + of(random));
     }
     for (std::size_t i = 0; i < u.size(); ++i) {
@@ -269,7 +269,7 @@ INSTANTIATE_TEST_SUITE_P(All, FiniteKernels,
                                            Numbers{gpu::Variant::gpu, true},
                                            Numbers{gpu::Variant::lvp, false},
                                            Numbers{gpu::Variant::lvp, true}),
-                         [](const auto& info) { return name_of(info.param); });
+                         [](const auto& tested) { return name_of(tested.param); });
 
 /// The promise of both sides: what they may be apart by is the accuracy table's.
 constexpr double kTight = 1e-10;
@@ -430,7 +430,7 @@ INSTANTIATE_TEST_SUITE_P(
               Precision::fp32, Route::cg},
         Sheet{"motion_kirchhoff_A", true, MaterialLaw::saint_venant_kirchhoff, FractureModel::a},
         Sheet{"motion_linear_A", true, MaterialLaw::linear, FractureModel::a}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 // Small bodies by an inverse, others in motion without a base at all, at rest by the host's factor.
 TEST_F(FiniteRoutes, AutoGoesBySize) {
@@ -495,9 +495,9 @@ TEST_P(FiniteDeviceLost, InMidStepTheHostGoesOnFromTheLastState) {
 INSTANTIATE_TEST_SUITE_P(All, FiniteDeviceLost,
                          ::testing::Values(Loss{false, Route::inverse}, Loss{true, Route::inverse},
                                            Loss{true, Route::cg}),
-                         [](const auto& info) {
-                           return std::string(info.param.moves ? "moving_" : "resting_") +
-                                  (info.param.route == Route::cg ? "cg" : "inverse");
+                         [](const auto& tested) {
+                           return std::string(tested.param.moves ? "moving_" : "resting_") +
+                                  (tested.param.route == Route::cg ? "cg" : "inverse");
                          });
 
 using FiniteRefusals = WithVulkan<>;

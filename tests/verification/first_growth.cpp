@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -106,6 +107,40 @@ NotchedBoard notched_board(double size, double notch) {
   board.h = fracture::Board(run.problem->mesh(), {}).h();
   board.force = kBoardToughness * per_k;
   board.force_by_eq1 = intensity_of_reach(*run.problem, board.h) * per_k;
+  return board;
+}
+
+GrownBoard grown_board(double size) {
+  Scene scene = board_of(gmsh_board({.size = size, .notch = kNotch}));
+  add_notch(scene, size, kNotch);
+  scene.supports.push_back({end(0), Axes{7}});
+  // As far as it ever goes from the first step on, so that the crack grows once in each.
+  Instrument grip = grip_at(kSide, Vec3(1.5, 5, 0), "grip");
+  scene.steps = 200;
+  grip.ramp = Ramp{0, 1.0 / scene.steps};
+  scene.instruments.push_back(grip);
+  scene.materials["board"].toughness = kBoardToughness;
+  scene.fracture.crack = CrackWay::split;
+  scene.fracture.max_events = 1;
+  BoardSimulation run(std::move(scene));
+  GrownBoard board;
+  board.tets = run.problem->tet_count();
+  board.h = fracture::Board(run.problem->mesh(), {}).h();
+  std::array<double, 3> before{};
+  while (board.force.size() < std::size(kGrownTo)) {
+    run.simulation.step();
+    const TipState tip = run.simulation.tips().at(0);
+    // Linear: the force and K go together.
+    const std::array<double, 3> now{
+        tip.position.x(), run.simulation.reactions().at(0).norm() * kBoardToughness / tip.k.value(),
+        tip.position.y()};
+    while (board.force.size() < std::size(kGrownTo) && now[0] >= kGrownTo[board.force.size()]) {
+      const double share = (kGrownTo[board.force.size()] - before[0]) / (now[0] - before[0]);
+      board.force.push_back(before[1] + share * (now[1] - before[1]));
+      board.y.push_back(before[2] + share * (now[2] - before[2]));
+    }
+    before = now;
+  }
   return board;
 }
 

@@ -38,6 +38,17 @@ struct TurnedBoard {
 };
 [[nodiscard]] TurnedBoard turned_board(double size);
 
+/// The notched board torn on by a crack that splits, its upper end moved up and across: the grip's
+/// force that keeps the crack growing, K = kBoardToughness, and where its tip is, by how far the
+/// tip has come.
+inline constexpr double kGrownTo[] = {12, 14, 16, 18, 20};  ///< x of the tip [mm]
+struct GrownBoard {
+  Index tets = 0;
+  double h = 0;                  ///< mean projected edge [mm]
+  std::vector<double> force, y;  ///< [N], of the tip [mm]; at each of kGrownTo
+};
+[[nodiscard]] GrownBoard grown_board(double size);
+
 /// The paper's notched board (scenes/notch-b.toml) in other element sizes, with K_c in all its
 /// tissues: the force at its corner when K = kBoardToughness.
 inline constexpr double kPaperSizes[] = {3.939, 2, 1.2};

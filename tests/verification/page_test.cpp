@@ -112,6 +112,14 @@ TEST(VerificationPage, HasTheFirstGrowth) {
               text("%.2f", holed.force));
 }
 
+TEST(VerificationPage, HasTheGrowthOfASplitCrack) {
+  const GrownBoard grown = grown_board(kBoardSizes[0]);
+  const std::vector<std::string> key{std::to_string(grown.tets), text("%.3f", grown.h),
+                                     "force [N]"};
+  expect_cell("First growth", key, "x = 12", text("%.3f", grown.force.front()));
+  expect_cell("First growth", key, "20 mm", text("%.3f", grown.force.back()));
+}
+
 TEST(VerificationPage, HasTheFirstGrowthOfATurnedBoard) {
   const TurnedBoard turned = turned_board(kBoardSizes[0]);
   expect_cell("First growth", {std::to_string(turned.tets)}, "extension [mm]",

@@ -96,11 +96,24 @@ std::string_view FieldIntensity::note() const {
   if (disturbed.strain) return "strain";
   if (disturbed.notch) return "notch";
   if (disturbed.coarse) return "coarse";
-  constexpr std::array<std::string_view, 8> kNotes{
-      "",       "fixed",        "material",        "fixed+material",
-      "damage", "fixed+damage", "material+damage", "fixed+material+damage"};
+  constexpr std::array<std::string_view, 16> kNotes{"",
+                                                    "fixed",
+                                                    "material",
+                                                    "fixed+material",
+                                                    "damage",
+                                                    "fixed+damage",
+                                                    "material+damage",
+                                                    "fixed+material+damage",
+                                                    "closed",
+                                                    "fixed+closed",
+                                                    "material+closed",
+                                                    "fixed+material+closed",
+                                                    "damage+closed",
+                                                    "fixed+damage+closed",
+                                                    "material+damage+closed",
+                                                    "fixed+material+damage+closed"};
   return kNotes[(disturbed.fixed ? 1U : 0U) + (disturbed.material ? 2U : 0U) +
-                (disturbed.damage ? 4U : 0U)];
+                (disturbed.damage ? 4U : 0U) + (disturbed.closed ? 8U : 0U)];
 }
 
 std::span<const Vec2> FieldIntensityMeter::path_tail(const Crack& crack, std::size_t tip,
@@ -197,7 +210,19 @@ FieldIntensity FieldIntensityMeter::at(const Crack& crack, std::size_t tip, cons
   result.disturbed.material = around.other_material < chosen;
   result.disturbed.damage = around.other_damage < chosen;
   if (chosen == wanted && !result.disturbed.strain) mend(crack, tip, view, result);
+  if (!result.disturbed.strain) close(view.lips, result);
   return result;
+}
+
+/// Lips that press on each other, or would have to, show no K_I: what slides is left of K and J.
+void FieldIntensityMeter::close(FieldView::Lips lips, FieldIntensity& measured) {
+  IntensityFactors& k = measured.factors;
+  using Lips = FieldView::Lips;
+  if (lips == Lips::unknown || (lips == Lips::free && !(k.k_1 < 0))) return;
+  measured.disturbed.closed = true;
+  k.k_1 = 0;
+  measured.j = k.k_2 * k.k_2 / measured.material.effective_young() +
+               k.k_3 * k.k_3 / (2 * measured.material.shear());
 }
 
 double FieldIntensityMeter::chosen_radius(const Crack& crack, std::size_t tip,

@@ -30,6 +30,10 @@ struct FieldView {
   bool small = false;                  ///< a field of small strain, whatever the body's laws
   /// Of all elements, where cracks have split some; empty: as the mesh has them.
   std::span<const std::array<Index, 4>> corners = {};
+  /// The lips at the tip of a split crack: not known (K_I keeps its sign), free (where K_I is under
+  /// 0 they overlap), or pressed on each other (K_I is 0).
+  enum class Lips : std::uint8_t { unknown, free, pressed };
+  Lips lips = Lips::unknown;
 };
 
 /// What disturbs the field around a tip.
@@ -40,6 +44,7 @@ struct Disturbances {
   bool notch = false;     ///< the crack is a notch too blunt for K, which is left out
   bool coarse = false;    ///< the mesh at its tip is too coarse; of a notch K is left out
   bool strain = false;    ///< it is strained or turned in itself beyond small strain: J, no K
+  bool closed = false;    ///< the lips at the tip are: K_I is 0
   bool left_out = false;  ///< there is no K
 };
 
@@ -105,6 +110,7 @@ class FieldIntensityMeter {
                                         bool Disturbances::*why) const;
   void prepare_shifts();
   [[nodiscard]] Vec3 shift_of(const Crack& crack, std::size_t tip, const FieldView& view);
+  static void close(FieldView::Lips lips, FieldIntensity& measured);
   void mend(const Crack& crack, std::size_t tip, const FieldView& view, FieldIntensity& measured);
   [[nodiscard]] FieldIntensity measure(const Crack& crack, std::size_t tip, const FieldView& view,
                                        double radius,

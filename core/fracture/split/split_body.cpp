@@ -68,19 +68,30 @@ std::array<Index, 3> SplitBody::nodes(const Face& face) const {
   return nodes;
 }
 
-void SplitBody::open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
+bool SplitBody::open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
                      fem::Change& change) {
   std::vector<Index> touched;
   for (const Face& face : faces) {
     for (Index n : nodes(face)) touched.push_back(n);
+  }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  const auto before = open_;
+  for (const Face& face : faces) {
     for (const Face& side : {face, other_side(face)}) {
       std::uint8_t& of = open_[static_cast<std::size_t>(side.element)];
       of = static_cast<std::uint8_t>(of | 1U << side.opposite);
     }
   }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  // What parts at one node does not depend on the others.
+  std::size_t come = 0;
+  for (Index n : touched) come += std::max<std::size_t>(parts_at(n, destroyed).size(), 1) - 1;
+  if (come > static_cast<std::size_t>(std::max<Index>(most_nodes_ - node_count(), 0))) {
+    open_ = before;
+    return false;
+  }
   for (Index n : touched) split(n, destroyed, change);
+  return true;
 }
 
 Index SplitBody::live_at(Index node, std::span<const std::uint8_t> destroyed) const {
@@ -125,11 +136,16 @@ std::vector<std::vector<Index>> SplitBody::groups(Index node,
   return groups;
 }
 
+/// Groups that get nodes of their own, or keep the one that they share.
+std::vector<std::vector<Index>> SplitBody::parts_at(Index node,
+                                                    std::span<const std::uint8_t> destroyed) const {
+  if (free_axes(problem_, in_mesh(node)).bits == 0) return {};  // held, whoever's it is
+  return groups(node, destroyed);
+}
+
 /// The stiffest group keeps the node (method.md 16); of equals the one with the first element.
 void SplitBody::split(Index node, std::span<const std::uint8_t> destroyed, fem::Change& change) {
-  const Index parent = in_mesh(node);
-  if (free_axes(problem_, parent).bits == 0) return;  // held, whoever's it is
-  auto parts = groups(node, destroyed);
+  auto parts = parts_at(node, destroyed);
   if (parts.size() < 2) return;
   const auto stiffness = [this](const std::vector<Index>& group) {
     double most = 0;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -55,21 +56,27 @@ class SplitBody {
   /// Nodes of a face, by the element's order of corners.
   [[nodiscard]] std::array<Index, 3> nodes(const Face& face) const;
 
+  /// Never more nodes than this, the mesh's included.
+  void allow(Index nodes) { most_nodes_ = nodes; }
   /// Opens faces between two elements and names what changes by it: elements with other corners and
   /// the nodes that come. Elements that are destroyed hold nothing together and keep their corners.
-  void open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
-            fem::Change& change);
+  /// False, and nothing has changed: more nodes would come than are allowed.
+  [[nodiscard]] bool open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
+                          fem::Change& change);
   /// Whether the live elements at a node hang together by faces that are not open.
   [[nodiscard]] bool whole(Index node, std::span<const std::uint8_t> destroyed) const;
 
  private:
   void find_neighbours();
+  [[nodiscard]] std::vector<std::vector<Index>> parts_at(
+      Index node, std::span<const std::uint8_t> destroyed) const;
   void split(Index node, std::span<const std::uint8_t> destroyed, fem::Change& change);
   [[nodiscard]] std::vector<std::vector<Index>> groups(
       Index node, std::span<const std::uint8_t> destroyed) const;
   [[nodiscard]] Index add_node(Index node, std::span<const Index> group, fem::Change& change);
 
   const Problem& problem_;
+  Index most_nodes_ = std::numeric_limits<Index>::max();
   std::vector<std::array<Index, 4>> corners_, behind_;  // per element
   std::vector<std::uint8_t> open_;                      // per element, a bit a face
   std::vector<std::vector<Index>> at_node_;             // elements

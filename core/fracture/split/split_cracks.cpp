@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fracture/split/split_cracks.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "fracture/crack_birth.hpp"
 #include "fracture/crack_path.hpp"
@@ -40,9 +42,12 @@ SplitCracks::SplitCracks(const Problem& problem)
       toughness_(problem),
       body_(problem),
       front_(board_, problem, body_),
+      lips_(problem, board_),
       loose_(problem),
       most_nodes_(most_nodes(problem)),
-      excluded_(problem.mesh().tets.size(), 0) {}
+      excluded_(problem.mesh().tets.size(), 0) {
+  body_.allow(most_nodes_);
+}
 
 /// Preset cracks of destroyed elements, or of the mesh's own faces, go on as splits from their
 /// tips.
@@ -78,6 +83,15 @@ FieldView SplitCracks::view(const FractureState& state) const {
   return view;
 }
 
+/// A crack that is still as it was preset has no lips of its own yet.
+FieldView::Lips SplitCracks::lips_at(const Crack& crack, std::size_t tip) const {
+  constexpr double kBehind = 2;  // in h
+  if (!splits_[static_cast<std::size_t>(crack.id)].grown) return FieldView::Lips::unknown;
+  const Vec2& place = crack.tips[tip].position;
+  return lips_.pressed_near(crack.id, place, kBehind * board_.h()) ? FieldView::Lips::pressed
+                                                                   : FieldView::Lips::free;
+}
+
 /// Where a tip is for the field: linear tetrahedra hold a split crack too stiffly at its end.
 Crack SplitCracks::measured(const Crack& crack, std::size_t tip) const {
   const SplitCrack& split = splits_[static_cast<std::size_t>(crack.id)];
@@ -87,11 +101,12 @@ Crack SplitCracks::measured(const Crack& crack, std::size_t tip) const {
 
 void SplitCracks::tips(const FractureState& state, std::vector<TipState>& tips,
                        std::vector<Finding>& findings) {
-  const FieldView field = view(state);
+  FieldView field = view(state);
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       tips.push_back(tip_state(board_, crack, tip));
       if (crack.tips[tip].ended) continue;
+      field.lips = lips_at(crack, tip);
       add_field_state(meter_, measured(crack, tip), tip, field, tips.back(), findings);
       add_toughness(crack, tip, field, tips.back());
     }
@@ -115,17 +130,20 @@ void SplitCracks::decide(const FractureState& state, Decision& decision) {
   decision.clear();
   driven_.clear();
   ran_through_ = false;
-  const FieldView field = view(state);
+  FieldView field = view(state);
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
+      field.lips = lips_at(crack, tip);
       const auto growth = field_growth(meter_, measured(crack, tip), tip, field, decision.findings);
       if (growth) driven_.push_back({crack.id, *growth});
     }
   }
   for (const Driven& driven : driven_) grow(driven, state, decision);
   if (decision.change.come.empty()) bear(state, decision);
-  if (ran_through_) tie_what_is_loose(state, decision);
+  // At finite deformation what is loose is frozen, in motion it moves on.
+  const bool ties = !problem_.finite() && !problem_.moves();
+  if (ran_through_ && ties) tie_what_is_loose(state, decision);
   decision.change.held = true;
   std::sort(decision.excluded.begin(), decision.excluded.end());
 }
@@ -142,6 +160,7 @@ void SplitCracks::tie_what_is_loose(const FractureState& state, Decision& decisi
     if (own == kNone || other == kNone || loose_.piece_of(own) == loose_.piece_of(other)) continue;
     const double size = std::cbrt(problem_.shape(own).volume);
     decision.change.ties.push_back({n, alpha * problem_.small_strain(own).young * size});
+    lips_.loosen(n);
   }
 }
 
@@ -172,6 +191,7 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   const SplitStep step =
       front_.advance(crack, split, tip, growth.direction, length, state.destroyed, parts);
   crack.tips[tip].ended = step.through;
+  if (step.spent) decision.findings.push_back({Finding::Kind::nodes_spent});
   if (!step.moved()) return;
   ran_through_ = ran_through_ || step.through;
   follow(step, decision);
@@ -228,6 +248,8 @@ void SplitCracks::bear(const FractureState& state, Decision& decision) {
     return problem_.destructible(a) || problem_.destructible(b);
   };
   const SplitStep step = front_.bear(crack, split, row->element, state.destroyed, parts);
+  if (step.spent) decision.findings.push_back({Finding::Kind::nodes_spent});
+  if (!step.moved() && step.spent) return;
   if (!step.moved()) {  // too little room for a surface: no other try
     excluded_[row->element] = 1;
     decision.excluded.push_back(row->element);
@@ -277,13 +299,25 @@ PressedNodes SplitCracks::pressed_nodes(const Press& press,
                                  destroyed);
 }
 
+/// Nodes of a face in the order in which its normal leaves its element.
+std::array<Index, 3> SplitCracks::outward(const Face& face) const {
+  std::array<Index, 3> nodes = body_.nodes(face);
+  const auto at = [&](Index n) -> const Vec3& {
+    return problem_.mesh().nodes[static_cast<std::size_t>(body_.in_mesh(n))];
+  };
+  const Index opposite = body_.corners(face.element)[static_cast<std::size_t>(face.opposite)];
+  const Vec3 normal = (at(nodes[1]) - at(nodes[0])).cross(at(nodes[2]) - at(nodes[0]));
+  if (normal.dot(at(opposite) - at(nodes[0])) > 0) std::swap(nodes[1], nodes[2]);
+  return nodes;
+}
+
 std::vector<CrackFace> SplitCracks::faces() const {
   std::vector<CrackFace> all;
   for (const Crack& crack : cracks_) {
     for (const Face& face : splits_[static_cast<std::size_t>(crack.id)].faces) {
       CrackFace both;
       both.crack = crack.id;
-      both.left = body_.nodes(face);
+      both.left = outward(face);
       // The right lip's nodes in the same order: those at the same places of the mesh.
       const auto right = body_.nodes(body_.other_side(face));
       for (std::size_t i = 0; i < 3; ++i) {

@@ -11,6 +11,7 @@
 #include "fracture/criterion.hpp"
 #include "fracture/field_sif/field_growth.hpp"
 #include "fracture/split/split_front.hpp"
+#include "fracture/split/split_lips.hpp"
 #include "fracture/toughness.hpp"
 
 namespace sunder::fracture {
@@ -25,6 +26,9 @@ class SplitCracks final : public FractureCriterion {
   [[nodiscard]] Decision preset() override;
   [[nodiscard]] PressedNodes pressed_nodes(const Press& press,
                                            std::span<const std::uint8_t> destroyed) const override;
+  [[nodiscard]] LipState look_at_lips(const FractureState& state) override {
+    return lips_.look(faces(), cracks_, state);
+  }
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }
   [[nodiscard]] std::vector<CrackFace> faces() const override;
   [[nodiscard]] std::span<const std::array<Index, 4>> corners() const override {
@@ -37,6 +41,7 @@ class SplitCracks final : public FractureCriterion {
     TipGrowth growth;
   };
   [[nodiscard]] FieldView view(const FractureState& state) const;
+  [[nodiscard]] FieldView::Lips lips_at(const Crack& crack, std::size_t tip) const;
   [[nodiscard]] Crack measured(const Crack& crack, std::size_t tip) const;
   void grow(const Driven& driven, const FractureState& state, Decision& decision);
   void bear(const FractureState& state, Decision& decision);
@@ -48,6 +53,7 @@ class SplitCracks final : public FractureCriterion {
   [[nodiscard]] Index ahead(const Crack& crack, std::size_t tip, const Vec2& direction,
                             std::span<const std::uint8_t> destroyed) const;
   void add_toughness(const Crack& crack, std::size_t tip, const FieldView& field, TipState& state);
+  [[nodiscard]] std::array<Index, 3> outward(const Face& face) const;
   void tie_what_is_loose(const FractureState& state, Decision& decision);
 
   const Problem& problem_;
@@ -56,6 +62,7 @@ class SplitCracks final : public FractureCriterion {
   Toughness toughness_;
   SplitBody body_;
   SplitFront front_;
+  SplitLips lips_;
   LooseSearch loose_;
   bool ran_through_ = false;  // a tip of the decision in work
   Index most_nodes_;

@@ -20,8 +20,9 @@ constexpr int kTurns = 12;          // of small groups; then their faces stay sh
 // Of the path's end, in h: faces that make the front; where there are none, what a sharp kink has
 // left behind.
 constexpr double kNear = 2.5, kLeftBehind = 5;
-constexpr double kBeyond = 0.3;  // of h: nodes of a face this far beyond the path's end are at it
-constexpr double kMoved = 0.05;  // of h: less is no progress
+constexpr double kBeyond = 0.3;   // of h: nodes of a face this far beyond the path's end are at it
+constexpr double kMoved = 0.05;   // of h: less is no progress
+constexpr double kOnPath = 1e-6;  // of h: a centroid no farther from the path lies on it
 
 double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 along = b - a;
@@ -49,6 +50,7 @@ struct SplitFront::Work {
   std::vector<Face> faces = {};               // to open, of the elements left of the path
   std::set<std::pair<Index, int>> kept = {};  // that stay shut, as the left element has them
   bool held = false;                          // some that would have to open do not part
+  bool spent = false;                         // more nodes would come than are allowed
   double area = 0;
   std::vector<Index> front = {};  // nodes of faces at which elements still hang together
 };
@@ -86,6 +88,18 @@ std::vector<Index> SplitFront::nodes_at(const Vec2& tip) const {
   return nodes;
 }
 
+/// +1 left of a path, -1 right of it. Whose centroid lies on it belongs to the side on which the
+/// board's middle lies, or, where the path points at that too, to the upper one: cracks that mirror
+/// each other take mirrored sides.
+int SplitFront::side_of(const Crack& crack, Index element) const {
+  const double on_path = kOnPath * board_.h();
+  const int side = path_side(crack, board_.centroid(element), on_path);
+  if (side != 0) return side;
+  const BoardPlane& plane = board_.plane();
+  const int middle = path_side(crack, (plane.outline_min + plane.outline_max) / 2, on_path);
+  return middle != 0 ? middle : upper_side(crack);
+}
+
 void SplitFront::label_band(Work& work) const {
   std::vector<Index> near;
   board_.elements_within((work.from + work.to) / 2,
@@ -95,9 +109,7 @@ void SplitFront::label_band(Work& work) const {
     if (work.destroyed[static_cast<std::size_t>(e)]) continue;
     if (distance(board_.centroid(e), work.from, work.to) > kBand * board_.h()) continue;
     const auto before = work.split.label.find(e);
-    int side = before != work.split.label.end() ? before->second
-                                                : path_side(work.crack, board_.centroid(e), 0);
-    if (side == 0) side = 1;
+    int side = before != work.split.label.end() ? before->second : side_of(work.crack, e);
     if (work.turned.contains(e)) side = -side;
     work.label[e] = side;
   }
@@ -223,6 +235,10 @@ bool SplitFront::open_along(Work& work) {
     if (!turn_small_groups(work, turn >= kTurns) || turn == 2 * kTurns) break;
   }
   if (work.faces.empty()) return false;
+  if (!body_.open(work.faces, work.destroyed, work.change)) {
+    work.spent = true;
+    return false;
+  }
   for (const Face& face : work.faces) {
     work.area += area_of(face);
     work.split.faces.push_back(face);
@@ -230,7 +246,6 @@ bool SplitFront::open_along(Work& work) {
       work.split.label[e] = static_cast<std::int8_t>(work.label.at(e));
     }
   }
-  body_.open(work.faces, work.destroyed, work.change);
   return true;
 }
 
@@ -277,6 +292,8 @@ SplitStep SplitFront::advance(Crack& crack, SplitCrack& split, std::size_t tip,
   const bool at_front = orientation(crack, tip) < 0;
   std::vector<Index>& front = split.front[tip];
   for (int piece = 0; piece < kPieces; ++piece) {
+    const auto path_here = crack.path;
+    const double length_here = crack.length;
     at.position = at_front ? crack.path.front() : crack.path.back();
     const Vec2 from = at.position;
     advance_tip(crack, tip, direction, length);
@@ -285,6 +302,12 @@ SplitStep SplitFront::advance(Crack& crack, SplitCrack& split, std::size_t tip,
     const bool opened = open_along(work);
     step.held = work.held;
     step.area += work.area;
+    if (work.spent) {
+      step.spent = true;
+      crack.path = path_here;
+      crack.length = length_here;
+      break;
+    }
     if (!opened) {
       if (step.moved() && outside(at.position)) break;
       continue;
@@ -302,7 +325,7 @@ SplitStep SplitFront::advance(Crack& crack, SplitCrack& split, std::size_t tip,
     crack.path = path;
     crack.length = length_before;
     at = before;
-    step.through = !step.held;
+    step.through = !step.held && !step.spent;
     return step;
   }
   split.grown = true;
@@ -342,6 +365,7 @@ SplitStep SplitFront::bear(Crack& crack, SplitCrack& split, Index element,
     static_cast<void>(open_along(work));
     step.area += work.area;
     step.held = work.held;
+    step.spent = work.spent;
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       split.front[tip] = front_of(crack, split, tip, destroyed);
     }

@@ -34,6 +34,7 @@ struct SplitStep {
   double area = 0;       ///< opened [mm^2]
   bool through = false;  ///< no front is left: run out, or met another crack
   bool held = false;     ///< tissue ahead that does not part; the path is as it was
+  bool spent = false;    ///< more nodes would have come than the body allows
   [[nodiscard]] bool moved() const { return !change.come.empty(); }
 };
 
@@ -59,6 +60,7 @@ class SplitFront {
 
  private:
   struct Work;
+  [[nodiscard]] int side_of(const Crack& crack, Index element) const;
   void label_band(Work& work) const;
   [[nodiscard]] bool within(const Face& face, const Work& work) const;
   void find_faces(Work& work) const;

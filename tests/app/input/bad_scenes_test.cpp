@@ -327,6 +327,7 @@ TEST(BadScenes, ValuesThatAreNotAllowed) {
            "crack = \"slit\"",
            F::unknown_key,
            {"fracture.crack is \"slit\"", "\"destroyed\" or \"split\""}},
+          {"alpha = 1e-6", "contact = 1", F::wrong_type, {"fracture.contact"}},
           {"steps = 4", "steps = 99999999999", F::out_of_range, {"time.steps is 99999999999"}},
           {"mesh = \"board.msh\"", "mesh = \"\"", F::out_of_range, {"bad.toml:2:8", "empty"}},
           {"kind = \"expansion\"",

@@ -41,6 +41,7 @@ TEST(SceneFiles, AllAreThere) {
                            "brain-notch",
                            "board",
                            "board-split",
+                           "board-falls",
                            "sheet"})
     EXPECT_TRUE(names.contains(name)) << name;
 }

@@ -99,8 +99,9 @@ TEST(SceneToml, EveryPresetIsAMaterial) {
 
 TEST(SceneToml, ReadsHowCracksSplit) {
   const Scene scene =
-      parse(with(good_scene(), "alpha = 1e-6", "crack = \"split\"\nmax_new_nodes = 77"));
+      parse(with(good_scene(), "alpha = 1e-6", "crack = \"split\"\ncontact = true\nmax_new_nodes = 77"));
   EXPECT_EQ(scene.fracture.crack, CrackWay::split);
+  EXPECT_TRUE(scene.fracture.contact);
   EXPECT_EQ(scene.fracture.max_new_nodes, 77);
 }
 
@@ -117,6 +118,7 @@ TEST(SceneToml, DefaultsAreTheContracts) {
   EXPECT_EQ(scene.fracture.max_events, 10000);
   EXPECT_EQ(scene.fracture.crack, CrackWay::destroyed);
   EXPECT_EQ(scene.fracture.max_new_nodes, 0);
+  EXPECT_FALSE(scene.fracture.contact);
   EXPECT_FALSE(scene.fracture.plane_normal.has_value());
   EXPECT_EQ(scene.solver.backend, "auto");
   EXPECT_EQ(scene.solver.device, kNone);

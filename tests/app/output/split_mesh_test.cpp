@@ -89,9 +89,32 @@ TEST(Openings, AreTheJumpsBetweenTheLips) {
 TEST(CrackArea, IsThatOfOneLipOnThePath) {
   Opened body;
   body.split.drawn = body.drawn();
+  body.split.area =
+      face_areas(body.split.drawn, body.split.faces, std::vector<Crack>{body.crack}, body.plane);
   EXPECT_NEAR(crack_area(body.split), 0.5, 1e-15);
   EXPECT_NEAR(crack_area(body.split, 0), 0.5, 1e-15);
   EXPECT_EQ(crack_area(body.split, 1), 0);
+}
+
+// Three faces in a row, the middle one folded back over half of the first: a length of 2, not 3.
+TEST(CrackArea, CountsWhatIsFoldedBackOnce) {
+  const Opened body;
+  // Strips of two triangles each from x to x, one high.
+  std::vector<Vec3> drawn;
+  std::vector<CrackFace> faces;
+  double from = 0;
+  for (const double to : {1.5, 1.0, 2.0}) {
+    const auto first = static_cast<Index>(drawn.size());
+    drawn.insert(drawn.end(), {{from, 0, 0}, {to, 0, 0}, {to, 0, 1}, {from, 0, 1}});
+    faces.push_back({0, {first, first + 1, first + 2}, {}});
+    faces.push_back({0, {first, first + 2, first + 3}, {}});
+    from = to;
+  }
+  SplitMesh split;
+  split.faces = faces;
+  split.area = face_areas(drawn, faces, std::vector<Crack>{body.crack}, body.plane);
+  EXPECT_NEAR(crack_area(split), 2, 1e-15);
+  EXPECT_NEAR(split.area[2], -0.25, 1e-15);
 }
 
 // Both tetrahedra show all of their faces, of which those that hung together are lips.

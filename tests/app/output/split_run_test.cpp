@@ -231,6 +231,7 @@ TEST(SplitRun, ANewRunTakesItsFilesAway) {
   const auto summary = read_json(folder / "out" / "summary.json");
   EXPECT_EQ(summary["crack"], "destroyed");
   EXPECT_TRUE(summary["crack_area"].is_null());
+  EXPECT_TRUE(summary["lip_overlap"].is_null());
   EXPECT_EQ(summary["new_nodes"], 0);
 }
 
@@ -240,7 +241,7 @@ TEST(SplitRun, NodesThatAreSpentLeaveTheTipsAtRest) {
                                    "--set", "fracture.max_new_nodes=5"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto summary = read_json(folder / "out" / "summary.json");
-  EXPECT_LT(summary["new_nodes"], torn().summary["new_nodes"]);
+  EXPECT_LE(summary["new_nodes"], 5);
   EXPECT_TRUE(mentions(summary["warnings"].dump(), "max_new_nodes")) << summary["warnings"].dump();
 }
 
@@ -270,15 +271,13 @@ TEST(SplitRun, WhatCannotFollowIsRefusedByName) {
       {{"--backend", "cpu", "--route", "condensed"}, "route condensed", "inverse or factor"},
       {{"--backend", "cpu", "--route", "cg"}, "route cg", "inverse or factor"},
       {{"--backend", "cpu", "--update", "eager"}, "update eager", "update deferred or auto"},
-      {{"--set", "material.upper.law=corotated"}, "fracture.crack = \"split\"", "law \"linear\""},
-      {{"--set", "dynamics.time_step=0.001", "--set", "material.upper.density=1e-9", "--set",
-        "material.lower.density=1e-9", "--set", "material.top-frame.density=1e-9", "--set",
-        "material.bottom-frame.density=1e-9"},
-       "fracture.crack = \"split\"",
-       "statics"},
+      {{"--set", "material.upper.law=corotated", "--route", "condensed"},
+       "route condensed",
+       "route factor or auto"},
   };
 #ifdef SUNDER_GPU
-  cases.push_back({{"--backend", "vulkan"}, "cracks that split", "backend cpu"});
+  cases.push_back(
+      {{"--backend", "vulkan", "--update", "eager"}, "update eager", "update deferred"});
 #endif
   for (const Refused& refused : cases) {
     const Outcome run = outcome(refused.how);
@@ -286,6 +285,11 @@ TEST(SplitRun, WhatCannotFollowIsRefusedByName) {
     EXPECT_TRUE(mentions(run.err, refused.what)) << run.err;
     EXPECT_TRUE(mentions(run.err, refused.instead)) << run.err;
   }
+  const Outcome moves =
+      outcome({"--set", "dynamics.time_step=0.001", "--set", "material.upper.density=1e-9", "--set",
+               "material.lower.density=1e-9", "--set", "material.top-frame.density=1e-9", "--set",
+               "material.bottom-frame.density=1e-9", "--set", "material.upper.law=corotated"});
+  EXPECT_EQ(moves.exit_code, 0) << moves.err;
   const Outcome model = outcome({"--set", "fracture.model=A"});
   EXPECT_EQ(model.exit_code, 3);
   EXPECT_TRUE(mentions(model.err, "fracture.crack = \"split\" needs model \"B\"")) << model.err;

@@ -66,11 +66,12 @@ TEST(Summary, DescribesTheBoard) {
 
 TEST(Summary, SaysHowFarTheBodyIsDeformed) {
   const Keys keys = keys_of(summary());
-  EXPECT_EQ(Keys(keys.end() - 9, keys.end()),
+  EXPECT_EQ(Keys(keys.end() - 10, keys.end()),
             (Keys{"largest", "volume_lost", "law", "stress_measure", "motion", "toughness", "crack",
-                  "crack_area", "new_nodes"}));
+                  "crack_area", "lip_overlap", "new_nodes"}));
   EXPECT_EQ(summary()["crack"], "destroyed");
   EXPECT_TRUE(summary()["crack_area"].is_null());
+  EXPECT_TRUE(summary()["lip_overlap"].is_null());
   EXPECT_EQ(summary()["new_nodes"], 0);
   EXPECT_EQ(summary()["law"], "linear");
   EXPECT_TRUE(summary()["stress_measure"].is_null());

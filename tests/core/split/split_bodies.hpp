@@ -31,12 +31,38 @@ inline Mesh shaken_board(const BoardShape& shape, std::mt19937& random, double b
   return mesh;
 }
 
+/// A mesh and its image behind the plane x[axis] = at; element e + count of the image is the image
+/// of element e, with its last two corners exchanged.
+inline Mesh with_image(const Mesh& half, int axis, double at) {
+  Mesh mesh = half;
+  std::vector<Index> image;
+  for (Index n = 0; n < half.node_count(); ++n) {
+    Vec3 x = half.nodes[static_cast<std::size_t>(n)];
+    if (std::abs(x[axis] - at) < 1e-12) {
+      image.push_back(n);
+      continue;
+    }
+    x[axis] = 2 * at - x[axis];
+    image.push_back(static_cast<Index>(mesh.nodes.size()));
+    mesh.nodes.push_back(x);
+  }
+  for (std::size_t e = 0; e < half.tets.size(); ++e) {
+    auto tet = half.tets[e];
+    for (Index& n : tet) n = image[static_cast<std::size_t>(n)];
+    std::swap(tet[2], tet[3]);
+    mesh.tets.push_back(tet);
+    mesh.volume_of.push_back(half.volume_of[e]);
+  }
+  return mesh;
+}
+
 inline Vec2 turned_by(const Vec2& d, double angle) {
   return {std::cos(angle) * d.x() - std::sin(angle) * d.y(),
           std::sin(angle) * d.x() + std::cos(angle) * d.y()};
 }
 
-/// An edge crack that grows from the middle of the side x = 0 of a board that begins at the origin.
+/// A crack that grows through a board: from the middle of the side x = 0 of one that begins at the
+/// origin, or from elsewhere.
 class EdgeSplit {
  public:
   explicit EdgeSplit(const Problem& problem)
@@ -49,27 +75,36 @@ class EdgeSplit {
   fracture::SplitStep begin(double angle) {
     double height = 0;
     for (const Vec3& x : problem_.mesh().nodes) height = std::max(height, x.y());
-    const Vec2 mouth = board.plane().project(Vec3(0, height / 2, 0));
-    const Vec2 d = board.plane().project(Vec3(std::cos(angle), std::sin(angle), 0));
+    return begin_at({0, height / 2}, angle);
+  }
+  /// An edge crack from a place on the outline.
+  fracture::SplitStep begin_at(const Vec2& place, double angle) {
+    const Vec2 mouth = in_plane(place), d = along(angle);
     crack.kind = CrackKind::edge;
     crack.mouth = mouth;
     crack.path = {mouth, mouth + 1.5 * board.h() * d};
     crack.length = 1.5 * board.h();
     crack.tips = {{crack.path.back(), d, false}};
-    const Vec2 at = mouth + 0.5 * board.h() * d;
-    Index nearest = 0;
-    for (Index e = 0; e < problem_.tet_count(); ++e) {
-      if ((board.centroid(e) - at).norm() < (board.centroid(nearest) - at).norm()) nearest = e;
-    }
-    return front.bear(crack, split, nearest, destroyed, parts);
+    return front.bear(crack, split, nearest(mouth + 0.5 * board.h() * d), destroyed, parts);
   }
-  fracture::SplitStep advance(const Vec2& d) {
-    return front.advance(crack, split, 0, d, board.h(), destroyed, parts);
+  /// An internal one with two tips.
+  fracture::SplitStep begin_inside(const Vec2& middle, double angle) {
+    const Vec2 at = in_plane(middle), d = along(angle);
+    crack.kind = CrackKind::internal;
+    crack.path = {at - 1.5 * board.h() * d, at + 1.5 * board.h() * d};
+    crack.length = 3 * board.h();
+    crack.tips = {{crack.path.front(), -d, false}, {crack.path.back(), d, false}};
+    return front.bear(crack, split, nearest(at), destroyed, parts);
   }
-  [[nodiscard]] Vec3 tip() const { return board.plane().lift(crack.tips[0].position); }
+  fracture::SplitStep advance(const Vec2& d, std::size_t at = 0) {
+    return front.advance(crack, split, at, d, board.h(), destroyed, parts);
+  }
+  [[nodiscard]] Vec3 tip(std::size_t at = 0) const {
+    return board.plane().lift(crack.tips[at].position);
+  }
   /// Turned against the last step.
-  fracture::SplitStep advance(double angle) {
-    return advance(turned_by(crack.tips[0].direction, angle));
+  fracture::SplitStep advance(double angle, std::size_t at = 0) {
+    return advance(turned_by(crack.tips[at].direction, angle), at);
   }
 
   /// Sizes of the groups of elements that hang together by faces that are not open.
@@ -94,6 +129,21 @@ class EdgeSplit {
   }
   [[nodiscard]] int pieces() const { return static_cast<int>(piece_sizes().size()); }
 
+  /// Faces that are open, by both lips.
+  [[nodiscard]] std::vector<CrackFace> faces() const {
+    std::vector<CrackFace> faces;
+    for (const fracture::Face& face : split.faces) {
+      CrackFace both{crack.id, body.nodes(face), {}};
+      const auto right = body.nodes(body.other_side(face));
+      for (std::size_t i = 0; i < 3; ++i) {
+        both.right[i] = *std::ranges::find_if(
+            right, [&](Index n) { return body.in_mesh(n) == body.in_mesh(both.left[i]); });
+      }
+      faces.push_back(both);
+    }
+    return faces;
+  }
+
   /// The mesh as it is now, and where its new nodes lie.
   [[nodiscard]] Mesh mesh() const {
     Mesh mesh = problem_.mesh();
@@ -105,6 +155,20 @@ class EdgeSplit {
   }
 
  private:
+  [[nodiscard]] Vec2 in_plane(const Vec2& place) const {
+    return board.plane().project(Vec3(place.x(), place.y(), 0));
+  }
+  [[nodiscard]] Vec2 along(double angle) const {
+    return board.plane().project(Vec3(std::cos(angle), std::sin(angle), 0));
+  }
+  [[nodiscard]] Index nearest(const Vec2& at) const {
+    Index nearest = 0;
+    for (Index e = 0; e < problem_.tet_count(); ++e) {
+      if ((board.centroid(e) - at).norm() < (board.centroid(nearest) - at).norm()) nearest = e;
+    }
+    return nearest;
+  }
+
   const Problem& problem_;
 
  public:

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // K of split cracks against published solutions, in plane strain (u_z = 0 on both faces).
 #include "core/field_sif/published.hpp"
-#include "cpu_reference/cpu_reference.hpp"
-#include "fracture/field_sif/field_intensity.hpp"
-#include "fracture/split/crack_tip_offset.hpp"
-#include "split_bodies.hpp"
-#include "sunder/simulation.hpp"
-#include "support/loads.hpp"
+#include "measured_split.hpp"
 
 namespace sunder {
 namespace {
@@ -22,58 +17,32 @@ constexpr double kWidth = 40, kHeight = 100;
 Scene strip_scene(const Strip& of) {
   std::mt19937 random(11);
   const double depth = static_cast<double>(of.layers);
-  Scene scene;
-  scene.mesh =
-      test::shaken_board({kAcross, kHigh, of.layers, kWidth, kHeight, depth}, random, of.shaken);
-  scene.materials["board"] = {1.0, of.poisson, 1e9};
-  scene.fracture.model = FractureModel::b;
-  scene.fracture.crack = CrackWay::split;
-  scene.fracture.alpha = 1e-9;
-  scene.solver.route = Route::factor;
-  const double far = 1e9;
-  for (double z : {0.0, depth}) {
-    scene.supports.push_back({Box{Vec3(-far, -far, z - 1e-9), Vec3(far, far, z + 1e-9)}, Axes{4}});
-  }
+  Scene scene = test::plane_strain_plate(
+      test::shaken_board({kAcross, kHigh, of.layers, kWidth, kHeight, depth}, random, of.shaken),
+      of.poisson);
   // Balanced loads leave these without a reaction.
   const auto at = [&](double y) {  // shaken nodes move along the side
-    return Box{Vec3(kWidth - 1e-9, y - 0.3, -far), Vec3(far, y + 0.3, far)};
+    return Box{Vec3(kWidth - 1e-9, y - 0.3, -test::kFar), Vec3(test::kFar, y + 0.3, test::kFar)};
   };
   scene.supports.push_back({at(kHeight / 2), Axes{3}});
   scene.supports.push_back({at(kHeight), Axes{1}});
   return scene;
 }
 
-/// Stress 1 MPa on both ends.
-std::vector<double> tension(const Mesh& mesh) {
-  std::vector<double> force(3 * mesh.nodes.size(), 0.0);
-  for (const FreeFace& face : free_faces(mesh)) {
-    for (const double end : {0.0, kHeight}) {
-      const auto on = [&](Index n) { return std::abs(mesh.nodes[n].y() - end) < 1e-9; };
-      if (!std::all_of(face.nodes.begin(), face.nodes.end(), on)) continue;
-      const Vec3 a = mesh.nodes[face.nodes[0]], b = mesh.nodes[face.nodes[1]],
-                 c = mesh.nodes[face.nodes[2]];
-      const double part = (b - a).cross(c - a).norm() / 6 * (end > 0 ? 1 : -1);
-      for (Index n : face.nodes) force[3 * static_cast<std::size_t>(n) + 1] += part;
-    }
-  }
-  return force;
-}
-
 double published(double a) { return test::tada_edge(a / kWidth) * std::sqrt(EIGEN_PI * a); }
 
-/// An edge crack in tension, split through the mesh step by step.
+/// An edge crack in tension, 1 MPa on both ends, split through the mesh step by step.
 class Tension {
  public:
-  explicit Tension(const Strip& of)
-      : problem_(std::make_shared<const Problem>(strip_scene(of))),
-        backend_(cpu_reference::create(problem_, needs_of(*problem_))),
-        crack_(*problem_),
-        meter_(*problem_, crack_.board),
-        force_(tension(problem_->mesh())) {
-    follow(crack_.begin(0));
+  explicit Tension(const Strip& of) : plate_(strip_scene(of)) {
+    plate_.load(test::traction_of(
+        plate_.problem().mesh(),
+        [](const Vec3& x) { return x.y() < 1e-9 || x.y() > kHeight - 1e-9; },
+        [](const Vec3&) { return Mat3(Vec3(0, 1, 0).asDiagonal()); }));
+    plate_.follow(plate_.crack().begin(0));
   }
   void grow_to(double length) {
-    while (crack_.tip().x() < length) follow(crack_.advance(0));
+    while (plate_.crack().tip().x() < length) plate_.follow(plate_.crack().advance(0));
   }
   /// K where the crack ends for its field, how long it is there, and half the work of the load.
   struct Found {
@@ -82,35 +51,12 @@ class Tension {
     double energy = 0;
   };
   [[nodiscard]] Found measure() {
-    backend_->set_load(test::load_of(*problem_, force_, {}));
-    backend_->solve();
-    fracture::FieldView view{crack_.destroyed,
-                             [&](std::span<const Index> nodes, std::span<Vec3> u) {
-                               backend_->read_displacement(nodes, u);
-                             },
-                             {}};
-    view.corners = crack_.body.corners();
-    const Crack shorter =
-        fracture::as_its_field_shows(crack_.crack, 0, crack_.board, problem_->small_strain(0));
-    std::vector<double> u(force_.size());
-    backend_->read_displacement(u);
-    double work = 0;
-    for (std::size_t i = 0; i < u.size(); ++i) work += force_[i] * u[i];
-    return {crack_.board.plane().lift(shorter.tips[0].position).x(),
-            meter_.at(shorter, 0, view).factors, work / 2};
+    const auto found = plate_.measure();
+    return {found.tip.x(), found.k, plate_.energy()};
   }
 
  private:
-  void follow(const fracture::SplitStep& step) {
-    ASSERT_TRUE(step.moved());
-    backend_->change(step.change);
-  }
-
-  std::shared_ptr<const Problem> problem_;
-  std::unique_ptr<Backend> backend_;
-  test::EdgeSplit crack_;
-  fracture::FieldIntensityMeter meter_;
-  std::vector<double> force_;
+  test::MeasuredSplit plate_;
 };
 
 class SplitIntensity : public ::testing::TestWithParam<Strip> {};

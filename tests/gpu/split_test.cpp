@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cracks that split on the device against the CPU: by the linear law and by others, at rest and in
+// motion, and where the device is lost under way.
+#include <gtest/gtest.h>
+
+#include "gpu_body.hpp"
+#include "support/notch_board.hpp"
+
+namespace sunder::test {
+namespace {
+
+struct Torn {
+  const char* name;
+  MaterialLaw law;
+  bool moves;
+  Route route;
+  Precision precision = Precision::fp64;
+  int growths = 6;
+};
+
+constexpr double kTight = 1e-10;
+
+Scene scene_of(const Torn& of) {
+  Scene scene = notch_board(FractureModel::b);
+  scene.fracture.crack = CrackWay::split;
+  scene.fracture.sif = SifSource::field;
+  scene.fracture.alpha = 1e-12;  // the notch's elements leave as good as nothing on both
+  scene.fracture.max_events = 2;
+  scene.instruments[0].ramp = Ramp{0, 0.6};
+  scene.solver.tolerance = kTight;
+  for (auto& [name, material] : scene.materials) {
+    material.law = of.law;
+    material.density = 1e-9;
+    if (of.law != MaterialLaw::linear) material.toughness = 0.5;
+  }
+  if (!of.moves) return scene;
+  scene.dynamics = Dynamics{.time_step = 2e-3, .mass_damping = 50};
+  scene.instruments[0].ramp = Ramp{0, 0.3};
+  return scene;
+}
+
+struct Course {
+  std::vector<DestroyedElement> rows;
+  std::vector<double> displacement;
+  std::vector<Voigt> stress;
+  std::vector<std::uint8_t> out;
+  Mesh mesh;
+  BackendInfo info;
+};
+
+/// Until the crack has grown some times.
+Course run(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backend> backend,
+           int growths = 6) {
+  Simulation simulation(problem, std::move(backend));
+  const auto grown = [&] {
+    return std::ranges::count_if(simulation.destroyed(),
+                                 [](const DestroyedElement& row) { return row.lives; });
+  };
+  while (!simulation.done() && grown() < growths) simulation.step();
+  EXPECT_GE(grown(), growths);
+  Course of;
+  of.rows = simulation.destroyed();
+  for (const Vec3& u : simulation.displacement()) {
+    of.displacement.insert(of.displacement.end(), u.begin(), u.end());
+  }
+  of.stress = simulation.stress();
+  of.out.assign(simulation.backend().destroyed().begin(), simulation.backend().destroyed().end());
+  of.mesh = simulation.mesh();
+  of.info = simulation.backend().info();
+  return of;
+}
+
+Course run_on_cpu(Scene scene, int growths = 6) {
+  scene.solver = {.backend = "cpu", .tolerance = kTight};
+  const auto problem = std::make_shared<const Problem>(std::move(scene));
+  return run(problem, cpu_reference::create(problem, needs_of(*problem)), growths);
+}
+
+void expect_alike(const Course& found, const Course& expected, double allowed) {
+  ASSERT_EQ(found.rows.size(), expected.rows.size());
+  for (std::size_t i = 0; i < found.rows.size(); ++i) {
+    const DestroyedElement &a = found.rows[i], &b = expected.rows[i];
+    EXPECT_EQ(a.step, b.step) << i;
+    EXPECT_EQ(a.element, b.element) << i;
+    EXPECT_EQ(a.cause, b.cause) << i;
+    EXPECT_EQ(a.crack, b.crack) << i;
+  }
+  ASSERT_EQ(found.mesh.tets, expected.mesh.tets);
+  EXPECT_LE(displacement_error(found.mesh, found.out, found.displacement, expected.displacement),
+            allowed);
+  EXPECT_LE(stress_error(found.out, found.stress, expected.stress), allowed);
+}
+
+class SplitCracksOnTheDevice : public WithVulkan<testing::TestWithParam<Torn>> {};
+
+TEST_P(SplitCracksOnTheDevice, GrowAsOnTheHost) {
+  const Torn& of = GetParam();
+  const Scene scene = scene_of(of);
+  WatchedBackend watched(scene,
+                         {.precision = of.precision, .tolerance = kTight, .route = of.route});
+  const Course found = run(watched.problem, watched.create(), of.growths);
+  EXPECT_EQ(found.info.backend, "vulkan");
+  EXPECT_EQ(found.info.why.find("took over"), std::string::npos) << found.info.why;
+  // fp32 is that of a base alone: its states are the same in fp64.
+  expect_alike(found, run_on_cpu(scene, of.growths), 1e-8);
+  if (of.route != Route::automatic) return;
+  const Course again = run(watched.problem, watched.create(), of.growths);
+  EXPECT_EQ(again.displacement, found.displacement);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SplitCracksOnTheDevice,
+    testing::Values(Torn{"linear", MaterialLaw::linear, false, Route::automatic},
+                    Torn{"linear_fp32", MaterialLaw::linear, false, Route::inverse,
+                         Precision::fp32},
+                    Torn{"linear_by_factor", MaterialLaw::linear, false, Route::factor},
+                    Torn{"corotated", MaterialLaw::corotated, false, Route::automatic},
+                    Torn{"neo_hookean_by_factor", MaterialLaw::neo_hookean, false, Route::factor},
+                    Torn{"motion_linear", MaterialLaw::linear, true, Route::automatic},
+                    Torn{"motion_neo_hookean", MaterialLaw::neo_hookean, true, Route::automatic},
+                    Torn{"motion_corotated_by_cg", MaterialLaw::corotated, true, Route::cg,
+                         Precision::fp64, 1}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+class SplitDeviceLost : public WithVulkan<testing::TestWithParam<bool>> {};
+
+TEST_P(SplitDeviceLost, TheHostGoesOnFromTheLastState) {
+  const Scene scene =
+      scene_of({"", MaterialLaw::corotated, GetParam(), Route::automatic, Precision::fp64});
+  const Course expected = run_on_cpu(scene);
+  WatchedBackend watched(scene, {.tolerance = kTight, .route = Route::automatic});
+  int losses = 0;
+  for (const int submits : {150, 350}) {
+    watched.options.probe.submits_until_lost = submits;
+    const Course found = run(watched.problem, watched.create());
+    expect_alike(found, expected, 1e-8);
+    losses += found.info.why.find("took over") != std::string::npos;
+  }
+  EXPECT_GE(losses, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SplitDeviceLost, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "moving" : "resting"; });
+
+}  // namespace
+}  // namespace sunder::test
