@@ -27,12 +27,12 @@ Progress::Progress(int steps, bool shown, std::string counts, std::string unit)
 Progress::~Progress() { finish(); }
 
 std::string Progress::line(int steps_done, int broken, double seconds) const {
-  std::string text = unit_ + " " + std::to_string(steps_done) + "/" + std::to_string(steps_) + ", " +
-                     std::to_string(broken) + " " + counts_;
+  std::string text = unit_ + " " + std::to_string(steps_done) + "/" + std::to_string(steps_) +
+                     ", " + std::to_string(broken) + " " + counts_;
   if (steps_done == 0 || !(seconds > 0)) return text;
   const double rate = steps_done / seconds;
-  return text + ", " + rounded(rate, 3) + " " + unit_ + "s/s, " + rounded((steps_ - steps_done) / rate, 2) +
-         " s left";
+  return text + ", " + rounded(rate, 3) + " " + unit_ + "s/s, " +
+         rounded((steps_ - steps_done) / rate, 2) + " s left";
 }
 
 void Progress::update(int steps_done, int broken) {

@@ -88,6 +88,8 @@ class Scenes(unittest.TestCase):
     def test_values(self):
         self.refused("fracture.model is 'C'; allowed are \"none\", \"A\"", {"fracture.model": "C"})
         self.refused("solver.prepare is 1", {"solver.prepare": 1})
+        self.refused("fracture.contact is 1", {"fracture.contact": 1})
+        self.refused("contact", {"fracture.contact": True})  # without cracks that split
         self.refused("steps has the type", {"time.steps": 1.5})
         self.refused("solver.tolerance has nan", {"solver.tolerance": float("nan")})
         self.refused("force of instrument None has the shape (2,)", {"instrument.0.force": [1, 2]})

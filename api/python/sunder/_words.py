@@ -14,13 +14,14 @@ KEYS = {
     "crack": ("volume", "elements", "mouth", "tip", "tips"),
     "destroy": ("step", "volume", "elements", "box"),
     "fracture": ("model", "alpha", "yield_measure", "sigma0", "crack_length", "sif", "crack",
-                 "max_events", "plane_normal", "birth", "max_new_nodes", "averaging", "stress"),
+                 "max_events", "plane_normal", "birth", "max_new_nodes", "averaging", "stress", "contact"),
     "solver": ("backend", "route", "update", "precision", "tolerance", "device", "prepare"),
     "time": ("steps",),
     "output": ("fields",),
     "load": ("gravity",),
     "dynamics": ("time_step", "max_iterations", "felt_inertia", "damping"),
 }
+FLAGS = {("fracture", "contact")}  # members of C that are 0 or 1
 WORDS = {
     ("material", "law"): ("linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"),
     ("instrument", "kind"): ("expansion", "pressure"),
@@ -71,6 +72,8 @@ def put(struct, table, key, value):
         return
     if (table, key) in WORDS:
         setattr(struct, key, place(table, key, value))
+    elif (table, key) in FLAGS:
+        setattr(struct, key, int(flag(table, key, value)))
     elif key == "plane_normal":
         struct.plane_normal[:] = _arrays.reals(value, full(table, key), (3,))
     elif isinstance(getattr(struct, key), float):
