@@ -53,7 +53,7 @@ Scene gripped() {
 }
 
 Scene moving() {
-  Scene scene = torn(3, 0.1, 2);
+  Scene scene = strip(0.1, 2, 20);
   scene.materials["board"].density = 1e-9;
   scene.dynamics = Dynamics{.time_step = 0.002};
   scene.materials["board"].law = MaterialLaw::corotated;
