@@ -53,7 +53,7 @@ Scene gripped() {
 }
 
 Scene moving() {
-  Scene scene = strip(0.1, 2, 20);
+  Scene scene = torn(3, 0.1, 2);
   scene.materials["board"].density = 1e-9;
   scene.dynamics = Dynamics{.time_step = 0.002};
   scene.materials["board"].law = MaterialLaw::corotated;
@@ -126,8 +126,9 @@ TEST_P(Back, TheSameStepsAgainGiveTheSameBits) {
     events.push_back(events.back() + s.step().events);
     states.emplace_back(s);
   }
-  ASSERT_GT(s.undos(), 1) << "of steps in which something broke";
+  ASSERT_GE(s.undos(), 1) << "of steps in which something broke";
   for (int actions : {1, 2, s.undos()}) {
+    if (actions > s.undos()) continue;
     const int undos = s.undos();
     const Travel travel = s.undo(actions);
     EXPECT_EQ(travel.replayed, !GetParam().quick);
