@@ -269,7 +269,7 @@ class CpuBackend final : public Backend {
     fields_.restore(state.fields, damaged_body().changed(events, damaged_body().events()));
     frame_.restore(state.frame);
     solver_.restore(*state.solver);
-    if (instruments_ && route_->deferred()) publish_instruments();
+    if (instruments_ && !state.frame.load.displacements.empty()) publish_instruments();
     return true;
   }
 

@@ -104,7 +104,9 @@ class DeferredRoute final : public InverseRoute {
     return state;
   }
   bool go_back(const solver::RouteState& state, std::size_t events) override {
-    update_->go_back(dynamic_cast<const State&>(state).update, events);
+    update_->stop(events);
+    if (stiffness_) stiffness_->go_back(events);
+    update_->go_back(dynamic_cast<const State&>(state).update);
     return true;
   }
 

@@ -37,7 +37,7 @@ class SimulationObject final : public Object {
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
   [[nodiscard]] const Problem& problem() const { return simulation_->problem(); }
-  [[nodiscard]] bool solved() const { return solved_; }
+  [[nodiscard]] bool solved() const { return simulation_->steps_done() > 0; }
   [[nodiscard]] std::vector<std::string> warnings() const;
 
   std::vector<TipState> tips;  ///< as last measured
@@ -66,7 +66,6 @@ class SimulationObject final : public Object {
   std::size_t warning_count_ = 0;
   int steps_;
   int events_ = 0;  // of this step
-  bool solved_ = false;
   std::atomic<bool> cancelled_{false};
 };
 

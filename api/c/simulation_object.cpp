@@ -55,7 +55,6 @@ StepReport SimulationObject::take(Step&& step) {
     log(SUNDER_LOG_ERROR, error.what());
     throw;
   }
-  solved_ = true;
   if (simulation_->interrupted()) cancelled_.store(false);
   log_warnings();
   return report;

@@ -714,7 +714,8 @@ SUNDER_API sunder_status sunder_simulation_warning_at(sunder_simulation simulati
 SUNDER_API sunder_status sunder_simulation_step_within(sunder_simulation simulation, double max_ms,
                                                        sunder_step* step);
 /// Before the first step: does once, under no load, what a step does first, so that the first one
-/// costs what the second does. No result changes. Later on, and in motion: nothing.
+/// costs what the second does. No result changes. Nothing later on, in motion and by the laws of
+/// finite deformation.
 SUNDER_API sunder_status sunder_simulation_warm_up(sunder_simulation simulation);
 
 /// Takes live elements out between two steps, by one event with SUNDER_CAUSE_SCRIPT. In statics,

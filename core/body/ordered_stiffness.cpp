@@ -60,15 +60,27 @@ void OrderedStiffness::follow(const DamagedBody& body) {
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (Index e : around) add(e, body.scale()[e]);
   add_anchors();
-  for (Index i : entries_) changed_[i] = 0;
+  for (Index i : entries_) changed_[i] = kEver;
   entries_.clear();
+}
+
+/// Back to the intact one, whose sums are in another order.
+void OrderedStiffness::go_back(std::size_t events) {
+  if (events_ <= events) return;
+  for (const auto& [entry, value] : intact_) {
+    matrix_.valuePtr()[entry] = value;
+    changed_[entry] = 0;
+  }
+  intact_.clear();
+  events_ = 0;
 }
 
 void OrderedStiffness::clear(Index element) {
   for_pairs(problem_, element, [&](int, int, Index dof, Index other) {
     const Index i = entry(dof, other);
-    if (changed_[i]) return;
-    changed_[i] = 1;
+    if (changed_[i] & kNow) return;
+    if (!changed_[i]) intact_.emplace_back(i, matrix_.valuePtr()[i]);
+    changed_[i] |= kNow;
     entries_.push_back(i);
     matrix_.valuePtr()[i] = 0;
   });
@@ -79,14 +91,14 @@ void OrderedStiffness::add(Index element, double scale) {
   k *= scale;
   for_pairs(problem_, element, [&](int i, int j, Index dof, Index other) {
     const Index at = entry(dof, other);
-    if (changed_[at]) matrix_.valuePtr()[at] += k(i, j);
+    if (changed_[at] & kNow) matrix_.valuePtr()[at] += k(i, j);
   });
 }
 
 void OrderedStiffness::add_anchors() {
   for (Index dof : problem_.anchored_dofs()) {
     const Index i = entry(dof, dof);
-    if (i != kNone && changed_[i]) matrix_.valuePtr()[i] += problem_.anchor_stiffness();
+    if (i != kNone && (changed_[i] & kNow)) matrix_.valuePtr()[i] += problem_.anchor_stiffness();
   }
 }
 

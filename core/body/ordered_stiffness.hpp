@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "body/damaged_body.hpp"
@@ -25,6 +26,9 @@ class OrderedStiffness {
   /// Takes up the body's events since the last time; the body has no other matter than the mesh.
   /// Entries that change are summed anew: there is no difference between large numbers.
   void follow(const DamagedBody& body);
+  /// The body goes back to the first `events` events: later matrices are bit by bit those of a body
+  /// that had no others.
+  void go_back(std::size_t events);
   /// Throws as linear_algebra::Factor's constructors do.
   [[nodiscard]] linear_algebra::Factor factor(const linear_algebra::FactorWork& work = {}) const;
   /// Lower triangle, rows in the order of the factor.
@@ -42,8 +46,10 @@ class OrderedStiffness {
   NodeElements around_;
   linear_algebra::SparseMatrix matrix_;  // rows of a column ascending
   std::size_t events_ = 0;               // of the body that matrix_ holds
-  std::vector<std::uint8_t> changed_;    // per entry of matrix_; all zero between calls
-  std::vector<Index> entries_;           // that have changed
+  static constexpr std::uint8_t kNow = 1, kEver = 2;
+  std::vector<std::uint8_t> changed_;             // per entry of matrix_; kNow: in the call at work
+  std::vector<Index> entries_;                    // that have changed in it
+  std::vector<std::pair<Index, double>> intact_;  // entries that have ever changed, as they were
 };
 
 }  // namespace sunder::fem

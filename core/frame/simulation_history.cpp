@@ -249,8 +249,10 @@ Travel Simulation::redo(int actions) {
   }
   Travel travel;
   const int before = now_.next_event;
-  for (int left = actions; left > 0;) {
+  // With what came after it, up to the next in which something broke: undo() has taken it too.
+  for (int left = actions; !h.undone.empty();) {
     const auto action = h.undone.front();
+    if (action->broke && left == 0) break;
     perform(action);
     h.undone.erase(h.undone.begin());
     if (!action->broke) continue;

@@ -210,7 +210,7 @@ void Simulation::follow_removal() {
 }
 
 void Simulation::warm_up() {
-  if (now_.next_step > 0 || now_.solved || problem_->moves()) return;
+  if (now_.next_step > 0 || now_.solved || problem_->moves() || problem_->finite()) return;
   const auto before = backend_->save();
   Load none;
   none.displacements.assign(problem_->gripped_dofs().size(), 0.0);

@@ -33,7 +33,7 @@ struct Based {
   /// The body as the base has it, where nodes had parted by then: `deferred` is in its terms.
   std::shared_ptr<fem::PartedBody> parted;
   std::shared_ptr<const linear_algebra::Factor>
-      factor;  // what the base reads; empty: it is the intact one
+      factor;                          // what the base reads; empty: it is the intact one
   std::shared_ptr<Deferred> deferred;  // states to go back to hold it as well
 };
 

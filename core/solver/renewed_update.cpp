@@ -50,8 +50,11 @@ RenewedUpdate::State RenewedUpdate::state() const {
   return state;
 }
 
-void RenewedUpdate::go_back(const State& state, std::size_t events) {
+void RenewedUpdate::stop(std::size_t events) {
   if (coming_) coming_->go_back(events);
+}
+
+void RenewedUpdate::go_back(const State& state) {
   saved_ms_ = saved_ms();
   based_ = state.based;
   saved_ms_ -= based_.deferred->saved_ms();

@@ -52,8 +52,10 @@ class RenewedUpdate {
     Load loaded;
   };
   [[nodiscard]] State state() const;
-  /// The body still records later events than the first `events`.
-  void go_back(const State& state, std::size_t events);
+  /// The body still records later events than the first `events`; what its thread uses may be
+  /// changed between both.
+  void stop(std::size_t events);
+  void go_back(const State& state);
 
   [[nodiscard]] Deferred& deferred() { return *based_.deferred; }
   [[nodiscard]] const Deferred& deferred() const { return *based_.deferred; }

@@ -100,8 +100,8 @@ class Simulation {
   /// Takes back the last `actions` steps and removals in which something broke, with all steps
   /// since. Throws UsageError, and nothing changes, where there are fewer.
   Travel undo(int actions = 1);
-  /// Does again what undo() took back. Throws UsageError where there is less, as after any step or
-  /// action since.
+  /// Does again what undo() took back, quiet steps that came after it included. Throws UsageError
+  /// where there is less, as after any step or action since.
   Travel redo(int actions = 1);
   /// The history as bytes: what was done, with where steps ended; not the body. Throws UsageError
   /// without keep_history().
@@ -131,7 +131,8 @@ class Simulation {
   /// that is not finite and above 0.
   StepReport step_within(double max_ms);
   /// Before the first step: does once what a step does first, under no load, so that the first step
-  /// costs what the second does. No later result changes by a bit. Nothing in motion, or later on.
+  /// costs what the second does. No later result changes by a bit. Nothing in motion, by the laws
+  /// of finite deformation, which go on from where they are, or later on.
   void warm_up();
 
   /// Within a step, for its observers: what its report would say by now, the device's times and

@@ -34,9 +34,8 @@ struct initialised {
         SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FRACTURE_OPTIONS_INIT,          \
         SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT, SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT, \
         SUNDER_BODY_INIT, SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_TIP_INIT,                 \
-        SUNDER_SURFACE_INIT,                                                                     \
-        SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT, SUNDER_VULKAN_DISPLAY_INIT,          \
-        SUNDER_VULKAN_SIGNALS_INIT                                                               \
+        SUNDER_SURFACE_INIT, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT,                 \
+        SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT                                   \
   }
 
 #endif

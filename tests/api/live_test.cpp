@@ -108,6 +108,8 @@ TEST_F(CLive, RecordingsAreToldToAnother) {
 
 TEST_F(CLive, RemovesAndCuts) {
   const std::int32_t elements[] = {0, 3};
+  const double gentle[3] = {0, -0.1, 0};
+  ASSERT_OK(sunder_simulation_drive(simulation, 0, gentle));
   ASSERT_OK(sunder_simulation_step(simulation, nullptr));
   ASSERT_OK(sunder_simulation_remove(simulation, elements, 2));
   Read read(simulation);

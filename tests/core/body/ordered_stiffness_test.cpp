@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include "body/stiffness_factor.hpp"
 
@@ -51,6 +52,34 @@ TEST(OrderedStiffness, FollowsDamageAsIfAssembledAnew) {
   EXPECT_EQ(kept.entries(), first.entries());
   const Eigen::VectorXd x = fresh.solve(f);
   EXPECT_LE((kept.solve(f) - x).norm(), 1e-6 * x.norm());  // 1/alpha where nodes hang loose
+}
+
+TEST(OrderedStiffness, GoesBackToTheSameBits) {
+  DamagedBody body(std::make_shared<const Problem>(gripped_board()));
+  const Problem& problem = body.problem();
+  linear_algebra::SparseMatrix intact;
+  const linear_algebra::Factor first = factor_stiffness(problem, {}, {.ordered = &intact});
+  OrderedStiffness there(problem, first.cholesky().shared_supernodes(), intact), back = there;
+  const auto sequence = test::crack_sequence(problem, 60, 8);
+  for (std::size_t i = 0; i < 20; ++i) body.destroy({&sequence[i], 1});
+  there.follow(body);
+  for (std::size_t i = 20; i < 60; ++i) body.destroy({&sequence[i], 1});
+  back.follow(body);
+  back.go_back(20);
+  body.take_back(20);
+  EXPECT_EQ(body.events(), 20U);
+  EXPECT_EQ(std::ranges::count(body.destroyed(), 1), 20);
+  back.follow(body);
+  const auto same = [&] {
+    const auto size = there.matrix().nonZeros();
+    return std::equal(there.matrix().valuePtr(), there.matrix().valuePtr() + size,
+                      back.matrix().valuePtr());
+  };
+  EXPECT_TRUE(same());
+  body.destroy({&sequence[50], 1});  // and goes on otherwise
+  there.follow(body);
+  back.follow(body);
+  EXPECT_TRUE(same());
 }
 
 TEST(OrderedStiffness, GivesTheSameBitsInOneStepAndInMany) {

@@ -126,8 +126,9 @@ TEST_P(Back, TheSameStepsAgainGiveTheSameBits) {
     events.push_back(events.back() + s.step().events);
     states.emplace_back(s);
   }
-  ASSERT_GT(s.undos(), 1) << "of steps in which something broke";
+  ASSERT_GE(s.undos(), 1) << "of steps in which something broke";
   for (int actions : {1, 2, s.undos()}) {
+    if (actions > s.undos()) continue;
     const int undos = s.undos();
     const Travel travel = s.undo(actions);
     EXPECT_EQ(travel.replayed, !GetParam().quick);
@@ -267,10 +268,15 @@ TEST(History, ForcesOfGripsAreThoseOfTheStateThatItIsIn) {
     const auto forces = s.backend().instrument_forces();
     ASSERT_TRUE(forces);
     std::vector<double> d(static_cast<std::size_t>(forces->size()), 0.1), before(d), after(d);
-    while (s.undos() == 0) {
-      ASSERT_TRUE(s.steps_done() == 0 || forces->forces(d, before));
-      s.step();
-    }
+    s.drive(0, Vec3(0, -0.2, 0));
+    s.step();
+    ASSERT_EQ(s.undos(), 0) << "gentle";
+    ASSERT_TRUE(forces->forces(d, before));
+    s.drive(0, Vec3(0, -2, 0));
+    s.step();
+    ASSERT_EQ(s.undos(), 1);
+    ASSERT_TRUE(forces->forces(d, after));
+    EXPECT_NE(before, after);
     s.undo();
     ASSERT_TRUE(forces->forces(d, after));
     EXPECT_EQ(before, after) << quick;
