@@ -29,9 +29,9 @@ using namespace sweep;
 using Clock = std::chrono::steady_clock;
 
 // A signal waits so long for the runs in work to end; then the sweep is ended without them.
-constexpr std::chrono::milliseconds kGrace{500};
+constexpr std::chrono::milliseconds kSweepGrace{500};
 
-double seconds_since(Clock::time_point start) {
+double seconds_of_sweep_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
@@ -137,8 +137,9 @@ void Sweep::compute() {
 }
 
 int Sweep::carry_out() {
-  const Expecting computing(interruption_, {"", [] { return false; },
-                                            [this] { return end_without_computing(); }, kGrace});
+  const Expecting computing(
+      interruption_,
+      {"", [] { return false; }, [this] { return end_without_computing(); }, kSweepGrace});
   compute();
   interruption_.claim();
   return end();
@@ -170,7 +171,7 @@ int Sweep::end() {
 }
 
 void Sweep::print_summary(long long failed) const {
-  const double seconds = seconds_since(start_);
+  const double seconds = seconds_of_sweep_since(start_);
   const auto computed = static_cast<RunIndex>(rows_.size()) - before_;
   std::cout << counted(computed, "run") << " in " << rounded(seconds, 3) << " s by "
             << counted(arguments_.jobs, "job");
