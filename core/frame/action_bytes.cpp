@@ -163,8 +163,10 @@ void add_body(Hash& hash, const Problem& problem) {
   hash.add(problem.gripped_dofs());
   for (Index e = 0; e < problem.tet_count(); ++e) {
     const Material& m = problem.material(e);
-    for (const double v : {m.young, m.poisson, m.yield.value_or(-1), m.density.value_or(-1),
-                           m.toughness.value_or(-1), m.energy.value_or(-1)}) {
+    const SmallStrain& elasticity = problem.small_strain(e);
+    for (const double v :
+         {elasticity.mu, elasticity.lambda, m.yield.value_or(-1), m.density.value_or(-1),
+          m.toughness.value_or(-1), m.energy.value_or(-1)}) {
       hash.add(v);
     }
     hash.add(static_cast<std::uint8_t>(m.law));
