@@ -15,7 +15,7 @@ KEYS = {
     "destroy": ("step", "volume", "elements", "box"),
     "fracture": ("model", "alpha", "yield_measure", "sigma0", "crack_length", "sif", "crack",
                  "max_events", "plane_normal", "birth", "max_new_nodes", "averaging", "stress", "contact"),
-    "solver": ("backend", "route", "update", "precision", "tolerance", "device", "prepare"),
+    "solver": ("backend", "route", "update", "precision", "tolerance", "device", "prepare", "max_ms"),
     "time": ("steps",),
     "output": ("fields",),
     "load": ("gravity",),

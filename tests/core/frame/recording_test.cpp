@@ -13,7 +13,7 @@
 namespace sunder::test {
 namespace {
 
-Scene gripped(double yield = 0.6) {
+Scene gripped_to_break(double yield = 0.6) {
   Scene scene = strip(yield, 3, 12);
   scene.instruments[0].action = Grip{band(-1, 0.1), Vec3(0, -2, 0), Axes{7}, true};
   return scene;
@@ -39,7 +39,7 @@ void play(Simulation& s) {
 }
 
 TEST(Recording, ToldToAnotherGivesTheSameBits) {
-  Recorded first(gripped()), second(gripped());
+  Recorded first(gripped_to_break()), second(gripped_to_break());
   play(first.simulation);
   ASSERT_GT(first.simulation.destroyed().size(), 4U) << "beyond what was removed";
   const auto bytes = first.simulation.store();
@@ -104,7 +104,7 @@ class Hand {
 TEST(Recording, OfRandomActionsLeadsToWhereTheyLed) {
   for (const Route route : {Route::inverse, Route::condensed, Route::factor, Route::cg}) {
     SCOPED_TRACE(static_cast<int>(route));
-    Scene scene = gripped(0.5);
+    Scene scene = gripped_to_break(0.5);
     scene.steps = 1 << 30;
     scene.solver.route = route;
     scene.fracture.max_events = 2;
@@ -139,7 +139,7 @@ void refused(Simulation& simulation, std::vector<std::uint8_t> bytes, const std:
 }
 
 TEST(Recording, RefusesDamageOtherVersionsAndOtherBodies) {
-  Recorded run(gripped());
+  Recorded run(gripped_to_break());
   play(run.simulation);
   const auto bytes = run.simulation.store();
   Simulation& s = run.simulation;
@@ -156,13 +156,13 @@ TEST(Recording, RefusesDamageOtherVersionsAndOtherBodies) {
   auto later = bytes;
   later[8] = 2;
   refused(s, later, "version 2");
-  Recorded stronger(gripped(0.7));
+  Recorded stronger(gripped_to_break(0.7));
   refused(stronger.simulation, bytes, "another body");
-  Scene other = gripped();
+  Scene other = gripped_to_break();
   other.solver.route = Route::cg;
   Recorded by_cg(std::move(other));
   refused(by_cg.simulation, bytes, "another body");
-  SceneRun none(gripped());
+  SceneRun none(gripped_to_break());
   EXPECT_THROW(static_cast<void>(none.simulation.store()), UsageError);
   EXPECT_THROW(none.simulation.load(bytes), UsageError);
 }
