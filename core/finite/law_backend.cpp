@@ -277,7 +277,8 @@ std::size_t LawBackend::check_options() {
     throw DeviceError(what + " cannot serve " + whom + ": " + why + "; use " + instead);
   };
   if (needs().contact) {
-    refuse("fracture.contact = true", "what keeps lips apart belongs to the small matrix of one base",
+    refuse("fracture.contact = true",
+           "what keeps lips apart belongs to the small matrix of one base",
            "law \"linear\" in statics on backend cpu, or contact false");
   }
   if (solver.precision == Precision::fp32 && !on_device) {

@@ -209,8 +209,7 @@ std::vector<std::uint32_t> Surface::changed_since(std::uint64_t version) const {
     places.insert(places.end(), log_[i].begin(), log_[i].end());
   }
   std::ranges::sort(places);
-  const auto rest = std::ranges::unique(places);
-  places.erase(rest.begin(), rest.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
   return places;
 }
 

@@ -330,6 +330,7 @@ class CondensedRoute final : public InverseRoute {
   /// So that frames allocate nothing, a full check among them.
   void make_room(const Problem& problem) {
     reserve(load_, problem);
+    reserve(start_load_, problem);
     whole_.reserve(all_.size(), dofs_.size());
     room_.reserve(problem.dof_count(), dofs_.size());
     everywhere_.resize(problem.dof_count());

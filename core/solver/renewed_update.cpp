@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/renewed_update.hpp"
 
-#include <functional>
-
 #include "solver/load_room.hpp"
 #include "sunder/error.hpp"
 
@@ -10,6 +8,7 @@ namespace sunder::solver {
 
 RenewedUpdate::RenewedUpdate(const fem::DamagedBody& body, Based first)
     : body_(body), based_(std::move(first)) {
+  reserve(start_load_, body.problem());
   reserve(load_, body.problem());
 }
 
@@ -30,7 +29,7 @@ void RenewedUpdate::follow(const fem::Event& event, bool anew) {
   } else if (begins()) {
     start_load_ = load_;
     start_events_ = body_.events();
-    coming_->start(load_, std::bind_front(&RenewedUpdate::make_checked, this));
+    coming_->start(load_, checked());
   }
 }
 
@@ -39,6 +38,12 @@ Based RenewedUpdate::make_checked(const fem::DamagedBody& body, const Load& load
   Based based = make_(body, work);
   check_base(based, based.parted ? based.parted->body() : body, load, [](Eigen::VectorXd&) {});
   return based;
+}
+
+/// Of one pointer, so that a frame in which a base begins allocates nothing.
+MakeBase RenewedUpdate::checked() const {
+  return [this](const fem::DamagedBody& body, const Load& load,
+                const linear_algebra::FactorWork& work) { return make_checked(body, load, work); };
 }
 
 RenewedUpdate::State RenewedUpdate::state() const {
@@ -65,8 +70,7 @@ void RenewedUpdate::go_back(const State& state) {
   if (!state.making) return;
   start_load_ = state.load;
   start_events_ = state.start;
-  coming_->start_again(state.start, state.load,
-                       std::bind_front(&RenewedUpdate::make_checked, this));
+  coming_->start_again(state.start, state.load, checked());
 }
 
 /// Elements that come with another form need no mesh of their own.

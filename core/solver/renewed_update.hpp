@@ -78,6 +78,7 @@ class RenewedUpdate {
 
   const fem::DamagedBody& body_;
   Load load_;
+  [[nodiscard]] MakeBase checked() const;
   Load start_load_;               // of the base that is being made
   std::size_t start_events_ = 0;  // before it
   Based based_;

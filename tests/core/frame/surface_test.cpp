@@ -21,7 +21,7 @@ using Corners = std::array<Index, 3>;
 
 /// From its lowest node on, the same way round.
 Corners turned(Corners t) {
-  std::ranges::rotate(t, std::ranges::min_element(t));
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
 }
 
