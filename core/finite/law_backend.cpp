@@ -108,6 +108,10 @@ BackendInfo LawBackend::info() const {
                 : by_inverse() ? ", made by the host; forces, stress and L-BFGS on the device"
                                : ", by the host; forces and stress on the device");
   }
+  if (by_inverse() && &computed() != &problem()) {
+    info.why +=
+        "; where nodes part, by the host's factor until an inverse is made anew beside the steps";
+  }
   if (!lost_.empty()) info.why += "; the host took over from the device: " + lost_;
   info.quiet_ms = now_.device ? 0 : cost_.quiet_ms;
   if (needs().damage && !now_.device) info.fracture_ms = cost_.torn_ms;

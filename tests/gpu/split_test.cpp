@@ -101,6 +101,8 @@ TEST_P(SplitCracksOnTheDevice, GrowAsOnTheHost) {
   const Course found = run(watched.problem, watched.create(), of.growths);
   EXPECT_EQ(found.info.backend, "vulkan");
   EXPECT_EQ(found.info.why.find("took over"), std::string::npos) << found.info.why;
+  EXPECT_EQ(found.info.why.find("where nodes part, by the host's factor") != std::string::npos,
+            found.info.route == "inverse");
   // fp32 is that of a base alone: its states are the same in fp64.
   expect_alike(found, run_on_cpu(scene, of.growths), 1e-8);
   if (of.route != Route::automatic) return;

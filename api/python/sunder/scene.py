@@ -9,7 +9,8 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 
 from . import _arrays, _c, _words
-from .errors import AllowedError, HandleError, InputError, check
+from ._handle import Handled
+from .errors import AllowedError, InputError, check
 from .mesh import Mesh
 
 _lib = _c.library
@@ -84,7 +85,7 @@ def _name(text):
     return None if text is None else str(text).encode()
 
 
-class Scene:
+class Scene(Handled):
     """A scene: from a file, from a dict with the same keys (docs/interface.md "Scene"), or empty, to
     be filled by the methods below. A context manager; closing twice does no harm.
 
@@ -115,27 +116,10 @@ class Scene:
             self.close()
             raise
 
-    def __enter__(self) -> "Scene":
-        return self
+    _what = "scene"
 
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def __del__(self):
-        self.close()
-
-    def close(self) -> None:
-        """Gives the scene back; simulations made of it live on."""
-        handle, self._handle = getattr(self, "_handle", None), None
-        if handle:
-            _lib.sunder_scene_destroy(handle)
-
-    @property
-    def handle(self) -> int:
-        """The number by which the C interface knows it."""
-        if not self._handle:
-            raise HandleError("the scene is closed")
-        return self._handle
+    def _destroy(self, handle):
+        _lib.sunder_scene_destroy(handle)
 
     def set_mesh(self, mesh: Any) -> None:
         """The body: what Mesh.of() takes. Materials go to volumes by name (add_material)."""

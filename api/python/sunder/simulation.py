@@ -8,6 +8,7 @@ from typing import Any, Callable, Iterator
 import numpy as np
 
 from . import _arrays, _c, _words
+from ._handle import Handled
 from .errors import HandleError, InputError, check
 from .scene import Scene, as_dict, text_of
 
@@ -52,7 +53,7 @@ CRACK = _dtype("sunder_crack")
 TIP = _dtype("sunder_tip")
 
 
-class Simulation:
+class Simulation(Handled):
     """A scene that runs. A context manager; closing twice does no harm.
 
     scene: a Scene, or what Scene() takes.
@@ -121,27 +122,10 @@ class Simulation:
         if status:
             check(status)
 
-    def __enter__(self) -> "Simulation":
-        return self
+    _what = "simulation"
 
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def __del__(self):
-        self.close()
-
-    def close(self) -> None:
-        """Gives its memory back."""
-        handle, self._handle = getattr(self, "_handle", None), None
-        if handle:
-            _lib.sunder_simulation_destroy(handle)
-
-    @property
-    def handle(self) -> int:
-        """The number by which the C interface knows it."""
-        if not self._handle:
-            raise HandleError("the simulation is closed")
-        return self._handle
+    def _destroy(self, handle):
+        _lib.sunder_simulation_destroy(handle)
 
     # ---- steps
 

@@ -27,6 +27,23 @@ Scene split(Scene scene) {
   return scene;
 }
 
+/// A plate held at its upper edge and pulled at a corner, without a notch; a stiff frame, which
+/// nothing breaks, where `in_frame` says.
+Scene pulled_plate(bool (*in_frame)(const Vec3&)) {
+  Scene scene = split(test::board_scene(
+      test::structured_board({12, 12, 2, 12, 12, 2},
+                             [=](const Vec3& x) { return in_frame(x) ? "frame" : "board"; }),
+      FractureModel::b));
+  scene.materials["board"] = {5, 0.3, 1};
+  scene.materials["frame"] = {50, 0.3, std::nullopt};
+  Instrument pull{"pull", Pull{Box{Vec3(-1, -1e-9, -9), Vec3(0.5, 1e-9, 9)}, Vec3(0, -14, 0)}, {}};
+  pull.ramp = Ramp{0, 1};
+  scene.instruments = {pull};
+  scene.steps = 20;
+  scene.fracture.max_events = 1;
+  return scene;
+}
+
 double volume(const Mesh& mesh) {
   double sum = 0;
   for (const auto& [a, b, c, d] : mesh.tets) {
@@ -102,19 +119,7 @@ TEST(SplitRun, BothLipsOfAFaceLieAtTheSamePlaceOfTheMesh) {
 /// A plate without a notch: strength opens a surface through the thickness where it is reached, and
 /// takes no element.
 TEST(SplitRun, ABirthTakesNoElement) {
-  Scene scene = split(test::board_scene(
-      test::structured_board(
-          {12, 12, 2, 12, 12, 2},
-          [](const Vec3& x) { return x.y() < 2 || x.y() > 10 ? "frame" : "board"; }),
-      FractureModel::b));
-  scene.materials["board"] = {5, 0.3, 1};
-  scene.materials["frame"] = {50, 0.3, std::nullopt};
-  Instrument pull{"pull", Pull{Box{Vec3(-1, -1e-9, -9), Vec3(0.5, 1e-9, 9)}, Vec3(0, -14, 0)}, {}};
-  pull.ramp = Ramp{0, 1};
-  scene.instruments = {pull};
-  scene.steps = 20;
-  scene.fracture.max_events = 1;
-  Torn run(std::move(scene));
+  Torn run(pulled_plate([](const Vec3& x) { return x.y() < 2 || x.y() > 10; }));
   while (!run.simulation.done() && run.simulation.cracks().empty()) run.simulation.step();
   ASSERT_EQ(run.simulation.cracks().size(), 1U);
   const DestroyedElement& row = run.simulation.destroyed().front();
@@ -134,18 +139,7 @@ TEST(SplitRun, ABirthTakesNoElement) {
 /// A weak layer at the held edge tears: elements there have corners at new nodes, and the forces of
 /// what still hangs on the support go by these.
 TEST(SplitRun, TheSupportHoldsWhatIsPulledWhereElementsHaveParted) {
-  Scene scene = split(test::board_scene(
-      test::structured_board({12, 12, 2, 12, 12, 2},
-                             [](const Vec3& x) { return x.y() > 10 ? "board" : "frame"; }),
-      FractureModel::b));
-  scene.materials["board"] = {5, 0.3, 1};
-  scene.materials["frame"] = {50, 0.3, std::nullopt};
-  Instrument pull{"pull", Pull{Box{Vec3(-1, -1e-9, -9), Vec3(0.5, 1e-9, 9)}, Vec3(0, -14, 0)}, {}};
-  pull.ramp = Ramp{0, 1};
-  scene.instruments = {pull};
-  scene.steps = 20;
-  scene.fracture.max_events = 1;
-  Torn run(std::move(scene));
+  Torn run(pulled_plate([](const Vec3& x) { return x.y() <= 10; }));
   const auto parted_at_support = [&] {
     const Mesh mesh = run.simulation.mesh();
     for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
