@@ -253,7 +253,6 @@ class CpuBackend final : public Backend {
   };
 
   std::unique_ptr<BackendState> do_save() const override {
-    if (needs().split) return nullptr;
     auto state = std::make_unique<State>();
     state->route = route_->state();
     if (!state->route) return nullptr;
@@ -266,7 +265,9 @@ class CpuBackend final : public Backend {
   bool do_restore(const BackendState& of, std::size_t events) override {
     const auto& state = dynamic_cast<const State&>(of);
     if (!route_->go_back(*state.route, events)) return false;
-    fields_.restore(state.fields, damaged_body().changed(events, damaged_body().events()));
+    const std::vector<Index> changed = damaged_body().changed(events, damaged_body().events());
+    take_body_back(events);
+    fields_.restore(state.fields, changed);
     frame_.restore(state.frame);
     solver_.restore(*state.solver);
     if (instruments_ && !state.frame.load.displacements.empty()) publish_instruments();

@@ -98,7 +98,6 @@ class DeferredRoute final : public InverseRoute {
   bool rebase() override { return update_->rebase(); }
 
   std::unique_ptr<solver::RouteState> state() const override {
-    if (split()) return nullptr;
     auto state = std::make_unique<State>();
     state->update = update_->state();
     return state;

@@ -135,11 +135,14 @@ FrameFields::State FrameFields::state() const {
 
 void FrameFields::restore(const State& state, std::span<const Index> revived) {
   nodal_ = state.nodal;
+  next_nodal_.resize(nodal_.size());
+  if (has_forces()) nodal_forces_.resize(nodal_.size());
+  offsets_.follow(body_.forms());
   if (condensed_) condensed_->restore(*state.condensed);
   excluded_ = state.excluded;
   fresh_ = false;
   if (!kernel_) return;
-  kernel_->revive(revived);
+  kernel_->revive(revived, body_.forms());
   kernel_->take_out_only(state.cut_off);
   kernel_->run(nodal_, next_stress_);
   std::swap(stress_, next_stress_);

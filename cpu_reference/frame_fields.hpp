@@ -53,7 +53,8 @@ class FrameFields final : public solver::HostFields {
     std::vector<std::uint8_t> excluded, cut_off;
   };
   [[nodiscard]] State state() const;
-  /// `revived`: elements destroyed since. The stress is computed anew, the same bits.
+  /// The body has gone back already. `revived`: elements destroyed or changed since. The stress is
+  /// computed anew, the same bits.
   void restore(const State& state, std::span<const Index> revived);
 
   /// What is published, at all nodes and elements or some; outside a region at the price of a

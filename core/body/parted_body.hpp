@@ -40,6 +40,17 @@ class PartedBody {
   /// Displacements of this one's unknowns and offsets become those of the body's.
   void give_displacement(Eigen::VectorXd& u) const;
 
+  /// What translating has left, to go back to.
+  struct State {
+    std::size_t kept = 0;
+    std::map<Index, std::array<Index, 4>> corners;
+  };
+  [[nodiscard]] State state() const { return {kept_.size(), corners_}; }
+  void restore(const State& state) {
+    kept_.resize(state.kept);
+    corners_ = state.corners;
+  }
+
  private:
   /// What a new node's displacement is measured by: `of`, in the body; `by`, here.
   struct Kept {

@@ -162,11 +162,12 @@ std::shared_ptr<const BackendState> Backend::save() const {
 bool Backend::restore(const BackendState& state) {
   if (state.owner_.lock() != self_ || state.events_ > damaged_body_->events()) return false;
   if (!do_restore(state, state.events_)) return false;
-  damaged_body_->take_back(state.events_);
   stage_ = static_cast<Stage>(state.stage_);
   stress_known_ = state.stress_known_;
   return true;
 }
+
+void Backend::take_body_back(std::size_t events) { damaged_body_->take_back(events); }
 
 Index Backend::node_count() const { return damaged_body_->forms().node_count(); }
 

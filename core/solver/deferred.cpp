@@ -134,7 +134,7 @@ bool Deferred::follow_last() {
   const fem::Event event = damage_.last();
   forms_.add(event.nodes);
   push(event);
-  if (apply(event) && follow_border(event) && factor_grips()) return true;
+  if (apply(event) && follow_border(event, count()) && factor_grips()) return true;
   take_back();
   return false;
 }
@@ -211,6 +211,7 @@ void Deferred::take_back(Index events) {
   if (this->events() < events) throw UsageError("there is no event to take back");
   if (events == 0) return;
   for (Index i = 0; i < events; ++i) pop();
+  while (!sums_.empty() && sums_.back().events > this->events()) sums_.pop_back();
   if (!replay()) throw NumericalError("the stiffness of the new unknowns is singular");
   if (!factor_grips()) throw NumericalError("the compliance of the gripped nodes is singular");
 }
@@ -224,16 +225,43 @@ void Deferred::clear() {
   grip_compliance_.leftCols(grips_) = compliance_.topLeftCorner(grips_, grips_);
 }
 
+void Deferred::remember() {
+  constexpr Index kEvents = 4;
+  if (events() < (sums_.empty() ? 0 : sums_.back().events) + kEvents) return;
+  const Eigen::Index n = count();
+  sums_.push_back({events(), changed_, m_.topLeftCorner(n, n), d_.topLeftCorner(n, n),
+                   grip_compliance_, forms_, border_});
+}
+
+/// The last sums that are kept; returns the events in them.
+std::size_t Deferred::go_to_sums() {
+  if (sums_.empty()) {
+    forms_ = in_base_;
+    border_.clear();
+    return 0;
+  }
+  const Sums& of = sums_.back();
+  changed_ = of.changed;
+  m_.topLeftCorner(of.m.rows(), of.m.cols()) = of.m;
+  d_.topLeftCorner(of.d.rows(), of.d.cols()) = of.d;
+  grip_compliance_ = of.grip_compliance;
+  forms_ = of.forms;
+  border_ = of.border;
+  return static_cast<std::size_t>(of.events);
+}
+
 /// Adds all events up again, in order: the same sums as the first time.
 bool Deferred::replay() {
   clear();
-  forms_ = in_base_;
-  border_.clear();
   bool bordered = true;
-  for (std::size_t i = 0; i < damage_.size(); ++i) {
+  for (std::size_t i = go_to_sums(); i < damage_.size(); ++i) {
     forms_.add(damage_[i].nodes);
     static_cast<void>(apply(damage_[i]));
-    bordered = bordered && follow_border(damage_[i]);
+    // As many columns as there were: products of another size round otherwise.
+    const Eigen::Index columns =
+        i + 1 < before_.size() ? grips_ + static_cast<Eigen::Index>(before_[i + 1].differences)
+                               : count();
+    bordered = bordered && follow_border(damage_[i], columns);
   }
   return bordered;
 }
@@ -478,6 +506,11 @@ std::vector<BufferPlan> Deferred::buffers() const {
   const auto n = static_cast<std::size_t>(count());
   if (n > 0) plan.push_back({"small matrix of the damage", 3 * n * n * sizeof(double)});
   if (!border_.empty()) plan.push_back({"border of the new unknowns", border_.bytes()});
+  std::size_t kept = 0;
+  for (const Sums& of : sums_) {
+    kept += static_cast<std::size_t>(2 * of.m.size()) * sizeof(double) + of.border.bytes();
+  }
+  if (kept > 0) plan.push_back({"sums of events to go back to", kept});
   return plan;
 }
 

@@ -59,6 +59,9 @@ class Deferred {
   [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
   /// Takes the last events back: every later result is bit by bit what it was before them.
   void take_back(Index events = 1);
+  /// Keeps, every few events, what they have added up to: taking later ones back then adds no more
+  /// up again than those since.
+  void remember();
 
   /// u = A^-1 f with u_G = displacement (empty: 0). The forces of the damage are refined until
   /// what they lack has no more energy than `energy_tolerance` [N mm], or rounding. A force on a
@@ -113,6 +116,15 @@ class Deferred {
   };
   using Part = fem::StiffnessPart;
 
+  /// What events have added up to.
+  struct Sums {
+    Index events = 0;
+    Eigen::Index changed = 0;
+    linear_algebra::RowMajor m, d, grip_compliance;
+    fem::Forms forms;
+    Border border;
+  };
+
   void reserve_for_fractures(Index columns);
   void reserve(Index columns);
   [[nodiscard]] bool follow_last();
@@ -130,7 +142,7 @@ class Deferred {
   [[nodiscard]] bool update_both();
   void collect_all();
   void sum_up_d();
-  [[nodiscard]] bool follow_border(const fem::Event& event);
+  [[nodiscard]] bool follow_border(const fem::Event& event, Eigen::Index columns);
   [[nodiscard]] Forces on_body(const Forces& forces);
   void start(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
@@ -138,6 +150,7 @@ class Deferred {
   void add_to_grips(Eigen::Index width, bool more);
   [[nodiscard]] const Eigen::VectorXd& correct(const Eigen::VectorXd& projection);
   void clear();
+  [[nodiscard]] std::size_t go_to_sums();
   [[nodiscard]] bool replay();
   [[nodiscard]] bool factor_grips();
   [[nodiscard]] Eigen::Index count() const { return count_; }
@@ -160,6 +173,7 @@ class Deferred {
   bool stiffened_ = false;    // the last event has changed M
   Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
+  std::vector<Sums> sums_;                    // of fewer events first
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
   // The event in work: what it takes and what it adds, its update vectors and where they act, and
   // what comes of them.

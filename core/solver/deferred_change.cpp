@@ -115,10 +115,10 @@ void Deferred::sum_up_d() {
   }
 }
 
-bool Deferred::follow_border(const fem::Event& event) {
+bool Deferred::follow_border(const fem::Event& event, Eigen::Index columns) {
   if (border_.empty() && forms_.new_nodes().empty()) return true;
   return border_.follow(forms_, event, basis_, compliance_, m_,
-                        {grips_, count(), changed_, stiffened_});
+                        {grips_, columns, changed_, stiffened_});
 }
 
 }  // namespace sunder::solver

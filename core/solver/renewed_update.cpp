@@ -47,7 +47,9 @@ MakeBase RenewedUpdate::checked() const {
 }
 
 RenewedUpdate::State RenewedUpdate::state() const {
-  State state{based_, bases_, threshold_, based_.deferred->events(), false, 0, {}, load_};
+  State state{based_, {}, bases_, threshold_, based_.deferred->events(), false, 0, {}, load_};
+  based_.deferred->remember();
+  if (based_.parted) state.parted = based_.parted->state();
   if (!coming_ || !coming_->making()) return state;
   state.making = true;
   state.start = start_events_;
@@ -62,6 +64,7 @@ void RenewedUpdate::stop(std::size_t events) {
 void RenewedUpdate::go_back(const State& state) {
   saved_ms_ = saved_ms();
   based_ = state.based;
+  if (state.parted) based_.parted->restore(*state.parted);
   saved_ms_ -= based_.deferred->saved_ms();
   bases_ = state.bases;
   threshold_ = state.threshold;

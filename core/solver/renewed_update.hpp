@@ -43,6 +43,7 @@ class RenewedUpdate {
   /// What of a state bases and what is laid over them go back to.
   struct State {
     Based based;  // held on to: its memory with it
+    std::optional<fem::PartedBody::State> parted;
     int bases = 1;
     std::size_t threshold = 0;
     Index laid = 0;  // events over the base

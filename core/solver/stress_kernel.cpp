@@ -91,11 +91,17 @@ void StressKernel::bring(Block& b, std::size_t l, Index e) const {
   b.strength[l] = yield > 0 ? 1 / (yield * yield) : 0;
 }
 
-void StressKernel::revive(std::span<const Index> elements) {
+void StressKernel::revive(std::span<const Index> elements, const fem::Forms& forms) {
   for (Index e : elements) {
     if (place_[e] == kNone) continue;
     const auto at = static_cast<std::size_t>(place_[e]);
-    bring(blocks_[at / kLanes], at % kLanes, e);
+    Block& b = blocks_[at / kLanes];
+    bring(b, at % kLanes, e);
+    const auto came = forms.came().find(e);
+    const std::array<Index, 4>& corners = came == forms.came().end()
+                                              ? problem_->mesh().tets[static_cast<std::size_t>(e)]
+                                              : came->second.corners;
+    for (std::size_t a = 0; a < 4; ++a) b.corner[a][at % kLanes] = 3 * corners[a];
   }
 }
 

@@ -24,8 +24,9 @@ class StressKernel {
 
   /// Follows the removal of elements: their stress is scaled and no longer counts.
   void destroy(std::span<const Index> elements);
-  /// Follows the return of elements as they were at first.
-  void revive(std::span<const Index> elements);
+  /// Follows the return of elements to what they were at first, but for their corners: those are
+  /// as the forms have them.
+  void revive(std::span<const Index> elements, const fem::Forms& forms);
 
   /// Follows elements that come as they were but for their corners.
   void change(std::span<const fem::Coming> come);

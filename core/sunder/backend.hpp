@@ -263,6 +263,8 @@ class Backend {
   Backend(std::shared_ptr<const Problem> problem, Needs needs);
   /// The one record of what is destroyed; whoever computes reads it here.
   [[nodiscard]] const fem::DamagedBody& damaged_body() const { return *damaged_body_; }
+  /// Drops all events but so many: once nothing beside the frames reads later ones.
+  void take_body_back(std::size_t events);
   /// Says of something more that this backend leaves out for this scene.
   void leave_out(std::string what) { needs_.left_out.push_back(std::move(what)); }
 
@@ -281,7 +283,7 @@ class Backend {
   virtual void do_change(const fem::Change& change);             // damaged_body() knows it
   virtual void do_prepare(std::span<const Index>) {}
   [[nodiscard]] virtual std::unique_ptr<BackendState> do_save() const { return nullptr; }
-  /// damaged_body() still knows all events; it goes back to the first `events` of them after it.
+  /// damaged_body() still knows all events; true: take_body_back() has dropped all but `events`.
   virtual bool do_restore(const BackendState&, std::size_t /*events*/) { return false; }
   virtual void do_exclude_candidates(std::span<const Index> elements) = 0;
   virtual void do_solve_pristine(const Load& load, std::span<double> displacement) = 0;

@@ -66,6 +66,21 @@ class SplitBody {
   /// Whether the live elements at a node hang together by faces that are not open.
   [[nodiscard]] bool whole(Index node, std::span<const std::uint8_t> destroyed) const;
 
+  /// What opening has left, to go back to.
+  struct State {
+    std::vector<std::array<Index, 4>> corners;
+    std::vector<std::uint8_t> open;
+    std::vector<std::vector<Index>> at_node;
+    std::vector<Index> parents;
+  };
+  [[nodiscard]] State state() const { return {corners_, open_, at_node_, parents_}; }
+  void restore(const State& state) {
+    corners_ = state.corners;
+    open_ = state.open;
+    at_node_ = state.at_node;
+    parents_ = state.parents;
+  }
+
  private:
   void find_neighbours();
   [[nodiscard]] std::vector<std::vector<Index>> parts_at(

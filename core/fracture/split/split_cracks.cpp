@@ -49,9 +49,30 @@ SplitCracks::SplitCracks(const Problem& problem)
   body_.allow(most_nodes_);
 }
 
+std::shared_ptr<const CriterionState> SplitCracks::state() const {
+  if (!kept_) {
+    kept_ = std::make_shared<const Kept>(Kept{cracks_, splits_, excluded_, body_.state()});
+  }
+  auto state = std::make_shared<State>();
+  state->kept = kept_;
+  state->lips = lips_.state();
+  return state;
+}
+
+void SplitCracks::restore(const CriterionState& of) {
+  const auto& state = dynamic_cast<const State&>(of);
+  cracks_ = state.kept->cracks;
+  splits_ = state.kept->splits;
+  excluded_ = state.kept->excluded;
+  body_.restore(state.kept->body);
+  lips_.restore(state.lips);
+  kept_ = state.kept;
+}
+
 /// Preset cracks of destroyed elements, or of the mesh's own faces, go on as splits from their
 /// tips.
 Decision SplitCracks::preset() {
+  kept_.reset();
   const auto& presets = problem_.scene().cracks;
   for (std::size_t c = 0; c < presets.size(); ++c) {
     cracks_.push_back(
@@ -173,6 +194,7 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
     decision.findings.push_back({Finding::Kind::nodes_spent});
     return;
   }
+  kept_.reset();
   const TipGrowth& growth = driven.growth;
   const auto tip = static_cast<std::size_t>(growth.terms.tip);
   Crack& crack = cracks_[static_cast<std::size_t>(driven.crack)];
@@ -239,6 +261,7 @@ Index SplitCracks::ahead(const Crack& crack, std::size_t tip, const Vec2& direct
 void SplitCracks::bear(const FractureState& state, Decision& decision) {
   auto row = rupture(state.summary.candidate, Cause::mss);
   if (!row || full()) return;
+  kept_.reset();
   const InPlane stress = in_plane(state.current_stress(row->element), board_.plane());
   const int id = static_cast<int>(cracks_.size());
   Crack crack = born_crack(board_, row->element, stress, id, std::pmr::get_default_resource());

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "body/pieces.hpp"
@@ -34,11 +35,24 @@ class SplitCracks final : public FractureCriterion {
   [[nodiscard]] std::span<const std::array<Index, 4>> corners() const override {
     return body_.corners();
   }
+  [[nodiscard]] std::shared_ptr<const CriterionState> state() const override;
+  void restore(const CriterionState& of) override;
 
  private:
   struct Driven {
     int crack;
     TipGrowth growth;
+  };
+  /// What events alone change; states between two of them share it.
+  struct Kept {
+    std::vector<Crack> cracks;
+    std::vector<SplitCrack> splits;
+    std::vector<std::uint8_t> excluded;
+    SplitBody::State body;
+  };
+  struct State final : CriterionState {
+    std::shared_ptr<const Kept> kept;
+    SplitLips::State lips;
   };
   [[nodiscard]] FieldView view(const FractureState& state) const;
   [[nodiscard]] FieldView::Lips lips_at(const Crack& crack, std::size_t tip) const;
@@ -70,6 +84,7 @@ class SplitCracks final : public FractureCriterion {
   std::vector<SplitCrack> splits_;  // of each crack
   std::vector<std::uint8_t> excluded_;
   std::vector<Driven> driven_;
+  mutable std::shared_ptr<const Kept> kept_;  // as of the last state(); null: changed since
 };
 
 }  // namespace sunder::fracture

@@ -28,7 +28,6 @@ class SplitLips {
   /// there is gone.
   void loosen(Index node);
 
- private:
   /// Two nodes at the same place of the mesh, one on each lip.
   struct Pair {
     int crack = 0;
@@ -36,6 +35,18 @@ class SplitLips {
     Vec2 place, across;  ///< across: unit, to the left of the ideal path
     double area = 0;     ///< of a lip [mm^2]
   };
+  /// What a look goes on from, to go back to.
+  struct State {
+    std::map<Index, Pair> pressed;
+    std::set<Index> loose;
+  };
+  [[nodiscard]] State state() const { return {pressed_, loose_}; }
+  void restore(const State& state) {
+    pressed_ = state.pressed;
+    loose_ = state.loose;
+  }
+
+ private:
   void find_pairs(std::span<const CrackFace> faces, std::span<const Crack> cracks);
   void press(const Pair& pair, double gap, fem::Change& change);
   [[nodiscard]] Vec3 spring_of(const Pair& pair) const;

@@ -60,8 +60,9 @@ Scene moving() {
   return scene;
 }
 
-Scene split() {
+Scene split(bool contact = false) {
   Scene scene = notch_board(FractureModel::b);
+  scene.fracture.contact = contact;
   scene.fracture.crack = CrackWay::split;
   scene.fracture.sif = SifSource::field;
   scene.fracture.max_events = 2;
@@ -108,7 +109,11 @@ const std::vector<World>& worlds() {
        },
        true},
       {"averaged", [] { return averaged(); }, true},
-      {"split", [] { return split(); }, false},
+      {"split", [] { return split(); }, true},
+      {"split_inverse", [] { return by_route(split(), Route::inverse); }, true},
+      {"split_factor", [] { return by_route(split(), Route::factor); }, true},
+      {"split_contact", [] { return split(true); }, true},
+      {"split_corotated", [] { return with_law(split(), MaterialLaw::corotated); }, false},
       {"corotated", [] { return with_law(torn(3, 0.4, 2), MaterialLaw::corotated); }, false},
       {"motion", [] { return moving(); }, false},
   };

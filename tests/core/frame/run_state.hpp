@@ -26,6 +26,10 @@ struct RunState {
       tips.push_back(tip.position);
       tips.emplace_back(tip.k.value_or(-1), tip.theta.value_or(-1), tip.ended ? 1 : 0);
     }
+    for (const CrackFace& face : simulation.crack_faces()) {
+      faces.push_back(face.left);
+      faces.push_back(face.right);
+    }
     if (simulation.problem().moves()) velocity = simulation.velocity();
     warnings = simulation.warnings();  // measuring tips may have found something
   }
@@ -42,6 +46,7 @@ struct RunState {
   std::vector<DestroyedElement> rows;
   std::vector<std::string> warnings;
   std::vector<std::array<Index, 4>> corners;
+  std::vector<std::array<Index, 3>> faces;  // of split cracks, both lips
   std::vector<std::vector<Vec2>> paths;
 };
 
@@ -55,6 +60,7 @@ inline void expect_same_bits(const RunState& a, const RunState& b) {
   EXPECT_TRUE(a.gone == b.gone);
   EXPECT_EQ(a.warnings, b.warnings);
   EXPECT_TRUE(a.corners == b.corners);
+  EXPECT_TRUE(a.faces == b.faces);
   EXPECT_TRUE(a.paths == b.paths);
   ASSERT_EQ(a.rows.size(), b.rows.size());
   for (std::size_t i = 0; i < a.rows.size(); ++i) {

@@ -206,7 +206,7 @@ struct OnBase {
 
 /// Destroys elements, ten between two solutions, and takes them back again.
 void expect_the_way_back(const Board& board, Deferred& deferred, std::span<const Index> elements,
-                         std::size_t batch) {
+                         std::size_t batch, bool remembered) {
   const std::vector<double> grips(board.problem.gripped_dofs().size(), 0.25);
   const auto solution = [&] {
     Eigen::VectorXd u = Eigen::VectorXd::Zero(board.problem.dof_count());
@@ -216,6 +216,7 @@ void expect_the_way_back(const Board& board, Deferred& deferred, std::span<const
   std::vector<Eigen::VectorXd> solutions{solution()};
   for (std::size_t k = 0; k < elements.size(); k += batch) {
     ASSERT_TRUE(deferred.destroy(elements.subspan(k, batch)));
+    if (remembered) deferred.remember();
     if ((k + batch) % 10 == 0) solutions.push_back(solution());
   }
   EXPECT_NE(solutions.front(), solutions.back());
@@ -231,9 +232,11 @@ TEST(Deferred, TakesEventsBackBitByBit) {
   const std::vector<Index> crack = test::crack_sequence(board.problem, 60, 8);
   for (const char* name : {"inverse", "factor", "condensed"}) {
     for (std::size_t batch : {std::size_t{1}, std::size_t{10}}) {
-      SCOPED_TRACE(name + (" in batches of " + std::to_string(batch)));
-      OnBase based(board, name, crack, {});
-      expect_the_way_back(board, based.deferred, crack, batch);
+      for (const bool remembered : {false, true}) {
+        SCOPED_TRACE(name + (" in batches of " + std::to_string(batch)));
+        OnBase based(board, name, crack, {});
+        expect_the_way_back(board, based.deferred, crack, batch, remembered);
+      }
     }
   }
 }
@@ -244,7 +247,7 @@ TEST(Deferred, TakesEventsBackToANewBaseBitByBit) {
   for (const char* name : {"inverse", "factor", "condensed"}) {
     SCOPED_TRACE(name);
     OnBase based(board, name, crack, std::span(crack).first(40));
-    expect_the_way_back(board, based.deferred, std::span(crack).subspan(40), 1);
+    expect_the_way_back(board, based.deferred, std::span(crack).subspan(40), 1, false);
   }
 }
 

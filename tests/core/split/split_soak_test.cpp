@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Long cracks: two hundred steps against a fresh factor of the split mesh, over new bases; ten
 // thousand random steps through random meshes.
+#include <numeric>
+#include <random>
+
 #include "split_against_fresh.hpp"
 
 namespace sunder {
@@ -33,6 +36,73 @@ TEST_P(LongCracks, TwoHundredStepsAreAsAFreshFactorSays) {
     static_cast<void>(backend->stress());
     if (i == 10 || i == 50 || i == 100 || i == 200) expect_as_fresh(crack, c, *backend, force);
   }
+}
+
+/// All that can be read of it: at every node, those that have come too, and element.
+struct Read {
+  explicit Read(const Backend& backend)
+      : u(static_cast<std::size_t>(backend.node_count())),
+        stress(static_cast<std::size_t>(backend.problem().tet_count())) {
+    std::vector<Index> nodes(u.size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    backend.read_displacement(nodes, u);
+    backend.read_stress(stress);
+  }
+  bool operator==(const Read&) const = default;
+  std::vector<Vec3> u;
+  std::vector<Voigt> stress;
+};
+
+// Over new bases, which states hold on to. What is solved again has the same bits too.
+TEST_P(LongCracks, TwoHundredStepsAreTakenBackBitForBit) {
+  const test::SplitCase c{GetParam(), false, 0.3, false};
+  std::mt19937 random(7);
+  const auto problem = std::make_shared<const Problem>(
+      scene_of(c, test::shaken_board({210, 6, 2, 210, 6, 2}, random, 0.2)));
+  const auto backend = cpu_reference::create(problem, needs_of(*problem));
+  const auto force =
+      test::shared_force(problem->mesh(), problem->instrument_nodes()[0].nodes, test::kBy);
+  test::EdgeSplit crack(*problem);
+  std::vector<fem::Change> changes{crack.begin(0).change};
+  for (int i = 1; i <= 200; ++i) {
+    changes.push_back(crack.advance(0).change);
+    changes.back().held = true;
+  }
+  std::vector<std::shared_ptr<const BackendState>> states;
+  std::vector<Read> read;
+  const auto look = [&] {
+    backend->set_load(test::load_of(*problem, force, {}));
+    static_cast<void>(backend->solve());
+    static_cast<void>(backend->stress());
+    return Read(*backend);
+  };
+  const auto go_on_from = [&](std::size_t at) {
+    for (std::size_t i = at; i <= changes.size(); ++i) {
+      if (i > 0) backend->change(changes[i - 1]);
+      const Read now = look();
+      if (i < read.size()) {
+        ASSERT_TRUE(now == read[i]) << i << " steps, again";
+        continue;
+      }
+      read.push_back(now);
+      states.push_back(backend->save());
+      ASSERT_TRUE(states.back()) << i;
+    }
+  };
+  go_on_from(0);
+  EXPECT_TRUE(std::ranges::any_of(backend->buffers(), [](const BufferPlan& b) {
+    return b.name.starts_with("damaged factor");
+  })) << "no new base on the way";
+  std::size_t at = changes.size();
+  for (const std::size_t by : {1, 10, 50, 100}) {
+    at -= by;
+    ASSERT_TRUE(backend->restore(*states[at]));
+    EXPECT_TRUE(Read(*backend) == read[at]) << at << " steps";
+    EXPECT_TRUE(look() == read[at]) << at << " steps, solved again";
+  }
+  ASSERT_TRUE(backend->restore(*states[0]));
+  EXPECT_TRUE(Read(*backend) == read[0]);
+  go_on_from(1);
 }
 
 TEST(LongCracks, TenThousandRandomStepsNeverFail) {
