@@ -48,6 +48,8 @@ PROGRAMS = [
             Share(1, repetitions=1), Share(2, repetitions=3)),
     Program("bench_live", "undo, removal, cuts and the surface of a live body",
             Share(6, "(inverse|rupture)/1944", 1), Share(200, repetitions=3)),
+    Program("bench_hands", "quiet frames under two hands that wander",
+            Share(3, "(inverse|factor)/1944/", 1), Share(60, repetitions=3)),
     Program("bench_engine", "the engine against CHOLMOD, event by event",
             Share(6, "/1944/k", 3), Share(200, "-inverse_deferred/30246/", 3)),
     Program("bench_frame_parts", "where a frame goes, from the first to 640 fractures",

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/check_terms.hpp"
-#include "solver/load_room.hpp"
 #include "solver/stress_bounds.hpp"
 
 namespace sunder::solver {
@@ -26,41 +24,27 @@ constexpr double kGrowth = 10;
 
 FrameCheck::FrameCheck(const Problem& problem, double promised)
     : promised_(std::min(promised, problem.scene().solver.tolerance / 10)),
-      stress_of_energy_(solver::largest_stress_of_energy(problem)) {
-  reserve(load_, problem);
-}
+      stress_of_energy_(solver::largest_stress_of_energy(problem)),
+      known_(problem) {}
 
 void FrameCheck::checked(const Load& load, const Solution& solution, double stress, int bases) {
-  load_ = load;
-  solution_ = solution;
   // An exact solution says nothing about others.
-  stress_of_residual_ = solution.residual > 0 ? stress / solution.residual : HUGE_VAL;
-  bases_ = bases;
+  const double worth = solution.residual > 0 ? stress / solution.residual : HUGE_VAL;
+  known_.checked(load, {0, worth, solution.largest_u, solution.largest_stress}, bases);
 }
 
-void FrameCheck::follow(int bases, const BaseCheck& check) {
-  if (bases_ == 0 || bases == bases_ || !(check.stress_of_residual > 0) ||
-      !multiple(check.load, load_)) {
-    return;
-  }
-  stress_of_residual_ = check.stress_of_residual;
-  bases_ = bases;
-}
-
-std::optional<double> FrameCheck::scale_of(const Load& load, int bases) const {
-  if (bases != bases_) return std::nullopt;
-  return multiple(load, load_);
-}
-
-double FrameCheck::energy_tolerance(double scale) const {
-  const double e = kUnrefined * scale * solution_.largest_stress / stress_of_energy_;
+double FrameCheck::energy_tolerance(const CheckedLoads::Sum& expected) const {
+  const double e = kUnrefined * expected.largest_stress / stress_of_energy_;
   return e * e;
 }
 
-std::optional<double> FrameCheck::error(double scale, const Solution& solution) const {
-  if (!(solution.largest_u <= kGrowth * scale * solution_.largest_u)) return std::nullopt;
+std::optional<double> FrameCheck::error(const CheckedLoads::Sum& expected,
+                                        const Solution& solution) const {
+  if (!(solution.largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
+  const bool cancels = !(expected.largest_stress <= kGrowth * solution.largest_stress);
+  if (cancels && !expected.alone) return std::nullopt;
   const double error =
-      kAllowance * stress_of_residual_ * solution.residual / solution.largest_stress;
+      kAllowance * expected.stress_of_residual * solution.residual / solution.largest_stress;
   if (!(error <= promised_)) return std::nullopt;
   return error;
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The promise of a frame at the price of its residual. A full check applies the inverse to the
 // residual r = f - K u and takes the stress of what comes out. How much stress a residual of that
-// size is worth hardly changes while the base, the direction of the load and the stiffness of the
-// body stay, so frames until then are judged by their own residual.
+// size is worth hardly changes while the base, the loads and the stiffness of the body stay, so
+// frames whose load full checks span are judged by their own residual.
 #pragma once
 
 #include <optional>
 
 #include "solver/base_check.hpp"
+#include "solver/checked_loads.hpp"
 
 namespace sunder::solver {
 
@@ -27,28 +28,26 @@ class FrameCheck {
   /// of A^-1 (f - K u) over live elements.
   void checked(const Load& load, const Solution& solution, double stress, int bases);
   /// Takes what is known of a base that is new since the last full check.
-  void follow(int bases, const BaseCheck& check);
-  /// The load as a multiple of that of the last full check; nothing: another direction, or a base
-  /// that nothing is known of.
-  [[nodiscard]] std::optional<double> scale_of(const Load& load, int bases) const;
-  [[nodiscard]] bool takes(const Load& load, int bases) const {
-    return scale_of(load, bases).has_value();
+  void follow(int bases, const BaseCheck& check) { static_cast<void>(known_.follow(bases, check)); }
+  /// Whether what this knows is of loads on the same unknowns.
+  [[nodiscard]] bool takes(const Load& load) const { return known_.takes(load); }
+  /// What full checks let expect of another load; nothing: it is no sum of theirs, or the base is
+  /// one that nothing is known of.
+  [[nodiscard]] std::optional<CheckedLoads::Sum> expected(const Load& load, int bases) {
+    return known_.expected(load, bases);
   }
 
   /// Energy [N mm] of a defect of the deferred update that needs no refinement.
-  [[nodiscard]] double energy_tolerance(double scale) const;
-  /// Error estimate of a solution whose load is `scale` times that of the last full check; nothing
-  /// when that is too long ago or the estimate does not vouch for double precision.
-  [[nodiscard]] std::optional<double> error(double scale, const Solution& solution) const;
+  [[nodiscard]] double energy_tolerance(const CheckedLoads::Sum& expected) const;
+  /// Error estimate of a solution; nothing when the full checks are too long ago, their shares
+  /// cancel, or the estimate does not vouch for double precision.
+  [[nodiscard]] std::optional<double> error(const CheckedLoads::Sum& expected,
+                                            const Solution& solution) const;
 
  private:
   double promised_;          // or a tenth of the scene's tolerance
   double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
-  // Of the last full check:
-  Load load_;
-  Solution solution_;
-  double stress_of_residual_ = 0;  // [MPa/N]
-  int bases_ = 0;                  // 0: there was none
+  CheckedLoads known_;
 };
 
 }  // namespace sunder::solver

@@ -94,10 +94,11 @@ SolveReport FrameSolver::solve_everywhere(const Load& load) {
   SolveReport report;
   refined_ = false;
   check_ = check_of(load);
-  const auto scale = check_ ? check_->scale_of(load, device_.bases()) : std::nullopt;
-  solve_once(scale ? check_->energy_tolerance(*scale) : 0, report);
-  const auto known =
-      scale && device_.deferred()->converged() ? check_->error(*scale, solution()) : std::nullopt;
+  const auto expected = check_ ? check_->expected(load, device_.bases()) : std::nullopt;
+  solve_once(expected ? check_->energy_tolerance(*expected) : 0, report);
+  const auto known = expected && device_.deferred()->converged()
+                         ? check_->error(*expected, solution())
+                         : std::nullopt;
   if (known) {
     report.error = *known;
   } else {
@@ -110,7 +111,7 @@ SolveReport FrameSolver::solve_everywhere(const Load& load) {
 FrameCheck* FrameSolver::check_of(const Load& load) {
   if (!checks_) return nullptr;
   for (FrameCheck& check : checks_->all()) check.follow(device_.bases(), device_.base_check());
-  return &checks_->of(load, device_.bases());
+  return &checks_->of(load);
 }
 
 /// A condensed frame has no residual outside its region: the energy of what damage lacks bounds
@@ -119,7 +120,7 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
   for (EnergyCheck& each : energy_checks_->all()) {
     each.follow(device_.bases(), device_.base_check());
   }
-  EnergyCheck& check = energy_checks_->of(load, device_.bases());
+  EnergyCheck& check = energy_checks_->of(load);
   // The solution without a full check, where one like it has had its check.
   if (const auto expected = check.expected(load, device_.bases())) {
     const auto [largest_u, largest] = device_.solve_region(check.energy_tolerance(*expected));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two checks, each of loads of one kind: one direction, or some unknowns. A question on the side
+// Two checks, each of loads on some unknowns. A question on the side
 // (which instrument broke an element: attribution.hpp) has a load of its own; what is known of the
 // frames' load must not depend on whether somebody asked.
 #pragma once
@@ -17,9 +17,9 @@ class RecentChecks {
   template <class... Of>
   explicit RecentChecks(const Of&... of) : checks_{Check(of...), Check(of...)} {}
 
-  /// The check that takes the load's kind; else the one used longest ago.
-  [[nodiscard]] Check& of(const Load& load, int bases) {
-    if (checks_[last_].takes(load, bases)) return checks_[last_];
+  /// The check that takes the load's unknowns; else the one used longest ago.
+  [[nodiscard]] Check& of(const Load& load) {
+    if (checks_[last_].takes(load)) return checks_[last_];
     last_ = 1 - last_;
     return checks_[last_];
   }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <random>
 
 #include "sunder/error.hpp"
 #include "support/accuracy.hpp"
@@ -65,6 +67,54 @@ INSTANTIATE_TEST_SUITE_P(
                       PromiseCase{"FactorAlpha1e8", Route::factor, 1, 0.4, 1e-8},
                       PromiseCase{"CondensedAlpha1e8", Route::condensed, 1, 0.4, 1e-8}),
     [](const auto& p) { return p.param.name; });
+
+// Two hands pull where they like, six directions in all. Once their loads have had full checks a
+// quiet frame takes one application of the base, and what it promises still holds.
+TEST_P(Estimate, OfHandsThatWanderNeedsNoCheckOfEveryFrame) {
+  Scene scene = held_board();
+  scene.solver.route = GetParam().route;
+  scene.fracture.alpha = GetParam().alpha;
+  for (auto& [name, m] : scene.materials) {
+    if (!m.yield) m.young *= GetParam().contrast;
+    m.poisson = GetParam().poisson;
+  }
+  const Body body(std::move(scene));
+  const Mesh& mesh = body.problem->mesh();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> pull(-20, 20);
+  std::vector<double> force(body.problem->dofs().size(), 0.0);
+  const auto wander = [&] {
+    const Vec3 right(pull(random), pull(random), pull(random)),
+        left(pull(random), pull(random), pull(random));
+    for (Index n = 0; n < body.problem->node_count(); ++n) {
+      const Vec3& x = mesh.nodes[n];
+      if (x.y() > 0.001 || (x.x() < 49.999 && x.x() > 0.001)) continue;
+      const Vec3& of = x.x() > 25 ? right : left;
+      for (int axis = 0; axis < 3; ++axis) force[3 * static_cast<std::size_t>(n) + axis] = of[axis];
+    }
+    body.load(force);
+    return body.backend->solve();
+  };
+  const auto sequence = crack_sequence(*body.problem, 40, 12);
+  int full = 0, frames = 0;
+  for (std::size_t i = 0; i < sequence.size(); i += 10) {
+    body.backend->destroy(std::span(sequence).subspan(i, 10));
+    for (int k = 0; k < 12; ++k) static_cast<void>(wander());  // as many directions, and again
+    for (int k = 0; k < 20; ++k, ++frames) {
+      const SolveReport report = wander();
+      EXPECT_LE(report.error, kCrackTolerance) << i;
+      if (report.back_solves > 1) ++full;
+      if (k % 10 != 0) continue;
+      const auto destroyed = body.backend->destroyed();
+      const double error =
+          stress_error(destroyed, body.stress(), yardstick(*body.problem, destroyed, force).stress);
+      constexpr double kOfRounding = 3, kReference = 1e-11;
+      EXPECT_LE(error, kOfRounding * report.error + kReference) << i;
+    }
+  }
+  std::printf("%d of %d frames with a full check\n", full, frames);
+  EXPECT_LE(full, frames / 5);
+}
 
 /// A frame after 60 fractures along a crack, by a route and to a tolerance.
 struct Frame {
