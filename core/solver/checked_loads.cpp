@@ -52,9 +52,14 @@ bool CheckedLoads::follow(int bases, const BaseCheck& check) {
   if (bases_ == 0 || bases == bases_ || !(check.stress_of_residual > 0)) return false;
   const auto sum = takes(check.load) ? sum_of(check.load) : std::nullopt;
   if (!sum) return false;
-  checked(check.load, {check.error, check.stress_of_residual, sum->largest_u, sum->largest_stress},
+  checked(check.load,
+          {check.error, check.stress_of_residual, sum->largest_u, sum->largest_stress, false},
           bases);
   return true;
+}
+
+void CheckedLoads::event() {
+  for (Found& of : found_) of.fresh = false;
 }
 
 std::optional<CheckedLoads::Sum> CheckedLoads::expected(const Load& load, int bases) {
@@ -118,7 +123,8 @@ std::size_t CheckedLoads::free_slot() const {
   return slot;
 }
 
-/// Columns anew: the newest load, then of the others always the one that adds most.
+/// Columns anew: the newest load, then of the others always the one that adds most, those that are
+/// older than the last event at the end.
 void CheckedLoads::sort_in(std::size_t newest) {
   std::array<std::size_t, kMost> others{};
   std::size_t left = 0;
@@ -136,20 +142,23 @@ void CheckedLoads::sort_in(std::size_t newest) {
   if (!(beyond_span() > 0)) return;  // no load, no direction
   r_.setZero(kMost, kMost);
   take(newest);
-  while (left > 0) {
-    double most = 0;
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < left; ++i) {
-      bring(others[i]);
-      const double beyond = beyond_span();
-      if (beyond > most) next = i;
-      most = std::max(most, beyond);
+  for (const bool fresh : {true, false}) {
+    for (;;) {
+      double most = 0;
+      std::size_t next = 0;
+      for (std::size_t i = 0; i < left; ++i) {
+        if (found_[others[i]].fresh != fresh) continue;
+        bring(others[i]);
+        const double beyond = beyond_span();
+        if (beyond > most) next = i;
+        most = std::max(most, beyond);
+      }
+      if (!(most >= kApart)) break;
+      bring(others[next]);
+      static_cast<void>(beyond_span());
+      take(others[next]);
+      others[next] = others[--left];
     }
-    if (!(most >= kApart)) return;
-    bring(others[next]);
-    static_cast<void>(beyond_span());
-    take(others[next]);
-    others[next] = others[--left];
   }
 }
 
@@ -159,13 +168,14 @@ std::optional<CheckedLoads::Sum> CheckedLoads::sum_of(const Load& load) {
   const auto k = static_cast<Eigen::Index>(size_);
   r_.topLeftCorner(k, k).triangularView<Eigen::Upper>().solveInPlace(shares_);
   Sum sum;
-  sum.alone = true;
+  sum.alone = sum.fresh = true;
   const double all = shares_.cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < size_; ++i) {
     const double share = std::abs(shares_[static_cast<Eigen::Index>(i)]);
     if (share <= kInSpan * all) continue;
     const Found& of = found_[order_[i]];
     sum.alone = sum.alone && i == 0;
+    sum.fresh = sum.fresh && of.fresh;
     sum.largest_u += share * of.largest_u;
     sum.largest_stress += share * of.largest_stress;
     sum.stress_error += share * of.largest_stress * of.error;

@@ -28,12 +28,15 @@ class CheckedLoads {
     double stress_of_residual = 0;  ///< that a residual of 1 N is worth [MPa]
     double largest_u = 0;           ///< [mm]
     double largest_stress = 0;      ///< over live elements [MPa]
+    bool fresh = true;              ///< no event has changed the body since
   };
   /// Takes what a full check has found, on the base of that number (from 1), before what others
   /// have: of them those stay that are of that base and add most to what all span.
   void checked(const Load& load, const Found& found, int bases);
   /// Takes what is known of a base that is new since the last full check; false: nothing of use.
   bool follow(int bases, const BaseCheck& check);
+  /// An event has changed the body.
+  void event();
   /// Whether the loads known are on the same unknowns.
   [[nodiscard]] bool takes(const Load& load) const;
 
@@ -43,6 +46,7 @@ class CheckedLoads {
     double stress_error = 0;                   ///< at most, by the shares [MPa]
     double error = 0, stress_of_residual = 0;  ///< the largest of those that it is made of
     bool alone = false;                        ///< a multiple of the last one checked
+    bool fresh = false;                        ///< no event since any of them
   };
   /// Of a load; nothing: it is no sum of theirs, or the base is one that nothing is known of.
   [[nodiscard]] std::optional<Sum> expected(const Load& load, int bases);

@@ -30,12 +30,7 @@ EnergyCheck::EnergyCheck(const Problem& problem)
 void EnergyCheck::checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                           double largest_u, double largest) {
   report_ = report;
-  changed_ = false;
   known_.checked(load, {unrefined, 0, largest_u, largest}, bases);
-}
-
-void EnergyCheck::follow(int bases, const BaseCheck& check) {
-  if (known_.follow(bases, check)) changed_ = true;
 }
 
 double EnergyCheck::energy_tolerance(const CheckedLoads::Sum& expected) const {
@@ -51,14 +46,19 @@ std::optional<SolveReport> EnergyCheck::known(const CheckedLoads::Sum& expected,
   report.iterations = 0;
   report.back_solves = 1;
   const double tolerance = problem_.scene().solver.tolerance;
-  if (!changed_ && expected.alone) {  // the solution of that check, before it was refined
+  if (expected.fresh && expected.alone) {  // the solution of that check, before it was refined
     report.error = std::max(report.error, expected.error);
     if (report.error <= tolerance) return report;
   }
   if (!(largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
   if (!(expected.largest_stress <= kGrowth * largest)) return std::nullopt;  // shares that cancel
-  report.error = kAmplified * std::max(expected.error, expected.stress_error / largest) +
-                 stress_of_energy_ * std::sqrt(std::max(0.0, energy)) / largest;
+  const double of_base = std::max(expected.error, expected.stress_error / largest),
+               lacking = stress_of_energy_ * std::sqrt(std::max(0.0, energy)) / largest;
+  if (expected.fresh) {  // the same of a sum
+    report.error = std::max(report.error, of_base) + lacking;
+    if (report.error <= std::min(kEnough, tolerance)) return report;
+  }
+  report.error = kAmplified * of_base + lacking;
   if (!(report.error <= std::min(kEnough, tolerance / 10))) return std::nullopt;
   return report;
 }

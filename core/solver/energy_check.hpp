@@ -22,7 +22,7 @@ class EnergyCheck {
   void checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                double largest_u, double largest);
   /// Takes what is known of a base that is new since the last full check.
-  void follow(int bases, const BaseCheck& check);
+  void follow(int bases, const BaseCheck& check) { static_cast<void>(known_.follow(bases, check)); }
   /// Whether what this knows is of loads on the same unknowns.
   [[nodiscard]] bool takes(const Load& load) const { return known_.takes(load); }
   /// What full checks let expect of another load; nothing: it needs a full check.
@@ -30,7 +30,7 @@ class EnergyCheck {
     return known_.expected(load, bases);
   }
   /// An event has changed the body.
-  void event() { changed_ = true; }
+  void event() { known_.event(); }
 
   /// Energy [N mm] of a defect that needs no refinement.
   [[nodiscard]] double energy_tolerance(const CheckedLoads::Sum& expected) const;
@@ -44,7 +44,6 @@ class EnergyCheck {
   double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
   SolveReport report_;       // of the last full check
   CheckedLoads known_;
-  bool changed_ = true;  // since the last full check
 };
 
 }  // namespace sunder::solver

@@ -43,6 +43,8 @@ class FrameCheck {
   /// cancel, or the estimate does not vouch for double precision.
   [[nodiscard]] std::optional<double> error(const CheckedLoads::Sum& expected,
                                             const Solution& solution) const;
+  /// An event has changed the body.
+  void event() { known_.event(); }
 
  private:
   double promised_;          // or a tenth of the scene's tolerance

@@ -46,6 +46,9 @@ FrameSolver::FrameSolver(const Problem& problem, FrameDevice& device)
 
 void FrameSolver::event() {
   last_.holds = false;
+  if (checks_) {
+    for (FrameCheck& check : checks_->all()) check.event();
+  }
   if (!energy_checks_) return;
   for (EnergyCheck& check : energy_checks_->all()) check.event();
 }

@@ -2,6 +2,7 @@
 // The error that a frame reports while a body tears is never under the true one.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -69,7 +70,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& p) { return p.param.name; });
 
 // Two hands pull where they like, six directions in all. Once their loads have had full checks a
-// quiet frame takes one application of the base, and what it promises still holds.
+// frame needs no more of them than under a load that keeps its direction, and what it promises
+// still holds.
 TEST_P(Estimate, OfHandsThatWanderNeedsNoCheckOfEveryFrame) {
   Scene scene = held_board();
   scene.solver.route = GetParam().route;
@@ -78,42 +80,53 @@ TEST_P(Estimate, OfHandsThatWanderNeedsNoCheckOfEveryFrame) {
     if (!m.yield) m.young *= GetParam().contrast;
     m.poisson = GetParam().poisson;
   }
-  const Body body(std::move(scene));
-  const Mesh& mesh = body.problem->mesh();
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> pull(-20, 20);
-  std::vector<double> force(body.problem->dofs().size(), 0.0);
-  const auto wander = [&] {
-    const Vec3 right(pull(random), pull(random), pull(random)),
-        left(pull(random), pull(random), pull(random));
-    for (Index n = 0; n < body.problem->node_count(); ++n) {
-      const Vec3& x = mesh.nodes[n];
-      if (x.y() > 0.001 || (x.x() < 49.999 && x.x() > 0.001)) continue;
-      const Vec3& of = x.x() > 25 ? right : left;
-      for (int axis = 0; axis < 3; ++axis) force[3 * static_cast<std::size_t>(n) + axis] = of[axis];
-    }
-    body.load(force);
-    return body.backend->solve();
-  };
-  const auto sequence = crack_sequence(*body.problem, 40, 12);
-  int full = 0, frames = 0;
-  for (std::size_t i = 0; i < sequence.size(); i += 10) {
-    body.backend->destroy(std::span(sequence).subspan(i, 10));
-    for (int k = 0; k < 12; ++k) static_cast<void>(wander());  // as many directions, and again
-    for (int k = 0; k < 20; ++k, ++frames) {
-      const SolveReport report = wander();
-      EXPECT_LE(report.error, kCrackTolerance) << i;
-      if (report.back_solves > 1) ++full;
-      if (k % 10 != 0) continue;
-      const auto destroyed = body.backend->destroyed();
-      const double error =
-          stress_error(destroyed, body.stress(), yardstick(*body.problem, destroyed, force).stress);
-      constexpr double kOfRounding = 3, kReference = 1e-11;
-      EXPECT_LE(error, kOfRounding * report.error + kReference) << i;
+  constexpr int kFrames = 20, kEvents = 4;
+  std::array<int, 2> full{};
+  for (const bool wander : {false, true}) {
+    const Body body(scene);
+    const Mesh& mesh = body.problem->mesh();
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> pull(-20, 20);
+    std::vector<double> force(body.problem->dofs().size(), 0.0);
+    Vec3 right(3, -20, 5), left(-9, -4, 7);
+    const auto frame = [&] {
+      for (Vec3* of : {&right, &left}) {
+        if (wander)
+          *of = Vec3(pull(random), pull(random), pull(random));
+        else
+          *of *= 1.01;
+      }
+      for (Index n = 0; n < body.problem->node_count(); ++n) {
+        const Vec3& x = mesh.nodes[n];
+        if (x.y() > 0.001 || (x.x() < 49.999 && x.x() > 0.001)) continue;
+        const Vec3& of = x.x() > 25 ? right : left;
+        for (int axis = 0; axis < 3; ++axis) {
+          force[3 * static_cast<std::size_t>(n) + static_cast<std::size_t>(axis)] = of[axis];
+        }
+      }
+      body.load(force);
+      return body.backend->solve();
+    };
+    const auto sequence = crack_sequence(*body.problem, 10 * kEvents, 12);
+    for (std::size_t i = 0; i < sequence.size(); i += 10) {
+      body.backend->destroy(std::span(sequence).subspan(i, 10));
+      for (int k = 0; k < 12; ++k) static_cast<void>(frame());  // as many directions, and again
+      for (int k = 0; k < kFrames; ++k) {
+        const SolveReport report = frame();
+        EXPECT_LE(report.error, kCrackTolerance) << i;
+        if (report.back_solves > 1) ++full[wander];
+        if (k % 10 != 0) continue;
+        const auto destroyed = body.backend->destroyed();
+        const double error = stress_error(destroyed, body.stress(),
+                                          yardstick(*body.problem, destroyed, force).stress);
+        constexpr double kOfRounding = 3, kReference = 1e-11;
+        EXPECT_LE(error, kOfRounding * report.error + kReference) << i;
+      }
     }
   }
-  std::printf("%d of %d frames with a full check\n", full, frames);
-  EXPECT_LE(full, frames / 5);
+  std::printf("full checks in %d frames: %d under one direction, %d under wandering hands\n",
+              kFrames * kEvents, full[0], full[1]);
+  EXPECT_LE(full[1], full[0] + 3 * kEvents);
 }
 
 /// A frame after 60 fractures along a crack, by a route and to a tolerance.
