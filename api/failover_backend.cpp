@@ -36,6 +36,8 @@ class FailoverBackend final : public Backend {
   bool prepares() const override { return current_->prepares(); }
   PreparationReport preparation() const override { return current_->preparation(); }
   bool can_destroy(Index element) const override { return current_->can_destroy(element); }
+  std::string why_no_grasp() const override { return current_->why_no_grasp(); }
+  bool can_grasp(Index node) const override { return current_->can_grasp(node); }
   void time_passes(bool on) override { current_->time_passes(on); }
   std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
   std::shared_ptr<InstrumentForces> instrument_forces() override {
@@ -45,6 +47,9 @@ class FailoverBackend final : public Backend {
  private:
   void do_set_load(const Load& load) override {
     load_ = load;
+    const auto grasped = gripped_dofs().subspan(problem().gripped_dofs().size());
+    grasped_.assign(grasped.begin(), grasped.end());
+    grips_since_.clear();
     attempt([&] { current_->set_load(load); });
   }
   SolveReport do_solve() override {
@@ -72,6 +77,12 @@ class FailoverBackend final : public Backend {
     attempt([&] { current_->destroy(elements); });
     events_.insert(events_.end(), elements.begin(), elements.end());
     solved_ = stressed_ = false;
+  }
+  void do_grip(const GripChange& change) override {
+    const Grips now{{change.grasp.begin(), change.grasp.end()},
+                    {change.release.begin(), change.release.end()}};
+    attempt([&] { now.tell(*current_); });
+    grips_since_.push_back(now);
   }
   void do_prepare(std::span<const Index> elements) override {
     attempt([&] { current_->prepare(elements); });
@@ -121,10 +132,21 @@ class FailoverBackend final : public Backend {
     if (!events_.empty()) current_->destroy(events_);
     if (needs().yield) current_->exclude_candidates(excluded_);
     if (!cut_off_.empty()) current_->cut_off(cut_off_);
+    current_->grasp(grasped_);
     if (load_) current_->set_load(*load_);
     if (solved_) current_->solve();
     if (stressed_) current_->stress();
+    for (const Grips& grips : grips_since_) grips.tell(*current_);
   }
+
+  /// Unknowns grasped or let go at once.
+  struct Grips {
+    std::vector<Index> grasp, release;
+    void tell(Backend& backend) const {
+      backend.release(release);
+      backend.grasp(grasp);
+    }
+  };
 
   mutable std::unique_ptr<Backend> current_;
   std::function<std::unique_ptr<Backend>()> replacement_;
@@ -132,6 +154,8 @@ class FailoverBackend final : public Backend {
   std::shared_ptr<InstrumentForces> instruments_;  // as handed out
   std::vector<Index> events_, excluded_, cut_off_;
   std::optional<Load> load_;
+  std::vector<Index> grasped_;      // beside the problem's own, under load_
+  std::vector<Grips> grips_since_;  // since load_
   bool solved_ = false, stressed_ = false;
 };
 

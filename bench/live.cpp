@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A live body: taking events back, what keeping them costs a step, removing and cutting, and the
-// surface after one rupture. Cells of the board set its size: 2,000, 8,000 and 30,000 elements.
+// A live body: taking hold of it, taking events back, what keeping them costs a step, removing and
+// cutting, and the surface after one rupture. Cells of the board set its size: 2,000, 8,000 and
+// 30,000 elements.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
 
 #include "cpu_reference/cpu_reference.hpp"
@@ -11,6 +13,7 @@
 #include "sunder/skin.hpp"
 #include "sunder/surface.hpp"
 #include "tearing_board.hpp"
+#include "torn_patch.hpp"
 
 namespace sunder::bench {
 namespace {
@@ -19,13 +22,17 @@ using Clock = std::chrono::steady_clock;
 
 /// Pulled by a constant force, nothing breaks by itself.
 struct LiveBoard {
-  LiveBoard(Index cells, Route route) : board(cells) {
-    Scene scene = TearingBoard::scene({cells, cells, 1, 50, 50, 2.5});
+  LiveBoard(Index cells, Route route) : LiveBoard(cells, route, true) {}
+  /// `all`: anything may be removed; else a patch at the right edge, which route condensed
+  /// computes.
+  LiveBoard(Index cells, Route route, bool all) : board(cells) {
+    Scene scene = all ? TearingBoard::scene({cells, cells, 1, 50, 50, 2.5}) : patch_scene(cells);
+    scene.instruments.clear();
     scene.instruments.push_back(
         {"forceps", Pull{Box{Vec3(49.99, -0.01, -1), Vec3(50.01, 0.01, 4)}, Vec3(0, -1, 0)}, {}});
     scene.solver.route = route;
     scene.fracture.model = FractureModel::b;
-    scene.live = true;
+    scene.live = all;
     scene.steps = 1 << 30;
     problem = std::make_shared<const Problem>(std::move(scene));
     simulation = std::make_unique<Simulation>(problem, create());
@@ -113,6 +120,85 @@ void cut(benchmark::State& state, Index cells, Route route) {
   state.counters["removed"] = removed;
 }
 
+/// Ten nodes near the board's right edge, above the tear.
+std::vector<Index> ten_nodes(const Problem& problem) {
+  std::vector<Index> nodes;
+  for (Index n = 0; n < problem.node_count() && nodes.size() < 10; ++n) {
+    const Vec3& x = problem.mesh().nodes[static_cast<std::size_t>(n)];
+    if (x.x() > 44 && x.y() > 26.5) nodes.push_back(n);
+  }
+  return nodes;
+}
+
+/// Taking hold of ten nodes and the first frame, in which the grip has moved.
+void grasp(benchmark::State& state, Index cells, Route route, bool all) {
+  LiveBoard live(cells, route, all);
+  live.keep();
+  const std::vector<Index> nodes = ten_nodes(*live.problem);
+  if (all) live.tear(0, 20);
+  live.simulation->step();
+  for (auto _ : state) {
+    const auto start = Clock::now();
+    const int grip = live.simulation->grasp(nodes, true);
+    live.simulation->pose(
+        grip, {live.simulation->centre_of(grip) + Vec3(0.02, 0.01, 0), {0, 0, 0.01, 1}});
+    live.simulation->step();
+    state.SetIterationTime(since(start));
+    live.simulation->undo();
+  }
+  state.counters["tets"] = static_cast<double>(live.problem->tet_count());
+}
+
+/// A frame in which the grip goes another way than before: a new load.
+void pose(benchmark::State& state, Index cells, Route route, bool all) {
+  LiveBoard live(cells, route, all);
+  if (all) live.tear(0, 20);
+  live.simulation->step();
+  const int grip = live.simulation->grasp(ten_nodes(*live.problem), true);
+  const Vec3 centre = live.simulation->centre_of(grip);
+  double at = 0;
+  for (auto _ : state) {
+    at += 1;
+    const auto start = Clock::now();
+    live.simulation->pose(grip, {centre + 0.02 * Vec3(std::sin(at), std::cos(1.7 * at), 0),
+                                 {0, 0, 0.01 * std::sin(2.3 * at), 1}});
+    live.simulation->step();
+    state.SetIterationTime(since(start));
+  }
+}
+
+/// A frame under a force that goes another way than before, with no grip there.
+void new_load(benchmark::State& state, Index cells, Route route, bool all) {
+  LiveBoard live(cells, route, all);
+  if (all) live.tear(0, 20);
+  double at = 0;
+  for (auto _ : state) {
+    at += 1;
+    live.simulation->drive(0, Vec3(std::sin(at), -1, std::cos(1.7 * at)));
+    const auto start = Clock::now();
+    live.simulation->step();
+    state.SetIterationTime(since(start));
+  }
+}
+
+/// Letting go, with the frame after it.
+void release(benchmark::State& state, Index cells, Route route, bool all) {
+  LiveBoard live(cells, route, all);
+  live.keep();
+  if (all) live.tear(0, 20);
+  live.simulation->step();
+  const int grip = live.simulation->grasp(ten_nodes(*live.problem), true);
+  live.simulation->pose(grip, {live.simulation->centre_of(grip) + Vec3(0.02, 0.01, 0)});
+  live.simulation->step();
+  for (auto _ : state) {
+    const auto start = Clock::now();
+    live.simulation->release(grip);
+    live.simulation->step();
+    state.SetIterationTime(since(start));
+    live.simulation->undo();
+  }
+}
+
 /// What has changed by one rupture, and nothing.
 void surface(benchmark::State& state, Index cells, bool changed) {
   LiveBoard live(cells, Route::factor);
@@ -188,6 +274,18 @@ const bool kRows = [] {
       }
       add("remove" + of, [=](auto& s) { remove(s, cells, route); });
       add("cut" + of, [=](auto& s) { cut(s, cells, route); });
+    }
+    for (const auto& [route, word] : {std::pair{Route::inverse, "inverse"},
+                                      {Route::condensed, "condensed"},
+                                      {Route::factor, "factor"}}) {
+      // The dense inverse of 30,246 elements takes 8 GB.
+      if (route == Route::inverse && cells > 36) continue;
+      const bool all = route != Route::condensed;
+      const std::string of = std::string("/") + word + "/" + size;
+      add("grasp" + of, [=](auto& s) { grasp(s, cells, route, all); });
+      add("pose" + of, [=](auto& s) { pose(s, cells, route, all); });
+      add("new_load" + of, [=](auto& s) { new_load(s, cells, route, all); });
+      add("release" + of, [=](auto& s) { release(s, cells, route, all); });
     }
     const std::string of = std::string("/") + size;
     add("surface_of_one_rupture" + of, [=](auto& s) { surface(s, cells, true); });

@@ -15,10 +15,11 @@ constexpr double kCorrection = 1e-4;
 class ConjugateGradientRoute final : public InverseRoute {
  public:
   ConjugateGradientRoute(const DamagedBody& body, const IntactBody& intact)
-      : body_(body), intact_(intact) {}
+      : body_(body), intact_(intact), grips_(body, intact) {}
 
   Applied solve(const Load& load, const Eigen::VectorXd& f, Eigen::VectorXd& u) override {
-    intact_.solve(f, load.displacements, u);  // the intact solution is the first guess
+    // The intact solution is the first guess.
+    intact_.solve(f, grips_.now(), load.displacements, u);
     body_.apply(u, product_);
     const double energy = u.dot(product_);
     Eigen::VectorXd r = f - product_, du;
@@ -53,16 +54,19 @@ class ConjugateGradientRoute final : public InverseRoute {
           body_.apply(in, out);
           clear_grips(out);
         },
-        [this](const Eigen::VectorXd& in, Eigen::VectorXd& out) { intact_.solve(in, {}, out); }, r,
-        stop, x);
+        [this](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+          intact_.solve(in, grips_.now(), {}, out);
+        },
+        r, stop, x);
   }
 
   void clear_grips(Eigen::VectorXd& v) const {
-    for (Index d : intact_.grips.dofs()) v[d] = 0;
+    for (Index d : body_.forms().gripped()) v[d] = 0;
   }
 
   const DamagedBody& body_;
   const IntactBody& intact_;
+  PresentGrips grips_;
   Eigen::VectorXd product_;
 };
 

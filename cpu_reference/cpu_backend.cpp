@@ -58,6 +58,7 @@ class CpuBackend final : public Backend {
     if (this->needs().damage && problem->scene().solver.prepare) reserve_prepared();
     if (this->needs().pristine) {  // so that the first time allocates no more than the next
       pristine_force_.setZero(problem->dof_count());
+      if (intact_) pristine_grips_.emplace(damaged_body(), *intact_);
       if (intact_) intact_->solve(pristine_force_, {}, pristine_u_);
     }
     if (route_->deferred() && !problem->gripped_dofs().empty()) instruments_.emplace(*problem);
@@ -278,6 +279,24 @@ class CpuBackend final : public Backend {
     return needs().damage && (!fields_.region() || fields_.region()->holds(element));
   }
 
+  std::string why_no_grasp() const override {
+    if (needs().pristine && !intact_) {
+      return "the intact body's field, which the fracture model reads, has no factor here that a "
+             "grip could be added to; take route factor on a machine with more memory, or model "
+             "\"A\"";
+    }
+    return {};
+  }
+  bool can_grasp(Index node) const override {
+    return !fields_.region() || fields_.region()->inside[node] != 0;
+  }
+
+  void do_grip(const GripChange& change) override {
+    solver_.grips_changed();
+    frame_.follow_grips(change.before);
+    route_->follow({.grasp = change.grasp, .release = change.release});
+  }
+
   void do_change(const fem::Change& change) override {
     if (!splits()) {
       throw UsageError("route " + solver::name_of(plan_.route) + " takes no new nodes");
@@ -302,7 +321,7 @@ class CpuBackend final : public Backend {
       pristine_force_[load.force_dofs[i]] = load.forces[i];
     }
     if (intact_) {
-      intact_->solve(pristine_force_, load.displacements, pristine_u_);
+      intact_->solve(pristine_force_, pristine_grips_->now(), load.displacements, pristine_u_);
     } else {
       never_damaged_->solve(load, pristine_force_, pristine_u_);
     }
@@ -332,6 +351,7 @@ class CpuBackend final : public Backend {
   solver::HostFrame frame_;
   solver::FrameSolver solver_;
   Eigen::VectorXd pristine_force_, pristine_u_;  // of the intact body
+  std::optional<PresentGrips> pristine_grips_;
   std::optional<solver::InstrumentBlock> instruments_;
   double waited_ms_ = 0;  // for rebases, as reported so far
   PreparationReport preparation_;

@@ -30,6 +30,11 @@ class DenseInverseRoute final : public InverseRoute {
   }
 
   void follow(const fem::Event& event) override {
+    if (event.of_grips()) {
+      grips_ = Grips(body_.forms().gripped());
+      grips_.read(x_);
+      return;
+    }
     if (body_.forms().came().empty()) {
       update_.gather(body_.problem(), event.leave);
       if (update_.apply(x_)) {

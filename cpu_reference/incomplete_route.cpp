@@ -116,12 +116,12 @@ class IncompleteRoute final : public InverseRoute {
   }
 
   void hold(Eigen::VectorXd& u, std::span<const double> displacements) const {
-    const auto grips = body_.problem().gripped_dofs();
+    const auto grips = body_.forms().gripped();
     for (std::size_t g = 0; g < grips.size(); ++g) u[grips[g]] = displacements[g];
   }
 
   void clear_grips(Eigen::VectorXd& v) const {
-    for (Index d : body_.problem().gripped_dofs()) v[d] = 0;
+    for (Index d : body_.forms().gripped()) v[d] = 0;
   }
 
   const DamagedBody& body_;

@@ -73,8 +73,23 @@ IntactBody::IntactBody(const Problem& problem, bool rebases, const fem::Analysis
 
 void IntactBody::solve(const Eigen::VectorXd& f, std::span<const double> displacement,
                        Eigen::VectorXd& x) const {
+  solve(f, grips, displacement, x);
+}
+
+void IntactBody::solve(const Eigen::VectorXd& f, const Grips& by,
+                       std::span<const double> displacement, Eigen::VectorXd& x) const {
   factor.solve(f, x, work_);
-  grips.hold(x, displacement);
+  by.hold(x, displacement);
+}
+
+const Grips& PresentGrips::now() const {
+  const auto gripped = body_.forms().gripped();
+  if (std::ranges::equal(gripped, intact_.grips.dofs())) return intact_.grips;
+  if (!others_ || !std::ranges::equal(gripped, others_->dofs())) {
+    others_.emplace(gripped);
+    others_->set_columns(intact_.factor.inverse_columns(gripped));
+  }
+  return *others_;
 }
 
 }  // namespace sunder::cpu_reference

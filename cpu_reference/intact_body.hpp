@@ -5,9 +5,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "body/analysis.hpp"
+#include "body/damaged_body.hpp"
 #include "body/ordered_stiffness.hpp"
 #include "linear_algebra/factor.hpp"
 #include "sunder/problem.hpp"
@@ -18,7 +21,7 @@ namespace sunder::cpu_reference {
 /// x + C C_G^-1 (d - x_G) has x_G = d, and the added forces act on G alone.
 class Grips {
  public:
-  explicit Grips(std::span<const Index> dofs) : dofs_(dofs) {}
+  explicit Grips(std::span<const Index> dofs) : dofs_(dofs.begin(), dofs.end()) {}
   /// Takes new columns A^-1 E_G, shape (n x dofs). Throws NumericalError when C_G is singular.
   void set_columns(Eigen::MatrixXd columns);
   /// The same out of the whole inverse.
@@ -34,7 +37,7 @@ class Grips {
  private:
   void factor();
 
-  std::span<const Index> dofs_;
+  std::vector<Index> dofs_;
   Eigen::MatrixXd columns_, at_grips_;                        // C and C_G
   Eigen::LLT<Eigen::MatrixXd> block_{Eigen::MatrixXd(0, 0)};  // copied before its first use
   mutable Eigen::VectorXd gap_;                               // room to work in
@@ -55,6 +58,9 @@ struct IntactBody {
   /// x = K0^-1 f with x_G = displacement (empty: 0). By one thread at a time.
   void solve(const Eigen::VectorXd& f, std::span<const double> displacement,
              Eigen::VectorXd& x) const;
+  /// The same with other grips.
+  void solve(const Eigen::VectorXd& f, const Grips& by, std::span<const double> displacement,
+             Eigen::VectorXd& x) const;
 
  private:
   std::shared_ptr<const linear_algebra::Factor> factor_;
@@ -68,6 +74,21 @@ struct IntactBody {
 
  private:
   mutable linear_algebra::SolveWork work_;
+};
+
+/// The grips of a body as they are now, on the intact one: those that were grasped at run time take
+/// a solve each, the first time that somebody asks.
+class PresentGrips {
+ public:
+  /// Both must outlive it.
+  PresentGrips(const fem::DamagedBody& body, const IntactBody& intact)
+      : body_(body), intact_(intact) {}
+  [[nodiscard]] const Grips& now() const;
+
+ private:
+  const fem::DamagedBody& body_;
+  const IntactBody& intact_;
+  mutable std::optional<Grips> others_;
 };
 
 }  // namespace sunder::cpu_reference

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "body/assembly.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::gpu {
 
@@ -73,6 +74,14 @@ void CondensedBody::publish(bool everywhere) {
 void CondensedBody::destroy(std::span<const Index> elements) {
   fields_.destroy(on_device(elements), {});  // it has no stiffness of its own
   route_->follow({.leave = elements});
+}
+
+void CondensedBody::grip(const fem::Event& event, std::span<const Index> before) {
+  frame_.follow_grips(before);
+  route_->follow(event);
+  if (pristine_ && !pristine_->follow(event)) {
+    throw NumericalError("the compliance of the gripped nodes is singular in double precision");
+  }
 }
 
 void CondensedBody::read_displacement(std::span<double> displacement) const {

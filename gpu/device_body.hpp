@@ -54,6 +54,8 @@ class DeviceBody {
   virtual void publish_stress() {}
   /// Follows an event that the body has recorded already.
   virtual void destroy(std::span<const Index> elements) = 0;
+  /// The same of grips; `before`: what was gripped.
+  virtual void grip(const fem::Event& event, std::span<const Index> before) = 0;
   virtual void cut_off(std::span<const Index> elements) { fields().cut_off(on_device(elements)); }
   /// Outside a region nothing is a candidate.
   virtual void exclude(std::span<const Index> elements) { fields().exclude(on_device(elements)); }

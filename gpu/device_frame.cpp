@@ -33,7 +33,7 @@ solver::Precision DeviceFrame::precision() const {
 }
 
 int DeviceFrame::solve(double energy_tolerance, bool residual) {
-  const bool reactions = !problem_.gripped_dofs().empty();
+  const bool reactions = !body_.forms().gripped().empty();
   return route_.solve(load_, energy_tolerance, residual || reactions);
 }
 
@@ -57,7 +57,7 @@ void DeviceFrame::sum_residual() {
   body_.apply(u_, r_);
   r_ = -r_;
   for (std::size_t i = 0; i < load_.forces.size(); ++i) r_[load_.force_dofs[i]] += load_.forces[i];
-  for (Index d : problem_.gripped_dofs()) r_[d] = 0;
+  for (Index d : body_.forms().gripped()) r_[d] = 0;
   padded_.assign(fields_.rows(), 0.0);
   std::copy(r_.begin(), r_.end(), padded_.begin());
   fields_.write_residual(padded_);

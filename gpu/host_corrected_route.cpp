@@ -119,6 +119,11 @@ void HostCorrectedRoute::destroy(std::span<const Index> elements) {
   follow_update();
 }
 
+void HostCorrectedRoute::grip(const fem::Event& event) {
+  update_->follow(event);
+  follow_update();
+}
+
 bool HostCorrectedRoute::rebase() {
   if (!update_->rebase()) return false;
   follow_update();

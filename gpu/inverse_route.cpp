@@ -308,6 +308,14 @@ void InverseRoute::destroy(std::span<const Index> elements) {
   follow_update();
 }
 
+void InverseRoute::grip(const fem::Event& event) {
+  if (eager_) throw UsageError("update eager takes no other grips");
+  const auto most = static_cast<Index>(event.grasp.size());
+  update_->follow(event, exact_.count() + most > exact_.most());
+  quiet_.columns = checked_.columns = kNone;
+  follow_update();
+}
+
 bool InverseRoute::rebase() {
   if (eager_) {
     if (std::ranges::count(body_.destroyed(), 1) == 0) return false;

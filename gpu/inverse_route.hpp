@@ -34,6 +34,7 @@ class InverseRoute final : public DeviceRoute {
   int correct() override;
   void add_correction() override;
   void destroy(std::span<const Index> elements) override;
+  void grip(const fem::Event& event) override;
   bool rebase() override;
 
   const solver::RenewedUpdate* update() const override { return update_.get(); }

@@ -11,6 +11,7 @@
 #include "gpu/vulkan/commands.hpp"
 #include "solver/renewed_update.hpp"
 #include "sunder/backend.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::gpu {
 
@@ -30,6 +31,8 @@ class DeviceRoute {
   virtual void add_correction() = 0;
   /// Follows an event; the body has destroyed the elements already.
   virtual void destroy(std::span<const Index> elements) = 0;
+  /// Follows an event of grips; the fields know those that are there now.
+  virtual void grip(const fem::Event&) { throw UsageError("this route takes no other grips"); }
   /// Computes anew what updates have worn out; false: this route has nothing of the kind.
   virtual bool rebase() { return false; }
 

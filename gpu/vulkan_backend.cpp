@@ -172,6 +172,7 @@ class VulkanBackend final : public Backend {
       if (!known) handed_out_ = handed_out();  // linear in the load, as the rest of the error
       add_handed_out(report);
       solved_ = true;
+      grasped_since_.clear();
       if (instruments_) publish_instruments();
       return report;
     } catch (const NumericalError&) {
@@ -195,7 +196,7 @@ class VulkanBackend final : public Backend {
 
   /// Only once somebody has asked for them: the reactions are read back from the device.
   void publish_instruments() {
-    reactions_.resize(problem().gripped_dofs().size());
+    reactions_.resize(gripped_dofs().size());
     body_->read_reactions(reactions_);
     instruments_->publish(*body_->grip_factor(), reactions_, load_.displacements);
   }
@@ -233,6 +234,30 @@ class VulkanBackend final : public Backend {
     body_->destroy(elements);
   }
 
+  std::string why_no_grasp() const override {
+    if (plan_.route == Route::cg) {
+      return "on backend vulkan route cg holds the scene's grips alone; take route inverse or "
+             "condensed, or backend cpu";
+    }
+    if (plan_.eager) {
+      return "on backend vulkan update eager holds the scene's grips alone; take update deferred, "
+             "or "
+             "backend cpu";
+    }
+    return {};
+  }
+  bool can_grasp(Index node) const override {
+    return !plan_.region || plan_.region->inside[static_cast<std::size_t>(node)] != 0;
+  }
+
+  void do_grip(const GripChange& change) override {
+    finish_display();
+    solver_->grips_changed();
+    body_->grip({.grasp = change.grasp, .release = change.release}, change.before);
+    for (Index d : change.release) std::erase(grasped_since_, d);
+    grasped_since_.insert(grasped_since_.end(), change.grasp.begin(), change.grasp.end());
+  }
+
   void do_exclude_candidates(std::span<const Index> elements) override {
     finish_display();
     body_->exclude(elements);
@@ -252,6 +277,9 @@ class VulkanBackend final : public Backend {
   Voigt do_read_stress(Index element) const override { return body_->read_stress(element); }
   void do_read_reactions(std::span<double> reactions) const override {
     body_->read_reactions(reactions);
+    for (std::size_t g = reactions.size() - grasped_since_.size(); g < reactions.size(); ++g) {
+      reactions[g] = 0;  // the last ones, of which the last solution knows nothing
+    }
   }
 
   std::future<IntactInverse> started_;
@@ -268,9 +296,10 @@ class VulkanBackend final : public Backend {
   bool renew_ = false;  // the summary was made before the last pieces were cut off
   std::optional<solver::InstrumentBlock> instruments_;  // once asked for
   std::vector<double> reactions_;
-  bool solved_ = false;            // the load and the damage as they are
-  double handed_out_ = 0;          // of the last solution whose error was estimated
-  std::optional<double> loosest_;  // error over the tolerance for what handing out costs
+  std::vector<Index> grasped_since_;  // the last solution
+  bool solved_ = false;               // the load and the damage as they are
+  double handed_out_ = 0;             // of the last solution whose error was estimated
+  std::optional<double> loosest_;     // error over the tolerance for what handing out costs
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "body/assembly.hpp"
 #include "gpu/cg_route.hpp"
 #include "gpu/host_corrected_route.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::gpu {
 namespace {
@@ -67,6 +68,14 @@ void WholeBody::set_load(const Load& load) {
 void WholeBody::destroy(std::span<const Index> elements) {
   fields_.destroy(elements, damaged_.scale());
   route_->destroy(elements);
+}
+
+void WholeBody::grip(const fem::Event& event, std::span<const Index>) {
+  fields_.grip(damaged_.forms().gripped());
+  route_->grip(event);
+  if (pristine_ && !pristine_->follow(event)) {
+    throw NumericalError("the compliance of the gripped nodes is singular in double precision");
+  }
 }
 
 void WholeBody::read_displacement(std::span<const Index> nodes,

@@ -26,6 +26,7 @@ class WholeBody final : public DeviceBody {
   void restore() override { fields_.restore(); }
   void publish(bool) override {}
   void destroy(std::span<const Index> elements) override;
+  void grip(const fem::Event& event, std::span<const Index> before) override;
 
   void read_displacement(std::span<double> displacement) const override {
     fields_.read_displacement(displacement);
@@ -34,7 +35,7 @@ class WholeBody final : public DeviceBody {
   void read_stress(std::span<Voigt> stress) const override { fields_.read_stress(stress); }
   Voigt read_stress(Index element) const override { return fields_.read_stress(element); }
   void read_reactions(std::span<double> reactions) const override {
-    fields_.read_reactions(problem_.gripped_dofs(), reactions);
+    fields_.read_reactions(damaged_.forms().gripped(), reactions);
   }
   const Eigen::MatrixXd* grip_factor() const override { return route_->grip_factor(); }
   void solve_pristine(const Load& load, std::span<double> displacement) override;

@@ -360,8 +360,9 @@ SUNDER_API void sunder_dynamics_init(sunder_dynamics* dynamics);
 /// Null: statics, the default.
 SUNDER_API sunder_status sunder_scene_set_dynamics(sunder_scene scene,
                                                    const sunder_dynamics* dynamics);
-/// Whether a host may remove elements and cut at any time (default 0). Needed where the scene has
-/// neither a fracture model nor removals; on route condensed all of the body is computed then.
+/// Whether a host may grasp, remove elements and cut at any time (default 0). Needed where the
+/// scene has neither a fracture model nor removals; on route condensed all of the body is computed
+/// then.
 SUNDER_API sunder_status sunder_scene_set_live(sunder_scene scene, int32_t live);
 /// Whether stress is wanted (default 1). With 0 it is left out unless the fracture model needs it.
 SUNDER_API sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted);
@@ -602,7 +603,8 @@ typedef struct sunder_event {
   int32_t element;          ///< with `lives`: that asked for a new crack; -1: one has grown
   int32_t cause;            ///< SUNDER_CAUSE_*: which hypothesis
   int32_t crack;            ///< id; -1: none
-  int32_t instrument;       ///< with the largest share of its maximum shear stress; -1: not known
+  int32_t instrument;       ///< with the largest share of its maximum shear stress, or the id of a
+                            ///< grip or a push; -1: not known
   double instrument_share;  ///< that share of the whole; 0: not known
   double load_factor;
   double ratio;  ///< mss, principal: measure / yield; sif: r_e / max(rho, h/2) or K / K_c; else 0
@@ -705,7 +707,7 @@ SUNDER_API sunder_status sunder_simulation_warning_count(sunder_simulation simul
 SUNDER_API sunder_status sunder_simulation_warning_at(sunder_simulation simulation, int32_t index,
                                                       char* text, size_t capacity, size_t* length);
 
-/* ---- A live body: cut, go back and forth, draw (docs/embedding.md "A live body") --------------
+/* ---- A live body: grasp, cut, go back and forth, draw (docs/embedding.md "A live body") -------
  */
 
 /// The next step with a bound on its time in place of that of the solver options: once max_ms [ms]
@@ -731,19 +733,67 @@ SUNDER_API sunder_status sunder_simulation_remove(sunder_simulation simulation,
 SUNDER_API sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* swept,
                                                size_t size, int32_t* removed);
 
-/// Keeps what is done from now on, so that it can be undone; before the first step. `quick`: the
-/// last so many steps and removals in which something broke are taken back by what the solver has
+/// Takes hold of nodes where they are now, on all axes: nothing moves by it. `rigid` 1: they move
+/// as one solid, which may turn, about its place, the mean of theirs; 0: as points that all go the
+/// same way. `grip`: its id, after the indices of the scene's instruments; none comes twice.
+/// SUNDER_ERROR_ORDER, and nothing changes: a node that is not there, named twice, held by a
+/// support or another grip, of which all elements are gone, or out of this route's reach; nothing
+/// can be removed (sunder_scene_set_live), cracks split, or this backend and route hold no more
+/// nodes (the sentence names one that does).
+SUNDER_API sunder_status sunder_simulation_grasp(sunder_simulation simulation, const int32_t* nodes,
+                                                 size_t count, int32_t rigid, int32_t* grip);
+/// The same of all nodes that are within a radius [mm] of a place now and could be grasped; that is
+/// the grip's place. SUNDER_ERROR_ORDER where there are none.
+SUNDER_API sunder_status sunder_simulation_grasp_near(sunder_simulation simulation,
+                                                      const double near[3], double radius,
+                                                      int32_t rigid, int32_t* grip);
+/// Which nodes it holds. `count` is how many; they are written where `capacity` is enough, else
+/// SUNDER_ERROR_SIZE. `nodes` may be null with capacity 0.
+SUNDER_API sunder_status sunder_simulation_held_nodes(sunder_simulation simulation, int32_t grip,
+                                                      int32_t* nodes, size_t capacity,
+                                                      size_t* count);
+/// Where it is [mm].
+SUNDER_API sunder_status sunder_simulation_grip_place(sunder_simulation simulation, int32_t grip,
+                                                      double position[3]);
+/// Brings a grip to a place [mm] and a rotation since it took hold, from the next step on.
+/// `quaternion` (x, y, z, w), of any length above 0; null: no rotation. SUNDER_ERROR_ORDER, as of
+/// all functions of a grip or a push: it is not there, or has been let go; of points that would
+/// turn.
+SUNDER_API sunder_status sunder_simulation_pose(sunder_simulation simulation, int32_t grip,
+                                                const double position[3],
+                                                const double quaternion[4]);
+/// What a grip exerts on the body in the last solve: force [N], and torque about its place [N mm].
+/// Zero before the first solve since it took hold.
+SUNDER_API sunder_status sunder_simulation_wrench(sunder_simulation simulation, int32_t grip,
+                                                  double force[3], double torque[3]);
+/// Lets go: from the next step on the body is as if it had never been held there.
+SUNDER_API sunder_status sunder_simulation_release(sunder_simulation simulation, int32_t grip);
+/// A force [N] in equal parts on nodes, from the next step on until it is dropped. `push`: an id as
+/// of a grip. SUNDER_ERROR_ORDER, and nothing changes: a node that is not there, named twice or
+/// held on all axes by a support.
+SUNDER_API sunder_status sunder_simulation_push(sunder_simulation simulation, const int32_t* nodes,
+                                                size_t count, const double force[3], int32_t* push);
+/// A push acts on these nodes, with this force, from the next step on.
+SUNDER_API sunder_status sunder_simulation_move(sunder_simulation simulation, int32_t push,
+                                                const int32_t* nodes, size_t count,
+                                                const double force[3]);
+/// A push ends.
+SUNDER_API sunder_status sunder_simulation_drop(sunder_simulation simulation, int32_t push);
+
+/// Keeps what is done from now on, so that it can be undone; before the first step, grip and push.
+/// `quick`: the last so many actions that undo stops before are taken back by what the solver has
 /// kept of each; others, and all where route or law keep nothing, by doing again what was done
 /// before. SUNDER_ERROR_ORDER later on.
 SUNDER_API sunder_status sunder_simulation_keep_history(sunder_simulation simulation,
                                                         int32_t quick);
-/// How many steps and removals can be taken back and done again.
+/// How many actions can be taken back and done again.
 SUNDER_API sunder_status sunder_simulation_history(sunder_simulation simulation, int32_t* undos,
                                                    int32_t* redos);
-/// Takes back the last `actions` steps and removals in which something broke, with all that came
-/// after, driving included; every later result is bit by bit what it would have been then. `events`
-/// that went, and whether it was done by doing again what was done before (`replayed`), may be
-/// null. SUNDER_ERROR_ORDER, and nothing changes: there are fewer.
+/// Takes back the last `actions` of these: steps and removals in which something broke, grips and
+/// pushes that came or went; with all that came after, driving and poses included; every later
+/// result is bit by bit what it would have been then. `events` that went, and whether it was done
+/// by doing again what was done before (`replayed`), may be null. SUNDER_ERROR_ORDER, and nothing
+/// changes: there are fewer.
 SUNDER_API sunder_status sunder_simulation_undo(sunder_simulation simulation, int32_t actions,
                                                 int32_t* events, int32_t* replayed);
 /// Does again what was taken back, until the next step or action. `events` that came, may be null.

@@ -68,8 +68,11 @@ void Damage::add(const Event& event) {
   come_.insert(come_.end(), event.come.begin(), event.come.end());
   nodes_.insert(nodes_.end(), event.nodes.begin(), event.nodes.end());
   ties_.insert(ties_.end(), event.ties.begin(), event.ties.end());
+  grasp_.insert(grasp_.end(), event.grasp.begin(), event.grasp.end());
+  release_.insert(release_.end(), event.release.begin(), event.release.end());
   const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
-  ends_.push_back({size(leave_), size(come_), size(nodes_), size(ties_)});
+  ends_.push_back(
+      {size(leave_), size(come_), size(nodes_), size(ties_), size(grasp_), size(release_)});
 }
 
 void Damage::take_back() {
@@ -79,6 +82,8 @@ void Damage::take_back() {
   come_.resize(end.come);
   nodes_.resize(end.nodes);
   ties_.resize(end.ties);
+  grasp_.resize(end.grasp);
+  release_.resize(end.release);
 }
 
 Event Damage::operator[](std::size_t i) const {
@@ -86,18 +91,27 @@ Event Damage::operator[](std::size_t i) const {
   const auto part = [](const auto& list, std::size_t from, std::size_t to) {
     return std::span(list).subspan(from, to - from);
   };
-  return {part(leave_, begin.leave, end.leave), part(come_, begin.come, end.come),
-          part(nodes_, begin.nodes, end.nodes), part(ties_, begin.ties, end.ties)};
+  return {part(leave_, begin.leave, end.leave),
+          part(come_, begin.come, end.come),
+          part(nodes_, begin.nodes, end.nodes),
+          part(ties_, begin.ties, end.ties),
+          false,
+          part(grasp_, begin.grasp, end.grasp),
+          part(release_, begin.release, end.release)};
 }
 
 Forms::Forms(const Problem& problem)
-    : problem_(&problem), destroyed_(static_cast<std::size_t>(problem.tet_count()), 0) {}
+    : problem_(&problem),
+      destroyed_(static_cast<std::size_t>(problem.tet_count()), 0),
+      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()) {}
 
 void Forms::add(std::span<const NewNode> nodes) {
   nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
 }
 
 void Forms::follow(const Event& event) {
+  for (Index d : event.release) std::erase(gripped_, d);
+  gripped_.insert(gripped_.end(), event.grasp.begin(), event.grasp.end());
   for (const Tie& tie : event.ties) {
     NewNode& node = nodes_[static_cast<std::size_t>(tie.node - problem_->node_count())];
     node.tie = tie.stiffness;

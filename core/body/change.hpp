@@ -52,6 +52,10 @@ struct Event {
   std::span<const NewNode> nodes{};
   std::span<const Tie> ties{};
   bool held = false;  ///< its maker has seen that it leaves nothing without a hold
+  /// Unknowns that a grip takes hold of, and others that one lets go. Such an event changes no
+  /// element.
+  std::span<const Index> grasp{}, release{};
+  [[nodiscard]] bool of_grips() const { return !grasp.empty() || !release.empty(); }
 };
 /// Elements in `leave` keep a share alpha of their stiffness.
 struct Change {
@@ -60,7 +64,8 @@ struct Change {
   std::vector<NewNode> nodes;
   std::vector<Tie> ties = {};
   bool held = false;
-  operator Event() const { return {leave, come, nodes, ties, held}; }
+  std::vector<Index> grasp = {}, release = {};
+  operator Event() const { return {leave, come, nodes, ties, held, grasp, release}; }
 };
 
 /// The record of what has happened to a body, change by change.
@@ -77,13 +82,14 @@ class Damage {
 
  private:
   struct End {
-    std::uint32_t leave = 0, come = 0, nodes = 0, ties = 0;
+    std::uint32_t leave = 0, come = 0, nodes = 0, ties = 0, grasp = 0, release = 0;
   };
   std::vector<End> ends_;  // of each event in the lists
   std::vector<Index> leave_;
   std::vector<Coming> come_;
   std::vector<NewNode> nodes_;
   std::vector<Tie> ties_;
+  std::vector<Index> grasp_, release_;
 };
 
 /// Every element's form after some changes.
@@ -109,6 +115,9 @@ class Forms {
   [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
   /// In the order of their ids, which begin after the mesh's.
   [[nodiscard]] std::span<const NewNode> new_nodes() const { return nodes_; }
+  /// Unknowns whose displacement grips prescribe: those of the problem, then others in the order in
+  /// which they were grasped.
+  [[nodiscard]] std::span<const Index> gripped() const { return gripped_; }
   /// The corners' nodes of the mesh: a new node's is its parent.
   [[nodiscard]] std::array<Index, 4> parents(const std::array<Index, 4>& corners) const;
   [[nodiscard]] const Problem& problem() const { return *problem_; }
@@ -118,6 +127,7 @@ class Forms {
   std::vector<std::uint8_t> destroyed_;  // per element of the mesh
   std::map<Index, Form> came_;
   std::vector<NewNode> nodes_;
+  std::vector<Index> gripped_;
 };
 
 /// An element's form in the mesh.

@@ -62,6 +62,10 @@ bool DamagedBody::change(const Change& change) {
   return true;
 }
 
+void DamagedBody::grip(std::span<const Index> grasp, std::span<const Index> release) {
+  record({.grasp = grasp, .release = release});
+}
+
 void DamagedBody::record(const Event& event) {
   {
     const std::lock_guard lock(record_->mutex);
@@ -123,6 +127,8 @@ void DamagedBody::read(std::size_t event, Change& change) const {
   change.nodes.assign(of.nodes.begin(), of.nodes.end());
   change.ties.assign(of.ties.begin(), of.ties.end());
   change.held = true;  // or it would not have been recorded
+  change.grasp.assign(of.grasp.begin(), of.grasp.end());
+  change.release.assign(of.release.begin(), of.release.end());
 }
 
 std::vector<Index> DamagedBody::changed(std::size_t begin, std::size_t end) const {

@@ -30,6 +30,8 @@ class DamagedBody {
   /// The same of any change. False, and nothing is recorded: a piece would hang on nothing, for
   /// which a grip does not count. Throws UsageError when the change does not fit the body.
   [[nodiscard]] bool change(const Change& change);
+  /// The same of unknowns that grips take hold of and let go.
+  void grip(std::span<const Index> grasp, std::span<const Index> release);
 
   /// Events of the record that the body has followed.
   [[nodiscard]] std::size_t events() const { return events_; }

@@ -24,6 +24,17 @@ LooseSearch::LooseSearch(const Problem& problem)
   piece_of_body_.reserve(most);
 }
 
+bool LooseSearch::hold(std::span<const Index> nodes) {
+  if (std::ranges::equal(nodes, also_held_)) return false;
+  all_held_.resize(all_held_.size() - 3 * also_held_.size());
+  also_held_.assign(nodes.begin(), nodes.end());
+  for (Index n : nodes) {
+    for (int axis = 0; axis < 3; ++axis) all_held_.push_back({n, axis});
+  }
+  held_.resize(all_held_.size());
+  return true;
+}
+
 /// held_ by body, each in the order of nodes.
 void LooseSearch::sort_held() {
   held_end_.assign(static_cast<std::size_t>(bodies_.count) + 1, 0);

@@ -17,6 +17,9 @@ class LooseSearch {
  public:
   explicit LooseSearch(const Problem& problem);
   void look(std::span<const std::uint8_t> destroyed);
+  /// Nodes of the mesh that hold a piece besides supports and the problem's grips, in place of
+  /// those before. Whether they are others.
+  bool hold(std::span<const Index> nodes);
   /// Of a body in which elements have other corners than in the mesh, where nodes have come.
   void look(std::span<const std::uint8_t> destroyed, std::span<const std::array<Index, 4>> corners,
             Index nodes);
@@ -43,6 +46,7 @@ class LooseSearch {
   fem::Bodies bodies_;
   fem::BodyRoom room_;
   std::vector<fem::HeldDof> all_held_, held_;  // of the whole; sorted by body
+  std::vector<Index> also_held_;               // nodes, after those of the problem in all_held_
   std::vector<std::uint8_t> used_;             // per node: belongs to an element
   std::size_t unused_ = 0;
   std::vector<std::size_t> held_end_;  // per body

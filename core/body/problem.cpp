@@ -211,6 +211,23 @@ Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners
   }
 }
 
+Problem::Problem(const Problem& whole, std::span<const Index> gripped)
+    : scene_(whole.scene_),
+      shapes_(whole.shapes_),
+      dof_(whole.dof_),
+      dof_count_(whole.dof_count_),
+      gripped_dofs_(gripped.begin(), gripped.end()),
+      anchored_dofs_(whole.anchored_dofs_),
+      anchor_stiffness_(whole.anchor_stiffness_) {
+  resolve_materials();
+  std::ranges::sort(gripped_dofs_);
+  if (gripped.size() == whole.gripped_dofs_.size()) return;
+  for (Index d : whole.gripped_dofs_) {
+    own_grips_.push_back(
+        static_cast<Index>(std::ranges::lower_bound(gripped_dofs_, d) - gripped_dofs_.begin()));
+  }
+}
+
 void Problem::check_crack(const FractureOptions& f, const FractureModelRow& model) {
   if (f.max_new_nodes < 0) {
     throw InputError(InputFault::out_of_range,

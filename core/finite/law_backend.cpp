@@ -60,17 +60,22 @@ LawBackend::Computed LawBackend::computed_as(std::shared_ptr<const Problem> prob
   return as;
 }
 
-LawBackend::Computed LawBackend::part() {
+LawBackend::Computed LawBackend::compute_as(const std::shared_ptr<const Problem>& problem) {
   Computed next;
-  const auto parted = fem::parted_problem(damaged_body());
   try {
-    next = computed_as(parted);
+    next = computed_as(problem);
   } catch (const DeviceLost& error) {
     if (!now_.device) throw;
     lost_ = error.what();
-    next = computed_as(parted);
+    next = computed_as(problem);
   }
   next.pass->cut_off(cut_off_);
+  return next;
+}
+
+LawBackend::Computed LawBackend::part() {
+  const auto parted = fem::parted_problem(damaged_body());
+  Computed next = compute_as(parted);
   const fem::Parting parting(computed(), *parted);
   parting.nodal(u_);
   fem::add_parted_grips(*parted, load_.displacements);
@@ -79,15 +84,53 @@ LawBackend::Computed LawBackend::part() {
   return next;
 }
 
+std::string LawBackend::why_no_grasp() const {
+  if (!needs().pristine) return {};
+  return "the intact body's field, which the fracture model reads, is held by the scene's grips "
+         "alone "
+         "where tangents are the body's own; take law \"linear\" in statics on backend cpu, or "
+         "model "
+         "\"A\"";
+}
+
+LawBackend::Computed LawBackend::take_grips(std::span<const Index> before) {
+  Computed next = compute_as(std::make_shared<const Problem>(problem(), gripped_dofs()));
+  // What is new is held where it is.
+  std::vector<double> at(static_cast<std::size_t>(problem().dof_count()), 0.0);
+  for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
+    if (problem().dofs()[i] != kNone) at[static_cast<std::size_t>(problem().dofs()[i])] = u_[i];
+  }
+  const auto was = computed().gripped_dofs();
+  for (std::size_t g = 0; g < std::min(was.size(), load_.displacements.size()); ++g) {
+    if (std::ranges::find(before, was[g]) != before.end()) {
+      at[static_cast<std::size_t>(was[g])] = load_.displacements[g];
+    }
+  }
+  load_.displacements.clear();
+  for (Index d : next.problem->gripped_dofs()) {
+    load_.displacements.push_back(at[static_cast<std::size_t>(d)]);
+  }
+  std::swap(now_, next);
+  return next;
+}
+
+/// A body computed by itself has its gripped unknowns in ascending order.
 void LawBackend::do_set_load(const Load& load) {
   load_ = load;
+  if (gripped_dofs().size() > problem().gripped_dofs().size()) {
+    const auto sorted = computed().gripped_dofs();
+    for (std::size_t g = 0; g < load.displacements.size(); ++g) {
+      const auto place = std::ranges::lower_bound(sorted, gripped_dofs()[g]) - sorted.begin();
+      load_.displacements[static_cast<std::size_t>(place)] = load.displacements[g];
+    }
+  }
   fem::add_parted_grips(computed(), load_.displacements);
 }
 
 void LawBackend::sum_grips(const Eigen::VectorXd& forces, std::span<double> reactions) const {
   const auto gripped = computed().gripped_dofs();
   const auto parted = computed().parted_grips();
-  for (std::size_t g = 0; g < reactions.size(); ++g) reactions[g] = forces[gripped[g]];
+  for (std::size_t g = 0; g < reactions.size(); ++g) reactions[g] = forces[gripped_dofs()[g]];
   for (std::size_t i = 0; i < parted.size(); ++i) {
     reactions[static_cast<std::size_t>(parted[i])] += forces[gripped[reactions.size() + i]];
   }
@@ -194,11 +237,23 @@ void LawBackend::take_over_instrument_forces(std::shared_ptr<InstrumentForces> f
 }
 
 void LawBackend::publish_instruments() {
-  if (!instruments_ || load_.displacements.size() < reactions_.size()) return;
+  if (!instruments_ || load_.displacements.size() < problem().gripped_dofs().size()) return;
   const Eigen::MatrixXd l = grip_compliance();
   if (l.size() == 0) return;
+  reactions_.resize(gripped_dofs().size());
   read_reactions(reactions_);
-  instruments_->publish(l, reactions_, load_.displacements);
+  instruments_->publish(l, reactions_, own_displacements());
+}
+
+/// Of the problem's own grips.
+std::span<const double> LawBackend::own_displacements() {
+  const auto own = problem().gripped_dofs(), all = computed().gripped_dofs();
+  own_displacements_.clear();
+  for (Index d : own) {
+    const auto place = std::ranges::lower_bound(all, d) - all.begin();
+    own_displacements_.push_back(load_.displacements[static_cast<std::size_t>(place)]);
+  }
+  return own_displacements_;
 }
 
 StressSummary LawBackend::do_stress() {

@@ -97,7 +97,11 @@ class LawBackend : public Backend {
   /// To be called where nodes have parted: from now on the body is computed as it is now. Returns
   /// what was before, which must live while anything reads it.
   [[nodiscard]] Computed part();
-  /// Forces of grips on `computed()`, per unknown, as those of the problem's gripped dofs.
+  /// To be called where other unknowns are gripped: from now on the body is computed so. Returns as
+  /// part() does.
+  [[nodiscard]] Computed take_grips(std::span<const Index> before);
+  std::string why_no_grasp() const override;
+  /// Forces of grips on `computed()`, per unknown, as those of gripped_dofs().
   void sum_grips(const Eigen::VectorXd& forces, std::span<double> reactions) const;
 
   /// The last solution; fields of the one before no longer hold.
@@ -126,6 +130,8 @@ class LawBackend : public Backend {
 
  private:
   [[nodiscard]] Computed computed_as(std::shared_ptr<const Problem> problem);
+  [[nodiscard]] Computed compute_as(const std::shared_ptr<const Problem>& problem);
+  [[nodiscard]] std::span<const double> own_displacements();
   [[nodiscard]] Route chosen_route() const;
   std::size_t check_options();
 
@@ -144,7 +150,7 @@ class LawBackend : public Backend {
   std::vector<Index> cut_off_;  // elements
   std::vector<std::uint8_t> excluded_;
   std::optional<solver::InstrumentBlock> instruments_;  // once asked for
-  std::vector<double> reactions_;
+  std::vector<double> reactions_, own_displacements_;
 };
 
 }  // namespace sunder::finite

@@ -132,6 +132,14 @@ class MotionBackend final : public LawBackend {
     still_ = false;
   }
 
+  void do_grip(const GripChange& change) override {
+    const Computed before = take_grips(change.before);  // first: it goes last
+    auto gripped = motion();
+    gripped->go_on_from(*motion_);
+    motion_ = std::move(gripped);
+    still_ = false;
+  }
+
   /// The intact body, at rest at first as the real one was, goes the same way.
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
     if (!intact_known_) {

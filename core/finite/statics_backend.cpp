@@ -121,6 +121,13 @@ class StaticsBackend final : public LawBackend {
     statics_ = std::move(parted);
   }
 
+  void do_grip(const GripChange& change) override {
+    const Computed before = take_grips(change.before);  // first: it goes last
+    auto gripped = statics();
+    gripped->go_on_from(*statics_);
+    statics_ = std::move(gripped);
+  }
+
   void do_solve_pristine(const Load& load, std::span<double> displacement) override {
     const auto solve = [&] { return attempt([&] { return pristine_->solve(load); }); };
     solver::FiniteStaticsReport found = solve();

@@ -13,7 +13,8 @@ namespace sunder {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMark{'S', 'U', 'N', 'D', 'E', 'R', 'R', 'C'};
-constexpr std::uint32_t kVersion = 1;
+// 1: no grips and pushes of a host.
+constexpr std::uint32_t kFirstVersion = 1, kVersion = 2;
 constexpr std::size_t kCheck = 8;  // bytes of the checksum, last
 
 /// FNV-1a of 64 bits.
@@ -120,6 +121,31 @@ void write(Writer& to, const Action::Remove& a) {
   to.number(a.elements.size());
   for (Index e : a.elements) to.index(e);
 }
+void write(Writer& to, const std::vector<Index>& nodes) {
+  to.number(nodes.size());
+  for (Index n : nodes) to.index(n);
+}
+void write(Writer& to, const Action::Grasp& a) {
+  write(to, a.nodes);
+  to.byte(a.rigid ? 1 : 0);
+  to.vector(a.centre);
+}
+void write(Writer& to, const Action::Pose& a) {
+  to.index(a.id);
+  to.vector(a.position);
+  for (const double q : a.quaternion) to.real(q);
+}
+void write(Writer& to, const Action::Release& a) { to.index(a.id); }
+void write(Writer& to, const Action::Push& a) {
+  write(to, a.nodes);
+  to.vector(a.force);
+}
+void write(Writer& to, const Action::Move& a) {
+  to.index(a.id);
+  write(to, a.nodes);
+  to.vector(a.force);
+}
+void write(Writer& to, const Action::Drop& a) { to.index(a.id); }
 
 void read(Reader& from, Action::Drive& a) {
   a.instrument = static_cast<std::size_t>(from.number());
@@ -145,6 +171,31 @@ void read(Reader& from, Action::Remove& a) {
   a.elements.resize(from.count(8));
   for (Index& e : a.elements) e = static_cast<Index>(from.index());
 }
+void read(Reader& from, std::vector<Index>& nodes) {
+  nodes.resize(from.count(8));
+  for (Index& n : nodes) n = static_cast<Index>(from.index());
+}
+void read(Reader& from, Action::Grasp& a) {
+  read(from, a.nodes);
+  a.rigid = from.number(1) != 0;
+  a.centre = from.vector();
+}
+void read(Reader& from, Action::Pose& a) {
+  a.id = static_cast<int>(from.index());
+  a.position = from.vector();
+  for (double& q : a.quaternion) q = from.real();
+}
+void read(Reader& from, Action::Release& a) { a.id = static_cast<int>(from.index()); }
+void read(Reader& from, Action::Push& a) {
+  read(from, a.nodes);
+  a.force = from.vector();
+}
+void read(Reader& from, Action::Move& a) {
+  a.id = static_cast<int>(from.index());
+  read(from, a.nodes);
+  a.force = from.vector();
+}
+void read(Reader& from, Action::Drop& a) { a.id = static_cast<int>(from.index()); }
 
 using What = decltype(Action::what);
 
@@ -255,9 +306,10 @@ std::vector<std::shared_ptr<const Action>> from_bytes(std::span<const std::uint8
   }
   Reader head(bytes.subspan(kMark.size()));
   const std::uint64_t version = head.number(4);
-  if (version != kVersion) {
+  if (version < kFirstVersion || version > kVersion) {
     throw InputError(InputFault::syntax, "the recording is of version " + std::to_string(version) +
-                                             "; this library reads version " +
+                                             "; this library reads versions " +
+                                             std::to_string(kFirstVersion) + " to " +
                                              std::to_string(kVersion));
   }
   if (bytes.size() < kMark.size() + 4 + kCheck) damaged();

@@ -24,14 +24,15 @@ Eigen::Matrix<double, 3, 4> corner_gradient(const Problem& problem, const Voigt&
 }
 
 /// The gradient as a load with all grips at 0; gripped dofs do not move and take none of it.
-Load adjoint_load(const Problem& problem, Index element,
+Load adjoint_load(const Backend& backend, Index element,
                   const Eigen::Matrix<double, 3, 4>& gradient) {
-  const auto gripped = problem.gripped_dofs();
+  const Problem& problem = backend.problem();
+  const auto gripped = backend.gripped_dofs();
   std::vector<std::pair<Index, double>> entries;
   for (int corner = 0; corner < 4; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
       const Index d = problem.dof(problem.mesh().tets[element][corner], axis);
-      if (d == kNone || std::binary_search(gripped.begin(), gripped.end(), d)) continue;
+      if (d == kNone || std::ranges::find(gripped, d) != gripped.end()) continue;
       entries.emplace_back(d, gradient(axis, corner));
     }
   }
@@ -75,33 +76,48 @@ void choose(Attribution& result) {
 Attribution attribution(Backend& backend, const Loads& loads, Index element) {
   const Problem& problem = backend.problem();
   const auto gradient = corner_gradient(problem, backend.read_stress(element), element);
-  backend.set_load(adjoint_load(problem, element, gradient));
+  backend.set_load(adjoint_load(backend, element, gradient));
   backend.solve();
   Attribution result;
   const std::size_t count = problem.scene().instruments.size();
-  result.terms.assign(count, 0.0);
+  result.terms.assign(count + loads.tools().size(), 0.0);
   std::vector<Vec3> v;
+  // Of a force in equal parts.
+  const auto work = [&](std::span<const Index> nodes, const Vec3& force) {
+    v.resize(nodes.size());
+    backend.read_displacement(nodes, v);
+    double sum = 0;
+    for (const Vec3& at : v) sum += force.dot(at) / static_cast<double>(nodes.size());
+    return sum;
+  };
   for (std::size_t i = 0; i < count; ++i) {
     const auto nodes = loads.nodes(i);
     if (nodes.empty() || std::holds_alternative<Grip>(problem.scene().instruments[i].action)) {
       continue;
     }
-    v.resize(nodes.size());
-    backend.read_displacement(nodes, v);
-    for (const Vec3& at : v) {
-      result.terms[i] += loads.force(i).dot(at) / static_cast<double>(nodes.size());
-    }
+    result.terms[i] = work(nodes, loads.force(i));
   }
   // Grips: minus the adjoint reaction, times what they prescribe.
-  const auto gripped = problem.gripped_dofs();
+  const auto gripped = backend.gripped_dofs();
   std::vector<double> reactions(gripped.size());
   if (!gripped.empty()) backend.read_reactions(reactions);
-  for (std::size_t g = 0; g < gripped.size(); ++g) {
+  const auto add = [&](std::size_t g, double& term) {
     const double direct = gradient_at(problem, element, gradient, gripped[g]);
-    result.terms[loads.gripped()[g].instrument] +=
-        (direct - reactions[g]) * loads.load().displacements[g];
+    term += (direct - reactions[g]) * loads.load().displacements[g];
+  };
+  for (std::size_t g = 0; g < loads.gripped().size(); ++g) {
+    add(g, result.terms[loads.gripped()[g].instrument]);
+  }
+  for (std::size_t t = 0; t < loads.tools().size(); ++t) {
+    const Tool& tool = loads.tools()[t];
+    double& term = result.terms[count + t];
+    if (!tool.holds) term = work(tool.nodes, tool.force);
+    for (std::size_t d = 0; tool.holds && d < 3 * tool.nodes.size(); ++d) add(tool.first + d, term);
   }
   choose(result);
+  if (result.instrument >= static_cast<int>(count)) {
+    result.instrument = loads.tools()[static_cast<std::size_t>(result.instrument) - count].id;
+  }
   return result;
 }
 

@@ -12,9 +12,10 @@
 namespace sunder {
 
 struct Attribution {
-  int instrument = kNone;     ///< with the largest term; kNone: nothing acts
-  double share = 0;           ///< its term over the whole
-  std::vector<double> terms;  ///< [MPa] per instrument; they sum up to the maximum shear stress
+  int instrument = kNone;  ///< with the largest term, or a host's tool by id; kNone: nothing acts
+  double share = 0;        ///< its term over the whole
+  /// [MPa] per instrument, then per tool of a host; they sum up to the maximum shear stress.
+  std::vector<double> terms;
 };
 
 /// Of a live element, under the load that `loads` holds and the backend has solved with stress.

@@ -28,7 +28,7 @@ void Backend::require(bool condition, const char* what) const {
 
 void Backend::set_load(const Load& load) {
   require(load.forces.size() == load.force_dofs.size(), "a load needs one force per dof");
-  require(load.displacements.size() == problem_->gripped_dofs().size(),
+  require(load.displacements.size() == gripped_dofs().size(),
           "a load needs one displacement per gripped dof");
   for (std::size_t i = 0; i < load.force_dofs.size(); ++i) {
     const Index d = load.force_dofs[i];
@@ -149,6 +149,44 @@ void Backend::change(const fem::Change& change) {
   if (stage_ != Stage::created && !problem_->moves()) stage_ = Stage::loaded;
 }
 
+std::span<const Index> Backend::gripped_dofs() const { return damaged_body_->forms().gripped(); }
+
+std::string Backend::why_no_grasp() const {
+  const BackendInfo is = info();
+  return "backend " + is.backend + " by route " + is.route +
+         " holds no more nodes than the scene's grips; take backend cpu";
+}
+
+void Backend::grasp(std::span<const Index> dofs) {
+  require(needs_.damage, "grips of a host were left out of this backend's needs");
+  require(why_no_grasp().empty(), "this backend takes no other grips");
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    require(dofs[i] >= 0 && dofs[i] < problem_->dof_count(), "a dof to grasp is no unknown");
+    require(std::ranges::find(gripped_dofs(), dofs[i]) == gripped_dofs().end() &&
+                std::find(dofs.begin(), dofs.begin() + static_cast<std::ptrdiff_t>(i), dofs[i]) ==
+                    dofs.begin() + static_cast<std::ptrdiff_t>(i),
+            "a dof to grasp is gripped already");
+  }
+  change_grips(dofs, {});
+}
+
+void Backend::release(std::span<const Index> dofs) {
+  const auto live = gripped_dofs().subspan(problem_->gripped_dofs().size());
+  for (Index d : dofs) {
+    require(std::ranges::find(live, d) != live.end(), "a dof to let go was never grasped");
+  }
+  change_grips({}, dofs);
+}
+
+void Backend::change_grips(std::span<const Index> grasp, std::span<const Index> release) {
+  if (grasp.empty() && release.empty()) return;
+  const std::vector<Index> before(gripped_dofs().begin(), gripped_dofs().end());
+  damaged_body_->grip(grasp, release);
+  do_grip({grasp, release, before});
+}
+
+void Backend::do_grip(const GripChange&) { throw UsageError(why_no_grasp()); }
+
 std::shared_ptr<const BackendState> Backend::save() const {
   std::unique_ptr<BackendState> state = do_save();
   if (!state) return nullptr;
@@ -195,7 +233,7 @@ void Backend::solve_pristine(const Load& load, std::span<double> displacement) {
   require(needs_.pristine, "the intact body's field was left out of this backend's needs");
   require(displacement.size() == 3 * problem_->mesh().nodes.size(),
           "the intact body's displacement needs 3 values per node");
-  require(load.displacements.size() == problem_->gripped_dofs().size() &&
+  require(load.displacements.size() == gripped_dofs().size() &&
               load.forces.size() == load.force_dofs.size(),
           "the load does not fit the problem");
   do_solve_pristine(load, displacement);
@@ -229,7 +267,7 @@ Voigt Backend::read_stress(Index element) const {
 
 void Backend::read_reactions(std::span<double> reactions) const {
   require(stage_ != Stage::created, "there are no reactions before the first solution");
-  require(reactions.size() == problem_->gripped_dofs().size(), "one reaction per gripped dof");
+  require(reactions.size() == gripped_dofs().size(), "one reaction per gripped dof");
   do_read_reactions(reactions);
 }
 

@@ -3,6 +3,7 @@
 // simulation, the actions give the same bits: neither the clock nor an observer decides then.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -38,6 +39,31 @@ struct Step {
 struct Remove {
   std::vector<Index> elements;
 };
+struct Grasp {
+  std::vector<Index> nodes;
+  bool rigid = false;
+  Vec3 centre = Vec3::Zero();  // where it takes hold [mm]
+};
+struct Pose {
+  int id = 0;
+  Vec3 position = Vec3::Zero();
+  std::array<double, 4> quaternion{};  // as it was given
+};
+struct Release {
+  int id = 0;
+};
+struct Push {
+  std::vector<Index> nodes;
+  Vec3 force = Vec3::Zero();
+};
+struct Move {
+  int id = 0;
+  std::vector<Index> nodes;
+  Vec3 force = Vec3::Zero();
+};
+struct Drop {
+  int id = 0;
+};
 }  // namespace action
 
 struct Action {
@@ -47,9 +73,27 @@ struct Action {
   using Velocity = action::Velocity;
   using Step = action::Step;
   using Remove = action::Remove;
-  std::variant<Drive, Turn, Attribute, Velocity, Step, Remove> what;
+  using Grasp = action::Grasp;
+  using Pose = action::Pose;
+  using Release = action::Release;
+  using Push = action::Push;
+  using Move = action::Move;
+  using Drop = action::Drop;
+  std::variant<Drive, Turn, Attribute, Velocity, Step, Remove, Grasp, Pose, Release, Push, Move,
+               Drop>
+      what;
   bool failed = false;  // with a NumericalError
-  bool broke = false;   // something
+  bool broke = false;   // something, or a grip or a push came or went: undo() stops before it
+
+  /// Whether a grip or a push comes or goes.
+  [[nodiscard]] bool of_tools() const {
+    return std::holds_alternative<Grasp>(what) || std::holds_alternative<Release>(what) ||
+           std::holds_alternative<Push>(what) || std::holds_alternative<Drop>(what);
+  }
+  /// Whether it may be one that undo() stops before.
+  [[nodiscard]] bool undoable() const {
+    return of_tools() || std::holds_alternative<Step>(what) || std::holds_alternative<Remove>(what);
+  }
 };
 
 /// A state that the backend can go back to by itself.

@@ -44,6 +44,7 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   turn_.assign(instruments.size(), Mat3::Zero());
   const auto gripped = problem.gripped_dofs();
   gripped_.resize(gripped.size());
+  next_tool_ = static_cast<int>(instruments.size());
   expansion_.displacements.assign(gripped.size(), 0.0);
   reserve();
   for (std::size_t i = 0; i < instruments.size(); ++i) {
@@ -66,8 +67,57 @@ void Loads::restore(const State& state) {
   pressed_ = state.pressed;
   driven_ = state.driven;
   turned_ = state.turned;
+  tools_ = state.tools;
+  next_tool_ = state.next_tool;
+  tools_changed();
   std::ranges::fill(forces_, Vec3::Zero());
   acting_.clear();
+}
+
+int Loads::take(Tool tool) {
+  tool.id = next_tool_++;
+  tools_.push_back(std::move(tool));
+  tools_changed();
+  return tools_.back().id;
+}
+
+void Loads::drop(int id) {
+  std::erase_if(tools_, [id](const Tool& tool) { return tool.id == id; });
+  tools_changed();
+}
+
+void Loads::move(int id, std::span<const Index> nodes, const Vec3& force) {
+  Tool& push = *tool(id);
+  push.nodes.assign(nodes.begin(), nodes.end());
+  push.force = force;
+  tools_changed();
+}
+
+void Loads::solved() {
+  for (Tool& tool : tools_) tool.turn_at_load = tool.turn;
+}
+
+Tool* Loads::tool(int id) {
+  const auto found = std::ranges::find(tools_, id, &Tool::id);
+  return found == tools_.end() ? nullptr : &*found;
+}
+
+std::vector<Index> Loads::held_nodes() const {
+  std::vector<Index> nodes;
+  for (const Tool& tool : tools_) {
+    if (tool.holds) nodes.insert(nodes.end(), tool.nodes.begin(), tool.nodes.end());
+  }
+  return nodes;
+}
+
+void Loads::tools_changed() {
+  std::size_t grips = gripped_.size();
+  for (Tool& tool : tools_) {
+    tool.first = grips;
+    if (tool.holds) grips += 3 * tool.nodes.size();
+  }
+  if (weight_) weight_->hold(held_nodes());
+  reserve();
 }
 
 /// Whatever acts at a time, a frame allocates nothing.
@@ -76,6 +126,8 @@ void Loads::reserve() {
   std::size_t shares = weight_ ? static_cast<std::size_t>(problem_.dof_count()) : 0;
   for (const InstrumentNodes& i : problem_.instrument_nodes())
     shares += 3 * std::max(i.nodes.size(), kPressed);
+  std::size_t grips = gripped_.size();
+  for (const Tool& tool : tools_) (tool.holds ? grips : shares) += 3 * tool.nodes.size();
   for (auto& pressed : pressed_) pressed.reserve(kPressed);
   acting_.reserve(pressed_.size());
   shares_.reserve(shares);
@@ -83,7 +135,7 @@ void Loads::reserve() {
   for (Load* load : {&all_, &expansion_}) {
     load->force_dofs.reserve(shares);
     load->forces.reserve(shares);
-    load->displacements.reserve(gripped_.size());
+    load->displacements.reserve(grips);
   }
 }
 
@@ -119,12 +171,11 @@ Vec3 Loads::value(std::size_t instrument, double time) const {
   return factor * std::get<Press>(tool.action).force;
 }
 
-void Loads::add(std::size_t instrument) {
-  const auto on = nodes(instrument);
+void Loads::add(std::span<const Index> on, const Vec3& force) {
   for (Index n : on) {
     for (int axis = 0; axis < 3; ++axis) {
       const Index d = problem_.dof(n, axis);
-      const double share = forces_[instrument][axis] / static_cast<double>(on.size());
+      const double share = force[axis] / static_cast<double>(on.size());
       if (d == kNone || share == 0) continue;
       shares_.push_back({d, static_cast<int>(shares_.size()), share});
     }
@@ -134,19 +185,27 @@ void Loads::add(std::size_t instrument) {
 Vec3 Loads::force_on_supports() const {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < forces_.size(); ++i) {
-    if (forces_[i].isZero(0)) continue;
-    const auto on = nodes(i);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto held = std::count_if(on.begin(), on.end(),
-                                      [&](Index n) { return problem_.dof(n, axis) == kNone; });
-      if (held > 0)
-        sum[axis] += forces_[i][axis] * static_cast<double>(held) / static_cast<double>(on.size());
-    }
+    if (!forces_[i].isZero(0)) sum += on_supports(nodes(i), forces_[i]);
+  }
+  for (const Tool& tool : tools_) {
+    if (!tool.holds) sum += on_supports(tool.nodes, tool.force);
   }
   for (Index n = 0; weight_ && n < problem_.node_count(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
       if (problem_.dof(n, axis) == kNone) sum[axis] += weight_->of(n, axis);
     }
+  }
+  return sum;
+}
+
+/// What of a force in equal parts acts on axes that supports hold.
+Vec3 Loads::on_supports(std::span<const Index> on, const Vec3& force) const {
+  Vec3 sum = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto held = std::count_if(on.begin(), on.end(),
+                                    [&](Index n) { return problem_.dof(n, axis) == kNone; });
+    if (held > 0)
+      sum[axis] += force[axis] * static_cast<double>(held) / static_cast<double>(on.size());
   }
   return sum;
 }
@@ -189,16 +248,27 @@ void Loads::update(double time, const FractureCriterion& criterion,
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     if (!std::holds_alternative<Pull>(instruments[i].action)) continue;
     forces_[i] = value(i, time);
-    add(i);
+    add(nodes(i), forces_[i]);
+  }
+  for (const Tool& tool : tools_) {
+    if (!tool.holds) add(tool.nodes, tool.force);
   }
   sum_into(expansion_);
   if (weight_) weight_->add_intact(expansion_);
   take_turns(time);
+  expansion_.displacements.resize(gripped_.size());
   for (std::size_t g = 0; g < gripped_.size(); ++g) {
     const auto& [instrument, node, axis, arm] = gripped_[g];
     double& moved = expansion_.displacements[g];
     moved = value(instrument, time)[axis];
     if (!turn_[instrument].isZero(0)) moved += turn_[instrument].row(axis).dot(arm);
+  }
+  for (const Tool& tool : tools_) {
+    for (std::size_t n = 0; tool.holds && n < tool.nodes.size(); ++n) {
+      const Vec3 moved = tool.displacement(n);
+      expansion_.displacements.insert(expansion_.displacements.end(), moved.data(),
+                                      moved.data() + 3);
+    }
   }
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* press = std::get_if<Press>(&instruments[i].action);
@@ -209,7 +279,7 @@ void Loads::update(double time, const FractureCriterion& criterion,
     choose_pressed_nodes(i, criterion, destroyed, findings);
     if (pressed_[i].empty()) continue;
     forces_[i] = value(i, time);
-    add(i);
+    add(pressed_[i], forces_[i]);
     acting_.push_back({i, press, forces_[i], pressed_[i]});
   }
   sum_into(all_);

@@ -8,6 +8,7 @@
 
 #include "body/node_elements.hpp"
 #include "fracture/criterion.hpp"
+#include "frame/tool.hpp"
 #include "frame/weight.hpp"
 #include "sunder/backend.hpp"
 
@@ -34,9 +35,27 @@ class Loads {
   struct State {
     std::vector<std::vector<Index>> pressed;
     std::vector<std::optional<Vec3>> driven, turned;
+    std::vector<Tool> tools;
+    int next_tool = 0;
   };
-  [[nodiscard]] State state() const { return {pressed_, driven_, turned_}; }
+  [[nodiscard]] State state() const { return {pressed_, driven_, turned_, tools_, next_tool_}; }
   void restore(const State& state);
+
+  /// What a host holds and pushes the body by, in the order in which it came: the displacements of
+  /// its grips follow those of the scene's in a load. Returns the id that it gets.
+  int take(Tool tool);
+  void drop(int id);
+  /// A push acts on other nodes, with another force.
+  void move(int id, std::span<const Index> nodes, const Vec3& force);
+  [[nodiscard]] const std::vector<Tool>& tools() const { return tools_; }
+  /// Null: there is none of this id.
+  [[nodiscard]] Tool* tool(int id);
+  /// A solution of the last update's load has been found: what grips exert is told by it.
+  void solved();
+  /// Id of the next one.
+  [[nodiscard]] int next_tool() const { return next_tool_; }
+  /// Nodes that grips of a host hold.
+  [[nodiscard]] std::vector<Index> held_nodes() const;
 
   [[nodiscard]] const Load& load() const { return all_; }
   /// Without the pressing instruments (the pristine field's load).
@@ -49,9 +68,9 @@ class Loads {
   [[nodiscard]] const Vec3& force(std::size_t instrument) const { return forces_[instrument]; }
   /// Of these, with the weight there, what acts on axes that supports hold.
   [[nodiscard]] Vec3 force_on_supports() const;
-  /// Of the body on gripped dof g, in statics: a part of the grip's reaction.
+  /// Of the body on gripped dof g of the scene, in statics: a part of the grip's reaction.
   [[nodiscard]] double weight_on_grip(std::size_t g) const;
-  /// Per gripped dof: the instrument that grips it, and the axis.
+  /// Per gripped dof of the scene: the instrument that grips it, and the axis.
   struct Gripped {
     std::size_t instrument;
     Index node;
@@ -66,7 +85,9 @@ class Loads {
                             std::vector<Finding>& findings);
   void reserve();
   void take_turns(double time);
-  void add(std::size_t instrument);
+  void add(std::span<const Index> nodes, const Vec3& force);
+  [[nodiscard]] Vec3 on_supports(std::span<const Index> nodes, const Vec3& force) const;
+  void tools_changed();
   void sum_into(Load& load);
 
   /// A share of an instrument's force; those of a dof are summed in the order they came in.
@@ -82,6 +103,8 @@ class Loads {
   std::vector<std::vector<Index>> pressed_;       // per instrument
   std::vector<Gripped> gripped_;
   std::vector<std::optional<Vec3>> driven_, turned_;
+  std::vector<Tool> tools_;
+  int next_tool_ = 0;
   std::vector<Mat3> turn_;  // per instrument, of the update in work: R - I
   std::vector<Vec3> forces_;
   std::vector<ActingPress> acting_;

@@ -242,6 +242,7 @@ StepReport Simulation::so_far() {
 
 void Simulation::record_solve(const SolveReport& solve, StepReport& report) {
   now_.solved = true;
+  loads_->solved();
   report.residual = solve.residual;
   report.error = solve.error;
   report.iterations += solve.iterations;
@@ -261,6 +262,12 @@ FractureState Simulation::fracture_state(const StressSummary& summary) {
   const auto& instruments = problem_->scene().instruments;
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (!std::holds_alternative<Press>(instruments[i].action)) resultant += forces[i];
+  }
+  for (const Tool& tool : loads_->tools()) {
+    if (!tool.holds) resultant += tool.force;
+    for (std::size_t n = 0; tool.holds && n < tool.nodes.size(); ++n) {
+      resultant += Vec3(&reactions_.grips[tool.first + 3 * n]);
+    }
   }
   return {
       *problem_,
@@ -329,6 +336,15 @@ std::span<const NodalForce> Simulation::instrument_forces() {
     }
   }
   add_grip_forces();
+  for (const Tool& tool : loads_->tools()) {
+    for (std::size_t n = 0; n < tool.nodes.size(); ++n) {
+      NodalForce at{tool.nodes[n], tool.force / static_cast<double>(tool.nodes.size())};
+      if (tool.holds) at.force = Vec3(&reactions_.grips[tool.first + 3 * n]);
+      for (int axis = 0; axis < 3; ++axis)
+        if (problem_->dof(at.node, axis) == kNone) at.force[axis] = 0;
+      instrument_forces_.push_back(at);
+    }
+  }
   return instrument_forces_;
 }
 

@@ -32,6 +32,9 @@ void Simulation::keep_history(MakeBackend make, int quick) {
   if (now_.next_step > 0 || now_.next_event > 0 || now_.solved) {
     throw UsageError("a history begins before the first step");
   }
+  if (loads_->next_tool() > static_cast<int>(problem_->scene().instruments.size())) {
+    throw UsageError("a history begins before the first grip and the first push of a host");
+  }
   if (quick < 0) throw UsageError("the number of quick undos must not be below 0");
   history_ = std::make_unique<History>();
   history_->make = std::move(make);
@@ -50,7 +53,7 @@ int Simulation::redos() const { return history_ ? static_cast<int>(history_->und
 
 void Simulation::record(Action action, std::shared_ptr<const Kept> before, int events_before) {
   History& h = *history_;
-  action.broke = now_.next_event != events_before;
+  action.broke = now_.next_event != events_before || action.of_tools();
   if (action.broke) {
     h.points.push_back({h.done.size(), std::move(before), events_before});
     if (h.points.size() > h.quick) h.points[h.points.size() - h.quick - 1].kept.reset();
@@ -90,6 +93,7 @@ bool Simulation::go_back(const Kept& kept) {
     loads_->update(now_.scene_time, *criterion_, backend_->destroyed(), of_loads_);
     if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
   }
+  loose_->hold(loads_->held_nodes());
   loose_->look(backend_->destroyed(), criterion_->corners(), backend_->node_count());
   ++looks_;
   return true;
@@ -144,6 +148,14 @@ void Simulation::perform(const std::shared_ptr<const Action>& action) {
           if constexpr (std::is_same_v<What, Action::Velocity>) set_velocity(what.velocity);
           if constexpr (std::is_same_v<What, Action::Step>) take_step(what.dt, 0);
           if constexpr (std::is_same_v<What, Action::Remove>) remove(what.elements);
+          if constexpr (std::is_same_v<What, Action::Grasp>) take_hold(what);
+          if constexpr (std::is_same_v<What, Action::Pose>) {
+            pose(what.id, {what.position, what.quaternion});
+          }
+          if constexpr (std::is_same_v<What, Action::Release>) release(what.id);
+          if constexpr (std::is_same_v<What, Action::Push>) push(what.nodes, what.force);
+          if constexpr (std::is_same_v<What, Action::Move>) move(what.id, what.nodes, what.force);
+          if constexpr (std::is_same_v<What, Action::Drop>) drop(what.id);
         },
         action->what);
   } catch (const NumericalError&) {
@@ -224,8 +236,8 @@ Travel Simulation::undo(int actions) {
   require_history();
   History& h = *history_;
   if (actions < 1 || actions > undos()) {
-    throw UsageError("there are " + std::to_string(undos()) +
-                     " steps and removals to take back, not " + std::to_string(actions));
+    throw UsageError("there are " + std::to_string(undos()) + " actions to take back, not " +
+                     std::to_string(actions));
   }
   const History::Point point = h.points[h.points.size() - static_cast<std::size_t>(actions)];
   const Actions path(h.done.begin(), h.done.begin() + static_cast<std::ptrdiff_t>(point.actions));
@@ -244,8 +256,8 @@ Travel Simulation::redo(int actions) {
   require_history();
   History& h = *history_;
   if (actions < 1 || actions > redos()) {
-    throw UsageError("there are " + std::to_string(redos()) +
-                     " steps and removals to do again, not " + std::to_string(actions));
+    throw UsageError("there are " + std::to_string(redos()) + " actions to do again, not " +
+                     std::to_string(actions));
   }
   Travel travel;
   const int before = now_.next_event;

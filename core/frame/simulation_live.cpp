@@ -6,32 +6,11 @@
 #include "body/triangle_crossing.hpp"
 #include "fracture/averaged_strength.hpp"
 #include "fracture/finding.hpp"
-#include "frame/history.hpp"
+#include "frame/act.hpp"
 #include "sunder/error.hpp"
 #include "sunder/in_quotes.hpp"
 
 namespace sunder {
-
-/// Does something and, where a history is kept, takes it down.
-template <class Do>
-void Simulation::act(Action action, Do&& body) {
-  if (!history_) {
-    body(action);
-    return;
-  }
-  const bool breaks = std::holds_alternative<Action::Step>(action.what) ||
-                      std::holds_alternative<Action::Remove>(action.what);
-  const auto before = breaks && history_->quick > 0 ? keep() : nullptr;
-  const int events = now_.next_event;
-  try {
-    body(action);
-  } catch (const NumericalError&) {
-    action.failed = true;
-    record(std::move(action), before, events);
-    throw;
-  }
-  record(std::move(action), before, events);
-}
 
 void Simulation::drive(std::size_t instrument, const Vec3& value) {
   if (instrument >= problem_->scene().instruments.size()) {
@@ -204,6 +183,7 @@ void Simulation::follow_removal() {
   backend_->set_load(loads_->load());
   pristine_.clear();
   if (backend_->solve().polished) now_.polished.add(now_.next_step);
+  loads_->solved();
   if (!backend_->needs().stress) return;
   backend_->stress();
   if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
@@ -213,7 +193,7 @@ void Simulation::warm_up() {
   if (now_.next_step > 0 || now_.solved || problem_->moves() || problem_->finite()) return;
   const auto before = backend_->save();
   Load none;
-  none.displacements.assign(problem_->gripped_dofs().size(), 0.0);
+  none.displacements.assign(backend_->gripped_dofs().size(), 0.0);
   backend_->set_load(none);
   backend_->solve();
   if (backend_->needs().stress) {

@@ -57,10 +57,10 @@ void Simulation::read(Reactions& r) const {
   for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
     r.forces.push_back(loads_->force(i));
   }
-  r.grips.resize(problem_->gripped_dofs().size());
-  if (r.grips.empty()) return;
+  r.grips.assign(backend_->gripped_dofs().size(), 0.0);
+  if (r.grips.empty() || (!now_.solved && loads_->gripped().empty())) return;
   backend_->read_reactions(r.grips);
-  for (std::size_t g = 0; g < r.grips.size(); ++g) {
+  for (std::size_t g = 0; g < loads_->gripped().size(); ++g) {
     r.grips[g] -= loads_->weight_on_grip(g);
     const auto& of = loads_->gripped()[g];
     r.forces[of.instrument][of.axis] += r.grips[g];
@@ -137,6 +137,24 @@ double Simulation::compliance() {
     Vec3 mean = Vec3::Zero();
     for (const Vec3& v : u) mean += v;
     work += forces[i].dot(mean) / static_cast<double>(nodes.size());
+  }
+  return work + work_of_tools();
+}
+
+/// Of what a host holds and pushes the body by; of reactions_, which are read.
+double Simulation::work_of_tools() {
+  double work = 0;
+  for (const Tool& tool : loads_->tools()) {
+    if (!tool.holds) {
+      std::vector<Vec3>& u = reactions_.displacement;
+      u.resize(tool.nodes.size());
+      backend_->read_displacement(tool.nodes, u);
+      for (const Vec3& at : u) work += tool.force.dot(at) / static_cast<double>(u.size());
+      continue;
+    }
+    for (std::size_t g = tool.first; g < tool.first + 3 * tool.nodes.size(); ++g) {
+      work += reactions_.grips[g] * loads_->load().displacements[g];
+    }
   }
   return work;
 }

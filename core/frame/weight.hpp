@@ -19,6 +19,10 @@ class Weight {
   /// What is cut off weighs nothing any more: nothing would hold it up but the small stiffness
   /// that destroyed elements keep.
   void look(std::span<const std::uint8_t> destroyed);
+  /// Nodes that a host holds besides: what they hold up weighs.
+  void hold(std::span<const Index> nodes) {
+    if (search_.hold(nodes)) destroyed_ = -1;
+  }
 
   /// The intact body's, and the present one's, added to the forces of a load.
   void add_intact(Load& load) { add(intact_, load); }

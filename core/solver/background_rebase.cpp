@@ -17,7 +17,7 @@ void check_base(Based& based, const fem::DamagedBody& body, const Load& load,
   body.apply(u, r);
   r = -r;
   for (std::size_t i = 0; i < load.forces.size(); ++i) r[load.force_dofs[i]] += load.forces[i];
-  for (Index d : body.problem().gripped_dofs()) r[d] = 0;
+  for (Index d : body.forms().gripped()) r[d] = 0;
   std::vector<Index> all(static_cast<std::size_t>(r.size()));
   std::iota(all.begin(), all.end(), 0);
   deferred.correct({all, {r.data(), all.size()}}, du);
@@ -179,6 +179,7 @@ void BackgroundRebase::follow_next(std::unique_lock<std::mutex>& lock) {
   body_.read(at_, event_);
   body_.follow(next);
   try {
+    if (fem::Event(event_).of_grips()) result_.check = {};  // it was of loads by other grips
     if (result_.deferred && !result_.follow(event_)) result_ = {};
   } catch (const std::exception&) {
     result_ = {};  // as in make()

@@ -24,7 +24,9 @@ double ratio(std::span<const double> a, std::span<const double> b) {
 }  // namespace
 
 std::optional<double> multiple(const Load& a, const Load& b) {
-  if (a.force_dofs != b.force_dofs) return std::nullopt;
+  if (a.force_dofs != b.force_dofs || a.displacements.size() != b.displacements.size()) {
+    return std::nullopt;
+  }
   const double s = std::max(ratio(a.forces, b.forces), ratio(a.displacements, b.displacements));
   if (!(s > 0) || !proportional(a.forces, b.forces, s) ||
       !proportional(a.displacements, b.displacements, s)) {

@@ -222,6 +222,8 @@ class CondensedRoute final : public InverseRoute {
     coming_->follow();
     if (!based_.deferred->follow(event)) {
       rebase();
+    } else if (event.of_grips()) {
+      based_.check = {};  // it was of loads by other grips
     } else if (begins()) {
       started_ = body_.events();
       start_load_ = load_;
@@ -342,7 +344,14 @@ class CondensedRoute final : public InverseRoute {
   }
 
   bool begins() const {
-    return !coming_->making() && static_cast<std::size_t>(based_.deferred->rank()) > threshold() &&
+    const Deferred& deferred = *based_.deferred;
+    // A base has unit vectors of all that is gripped; the load is the last frame's.
+    const auto grasped =
+        static_cast<std::size_t>(deferred.grips()) - body_.problem().gripped_dofs().size();
+    const bool fits = load_.displacements.empty() ||
+                      load_.displacements.size() == static_cast<std::size_t>(deferred.grips());
+    return !coming_->making() && fits &&
+           static_cast<std::size_t>(deferred.rank()) > threshold() + grasped &&
            body_.forms().new_nodes().empty();
   }
 

@@ -42,24 +42,15 @@ Deferred::Deferred(const fem::Forms& in_base, std::unique_ptr<Base> base, bool d
     : problem_(in_base.problem()),
       base_(std::move(base)),
       basis_(problem_),
-      is_touched_(static_cast<std::size_t>(problem_.dof_count()), 0),
+      unit_(static_cast<std::size_t>(problem_.dof_count()), kNone),
+      is_touched_(unit_.size(), 0),
       in_base_(in_base),
       forms_(in_base) {
-  const auto gripped = problem_.gripped_dofs();
-  grips_ = static_cast<Eigen::Index>(gripped.size());
-  if (damage) reserve_for_fractures(columns + static_cast<Index>(grips_));
-  if (grips_ == 0) return;
-  reserve(static_cast<Index>(grips_));
-  touched_.assign(gripped.begin(), gripped.end());
-  count_ = static_cast<Index>(grips_);
-  std::vector<Difference> units;
-  for (Index d : gripped) {
-    is_touched_[d] = 1;
-    units.push_back({d, kNone});
-  }
-  make_room(gram_, grips_, padded(grips_));
-  base_->push(units, gram_);
-  compliance_.topLeftCorner(grips_, grips_) = gram_.topLeftCorner(grips_, grips_);
+  const auto gripped = forms_.gripped();
+  heads_ = static_cast<Eigen::Index>(gripped.size());
+  if (damage) reserve_for_fractures(columns + static_cast<Index>(heads_));
+  if (heads_ == 0) return;
+  push_units(gripped);
   if (!replay() || !factor_grips()) {
     throw NumericalError("the compliance of the gripped nodes is singular in double precision");
   }
@@ -71,8 +62,9 @@ void Deferred::reserve_for_fractures(Index columns) {
   constexpr Eigen::Index kElements = 170, kRows = 512, kColumns = 96;
   constexpr Eigen::Index kTouchedRows = 128;
   base_->make_room();
-  reserve(std::min(problem_.dof_count(), kReserved) + static_cast<Index>(grips_));
+  reserve(std::min(problem_.dof_count(), kReserved) + static_cast<Index>(heads_));
   touched_.reserve(is_touched_.size());
+  column_.reserve(is_touched_.size());
   rows_.reserve(static_cast<std::size_t>(12 * kElements));
   make_room(u_, kRows, kColumns);
   make_room(columns_, kRows, m_.cols());
@@ -81,7 +73,7 @@ void Deferred::reserve_for_fractures(Index columns) {
   make_room(xu_, m_.rows(), kColumns);
   make_room(z_, m_.rows(), kColumns);
   make_room(zt_, kColumns, m_.cols());
-  make_room(at_grips_, kColumns, padded(grips_));
+  make_room(at_grips_, kColumns, padded(heads_));
   clear_corner(u_, kTouchedRows, kColumns);
   for (linear_algebra::RowMajor* a : {&columns_, &product_, &zt_})
     clear_corner(*a, kTouchedRows, columns);
@@ -109,18 +101,91 @@ void Deferred::reserve(Index columns) {
 }
 
 bool Deferred::factor_grips() {
-  if (grips_ == 0) return true;
+  if (grips() == 0) return true;
   if (border_.empty()) {
-    grip_block_.compute(grip_compliance_.leftCols(grips_));
+    grip_block_.compute(grip_compliance_.leftCols(grips()));
   } else {
-    Eigen::MatrixXd compliance = grip_compliance_.leftCols(grips_);
+    Eigen::MatrixXd compliance = grip_compliance_.leftCols(grips());
     border_.add_to_grips(compliance);
     grip_block_.compute(compliance);
   }
-  return grip_block_.info() == Eigen::Success && grip_block_.matrixLLT().allFinite();
+  if (grip_block_.info() != Eigen::Success || !grip_block_.matrixLLT().allFinite()) return false;
+  if (!grasped()) return true;
+  // Eliminated first, the others hold still for the problem's own.
+  const Eigen::Index all = grips(), own = static_cast<Eigen::Index>(problem_.gripped_dofs().size());
+  grasped_first_.resize(all, all);
+  const auto from = [&](Eigen::Index i) { return i < all - own ? own + i : i - (all - own); };
+  for (Eigen::Index j = 0; j < all; ++j) {
+    for (Eigen::Index i = 0; i < all; ++i) {
+      grasped_first_(i, j) = grip_compliance_(from(i), from(j));
+    }
+  }
+  grasped_block_.compute(grasped_first_);
+  own_factor_ = grasped_block_.matrixLLT().bottomRightCorner(own, own);
+  return grasped_block_.info() == Eigen::Success && own_factor_.allFinite();
+}
+
+/// Which unknowns are gripped now, and (A^-1)_GG by M as it is.
+void Deferred::find_grips() {
+  held_.clear();
+  for (Index d : forms_.gripped()) held_.push_back({d, unit_[d]});
+  const Eigen::Index g = grips(), n = changed_;
+  grip_compliance_.setZero(g, padded(g));
+  for (Eigen::Index i = 0; i < g; ++i) {
+    for (Eigen::Index j = 0; j < g; ++j) {
+      grip_compliance_(i, j) = compliance_(held_[static_cast<std::size_t>(i)].column,
+                                           held_[static_cast<std::size_t>(j)].column);
+    }
+  }
+  if (g == 0 || n == 0) return;
+  const Columns of = columns_of_grips();
+  const Eigen::Map<const linear_algebra::RowMajor, 0, Eigen::OuterStride<>> columns(
+      of.data, n, g, Eigen::OuterStride<>(of.stride));
+  const Eigen::MatrixXd forces = m_.topLeftCorner(n, n) * columns;
+  grip_compliance_.leftCols(g).noalias() += columns.transpose() * forces;
+}
+
+/// Of G, those of the gripped unknowns side by side.
+Deferred::Columns Deferred::columns_of_grips() {
+  const Eigen::Index g = grips(), n = count();
+  bool first = true;
+  for (Eigen::Index i = 0; i < g; ++i) {
+    first = first && held_[static_cast<std::size_t>(i)].column == static_cast<Index>(i);
+  }
+  if (first) return {compliance_.data(), compliance_.outerStride()};
+  make_room(grip_columns_, m_.rows(), padded(g));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    double* row = grip_columns_.row(i).data();
+    for (Eigen::Index j = 0; j < g; ++j) {
+      row[j] = compliance_(i, held_[static_cast<std::size_t>(j)].column);
+    }
+    std::fill(row + g, row + padded(g), 0.0);
+  }
+  return {grip_columns_.data(), grip_columns_.outerStride()};
+}
+
+/// at_grips -= G_G: x.
+void Deferred::subtract_at_grips(const Eigen::VectorXd& x, Eigen::VectorXd& at_grips) const {
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    at_grips[static_cast<Eigen::Index>(i)] -=
+        compliance_.row(held_[i].column).head(count()).dot(x.head(count()));
+  }
+}
+
+Eigen::VectorXd Deferred::grip_forces() const {
+  Eigen::VectorXd forces(grips());
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    forces[static_cast<Eigen::Index>(i)] = grip_force(i);
+  }
+  return forces;
 }
 
 bool Deferred::follow(const fem::Event& event) {
+  if (event.of_grips()) {
+    if (!border_.empty()) throw UsageError("a body whose nodes have parted takes no other grips");
+    damage_.add(event);
+    return follow_last();
+  }
   const bool destroys = event.come.empty() && event.nodes.empty() && event.ties.empty();
   return destroys ? destroy(event.leave) : change(event);
 }
@@ -157,21 +222,46 @@ void Deferred::connect(const std::array<Index, 4>& nodes) {
 
 /// Brings the differences of an event to hand.
 void Deferred::push(const fem::Event& event) {
-  Before had{touched_.size(), basis_.differences().size(), false};
+  Before had{touched_.size(), basis_.differences().size(), units_.size(), false};
   for (Index e : event.leave) connect(glued(e));
   for (const fem::Coming& c : event.come) {
     if (c.element < forms_.element_count()) connect(glued(c.element));
     connect(forms_.parents(c.form.corners));
   }
   const auto differences = basis_.differences().subspan(had.differences);
-  had.pushed = !differences.empty();
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    column_.push_back(count_ + static_cast<Index>(i));
+  }
+  const Index before = count_;
+  push(differences);
+  push_units(event.grasp);
+  had.pushed = count_ > before;
   before_.push_back(had);
-  if (!had.pushed) return;
-  const Eigen::Index before = count_, added = static_cast<Eigen::Index>(differences.size());
+}
+
+/// Unit vectors of unknowns that have none yet.
+void Deferred::push_units(std::span<const Index> dofs) {
+  fresh_.clear();
+  for (Index d : dofs) {
+    if (unit_[d] != kNone) continue;
+    unit_[d] = count_ + static_cast<Index>(fresh_.size());
+    units_.push_back(d);
+    fresh_.push_back({d, kNone});
+    if (is_touched_[d]) continue;
+    is_touched_[d] = 1;
+    touched_.push_back(d);
+  }
+  push(fresh_);
+}
+
+/// New columns of B: nothing is damaged in them yet.
+void Deferred::push(std::span<const Difference> vectors) {
+  if (vectors.empty()) return;
+  const Eigen::Index before = count_, added = static_cast<Eigen::Index>(vectors.size());
   count_ += static_cast<Index>(added);
   reserve(count_);
   make_room(gram_, m_.rows(), padded(added));
-  base_->push(differences, gram_);
+  base_->push(vectors, gram_);
   compliance_.block(0, before, count(), added) = gram_.topLeftCorner(count(), added);
   for (Eigen::Index j = 0; j < added; ++j) {
     for (Eigen::Index i = 0; i < before; ++i) compliance_(before + j, i) = gram_(i, j);
@@ -202,7 +292,11 @@ void Deferred::pop() {
   for (std::size_t i = before.touched; i < touched_.size(); ++i) is_touched_[touched_[i]] = 0;
   touched_.resize(before.touched);
   if (!before.pushed) return;
-  count_ -= static_cast<Index>(basis_.differences().size() - before.differences);
+  for (std::size_t i = before.units; i < units_.size(); ++i) unit_[units_[i]] = kNone;
+  count_ -= static_cast<Index>(units_.size() - before.units + basis_.differences().size() -
+                               before.differences);
+  units_.resize(before.units);
+  column_.resize(before.differences);
   basis_.shrink(before.differences);
   base_->pop();
 }
@@ -221,8 +315,7 @@ void Deferred::clear() {
   changed_ = 0;
   m_.topLeftCorner(count(), padded(count())).setZero();
   d_.topLeftCorner(count(), padded(count())).setZero();
-  grip_compliance_.setZero(grips_, padded(grips_));
-  grip_compliance_.leftCols(grips_) = compliance_.topLeftCorner(grips_, grips_);
+  find_grips();
 }
 
 void Deferred::remember() {
@@ -235,32 +328,30 @@ void Deferred::remember() {
 
 /// The last sums that are kept; returns the events in them.
 std::size_t Deferred::go_to_sums() {
-  if (sums_.empty()) {
-    forms_ = in_base_;
-    border_.clear();
-    return 0;
-  }
+  forms_ = sums_.empty() ? in_base_ : sums_.back().forms;
+  clear();
+  border_.clear();
+  if (sums_.empty()) return 0;
   const Sums& of = sums_.back();
   changed_ = of.changed;
   m_.topLeftCorner(of.m.rows(), of.m.cols()) = of.m;
   d_.topLeftCorner(of.d.rows(), of.d.cols()) = of.d;
   grip_compliance_ = of.grip_compliance;
-  forms_ = of.forms;
   border_ = of.border;
   return static_cast<std::size_t>(of.events);
 }
 
 /// Adds all events up again, in order: the same sums as the first time.
 bool Deferred::replay() {
-  clear();
   bool bordered = true;
   for (std::size_t i = go_to_sums(); i < damage_.size(); ++i) {
     forms_.add(damage_[i].nodes);
     static_cast<void>(apply(damage_[i]));
     // As many columns as there were: products of another size round otherwise.
     const Eigen::Index columns =
-        i + 1 < before_.size() ? grips_ + static_cast<Eigen::Index>(before_[i + 1].differences)
-                               : count();
+        i + 1 < before_.size()
+            ? static_cast<Eigen::Index>(before_[i + 1].differences + before_[i + 1].units)
+            : count();
     bordered = bordered && follow_border(damage_[i], columns);
   }
   return bordered;
@@ -274,7 +365,7 @@ void Deferred::gather(std::span<const Part> parts) {
   } else {
     gather_event(parts);
   }
-  for (Index& row : rows_) row += static_cast<Index>(grips_);
+  for (Index& row : rows_) row = column_[static_cast<std::size_t>(row)];
 }
 
 void Deferred::gather_event(std::span<const Part> all) {
@@ -357,7 +448,7 @@ bool Deferred::update(std::span<const Part> parts, bool more) {
   }
   linear_algebra::row_product_add({left->data(), n, width, 1, left->outerStride()}, zt_.data(),
                                   zt_.outerStride(), padded(n), m_.data(), m_.outerStride());
-  if (grips_ > 0) add_to_grips(width, more);
+  if (grips() > 0) add_to_grips(width, more);
   add_to_d(more);
   return true;
 }
@@ -383,17 +474,17 @@ void Deferred::add_to_d(bool more) {
 
 /// (A^-1)_GG grows by the event's share of it.
 void Deferred::add_to_grips(Eigen::Index width, bool more) {
-  const Eigen::Index g = padded(grips_);
+  const Eigen::Index g = padded(grips());
+  const Columns columns = columns_of_grips();
   make_room(at_grips_, width, g);
-  linear_algebra::row_product({zt_.data(), width, count(), zt_.outerStride(), 1},
-                              compliance_.data(), compliance_.outerStride(), g, at_grips_.data(),
-                              at_grips_.outerStride());
+  linear_algebra::row_product({zt_.data(), width, count(), zt_.outerStride(), 1}, columns.data,
+                              columns.stride, g, at_grips_.data(), at_grips_.outerStride());
   if (more) {
-    const auto t = at_grips_.topLeftCorner(width, grips_);
-    grip_compliance_.leftCols(grips_).noalias() -= t.transpose() * t;
+    const auto t = at_grips_.topLeftCorner(width, grips());
+    grip_compliance_.leftCols(grips()).noalias() -= t.transpose() * t;
     return;
   }
-  linear_algebra::row_product_add({at_grips_.data(), grips_, width, 1, at_grips_.outerStride()},
+  linear_algebra::row_product_add({at_grips_.data(), grips(), width, 1, at_grips_.outerStride()},
                                   at_grips_.data(), at_grips_.outerStride(), g,
                                   grip_compliance_.data(), grip_compliance_.outerStride());
 }
@@ -417,15 +508,14 @@ const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
 void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
                      double energy_tolerance) {
   base_->expand(coefficients(forces, displacement, energy_tolerance), u);
-  for (Eigen::Index i = 0; i < grips_; ++i) {  // free of rounding
-    u[touched_[static_cast<std::size_t>(i)]] =
-        displacement.empty() ? 0.0 : displacement[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < held_.size(); ++i) {  // free of rounding
+    u[held_[i].dof] = displacement.empty() ? 0.0 : displacement[i];
   }
 }
 
 void Deferred::correct(const Forces& residual, Eigen::VectorXd& du) {
   base_->expand(correct(base_->load(on_body(residual))), du);
-  for (Eigen::Index i = 0; i < grips_; ++i) du[touched_[static_cast<std::size_t>(i)]] = 0;
+  for (const Held& held : held_) du[held.dof] = 0;
 }
 
 const Eigen::VectorXd& Deferred::correction_coefficients(const Eigen::VectorXd& projection) {
@@ -447,9 +537,12 @@ Forces Deferred::on_body(const Forces& forces) {
 void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacement) {
   multiply(m_, count(), p, x_);
   if (!border_.empty()) border_.start(p, x_);
-  if (grips_ == 0) return;
-  forces_ = -p.head(grips_);
-  forces_.noalias() -= compliance_.topLeftCorner(grips_, count()) * x_.head(count());
+  if (held_.empty()) return;
+  forces_.resize(grips());
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] = -p[held_[i].column];
+  }
+  subtract_at_grips(x_, forces_);
   add_grips(displacement);
 }
 
@@ -459,7 +552,8 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
   multiply(compliance_, n, x_, v_);
   v_.head(n) += p.head(n);     // B^T u
   multiply(d_, n, v_, lack_);  // D B^T u - x
-  lack_.segment(grips_, n - grips_) -= x_.segment(grips_, n - grips_);
+  lack_.head(n) -= x_.head(n);
+  for (Index d : units_) lack_[unit_[d]] = 0;  // where only grips act
   if (!border_.empty()) border_.add_lack(v_, lack_);
   multiply(compliance_, n, lack_, gx_);
   multiply(m_, n, gx_, mgx_);
@@ -467,28 +561,37 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
   x_.head(n) += lack_.head(n);
   x_.head(n) += mgx_.head(n);
   if (!border_.empty()) {
-    moved_.setZero(grips_);
+    moved_.setZero(grips());
     energy += border_.correct(lack_, x_, moved_);
   }
-  if (grips_ == 0) return energy;
-  forces_ = -v_.head(grips_) - gx_.head(grips_);
+  if (held_.empty()) return energy;
+  forces_.resize(grips());
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] = -v_[held_[i].column] - gx_[held_[i].column];
+  }
   if (!border_.empty()) forces_ -= moved_;
-  forces_.noalias() -= compliance_.topLeftCorner(grips_, n) * mgx_.head(n);
+  subtract_at_grips(mgx_, forces_);
   add_grips(displacement);
   return energy;
 }
 
 /// Adds the grips' forces that move u_G, which is at -forces_, to the displacement.
 void Deferred::add_grips(std::span<const double> displacement) {
-  const Eigen::Index n = count(), g = grips_;
-  for (Eigen::Index i = 0; i < g && !displacement.empty(); ++i) {
-    forces_[i] += displacement[static_cast<std::size_t>(i)];
+  const Eigen::Index n = count();
+  for (std::size_t i = 0; i < held_.size() && !displacement.empty(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] += displacement[i];
   }
   grip_block_.solveInPlace(forces_);
-  gx_.head(n).noalias() = compliance_.topLeftCorner(n, g) * forces_;
+  gx_.head(n).setZero();
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    gx_.head(n) += forces_[static_cast<Eigen::Index>(i)] *
+                   compliance_.row(held_[i].column).head(n).transpose();
+  }
   multiply(m_, n, gx_, mgx_);
   x_.head(n) += mgx_.head(n);
-  x_.head(g) += forces_;
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    x_[held_[i].column] += forces_[static_cast<Eigen::Index>(i)];
+  }
   if (!border_.empty()) border_.follow_grips(forces_, x_);
 }
 

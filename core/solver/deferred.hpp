@@ -6,7 +6,8 @@
 // number of touched unknowns, not with the number of fractures. M is only as good as its entries
 // 1/alpha larger allow; the forces x = D B^T u that make up for the stiffness D that is gone
 // (u = X (f + B x)) are refined in these coordinates, to the base's accuracy. Grips add forces h on
-// the gripped unknowns G so that u_G = d; their unit vectors come first in B. Elements may come as
+// the gripped unknowns G so that u_G = d; their unit vectors stand in B, those of the base's body
+// first, of others that are grasped later where they came. Elements may come as
 // well as leave (change.hpp): then M -= Z C^-1 Z^T, C = I + U^T B^T X B Z, and D is signed. New
 // unknowns are a border of all this (border.hpp).
 #pragma once
@@ -45,7 +46,8 @@ class Deferred {
   Deferred(const fem::Forms& in_base, std::unique_ptr<Base> base, bool damage = true,
            Index columns = kReserved);
 
-  /// Follows an event: by destroy() where elements leave and none comes, else by change().
+  /// Follows an event: by destroy() where elements leave and none comes, by unit vectors in B where
+  /// grips take hold and let go, else by change().
   [[nodiscard]] bool follow(const fem::Event& event);
   /// Follows an event. Returns false and changes nothing when the damaged stiffness is not
   /// positive definite in double precision.
@@ -81,13 +83,17 @@ class Deferred {
   const Eigen::VectorXd& correction_coefficients(const Eigen::VectorXd& projection);
   /// Whether the last solution was refined down to `energy_tolerance` or to rounding.
   [[nodiscard]] bool converged() const { return converged_; }
-  /// Forces of the grips on the base in the last solution, anchors included.
-  [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType grip_forces() const {
-    return x_.head(grips_);
-  }
+  /// Gripped unknowns, as forms().gripped().
+  [[nodiscard]] Index grips() const { return static_cast<Index>(held_.size()); }
+  /// Force of a grip on the base in the last solution, its anchor included.
+  [[nodiscard]] double grip_force(std::size_t grip) const { return x_[held_[grip].column]; }
+  /// Of all of them.
+  [[nodiscard]] Eigen::VectorXd grip_forces() const;
 
-  /// L with L L^T = (A^-1)_GG.
-  [[nodiscard]] const Eigen::MatrixXd& grip_factor() const { return grip_block_.matrixLLT(); }
+  /// L with L L^T = (A^-1)_GG of the problem's own grips while all others hold still.
+  [[nodiscard]] const Eigen::MatrixXd& grip_factor() const {
+    return grasped() ? own_factor_ : grip_block_.matrixLLT();
+  }
 
   [[nodiscard]] Base& base() { return *base_; }
   [[nodiscard]] const Base& base() const { return *base_; }
@@ -99,7 +105,7 @@ class Deferred {
   [[nodiscard]] Index unknown(Index node, int axis) const;
   /// d [mm] of the last solution or correction: the last unknowns.
   [[nodiscard]] const Eigen::VectorXd& offsets() const { return border_.offsets(); }
-  /// Unknowns of destroyed elements, gripped ones first.
+  /// Unknowns of destroyed elements, gripped ones of the base's body first.
   [[nodiscard]] std::span<const Index> touched() const { return touched_; }
   /// Columns of B: what a frame pays for the damage.
   [[nodiscard]] Index rank() const { return count_; }
@@ -111,8 +117,12 @@ class Deferred {
  private:
   /// By what held before an event.
   struct Before {
-    std::size_t touched, differences;
+    std::size_t touched, differences, units;
     bool pushed;
+  };
+  /// A gripped unknown, and the column of B that is its unit vector.
+  struct Held {
+    Index dof, column;
   };
   using Part = fem::StiffnessPart;
 
@@ -129,6 +139,8 @@ class Deferred {
   void reserve(Index columns);
   [[nodiscard]] bool follow_last();
   void push(const fem::Event& event);
+  void push(std::span<const Difference> vectors);
+  void push_units(std::span<const Index> dofs);
   [[nodiscard]] std::array<Index, 4> glued(Index element) const;
   void connect(const std::array<Index, 4>& nodes);
   void pop();
@@ -153,14 +165,26 @@ class Deferred {
   [[nodiscard]] std::size_t go_to_sums();
   [[nodiscard]] bool replay();
   [[nodiscard]] bool factor_grips();
+  /// Some of the gripped unknowns are not the problem's own.
+  [[nodiscard]] bool grasped() const { return held_.size() > problem_.gripped_dofs().size(); }
+  void find_grips();
+  struct Columns {
+    const double* data;
+    Eigen::Index stride;
+  };
+  [[nodiscard]] Columns columns_of_grips();
+  void subtract_at_grips(const Eigen::VectorXd& x, Eigen::VectorXd& at_grips) const;
   [[nodiscard]] Eigen::Index count() const { return count_; }
   void touch(const std::array<Index, 4>& nodes);
 
   const Problem& problem_;
   std::unique_ptr<Base> base_;
-  Eigen::Index grips_ = 0;
+  std::vector<Held> held_;  // as forms_.gripped()
+  Eigen::Index heads_ = 0;  // unit vectors that B begins with: grips of the base's body
   DifferenceBasis basis_;
-  Index count_ = 0;                       // columns of B: grips and differences
+  Index count_ = 0;                       // columns of B: unit vectors and differences
+  std::vector<Index> units_, unit_;       // unknowns with one; per unknown: its column, or kNone
+  std::vector<Index> column_;             // of each difference of the basis
   std::vector<Index> touched_;            // gripped unknowns, then by event
   std::vector<std::uint8_t> is_touched_;  // per unknown
   std::vector<Before> before_;            // each event
@@ -168,13 +192,18 @@ class Deferred {
   fem::Forms in_base_, forms_;            // before and after them
   Border border_;
   std::vector<Difference> wanted_;  // by what is to be prepared
+  std::vector<Difference> fresh_;   // unit vectors that come
   linear_algebra::RowMajor compliance_, m_,
       d_;                     // G = B^T X B, M and the stiffness D that is gone, in B
   bool stiffened_ = false;    // the last event has changed M
   Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
+  linear_algebra::RowMajor grip_columns_;     // of G, where they are not the first ones
   std::vector<Sums> sums_;                    // of fewer events first
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
+  // Where some are not the problem's own: those first, and what grip_factor() is.
+  Eigen::MatrixXd grasped_first_, own_factor_;
+  Eigen::LLT<Eigen::MatrixXd> grasped_block_{Eigen::MatrixXd(0, 0)};
   // The event in work: what it takes and what it adds, its update vectors and where they act, and
   // what comes of them.
   std::vector<Part> less_, more_;

@@ -70,6 +70,7 @@ bool Deferred::apply(const fem::Event& event) {
   collect(event);
   if (less_.empty() && more_.empty()) {  // splits alone change nothing between old unknowns
     forms_.follow(event);
+    if (event.of_grips()) find_grips();
     stiffened_ = false;
     return true;
   }
@@ -118,7 +119,7 @@ void Deferred::sum_up_d() {
 bool Deferred::follow_border(const fem::Event& event, Eigen::Index columns) {
   if (border_.empty() && forms_.new_nodes().empty()) return true;
   return border_.follow(forms_, event, basis_, compliance_, m_,
-                        {grips_, columns, changed_, stiffened_});
+                        {heads_, columns, changed_, stiffened_});
 }
 
 }  // namespace sunder::solver

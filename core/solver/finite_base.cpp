@@ -78,13 +78,19 @@ bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
       }
     }
   }
-  if (lost.empty() && !parted_) return true;
+  for (Index d = 0; gripped_ && d < static_cast<Index>(held_.size()); ++d) {
+    if (!held_[d] || column_[d] != kNone) continue;
+    column_[d] = static_cast<Index>(touched_.size() + fresh.size());
+    fresh.push_back(d);
+  }
+  if (lost.empty() && !parted_ && !gripped_) return true;
   const std::size_t rank =
       touched_.size() + fresh.size() + static_cast<std::size_t>(border_.size());
   if (rank > static_cast<std::size_t>(most_rank)) return false;
   touch(fresh);
   for (Index e : lost) lose(e);
-  if (!lost.empty() && !correct(now)) return false;
+  if ((!lost.empty() || gripped_) && !correct(now)) return false;
+  gripped_ = false;
   return border_.empty() || follow_border();
 }
 
@@ -96,6 +102,21 @@ void FiniteBase::part(const Problem& now, const fem::Parting& parting,
   parted_ = true;
   coupled_.resize(static_cast<std::size_t>(now.dof_count()), 1);
   for (Index d : now.gripped_dofs()) coupled_[d] = 0;
+}
+
+bool FiniteBase::grip(const Problem& now) {
+  if (!border_.empty() || parted_) return false;
+  std::vector<std::uint8_t> gripped(coupled_.size(), 0), held(coupled_.size(), 0);
+  for (Index d : now.gripped_dofs()) gripped[d] = 1;
+  for (Index d : problem_->gripped_dofs()) {
+    if (!gripped[d] && !coupled_[d]) return false;
+  }
+  for (Index d : now.gripped_dofs()) held[d] = coupled_[d];
+  problem_ = &now;
+  border_.see(now);
+  held_ = std::move(held);
+  gripped_ = true;
+  return true;
 }
 
 bool FiniteBase::follow_border() {
@@ -194,7 +215,9 @@ void FiniteBase::lose(Index element) {
 bool FiniteBase::correct(const RestingBody& now) {
   std::vector<Index> in_order, moving;
   for (Index i = 0; i < touched_count(); ++i) {
-    (now.frozen()[touched_[i]] ? in_order : moving).push_back(i);
+    const Index d = touched_[static_cast<std::size_t>(i)];
+    const bool still = now.frozen()[d] || (!held_.empty() && held_[d]);
+    (still ? in_order : moving).push_back(i);
   }
   const auto held = static_cast<Eigen::Index>(in_order.size()),
              free = static_cast<Eigen::Index>(moving.size());
@@ -253,7 +276,8 @@ void FiniteBase::turn(const RestingBody& now, std::span<const double> u) {
     bool free = true;
     for (int axis = 0; axis < 3; ++axis) {
       at[axis] = problem_->dof(n, axis);
-      free = free && at[axis] != kNone && coupled_[at[axis]] && !now.frozen()[at[axis]];
+      free = free && at[axis] != kNone && coupled_[at[axis]] && !now.frozen()[at[axis]] &&
+             (held_.empty() || !held_[at[axis]]);
     }
     if (!free || sum[n].isZero()) continue;  // none left around it: nothing to turn
     const Mat3 q = nearest_rotation(sum[n]);

@@ -38,6 +38,10 @@ class FiniteBase {
   /// The body has parted into another one, whose problem must outlive it, as must its masses (per
   /// unknown; empty: none). follow() comes next.
   void part(const Problem& now, const fem::Parting& parting, std::span<const double> mass);
+  /// Other unknowns are gripped, as a problem of the same nodes says, which must outlive it: they
+  /// are held still by the small matrix. False: nodes have parted, or one that the base holds by
+  /// itself has been let go; then another base is needed. follow() comes next.
+  [[nodiscard]] bool grip(const Problem& now);
   /// From now on x = Q A^-1 Q^T b, Q the rotations of the nodes from the base's state to u.
   void turn(const RestingBody& now, std::span<const double> u);
   /// Computes A^-1, dense: from now on solve() multiplies by it. What follows is the same.
@@ -100,6 +104,8 @@ class FiniteBase {
   std::vector<Index> touched_;         // T
   std::vector<Index> column_;          // of each unknown in T; kNone
   std::vector<std::uint8_t> coupled_;  // per unknown: it has an equation of the tangent
+  std::vector<std::uint8_t> held_;     // per unknown: gripped since; empty: none is
+  bool gripped_ = false;               // others, since the small matrix was made
   Eigen::MatrixXd g_, d_, m_;
   linear_algebra::RowMajor rows_, block_;  // rows of L, all zero between calls; part of G
   std::vector<Index> path_, places_;

@@ -28,6 +28,8 @@ class FiniteBorder {
   /// Both must live until the next part() or the end.
   void part(const Problem& now, std::span<const double> mass);
   [[nodiscard]] bool empty() const { return size() == 0; }
+  /// The body is told of by another problem, whose nodes and elements are the same.
+  void see(const Problem& now) { now_ = &now; }
   [[nodiscard]] Index size() const { return static_cast<Index>(from_.size()); }
   /// Unknowns of the base.
   [[nodiscard]] Index own() const { return own_; }

@@ -115,6 +115,20 @@ void FiniteMotion::go_on_from(FiniteMotion& before, const fem::Parting& parting)
   if (base_) base_->part(potential_.problem(), parting, mass_);
 }
 
+void FiniteMotion::go_on_from(FiniteMotion& before) {
+  FiniteMotionPast past = before.past();
+  past.euler = kEulerSteps;
+  for (Index d = 0; d < past.reaction.size(); ++d) {
+    if (!gripped_[static_cast<std::size_t>(d)]) past.reaction[d] = past.felt[d] = 0;
+  }
+  go_on_from(past);
+  rate_ = before.rate_;
+  sum_ = before.sum_;
+  broken_ = before.broken_;
+  base_ = std::move(before.base_);
+  if (base_ && !base_->grip(potential_.problem())) base_.reset();
+}
+
 Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
   if (!base_ || rate_ == 0) return {};
   const GripTangent of{{rate_ * (rate_ + options_.damping), mass_},

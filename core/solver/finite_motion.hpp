@@ -133,6 +133,10 @@ class FiniteMotion {
   /// The same from another one's state, with its base: of the same body before nodes parted.
   void go_on_from(FiniteMotion& before, const fem::Parting& parting);
 
+  /// The same where other unknowns are gripped, all nodes as they were: its base holds them as
+  /// well, unless that holds others by itself.
+  void go_on_from(FiniteMotion& before);
+
   [[nodiscard]] double time() const { return time_; }                   ///< sum of the steps [s]
   [[nodiscard]] double strain_energy() const { return state_.energy; }  ///< [N mm]
   [[nodiscard]] double kinetic_energy() const;                          ///< [N mm]

@@ -87,6 +87,29 @@ void FiniteStatics::go_on_from(FiniteStatics& before, const fem::Parting& partin
   if (base_) base_->part(body_.problem, parting, {});
 }
 
+/// The force of a grip that has let go acts on as a part of the load, and leaves with the next
+/// step.
+void FiniteStatics::go_on_from(FiniteStatics& before) {
+  u_ = before.u_;
+  reached_ = {before.reached_.force, potential_.grips(u_)};
+  first_ = before.first_;
+  suspected_ = before.suspected_;
+  since_check_ = before.since_check_;
+  check_after_ = before.check_after_;
+  worn_ = before.worn_;
+  shown_.u = u_;
+  potential_.evaluate(reached_, false, shown_);
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(body_.problem.dof_count()), 0);
+  for (Index d : before.body_.problem.gripped_dofs()) held[static_cast<std::size_t>(d)] = 1;
+  for (Index d : body_.problem.gripped_dofs()) held[static_cast<std::size_t>(d)] = 0;
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const Index d = body_.problem.dofs()[i];
+    if (d != kNone && held[static_cast<std::size_t>(d)]) reached_.force[d] = shown_.f[i];
+  }
+  base_ = std::move(before.base_);
+  if (base_ && !base_->grip(body_.problem)) base_.reset();
+}
+
 void FiniteStatics::destroyed(std::span<const Index>) { update_parts(); }
 
 Eigen::MatrixXd FiniteStatics::grip_compliance() {

@@ -83,6 +83,10 @@ class FiniteStatics {
   /// Goes on from another one's last rest, with its base: of the same body before nodes parted.
   void go_on_from(FiniteStatics& before, const fem::Parting& parting);
 
+  /// The same where other unknowns are gripped, all nodes as they were: its base holds them as
+  /// well, unless that holds others by itself.
+  void go_on_from(FiniteStatics& before);
+
   /// These have just left; the body says so already.
   void destroyed(std::span<const Index> elements);
   /// Anything else about the body has changed: elements are back, laws are others.

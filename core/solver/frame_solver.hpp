@@ -27,6 +27,8 @@ class FrameSolver {
   [[nodiscard]] bool everywhere() const { return everywhere_; }
   /// An event has changed the body.
   void event();
+  /// Other unknowns are gripped: loads from now on are of another kind.
+  void grips_changed();
 
   /// What is known of loads so far, to go back to: the next solution refines as it would have then.
   class State;
@@ -40,6 +42,7 @@ class FrameSolver {
   [[nodiscard]] FrameCheck* check_of(const Load& load);
 
   void solve_once(double energy_tolerance, SolveReport& report);
+  void know_nothing();
   void read_balance(SolveReport& report);
   void check_fully(SolveReport& report);
   void refine(SolveReport& report, bool by_base);

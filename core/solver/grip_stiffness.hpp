@@ -20,7 +20,8 @@ struct GripTangent {
 };
 
 /// (gripped x gripped) [N/mm], symmetric: change of the grips' forces on the body per displacement
-/// of the grips, at the state u. The base has followed the body; it is turned to u.
+/// of the grips, at the state u. The base has followed the body; it is turned to u. Where a host
+/// grips others besides (Problem::own_grips), of the scene's while those hold still.
 [[nodiscard]] Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u,
                                              const fem::TangentPattern& pattern, FiniteBase& base,
                                              const GripTangent& of);

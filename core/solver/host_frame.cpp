@@ -53,6 +53,19 @@ void HostFrame::restore(const State& state) {
   largest_ = state.largest;
 }
 
+void HostFrame::follow_grips(std::span<const Index> before) {
+  std::vector<double> displacements, reactions;
+  for (Index d : gripped()) {
+    const auto was = static_cast<std::size_t>(std::ranges::find(before, d) - before.begin());
+    const bool stays = was < before.size();
+    displacements.push_back(stays && was < load_.displacements.size() ? load_.displacements[was]
+                                                                      : u_[d]);
+    reactions.push_back(stays ? reactions_[was] : 0.0);
+  }
+  load_.displacements = std::move(displacements);
+  reactions_ = std::move(reactions);
+}
+
 /// Offsets of new nodes bear no load.
 void HostFrame::make_room_for_offsets() {
   offsets_.follow(body_.forms());
@@ -85,12 +98,12 @@ void HostFrame::compute_residual() {
     largest_ = body_.largest_stress(u_);
   }
   r_ = force_ - product_;
-  const auto gripped = problem().gripped_dofs();
   load_squared_ = force_.squaredNorm();
-  for (std::size_t g = 0; g < gripped.size(); ++g) {
-    reactions_[g] = -r_[gripped[g]];  // what the grip adds to the applied force
+  for (std::size_t g = 0; g < gripped().size(); ++g) {
+    const Index d = gripped()[g];
+    reactions_[g] = -r_[d];  // what the grip adds to the applied force
     load_squared_ += reactions_[g] * reactions_[g];
-    r_[gripped[g]] = 0;
+    r_[d] = 0;
   }
 }
 
@@ -129,9 +142,9 @@ FrameDevice::OnRegion HostFrame::solve_region(double energy_tolerance) {
   route_.set_energy_tolerance(energy_tolerance);
   route_.solve(load_, force_, u_);
   const OnRegion found = on_region();
-  const auto gripped = problem().gripped_dofs();
-  for (std::size_t g = 0; g < gripped.size(); ++g) {
-    reactions_[g] = grip_force(g) - anchors_[g] * u_[gripped[g]];  // the anchor's share
+  for (std::size_t g = 0; g < gripped().size(); ++g) {
+    const double anchor = g < anchors_.size() ? anchors_[g] : 0;
+    reactions_[g] = grip_force(g) - anchor * u_[gripped()[g]];  // the anchor's share
   }
   return found;
 }
@@ -146,8 +159,6 @@ FrameDevice::OnRegion HostFrame::on_region() {
   return found;
 }
 
-double HostFrame::grip_force(std::size_t g) const {
-  return route_.deferred()->grip_forces()[static_cast<Eigen::Index>(g)];
-}
+double HostFrame::grip_force(std::size_t g) const { return route_.deferred()->grip_force(g); }
 
 }  // namespace sunder::solver

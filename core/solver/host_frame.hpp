@@ -35,6 +35,9 @@ class HostFrame final : public FrameDevice {
   };
   [[nodiscard]] State state() const { return {load_, u_, reactions_, load_squared_, largest_}; }
   void restore(const State& state);
+  /// Other unknowns are gripped than `before`: of those that stay nothing changes, what is new is
+  /// held where it is.
+  void follow_grips(std::span<const Index> before);
   [[nodiscard]] const Load& load() const { return load_; }
   /// The solution in work, over all unknowns, offsets of new nodes last; solve_region() fills those
   /// of the region alone.
@@ -67,6 +70,7 @@ class HostFrame final : public FrameDevice {
   [[nodiscard]] const Problem& problem() const { return body_.problem(); }
   [[nodiscard]] InverseRoute& route() { return other_ ? *other_ : route_; }
   [[nodiscard]] double grip_force(std::size_t g) const;
+  [[nodiscard]] std::span<const Index> gripped() const { return body_.forms().gripped(); }
 
   const fem::DamagedBody& body_;
   InverseRoute& route_;
@@ -74,7 +78,7 @@ class HostFrame final : public FrameDevice {
   bool yardstick_;
   MakeRoute fall_back_;
   std::unique_ptr<InverseRoute> other_;  // while a frame falls back
-  std::vector<double> anchors_;          // stiffness of each gripped unknown's anchor
+  std::vector<double> anchors_;          // stiffness of the anchor of each of the problem's grips
 
   fem::Offsets offsets_;
   Load load_;

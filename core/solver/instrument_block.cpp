@@ -12,7 +12,10 @@ std::vector<double> anchors_of(const Problem& problem) {
     const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
     anchors[static_cast<std::size_t>(g)] = problem.anchor_stiffness();
   }
-  return anchors;
+  if (problem.own_grips().empty()) return anchors;
+  std::vector<double> own;
+  for (Index place : problem.own_grips()) own.push_back(anchors[static_cast<std::size_t>(place)]);
+  return own;
 }
 
 InstrumentBlock::InstrumentBlock(const Problem& problem) {

@@ -11,7 +11,8 @@
 
 namespace sunder::solver {
 
-/// Stiffness [N/mm] of each gripped unknown's anchor.
+/// Stiffness [N/mm] of the anchor of each gripped unknown, where a host grips others besides of
+/// each of the scene's.
 [[nodiscard]] std::vector<double> anchors_of(const Problem& problem);
 
 class InstrumentBlock {

@@ -26,6 +26,8 @@ void RenewedUpdate::follow(const fem::Event& event, bool anew) {
   coming_->follow();
   if (anew || !based_.follow(event)) {
     if (!rebase()) throw NumericalError("the update of the split body is singular");
+  } else if (event.of_grips()) {
+    based_.check = {};  // it was of loads by other grips
   } else if (begins()) {
     start_load_ = load_;
     start_events_ = body_.events();
@@ -82,8 +84,16 @@ bool RenewedUpdate::can_be_renewed() const {
 }
 
 bool RenewedUpdate::begins() const {
-  const Eigen::Index columns = based_.deferred->rank() + based_.deferred->offsets().size();
-  return !coming_->making() && static_cast<std::size_t>(columns) > threshold_ && can_be_renewed();
+  const Deferred& deferred = *based_.deferred;
+  const auto own = static_cast<Index>(body_.problem().gripped_dofs().size());
+  // A base has unit vectors of all that is gripped, which is no reason for the next one.
+  const Eigen::Index columns =
+      deferred.rank() - (deferred.grips() - own) + deferred.offsets().size();
+  // The load is the last frame's: since then nothing may have been grasped.
+  const bool fits = load_.displacements.empty() ||
+                    load_.displacements.size() == static_cast<std::size_t>(deferred.grips());
+  return !coming_->making() && static_cast<std::size_t>(columns) > threshold_ && fits &&
+         can_be_renewed();
 }
 
 bool RenewedUpdate::rebase() {

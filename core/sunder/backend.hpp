@@ -33,12 +33,17 @@ struct Needs {
   std::vector<std::string> left_out;  ///< what this scene does not need, in words
 };
 
-/// The load of one solve. Forces act on free dofs (ascending, no dof twice). Every gripped dof of
-/// the problem (Problem::gripped_dofs) gets its prescribed displacement, in that order.
+/// The load of one solve. Forces act on free dofs (ascending, no dof twice). Every gripped dof
+/// (Backend::gripped_dofs) gets its prescribed displacement, in that order.
 struct Load {
   std::vector<Index> force_dofs;
   std::vector<double> forces;         ///< [N], same length
   std::vector<double> displacements;  ///< [mm], one per gripped dof
+};
+
+/// Other unknowns are gripped than `before`, all that were: these besides, those no longer.
+struct GripChange {
+  std::span<const Index> grasp, release, before;
 };
 
 struct SolveReport {
@@ -224,6 +229,21 @@ class Backend {
   /// Parts elements (method.md "Split cracks"): none leaves, some come as they were but with
   /// corners at new nodes. One event, as destroy() is.
   void change(const fem::Change& change);
+  /// Why no further nodes can be gripped by this backend for this scene, and what can; empty: they
+  /// can.
+  [[nodiscard]] virtual std::string why_no_grasp() const;
+  /// Whether grasp() can take a node: on route condensed those of its region.
+  [[nodiscard]] virtual bool can_grasp(Index) const { return true; }
+  /// Grips these unknowns, at no factor where a base is there: from now on a load prescribes their
+  /// displacement, behind those of all gripped before. What the last solution was can still be
+  /// read. They must be unknowns of the problem, distinct, not gripped yet. Throws UsageError
+  /// otherwise.
+  void grasp(std::span<const Index> dofs);
+  /// Lets some of these go: none of the problem's own.
+  void release(std::span<const Index> dofs);
+  /// Those of the problem, then those grasped since, in order.
+  [[nodiscard]] std::span<const Index> gripped_dofs() const;
+
   /// Nodes of the mesh and, with ids after theirs, those that changes have brought.
   [[nodiscard]] Index node_count() const;
 
@@ -241,7 +261,8 @@ class Backend {
   /// order, shape (elements), MPa.
   void read_stress(std::span<Voigt> stress) const;
   [[nodiscard]] Voigt read_stress(Index element) const;
-  /// Force that the grips exert on the body, one per gripped dof, N.
+  /// Force that the grips exert on the body, one per gripped dof, N; 0 where one was grasped since
+  /// the last solve.
   void read_reactions(std::span<double> reactions) const;
 
   /// The state of now, to go back to; null: this backend keeps none for this route, law or scene.
@@ -281,6 +302,8 @@ class Backend {
   virtual void do_cut_off(std::span<const Index> elements) = 0;
   virtual void do_destroy(std::span<const Index> elements) = 0;  // damaged_body() knows them
   virtual void do_change(const fem::Change& change);             // damaged_body() knows it
+  /// damaged_body() knows it.
+  virtual void do_grip(const GripChange& change);
   virtual void do_prepare(std::span<const Index>) {}
   [[nodiscard]] virtual std::unique_ptr<BackendState> do_save() const { return nullptr; }
   /// damaged_body() still knows all events; true: take_body_back() has dropped all but `events`.
@@ -296,6 +319,7 @@ class Backend {
 
   std::vector<Index> sorted_;  // of destroy()
 
+  void change_grips(std::span<const Index> grasp, std::span<const Index> release);
   enum class Stage { created, loaded, solved, stressed };
   void require(bool condition, const char* what) const;
   void require_motion(std::span<const double> velocity) const;

@@ -19,7 +19,11 @@
 namespace sunder {
 
 struct Action;
+namespace action {
+struct Grasp;
+}
 struct MarkedState;
+struct Tool;
 class FractureCriterion;
 class Loads;
 class LooseSearch;
@@ -37,6 +41,18 @@ struct NodalForce;
 /// A state that a simulation was in, to come back to: Simulation::save. Cheap to copy; it holds on
 /// to some memory of the solver's while it lives.
 using Mark = std::shared_ptr<const MarkedState>;
+
+/// Where a grip of a host is: a place [mm], and a rotation since it took hold as a quaternion
+/// (x, y, z, w) of any length above 0.
+struct Pose {
+  Vec3 position = Vec3::Zero();
+  std::array<double, 4> quaternion{0, 0, 0, 1};
+};
+
+/// What a grip exerts on the body: force [N], and torque about the grip's place [N mm].
+struct Wrench {
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+};
 
 /// What going back or forward has done.
 struct Travel {
@@ -85,6 +101,41 @@ class Simulation {
 
   /// Makes the backend of the same problem once more, as it was before the first step.
   using MakeBackend = std::function<std::unique_ptr<Backend>()>;
+  /// Takes hold of nodes, all of their axes, where they are now: nothing moves by it. Rigid: they
+  /// move as one solid, which may turn, about its place, the mean of theirs; else as points that
+  /// all go the same way. No factor is made for it in statics by law linear (docs/embedding.md "A
+  /// live body"). Returns the grip's id, after those of the scene's instruments; none comes twice.
+  /// Throws UsageError, and nothing changes, for a node that is not there, named twice, held by a
+  /// support or another grip, of which all elements are gone or out of this route's reach; where
+  /// nothing can be destroyed (Scene::live), cracks split or the backend cannot.
+  int grasp(std::span<const Index> nodes, bool rigid = false);
+  /// The same of all nodes that are within a radius [mm] of a place now and could be grasped; the
+  /// grip's place is that one. UsageError where there are none.
+  int grasp(const Vec3& near, double radius, bool rigid = false);
+  /// Brings a grip there, from the next step on, its nodes with it, by an exact rotation. Throws
+  /// UsageError for a grip that is not there or has been let go, a value that is not finite, a
+  /// quaternion of length 0, and a turn of points.
+  void pose(int grip, const Pose& pose);
+  /// Where a grip is: its place [mm].
+  [[nodiscard]] Vec3 centre_of(int grip) const;
+  /// What a grip exerts on the body in the last solve; zero before the first one since it took
+  /// hold.
+  [[nodiscard]] Wrench wrench(int grip) const;
+  /// Nodes that a grip holds, as they were named.
+  [[nodiscard]] std::span<const Index> held_nodes(int grip) const;
+  /// Lets go: from the next step on the body is as if it had never been held there. The scene's own
+  /// instruments stay.
+  void release(int grip);
+  /// A force [N] in equal parts on nodes, from the next step on until it is dropped; what acts on
+  /// held axes goes into the reaction there. Returns an id as grasp() does. Throws UsageError for a
+  /// node that is not there, named twice or held on all axes by a support, a force that is not
+  /// finite.
+  int push(std::span<const Index> nodes, const Vec3& force);
+  /// A push acts on these nodes, with this force, from the next step on.
+  void move(int push, std::span<const Index> nodes, const Vec3& force);
+  /// A push ends.
+  void drop(int push);
+
   /// Keeps what is done from now on, so that it can be undone; before the first step and action.
   /// `quick`: the last so many actions in which something broke keep what the solver needs to go
   /// back without a new base: all but the mesh's nodes, some lists and loads is shared. Going
@@ -97,8 +148,9 @@ class Simulation {
   /// Comes back to a state, from wherever: every later result is bit by bit what it would have been
   /// there. Throws UsageError for a mark of another simulation, or where that needs a new backend.
   Travel restore(const Mark& mark);
-  /// Takes back the last `actions` steps and removals in which something broke, with all steps
-  /// since. Throws UsageError, and nothing changes, where there are fewer.
+  /// Takes back the last `actions` of these: steps and removals in which something broke, grips and
+  /// pushes that came or went; with all steps, poses and whatever else since. Throws UsageError,
+  /// and nothing changes, where there are fewer.
   Travel undo(int actions = 1);
   /// Does again what undo() took back, quiet steps that came after it included. Throws UsageError
   /// where there is less, as after any step or action since.
@@ -109,7 +161,7 @@ class Simulation {
   /// Does what such bytes tell, from the beginning: the same bits on the same backend. Throws
   /// InputError, and nothing changes, where they are damaged, of another version or another body.
   Travel load(std::span<const std::uint8_t> bytes);
-  /// How many steps and removals undo() and redo() can take.
+  /// How many actions undo() and redo() can take.
   [[nodiscard]] int undos() const;
   [[nodiscard]] int redos() const;
 
@@ -161,7 +213,8 @@ class Simulation {
   /// Force each instrument exerts on the body in the last solve, N; pulls and presses: the force
   /// applied, grips: the reaction.
   [[nodiscard]] std::vector<Vec3> reactions() const;
-  /// Force that the supports exert on the body; equilibrium: minus the sum of reactions().
+  /// Force that the supports exert on the body; equilibrium: minus the sum of reactions(), and of
+  /// what grips and pushes of a host exert.
   [[nodiscard]] Vec3 support_reaction() const;
   /// Nodes on which instrument i acts at present (pressed nodes included).
   [[nodiscard]] std::vector<Index> acting_nodes(std::size_t instrument) const;
@@ -289,6 +342,14 @@ class Simulation {
   void record(Action action, std::shared_ptr<const Kept> before, int events_before);
   void perform(const std::shared_ptr<const Action>& action);
   StepReport take_step(std::optional<double> dt, double max_ms);
+  int take_hold(const action::Grasp& what);
+  void require_grasp() const;
+  void check_push(std::span<const Index> nodes, const Vec3& force) const;
+  [[nodiscard]] std::string why_not(Index node) const;
+  [[nodiscard]] std::vector<Vec3> displacement_of(std::span<const Index> nodes) const;
+  [[nodiscard]] const Tool& tool(int id, bool holds) const;
+  void follow_grips(bool looks);
+  [[nodiscard]] double work_of_tools();
   void take_out(std::span<const Index> elements);
   void check_removal(std::span<const Index> elements) const;
   void follow_removal();

@@ -45,6 +45,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
       element_parts_(elements_ / shaders::kGroup * kernels.parts()),
       node_parts_(nodes_ / shaders::kGroup * kernels.parts()),
+      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
       matrix_(problem) {
   vulkan::Device& device = kernels.device();
   device.require_memory(planned_bytes(route.preconditioner) + route.bytes, "this scene");
@@ -119,20 +120,13 @@ void Fields::upload_mesh() {
                                                 static_cast<std::uint32_t>(yield),
                                                 static_cast<std::uint32_t>(yield >> 32)};
   }
-  std::vector<std::uint32_t> dofs(std::size_t{4} * nodes_, shaders::kHeld);
   // Padding rows write behind the nodes, where nothing reads.
   std::vector<std::uint32_t> positions(rows_);
   for (std::uint32_t i = 0; i < rows_; ++i) positions[i] = 4 * nodes_ + i;
-  const auto gripped = problem_.gripped_dofs();
-  for (std::uint32_t n = 0; n < nodes_; ++n) {
-    dofs[4 * n + 3] = 0;
-    if (n >= static_cast<std::uint32_t>(problem_.node_count())) continue;
+  for (Index n = 0; n < problem_.node_count(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
-      const Index dof = problem_.dof(static_cast<Index>(n), axis);
-      if (dof == kNone) continue;
-      dofs[4 * n + axis] = static_cast<std::uint32_t>(dof);
-      positions[dof] = 4 * n + axis;
-      if (std::binary_search(gripped.begin(), gripped.end(), dof)) dofs[4 * n + 3] |= 1u << axis;
+      const Index dof = problem_.dof(n, axis);
+      if (dof != kNone) positions[dof] = static_cast<std::uint32_t>(4 * n + axis);
     }
   }
   const auto upload = [&](Buffer& buffer, const std::vector<std::uint32_t>& words) {
@@ -143,9 +137,36 @@ void Fields::upload_mesh() {
   facts_ = Buffer(kernels_.device(), facts_host_.size() * sizeof(shaders::ElementFacts),
                   Placement::device);
   facts_.write(std::span<const shaders::ElementFacts>(facts_host_));
-  upload(dofs_, dofs);
+  dofs_ =
+      Buffer(kernels_.device(), std::size_t{4} * nodes_ * sizeof(std::uint32_t), Placement::device);
+  upload_dofs();
   upload(positions_, positions);
   place_ = std::move(positions);
+}
+
+/// Unknowns of the nodes, and which axes are gripped.
+void Fields::upload_dofs() {
+  std::vector<std::uint8_t> gripped(static_cast<std::size_t>(problem_.dof_count()), 0);
+  for (Index d : gripped_) gripped[static_cast<std::size_t>(d)] = 1;
+  std::vector<std::uint32_t> dofs(std::size_t{4} * nodes_, shaders::kHeld);
+  for (std::uint32_t n = 0; n < nodes_; ++n) {
+    dofs[4 * n + 3] = 0;
+    if (n >= static_cast<std::uint32_t>(problem_.node_count())) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index dof = problem_.dof(static_cast<Index>(n), axis);
+      if (dof == kNone) continue;
+      dofs[4 * n + axis] = static_cast<std::uint32_t>(dof);
+      if (gripped[static_cast<std::size_t>(dof)]) dofs[4 * n + 3] |= 1u << axis;
+    }
+  }
+  dofs_.write(std::span<const std::uint32_t>(dofs));
+}
+
+void Fields::grip(std::span<const Index> gripped) {
+  gripped_.assign(gripped.begin(), gripped.end());
+  if (host_balance_) host_balance_->grip(gripped_);
+  upload_dofs();
+  create_hold();
 }
 
 void Fields::upload_shapes() {
@@ -311,15 +332,14 @@ std::vector<Index> Fields::over_yield() const {
 }
 
 void Fields::create_hold() {
-  const auto gripped = problem_.gripped_dofs();
-  if (gripped.empty()) return;
+  if (gripped_.empty()) return;
   vulkan::Device& device = kernels_.device();
   std::vector<std::uint32_t> held;
-  for (Index d : gripped) held.push_back(place_[d]);
+  for (Index d : gripped_) held.push_back(place_[d]);
   held_ = Buffer(device, held.size() * sizeof(std::uint32_t), Placement::device);
   held_.write(std::span<const std::uint32_t>(held));
   prescribed_ = Buffer(device, held.size() * sizeof(double), Placement::host);
-  hold_pass_.kernel = kernels_.make_fp64("hold");
+  if (!hold_pass_.kernel) hold_pass_.kernel = kernels_.make_fp64("hold");
   const Buffer* of_displacement[] = {&held_, &prescribed_, &displacement_};
   const Buffer* of_correction[] = {&held_, &prescribed_, &correction_};
   hold_pass_.binding =
@@ -356,7 +376,7 @@ void Fields::renew_state() {
 }
 
 void Fields::record_hold(vulkan::Commands& commands, Field field) const {
-  const auto count = static_cast<std::uint32_t>(problem_.gripped_dofs().size());
+  const auto count = static_cast<std::uint32_t>(gripped_.size());
   if (count == 0) return;
   const bool correction = field == Field::correction;
   commands.dispatch(correction ? *correction_hold_ : *hold_pass_.binding,

@@ -48,6 +48,9 @@ class Fields {
   [[nodiscard]] bool norms() const { return norms_; }
 
   void set_load(std::span<const double> force, std::span<const double> displacements);
+  /// These unknowns are gripped from now on, those of the problem at first: what was recorded by
+  /// others is to be recorded anew.
+  void grip(std::span<const Index> gripped);
   /// Follows an event; `scale`: a_e after it (fem::DamagedBody::scale()), which stays where it is.
   void destroy(std::span<const Index> elements, std::span<const double> scale);
   void exclude(std::span<const Index> elements);
@@ -136,6 +139,7 @@ class Fields {
   void create_kernels();
   void create_residual_pass();
   void create_hold();
+  void upload_dofs();
   [[nodiscard]] shaders::ElementPush element_push(std::uint32_t keep) const;
   [[nodiscard]] shaders::Summary summary(std::size_t slot) const;
   void write_wide(vulkan::Buffer& buffer, std::span<const double> values) const;
@@ -150,6 +154,7 @@ class Fields {
   std::uint32_t element_parts_, node_parts_;       // partial results
   std::vector<shaders::ElementFacts> facts_host_;  // copy of facts_
   std::vector<std::uint32_t> place_;               // host copy of positions_
+  std::vector<Index> gripped_;
 
   vulkan::Buffer nodes_of_, shape_, facts_;
   vulkan::Buffer dofs_, positions_;

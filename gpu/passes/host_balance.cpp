@@ -13,7 +13,9 @@ HostBalance::HostBalance(const Problem& problem)
       k_u_(3 * problem.mesh().nodes.size()),
       load_(Eigen::VectorXd::Zero(problem.dof_count())),
       balance_(load_),
-      residual_(load_) {}
+      residual_(load_) {
+  grip(problem.gripped_dofs());
+}
 
 void HostBalance::set_load(std::span<const double> force) {
   load_ = Eigen::Map<const Eigen::VectorXd>(force.data(), problem_.dof_count());
@@ -30,7 +32,7 @@ void HostBalance::compute(std::span<const double> displacement) {
     }
   }
   residual_ = balance_;
-  for (Index g : problem_.gripped_dofs()) residual_[g] = 0;
+  for (Index g : gripped_) residual_[g] = 0;
 }
 
 }  // namespace sunder::gpu

@@ -15,6 +15,8 @@ class HostBalance {
  public:
   explicit HostBalance(const Problem& problem);
 
+  /// These are gripped from now on: those of the problem at first.
+  void grip(std::span<const Index> gripped) { gripped_.assign(gripped.begin(), gripped.end()); }
   /// Over the unknowns.
   void set_load(std::span<const double> force);
   /// a_e of the elements from now on, which stay where they are; empty: intact.
@@ -34,6 +36,7 @@ class HostBalance {
  private:
   const Problem& problem_;
   std::span<const double> scale_;
+  std::vector<Index> gripped_;
   std::vector<double> k_u_;  // K u at all nodes
   Eigen::VectorXd load_, balance_, residual_;
   double largest_u_ = 0;

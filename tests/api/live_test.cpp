@@ -134,6 +134,89 @@ TEST_F(CLive, RemovesAndCuts) {
   EXPECT_TRUE(Read(simulation) == read);
 }
 
+/// Near the lower left corner, whatever tears at the right.
+constexpr double kHere[3] = {0, 0, 0.5};
+
+TEST_F(CLive, GraspsPosesAndLetsGo) {
+  const double gentle[3] = {0, -0.1, 0};
+  ASSERT_OK(sunder_simulation_drive(simulation, 0, gentle));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  const Read before(simulation);
+  std::int32_t grip = -1;
+  ASSERT_OK(sunder_simulation_grasp_near(simulation, kHere, 1, 1, &grip));
+  EXPECT_EQ(grip, 1);
+  EXPECT_TRUE(Read(simulation) == before) << "nothing moves by it";
+  std::size_t count = 0;
+  ASSERT_OK(sunder_simulation_held_nodes(simulation, grip, nullptr, 0, &count));
+  ASSERT_EQ(count, 2U);
+  std::int32_t held[2] = {};
+  EXPECT_EQ(sunder_simulation_held_nodes(simulation, grip, held, 1, &count), SUNDER_ERROR_SIZE);
+  ASSERT_OK(sunder_simulation_held_nodes(simulation, grip, held, 2, &count));
+  EXPECT_EQ(held[0], 0);
+  double place[3] = {}, force[3] = {1, 1, 1}, torque[3] = {1, 1, 1};
+  ASSERT_OK(sunder_simulation_grip_place(simulation, grip, place));
+  EXPECT_TRUE(std::ranges::equal(place, kHere));
+  ASSERT_OK(sunder_simulation_wrench(simulation, grip, force, torque));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(std::abs(force[i]) + std::abs(torque[i]), 0);
+  // A right angle about z, and down.
+  const double to[3] = {0, -0.02, 0.5}, turn[4] = {0, 0, 1, 1};
+  ASSERT_OK(sunder_simulation_pose(simulation, grip, to, turn));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  const Read posed(simulation);
+  const double x = before.u[0], y = before.u[1];  // of node 0, at 0, 0, 0
+  EXPECT_NEAR(posed.u[0], -y, 1e-14);
+  EXPECT_NEAR(posed.u[1], x - 0.02, 1e-14);
+  ASSERT_OK(sunder_simulation_wrench(simulation, grip, force, torque));
+  EXPECT_LT(force[1], 0);
+  ASSERT_OK(sunder_simulation_pose(simulation, grip, to, nullptr));
+  ASSERT_OK(sunder_simulation_release(simulation, grip));
+  EXPECT_EQ(sunder_simulation_release(simulation, grip), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(sunder_simulation_wrench(simulation, grip, force, torque), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(sunder_simulation_pose(simulation, grip, to, nullptr), SUNDER_ERROR_ORDER);
+  ASSERT_OK(sunder_simulation_undo(simulation, 2, nullptr, nullptr));
+  EXPECT_TRUE(Read(simulation) == before);
+  ASSERT_OK(sunder_simulation_redo(simulation, 1, nullptr));
+  EXPECT_TRUE(Read(simulation) == posed);
+  EXPECT_OK(sunder_simulation_release(simulation, grip));
+}
+
+TEST_F(CLive, PushesMovesAndDrops) {
+  const double gentle[3] = {0, -0.1, 0}, force[3] = {0.01, 0, 0.02};
+  ASSERT_OK(sunder_simulation_drive(simulation, 0, gentle));
+  const std::int32_t nodes[] = {1, 26}, others[] = {0};
+  std::int32_t push = -1, next = -1;
+  ASSERT_OK(sunder_simulation_push(simulation, nodes, 2, force, &push));
+  EXPECT_EQ(push, 1);
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  const Read pushed(simulation);
+  ASSERT_OK(sunder_simulation_move(simulation, push, others, 1, force));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  EXPECT_FALSE(Read(simulation) == pushed);
+  ASSERT_OK(sunder_simulation_drop(simulation, push));
+  EXPECT_EQ(sunder_simulation_drop(simulation, push), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(sunder_simulation_move(simulation, push, others, 1, force), SUNDER_ERROR_ORDER);
+  ASSERT_OK(sunder_simulation_push(simulation, nodes, 2, force, &next));
+  EXPECT_EQ(next, 2) << "no id comes twice";
+  EXPECT_EQ(sunder_simulation_release(simulation, next), SUNDER_ERROR_ORDER) << "a push";
+}
+
+TEST_F(CLive, RefusedGripsChangeNothing) {
+  std::int32_t grip = -7;
+  const std::int32_t twice[] = {3, 3}, held[] = {24}, one[] = {3};
+  const Read before(simulation);
+  EXPECT_EQ(sunder_simulation_grasp(simulation, twice, 2, 0, &grip), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(sunder_simulation_grasp(simulation, held, 1, 0, &grip), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(sunder_simulation_grasp(simulation, nullptr, 0, 0, &grip), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(grip, -7);
+  ASSERT_OK(sunder_simulation_grasp(simulation, one, 1, 0, &grip));
+  std::int32_t other = -7;
+  EXPECT_EQ(sunder_simulation_grasp(simulation, one, 1, 0, &other), SUNDER_ERROR_ORDER);
+  EXPECT_EQ(other, -7);
+  const double place[3] = {0, 0, 0}, turn[4] = {0, 0, 0.1, 1};
+  EXPECT_EQ(sunder_simulation_pose(simulation, grip, place, turn), SUNDER_ERROR_ORDER) << "points";
+  EXPECT_TRUE(Read(simulation) == before);
+}
+
 TEST_F(CLive, StepsAreBoundByTime) {
   sunder_step step = SUNDER_STEP_INIT;
   while (step.events == 0) ASSERT_OK(sunder_simulation_step_within(simulation, 1e-6, &step));

@@ -38,6 +38,8 @@ std::vector<Misuse> handles() {
        }},
       {"simulation_for_grips", SUNDER_ERROR_HANDLE, "grips",
        [](World& w) { return sunder_grips_destroy(reinterpret_cast<sunder_grips>(w.simulation)); }},
+      {"release_null", SUNDER_ERROR_HANDLE, "simulation",
+       [](World&) { return sunder_simulation_release(nullptr, 1); }},
       {"undo_null", SUNDER_ERROR_HANDLE, "simulation",
        [](World&) { return sunder_simulation_undo(nullptr, 1, nullptr, nullptr); }},
       {"surface_of_a_scene", SUNDER_ERROR_HANDLE, "simulation",
@@ -108,6 +110,33 @@ std::vector<Misuse> null_pointers() {
        [](World& w) { return sunder_simulation_remove(w.simulation, nullptr, 3); }},
       {"swept_null", SUNDER_ERROR_NULL, "swept",
        [](World& w) { return sunder_simulation_cut(w.simulation, nullptr, 9, nullptr); }},
+      {"grip_null", SUNDER_ERROR_NULL, "grip",
+       [](World& w) {
+         const std::int32_t node = 7;
+         return sunder_simulation_grasp(w.simulation, &node, 1, 0, nullptr);
+       }},
+      {"grasped_null", SUNDER_ERROR_NULL, "nodes",
+       [](World& w) {
+         std::int32_t grip = 0;
+         return sunder_simulation_grasp(w.simulation, nullptr, 1, 0, &grip);
+       }},
+      {"near_null", SUNDER_ERROR_NULL, "near",
+       [](World& w) {
+         std::int32_t grip = 0;
+         return sunder_simulation_grasp_near(w.simulation, nullptr, 1, 0, &grip);
+       }},
+      {"pose_null", SUNDER_ERROR_NULL, "position",
+       [](World& w) { return sunder_simulation_pose(w.simulation, 1, nullptr, nullptr); }},
+      {"wrench_null", SUNDER_ERROR_NULL, "torque",
+       [](World& w) { return sunder_simulation_wrench(w.simulation, 1, w.values, nullptr); }},
+      {"push_force_null", SUNDER_ERROR_NULL, "force",
+       [](World& w) {
+         const std::int32_t node = 7;
+         std::int32_t push = 0;
+         return sunder_simulation_push(w.simulation, &node, 1, nullptr, &push);
+       }},
+      {"held_count_null", SUNDER_ERROR_NULL, "count",
+       [](World& w) { return sunder_simulation_held_nodes(w.simulation, 1, nullptr, 0, nullptr); }},
       {"mark_null", SUNDER_ERROR_NULL, "mark",
        [](World& w) { return sunder_simulation_save(w.simulation, nullptr); }},
       {"store_length_null", SUNDER_ERROR_NULL, "length",

@@ -225,6 +225,31 @@ std::vector<Misuse> order() {
          const std::int32_t elements[] = {4, 4};
          return sunder_simulation_remove(w.simulation, elements, 2);
        }},
+      {"grasp_of_a_node_beyond", SUNDER_ERROR_ORDER, "node 50 cannot be grasped",
+       [](World& w) {
+         const std::int32_t node = 50;
+         std::int32_t grip = 0;
+         return sunder_simulation_grasp(w.simulation, &node, 1, 0, &grip);
+       }},
+      {"pose_of_none", SUNDER_ERROR_ORDER, "there is no grip 1",
+       [](World& w) { return sunder_simulation_pose(w.simulation, 1, w.values, nullptr); }},
+      {"release_of_an_instrument", SUNDER_ERROR_ORDER, "instrument 0 is the scene's own",
+       [](World& w) { return sunder_simulation_release(w.simulation, 0); }},
+      {"wrench_of_none", SUNDER_ERROR_ORDER, "there is no grip -1",
+       [](World& w) { return sunder_simulation_wrench(w.simulation, -1, w.values, w.values + 3); }},
+      {"drop_of_none", SUNDER_ERROR_ORDER, "there is no push 9",
+       [](World& w) { return sunder_simulation_drop(w.simulation, 9); }},
+      {"push_of_a_node_beyond", SUNDER_ERROR_ORDER, "node 50 cannot be pushed",
+       [](World& w) {
+         const std::int32_t node = 50;
+         std::int32_t push = 0;
+         return sunder_simulation_push(w.simulation, &node, 1, w.values, &push);
+       }},
+      {"push_of_nothing", SUNDER_ERROR_ORDER, "no nodes",
+       [](World& w) {
+         std::int32_t push = 0;
+         return sunder_simulation_push(w.simulation, nullptr, 0, w.values, &push);
+       }},
       {"skin_without_one", SUNDER_ERROR_ORDER, "no skin",
        [](World& w) {
          float places[3];
@@ -373,6 +398,47 @@ std::vector<Misuse> not_finite() {
        [](World& w) {
          double swept[9] = {0, 1, kNaN};
          return sunder_simulation_cut(w.simulation, swept, 9, nullptr);
+       }},
+      {"near_nan", SUNDER_ERROR_VALUE, "near[1] = nan",
+       [](World& w) {
+         const double near[3] = {0, kNaN, 0};
+         std::int32_t grip = 0;
+         return sunder_simulation_grasp_near(w.simulation, near, 1, 0, &grip);
+       }},
+      {"radius_zero", SUNDER_ERROR_VALUE, "radius = 0",
+       [](World& w) {
+         std::int32_t grip = 0;
+         return sunder_simulation_grasp_near(w.simulation, w.values, 0, 0, &grip);
+       }},
+      {"radius_nan", SUNDER_ERROR_VALUE, "radius = nan",
+       [](World& w) {
+         std::int32_t grip = 0;
+         return sunder_simulation_grasp_near(w.simulation, w.values, kNaN, 0, &grip);
+       }},
+      {"rigid_as_no_word", SUNDER_ERROR_VALUE, "rigid = 2",
+       [](World& w) {
+         const std::int32_t node = 7;
+         std::int32_t grip = 0;
+         return sunder_simulation_grasp(w.simulation, &node, 1, 2, &grip);
+       }},
+      {"pose_infinite", SUNDER_ERROR_VALUE, "position[0] = inf",
+       [](World& w) {
+         const double place[3] = {kInfinity, 0, 0};
+         return sunder_simulation_pose(w.simulation, 1, place, nullptr);
+       }},
+      {"quaternion_nan", SUNDER_ERROR_VALUE, "quaternion[3] = nan",
+       [](World& w) {
+         const double turn[4] = {0, 0, 0, kNaN};
+         return sunder_simulation_pose(w.simulation, 1, w.values, turn);
+       }},
+      {"quaternion_of_no_length", SUNDER_ERROR_VALUE, "length 0",
+       [](World& w) { return sunder_simulation_pose(w.simulation, 1, w.values, w.values + 3); }},
+      {"push_nan", SUNDER_ERROR_VALUE, "force[2] = nan",
+       [](World& w) {
+         const std::int32_t node = 7;
+         const double force[3] = {0, 0, kNaN};
+         std::int32_t push = 0;
+         return sunder_simulation_push(w.simulation, &node, 1, force, &push);
        }},
       {"vertices_nan", SUNDER_ERROR_VALUE, "vertices[0] = nan",
        [](World& w) {

@@ -80,6 +80,12 @@ TEST(CThreads, AHandleInUseIsBusyButCanBeCancelled) {
   while (!gate.inside) std::this_thread::yield();
   std::vector<double> u(150);
   EXPECT_EQ(sunder_simulation_displacement(simulation, u.data(), u.size()), SUNDER_ERROR_BUSY);
+  std::int32_t id = 0;
+  const double place[3] = {0, 0, 0};
+  EXPECT_EQ(sunder_simulation_grasp(simulation, &id, 1, 0, &id), SUNDER_ERROR_BUSY);
+  EXPECT_EQ(sunder_simulation_pose(simulation, 1, place, nullptr), SUNDER_ERROR_BUSY);
+  EXPECT_EQ(sunder_simulation_release(simulation, 1), SUNDER_ERROR_BUSY);
+  EXPECT_EQ(sunder_simulation_push(simulation, &id, 1, place, &id), SUNDER_ERROR_BUSY);
   EXPECT_EQ(sunder_simulation_destroy(simulation), SUNDER_ERROR_BUSY);
   EXPECT_OK(sunder_simulation_cancel(simulation));
   gate.open = true;

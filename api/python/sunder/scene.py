@@ -275,6 +275,10 @@ class Scene(Handled):
         """Number of steps, at least 1."""
         check(_lib.sunder_scene_set_steps(self.handle, int(_arrays.ids(steps, "steps", ()))))
 
+    def set_live(self, live: bool = True) -> None:
+        """Whether elements may be removed and nodes grasped where nothing in the scene breaks."""
+        check(_lib.sunder_scene_set_live(self.handle, int(bool(live))))
+
     def set_gravity(self, gravity: Sequence[float]) -> None:
         """(3,) [mm/s^2]; materials need a density."""
         g = _arrays.reals(gravity, "gravity", (3,))

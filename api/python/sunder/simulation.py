@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _arrays, _c, _words
 from ._handle import Handled
+from ._live import Live
 from .errors import HandleError, InputError, check
 from .scene import Scene, as_dict, text_of
 
@@ -53,7 +54,7 @@ CRACK = _dtype("sunder_crack")
 TIP = _dtype("sunder_tip")
 
 
-class Simulation(Handled):
+class Simulation(Handled, Live):
     """A scene that runs. A context manager; closing twice does no harm.
 
     scene: a Scene, or what Scene() takes.
@@ -142,6 +143,12 @@ class Simulation(Handled):
         """In motion: the next step, of `dt` [s] in place of the scene's."""
         step = Step()
         self._check(_lib.sunder_simulation_step_by(self._handle, dt, c.byref(step)))
+        return step
+
+    def step_within(self, max_ms: float) -> Step:
+        """The next step with a bound on its time [ms]; `out_of_time` says that it ended by it."""
+        step = Step()
+        self._check(_lib.sunder_simulation_step_within(self._handle, max_ms, c.byref(step)))
         return step
 
     def steps(self) -> Iterator[Step]:

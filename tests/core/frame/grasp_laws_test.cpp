@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grips of a host by the laws of finite deformation and in motion.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "core/frame/live_world.hpp"
+#include "core/frame/run_state.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::test {
+namespace {
+
+struct LawWay {
+  const char* name;
+  MaterialLaw law;
+  Route route;
+  bool moves;
+};
+void PrintTo(const LawWay& way, std::ostream* out) { *out << way.name; }
+
+const std::vector<LawWay> kLaws{
+    {"corotated", MaterialLaw::corotated, Route::factor, false},
+    {"neo_hookean_by_inverse", MaterialLaw::neo_hookean, Route::inverse, false},
+    {"saint_venant_kirchhoff", MaterialLaw::saint_venant_kirchhoff, Route::factor, false},
+    {"motion_linear", MaterialLaw::linear, Route::factor, true},
+    {"motion_corotated", MaterialLaw::corotated, Route::factor, true},
+    {"motion_by_inverse", MaterialLaw::neo_hookean, Route::inverse, true},
+};
+
+Scene law_strip(const LawWay& way, double force = 0.3) {
+  Scene scene = live_strip({way.name, way.route});
+  scene.instruments[0].action = Pull{band(-1, 0.1), Vec3(0, -force, 0)};
+  scene.materials["board"].law = way.law;
+  scene.materials["board"].density = 1e-9;
+  scene.solver.tolerance = 1e-7;
+  if (way.moves) scene.dynamics = Dynamics{.time_step = 2e-4, .mass_damping = 500};
+  return scene;
+}
+
+class GraspLaws : public testing::TestWithParam<LawWay> {};
+
+/// So many steps, and in statics on until it is at rest.
+void settle(Simulation& s, int steps = 1) {
+  for (int i = 0; i < steps; ++i) s.step();
+  for (int i = 0; i < 200 && s.step().unfinished; ++i) {
+  }
+}
+
+// A grip of the scene that a host turns goes through the same states as one that it grasped before
+// the first step.
+TEST_P(GraspLaws, AreThoseOfTheScenesOwn) {
+  Scene own = law_strip(GetParam());
+  Instrument forceps;
+  forceps.name = "left";
+  Grip held{std::vector<Index>(kLeft), Vec3::Zero(), Axes{7}};
+  held.rigid = true;
+  forceps.action = held;
+  own.instruments.push_back(forceps);
+  LiveRun scene(own), host(law_strip(GetParam()));
+  const int grip = host.simulation.grasp(kLeft, true);
+  const Vec3 centre = host.simulation.centre_of(grip);
+  double most = 0, largest_of_all = 0;
+  for (int i = 1; i <= 6; ++i) {
+    const Vec3 way = 0.05 * i * Vec3(-1, 0.5, 0.3), turn = 3.0 * i * Vec3(0, 0, 1);
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(turn.norm() * EIGEN_PI / 180, turn.normalized()));
+    scene.simulation.drive(1, way);
+    scene.simulation.turn(1, turn);
+    host.simulation.pose(grip, {centre + way, {q.x(), q.y(), q.z(), q.w()}});
+    scene.simulation.step();
+    host.simulation.step();
+    const auto a = scene.simulation.displacement(), b = host.simulation.displacement();
+    for (std::size_t n = 0; n < a.size(); ++n) {
+      most = std::max(most, (a[n] - b[n]).norm());
+      largest_of_all = std::max(largest_of_all, a[n].norm());
+    }
+    EXPECT_LE((scene.simulation.reactions()[1] - host.simulation.wrench(grip).force).norm(),
+              1e-4 * (1 + scene.simulation.reactions()[1].norm()));
+  }
+  EXPECT_LE(most, 1e-5 * largest_of_all);
+}
+
+TEST_P(GraspLaws, HoldAndLetGoWhileElementsLeave) {
+  LiveRun run(law_strip(GetParam()));
+  Simulation& s = run.simulation;
+  const auto rests = [&] {
+    settle(s, GetParam().moves ? 400 : 1);
+    const FreshBody fresh = run.fresh();
+    EXPECT_LE(fresh.error(), GetParam().moves ? 2e-2 : 1e-5);
+  };
+  settle(s, GetParam().moves ? 400 : 1);
+  const int left = s.grasp(kLeft, true);
+  s.step();
+  s.pose(left, {s.centre_of(left) + Vec3(-0.1, 0, 0.05), {0, 0, 0.05, 1}});
+  rests();
+  s.remove(std::vector<Index>{100, 101, 102});
+  const int right = s.grasp(kRight);
+  rests();
+  s.pose(right, {s.centre_of(right) + Vec3(0.1, 0.05, 0)});
+  rests();
+  s.release(left);
+  rests();
+  s.pose(right, {s.centre_of(right) + Vec3(0, 0.05, 0)});
+  s.step();
+  s.release(right);
+  rests();
+}
+
+TEST_P(GraspLaws, AreRecordedAndTakenBack) {
+  LiveRun run(law_strip(GetParam()));
+  Simulation& s = run.simulation;
+  run.keep_history();
+  std::vector<RunState> states;
+  const auto keep = [&] {
+    s.step();
+    states.emplace_back(s);
+  };
+  keep();
+  const int grip = s.grasp(kLeft, true);
+  s.pose(grip, {s.centre_of(grip) + Vec3(-0.05, 0, 0), {0, 0, 0.02, 1}});
+  keep();
+  s.remove(std::vector<Index>{100});
+  keep();
+  s.release(grip);
+  keep();
+  LiveRun other(law_strip(GetParam()));
+  other.keep_history();
+  other.simulation.load(s.store());
+  expect_same_bits(RunState(other.simulation), states.back());
+  for (int i = 2; i >= 0; --i) {
+    EXPECT_TRUE(s.undo().replayed);
+    expect_same_bits(RunState(s), states[static_cast<std::size_t>(i)]);
+  }
+  s.redo(3);
+  expect_same_bits(RunState(s), states.back());
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, GraspLaws, testing::ValuesIn(kLaws),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+// In motion what is let go flies on with the velocity that it had.
+TEST(GraspMotion, WhatNothingHoldsFliesOn) {
+  Scene scene = law_strip(kLaws[4]);
+  scene.supports.clear();
+  scene.instruments.clear();
+  scene.dynamics->mass_damping = 0;
+  SceneRun run(std::move(scene));
+  Simulation& s = run.simulation;
+  const int grip = s.grasp(kLow, true);
+  const Vec3 centre = s.centre_of(grip), velocity(0, 5, 0);
+  const double dt = 2e-4;
+  for (int i = 1; i <= 200; ++i) {
+    s.pose(grip, {centre + dt * i * velocity});
+    s.step();
+  }
+  s.release(grip);
+  const StepReport first = s.step();
+  EXPECT_GT(first.motion->momentum.y(), 0);
+  for (int i = 0; i < 20; ++i) s.step();
+  const StepReport last = s.step();
+  EXPECT_LE((last.motion->momentum - first.motion->momentum).norm(),
+            1e-6 * first.motion->momentum.norm());
+  for (const Vec3& v : s.displacement()) EXPECT_TRUE(v.allFinite());
+}
+
+TEST(GraspMotion, SaysWhereTheIntactBodyCannotBeHeld) {
+  Scene scene = notched(FractureModel::b);
+  scene.materials["board"].law = MaterialLaw::corotated;
+  SceneRun run(std::move(scene));
+  try {
+    static_cast<void>(run.simulation.grasp(std::vector<Index>{3}));
+    ADD_FAILURE();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("intact body"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace sunder::test
