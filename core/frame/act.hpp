@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// What every action of a host goes through.
 #pragma once
 
 #include "frame/history.hpp"

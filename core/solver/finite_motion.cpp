@@ -117,7 +117,7 @@ void FiniteMotion::go_on_from(FiniteMotion& before, const fem::Parting& parting)
 
 void FiniteMotion::go_on_from(FiniteMotion& before) {
   FiniteMotionPast past = before.past();
-  past.euler = kEulerSteps;
+  if (past.dt > 0) past.euler = kEulerSteps;  // what a grip changes carries no force on
   for (Index d = 0; d < past.reaction.size(); ++d) {
     if (!gripped_[static_cast<std::size_t>(d)]) past.reaction[d] = past.felt[d] = 0;
   }

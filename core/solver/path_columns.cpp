@@ -57,7 +57,7 @@ void PathColumns::reserve(Index s, Index count) {
   Block& b = blocks_[s];
   if (count <= b.capacity) return;
   const auto width = static_cast<std::size_t>(nodes_.width(s));
-  if (b.capacity == 0) reached_.push_back(s);
+  if (b.capacity == 0) reached_.insert(std::ranges::lower_bound(reached_, s), s);
   const Index capacity = std::max({count, 2 * b.capacity, kFirstColumns});
   double* values = values_.take(width * static_cast<std::size_t>(capacity));
   Index* ids = ids_.take(static_cast<std::size_t>(capacity));

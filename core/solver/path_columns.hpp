@@ -65,7 +65,8 @@ class PathColumns {
   Arena<double> values_;
   Arena<Index> ids_;
   std::vector<Block> blocks_;
-  std::vector<Index> reached_;  // supernodes whose block has held columns, in the order of arrival
+  // Supernodes whose block has held columns, ascending: sums over them do not tell what was popped.
+  std::vector<Index> reached_;
   std::vector<Push> pushes_;
   std::vector<Index> paths_;  // of all pushes, one after the other
   std::vector<double> product_, gathered_;
