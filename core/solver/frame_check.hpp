@@ -26,6 +26,8 @@ class FrameCheck {
   /// Takes what a full check said of a solution before refining it: `stress` [MPa] is the largest
   /// of A^-1 (f - K u) over live elements.
   void checked(const Load& load, const Solution& solution, double stress, int bases);
+  /// Nothing is known any more: the loads to come are of other grips.
+  void forget() { bases_ = 0; }
   /// Takes what is known of a base that is new since the last full check.
   void follow(int bases, const BaseCheck& check);
   /// The load as a multiple of that of the last full check; nothing: another direction, or a base

@@ -300,8 +300,8 @@ TEST(History, RefusesInOneSentence) {
 
   HistoryRun run(strip(0.6, 3, 6)), other(strip(0.6, 3, 6));
   refused([&] { run.simulation.keep_history(); }, "already");
-  refused([&] { run.simulation.undo(); }, "there are 0 steps and removals to take back");
-  refused([&] { run.simulation.redo(); }, "there are 0 steps and removals to do again");
+  refused([&] { run.simulation.undo(); }, "there are 0 actions to take back");
+  refused([&] { run.simulation.redo(); }, "there are 0 actions to do again");
   refused([&] { run.simulation.restore(other.simulation.save()); }, "another simulation");
   refused([&] { run.simulation.restore({}); }, "another simulation");
 
