@@ -36,21 +36,22 @@ FrameSolver::FrameSolver(const Problem& problem, FrameDevice& device)
       device_(device),
       precision_(device.precision()),
       kept_error_(std::min(precision_.kept, tolerance())) {
-  know_nothing();
-  reserve(last_.load, problem);
-}
-
-void FrameSolver::know_nothing() {
-  if (device_.condensed()) {
-    energy_checks_.emplace(problem_);
-  } else if (device_.deferred()) {
-    checks_.emplace(problem_, precision_.promised);
+  if (device.condensed()) {
+    energy_checks_.emplace(problem);
+  } else if (device.deferred()) {
+    checks_.emplace(problem, precision_.promised);
   }
+  reserve(last_.load, problem);
 }
 
 void FrameSolver::grips_changed() {
   last_.holds = false;
-  know_nothing();
+  if (checks_) {
+    for (FrameCheck& check : checks_->all()) check.forget();
+  }
+  if (energy_checks_) {
+    for (EnergyCheck& check : energy_checks_->all()) check.forget();
+  }
 }
 
 void FrameSolver::event() {

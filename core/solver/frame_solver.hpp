@@ -42,7 +42,6 @@ class FrameSolver {
   [[nodiscard]] FrameCheck* check_of(const Load& load);
 
   void solve_once(double energy_tolerance, SolveReport& report);
-  void know_nothing();
   void read_balance(SolveReport& report);
   void check_fully(SolveReport& report);
   void refine(SolveReport& report, bool by_base);

@@ -16,6 +16,7 @@ class LiveHand {
   /// Nothing a hand does here may fail but where a piece hangs on nothing.
   void act() {
     const unsigned what = below(24);
+    if (marks_.empty()) save();
     const std::size_t undos = static_cast<std::size_t>(s_.undos());
     const Acting before = acting();
     travels_ = false;
@@ -57,7 +58,7 @@ class LiveHand {
     if (what == 18 && below(4) == 0) cut();
     if (what == 19 && s_.undos() > 0) undo();
     if (what == 20 && s_.redos() > 0) redo();
-    if (what == 21 || marks_.empty()) marks_.push_back({s_.save(), acting(), points_});
+    if (what == 21) save();
     if (what == 22) restore();
     if (what == 23) run_.drive(0.3 * vector() - Vec3(0, 1, 0));
   }
@@ -153,6 +154,7 @@ class LiveHand {
     travels_ = true;
     s_.redo();
   }
+  void save() { marks_.push_back({s_.save(), acting(), points_}); }
   void restore() {
     const Marked& to = marks_[below(static_cast<unsigned>(marks_.size()))];
     travels_ = true;

@@ -78,6 +78,47 @@ TEST(FiniteBase, FollowsWhatLeaves) {
   }
 }
 
+// What a host grasps and lets go, without a new factor; elements leave in between.
+TEST(FiniteBase, HoldsWhatIsGraspedSince) {
+  const Bent bent;
+  const auto laws = fem::one_law(*bent.problem, kNeoHookean);
+  std::vector<std::uint8_t> destroyed(bent.problem->mesh().tets.size(), 0);
+  FiniteBase base({*bent.problem, laws, destroyed}, bent.u, fem::Tangent::projected, *bent.pattern);
+  std::vector<std::unique_ptr<Problem>> seen;  // what the base refers to
+  const auto expect_as_fresh = [&](std::vector<Index> gripped) {
+    seen.push_back(std::make_unique<Problem>(*bent.problem, gripped));
+    const fem::HyperelasticBody body{*seen.back(), laws, destroyed};
+    const RestingBody resting(body);
+    ASSERT_TRUE(base.grip(*seen.back()));
+    ASSERT_TRUE(base.follow(resting, 1000));
+    FiniteBase fresh(resting.body(), bent.u, fem::Tangent::projected,
+                     fem::TangentPattern(*seen.back()));
+    Eigen::VectorXd b = bent.load(resting), x, expected;
+    for (Index d : gripped) b[d] = 0;
+    base.solve(b, x);
+    fresh.solve(b, expected);
+    EXPECT_LE((x - expected).norm(), 1e-9 * expected.norm());
+    for (Index d : gripped) EXPECT_LE(std::abs(x[d]), 1e-9 * expected.norm());
+  };
+  const auto own = bent.problem->gripped_dofs();
+  std::vector<Index> one(own.begin(), own.end()), two = one;
+  const auto add = [&](std::vector<Index>& to, Index node) {
+    for (int axis = 0; axis < 3; ++axis) to.push_back(bent.problem->dof(node, axis));
+  };
+  for (const Index n : {8, 17, 89}) add(one, n);
+  for (const Index n : {17, 40}) add(two, n);
+  expect_as_fresh(one);
+  for (const Index e : {60, 61, 100}) destroyed[static_cast<std::size_t>(e)] = 1;
+  expect_as_fresh(one);
+  expect_as_fresh(two);
+  expect_as_fresh({own.begin(), own.end()});
+  destroyed[200] = 1;
+  expect_as_fresh(two);
+  // What the base holds by itself it cannot let go.
+  const Problem none(*bent.problem, std::vector<Index>{});
+  EXPECT_FALSE(base.grip(none));
+}
+
 // Everything free of supports and grips turned: the base turned with it is that of the new state.
 TEST(FiniteBase, TurnsWithTheBody) {
   Scene scene;
