@@ -40,7 +40,7 @@ struct ViewArguments {
   std::optional<std::filesystem::path> out;     ///< default: out/<scene name>
   std::optional<std::filesystem::path> script;  ///< inputs
   std::optional<int> frames;                    ///< default: the script's, or the scene's steps
-  PictureSize size;
+  std::optional<PictureSize> size;  ///< default: that of PictureSize; a window's is larger
   bool headless = false;
   bool quiet = false;
 };

@@ -121,14 +121,15 @@ int view_in_window(const ViewArguments& arguments) {
   std::vector<std::string> warnings = scene.warnings;
   WindowPlan plan;
   plan.device = device_options(scene.problem->scene().solver).index;
-  plan.size = arguments.size;
+  constexpr PictureSize kWindow{1280, 800};
+  plan.size = arguments.size.value_or(kWindow);
   plan.name = scene.problem->scene().title;
   plan.warnings = scene.warnings;
   plan.make_session = [&](view::Device& device) {
     const Waiting waiting("preparing " + counted(scene.problem->dof_count(), "unknown"),
                           !arguments.quiet);
     return std::make_unique<Session>(scene.problem, make_backend(scene.problem, device, warnings),
-                                     true, arguments.size);
+                                     true, plan.size);
   };
   plan.record = [&](const std::string& inputs) {
     const std::filesystem::path out = out_of(arguments);
@@ -154,14 +155,15 @@ int view_headless(const ViewArguments& arguments, Interruption& interruption) {
   std::vector<std::string> warnings = opened.scene.warnings;
   if (folder->warning()) warnings.push_back(*folder->warning());
   view::Device device(device_options(problem->scene().solver));
+  const PictureSize size = arguments.size.value_or(PictureSize{});
   std::optional<Session> session;
   {
     const Waiting waiting("preparing " + counted(problem->dof_count(), "unknown"),
                           !arguments.quiet);
     session.emplace(problem, make_backend(problem, device, warnings), opened.inputs.has_value(),
-                    arguments.size);
+                    size);
   }
-  Painter painter(device, *problem, arguments.size);
+  Painter painter(device, *problem, size);
   HeadlessPlan plan;
   plan.inputs = opened.inputs ? &*opened.inputs : nullptr;
   plan.frames = count_of_frames(arguments, opened);

@@ -7,7 +7,7 @@
 namespace sunder::app {
 namespace {
 
-constexpr std::size_t kRuptures = 12;  // that are told
+constexpr std::size_t kRuptures = 5;  // that are told
 
 bool same_instrument(const InputAction& a, const InputAction& b) {
   const auto* one = std::get_if<input::Drive>(&a);
@@ -20,7 +20,8 @@ bool same_instrument(const InputAction& a, const InputAction& b) {
 
 }  // namespace
 
-LiveSession::LiveSession(Session& session) : session_(session) {
+LiveSession::LiveSession(Session& session, std::chrono::duration<double> pace)
+    : session_(session), pace_(pace), due_(Clock::now()) {
   session_.pause(false);  // this one pauses
   publish();
   thread_ = std::thread([this] { run(); });
@@ -85,12 +86,17 @@ void LiveSession::run() {
     bool step = false;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait(lock,
-                 [this] { return over_ || !tasks_.empty() || (!paused_.load() && !now_.done); });
+      const auto goes_on = [this] { return !paused_.load() && !now_.done; };
+      wake_.wait(lock, [&] { return over_ || !tasks_.empty() || goes_on(); });
+      // What is to be done is not kept waiting for the next step.
+      if (tasks_.empty()) {
+        wake_.wait_until(lock, due_, [&] { return over_ || !tasks_.empty() || !goes_on(); });
+      }
       if (over_) return;
       tasks.swap(tasks_);
-      step = !paused_.load() && !now_.done;
+      step = goes_on() && Clock::now() >= due_;
     }
+    if (step) due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pace_);
     std::optional<std::string> error;
     try {
       for (const Task& task : tasks) perform(task);
@@ -99,6 +105,7 @@ void LiveSession::run() {
       error = wrong.what();
     }
     if (error) paused_.store(true);
+    if (!step && tasks.empty()) continue;
     try {
       publish();
     } catch (const std::exception& wrong) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -20,8 +21,9 @@ namespace sunder::app {
 
 class LiveSession {
  public:
-  /// Paused. The session must outlive it, and is nobody else's meanwhile.
-  explicit LiveSession(Session& session);
+  /// Paused. The session must outlive it, and is nobody else's meanwhile. Steps that go on by
+  /// themselves are `pace` apart at least.
+  explicit LiveSession(Session& session, std::chrono::duration<double> pace = {});
   ~LiveSession();  ///< when the step in work is done
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -56,7 +58,11 @@ class LiveSession {
   void perform(const Task& task);
   void publish();
 
+  using Clock = std::chrono::steady_clock;
+
   Session& session_;
+  const std::chrono::duration<double> pace_;
+  Clock::time_point due_;  ///< the next step, on the session's thread
   std::atomic<bool> paused_{true};
   std::atomic<std::uint64_t> drawn_{0};
   mutable std::mutex mutex_;

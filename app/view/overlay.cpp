@@ -13,7 +13,7 @@ namespace {
 
 using Anchor = Overlay::Text::Anchor;
 
-constexpr double kMargin = 24;
+constexpr double kMargin = 24, kBarTop = 118;  // [px]
 // The longest arrow over the body's longest side; below kLeastForce of it none is drawn.
 constexpr double kArrow = 0.18, kLeastForce = 0.01;
 constexpr double kHead = 11, kHeadWidth = 5, kShaft = 3;  // [px]
@@ -118,7 +118,7 @@ void add_colour_bar(Overlay& out, const Paint& paint, const PictureSize& size) {
   const double step = std::clamp(std::floor(size.height / 2.8 / kBarSteps), 1.0, 4.0), width = 16;
   const double height = step * kBarSteps;
   const double right = size.width - kMargin, left = right - width;
-  const double bottom = std::floor(size.height / 2.0 + height / 2);
+  const double bottom = kBarTop + height;
   for (int i = 0; i < kBarSteps; ++i) {
     const double y = bottom - i * step;
     out.polygons.push_back(

@@ -98,10 +98,25 @@ DeviceOptions device_options(const WindowPlan& plan, GLFWwindow* window, WithSur
   return options;
 }
 
+/// Keys as they come: some are pressed and let go between two frames.
+std::vector<int>& keys_of(GLFWwindow* window) {
+  return *static_cast<std::vector<int>*>(glfwGetWindowUserPointer(window));
+}
+
+/// Before Dear ImGui, which passes on to it.
+void listen(GLFWwindow* window, std::vector<int>& keys) {
+  glfwSetWindowUserPointer(window, &keys);
+  glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int) {
+    if (action == GLFW_PRESS) keys_of(of).push_back(key);
+  });
+}
+
 /// Dear ImGui for as long as this lives.
 class Panels {
  public:
-  Panels(GLFWwindow* window, Device& device, view::Swapchain& chain) : device_(device) {
+  Panels(GLFWwindow* window, std::vector<int>& keys, Device& device, view::Swapchain& chain)
+      : device_(device) {
+    listen(window, keys);
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     std::error_code ignored;
@@ -177,6 +192,13 @@ void draw(const Overlay& over) {
   }
 }
 
+/// In motion as fast as it is; else as a film.
+std::chrono::duration<double> pace_of(const Problem& problem) {
+  constexpr double kFilm = 1.0 / 30;  // [s]
+  return std::chrono::duration<double>(problem.moves() ? problem.scene().dynamics->time_step
+                                                       : kFilm);
+}
+
 class Window {
  public:
   explicit Window(const WindowPlan& plan)
@@ -186,8 +208,8 @@ class Window {
         chain_(device_, surface_.surface),
         session_(plan.make_session(device_)),
         shown_points_(shown_points(session_->problem())),
-        panels_(window_.get(), device_, chain_),
-        live_(*session_) {
+        panels_(window_.get(), keys_, device_, chain_),
+        live_(*session_, pace_of(session_->problem())) {
     look_.camera = standard_camera(session_->problem().mesh());
     look_.colour = input::Colour{standard_field(session_->problem()), {}};
   }
@@ -203,7 +225,8 @@ class Window {
       take_size();
       const Camera camera(look_.camera, look_.at, shown_points_, size_);
       if (!ImGui::GetIO().WantCaptureMouse || holds_ != Holds::nothing) take_mouse(camera);
-      if (!ImGui::GetIO().WantCaptureKeyboard) take_keys();
+      if (!ImGui::GetIO().WantTextInput) take_keys();
+      keys_.clear();
       picture(camera);
       draw(painter_->over());
       draw_stroke();
@@ -344,7 +367,7 @@ class Window {
   }
 
   void take_keys() {
-    const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+    const auto pressed = [this](int key) { return std::ranges::find(keys_, key) != keys_.end(); };
     if (pressed(GLFW_KEY_SPACE)) live_.pause(!live_.paused());
     if (pressed(GLFW_KEY_S)) single_step();
     if (pressed(GLFW_KEY_Z)) live_.post(input::Undo{});
@@ -407,13 +430,15 @@ class Window {
   }
 
   void panel() {
-    ImGui::SetNextWindowPos({8, static_cast<float>(size_.height) - 8}, ImGuiCond_FirstUseEver,
-                            {0, 1});
+    ImGui::SetNextWindowPos(
+        {static_cast<float>(size_.width) - 8, static_cast<float>(size_.height) - 8},
+        ImGuiCond_Always, {1, 1});
     ImGui::SetNextWindowBgAlpha(0.75F);
     ImGui::Begin("sunder", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     buttons();
     numbers();
     colours();
+    ImGui::TextDisabled("left: an instrument, or turn; right: cut; middle: shift; wheel: zoom");
     for (const std::string& line : now_.ruptures) ImGui::TextUnformatted(line.c_str());
     if (now_.error) told(*now_.error);
     {
@@ -437,15 +462,14 @@ class Window {
     ImGui::SameLine();
     if (ImGui::Button("step (S)")) single_step();
     ImGui::SameLine();
+    if (ImGui::Button("reset (R)")) reset();
     if (ImGui::Button("undo (Z)")) live_.post(input::Undo{});
     ImGui::SameLine();
     if (ImGui::Button("redo (Y)")) live_.post(input::Redo{});
     ImGui::SameLine();
-    if (ImGui::Button("reset (R)")) reset();
-    ImGui::SameLine();
     if (ImGui::Button("record (E)")) record();
     ImGui::Text("%d to undo, %d to redo%s", now_.undos, now_.redos,
-                now_.done ? "; all steps are done: --steps N makes more" : "");
+                now_.done ? "; all steps done (--steps N)" : "");
   }
 
   void numbers() const {
@@ -455,10 +479,9 @@ class Window {
       return;
     }
     const StageTimes& t = report->times;
-    ImGui::Text(
-        "load %.2f  solve %.2f  stress %.2f  decide %.2f  update %.2f  total %.2f ms;"
-        "  drawn in %.1f ms",
-        t.load, t.solve, t.stress, t.decide, t.update, t.total, drawing_ms_);
+    ImGui::Text("step %.2f ms: load %.2f  solve %.2f  stress %.2f", t.total, t.load, t.solve,
+                t.stress);
+    ImGui::Text("  decide %.2f  update %.2f;  drawn in %.1f ms", t.decide, t.update, drawing_ms_);
     ImGui::Text("error %.1e  back-solves %d", report->error, report->back_solves);
     if (!report->deformation) return;
     const bool small = !session_->problem().finite();
@@ -517,6 +540,7 @@ class Window {
   view::Swapchain chain_;
   std::unique_ptr<Session> session_;
   std::vector<Vec3> shown_points_;
+  std::vector<int> keys_;  // pressed since the last frame
   Panels panels_;
   PictureSize size_;
   std::optional<Painter> painter_;
