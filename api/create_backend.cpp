@@ -7,6 +7,7 @@
 #include "cpu_reference/prepared_bodies.hpp"
 #ifdef SUNDER_GPU
 #include "gpu/vulkan_backend.hpp"
+#include "lent_host.hpp"
 #endif
 #include "failover_backend.hpp"
 #include "sunder/backends.hpp"
@@ -115,6 +116,26 @@ CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs need
   std::string names;
   for (const std::string& n : backend_names()) names += (names.empty() ? "" : ", ") + n;
   throw DeviceError("there is no backend \"" + name + "\"; this build has " + names);
+}
+
+CreatedBackend create_backend_on(std::shared_ptr<const Problem> problem, Needs needs,
+                                 const sunder_vulkan_host& host) {
+  if (!problem) throw UsageError("a backend needs a problem");
+#ifdef SUNDER_GPU
+  if (problem->scene().solver.backend == "cpu") {
+    throw DeviceError("the scene asks for backend \"cpu\" on a Vulkan device");
+  }
+  gpu::VulkanOptions options;
+  options.lent = to_lent(host);
+  CreatedBackend created;
+  created.backend = gpu::create(std::move(problem), std::move(needs), options);
+  created.warnings = gpu::warnings(*created.backend);
+  return created;
+#else
+  static_cast<void>(needs);
+  static_cast<void>(host);
+  throw DeviceError("this build leaves out the backend vulkan (SUNDER_GPU=OFF); it has cpu");
+#endif
 }
 
 std::shared_ptr<cpu_reference::PreparedBodies> prepared_bodies(std::size_t most) {

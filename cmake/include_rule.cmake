@@ -23,6 +23,7 @@ set(rooms
   "api/sunder:core/sunder"
   "api:core/sunder api/sunder core/frame cpu_reference gpu"
   "app/input:core/sunder"
+  "app/inputs:core/sunder app/input app/output"
   "app/mesh_board:core/sunder app/input app/output"
   "app/gmsh:core/sunder app/input app/mesh_board"
   "app/output:core/sunder"
@@ -30,7 +31,8 @@ set(rooms
   "app/report:core/sunder app/output app/figure"
   "app/reproduce:core/sunder api/sunder app/input app/output app/figure app/report"
   "app/sweep:core/sunder api/sunder app/input app/output app/report"
-  "app/commands:core/sunder api/sunder app/input app/mesh_board app/output app/figure app/report app/reproduce app/sweep"
+  "app/view:core/sunder api/sunder app/input app/inputs app/output app/figure"
+  "app/commands:core/sunder api/sunder app/input app/inputs app/mesh_board app/output app/figure app/report app/reproduce app/sweep app/view"
   "app/cli:core/sunder api/sunder app/input app/commands"
 )
 # Where the headers of a room are looked for: "body/element.hpp" is core/body/element.hpp.

@@ -5,6 +5,7 @@
 #include "c/simulation_create.hpp"
 #ifdef SUNDER_GPU
 #include "gpu/vulkan_backend.hpp"
+#include "lent_host.hpp"
 #endif
 
 namespace {
@@ -21,25 +22,6 @@ sunder::gpu::DisplayTarget to_target(const sunder_vulkan_buffer& b) {
 
 sunder_vulkan_buffer to_part(const sunder::vulkan::Buffer& b, std::uint64_t size) {
   return {reinterpret_cast<std::uint64_t>(b.handle()), b.offset(), size};
-}
-
-sunder::vulkan::LentDevice to_lent(const sunder_vulkan_host& host) {
-  sunder::vulkan::LentDevice lent;
-  lent.get = reinterpret_cast<PFN_vkGetInstanceProcAddr>(host.get_instance_proc_addr);
-  lent.instance = static_cast<VkInstance>(host.instance);
-  lent.physical = static_cast<VkPhysicalDevice>(host.physical_device);
-  lent.device = static_cast<VkDevice>(host.device);
-  lent.queue = static_cast<VkQueue>(host.queue);
-  lent.family = host.queue_family;
-  lent.api_version = host.api_version;
-  lent.float64 = host.features & SUNDER_VULKAN_SHADER_FLOAT64;
-  lent.int64 = host.features & SUNDER_VULKAN_SHADER_INT64;
-  lent.timeline_semaphore = host.features & SUNDER_VULKAN_TIMELINE_SEMAPHORE;
-  if (host.lock) {
-    lent.lock.lock = [lock = host.lock, user = host.lock_user] { lock(user); };
-    lent.lock.unlock = [unlock = host.unlock, user = host.lock_user] { unlock(user); };
-  }
-  return lent;
 }
 
 void check_handles(const sunder_vulkan_host& host) {
@@ -85,7 +67,7 @@ void check_buffer(const sunder_vulkan_buffer& b, std::uint64_t bytes, const char
 void check_host(const sunder_vulkan_host& host) {
   check_handles(host);
   check_features(host);
-  const auto lent = to_lent(host);
+  const auto lent = sunder::to_lent(host);
   require_index(host.queue_family, sunder::vulkan::queue_families(lent), "host: queue_family");
   sunder::vulkan::check_device(lent);
 }
@@ -99,7 +81,7 @@ void check_buffers(const sunder_vulkan_host& host, const sunder::Problem& proble
 
 sunder::gpu::VulkanOptions to_options(const sunder_vulkan_host& host) {
   sunder::gpu::VulkanOptions options;
-  options.lent = to_lent(host);
+  options.lent = sunder::to_lent(host);
   options.display = {to_target(host.displacement), to_target(host.stress), to_target(host.live)};
   return options;
 }

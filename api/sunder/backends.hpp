@@ -9,6 +9,8 @@
 
 #include "sunder/backend.hpp"
 
+struct sunder_vulkan_host;
+
 namespace sunder {
 
 /// Names that `backend = ...` takes besides "auto".
@@ -31,6 +33,11 @@ class PreparedBodies;
 /// Creates the backend that the problem's solver options ask for. Throws DeviceError when there is
 /// no such backend or device, or when it offers no such route or precision.
 [[nodiscard]] CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs needs);
+/// The backend vulkan on a host's own device, which must outlive it (sunder_vulkan.h has the rules;
+/// the buffers of `host` are not written to). Throws DeviceError for what is missing there, and
+/// where the scene asks for "cpu".
+[[nodiscard]] CreatedBackend create_backend_on(std::shared_ptr<const Problem> problem, Needs needs,
+                                               const sunder_vulkan_host& host);
 /// As create_backend() by the backend cpu, and no result other by a bit. Problems of one intact
 /// stiffness share what is made of it: its order, its factor and the dense inverse (a law of finite
 /// deformation and motion: nothing). By any number of threads at once. Throws DeviceError where the

@@ -89,6 +89,20 @@ void add_sweep_options(CLI::App& command, Options& o) {
   command.add_flag("--quiet", o.quiet, "No progress and no warnings on stderr");
 }
 
+void add_view_options(CLI::App& command, Options& o) {
+  command.add_flag("--headless", o.headless, "No window: pictures, a film strip, the recording");
+  command.add_option("--out", o.out, "Folder for the pictures (default out/<scene name>)")
+      ->type_name("DIR");
+  command
+      .add_option("--frames", o.frames,
+                  "Number of pictures (default: the script's, or the scene's steps)")
+      ->type_name("N");
+  command.add_option("--script", o.script, "Inputs to play, one a line (docs/view.md)")
+      ->type_name("INPUTS");
+  command.add_option("--size", o.size, "Of a picture (default 960x720)")->type_name("WxH");
+  command.add_flag("--quiet", o.quiet, "No progress and no warnings on stderr");
+}
+
 SceneArguments scene_arguments(const Options& o) {
   SceneArguments arguments;
   arguments.scene = o.scene;
@@ -175,6 +189,42 @@ SweepArguments sweep_arguments(const Options& o) {
   return arguments;
 }
 
+/// "960x720".
+PictureSize picture_size(const std::string& text) {
+  constexpr int kLeast = 64, kMost = 8192;
+  const std::size_t cross = text.find('x');
+  const auto refuse = [&] {
+    throw UsageError("--size is " + in_quotes(text) + "; allowed is WIDTHxHEIGHT in pixels, " +
+                     std::to_string(kLeast) + " to " + std::to_string(kMost) +
+                     " each, such as 960x720");
+  };
+  if (cross == std::string::npos) refuse();
+  PictureSize size;
+  try {
+    size.width = whole_number("--size", text.substr(0, cross), kLeast);
+    size.height = whole_number("--size", text.substr(cross + 1), kLeast);
+  } catch (const UsageError&) {
+    refuse();
+  }
+  if (std::max(size.width, size.height) > kMost) refuse();
+  return size;
+}
+
+ViewArguments view_arguments(const Options& o) {
+  ViewArguments arguments;
+  arguments.scene = scene_arguments(o);
+  for (const auto& [option, value] : {std::pair("--out", &o.out), std::pair("--script", &o.script)})
+    if (*value && (*value)->empty())
+      throw UsageError(std::string(option) + " is \"\"; allowed is a name");
+  if (o.out) arguments.out = *o.out;
+  if (o.script) arguments.script = *o.script;
+  if (o.frames) arguments.frames = whole_number("--frames", *o.frames, 1);
+  if (o.size) arguments.size = picture_size(*o.size);
+  arguments.headless = o.headless;
+  arguments.quiet = o.quiet;
+  return arguments;
+}
+
 BoardArguments board_arguments(const Options& o) {
   BoardArguments arguments;
   BoardOptions& board = arguments.options;
@@ -200,6 +250,10 @@ void add_commands(CLI::App& app, Options& options) {
   add_output_options(plan_command, options);
   plan_command.add_flag("--measure", options.measure,
                         "Run the first steps and print the time of every stage and device pass");
+  CLI::App& view_command =
+      *app.add_subcommand("view", "Look at a body while it is pulled, cut and torn");
+  add_scene_options(view_command, options);
+  add_view_options(view_command, options);
   CLI::App& sweep_command =
       *app.add_subcommand("sweep", "Many runs of a scene with other values, in one table");
   add_scene_options(sweep_command, options);
@@ -219,6 +273,7 @@ void add_commands(CLI::App& app, Options& options) {
 int carry_out(const CLI::App& app, const Options& options, Interruption& interruption) {
   if (app.got_subcommand("run")) return run(run_arguments(options), interruption);
   if (app.got_subcommand("plan")) return plan(run_arguments(options).scene, options.measure);
+  if (app.got_subcommand("view")) return view_scene(view_arguments(options), interruption);
   if (app.got_subcommand("sweep")) return sweep_scene(sweep_arguments(options), interruption);
   if (app.got_subcommand("reproduce"))
     return reproduce_paper(reproduce_arguments(options), interruption);

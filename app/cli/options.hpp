@@ -22,6 +22,9 @@ struct Options {
   std::vector<std::string> vary;
   Text jobs, part;
   bool merge = false, resume = false;
+  // view
+  Text frames, script, size;
+  bool headless = false;
   // reproduce
   bool quick = false;
   // mesh board

@@ -35,6 +35,16 @@ struct ReproduceArguments {
   bool quiet = false;
 };
 
+struct ViewArguments {
+  SceneArguments scene;
+  std::optional<std::filesystem::path> out;     ///< default: out/<scene name>
+  std::optional<std::filesystem::path> script;  ///< inputs
+  std::optional<int> frames;                    ///< default: the script's, or the scene's steps
+  std::optional<PictureSize> size;  ///< default: that of PictureSize; a window's is larger
+  bool headless = false;
+  bool quiet = false;
+};
+
 struct SweepArguments {
   SceneArguments scene;
   std::vector<std::string> vary;  ///< "key.path=a,b,c" or "key.path=lo:hi:n"
@@ -51,6 +61,7 @@ int list_devices();
 /// The tissues that a material's `preset` may name, each number with its source.
 int list_materials();
 int reproduce_paper(const ReproduceArguments& arguments, Interruption& interruption);
+int view_scene(const ViewArguments& arguments, Interruption& interruption);
 int sweep_scene(const SweepArguments& arguments, Interruption& interruption);
 int mesh_board(const BoardArguments& arguments, Interruption& interruption);
 

@@ -12,6 +12,7 @@
 #include "app/commands/progress.hpp"
 #include "app/commands/results.hpp"
 #include "app/commands/waiting.hpp"
+#include "app/inputs/hand.hpp"
 #include "app/output/text.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/simulation.hpp"
@@ -67,6 +68,7 @@ class Run {
         problem_(*scene.problem),
         record_(problem_),
         simulation_(make_simulation(scene)),
+        hand_(*simulation_, false),
         writer_(folder, problem_, arguments.series),
         progress_(problem_.scene().steps, !quiet_,
                   cracks_split(problem_.scene()) ? "splits" : "destroyed"),
@@ -75,6 +77,7 @@ class Run {
     of_setup_ = record_.warnings;
     std::sort(wanted_.begin(), wanted_.end());
     wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
+    if (scene.inputs) inputs_.emplace(*scene.inputs, hand_, problem_.scene().steps);
     note();
   }
 
@@ -87,6 +90,7 @@ class Run {
   void begin();
   void compute();
   void step();
+  [[nodiscard]] bool reach_step();
   void note();
   void take_snapshots();
   void note_before_rupture();
@@ -105,6 +109,8 @@ class Run {
   const Problem& problem_;
   RunRecord record_;
   std::unique_ptr<Simulation> simulation_;
+  Hand hand_;
+  std::optional<Replay> inputs_;  ///< none: the scene's steps alone
   std::mutex turn_;
   ResultWriter writer_;
   Progress progress_;
@@ -113,7 +119,7 @@ class Run {
   std::vector<Snapshot> taken_;        ///< in this step
   std::optional<Aside> aside_;         ///< in this step
   RuptureState now_;                   ///< of the last frame before the first rupture
-  bool told_stopped_ = false;
+  bool told_stopped_ = false, inputs_done_ = false;
   Clock::time_point put_aside_ = Clock::now();
   double aside_seconds_ = 0;  ///< that putting aside took
 };
@@ -252,9 +258,24 @@ void Run::begin() {
   writer_.begin();
 }
 
+/// Inputs end the run, and may change the body after its last step.
+bool Run::reach_step() {
+  if (!inputs_) return !simulation_->done();
+  const std::size_t before = simulation_->destroyed().size();
+  if (inputs_->reach_step()) return true;
+  if (simulation_->destroyed().size() > before && simulation_->steps_done() > 0) {
+    State state = capture(*simulation_, simulation_->steps_done() - 1);
+    const std::lock_guard turn(turn_);
+    record_.last = std::move(state);
+    note();
+  }
+  inputs_done_ = true;
+  return false;
+}
+
 void Run::compute() {
   try {
-    while (!simulation_->done() && !interruption_.requested()) step();
+    while (!interruption_.requested() && reach_step()) step();
   } catch (const NumericalError& error) {
     const std::lock_guard turn(turn_);
     record_.failure = error.what();
@@ -269,7 +290,8 @@ int Run::carry_out() {
   begin();
   compute();
   interruption_.claim();
-  record_.interrupted = simulation_->interrupted() || (!simulation_->done() && !record_.failure);
+  const bool done = simulation_->done() || inputs_done_;
+  record_.interrupted = simulation_->interrupted() || (!done && !record_.failure);
   return end();
 }
 

@@ -24,9 +24,14 @@ std::vector<std::string> overrides_of(const SceneArguments& arguments) {
   return all;
 }
 
-OpenedScene open_scene(const SceneArguments& arguments) {
+OpenedScene open_scene(const SceneArguments& arguments, bool live) {
   OpenedScene opened;
-  opened.problem = read_problem(arguments.scene, overrides_of(arguments), &opened.warnings);
+  std::filesystem::path inputs;
+  opened.problem =
+      read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &inputs, live);
+  if (inputs.empty()) return opened;
+  opened.inputs = read_inputs(inputs.string());
+  resolve(*opened.inputs, *opened.problem);
   return opened;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/inputs/inputs.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::app {
@@ -25,9 +26,11 @@ struct SceneArguments {
 struct OpenedScene {
   std::shared_ptr<const Problem> problem;
   std::vector<std::string> warnings;  ///< of reading; the problem's own come on top
+  std::optional<Inputs> inputs;       ///< that the scene names, resolved
 };
 
-/// Reads the scene; the named options win over --set. Throws InputError.
-[[nodiscard]] OpenedScene open_scene(const SceneArguments& arguments);
+/// Reads the scene and its inputs; the named options win over --set. `live`: any element may be
+/// removed, whatever the scene says. Throws InputError.
+[[nodiscard]] OpenedScene open_scene(const SceneArguments& arguments, bool live = false);
 
 }  // namespace sunder::app

@@ -100,14 +100,15 @@ void follow_neighbours(Pose& pose, const Mesh& mesh, const std::vector<Hold>& ho
 
 }  // namespace
 
-Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state) {
+Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state,
+             std::optional<double> scale) {
   const Mesh& mesh = mesh_of(problem, state);
   const std::vector<Vec3>& rest = state.split ? state.split->drawn : mesh.nodes;
   const LooseParts parts = find_loose_parts(problem, state.destroyed, mesh);
   const std::vector<Hold> holds = holds_of(mesh, parts);
   const double side = (plane.outline_max - plane.outline_min).maxCoeff();
   Pose pose;
-  pose.scale = scale_for(largest_in_plane(plane, holds, state), side);
+  pose.scale = scale ? *scale : scale_for(largest_in_plane(plane, holds, state), side);
   pose.loose_piece = !parts.pieces.empty();
   pose.shift.assign(mesh.nodes.size(), Vec3::Zero());
   if (problem.moves()) {  // pieces are where they are

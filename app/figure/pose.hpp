@@ -3,6 +3,7 @@
 // show nothing, and with what no longer hangs on anything drawn near its place.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct Pose {
 
 /// Nodes that only destroyed elements hold follow their neighbours; their own displacement means
 /// nothing (their stiffness is alpha times the tissue's). Lips of split cracks lie on their ideal
-/// paths before they move.
-[[nodiscard]] Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state);
+/// paths before they move. `scale`: of displacements, in place of what shows them well.
+[[nodiscard]] Pose pose_of(const Problem& problem, const BoardPlane& plane, const State& state,
+                           std::optional<double> scale = {});
 
 }  // namespace sunder::app

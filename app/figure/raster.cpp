@@ -5,6 +5,7 @@
 #include <librsvg/rsvg.h>
 
 #include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "app/output/result_file.hpp"
@@ -74,19 +75,66 @@ std::string png(cairo_surface_t* surface) {
   throw OutputError("cannot draw a figure: " + message);
 }
 
+struct SvgSize {
+  double width = 0, height = 0;
+};
+
+using Handle = std::unique_ptr<RsvgHandle, ReleaseHandle>;
+
+Handle read_svg(std::string_view svg) {
+  GError* error = nullptr;
+  Handle handle(
+      rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error));
+  if (!handle) fail_with(error);
+  return handle;
+}
+
+SvgSize svg_size_of(RsvgHandle* handle) {
+  SvgSize size;
+  if (!rsvg_handle_get_intrinsic_size_in_pixels(handle, &size.width, &size.height))
+    fail_with(nullptr);
+  return size;
+}
+
+void draw_svg(RsvgHandle* handle, cairo_surface_t* surface, const SvgSize& size) {
+  GError* error = nullptr;
+  const RsvgRectangle page{0, 0, size.width, size.height};
+  const Context context(cairo_create(surface));
+  if (!rsvg_handle_render_document(handle, context.get(), &page, &error)) fail_with(error);
+}
+
 }  // namespace
 
 std::string png_of_svg(std::string_view svg, double zoom) {
-  GError* error = nullptr;
-  const std::unique_ptr<RsvgHandle, ReleaseHandle> handle(
-      rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error));
-  if (!handle) fail_with(error);
-  double width = 0, height = 0;
-  if (!rsvg_handle_get_intrinsic_size_in_pixels(handle.get(), &width, &height)) fail_with(nullptr);
-  const RsvgRectangle page{0, 0, width * zoom, height * zoom};
+  const Handle handle = read_svg(svg);
+  const SvgSize size = svg_size_of(handle.get());
+  const SvgSize page{size.width * zoom, size.height * zoom};
   const Surface surface = image(page.width, page.height);
-  const Context context(cairo_create(surface.get()));
-  if (!rsvg_handle_render_document(handle.get(), context.get(), &page, &error)) fail_with(error);
+  draw_svg(handle.get(), surface.get(), page);
+  return png(surface.get());
+}
+
+std::string png_of_pixels(const Pixels& pixels, std::string_view svg_over) {
+  const Surface surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels.width, pixels.height));
+  cairo_surface_flush(surface.get());
+  unsigned char* const to = cairo_image_surface_get_data(surface.get());
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+  const auto width = static_cast<std::size_t>(pixels.width);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(pixels.height); ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::uint8_t* from = &pixels.rgba[4 * (y * width + x)];
+      const std::uint32_t value = static_cast<std::uint32_t>(from[0]) << 16U |
+                                  static_cast<std::uint32_t>(from[1]) << 8U | from[2];
+      std::memcpy(to + y * stride + 4 * x, &value, sizeof value);
+    }
+  }
+  cairo_surface_mark_dirty(surface.get());
+  if (!svg_over.empty()) {
+    const Handle handle = read_svg(svg_over);
+    draw_svg(handle.get(), surface.get(),
+             {static_cast<double>(pixels.width), static_cast<double>(pixels.height)});
+  }
   return png(surface.get());
 }
 

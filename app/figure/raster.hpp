@@ -28,6 +28,15 @@ constexpr Color kRimColor{17, 17, 17};
 /// Renders an SVG document at `zoom` pixels per unit. Throws OutputError when it cannot be drawn.
 [[nodiscard]] std::string png_of_svg(std::string_view svg, double zoom);
 
+/// An opaque image, 4 bytes a pixel (red, green, blue, any), rows from above.
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+/// As PNG, with an SVG document drawn over it, one unit a pixel; empty: nothing over it.
+[[nodiscard]] std::string png_of_pixels(const Pixels& pixels, std::string_view svg_over = {});
+
 /// Paints triangles in their order, rims `rim_width` units wide, onto a transparent image that
 /// shows the rectangle from `corner` with `size`, at `zoom` pixels per unit.
 [[nodiscard]] std::string png_of_triangles(const std::vector<PaintedTriangle>& triangles,

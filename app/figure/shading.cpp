@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "sunder/fracture_model.hpp"
 
@@ -33,19 +34,23 @@ double round_up(double x) {
   return 10 * power;
 }
 
-double nearly_largest(const Problem& problem, const std::vector<double>& values,
-                      const std::vector<std::uint8_t>& destroyed) {
+double maximum_of(const Problem& problem, const std::vector<double>& values,
+                  const std::vector<std::uint8_t>& destroyed) {
   const bool frame = shows_frame(problem);
   std::vector<double> shown;
   for (Index e = 0; e < problem.tet_count(); ++e)
     if (!destroyed[e] && (!frame || problem.destructible(e))) shown.push_back(values[e]);
-  if (shown.empty()) return 0;
-  const auto rank = shown.begin() + static_cast<std::ptrdiff_t>((shown.size() - 1) * 199 / 200);
-  std::nth_element(shown.begin(), rank, shown.end());
-  return *rank;
+  return round_maximum(std::move(shown));
 }
 
 }  // namespace
+
+double round_maximum(std::vector<double> values) {
+  if (values.empty()) return round_up(0);
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 199 / 200);
+  std::nth_element(values.begin(), rank, values.end());
+  return round_up(*rank);
+}
 
 bool shows_frame(const Problem& problem) {
   for (Index e = 0; e < problem.tet_count(); ++e)
@@ -63,7 +68,7 @@ std::optional<StressScale> stress_scale(const Problem& problem, const State& sta
                        kOverYield[static_cast<std::size_t>(measure)]};
   }
   StressScale scale{max_shears(state), 1.0, "max. shear [MPa]"};
-  scale.maximum = round_up(nearly_largest(problem, scale.value, state.destroyed));
+  scale.maximum = maximum_of(problem, scale.value, state.destroyed);
   return scale;
 }
 

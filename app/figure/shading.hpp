@@ -22,6 +22,9 @@ struct StressScale {
 /// number that all but the highest half percent stay below. None when stress was not computed.
 [[nodiscard]] std::optional<StressScale> stress_scale(const Problem& problem, const State& state);
 
+/// A round number that all values but the highest half percent stay below.
+[[nodiscard]] double round_maximum(std::vector<double> values);
+
 /// Shade of red for a share of the scale (clamped to 0 to 1).
 [[nodiscard]] Color red(double share);
 

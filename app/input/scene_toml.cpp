@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/input/scene_toml.hpp"
 
+#include <sstream>
+
 #include "app/input/file_bytes.hpp"
 #include "app/input/mesh_import.hpp"
 #include "app/input/scene_overrides.hpp"
@@ -63,8 +65,22 @@ ParsedScene parse_scene(std::string_view text, const std::string& source,
   scene.output = read_output(root, source);
   scene.gravity = read_gravity(root, source);
   scene.dynamics = read_dynamics(root, source);
+  if (const auto inputs = root.text("inputs")) {
+    if (inputs->empty()) {
+      root.fail(InputFault::out_of_range, "inputs", "is empty; allowed: the path of a text file");
+    }
+    result.inputs_path = *inputs;
+    scene.live = true;
+  }
   result.places = collect_places(parsed, source);
   return result;
+}
+
+void refuse_inputs(const ParsedScene& parsed) {
+  if (parsed.inputs_path.empty()) return;
+  throw InputError(
+      InputFault::unknown_key,
+      parsed.scene.source + ": inputs is for sunder run, plan and view; leave the key out here");
 }
 
 std::string scene_text(const std::filesystem::path& path) { return read_file(path, kLargestScene); }
@@ -74,10 +90,34 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
   return read_with_mesh(path, overrides, warnings).scene;
 }
 
+std::string scene_text_for(const std::filesystem::path& path,
+                           const std::vector<std::string>& overrides,
+                           const std::filesystem::path& folder, const std::string& inputs) {
+  const std::string source = path.string();
+  toml::table parsed = parse_toml(scene_text(path), source);
+  for (const std::string& override_text : overrides) apply_override(parsed, override_text);
+  const TomlTable root(parsed, source, "", key_names(""));
+  const std::filesystem::path mesh = path.parent_path() / root.require("mesh", root.text("mesh"));
+  const auto absolute = [](const std::filesystem::path& p) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(p));
+  };
+  parsed.insert_or_assign("mesh", absolute(mesh).lexically_proximate(absolute(folder)).string());
+  if (!root.has("title")) parsed.insert_or_assign("title", path.stem().string());
+  parsed.erase("inputs");
+  if (!inputs.empty()) parsed.insert_or_assign("inputs", inputs);
+  std::ostringstream out;
+  out << toml::toml_formatter(parsed) << "\n";
+  return out.str();
+}
+
 std::shared_ptr<const Problem> read_problem(const std::filesystem::path& path,
                                             const std::vector<std::string>& overrides,
-                                            std::vector<std::string>* warnings) {
+                                            std::vector<std::string>* warnings,
+                                            std::filesystem::path* inputs, bool live) {
   ParsedScene parsed = read_with_mesh(path, overrides, warnings);
+  if (!inputs) refuse_inputs(parsed);
+  if (!parsed.inputs_path.empty() && inputs) *inputs = path.parent_path() / parsed.inputs_path;
+  parsed.scene.live = parsed.scene.live || live;
   try {
     return std::make_shared<const Problem>(std::move(parsed.scene));
   } catch (const InputError& error) {

@@ -22,14 +22,18 @@ namespace sunder::app {
                                std::vector<std::string>* warnings = nullptr);
 
 /// Reads a scene and makes it a Problem, whose errors are reported with their place in the file.
+/// `inputs`: gets the path of the scene's file of inputs, empty without one; null: a scene with one
+/// is refused. `live`: the problem is so whatever the scene says (Scene::live).
 [[nodiscard]] std::shared_ptr<const Problem> read_problem(
     const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
-    std::vector<std::string>* warnings = nullptr);
+    std::vector<std::string>* warnings = nullptr, std::filesystem::path* inputs = nullptr,
+    bool live = false);
 
 /// A scene's text, read; Scene::mesh is empty.
 struct ParsedScene {
   Scene scene;
-  std::string mesh_path;  ///< the value of the key `mesh`, as written
+  std::string mesh_path;    ///< the value of the key `mesh`, as written
+  std::string inputs_path;  ///< likewise of `inputs`; empty: there are none, and Scene::live is off
   ScenePlaces places;
 };
 
@@ -38,6 +42,16 @@ struct ParsedScene {
 [[nodiscard]] ParsedScene parse_scene(std::string_view text, const std::string& source,
                                       const std::vector<std::string>& overrides = {},
                                       const std::vector<std::string>& varied = {});
+
+/// Throws InputError where a scene has inputs: nobody would carry them out.
+void refuse_inputs(const ParsedScene& parsed);
+
+/// The scene of a file with its overrides, as a text that reads the same from `folder`; its key
+/// `inputs` is `inputs`, or absent where that is empty. Comments are lost. Throws InputError.
+[[nodiscard]] std::string scene_text_for(const std::filesystem::path& path,
+                                         const std::vector<std::string>& overrides,
+                                         const std::filesystem::path& folder,
+                                         const std::string& inputs);
 
 /// The text of a scene's file. Throws InputError.
 [[nodiscard]] std::string scene_text(const std::filesystem::path& path);

@@ -31,7 +31,8 @@ bool is_result(const std::string& name) {
       "\\.(svg|"
       "png)|"
       "index\\.html|reproduction\\.md|(result|cracks)(_[0-9]+)?\\.vtu|"
-      "snapshot_[0-9]+\\.(svg|png|vtu))(\\.([0-9]+\\.)?partial)?");
+      "snapshot_[0-9]+\\.(svg|png|vtu)|frame_[0-9]+\\.png|recording\\.(toml|inputs))(\\.([0-9]+\\.)"
+      "?partial)?");
   static const std::regex half_written(".+\\.[0-9]+\\.partial");
   return std::regex_match(name, ours) || std::regex_match(name, half_written);
 }

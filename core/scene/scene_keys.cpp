@@ -141,6 +141,11 @@ std::vector<SceneKey> root_rows() {
           "(`result.vtu` "
           "too), .mesh, .unv, .bdf, .nas: \"Meshes\" below",
           "empty, not there, not a mesh: error", kRequired),
+      row("", "inputs", text, "",
+          "path, relative to the scene: what is done between steps, one input a line "
+          "([view.md](view.md) \"Inputs\"), as `sunder view` records it; every element may be "
+          "removed then, and the run ends with the last input",
+          "not there, no such input: error; `sweep`: error"),
       row("", "material", table, "", "one table a named volume", "no such volume: error"),
       row("", "fixed", tables, "", "supports", "a body that can move as one: error"),
       row("", "instrument", tables, "", "what pulls, grips and presses; any number", ""),

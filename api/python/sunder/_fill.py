@@ -109,6 +109,8 @@ def _check_keys(table, keys):
 
 def _fill(scene, tree, folder, name):
     _check_keys("", tree)
+    if "inputs" in tree:
+        raise InputError("inputs is for the program: sunder run, plan and view; leave the key out here")
     scene.title = tree.get("title", pathlib.Path(name).stem)
     _fill_mesh(scene, tree, folder)
     for volume, keys in _table(tree, "material").items():

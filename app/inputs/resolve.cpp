@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "app/input/nearest.hpp"
+#include "app/inputs/inputs.hpp"
+#include "app/output/text.hpp"
+#include "sunder/error.hpp"
+#include "sunder/simulation.hpp"
+
+namespace sunder::app {
+namespace {
+
+class Resolver {
+ public:
+  Resolver(const Problem& problem, std::string place)
+      : problem_(problem), place_(std::move(place)) {}
+
+  void operator()(input::Drive& drive) const { drive.index = instrument(drive.instrument); }
+
+  void operator()(input::Turn& turn) const {
+    turn.index = instrument(turn.instrument);
+    const auto* grip = std::get_if<Grip>(&problem_.scene().instruments[turn.index].action);
+    if (grip && grip->rigid) return;
+    fail("instrument " + in_quotes(turn.instrument) +
+         " cannot be turned; only a grip with rigid = true can");
+  }
+
+  void operator()(input::Remove& remove) const {
+    for (const Index e : remove.elements) {
+      if (e < problem_.tet_count()) continue;
+      fail("there is no element " + std::to_string(e) + "; the mesh has " +
+           std::to_string(problem_.tet_count()) + ", from 0 on");
+    }
+  }
+
+  void operator()(input::Colour& colour) const {
+    const auto& name = field_names()[static_cast<std::size_t>(colour.field)];
+    const auto refuse = [&](const std::string& why) {
+      fail("the body cannot be coloured by " + name + ": " + why);
+    };
+    const bool of_stress = colour.field == Field::stress || colour.field == Field::yield;
+    if (of_stress && !needs_of(problem_).stress) {
+      refuse("the scene leaves stress out; name it in output.fields, or take strain");
+    }
+    if (colour.field != Field::yield) return;
+    for (Index e = 0; e < problem_.tet_count(); ++e) {
+      if (problem_.breakable(e)) return;
+    }
+    refuse("no material has a yield stress; take stress");
+  }
+
+  template <class Other>
+  void operator()(Other&) const {}
+
+ private:
+  [[nodiscard]] std::size_t instrument(const std::string& name) const {
+    std::vector<std::string> names;
+    const auto& all = problem_.scene().instruments;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].name == name) return i;
+      names.push_back(all[i].name);
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (name == std::to_string(i)) return i;
+    }
+    if (names.empty()) fail("the scene has no instrument that could be " + in_quotes(name));
+    fail("the scene has no instrument " + in_quotes(name) + "; it has " +
+         quoted_list(names, "and"));
+  }
+
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw InputError(InputFault::out_of_range, place_ + sentence);
+  }
+
+  const Problem& problem_;
+  std::string place_;
+};
+
+/// By its number where a line cannot hold its name.
+std::string name_of(const std::string& name, std::size_t index) {
+  const bool odd = std::ranges::any_of(
+      name, [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; });
+  return odd ? std::to_string(index) : "\"" + name + "\"";
+}
+
+std::string numbers(const Vec3& v) {
+  return number(v.x()) + " " + number(v.y()) + " " + number(v.z());
+}
+
+}  // namespace
+
+void resolve(Inputs& inputs, const Problem& problem) {
+  for (Input& i : inputs.list) std::visit(Resolver(problem, inputs.at(i)), i.what);
+}
+
+std::string text_of(const input::Drive& drive) {
+  return std::string(drive.further ? "move" : "drive") + " " +
+         name_of(drive.instrument, drive.index) + " " + numbers(drive.value);
+}
+
+std::string text_of(const input::Turn& turn) {
+  return "turn " + name_of(turn.instrument, turn.index) + " " + numbers(turn.rotation);
+}
+
+std::string text_of(const input::Remove& remove) {
+  std::string text = "remove";
+  for (const Index e : remove.elements) text += " " + std::to_string(e);
+  return text;
+}
+
+std::string text_of(const input::Step& step) {
+  return step.count == 1 ? "step" : "step " + std::to_string(step.count);
+}
+
+}  // namespace sunder::app

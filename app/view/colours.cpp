@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/view/colours.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "sunder/fracture_model.hpp"
+#include "sunder/stress_measures.hpp"
+
+namespace sunder::app {
+namespace {
+
+constexpr Color kUnbreakable{176, 180, 184}, kUnknown{246, 216, 205};
+
+Mat3 edges(const std::vector<Vec3>& of, const std::array<Index, 4>& corners) {
+  Mat3 m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    m.col(static_cast<Eigen::Index>(i)) =
+        of[static_cast<std::size_t>(corners[i + 1])] - of[static_cast<std::size_t>(corners[0])];
+  }
+  return m;
+}
+
+double largest_displacement(const Problem& problem, const State& state, Index element) {
+  double largest = 0;
+  for (const Index n : mesh_of(problem, state).tets[static_cast<std::size_t>(element)]) {
+    largest = std::max(largest, state.displacement[static_cast<std::size_t>(n)].norm());
+  }
+  return largest;
+}
+
+std::string label_of(const Problem& problem, Field field) {
+  switch (field) {
+    case Field::stress:
+      return "max. shear stress [MPa]";
+    case Field::yield:
+      switch (strength_measure(problem.scene().fracture)) {
+        case YieldMeasure::tresca:
+          return "Tresca stress / yield";
+        case YieldMeasure::principal:
+          return "principal stress / yield";
+        default:
+          return "max. shear / yield";
+      }
+    case Field::strain:
+      return "largest strain";
+    default:
+      return "displacement [mm]";
+  }
+}
+
+double value_of(const Problem& problem, const State& state, Index e, Field field) {
+  const auto at = static_cast<std::size_t>(e);
+  switch (field) {
+    case Field::stress:
+      return max_shear(state.stress[at]);
+    case Field::yield:
+      return problem.breakable(e)
+                 ? yield_measure(state.stress[at], strength_measure(problem.scene().fracture)) /
+                       problem.yield(e)
+                 : 0.0;
+    case Field::strain:
+      return largest_strain(problem, state, e);
+    default:
+      return largest_displacement(problem, state, e);
+  }
+}
+
+}  // namespace
+
+double largest_strain(const Problem& problem, const State& state, Index element) {
+  const Mesh& mesh = mesh_of(problem, state);
+  const auto& corners = mesh.tets[static_cast<std::size_t>(element)];
+  const Mat3 gradient = edges(state.displacement, corners) * edges(mesh.nodes, corners).inverse();
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  if (problem.material(element).law == MaterialLaw::linear) {
+    solver.computeDirect((gradient + gradient.transpose()) / 2, Eigen::EigenvaluesOnly);
+    return solver.eigenvalues().cwiseAbs().maxCoeff();
+  }
+  const Mat3 f = Mat3::Identity() + gradient;
+  solver.computeDirect(f.transpose() * f, Eigen::EigenvaluesOnly);
+  double largest = 0;
+  for (const double square : solver.eigenvalues()) {
+    largest = std::max(largest, std::abs(std::sqrt(std::max(square, 0.0)) - 1));
+  }
+  return largest;
+}
+
+Paint paint(const Problem& problem, const State& state, std::span<const SurfaceTriangle> triangles,
+            const input::Colour& colour) {
+  Paint paint;
+  const bool of_stress = colour.field == Field::stress || colour.field == Field::yield;
+  if (of_stress && state.stress.empty()) {
+    paint.triangles.assign(triangles.size(), kUnknown);
+    return paint;
+  }
+  paint.label = label_of(problem, colour.field);
+  const bool frame = shows_frame(problem);
+  const auto grey = [&](Index e) { return frame && !problem.destructible(e); };
+  std::vector<double> values, counted;
+  values.reserve(triangles.size());
+  for (const SurfaceTriangle& t : triangles) {
+    values.push_back(value_of(problem, state, t.element, colour.field));
+    if (!grey(t.element)) counted.push_back(values.back());
+  }
+  paint.maximum = colour.maximum                 ? *colour.maximum
+                  : colour.field == Field::yield ? 1.0
+                                                 : round_maximum(std::move(counted));
+  paint.triangles.reserve(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    paint.triangles.push_back(grey(triangles[i].element) ? kUnbreakable
+                                                         : red(values[i] / paint.maximum));
+  }
+  return paint;
+}
+
+}  // namespace sunder::app

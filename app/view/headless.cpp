@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/view/headless.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "app/output/tables.hpp"
+#include "app/output/vtu.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kFilm = 6;  // pictures on the strip
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string picture_name(int frame) {
+  const std::string digits = std::to_string(frame);
+  return "frame_" + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits + ".png";
+}
+
+class Playing {
+ public:
+  Playing(Session& session, Painter& painter, ResultFolder& folder, const HeadlessPlan& plan)
+      : session_(session), painter_(painter), folder_(folder), plan_(plan) {}
+
+  HeadlessOutcome play() {
+    try {
+      if (plan_.inputs) play_inputs();
+      while (frame_ < plan_.frames) take_frame();
+    } catch (const NumericalError& error) {
+      outcome_.failure = error.what();
+    }
+    finish();
+    return std::move(outcome_);
+  }
+
+ private:
+  void play_inputs() {
+    for (const Input& input : plan_.inputs->list) {
+      const auto* frames = std::get_if<input::Frame>(&input.what);
+      if (frame_ == plan_.frames) {
+        outcome_.inputs_left = true;
+        return;
+      }
+      if (!frames) session_.take(*plan_.inputs, input);
+      for (int i = 0; frames && i < frames->count && frame_ < plan_.frames; ++i) take_frame();
+    }
+  }
+
+  void take_frame() {
+    session_.advance();
+    const auto start = Clock::now();
+    ++frame_;
+    if (session_.look().pictures) {
+      painter_.draw(session_.show(painter_.version()), session_.look(), session_.camera());
+      outcome_.drawing_seconds += seconds_since(start);
+      const auto drawn = Clock::now();
+      write(picture_name(frame_), keep(painter_.png()));
+      outcome_.writing_seconds += seconds_since(drawn);
+    }
+    if (plan_.progress) plan_.progress(frame_);
+  }
+
+  /// The last picture of each sixth of the frames goes on the strip as well.
+  const std::string& keep(std::string png) {
+    const auto sixth = [&](int frame) {
+      return std::min<long long>(kFilm, plan_.frames) * frame / plan_.frames;
+    };
+    last_ = std::move(png);
+    if (sixth(frame_) > sixth(frame_ - 1)) {
+      film_.push_back({last_, "frame " + std::to_string(frame_)});
+    }
+    return last_;
+  }
+
+  void write(const std::string& name, std::string_view bytes) {
+    folder_.write(name, bytes);
+    outcome_.files.push_back(name);
+  }
+
+  /// The recording comes last: where it is, all is there.
+  void finish() {
+    if (!film_.empty()) {
+      write("film.png",
+            film_of(session_.problem().scene().title, film_, painter_.renderer().size()));
+    }
+    std::string events = events_header();
+    for (const DestroyedElement& row : session_.simulation().destroyed()) events += events_row(row);
+    write("events.csv", events);
+    ResultFile result(folder_, "result.vtu");
+    write_vtu(result, session_.problem(), state_of(session_.simulation()));
+    result.commit();
+    outcome_.files.push_back("result.vtu");
+    if (plan_.inputs) write("recording.inputs", session_.hand().recording());
+    write("recording.toml", plan_.recording);
+  }
+
+  Session& session_;
+  Painter& painter_;
+  ResultFolder& folder_;
+  const HeadlessPlan& plan_;
+  HeadlessOutcome outcome_;
+  int frame_ = 0;
+  std::string last_;
+  std::vector<FilmFrame> film_;
+};
+
+}  // namespace
+
+HeadlessOutcome play(Session& session, Painter& painter, ResultFolder& folder,
+                     const HeadlessPlan& plan) {
+  return Playing(session, painter, folder, plan).play();
+}
+
+}  // namespace sunder::app

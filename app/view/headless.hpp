@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// A session without a window: pictures, a film strip, and the recording as a scene.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "app/output/result_folder.hpp"
+#include "app/view/painter.hpp"
+#include "app/view/session.hpp"
+
+namespace sunder::app {
+
+struct HeadlessPlan {
+  const Inputs* inputs = nullptr;  ///< null: the scene's steps, one a picture
+  int frames = 1;
+  std::string recording;  ///< the scene's text, as it stands beside the recorded inputs
+  std::function<void(int frame)> progress;
+};
+
+struct HeadlessOutcome {
+  std::vector<std::string> files;
+  std::optional<std::string> failure;  ///< of a step: it ended there, and what there is was written
+  bool inputs_left = false;            ///< the pictures were over before the inputs
+  double drawing_seconds = 0;          ///< of all pictures, without steps and without files
+  double writing_seconds = 0;
+};
+
+/// Writes into the folder, which was cleared. Throws InputError for an input that cannot be done.
+[[nodiscard]] HeadlessOutcome play(Session& session, Painter& painter, ResultFolder& folder,
+                                   const HeadlessPlan& plan);
+
+}  // namespace sunder::app

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of finished frames.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/view/overlay.hpp"
+#include "app/view/shown.hpp"
+#include "app/view/vulkan/renderer.hpp"
+
+namespace sunder::app {
+
+class Painter {
+ public:
+  /// Both must outlive it.
+  Painter(view::Device& device, const Problem& problem, const PictureSize& size);
+
+  /// The version of triangles that it has; a frame to be drawn was shown since that one or an
+  /// earlier one.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+  /// Draws a frame; what stands over it is beside, in over().
+  void draw(std::shared_ptr<const Shown> shown, const Look& look, const Camera& camera);
+
+  /// The last drawing as PNG with what stands over it.
+  [[nodiscard]] std::string png() const;
+  [[nodiscard]] Pixels pixels() const { return renderer_.read(); }
+  [[nodiscard]] const Overlay& over() const { return over_; }
+  [[nodiscard]] const view::Renderer& renderer() const { return renderer_; }
+
+ private:
+  const Problem& problem_;
+  view::Renderer renderer_;
+  std::uint64_t version_ = 0;
+  std::shared_ptr<const Shown> shown_;  // that the device has
+  Overlay over_;
+};
+
+/// Pictures side by side, each under its caption, as one PNG.
+struct FilmFrame {
+  std::string png, caption;
+};
+[[nodiscard]] std::string film_of(const std::string& title, const std::vector<FilmFrame>& frames,
+                                  const PictureSize& size);
+
+}  // namespace sunder::app

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws the triangles of a body: into an image of its own, which is read back or handed on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "app/figure/raster.hpp"
+#include "app/view/camera.hpp"
+#include "app/view/look.hpp"
+#include "app/view/vulkan/device.hpp"
+#include "sunder/surface.hpp"
+
+namespace sunder::app::view {
+
+class Renderer {
+ public:
+  /// The device must outlive it. Throws DeviceError.
+  Renderer(Device& device, const PictureSize& size);
+
+  // What is drawn from now on; no picture is in work meanwhile.
+  /// `changed`: places among `triangles` that are new; those beyond the last are passed over.
+  void set_triangles(std::span<const SurfaceTriangle> triangles,
+                     std::span<const std::uint32_t> changed);
+  void set_points(std::span<const Vec3> places, std::span<const Vec3> normals);
+  /// One per triangle.
+  void set_colours(std::span<const Color> colours);
+  void set_lips(std::span<const std::array<Index, 2>> lips);
+
+  /// Draws, and waits for it. The camera's picture has the size of this.
+  void draw(const Camera& camera, const Look& look);
+  /// The last picture.
+  [[nodiscard]] Pixels read() const;
+
+  [[nodiscard]] const PictureSize& size() const { return size_; }
+  /// Of the last picture, R8G8B8A8, in layout TRANSFER_SRC_OPTIMAL.
+  [[nodiscard]] VkImage image() const { return colour_.get(); }
+
+ private:
+  enum Binding : std::size_t { kPlaces, kNormals, kTriangles, kColours, kLips, kBindings };
+
+  void make_pass();
+  void make_framebuffer();
+  void make_layout();
+  [[nodiscard]] Owned<VkPipeline> make_pipeline(std::span<const std::uint32_t> vertex,
+                                                std::span<const std::uint32_t> fragment);
+  void make_commands();
+  void reserve(Binding binding, std::size_t bytes);
+  void record(const Camera& camera, const Look& look);
+
+  Device& device_;
+  PictureSize size_;
+  VkExtent2D extent_;
+  Image many_, depth_, colour_;  // samples; resolved
+  Owned<VkRenderPass> pass_;
+  Owned<VkFramebuffer> framebuffer_;
+  Owned<VkDescriptorSetLayout> set_layout_;
+  Owned<VkDescriptorPool> set_pool_;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  Owned<VkPipelineLayout> layout_;
+  Owned<VkPipeline> body_, lips_;
+  Owned<VkCommandPool> command_pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Owned<VkFence> fence_;
+  HostBuffer pixels_;
+  std::array<HostBuffer, kBindings> buffers_;
+  std::uint32_t triangle_count_ = 0, lip_count_ = 0;
+};
+
+}  // namespace sunder::app::view

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The images of a window: a picture is copied into one, then whatever is drawn over it.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "app/view/vulkan/device.hpp"
+
+namespace sunder::app::view {
+
+/// Device functions that windows take besides.
+struct SwapchainFunctions {
+  PFN_vkCreateSwapchainKHR CreateSwapchainKHR = nullptr;
+  PFN_vkDestroySwapchainKHR DestroySwapchainKHR = nullptr;
+  PFN_vkGetSwapchainImagesKHR GetSwapchainImagesKHR = nullptr;
+  PFN_vkAcquireNextImageKHR AcquireNextImageKHR = nullptr;
+  PFN_vkQueuePresentKHR QueuePresentKHR = nullptr;
+  PFN_vkCmdBlitImage CmdBlitImage = nullptr;
+  PFN_vkCreateSemaphore CreateSemaphore = nullptr;
+  PFN_vkDestroySemaphore DestroySemaphore = nullptr;
+  PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR GetPhysicalDeviceSurfaceCapabilitiesKHR = nullptr;
+  PFN_vkGetPhysicalDeviceSurfaceFormatsKHR GetPhysicalDeviceSurfaceFormatsKHR = nullptr;
+};
+
+class Swapchain {
+ public:
+  /// Both must outlive it.
+  Swapchain(Device& device, VkSurfaceKHR surface);
+
+  /// The pass in which `over` records: one colour attachment, what was copied stays.
+  [[nodiscard]] VkRenderPass pass() const { return pass_.get(); }
+  [[nodiscard]] std::uint32_t image_count() const {
+    return static_cast<std::uint32_t>(frames_.size());
+  }
+  /// Shows a picture of that size, in layout TRANSFER_SRC_OPTIMAL, stretched over the window, and
+  /// what `over` records on top. Of a window that has changed its size nothing is shown once.
+  void show(VkImage picture, VkExtent2D size, const std::function<void(VkCommandBuffer)>& over);
+  /// Records by `commands`, and waits until it is done.
+  void once(const std::function<void(VkCommandBuffer)>& commands);
+
+ private:
+  struct Frame {
+    VkImage image = VK_NULL_HANDLE;
+    Owned<VkImageView> view;
+    Owned<VkFramebuffer> framebuffer;
+  };
+  void make_pass();
+  void make();
+  void barrier(VkImage image, VkImageLayout from, VkImageLayout to, VkAccessFlags done,
+               VkAccessFlags next, VkPipelineStageFlags after, VkPipelineStageFlags before);
+  void submit(VkSemaphore wait, VkSemaphore signal);
+
+  Device& device_;
+  VkSurfaceKHR surface_;
+  SwapchainFunctions of_;
+  VkSurfaceFormatKHR format_{};
+  VkExtent2D extent_{};
+  Owned<VkRenderPass> pass_;
+  Owned<VkSwapchainKHR> chain_;
+  std::vector<Frame> frames_;
+  Owned<VkSemaphore> acquired_;
+  std::vector<Owned<VkSemaphore>> drawn_;  // by image
+  Owned<VkCommandPool> pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Owned<VkFence> fence_;
+};
+
+}  // namespace sunder::app::view

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The window under synthetic input: a mouse and keys in a display of its own (Xvfb), under Vulkan's
+validation. What was done is recorded, and a run does it again.
+    window_test.py PROGRAM SCENES OUT [MORE OPTIONS OF THE VIEW]      screenshots go to OUT"""
+import math
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+PROGRAM, SCENES, OUT = (pathlib.Path(a).resolve() for a in sys.argv[1:4])
+MORE = sys.argv[4:]
+WIDTH, HEIGHT = 1280, 800
+LIMIT = 90  # [s] for anything to happen
+SETTINGS = """khronos_validation.debug_action = VK_DBG_LAYER_ACTION_LOG_MSG
+khronos_validation.report_flags = error,warn
+khronos_validation.log_filename = {log}
+khronos_validation.enables = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
+"""
+
+
+def projected(point):
+    """Where the standard camera of a window sees a point of the board (app/view/camera.cpp)."""
+    a, e = math.radians(25), math.radians(18)
+    eye = (math.sin(a) * math.cos(e), math.sin(e), math.cos(a) * math.cos(e))
+    right = (math.cos(a), 0, -math.sin(a))
+    up = (eye[1] * right[2] - eye[2] * right[1], eye[2] * right[0] - eye[0] * right[2],
+          eye[0] * right[1] - eye[1] * right[0])
+    flat = lambda p: tuple(sum(x * y for x, y in zip(p, axis)) for axis in (right, up))
+    shown = [flat((x, y, z)) for x in (0, 50) for y in (0, 50) for z in (0, 2.5)]
+    shown += [flat((50, -28, z)) for z in (0, 2.5)]  # where the grip will be
+    low, high = ([f(c) for c in zip(*shown)] for f in (min, max))
+    above, below, left, aside = 90, 84, 56, 150
+    room = (WIDTH - left - aside, HEIGHT - above - below)
+    scale = min(room[i] / (high[i] - low[i]) for i in range(2))
+    at = flat(point)
+    return (left + room[0] / 2 + scale * (at[0] - (low[0] + high[0]) / 2),
+            above + room[1] / 2 - scale * (at[1] - (low[1] + high[1]) / 2))
+
+
+class Display:
+    def __init__(self, folder):
+        self.folder = folder
+        reading, writing = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", folder],
+            pass_fds=[writing], stderr=subprocess.DEVNULL)
+        os.close(writing)
+        with os.fdopen(reading) as pipe:
+            self.name = ":" + pipe.readline().strip()
+
+    def do(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], check=True, env=dict(os.environ, DISPLAY=self.name))
+
+    def drag(self, button, points, pause=0.03):
+        self.do("mousemove", *map(round, points[0]))
+        time.sleep(0.3)
+        self.do("mousedown", button)
+        for p in points[1:]:
+            time.sleep(pause)
+            self.do("mousemove", *map(round, p))
+        time.sleep(0.3)
+        self.do("mouseup", button)
+        time.sleep(0.3)
+
+    def screenshot(self, path):
+        """Of an XWD file, as PNG."""
+        data = (pathlib.Path(self.folder) / "Xvfb_screen0").read_bytes()
+        head = struct.unpack(">25I", data[:100])
+        start, width, height, row = head[0] + 12 * head[19], head[4], head[5], head[12]
+        raw = bytearray()
+        for y in range(height):
+            line = data[start + y * row:start + y * row + 4 * width]
+            pixels = bytearray(3 * width)
+            pixels[0::3], pixels[1::3], pixels[2::3] = line[2::4], line[1::4], line[0::4]
+            raw += b"\0" + pixels
+        chunk = lambda kind, body: (struct.pack(">I", len(body)) + kind + body +
+                                    struct.pack(">I", zlib.crc32(kind + body)))
+        path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) +
+                         chunk(b"IDAT", zlib.compress(bytes(raw))) + chunk(b"IEND", b""))
+        return bytes(raw)
+
+    def close(self):
+        self.server.terminate()
+        self.server.wait()
+
+
+def until(what, so):
+    end = time.monotonic() + LIMIT
+    while time.monotonic() < end:
+        value = so()
+        if value:
+            return value
+        time.sleep(0.3)
+    raise AssertionError(f"did not happen: {what}")
+
+
+def expect(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def main():
+    OUT.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        log = folder / "layer.log"
+        (folder / "vk_layer_settings.txt").write_text(SETTINGS.format(log=log))
+        display = Display(name)
+        view = None
+        try:
+            environment = dict(os.environ, DISPLAY=display.name, VK_INSTANCE_LAYERS="VK_LAYER_KHRONOS_validation",
+                               VK_LAYER_SETTINGS_PATH=str(folder / "vk_layer_settings.txt"))
+            scene = SCENES / "board-grip-b.toml"
+            view = subprocess.Popen([PROGRAM, "view", scene, "--out", folder / "out", "--steps", "2000", *MORE],
+                                    env=environment, stderr=subprocess.PIPE, text=True)
+            inputs = folder / "out" / "recording.inputs"
+
+            def recorded(pattern):
+                display.do("key", "e")
+                time.sleep(0.5)
+                return inputs.exists() and re.search(pattern, inputs.read_text()) and inputs.read_text()
+
+            def window_is_there():
+                expect(view.poll() is None, "the program ended: " + (view.stderr.read() if view.poll() else ""))
+                return subprocess.run(["xdotool", "search", "--name", "Board"], capture_output=True,
+                                      env=environment).stdout
+
+            until("a window", window_is_there)
+            time.sleep(2)
+            display.do("mousemove", 20, 400)
+            until("single steps", lambda: display.do("key", "s") or recorded(r"^step"))
+            before = display.screenshot(OUT / "window-begin.png")
+            # The grip is taken at the lower right corner and pulled down; the body goes on by itself then.
+            x, y = projected((50, 0, 1.25))
+            display.drag(1, [(x, y)] + [(x, y + 4 * i) for i in range(1, 25)])
+            pulled = until("a pull", lambda: recorded(r'drive "right forceps" .*\n[^#]*step'))
+            expect(float(re.findall(r'drive "right forceps" \S+ (\S+)', pulled)[-1]) < -5, pulled)
+            display.do("key", "space")
+            time.sleep(1)
+            after = display.screenshot(OUT / "window-pulled.png")
+            expect(sum(a != b for a, b in zip(before[::97], after[::97])) > 100, "the picture has not changed")
+            # A cut from the left along a stroke, taken back and done again.
+            left, right = projected((-4, 26, 1.25)), projected((18, 26, 1.25))
+            stroke = [tuple(a + (b - a) * i / 20 for a, b in zip(left, right)) for i in range(21)]
+            display.drag(3, stroke)
+            until("a cut", lambda: recorded(r"^remove ") or recorded(r"\nremove "))
+            display.screenshot(OUT / "window-cut.png")
+            display.do("key", "z")
+            until("undo", lambda: (t := recorded("step")) and "remove " not in t)
+            display.do("key", "y")
+            text = until("redo", lambda: recorded(r"\nremove "))
+            # The camera turns with the mouse, and what is recorded does not change by it.
+            display.drag(1, [(700, 120), (760, 140)])
+            display.do("key", "w")
+            time.sleep(1)
+            display.screenshot(OUT / "window-turned.png")
+            expect(recorded("remove") == text, "looking has changed the recording")
+            # What cannot be done pauses and says so, and the window stays.
+            for _ in range(3):
+                display.do("key", "y")
+            time.sleep(1)
+            display.screenshot(OUT / "window-error.png")
+            expect(view.poll() is None, "the window went away with an error")
+            display.do("key", "Escape")
+            errors = view.communicate(timeout=LIMIT)[1]
+            expect(view.returncode == 0, f"exit code {view.returncode}: {errors}")
+            run = subprocess.run([PROGRAM, "run", folder / "out" / "recording.toml", "--out", folder / "run",
+                                  "--quiet"], capture_output=True, text=True)
+            expect(run.returncode == 0, run.stderr)
+            gone = re.findall(r"\d+", re.search(r"\nremove (.*)", text)[1])
+            events = (folder / "run" / "events.csv").read_text()
+            expect(all(f",{e},script" in events for e in gone), "the run has not removed what was cut")
+            said = log.read_text() if log.exists() else ""
+            expect("VUID" not in said and "SYNC" not in said and "error" not in said.lower(), said)
+        finally:
+            if view and view.poll() is None:
+                view.kill()
+                view.wait()
+            display.close()
+    print("ok; screenshots in", OUT)
+
+
+main()
