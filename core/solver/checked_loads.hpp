@@ -37,6 +37,8 @@ class CheckedLoads {
   bool follow(int bases, const BaseCheck& check);
   /// An event has changed the body.
   void event();
+  /// Other grips hold it: nothing is known.
+  void forget() { bases_ = 0; }
   /// Whether the loads known are on the same unknowns.
   [[nodiscard]] bool takes(const Load& load) const;
 

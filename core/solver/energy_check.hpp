@@ -22,11 +22,7 @@ class EnergyCheck {
   void checked(const Load& load, const SolveReport& report, double unrefined, int bases,
                double largest_u, double largest);
   /// Nothing is known any more: the loads to come are of other grips.
-  void forget() {
-    checks_.clear();
-    bases_ = 0;
-    changed_ = true;
-  }
+  void forget() { known_.forget(); }
   /// Takes what is known of a base that is new since the last full check.
   void follow(int bases, const BaseCheck& check) { static_cast<void>(known_.follow(bases, check)); }
   /// Whether what this knows is of loads on the same unknowns.

@@ -28,7 +28,7 @@ class FrameCheck {
   /// of A^-1 (f - K u) over live elements.
   void checked(const Load& load, const Solution& solution, double stress, int bases);
   /// Nothing is known any more: the loads to come are of other grips.
-  void forget() { bases_ = 0; }
+  void forget() { known_.forget(); }
   /// Takes what is known of a base that is new since the last full check.
   void follow(int bases, const BaseCheck& check) { static_cast<void>(known_.follow(bases, check)); }
   /// Whether what this knows is of loads on the same unknowns.
