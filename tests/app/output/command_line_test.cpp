@@ -31,7 +31,7 @@ TEST_P(WrongUsageTest, IsOneSentenceAndExitCode2) {
 }
 
 const std::string kCommands =
-    R"(allowed is "run", "plan", "sweep", "reproduce", "mesh", "devices", "materials" or "help")";
+    R"(allowed is "run", "plan", "view", "sweep", "reproduce", "mesh", "devices", "materials" or "help")";
 
 INSTANTIATE_TEST_SUITE_P(
     All, WrongUsageTest,
