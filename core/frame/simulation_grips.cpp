@@ -9,6 +9,7 @@
 #include "frame/history.hpp"
 #include "frame/loads.hpp"
 #include "sunder/error.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder {
 namespace {
