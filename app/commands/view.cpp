@@ -60,8 +60,10 @@ view::DeviceOptions device_options(const SolverOptions& solver) {
 
 void print_pictures(const Problem& problem, const Session& session, const HeadlessOutcome& outcome,
                     const view::Device& device, int frames, const std::filesystem::path& folder) {
-  const auto per_second = [&](double seconds) {
-    return seconds > 0 ? rounded(frames / seconds, 3) : std::string("-");
+  const int pictures = std::max(outcome.pictures, 1);
+  const auto each = [&](const HeadlessOutcome::Stage& stage) {
+    return rounded(1e3 * stage.seconds / pictures, 3) + " ms (" +
+           rounded(1e3 * stage.processor_seconds / pictures, 3) + " of the processors)";
   };
   const BackendInfo info = session.simulation().backend().info();
   std::cout << problem.scene().title << "\n  "
@@ -69,9 +71,9 @@ void print_pictures(const Problem& problem, const Session& session, const Headle
             << " " << info.precision << ", route " << info.route << "; drawn by " << device.name()
             << "\n  " << counted(frames, "frame") << " after "
             << counted(session.simulation().steps_done(), "step") << ": "
-            << per_second(outcome.drawing_seconds) << " drawn a second, "
-            << per_second(outcome.writing_seconds) << " written as PNG a second\n  results in "
-            << folder.string() << ":";
+            << "copied out in " << each(outcome.showing) << ", drawn in " << each(outcome.drawing)
+            << ", written in " << each(outcome.writing) << " each\n  results in " << folder.string()
+            << ":";
   const std::size_t shown = outcome.files.size();
   for (std::size_t i = 0; i < shown; ++i) {
     const bool many = outcome.files[i].starts_with("frame_") && shown > 8;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
+#include <utility>
 
 #include "app/output/tables.hpp"
 #include "app/output/vtu.hpp"
@@ -15,9 +17,24 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kFilm = 6;  // pictures on the strip
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Adds what passes while it lives.
+class Timed {
+ public:
+  explicit Timed(HeadlessOutcome::Stage& stage) : stage_(stage) {}
+  ~Timed() {
+    stage_.seconds += std::chrono::duration<double>(Clock::now() - start_).count();
+    stage_.processor_seconds += processor_seconds() - processor_;
+  }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  HeadlessOutcome::Stage& stage_;
+  const Clock::time_point start_ = Clock::now();
+  const double processor_ = processor_seconds();
+};
 
 std::string picture_name(int frame) {
   const std::string digits = std::to_string(frame);
@@ -55,16 +72,24 @@ class Playing {
 
   void take_frame() {
     session_.advance();
-    const auto start = Clock::now();
     ++frame_;
-    if (session_.look().pictures) {
-      painter_.draw(session_.show(painter_.version()), session_.look(), session_.camera());
-      outcome_.drawing_seconds += seconds_since(start);
-      const auto drawn = Clock::now();
-      write(picture_name(frame_), keep(painter_.png()));
-      outcome_.writing_seconds += seconds_since(drawn);
-    }
+    if (session_.look().pictures) take_picture();
     if (plan_.progress) plan_.progress(frame_);
+  }
+
+  void take_picture() {
+    ++outcome_.pictures;
+    std::shared_ptr<const Shown> shown;
+    {
+      const Timed timed(outcome_.showing);
+      shown = session_.show(painter_.version());
+    }
+    {
+      const Timed timed(outcome_.drawing);
+      painter_.draw(std::move(shown), session_.look(), session_.camera());
+    }
+    const Timed timed(outcome_.writing);
+    write(picture_name(frame_), keep(painter_.png()));
   }
 
   /// The last picture of each sixth of the frames goes on the strip as well.

@@ -22,8 +22,11 @@ struct HeadlessOutcome {
   std::vector<std::string> files;
   std::optional<std::string> failure;  ///< of a step: it ended there, and what there is was written
   bool inputs_left = false;            ///< the pictures were over before the inputs
-  double drawing_seconds = 0;          ///< of all pictures, without steps and without files
-  double writing_seconds = 0;
+  /// Of all pictures together: what a frame is copied out in, drawn in, and written as PNG in.
+  struct Stage {
+    double seconds = 0, processor_seconds = 0;
+  } showing, drawing, writing;
+  int pictures = 0;
 };
 
 /// Writes into the folder, which was cleared. Throws InputError for an input that cannot be done.

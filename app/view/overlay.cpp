@@ -147,14 +147,17 @@ void add_length_bar(Overlay& out, const Camera& camera) {
 }
 
 void add_words(Overlay& out, const FrameWords& words, const PictureSize& size) {
-  // Bold letters are about .66 of their size wide.
-  const double fits =
-      (size.width - 2 * kMargin) / (0.66 * static_cast<double>(words.title.size() + 1));
+  const auto size_of = [&](const std::string& text, double wide, double most) {
+    const double fits = (size.width - 2 * kMargin) / (wide * static_cast<double>(text.size() + 1));
+    return std::clamp(fits, 9.0, most);
+  };
+  constexpr double kBold = 0.66, kPlain = 0.56;  // widths of letters over their size
   double y = kMargin + 10;
-  out.texts.push_back({{kMargin, y}, words.title, std::clamp(fits, 9.0, 17.0), Anchor::left, true});
+  out.texts.push_back(
+      {{kMargin, y}, words.title, size_of(words.title, kBold, 17), Anchor::left, true});
   for (const std::string& line : words.lines) {
     y += 19;
-    out.texts.push_back({{kMargin, y}, line, 13, Anchor::left, false});
+    out.texts.push_back({{kMargin, y}, line, size_of(line, kPlain, 13), Anchor::left, false});
   }
 }
 
