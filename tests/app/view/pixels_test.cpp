@@ -106,10 +106,10 @@ TEST(Pixels, AFaceThatLooksAtTheEyeHasTheColourOfItsElement) {
       lowest = std::min(lowest, seen.problem->mesh().nodes[static_cast<std::size_t>(n)].z());
     }
     if (lowest < 0.99) continue;
-    const Color shown = seen.at(middle), meant = paint.triangles[t];
-    EXPECT_NEAR(shown.r, meant.r, 4);  // the front is curved by some thousandths
-    EXPECT_NEAR(shown.g, meant.g, 4);
-    EXPECT_NEAR(shown.b, meant.b, 4);
+    const Color seen_there = seen.at(middle), meant = paint.triangles[t];
+    EXPECT_NEAR(seen_there.r, meant.r, 4);  // the front is curved by some thousandths
+    EXPECT_NEAR(seen_there.g, meant.g, 4);
+    EXPECT_NEAR(seen_there.b, meant.b, 4);
     ++looked_at;
   }
   EXPECT_EQ(looked_at, 64);  // two a cell
