@@ -250,8 +250,8 @@ void Border::add_lack(const Eigen::VectorXd& v, Eigen::VectorXd& lack) {
   lack_.noalias() -= f_.selfadjointView<Eigen::Lower>() * d_;
 }
 
-double Border::correct(const Eigen::VectorXd& lack, Eigen::VectorXd& x, Eigen::VectorXd& moved) {
-  lack_.noalias() -= h_.transpose() * lack.head(h_.rows());
+double Border::correct(const Eigen::VectorXd& by_lack, Eigen::VectorXd& x, Eigen::VectorXd& moved) {
+  subtract_transposed(by_lack, lack_);  // H^T = N^T G, and of N few rows are not 0
   step_ = lack_;
   solve(step_);
   d_ += step_;

@@ -53,9 +53,10 @@ class Border {
   void start(const Eigen::VectorXd& p, Eigen::VectorXd& x);
   /// With v = B^T u: the forces -E d on B join `lack`; what lacks on the new unknowns is kept.
   void add_lack(const Eigen::VectorXd& v, Eigen::VectorXd& lack);
-  /// Lets d follow forces `lack` on B and what lacks on the new unknowns; returns the energy that
-  /// this adds to that of `lack`. The grips' share of the motion -H dd joins `moved`.
-  [[nodiscard]] double correct(const Eigen::VectorXd& lack, Eigen::VectorXd& x,
+  /// Lets d follow forces on B, of which `by_lack` is G times, and what lacks on the new unknowns;
+  /// returns the energy that this adds to that of those forces. The grips' share of the motion
+  /// -H dd joins `moved`.
+  [[nodiscard]] double correct(const Eigen::VectorXd& by_lack, Eigen::VectorXd& x,
                                Eigen::VectorXd& moved);
   /// Lets d follow forces of the grips.
   void follow_grips(const Eigen::VectorXd& forces, Eigen::VectorXd& x);

@@ -28,11 +28,12 @@ void clear_corner(linear_algebra::RowMajor& a, Eigen::Index rows, Eigen::Index c
   a.topLeftCorner(std::min(rows, a.rows()), std::min(columns, a.cols())).setZero();
 }
 
-/// y = S x for the leading n rows and columns of a symmetric S, n entries of x and y.
-void multiply(const linear_algebra::RowMajor& s, Eigen::Index n, const Eigen::VectorXd& x,
-              Eigen::VectorXd& y) {
+/// y = S x for a symmetric S of which the leading k rows and columns alone are not 0; n entries of
+/// x and y.
+void multiply(const linear_algebra::RowMajor& s, Eigen::Index n, Eigen::Index k,
+              const Eigen::VectorXd& x, Eigen::VectorXd& y) {
   y.head(n).setZero();
-  add_product(s.data(), s.outerStride(), n, x.data(), n, y.data());
+  add_product(s.data(), s.outerStride(), k, x.data(), k, y.data());
 }
 
 }  // namespace
@@ -535,7 +536,7 @@ Forces Deferred::on_body(const Forces& forces) {
 
 /// x = M p and what the grips add: A^-1 as it is stored.
 void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacement) {
-  multiply(m_, count(), p, x_);
+  multiply(m_, count(), changed_, p, x_);
   if (!border_.empty()) border_.start(p, x_);
   if (held_.empty()) return;
   forces_.resize(grips());
@@ -549,20 +550,20 @@ void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacem
 /// One step towards x = D B^T u, u_G = displacement; returns the energy of what was lacking.
 double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displacement) {
   const Eigen::Index n = count();
-  multiply(compliance_, n, x_, v_);
-  v_.head(n) += p.head(n);     // B^T u
-  multiply(d_, n, v_, lack_);  // D B^T u - x
+  multiply(compliance_, n, n, x_, v_);
+  v_.head(n) += p.head(n);               // B^T u
+  multiply(d_, n, changed_, v_, lack_);  // D B^T u - x
   lack_.head(n) -= x_.head(n);
   for (Index d : units_) lack_[unit_[d]] = 0;  // where only grips act
   if (!border_.empty()) border_.add_lack(v_, lack_);
-  multiply(compliance_, n, lack_, gx_);
-  multiply(m_, n, gx_, mgx_);
+  multiply(compliance_, n, n, lack_, gx_);
+  multiply(m_, n, changed_, gx_, mgx_);
   double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n));
   x_.head(n) += lack_.head(n);
   x_.head(n) += mgx_.head(n);
   if (!border_.empty()) {
     moved_.setZero(grips());
-    energy += border_.correct(lack_, x_, moved_);
+    energy += border_.correct(gx_, x_, moved_);
   }
   if (held_.empty()) return energy;
   forces_.resize(grips());
@@ -587,7 +588,7 @@ void Deferred::add_grips(std::span<const double> displacement) {
     gx_.head(n) += forces_[static_cast<Eigen::Index>(i)] *
                    compliance_.row(held_[i].column).head(n).transpose();
   }
-  multiply(m_, n, gx_, mgx_);
+  multiply(m_, n, changed_, gx_, mgx_);
   x_.head(n) += mgx_.head(n);
   for (std::size_t i = 0; i < held_.size(); ++i) {
     x_[held_[i].column] += forces_[static_cast<Eigen::Index>(i)];
