@@ -48,6 +48,12 @@ std::size_t FiniteDevice::inverse_bytes(const KernelFactory& kernels, const Prob
   return rows * rows * kernels.real_bytes();
 }
 
+Index FiniteDevice::most_inverse(const KernelFactory& kernels) {
+  const auto rows = static_cast<std::size_t>(
+      std::sqrt(static_cast<double>(largest_buffer(kernels) / kernels.real_bytes())));
+  return static_cast<Index>(rows / shaders::kChunk * shaders::kChunk);
+}
+
 std::size_t FiniteDevice::route_bytes(const KernelFactory& kernels, Route route,
                                       const Problem& problem) {
   if (route == Route::inverse) return inverse_bytes(kernels, problem);

@@ -52,6 +52,8 @@ class FiniteDevice final : public solver::FiniteDevice {
   /// Bytes of the inverse for so many unknowns.
   [[nodiscard]] static std::size_t inverse_bytes(const KernelFactory& kernels,
                                                  const Problem& problem);
+  /// The most unknowns whose inverse a buffer holds.
+  [[nodiscard]] static Index most_inverse(const KernelFactory& kernels);
   /// Of all but states and mesh: what the route takes.
   [[nodiscard]] static std::size_t route_bytes(const KernelFactory& kernels, Route route,
                                                const Problem& problem);

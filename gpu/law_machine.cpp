@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/law_machine.hpp"
 
+#include <algorithm>
+
 #include "gpu/choose_device.hpp"
 #include "gpu/finite_device.hpp"
 #include "solver/available_memory.hpp"
@@ -51,9 +53,8 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
   machine.info.driver = physical.driver;
   machine.info.precision = fp64 ? "fp64" : "fp32";
   machine.memory = solver::available_memory();
-  const bool fits = FiniteDevice::inverse_bytes(open->kernels, problem) <=
-                    FiniteDevice::largest_buffer(open->kernels);
-  machine.most_dense = fits ? kMostDense : 0;
+  machine.largest_dense = FiniteDevice::most_inverse(open->kernels);
+  machine.most_dense = std::min(kMostDense, machine.largest_dense);
   machine.device = [open](const fem::HyperelasticBody& body, Route route, int pairs) {
     const Scene& scene = body.problem.scene();
     const bool viscous = scene.dynamics && scene.dynamics->stiffness_damping > 0;

@@ -75,6 +75,7 @@ LawBackend::Computed LawBackend::compute_as(const std::shared_ptr<const Problem>
 
 LawBackend::Computed LawBackend::part() {
   const auto parted = fem::parted_problem(damaged_body());
+  leave_inverse_if_outgrown(*parted);
   Computed next = compute_as(parted);
   const fem::Parting parting(computed(), *parted);
   parting.nodal(u_);
@@ -82,6 +83,13 @@ LawBackend::Computed LawBackend::part() {
   deformation_.reset();
   std::swap(now_, next);
   return next;
+}
+
+/// Nodes that have parted bring unknowns; a factor has room for them where an inverse has none.
+void LawBackend::leave_inverse_if_outgrown(const Problem& next) {
+  if (!now_.device || !by_inverse() || next.dof_count() <= machine_.largest_dense) return;
+  route_ = Route::factor;
+  outgrown_ = true;
 }
 
 std::string LawBackend::why_no_grasp() const {
@@ -150,6 +158,11 @@ BackendInfo LawBackend::info() const {
                (!now_.device   ? ""
                 : by_inverse() ? ", made by the host; forces, stress and L-BFGS on the device"
                                : ", by the host; forces and stress on the device");
+  }
+  if (outgrown_) {
+    info.why += "; the inverse for " + count_of(computed().dof_count(), "unknown") +
+                " of the parted body is larger than a buffer of the device, which holds that for " +
+                std::to_string(machine_.largest_dense);
   }
   if (by_inverse() && &computed() != &problem()) {
     info.why +=

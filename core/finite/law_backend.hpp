@@ -21,9 +21,10 @@ namespace sunder::finite {
 
 /// What computes: the host, with a device or without.
 struct Machine {
-  BackendInfo info;        ///< backend, device, driver, precision
-  std::size_t memory = 0;  ///< bytes that the host has free
-  Index most_dense = 0;    ///< unknowns of which the device takes a dense inverse
+  BackendInfo info;         ///< backend, device, driver, precision
+  std::size_t memory = 0;   ///< bytes that the host has free
+  Index largest_dense = 0;  ///< unknowns whose dense inverse a buffer of the device holds
+  Index most_dense = 0;  ///< unknowns of which an inverse is worth its making; no more than those
   /// A device that holds states of such a body, by such a route, with L-BFGS of so many pairs.
   /// Empty: the host alone computes. It owns what the device needs.
   std::function<std::unique_ptr<solver::FiniteDevice>(const fem::HyperelasticBody& body,
@@ -133,6 +134,7 @@ class LawBackend : public Backend {
   [[nodiscard]] Computed compute_as(const std::shared_ptr<const Problem>& problem);
   [[nodiscard]] std::span<const double> own_displacements();
   [[nodiscard]] Route chosen_route() const;
+  void leave_inverse_if_outgrown(const Problem& next);
   std::size_t check_options();
 
   std::vector<Voigt> stress_;               // of the last stress()
@@ -144,7 +146,8 @@ class LawBackend : public Backend {
   Route route_;
   solver::LawCost cost_;  // of the host alone
   std::size_t factor_entries_ = 0;
-  std::string lost_;  // why the device is gone; empty: it is not
+  bool outgrown_ = false;  // the body's inverse no longer fits the device
+  std::string lost_;       // why the device is gone; empty: it is not
   Computed now_;
   std::unique_ptr<solver::FiniteDevice> device_of_intact_;
   std::vector<Index> cut_off_;  // elements

@@ -15,7 +15,7 @@ class LongCracksOnTheDevice : public WithVulkan<testing::TestWithParam<Precision
 
 TEST_P(LongCracksOnTheDevice, AreAsAFreshFactorSays) {
   const Precision precision = GetParam();
-  const Route route = precision == Precision::fp32 ? Route::inverse : Route::factor;
+  const Route route = precision == Precision::fp32 ? Route::inverse : Route::automatic;
   const SplitCase c{route, false, 0.3, false};
   std::mt19937 random(7);
   Scene scene = scene_of(c, shaken_board({205, 3, 1, 205, 3, 1}, random, 0.2));

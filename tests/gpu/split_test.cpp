@@ -141,6 +141,29 @@ TEST_P(SplitDeviceLost, TheHostGoesOnFromTheLastState) {
   EXPECT_GE(losses, 1);
 }
 
+class SplitOutgrows : public WithVulkan<testing::TestWithParam<bool>> {};
+
+/// A buffer of the device holds the inverse of the body as it begins, and of no larger one.
+TEST_P(SplitOutgrows, TheInverseOfTheDeviceAndGoesOnByTheFactor) {
+  constexpr int kMany = 9;
+  const Scene scene =
+      scene_of({"", MaterialLaw::corotated, GetParam(), Route::automatic, Precision::fp64});
+  WatchedBackend watched(scene, {.tolerance = kTight, .route = Route::automatic});
+  constexpr VkDeviceSize kRows = 64;
+  const auto unknowns = static_cast<VkDeviceSize>(watched.problem->dof_count());
+  const VkDeviceSize rows = (unknowns + kRows - 1) / kRows * kRows;
+  watched.options.probe.buffer = rows * rows * sizeof(double);
+  const Course found = run(watched.problem, watched.create(), kMany);
+  EXPECT_EQ(found.info.route, "factor") << found.info.why;
+  EXPECT_NE(found.info.why.find("of the parted body is larger than a buffer of the device"),
+            std::string::npos)
+      << found.info.why;
+  expect_alike(found, run_on_cpu(scene, kMany), 1e-8);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SplitOutgrows, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "moving" : "resting"; });
+
 INSTANTIATE_TEST_SUITE_P(All, SplitDeviceLost, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "moving" : "resting"; });
 
