@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "app/view/overlay.hpp"
 #include "app/view/shaders/embedded.hpp"
@@ -45,6 +44,7 @@ Renderer::Renderer(Device& device, const PictureSize& size)
       colour_(device, extent_, kColourFormat, VK_SAMPLE_COUNT_1_BIT,
               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
               VK_IMAGE_ASPECT_COLOR_BIT),
+      commands_(device),
       pixels_(device, std::size_t{4} * extent_.width * extent_.height,
               VK_BUFFER_USAGE_TRANSFER_DST_BIT, true) {
   make_pass();
@@ -52,7 +52,6 @@ Renderer::Renderer(Device& device, const PictureSize& size)
   make_layout();
   body_ = make_pipeline(shaders::body_vert(), shaders::body_frag());
   lips_ = make_pipeline(shaders::lips_vert(), shaders::lips_frag());
-  make_commands();
   for (std::size_t b = 0; b < kBindings; ++b) reserve(static_cast<Binding>(b), kLeastBytes);
 }
 
@@ -245,26 +244,6 @@ Owned<VkPipeline> Renderer::make_pipeline(std::span<const std::uint32_t> vertex,
   return {device_, pipeline, vk.DestroyPipeline};
 }
 
-void Renderer::make_commands() {
-  const DeviceFunctions& vk = device_.vk();
-  VkCommandPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  pool.queueFamilyIndex = device_.family();
-  command_pool_ = make<VkCommandPool>(device_, vk.CreateCommandPool, pool, vk.DestroyCommandPool,
-                                      "vkCreateCommandPool");
-  VkCommandBufferAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  allocate.commandPool = command_pool_.get();
-  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  allocate.commandBufferCount = 1;
-  check(vk.AllocateCommandBuffers(device_.handle(), &allocate, &commands_),
-        "vkAllocateCommandBuffers");
-  VkFenceCreateInfo fence{};
-  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  fence_ = make<VkFence>(device_, vk.CreateFence, fence, vk.DestroyFence, "vkCreateFence");
-}
-
 /// Room for so much, what is there stays. It grows by half at least, so that a tear that goes on
 /// asks for memory now and then only.
 void Renderer::reserve(Binding binding, std::size_t bytes) {
@@ -334,10 +313,7 @@ void Renderer::set_lips(std::span<const std::array<Index, 2>> lips) {
 
 void Renderer::record(const Camera& camera, const Look& look) {
   const DeviceFunctions& vk = device_.vk();
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vk.BeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  const VkCommandBuffer commands = commands_.begin();
   constexpr float kFull = 255;
   std::array<VkClearValue, 2> clear{};
   clear[0].color = {{kBackground.r / kFull, kBackground.g / kFull, kBackground.b / kFull, 1}};
@@ -349,12 +325,12 @@ void Renderer::record(const Camera& camera, const Look& look) {
   pass.renderArea = {{0, 0}, extent_};
   pass.clearValueCount = static_cast<std::uint32_t>(clear.size());
   pass.pClearValues = clear.data();
-  vk.CmdBeginRenderPass(commands_, &pass, VK_SUBPASS_CONTENTS_INLINE);
+  vk.CmdBeginRenderPass(commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
   const VkViewport viewport{0, 0, static_cast<float>(size_.width), static_cast<float>(size_.height),
                             0, 1};
   const VkRect2D all{{0, 0}, extent_};
-  vk.CmdSetViewport(commands_, 0, 1, &viewport);
-  vk.CmdSetScissor(commands_, 0, 1, &all);
+  vk.CmdSetViewport(commands, 0, 1, &viewport);
+  vk.CmdSetScissor(commands, 0, 1, &all);
   Push push;
   push.to_clip = camera.matrix();
   const Vec3 key = (-0.5 * camera.right() + 0.7 * camera.up() + 0.5 * camera.eye()).normalized();
@@ -364,49 +340,36 @@ void Renderer::record(const Camera& camera, const Look& look) {
       look.clip.normal ? four(*look.clip.normal, look.clip.offset) : std::array<float, 4>{};
   push.half_width = {static_cast<float>(kLipWidth / size_.width),
                      static_cast<float>(kLipWidth / size_.height)};
-  vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_,
-                           0, nullptr);
-  vk.CmdPushConstants(commands_, layout_.get(),
+  vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0,
+                           nullptr);
+  vk.CmdPushConstants(commands, layout_.get(),
                       VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
                       &push);
   if (triangle_count_ > 0) {
-    vk.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, body_.get());
-    vk.CmdDraw(commands_, 3 * triangle_count_, 1, 0, 0);
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, body_.get());
+    vk.CmdDraw(commands, 3 * triangle_count_, 1, 0, 0);
   }
   if (lip_count_ > 0) {
-    vk.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, lips_.get());
-    vk.CmdDraw(commands_, 6 * lip_count_, 1, 0, 0);
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, lips_.get());
+    vk.CmdDraw(commands, 6 * lip_count_, 1, 0, 0);
   }
-  vk.CmdEndRenderPass(commands_);
+  vk.CmdEndRenderPass(commands);
   VkBufferImageCopy copy{};
   copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   copy.imageExtent = {extent_.width, extent_.height, 1};
-  vk.CmdCopyImageToBuffer(commands_, colour_.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+  vk.CmdCopyImageToBuffer(commands, colour_.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                           pixels_.get(), 1, &copy);
   VkMemoryBarrier to_host{};
   to_host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
   to_host.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
   to_host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-  vk.CmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+  vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
                         &to_host, 0, nullptr, 0, nullptr);
-  check(vk.EndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 
 void Renderer::draw(const Camera& camera, const Look& look) {
   record(camera, look);
-  const DeviceFunctions& vk = device_.vk();
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands_;
-  {
-    const std::lock_guard lock(device_.queue_lock());
-    check(vk.QueueSubmit(device_.queue(), 1, &submit, fence_.get()), "vkQueueSubmit");
-  }
-  constexpr auto kForever = std::numeric_limits<std::uint64_t>::max();
-  check(vk.WaitForFences(device_.handle(), 1, fence_.address(), VK_TRUE, kForever),
-        "vkWaitForFences");
-  check(vk.ResetFences(device_.handle(), 1, fence_.address()), "vkResetFences");
+  commands_.run();
 }
 
 Pixels Renderer::read() const {

@@ -9,7 +9,7 @@
 #include "app/figure/raster.hpp"
 #include "app/view/camera.hpp"
 #include "app/view/look.hpp"
-#include "app/view/vulkan/device.hpp"
+#include "app/view/vulkan/commands.hpp"
 #include "sunder/surface.hpp"
 
 namespace sunder::app::view {
@@ -45,7 +45,6 @@ class Renderer {
   void make_layout();
   [[nodiscard]] Owned<VkPipeline> make_pipeline(std::span<const std::uint32_t> vertex,
                                                 std::span<const std::uint32_t> fragment);
-  void make_commands();
   void reserve(Binding binding, std::size_t bytes);
   void record(const Camera& camera, const Look& look);
 
@@ -60,9 +59,7 @@ class Renderer {
   VkDescriptorSet set_ = VK_NULL_HANDLE;
   Owned<VkPipelineLayout> layout_;
   Owned<VkPipeline> body_, lips_;
-  Owned<VkCommandPool> command_pool_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  Owned<VkFence> fence_;
+  Commands commands_;
   HostBuffer pixels_;
   std::array<HostBuffer, kBindings> buffers_;
   std::uint32_t triangle_count_ = 0, lip_count_ = 0;

@@ -21,7 +21,8 @@ void fetch(Function& function, PFN_vkVoidFunction found, const char* name) {
 
 }  // namespace
 
-Swapchain::Swapchain(Device& device, VkSurfaceKHR surface) : device_(device), surface_(surface) {
+Swapchain::Swapchain(Device& device, VkSurfaceKHR surface)
+    : device_(device), surface_(surface), commands_(device) {
   const auto get = reinterpret_cast<PFN_vkGetDeviceProcAddr>(
       device.get()(device.instance(), "vkGetDeviceProcAddr"));
 #define SUNDER_VIEW_FETCH(name) fetch(of_.name, get(device.handle(), "vk" #name), "vk" #name);
@@ -52,23 +53,6 @@ Swapchain::Swapchain(Device& device, VkSurfaceKHR surface) : device_(device), su
   });
   if (formats.empty()) throw DeviceError("the window offers no format of pixels");
   format_ = plain == formats.end() ? formats.front() : *plain;
-  const DeviceFunctions& vk = device.vk();
-  VkCommandPoolCreateInfo pool{};
-  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  pool.queueFamilyIndex = device.family();
-  pool_ = view::make<VkCommandPool>(device, vk.CreateCommandPool, pool, vk.DestroyCommandPool,
-                                    "vkCreateCommandPool");
-  VkCommandBufferAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  allocate.commandPool = pool_.get();
-  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  allocate.commandBufferCount = 1;
-  check(vk.AllocateCommandBuffers(device.handle(), &allocate, &commands_),
-        "vkAllocateCommandBuffers");
-  VkFenceCreateInfo fence{};
-  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  fence_ = view::make<VkFence>(device, vk.CreateFence, fence, vk.DestroyFence, "vkCreateFence");
   make_pass();
   make();
 }
@@ -164,9 +148,9 @@ void Swapchain::make() {
   }
 }
 
-void Swapchain::barrier(VkImage image, VkImageLayout from, VkImageLayout to, VkAccessFlags done,
-                        VkAccessFlags next, VkPipelineStageFlags after,
-                        VkPipelineStageFlags before) {
+void Swapchain::barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from,
+                        VkImageLayout to, VkAccessFlags done, VkAccessFlags next,
+                        VkPipelineStageFlags after, VkPipelineStageFlags before) {
   VkImageMemoryBarrier b{};
   b.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
   b.srcAccessMask = done;
@@ -176,37 +160,12 @@ void Swapchain::barrier(VkImage image, VkImageLayout from, VkImageLayout to, VkA
   b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   b.image = image;
   b.subresourceRange = kWhole;
-  device_.vk().CmdPipelineBarrier(commands_, after, before, 0, 0, nullptr, 0, nullptr, 1, &b);
+  device_.vk().CmdPipelineBarrier(commands, after, before, 0, 0, nullptr, 0, nullptr, 1, &b);
 }
 
-void Swapchain::submit(VkSemaphore wait, VkSemaphore signal) {
-  const DeviceFunctions& vk = device_.vk();
-  check(vk.EndCommandBuffer(commands_), "vkEndCommandBuffer");
-  const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
-  VkSubmitInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  info.waitSemaphoreCount = wait ? 1 : 0;
-  info.pWaitSemaphores = &wait;
-  info.pWaitDstStageMask = &stage;
-  info.commandBufferCount = 1;
-  info.pCommandBuffers = &commands_;
-  info.signalSemaphoreCount = signal ? 1 : 0;
-  info.pSignalSemaphores = &signal;
-  {
-    const std::lock_guard lock(device_.queue_lock());
-    check(vk.QueueSubmit(device_.queue(), 1, &info, fence_.get()), "vkQueueSubmit");
-  }
-  check(vk.WaitForFences(device_.handle(), 1, fence_.address(), VK_TRUE, kForever),
-        "vkWaitForFences");
-  check(vk.ResetFences(device_.handle(), 1, fence_.address()), "vkResetFences");
-}
-
-void Swapchain::once(const std::function<void(VkCommandBuffer)>& commands) {
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  check(device_.vk().BeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
-  commands(commands_);
-  submit(VK_NULL_HANDLE, VK_NULL_HANDLE);
+void Swapchain::once(const std::function<void(VkCommandBuffer)>& record) {
+  record(commands_.begin());
+  commands_.run();
 }
 
 void Swapchain::show(VkImage picture, VkExtent2D size,
@@ -225,10 +184,8 @@ void Swapchain::show(VkImage picture, VkExtent2D size,
   if (got != VK_SUBOPTIMAL_KHR) check(got, "vkAcquireNextImageKHR");
   const DeviceFunctions& vk = device_.vk();
   Frame& frame = frames_[index];
-  VkCommandBufferBeginInfo begin{};
-  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  check(vk.BeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
-  barrier(frame.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
+  const VkCommandBuffer commands = commands_.begin();
+  barrier(commands, frame.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0,
           VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
           VK_PIPELINE_STAGE_TRANSFER_BIT);
   VkImageBlit blit{};
@@ -237,9 +194,9 @@ void Swapchain::show(VkImage picture, VkExtent2D size,
                         static_cast<std::int32_t>(size.height), 1};
   blit.dstOffsets[1] = {static_cast<std::int32_t>(extent_.width),
                         static_cast<std::int32_t>(extent_.height), 1};
-  of_.CmdBlitImage(commands_, picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, frame.image,
+  of_.CmdBlitImage(commands, picture, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, frame.image,
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
-  barrier(frame.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+  barrier(commands, frame.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
           VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ACCESS_TRANSFER_WRITE_BIT,
           VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
           VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT);
@@ -248,10 +205,10 @@ void Swapchain::show(VkImage picture, VkExtent2D size,
   pass.renderPass = pass_.get();
   pass.framebuffer = frame.framebuffer.get();
   pass.renderArea = {{0, 0}, extent_};
-  vk.CmdBeginRenderPass(commands_, &pass, VK_SUBPASS_CONTENTS_INLINE);
-  over(commands_);
-  vk.CmdEndRenderPass(commands_);
-  submit(acquired_.get(), drawn_[index].get());
+  vk.CmdBeginRenderPass(commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
+  over(commands);
+  vk.CmdEndRenderPass(commands);
+  commands_.run(acquired_.get(), drawn_[index].get());
   VkPresentInfoKHR present{};
   present.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
   present.waitSemaphoreCount = 1;

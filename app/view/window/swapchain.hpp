@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "app/view/vulkan/device.hpp"
+#include "app/view/vulkan/commands.hpp"
 
 namespace sunder::app::view {
 
@@ -36,8 +36,8 @@ class Swapchain {
   /// Shows a picture of that size, in layout TRANSFER_SRC_OPTIMAL, stretched over the window, and
   /// what `over` records on top. Of a window that has changed its size nothing is shown once.
   void show(VkImage picture, VkExtent2D size, const std::function<void(VkCommandBuffer)>& over);
-  /// Records by `commands`, and waits until it is done.
-  void once(const std::function<void(VkCommandBuffer)>& commands);
+  /// Has `record` record, and waits until it is done.
+  void once(const std::function<void(VkCommandBuffer)>& record);
 
  private:
   struct Frame {
@@ -47,9 +47,9 @@ class Swapchain {
   };
   void make_pass();
   void make();
-  void barrier(VkImage image, VkImageLayout from, VkImageLayout to, VkAccessFlags done,
-               VkAccessFlags next, VkPipelineStageFlags after, VkPipelineStageFlags before);
-  void submit(VkSemaphore wait, VkSemaphore signal);
+  void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
+               VkAccessFlags done, VkAccessFlags next, VkPipelineStageFlags after,
+               VkPipelineStageFlags before);
 
   Device& device_;
   VkSurfaceKHR surface_;
@@ -61,9 +61,7 @@ class Swapchain {
   std::vector<Frame> frames_;
   Owned<VkSemaphore> acquired_;
   std::vector<Owned<VkSemaphore>> drawn_;  // by image
-  Owned<VkCommandPool> pool_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
-  Owned<VkFence> fence_;
+  Commands commands_;
 };
 
 }  // namespace sunder::app::view
