@@ -63,8 +63,15 @@ void PointGrid::within(const Vec2& p, double radius, std::vector<Index>& found) 
     const std::size_t start = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
     const std::size_t begin = begin_[start + static_cast<std::size_t>(first_column)];
     const std::size_t end = begin_[start + static_cast<std::size_t>(last_column) + 1];
-    for (std::size_t k = begin; k < end; ++k)
-      if ((points_[ids_[k]] - p).norm() <= radius) found.push_back(ids_[k]);
+    // Every one is written down, and the next one over it where it lies too far: no branch to
+    // guess.
+    std::size_t count = found.size();
+    found.resize(count + (end - begin));
+    for (std::size_t k = begin; k < end; ++k) {
+      found[count] = ids_[k];
+      count += (points_[ids_[k]] - p).norm() <= radius ? 1 : 0;
+    }
+    found.resize(count);
   }
   std::sort(found.begin(), found.end());
 }

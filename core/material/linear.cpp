@@ -50,12 +50,4 @@ Matrix6 elasticity(const SmallStrain& law) {
   return d;
 }
 
-Voigt stress(const SmallStrain& law, const Mat3& h) {
-  const double mu = law.mu, pressure = law.lambda * h.trace();
-  Voigt s;
-  s << pressure + 2 * mu * h(0, 0), pressure + 2 * mu * h(1, 1), pressure + 2 * mu * h(2, 2),
-      mu * (h(0, 1) + h(1, 0)), mu * (h(1, 2) + h(2, 1)), mu * (h(2, 0) + h(0, 2));
-  return s;
-}
-
 }  // namespace sunder

@@ -18,8 +18,15 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// D of stress = D strain, Voigt order (xx, yy, zz, xy, yz, zx), engineering shear [MPa].
 [[nodiscard]] Matrix6 elasticity(const SmallStrain& law);
 
-/// Stress of a displacement gradient H_ij = du_i/dx_j [MPa].
-[[nodiscard]] Voigt stress(const SmallStrain& law, const Mat3& gradient);
+/// Stress of a displacement gradient H_ij = du_i/dx_j [MPa]. Inline: criteria ask for it element by
+/// element.
+[[nodiscard]] inline Voigt stress(const SmallStrain& law, const Mat3& h) {
+  const double mu = law.mu, pressure = law.lambda * h.trace();
+  Voigt s;
+  s << pressure + 2 * mu * h(0, 0), pressure + 2 * mu * h(1, 1), pressure + 2 * mu * h(2, 2),
+      mu * (h(0, 1) + h(1, 0)), mu * (h(1, 2) + h(2, 1)), mu * (h(2, 0) + h(0, 2));
+  return s;
+}
 
 /// The same as a law of F: P = stress of F - I. It takes a rotation for strain.
 extern const Law kLinear;

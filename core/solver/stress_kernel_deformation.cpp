@@ -16,8 +16,6 @@ constexpr double kThird = 1.0 / 3;
 // A cubic's value beside its largest term, by rounding. Where two principal strains are equal that
 // is 3e-8 of them, as fem::principal_strain() has it.
 constexpr double kOfCubic = 2e-15;
-// Up to so many lanes of a group are looked at one by one.
-constexpr int kFewLanes = 3;
 
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline double smaller(double a, double b) { return a < b ? a : b; }
@@ -223,10 +221,9 @@ void StressKernel::take(DeformationSearch& search, std::size_t group,
                         std::span<const double> u) const {
   const DeformationSearch::Limits limits = search.limits(rounding_);
   const unsigned lanes = lanes_over(groups_[group], limits);
-  const bool few = std::popcount(lanes) <= kFewLanes;
+  if (lanes == 0) return;
   for (const Block& b : blocks_of(group)) {
-    const unsigned over = few || lanes == 0 ? lanes : lanes & lanes_over(b, u.data(), limits);
-    for (unsigned rest = over; rest != 0; rest &= rest - 1) {
+    for (unsigned rest = lanes & lanes_over(b, u.data(), limits); rest != 0; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
       if (counts(b, lane)) search.take(gradient_of(b, lane, u));
     }

@@ -283,8 +283,9 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   }
   const auto tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;
-  result.factors = interaction_integral(input, result.material);
-  if (!stretch) result.j = energy_release(input);
+  const TipIntegrals found = interaction_integral(input, result.material);
+  result.factors = found.factors;
+  if (!stretch) result.j = problem_.finite() ? energy_release(input) : found.energy_release;
   if (shift) *shift = shift_integral(input, result.material);
   result.disturbed.fixed = std::ranges::any_of(domain.in_mesh, [&](Index n) {
     for (int axis = 0; axis < 3; ++axis)

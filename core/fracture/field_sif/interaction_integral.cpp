@@ -10,7 +10,10 @@
 namespace sunder::fracture {
 namespace {
 
-using Sums = std::array<double, kModes>;
+struct Sums {
+  std::array<double, kModes> mode{};
+  double energy_release = 0;
+};
 using States = std::array<AuxiliaryState, kModes>;
 using StatesAt = States(const Vec2&, int, const TipMaterial&);
 
@@ -19,6 +22,8 @@ struct ElementField {
   Mat3 gradient;  // u_i,j
   Mat3 stress;    // [MPa]
   Vec3 weight_gradient;
+
+  [[nodiscard]] double energy() const { return stress.cwiseProduct(gradient).sum() / 2; }
 };
 
 ElementField element_field(const IntegralInput& in, std::size_t i, const Mat3& axes) {
@@ -50,8 +55,15 @@ double integrand(const ElementField& field, const AuxiliaryState& aux) {
   return flux.dot(field.weight_gradient) - work * field.weight_gradient[0];
 }
 
-/// q (s*_ij n_j u_i,1 - s*_kl e_kl n_1) dA over the element's part of the body's free surface.
-/// Plane stress leaves top and bottom free, so only the outline counts then.
+/// (s_ij u_i,1 - W delta_1j) q,j
+double energy_integrand(const ElementField& field) {
+  return (field.stress * field.weight_gradient).dot(field.gradient.col(0)) -
+         field.energy() * field.weight_gradient[0];
+}
+
+/// q (s*_ij n_j u_i,1 - s*_kl e_kl n_1) dA, and for J q W n_1 dA over its outline, over the
+/// element's part of the body's free surface. Plane stress leaves top and bottom free, so only the
+/// outline counts then.
 void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField& field,
                       const Mat3& axes, const TipMaterial& material, StatesAt& states, Sums& sum) {
   const Index e = in.domain.elements[i];
@@ -70,8 +82,9 @@ void subtract_surface(const IntegralInput& in, std::size_t i, const ElementField
     const Vec3 area = axes * face.area;
     for (int m = 0; m < kModes; ++m) {
       const double work = aux[m].stress.cwiseProduct(field.gradient).sum();
-      sum[m] -= weight * ((aux[m].stress * area).dot(field.gradient.col(0)) - work * area[0]);
+      sum.mode[m] -= weight * ((aux[m].stress * area).dot(field.gradient.col(0)) - work * area[0]);
     }
+    if (face.lateral) sum.energy_release += weight * field.energy() * area[0];
   }
 }
 
@@ -84,36 +97,39 @@ void subtract_forces(const IntegralInput& in, const Mat3& axes, const TipMateria
     if (!(weight > 0) || !(r > 0)) continue;
     const auto aux = auxiliary_at(in, place, material, states);
     const Vec3 force = axes * load.force;
-    for (int m = 0; m < kModes; ++m) sum[m] -= weight * force.dot(aux[m].slope);
+    for (int m = 0; m < kModes; ++m) sum.mode[m] -= weight * force.dot(aux[m].slope);
   }
 }
 
 /// Per length of the front.
-IntensityFactors integrals(const IntegralInput& in, const TipMaterial& material, StatesAt& states) {
+TipIntegrals integrals(const IntegralInput& in, const TipMaterial& material, StatesAt& states) {
   const Mat3 axes = in.frame.axes(in.board.plane());
   Sums sum{};
   for (std::size_t i = 0; i < in.domain.elements.size(); ++i) {
     const Index e = in.domain.elements[i];
     const ElementField field = element_field(in, i, axes);
     const auto aux = auxiliary_at(in, in.board.centroid(e), material, states);
-    for (int m = 0; m < kModes; ++m)
-      sum[m] += in.problem.shape(e).volume * integrand(field, aux[m]);
+    const double volume = in.problem.shape(e).volume;
+    for (int m = 0; m < kModes; ++m) sum.mode[m] += volume * integrand(field, aux[m]);
+    sum.energy_release += volume * energy_integrand(field);
     subtract_surface(in, i, field, axes, material, states, sum);
   }
   subtract_forces(in, axes, material, states, sum);
   const double half_young = material.effective_young() / 2;
-  for (double& s : sum) s /= in.domain.front_length;
-  return {half_young * sum[kModeI], half_young * sum[kModeII], material.shear() * sum[kModeIII]};
+  for (double& s : sum.mode) s /= in.domain.front_length;
+  return {{half_young * sum.mode[kModeI], half_young * sum.mode[kModeII],
+           material.shear() * sum.mode[kModeIII]},
+          sum.energy_release / in.domain.front_length};
 }
 
 }  // namespace
 
-IntensityFactors interaction_integral(const IntegralInput& in, const TipMaterial& material) {
+TipIntegrals interaction_integral(const IntegralInput& in, const TipMaterial& material) {
   return integrals(in, material, auxiliary_states);
 }
 
 IntensityFactors shift_integral(const IntegralInput& in, const TipMaterial& material) {
-  return integrals(in, material, shift_states);
+  return integrals(in, material, shift_states).factors;
 }
 
 }  // namespace sunder::fracture

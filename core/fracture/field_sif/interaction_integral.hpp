@@ -43,8 +43,13 @@ struct IntegralInput {
   int crack = kNone;  ///< of the tip: the faces of its notch carry no term
 };
 
-[[nodiscard]] IntensityFactors interaction_integral(const IntegralInput& input,
-                                                    const TipMaterial& material);
+struct TipIntegrals {
+  IntensityFactors factors;
+  /// J [N/mm] by the linear law, as energy_release() by any.
+  double energy_release = 0;
+};
+[[nodiscard]] TipIntegrals interaction_integral(const IntegralInput& input,
+                                                const TipMaterial& material);
 
 /// K_I d, K_II d, K_III d [MPa sqrt(mm) mm] where the field is that of a crack which ends d behind
 /// the tip: the same integral with the shift's states. 0 where it ends at the tip.
