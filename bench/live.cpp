@@ -264,7 +264,7 @@ const bool kRows = [] {
                                       {Route::factor, "factor"}}) {
       if (route != Route::factor && cells > 18) continue;
       const std::string of = std::string("/") + word + "/" + size;
-      for (int events : {1, 10, 50}) {
+      for (int events : {1, 10, 100}) {
         add("undo" + of + "/" + std::to_string(events),
             [=](auto& s) { undo(s, cells, route, events); });
       }

@@ -37,8 +37,10 @@ class DamagedBody {
   [[nodiscard]] std::size_t events() const { return events_; }
   /// Follows the record up to so many events, no fewer than now.
   void follow(std::size_t events);
+  /// Follows the record's next event, as read() gave it.
+  void follow(const Event& event);
   /// Drops all events but so many, as if they had not been. On the body that began the record
-  /// alone, and only while no copy of it has followed more.
+  /// alone; a copy that has followed more is of no use any more.
   void take_back(std::size_t events);
   /// The body after so many of its events.
   [[nodiscard]] DamagedBody as_of(std::size_t events) const;
@@ -76,7 +78,6 @@ class DamagedBody {
     Damage damage;
   };
   void record(const Event& event);
-  void follow(const Event& event);
   void scatter(const Eigen::VectorXd& x) const;
 
   std::shared_ptr<const Problem> problem_;

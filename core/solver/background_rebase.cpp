@@ -43,9 +43,9 @@ BackgroundRebase::BackgroundRebase(const fem::DamagedBody& body, int events,
 }
 
 BackgroundRebase::~BackgroundRebase() {
-  unwanted_ = true;
   {
     const std::lock_guard lock(mutex_);
+    unwanted_ = true;
     quit_ = true;
   }
   asked_.notify_one();
@@ -65,13 +65,16 @@ void BackgroundRebase::follow() {
 void BackgroundRebase::start(const Load& load, MakeBase make) {
   making_ = true;
   followed_ = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    load_ = load;
-    make_ = std::move(make);
-    phase_ = Phase::asked;
-    start_ = recorded_;
-  }
+  const std::lock_guard lock(mutex_);
+  ask(load, std::move(make), recorded_);
+}
+
+void BackgroundRebase::ask(const Load& load, MakeBase make, std::size_t start) {
+  ++job_;
+  load_ = load;
+  make_ = std::move(make);
+  phase_ = Phase::asked;
+  start_ = start;
   asked_.notify_one();
 }
 
@@ -92,37 +95,38 @@ bool BackgroundRebase::take(Based& based) {
   return true;
 }
 
-void BackgroundRebase::give_up() {
+/// Whatever is in work is of no use any more.
+void BackgroundRebase::drop() {
   making_ = false;
+  ++job_;
   unwanted_ = true;
-  std::unique_lock lock(mutex_);
   phase_ = Phase::idle;
+}
+
+void BackgroundRebase::give_up() {
+  Lock lock(mutex_);
+  drop();
   done_.wait(lock, [this] { return !busy_; });
-  phase_ = Phase::idle;
   result_ = {};
-  unwanted_ = false;
 }
 
 void BackgroundRebase::go_back(std::size_t events) {
-  give_up();
-  const std::lock_guard lock(mutex_);
-  if (body_.events() > events) body_ = body_.as_of(events);
-  recorded_ = events;
-  at_ = std::min(at_, events);
+  Based unread;
+  {
+    const std::lock_guard lock(mutex_);
+    drop();
+    recorded_ = events;
+    astray_ = true;
+    std::swap(result_, old_.deferred ? unread : old_);  // the thread frees it, if it can
+  }
+  asked_.notify_one();
 }
 
 void BackgroundRebase::start_again(std::size_t start, const Load& load, MakeBase make) {
   making_ = true;
-  {
-    const std::lock_guard lock(mutex_);
-    if (body_.events() > start) body_ = body_.as_of(start);
-    load_ = load;
-    make_ = std::move(make);
-    phase_ = Phase::asked;
-    start_ = start;
-    followed_ = static_cast<int>(recorded_ - start);
-  }
-  asked_.notify_one();
+  const std::lock_guard lock(mutex_);
+  followed_ = static_cast<int>(recorded_ - start);
+  ask(load, std::move(make), start);
 }
 
 bool BackgroundRebase::work_waits() const {
@@ -142,6 +146,7 @@ void BackgroundRebase::run() {
     }
     if (quit_) return;
     busy_ = true;
+    unwanted_ = false;
     if (old_.deferred) {
       const Based old = std::move(old_);
       old_ = {};
@@ -157,35 +162,63 @@ void BackgroundRebase::run() {
   }
 }
 
-void BackgroundRebase::make(std::unique_lock<std::mutex>& lock) {
-  at_ = start_;
+/// The event after the last one that body_ has followed, into event_; false: the job is dropped.
+/// Only so long as it is not, the record holds what it held when the job was asked for.
+bool BackgroundRebase::read_next(std::uint64_t job) {
+  if (job != job_) return false;
+  body_.read(body_.events(), event_);
+  return true;
+}
+
+void BackgroundRebase::make(Lock& lock) {
+  const std::uint64_t job = job_;
+  const std::size_t start = at_ = start_;
   const MakeBase make = std::move(make_);
+  load_of_job_ = load_;
+  if (astray_) body_ = body_.as_of(0);
+  astray_ = false;
+  while (body_.events() < start) {
+    if (!read_next(job)) return;
+    lock.unlock();
+    body_.follow(fem::Event(event_));
+    lock.lock();
+  }
   lock.unlock();
-  body_.follow(start_);
   Based based;
   try {
-    based = make(body_, load_, {.stop = &unwanted_});
+    based = make(body_, load_of_job_, {.stop = &unwanted_});
   } catch (const std::exception&) {
     // Out of memory, not definite or unwanted: it stays empty, and the frame that takes it decides.
   }
   lock.lock();
-  result_ = std::move(based);
-  if (phase_ == Phase::asked) phase_ = Phase::following;
+  if (job == job_) {
+    result_ = std::move(based);
+    phase_ = Phase::following;
+  } else {
+    lock.unlock();  // it takes a while to free
+  }
 }
 
-void BackgroundRebase::follow_next(std::unique_lock<std::mutex>& lock) {
-  const std::size_t next = at_ + 1;
+void BackgroundRebase::follow_next(Lock& lock) {
+  const std::uint64_t job = job_;
+  if (!read_next(job)) return;
+  Based based = std::move(result_);
+  result_ = {};
   lock.unlock();
-  body_.read(at_, event_);
-  body_.follow(next);
+  body_.follow(fem::Event(event_));
   try {
-    if (fem::Event(event_).of_grips()) result_.check = {};  // it was of loads by other grips
-    if (result_.deferred && !result_.follow(event_)) result_ = {};
+    if (fem::Event(event_).of_grips()) based.check = {};  // it was of loads by other grips
+    if (based.deferred && !based.follow(event_)) based = {};
   } catch (const std::exception&) {
-    result_ = {};  // as in make()
+    based = {};  // as in make()
   }
   lock.lock();
-  at_ = next;
+  if (job == job_) {
+    result_ = std::move(based);
+    ++at_;
+  } else {
+    lock.unlock();
+  }
 }
 
 }  // namespace sunder::solver

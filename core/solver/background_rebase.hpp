@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -62,8 +63,8 @@ class BackgroundRebase {
   [[nodiscard]] bool making() const { return making_; }
   /// Events that the body has recorded since the start of what is being made.
   [[nodiscard]] int followed() const { return followed_; }
-  /// The body is about to go back to the first `events` events, which it still records beyond: what
-  /// is being made is given up.
+  /// The body is about to go back to the first `events` events: what is being made is of no use any
+  /// more. Waits for nothing: the thread learns of it where it next looks.
   void go_back(std::size_t events);
   /// Once it has gone back: starts again what was being made then, of the body after `start`
   /// events.
@@ -73,16 +74,20 @@ class BackgroundRebase {
   /// Waits until every event is followed; `based` goes to the thread to be freed, which takes as
   /// long as a frame. False, and nothing changes: not positive definite in double precision.
   [[nodiscard]] bool take(Based& based);
-  /// Gives up the base that is being made.
+  /// Gives up the base that is being made, and waits until nothing that makes it is used any more.
   void give_up();
   /// Milliseconds that take() has waited so far.
   [[nodiscard]] double waited_ms() const { return waited_ms_; }
 
  private:
   enum class Phase { idle, asked, following };
+  using Lock = std::unique_lock<std::mutex>;
+  void ask(const Load& load, MakeBase make, std::size_t start);
+  void drop();
   void run();
-  void make(std::unique_lock<std::mutex>& lock);
-  void follow_next(std::unique_lock<std::mutex>& lock);
+  void make(Lock& lock);
+  void follow_next(Lock& lock);
+  [[nodiscard]] bool read_next(std::uint64_t job);
   [[nodiscard]] bool work_waits() const;
 
   // The frame's.
@@ -92,13 +97,17 @@ class BackgroundRebase {
   double waited_ms_ = 0;
   // The thread's.
   std::chrono::milliseconds rest_;
-  fem::DamagedBody body_;  // after at_ events of the same record
+  fem::DamagedBody body_;  // a copy that reads the same record
   fem::Change event_;
+  Load load_of_job_;
   // Guarded by mutex_.
   std::mutex mutex_;
   std::condition_variable asked_, done_;
   Phase phase_ = Phase::idle;
   bool busy_ = false, quit_ = false;
+  // Counts what is asked for and what is dropped: who works on an earlier one leaves no trace.
+  std::uint64_t job_ = 0;
+  bool astray_ = false;  // body_ may have followed events that are no more
   Load load_;
   MakeBase make_;
   Based result_, old_;

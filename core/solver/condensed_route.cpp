@@ -249,8 +249,9 @@ class CondensedRoute final : public InverseRoute {
   bool go_back(const RouteState& of, std::size_t events) override {
     const auto& state = dynamic_cast<const State&>(of);
     if (coming_) {
-      coming_->go_back(events);
+      coming_->give_up();  // what makes it reads next_
       next_->release();
+      coming_->go_back(events);
     }
     based_ = state.based;
     factored_ = state.factored;

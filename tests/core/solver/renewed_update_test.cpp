@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <condition_variable>
+#include <mutex>
 #include <random>
+#include <utility>
 
 #include "body/stiffness_factor.hpp"
 #include "change_support.hpp"
@@ -127,6 +130,64 @@ TEST(RenewedUpdate, MakesABaseOfWhatHasComeAtOnceToo) {
   ASSERT_NO_FATAL_FAILURE(of.change({{4, 7}, {}, {}}));
   update.follow({.leave = std::vector<Index>{4, 7}});
   EXPECT_LE(of.error(solution(update, of)), 1e-10);
+}
+
+/// Holds up who comes first until it is opened.
+class Gate {
+ public:
+  void pass() {
+    std::unique_lock lock(mutex_);
+    if (std::exchange(first_, false)) opened_.wait(lock, [this] { return open_; });
+  }
+  void open() {
+    const std::lock_guard lock(mutex_);
+    open_ = true;
+    opened_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable opened_;
+  bool open_ = false, first_ = true;
+};
+
+/// Going back waits for no base: the one that is being made then comes to an end later, and
+/// whatever the body has become meanwhile, it leaves no trace.
+TEST(RenewedUpdate, GoesBackWhileABaseIsMade) {
+  Recorded of({}), straight({});
+  Gate gate;
+  RenewedUpdate update(of.body, on_a_factor(of.body, {}), kAtOnce,
+                       [&](const fem::DamagedBody& body, const linear_algebra::FactorWork& work) {
+                         gate.pass();
+                         return on_a_factor(body, work);
+                       });
+  RenewedUpdate never_back(straight.body, on_a_factor(straight.body, {}), kAtOnce, on_a_factor);
+  const auto leave = [&](Index e) {
+    of.body.destroy({&e, 1});
+    update.follow({.leave = {&e, 1}});
+  };
+  solution(update, of);
+  const auto intact = update.state();
+  leave(7);  // a base begins
+  const auto after_one = update.state();
+  leave(8);
+  for (const auto& [state, events] : {std::pair{&after_one, 1}, {&intact, 0}}) {
+    update.stop(static_cast<std::size_t>(events));
+    of.body.take_back(static_cast<std::size_t>(events));
+    update.go_back(*state);
+  }
+  std::vector<Eigen::VectorXd> found;
+  for (const Index e : {4, 14, 3, 9}) {
+    leave(e);
+    ASSERT_NO_FATAL_FAILURE(straight.change({{e}, {}, {}}));
+    never_back.follow({.leave = std::vector<Index>{e}});
+    gate.open();
+    const Eigen::VectorXd there = solution(never_back, straight);
+    EXPECT_EQ(solution(update, of), there) << e;
+    EXPECT_LE(straight.error(there), 1e-10);
+  }
+  EXPECT_GE(update.bases(), 2);
+  EXPECT_EQ(update.bases(), never_back.bases());
 }
 
 /// Gives the elements of even id at a node another one.
