@@ -170,7 +170,7 @@ MOMENTS = (
     writing("last .vtu", file("events.csv"), file("result.vtu"), "--steps", "1", complete=True),
     writing("last figure, .svg and .png", *DRAWING, complete=True),
     writing("last figure, a second signal", *DRAWING, complete=True, again=True),
-    writing("page, .html", file("figure.png"), file("summary.json"), "--steps", "1",
+    writing("figure.png and page, .html", file("figure.svg"), file("summary.json"), "--steps", "1",
             complete=True),
     Moment("mesh board in gmsh", start, lasting(4),
            ("mesh", "board", "--unstructured", "--tets", "400000", "-o", "{out}/board.msh")),
