@@ -3,7 +3,9 @@
 
 #include <utility>
 
+#include "app/input/mesh_import.hpp"
 #include "app/input/scene_toml.hpp"
+#include "sunder/error.hpp"
 
 namespace sunder::app {
 
@@ -24,8 +26,21 @@ std::vector<std::string> overrides_of(const SceneArguments& arguments) {
   return all;
 }
 
-OpenedScene open_scene(const SceneArguments& arguments, bool live) {
+OpenedScene open_scene(const SceneArguments& arguments, bool live, bool mesh_too) {
   OpenedScene opened;
+  if (is_mesh_file(arguments.scene)) {
+    const std::string file = arguments.scene.string();
+    if (!mesh_too) {
+      throw InputError(InputFault::unreadable_file,
+                       file +
+                           ": is a mesh, not a scene; write a scene that names it (docs/"
+                           "interface.md \"Scene\"), or look at it by `sunder view " +
+                           file + "`");
+    }
+    opened.warnings.push_back(file +
+                              " has no scene: its one end is held, the other gripped, its "
+                              "tissue liver; --set changes that");
+  }
   std::filesystem::path inputs;
   opened.problem =
       read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &inputs, live);

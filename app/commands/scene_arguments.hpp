@@ -30,7 +30,8 @@ struct OpenedScene {
 };
 
 /// Reads the scene and its inputs; the named options win over --set. `live`: any element may be
-/// removed, whatever the scene says. Throws InputError.
-[[nodiscard]] OpenedScene open_scene(const SceneArguments& arguments, bool live = false);
+/// removed, whatever the scene says. `mesh_too`: a mesh alone will do. Throws InputError.
+[[nodiscard]] OpenedScene open_scene(const SceneArguments& arguments, bool live = false,
+                                     bool mesh_too = false);
 
 }  // namespace sunder::app

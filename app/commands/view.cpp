@@ -23,6 +23,8 @@ namespace sunder::app {
 #ifdef SUNDER_VIEW
 namespace {
 
+constexpr bool kMeshToo = true;
+
 /// The scene and the inputs that are played: of --script or the scene's own.
 struct Opened {
   OpenedScene scene;
@@ -32,7 +34,7 @@ struct Opened {
 Opened open_all(const ViewArguments& arguments) {
   Opened opened;
   if (arguments.script) opened.inputs = read_inputs(arguments.script->string());
-  opened.scene = open_scene(arguments.scene, opened.inputs.has_value());
+  opened.scene = open_scene(arguments.scene, opened.inputs.has_value(), kMeshToo);
   if (opened.inputs && opened.scene.inputs) {
     throw UsageError("--script: the scene has inputs of its own, " + opened.scene.inputs->source +
                      "; play one or the other");
@@ -115,7 +117,7 @@ int view_in_window(const ViewArguments& arguments) {
     throw UsageError("--script and --frames go with --headless: a window takes the mouse");
   }
   constexpr bool kLive = true;
-  const OpenedScene scene = open_scene(arguments.scene, kLive);
+  const OpenedScene scene = open_scene(arguments.scene, kLive, kMeshToo);
   if (scene.inputs) {
     throw UsageError("the scene has inputs, " + scene.inputs->source +
                      ", which a window does not play; add --headless, or leave the key out");

@@ -154,6 +154,11 @@ Found read_without_gmsh(const std::filesystem::path& path) {
 
 }  // namespace
 
+bool is_mesh_file(const std::filesystem::path& path) {
+  return std::ranges::find(readable_extensions(), lower_extension(path)) !=
+         readable_extensions().end();
+}
+
 Mesh import_mesh(const std::filesystem::path& path, std::vector<std::string>* warnings,
                  const ImportLimits& limits) {
   Found found = read_without_gmsh(path);

@@ -14,6 +14,9 @@
 
 namespace sunder::app {
 
+/// Whether the extension is that of a file which import_mesh() reads.
+[[nodiscard]] bool is_mesh_file(const std::filesystem::path& path);
+
 struct ImportLimits {
   std::chrono::milliseconds timeout{0};  ///< of gmsh; 0: 30 s and 1 s for each MB of the file
   std::size_t memory_bytes = 0;          ///< of gmsh; 0: 2 GiB and 64 times the file's size

@@ -5,6 +5,7 @@
 
 #include "app/input/file_bytes.hpp"
 #include "app/input/mesh_import.hpp"
+#include "app/input/mesh_scene.hpp"
 #include "app/input/scene_overrides.hpp"
 #include "app/input/scene_sections.hpp"
 #include "app/input/toml_guard.hpp"
@@ -83,7 +84,9 @@ void refuse_inputs(const ParsedScene& parsed) {
       parsed.scene.source + ": inputs is for sunder run, plan and view; leave the key out here");
 }
 
-std::string scene_text(const std::filesystem::path& path) { return read_file(path, kLargestScene); }
+std::string scene_text(const std::filesystem::path& path) {
+  return is_mesh_file(path) ? mesh_scene_text(path) : read_file(path, kLargestScene);
+}
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                  std::vector<std::string>* warnings) {

@@ -53,7 +53,8 @@ void refuse_inputs(const ParsedScene& parsed);
                                          const std::filesystem::path& folder,
                                          const std::string& inputs);
 
-/// The text of a scene's file. Throws InputError.
+/// The text of a scene's file; of a mesh's one that is made for it (mesh_scene.hpp). Throws
+/// InputError.
 [[nodiscard]] std::string scene_text(const std::filesystem::path& path);
 
 }  // namespace sunder::app

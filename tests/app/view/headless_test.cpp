@@ -49,6 +49,19 @@ TEST(Headless, TheScenesOwnLoadsPlayAStepAFrame) {
   EXPECT_EQ(read_file(board.out("a") / "result.vtu"), read_file(board.out("scene") / "result.vtu"));
 }
 
+TEST(Headless, AMeshAloneWillDo) {
+  const TempFolder folder;
+  const std::string mesh = SUNDER_SCENES "/meshes/liver.msh", out = (folder / "o").string();
+  const Outcome outcome = run_program({"view", mesh, "--headless", "--frames", "2", "--size",
+                                       "160x120", "--steps", "60", "--out", out});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("liver.msh has no scene: its one end is held"), std::string::npos);
+  EXPECT_NE(read_file(folder / "o" / "recording.toml").find("[[instrument]]"), std::string::npos);
+  const Outcome run = run_program({"run", mesh});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("is a mesh, not a scene"), std::string::npos) << run.err;
+}
+
 TEST(Headless, TheSameSceneTwiceGivesTheSameBytes) {
   const Board board;
   const std::string script = board.script("camera 40 20\nwireframe on\nframe 2\nremove 100\nframe");
