@@ -104,7 +104,6 @@ class DeferredRoute final : public InverseRoute {
   }
   bool go_back(const solver::RouteState& state, std::size_t events) override {
     update_->stop(events);
-    if (stiffness_) stiffness_->go_back(events);
     update_->go_back(dynamic_cast<const State&>(state).update);
     return true;
   }

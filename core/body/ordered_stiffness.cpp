@@ -29,6 +29,7 @@ OrderedStiffness::OrderedStiffness(const Problem& problem,
     : problem_(problem),
       nodes_(std::move(nodes)),
       around_(problem.mesh()),
+      scale_(problem.mesh().tets.size(), 1.0),
       changed_(static_cast<std::size_t>(intact.nonZeros()), 0) {
   const linear_algebra::SparseMatrix upper = intact.transpose();  // a transpose sorts
   matrix_ = upper.transpose();
@@ -45,16 +46,24 @@ Index OrderedStiffness::entry(Index dof, Index other) const {
 }
 
 void OrderedStiffness::follow(const DamagedBody& body) {
+  const std::span<const double> now = body.scale();
+  const auto came_back = [&] {
+    for (std::size_t e = 0; e < scale_.size(); ++e) {
+      if (now[e] > scale_[e]) return true;
+    }
+    return false;
+  };
+  if (came_back()) begin_anew();
   std::vector<Index> around;
-  for (Index e : body.changed(events_, body.events())) {
-    if (e >= problem_.tet_count()) continue;
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (now[e] == scale_[e]) continue;
+    scale_[e] = now[e];
     clear(e);
     for (Index n : problem_.mesh().tets[e]) {
       const auto elements = around_.of(n);
       around.insert(around.end(), elements.begin(), elements.end());
     }
   }
-  events_ = body.events();
   if (around.empty()) return;
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
@@ -65,14 +74,13 @@ void OrderedStiffness::follow(const DamagedBody& body) {
 }
 
 /// Back to the intact one, whose sums are in another order.
-void OrderedStiffness::go_back(std::size_t events) {
-  if (events_ <= events) return;
+void OrderedStiffness::begin_anew() {
   for (const auto& [entry, value] : intact_) {
     matrix_.valuePtr()[entry] = value;
     changed_[entry] = 0;
   }
   intact_.clear();
-  events_ = 0;
+  scale_.assign(scale_.size(), 1.0);
 }
 
 void OrderedStiffness::clear(Index element) {

@@ -23,12 +23,10 @@ class OrderedStiffness {
   OrderedStiffness(const Problem& problem, std::shared_ptr<const linear_algebra::Supernodes> nodes,
                    const linear_algebra::SparseMatrix& intact);
 
-  /// Takes up the body's events since the last time; the body has no other matter than the mesh.
-  /// Entries that change are summed anew: there is no difference between large numbers.
+  /// Takes up what every element is now; the body has no other matter than the mesh. Entries that
+  /// change are summed anew: there is no difference between large numbers, and the bits are those
+  /// of the body as it is, whatever it was before.
   void follow(const DamagedBody& body);
-  /// The body goes back to the first `events` events: later matrices are bit by bit those of a body
-  /// that had no others.
-  void go_back(std::size_t events);
   /// Throws as linear_algebra::Factor's constructors do.
   [[nodiscard]] linear_algebra::Factor factor(const linear_algebra::FactorWork& work = {}) const;
   /// Lower triangle, rows in the order of the factor.
@@ -37,6 +35,7 @@ class OrderedStiffness {
 
  private:
   [[nodiscard]] Index entry(Index dof, Index other) const;
+  void begin_anew();
   void clear(Index element);
   void add(Index element, double scale);
   void add_anchors();
@@ -45,7 +44,7 @@ class OrderedStiffness {
   std::shared_ptr<const linear_algebra::Supernodes> nodes_;
   NodeElements around_;
   linear_algebra::SparseMatrix matrix_;  // rows of a column ascending
-  std::size_t events_ = 0;               // of the body that matrix_ holds
+  std::vector<double> scale_;            // of the elements that matrix_ holds
   static constexpr std::uint8_t kNow = 1, kEver = 2;
   std::vector<std::uint8_t> changed_;             // per entry of matrix_; kNow: in the call at work
   std::vector<Index> entries_;                    // that have changed in it

@@ -5,6 +5,8 @@
 #include <exception>
 #include <numeric>
 
+#include "sunder/error.hpp"
+
 namespace sunder::solver {
 
 void check_base(Based& based, const fem::DamagedBody& body, const Load& load,
@@ -25,6 +27,14 @@ void check_base(Based& based, const fem::DamagedBody& body, const Load& load,
   const double stress = body.largest_stress(du), largest = body.largest_stress(u);
   based.check = {load, stress / r.norm(), stress == 0 ? 0.0 : stress / largest};
   deferred.solve(forces, load.displacements, u);
+}
+
+Deferred& Based::laid_over() const {
+  if (!deferred) {
+    throw NumericalError(
+        "a step before left the body as it cannot be solved; take that step back, or begin anew");
+  }
+  return *deferred;
 }
 
 BackgroundRebase::BackgroundRebase(const fem::DamagedBody& body, int events,

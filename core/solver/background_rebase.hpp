@@ -23,12 +23,15 @@ namespace sunder::solver {
 
 /// A base with the damage laid over it.
 struct Based {
-  /// Follows an event of the body.
-  [[nodiscard]] bool follow(const fem::Event& event) {
-    if (!parted) return deferred->follow(event);
+  /// Follows an event of the body. Throws as laid_over() does.
+  [[nodiscard]] bool follow(const fem::Event& event) const {
+    if (!parted) return laid_over().follow(event);
     const fem::Change told = parted->translate(event);
-    return deferred->follow(told);
+    return laid_over().follow(told);
   }
+  /// Throws NumericalError where there is none: an event before needed a new base, and the body as
+  /// it is has none. It may still go back.
+  [[nodiscard]] Deferred& laid_over() const;
 
   BaseCheck check;
   /// The body as the base has it, where nodes had parted by then: `deferred` is in its terms.

@@ -197,13 +197,13 @@ class CondensedRoute final : public InverseRoute {
 
   Applied solve(const Load& load, const Eigen::VectorXd&, Eigen::VectorXd& u) override {
     load_ = load;
-    based_.deferred->solve({load.force_dofs, load.forces}, load.displacements, u,
-                           energy_tolerance_);
+    based_.laid_over().solve({load.force_dofs, load.forces}, load.displacements, u,
+                             energy_tolerance_);
     return {};
   }
 
   Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& u) override {
-    based_.deferred->solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
+    based_.laid_over().solve({all_, {r.data(), static_cast<std::size_t>(r.size())}}, {}, u);
     complete(u);
     return {};
   }
@@ -220,7 +220,7 @@ class CondensedRoute final : public InverseRoute {
   void follow(const fem::Event& event) override {
     if (coming_->due()) take_base();
     coming_->follow();
-    if (!based_.deferred->follow(event)) {
+    if (!based_.laid_over().follow(event)) {
       rebase();
     } else if (event.of_grips()) {
       based_.check = {};  // it was of loads by other grips
@@ -237,7 +237,7 @@ class CondensedRoute final : public InverseRoute {
     state->based = based_;
     state->factored = factored_;
     state->bases = bases_;
-    state->laid = based_.deferred->events();
+    state->laid = based_.laid_over().events();
     state->loaded = load_;
     if (!coming_ || !coming_->making()) return state;
     state->making = true;
@@ -256,7 +256,7 @@ class CondensedRoute final : public InverseRoute {
     based_ = state.based;
     factored_ = state.factored;
     bases_ = state.bases;
-    based_.deferred->take_back(based_.deferred->events() - state.laid);
+    based_.laid_over().take_back(based_.laid_over().events() - state.laid);
     load_ = state.loaded;
     if (state.making) make_again(state, events);
     return true;
@@ -283,7 +283,7 @@ class CondensedRoute final : public InverseRoute {
   double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
 
   std::vector<BufferPlan> buffers() const override {
-    std::vector<BufferPlan> plan = based_.deferred->buffers();
+    std::vector<BufferPlan> plan = based_.laid_over().buffers();
     if (based_.factor.get() != intact_) {
       plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
     }
@@ -313,7 +313,7 @@ class CondensedRoute final : public InverseRoute {
 
   /// The base that was being made begins from the damage that there was when it was begun.
   void make_again(const State& state, std::size_t events) {
-    Deferred& deferred = *based_.deferred;
+    Deferred& deferred = based_.laid_over();
     deferred.take_back(static_cast<Index>(events - state.start));
     started_ = state.start;
     start_load_ = state.load;
@@ -345,7 +345,7 @@ class CondensedRoute final : public InverseRoute {
   }
 
   bool begins() const {
-    const Deferred& deferred = *based_.deferred;
+    const Deferred& deferred = based_.laid_over();
     // A base has unit vectors of all that is gripped; the load is the last frame's.
     const auto grasped =
         static_cast<std::size_t>(deferred.grips()) - body_.problem().gripped_dofs().size();

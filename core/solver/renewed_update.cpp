@@ -49,8 +49,8 @@ MakeBase RenewedUpdate::checked() const {
 }
 
 RenewedUpdate::State RenewedUpdate::state() const {
-  State state{based_, {}, bases_, threshold_, based_.deferred->events(), false, 0, {}, load_};
-  based_.deferred->remember();
+  State state{based_, {}, bases_, threshold_, based_.laid_over().events(), false, 0, {}, load_};
+  based_.laid_over().remember();
   if (based_.parted) state.parted = based_.parted->state();
   if (!coming_ || !coming_->making()) return state;
   state.making = true;
@@ -67,10 +67,10 @@ void RenewedUpdate::go_back(const State& state) {
   saved_ms_ = saved_ms();
   based_ = state.based;
   if (state.parted) based_.parted->restore(*state.parted);
-  saved_ms_ -= based_.deferred->saved_ms();
+  saved_ms_ -= based_.laid_over().saved_ms();
   bases_ = state.bases;
   threshold_ = state.threshold;
-  based_.deferred->take_back(based_.deferred->events() - state.laid);
+  based_.laid_over().take_back(based_.laid_over().events() - state.laid);
   load_ = state.loaded;
   if (!state.making) return;
   start_load_ = state.load;
@@ -84,7 +84,7 @@ bool RenewedUpdate::can_be_renewed() const {
 }
 
 bool RenewedUpdate::begins() const {
-  const Deferred& deferred = *based_.deferred;
+  const Deferred& deferred = based_.laid_over();
   const auto own = static_cast<Index>(body_.problem().gripped_dofs().size());
   // A base has unit vectors of all that is gripped, which is no reason for the next one.
   const Eigen::Index columns =

@@ -53,13 +53,14 @@ class RenewedUpdate {
     Load loaded;
   };
   [[nodiscard]] State state() const;
-  /// The body still records later events than the first `events`; what its thread uses may be
-  /// changed between both.
+  /// The body still records later events than the first `events`. Waits for nothing: what makes
+  /// a base may go on for a while.
   void stop(std::size_t events);
   void go_back(const State& state);
 
-  [[nodiscard]] Deferred& deferred() { return *based_.deferred; }
-  [[nodiscard]] const Deferred& deferred() const { return *based_.deferred; }
+  /// Throws NumericalError after an event for which no base could be made.
+  [[nodiscard]] Deferred& deferred() { return based_.laid_over(); }
+  [[nodiscard]] const Deferred& deferred() const { return based_.laid_over(); }
   /// The body in whose terms deferred() is; null: in those of the body itself.
   [[nodiscard]] const fem::PartedBody* parted() const { return based_.parted.get(); }
   /// The factor of the damaged body below; null: the base is the first.
@@ -67,7 +68,9 @@ class RenewedUpdate {
   [[nodiscard]] int bases() const { return bases_; }
   [[nodiscard]] const BaseCheck& base_check() const { return based_.check; }
   [[nodiscard]] double waited_ms() const { return coming_ ? coming_->waited_ms() : 0; }
-  [[nodiscard]] double saved_ms() const { return saved_ms_ + based_.deferred->saved_ms(); }
+  [[nodiscard]] double saved_ms() const {
+    return saved_ms_ + (based_.deferred ? based_.deferred->saved_ms() : 0);
+  }
 
  private:
   [[nodiscard]] bool can_be_renewed() const;

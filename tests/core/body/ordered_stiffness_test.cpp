@@ -65,7 +65,6 @@ TEST(OrderedStiffness, GoesBackToTheSameBits) {
   there.follow(body);
   for (std::size_t i = 20; i < 60; ++i) body.destroy({&sequence[i], 1});
   back.follow(body);
-  back.go_back(20);
   body.take_back(20);
   EXPECT_EQ(body.events(), 20U);
   EXPECT_EQ(std::ranges::count(body.destroyed(), 1), 20);
