@@ -97,21 +97,20 @@ void LiveSession::run() {
       step = goes_on() && Clock::now() >= due_;
     }
     if (step) due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pace_);
+    // The first of what goes wrong is told. What was asked for beside it is done all the same.
     std::optional<std::string> error;
-    try {
-      for (const Task& task : tasks) perform(task);
-      if (step) session_.step();
-    } catch (const std::exception& wrong) {
-      error = wrong.what();
-    }
-    if (error) paused_.store(true);
+    const auto attempt = [&](const auto& what) {
+      try {
+        what();
+      } catch (const std::exception& wrong) {
+        if (!error) error = wrong.what();
+        paused_.store(true);
+      }
+    };
+    for (const Task& task : tasks) attempt([&] { perform(task); });
+    if (step && !error) attempt([&] { session_.step(); });
     if (!step && tasks.empty()) continue;
-    try {
-      publish();
-    } catch (const std::exception& wrong) {
-      if (!error) error = wrong.what();
-      paused_.store(true);
-    }
+    attempt([&] { publish(); });
     const std::lock_guard lock(mutex_);
     if (error || !tasks.empty()) now_.error = std::move(error);
   }
