@@ -84,7 +84,7 @@ class VulkanBackend final : public Backend {
   std::vector<KernelPlan> kernels() const override { return describe(device_->living_pipelines()); }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override {
-    if (!instruments_ && !problem().gripped_dofs().empty() && body_->grip_factor()) {
+    if (!instruments_ && has_grips() && body_->grip_factor()) {
       instruments_.emplace(problem());
       if (solved_) publish_instruments();
     }

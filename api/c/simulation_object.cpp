@@ -2,6 +2,7 @@
 #include "c/simulation.hpp"
 
 #include <algorithm>
+#include <thread>
 
 #include "c/structs.hpp"
 #include "sunder/error.hpp"
@@ -66,8 +67,32 @@ std::vector<std::string> SimulationObject::warnings() const {
   return all;
 }
 
+/// False: the host has destroyed the simulation, and what callbacks use may be gone.
+template <class Call>
+bool SimulationObject::call_back(Call&& call) const {
+  int none = kIdle;
+  if (!calling_.compare_exchange_strong(none, kInside)) return false;
+  const struct Leave {
+    std::atomic<int>& calling;
+    ~Leave() { calling.store(kIdle); }
+  } leave{calling_};
+  call();
+  return true;
+}
+
+bool SimulationObject::silence(std::chrono::steady_clock::time_point until) {
+  int was = kIdle;
+  while (!calling_.compare_exchange_strong(was, kSilent) && was != kSilent) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    was = kIdle;
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return true;
+}
+
 void SimulationObject::log(std::int32_t level, const std::string& text) const {
-  if (callbacks_.log) callbacks_.log(callbacks_.log_user, level, text.c_str());
+  if (!callbacks_.log) return;
+  static_cast<void>(call_back([&] { callbacks_.log(callbacks_.log_user, level, text.c_str()); }));
 }
 
 /// Findings that are new. Those that count steps change their text with every step; they are told
@@ -93,7 +118,9 @@ bool SimulationObject::tell(std::int32_t phase, int events) const {
     progress.destroyed = static_cast<std::int32_t>(std::ranges::count(
         simulation_->destroyed(), false, [](const DestroyedElement& d) { return d.lives; }));
   }
-  return callbacks_.progress(callbacks_.progress_user, &progress) == 0;
+  std::int32_t answer = 0;
+  return call_back([&] { answer = callbacks_.progress(callbacks_.progress_user, &progress); }) &&
+         answer == 0;
 }
 
 void SimulationObject::enter(std::int32_t phase) const {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "app/input/file_bytes.hpp"
 #include "app/input/scene_toml.hpp"
 
 namespace sunder::app {
@@ -26,11 +27,17 @@ std::vector<std::string> overrides_of(const SceneArguments& arguments) {
 
 OpenedScene open_scene(const SceneArguments& arguments, bool live) {
   OpenedScene opened;
-  std::filesystem::path inputs;
+  constexpr std::size_t kLargestRecording = std::size_t{1} << 30;  // bytes
+  PlayedFiles played;
   opened.problem =
-      read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &inputs, live);
-  if (inputs.empty()) return opened;
-  opened.inputs = read_inputs(inputs.string());
+      read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &played, live);
+  if (!played.recording.empty()) {
+    const std::string bytes = read_file(played.recording, kLargestRecording);
+    opened.recording.assign(bytes.begin(), bytes.end());
+    opened.recording_file = played.recording;
+  }
+  if (played.inputs.empty()) return opened;
+  opened.inputs = read_inputs(played.inputs.string());
   resolve(*opened.inputs, *opened.problem);
   return opened;
 }

@@ -27,6 +27,9 @@ struct OpenedScene {
   std::shared_ptr<const Problem> problem;
   std::vector<std::string> warnings;  ///< of reading; the problem's own come on top
   std::optional<Inputs> inputs;       ///< that the scene names, resolved
+  /// That the scene names, and its file; empty: none.
+  std::vector<std::uint8_t> recording;
+  std::filesystem::path recording_file;
 };
 
 /// Reads the scene and its inputs; the named options win over --set. `live`: any element may be

@@ -33,6 +33,11 @@ Opened open_all(const ViewArguments& arguments) {
   Opened opened;
   if (arguments.script) opened.inputs = read_inputs(arguments.script->string());
   opened.scene = open_scene(arguments.scene, opened.inputs.has_value());
+  if (!opened.scene.recording.empty()) {
+    throw InputError(InputFault::unknown_key,
+                     arguments.scene.scene.string() +
+                         ": recording is for sunder run and plan; leave the key out here");
+  }
   if (opened.inputs && opened.scene.inputs) {
     throw UsageError("--script: the scene has inputs of its own, " + opened.scene.inputs->source +
                      "; play one or the other");
