@@ -196,6 +196,7 @@ class VulkanBackend final : public Backend {
 
   /// Only once somebody has asked for them: the reactions are read back from the device.
   void publish_instruments() {
+    if (load_.displacements.size() != gripped_dofs().size()) return;  // of other grips
     reactions_.resize(gripped_dofs().size());
     body_->read_reactions(reactions_);
     instruments_->publish(*body_->grip_factor(), reactions_, load_.displacements);

@@ -55,7 +55,7 @@ class SimulationObject final : public Object {
 
  private:
   template <class Step>
-  [[nodiscard]] StepReport take(Step&& step);
+  [[nodiscard]] StepReport take_step(Step&& step);
   void log(std::int32_t level, const std::string& text) const;
   void log_warnings();
   template <class Call>

@@ -30,11 +30,11 @@ SimulationObject::SimulationObject(const SceneObject& scene, const sunder_callba
 }
 
 StepReport SimulationObject::step(std::optional<double> dt) {
-  return take([&] { return dt ? simulation_->step(*dt) : simulation_->step(); });
+  return take_step([&] { return dt ? simulation_->step(*dt) : simulation_->step(); });
 }
 
 StepReport SimulationObject::step_within(double max_ms) {
-  return take([&] { return simulation_->step_within(max_ms); });
+  return take_step([&] { return simulation_->step_within(max_ms); });
 }
 
 void SimulationObject::keep_history(int quick) {
@@ -47,7 +47,7 @@ void SimulationObject::keep_history(int quick) {
 }
 
 template <class Step>
-StepReport SimulationObject::take(Step&& step) {
+StepReport SimulationObject::take_step(Step&& step) {
   events_ = 0;
   StepReport report;
   try {

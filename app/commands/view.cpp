@@ -6,6 +6,7 @@
 
 #include "app/commands/commands.hpp"
 #include "app/commands/in_folder.hpp"
+#include "app/commands/mesh_scene.hpp"
 #include "app/commands/waiting.hpp"
 #include "app/input/scene_toml.hpp"
 #include "app/output/text.hpp"
@@ -32,7 +33,9 @@ struct Opened {
 Opened open_all(const ViewArguments& arguments) {
   Opened opened;
   if (arguments.script) opened.inputs = read_inputs(arguments.script->string());
-  opened.scene = open_scene(arguments.scene, opened.inputs.has_value());
+  // A mesh alone has nothing that acts but a hand.
+  const bool live = opened.inputs.has_value() || arguments.of_mesh;
+  opened.scene = open_scene(arguments.scene, live);
   if (!opened.scene.recording.empty()) {
     throw InputError(InputFault::unknown_key,
                      arguments.scene.scene.string() +
@@ -52,7 +55,7 @@ Opened open_all(const ViewArguments& arguments) {
 
 int count_of_frames(const ViewArguments& arguments, const Opened& opened) {
   if (arguments.frames) return *arguments.frames;
-  if (!opened.inputs) return opened.scene.problem->scene().steps;
+  if (!opened.inputs) return arguments.of_mesh ? 1 : opened.scene.problem->scene().steps;
   return std::max(opened.inputs->frames(), 1);
 }
 
@@ -200,7 +203,14 @@ int view_headless(const ViewArguments& arguments, Interruption& interruption) {
 
 }  // namespace
 
-int view_scene(const ViewArguments& arguments, Interruption& interruption) {
+int view_scene(const ViewArguments& given, Interruption& interruption) {
+  ViewArguments arguments = given;
+  std::optional<MeshScene> of_mesh;
+  if (is_mesh_file(given.scene.scene)) {
+    of_mesh.emplace(given.scene.scene);
+    arguments.scene.scene = of_mesh->file();
+    arguments.of_mesh = true;
+  }
   if (arguments.headless) return view_headless(arguments, interruption);
   const Expecting open(interruption, Interruption::Duty{"the window was closed", {}, {}, {}});
   return view_in_window(arguments);

@@ -239,6 +239,10 @@ void LawBackend::take_over_instrument_forces(std::shared_ptr<InstrumentForces> f
 void LawBackend::publish_instruments() {
   const auto computed_grips = computed().gripped_dofs();
   if (!instruments_ || load_.displacements.size() < computed_grips.size()) return;
+  if (gripped_dofs().empty()) {  // but some may be grasped
+    instruments_->publish(Eigen::MatrixXd(0, 0), {}, {});
+    return;
+  }
   const Eigen::MatrixXd stiffness = grip_stiffness();
   if (stiffness.rows() < static_cast<Eigen::Index>(gripped_dofs().size())) return;  // unknown
   std::vector<Eigen::Index> places;  // of gripped_dofs() in the computed body's, in order of dofs

@@ -101,7 +101,10 @@ void Deferred::reserve(Index columns) {
 }
 
 bool Deferred::factor_grips() {
-  if (grips() == 0) return true;
+  if (grips() == 0) {
+    if (grip_block_.rows() > 0) grip_block_ = Eigen::LLT<Eigen::MatrixXd>(Eigen::MatrixXd(0, 0));
+    return true;
+  }
   if (border_.empty()) {
     grip_block_.compute(grip_compliance_.leftCols(grips()));
   } else {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sunder/error.hpp"
+
 namespace sunder::solver {
 
 std::vector<double> anchors_of(const Problem& problem) {
@@ -29,6 +31,7 @@ void InstrumentBlock::publish(const Eigen::Ref<const Eigen::MatrixXd>& l,
                               std::span<const double> reactions,
                               std::span<const double> displacements) {
   const auto g = static_cast<Eigen::Index>(reactions.size());
+  if (l.rows() != g) throw UsageError("a compliance of other grips than the reactions'");
   const Eigen::Map<const Eigen::VectorXd> r(reactions.data(), g), d(displacements.data(), g),
       anchors(this->anchors(reactions.size()).data(), g);
   f_ = r.array() + anchors.array() * d.array();  // anchors pull as well
