@@ -35,7 +35,8 @@ struct Trace {
   [[nodiscard]] std::array<double, 2> largest() const {
     std::array<double, 2> most{0, 0};
     for (std::size_t t = 1; t < ticks.size(); ++t) {
-      const bool torn = ticks[t].ruptures > ticks[t - 1].ruptures || ticks[t].share < 1;
+      const bool torn = ticks[t].ruptures > ticks[t - 1].ruptures ||
+                        std::min(ticks[t].share, ticks[t - 1].share) < 1;
       double& of = most[torn ? 0 : 1];
       of = std::max(of, (ticks[t].force - ticks[t - 1].force).norm());
     }

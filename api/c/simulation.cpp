@@ -16,6 +16,8 @@ using namespace sunder::c;
 
 /// How long destroying waits for what is going on: it returns within 50 ms.
 constexpr std::chrono::milliseconds kPatience{30};
+/// Unknowns of a body of which nothing that goes on takes long enough for a thread to let it go.
+constexpr sunder::Index kQuick = 300;
 
 sunder_step to_step(const sunder::StepReport& report) {
   auto step = sized<sunder_step>();
@@ -122,7 +124,8 @@ sunder_status sunder_simulation_destroy(sunder_simulation simulation) {
     object->gone->store(true);
     object->cancel();
     forget(simulation);
-    if (idle && object->owns_device()) dispose(std::move(object), until);
+    const bool quick = object->problem().dof_count() <= kQuick;
+    if (idle && object->owns_device() && !quick) dispose(std::move(object), until);
   });
 }
 
