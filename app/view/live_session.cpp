@@ -104,12 +104,16 @@ void LiveSession::run() {
     }
     if (step) due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pace_);
     std::optional<std::string> error;
-    try {
-      for (const Task& task : tasks) perform(task);
-      if (step) session_.step();
-    } catch (const std::exception& wrong) {
-      error = wrong.what();
-    }
+    const auto attempt = [&](const auto& what) {
+      try {
+        what();
+      } catch (const std::exception& wrong) {
+        if (!error) error = wrong.what();
+      }
+    };
+    // What cannot be done takes nothing of what comes after it along.
+    for (const Task& task : tasks) attempt([&] { perform(task); });
+    if (step && !error) attempt([&] { session_.step(); });
     if (error) paused_.store(true);
     if (!step && tasks.empty()) continue;
     try {

@@ -2,6 +2,7 @@
 #include "sunder/instrument_forces.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "frame/quaternion.hpp"

@@ -90,7 +90,7 @@ TEST(RecordingRun, DoesWhatAHostDid) {
     }
     const auto frames = read_csv(folder / "out" / "frames.csv");
     EXPECT_EQ(frames.size(), 5u + 1);
-    EXPECT_EQ(read_json(folder / "out" / "summary.json")["destroyed"], s.destroyed().size());
+    EXPECT_EQ(read_json(folder / "out" / "summary.json")["destroyed"].size(), s.destroyed().size());
   }
 }
 
