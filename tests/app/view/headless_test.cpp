@@ -98,7 +98,7 @@ TEST(Headless, AScriptGraspsTurnsAndLetsGoAndARunReplaysIt) {
       "grasp 50 25 1.25 6 rigid\n"
       "pose 1 53 24 1.25 0 0 .1 1\n"
       "frame\n"  // 2
-      "undo\n"   // the grasp and what came after it
+      "reset\n"  // the grasp goes, and what came after it
       "frame\n"  // 3
       "grasp nodes 60\n"
       "grasp 50 25 1.25 6 rigid\n"
