@@ -12,6 +12,8 @@ from .errors import HandleError, InputError, OrderError, check
 
 _lib = _c.library
 
+_READ = {"displacement": _lib.sunder_frames_displacement, "stress": _lib.sunder_frames_stress,
+         "yield_ratio": _lib.sunder_frames_yield_ratio, "destroyed": _lib.sunder_frames_destroyed}
 _STATES = {_c.constants["SUNDER_FELT_" + name.upper()]: name
            for name in ("waiting", "live", "gone", "overflow")}
 
@@ -125,7 +127,7 @@ class Frames:
         result = {}
         for name in self._fields:
             array = np.empty(shapes[name], np.bool_ if name == "destroyed" else np.float64)
-            check(getattr(_lib, "sunder_frames_" + name)(self._handle, array.ctypes.data, array.size))
+            check(_READ[name](self._handle, array.ctypes.data, array.size))
             result[name] = array
         return frame.step, result
 
