@@ -149,7 +149,7 @@ class LawBackend : public Backend {
   std::vector<Index> cut_off_;  // elements
   std::vector<std::uint8_t> excluded_;
   std::optional<solver::InstrumentBlock> instruments_;  // once asked for
-  std::vector<double> reactions_, held_;  // per gripped_dofs()
+  std::vector<double> reactions_, held_;                // per gripped_dofs()
 };
 
 }  // namespace sunder::finite
