@@ -128,7 +128,6 @@ class FailoverBackend final : public Backend {
   /// Brings the replacement to the state before the operation that failed.
   void take_over() const {
     current_ = replacement_();
-    if (instruments_) current_->take_over_instrument_forces(instruments_);
     if (!events_.empty()) current_->destroy(events_);
     if (needs().yield) current_->exclude_candidates(excluded_);
     if (!cut_off_.empty()) current_->cut_off(cut_off_);
@@ -136,6 +135,8 @@ class FailoverBackend final : public Backend {
     if (load_) current_->set_load(*load_);
     if (solved_) current_->solve();
     if (stressed_) current_->stress();
+    // Only now: what it has found so far is what they have been given already.
+    if (instruments_) current_->take_over_instrument_forces(instruments_);
     for (const Grips& grips : grips_since_) grips.tell(*current_);
   }
 

@@ -285,7 +285,7 @@ void own_row(benchmark::State& state, Index cells, int a_second, const Own& how)
       back_solves += report.back_solves;
       if (how.grips) {
         const auto start = Clock::now();
-        benchmark::DoNotOptimize(motion.grip_compliance(true));
+        benchmark::DoNotOptimize(motion.grip_stiffness(true));
         grips.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
       }
       record.destroyed(step);

@@ -61,7 +61,7 @@ class CpuBackend final : public Backend {
       if (intact_) pristine_grips_.emplace(damaged_body(), *intact_);
       if (intact_) intact_->solve(pristine_force_, {}, pristine_u_);
     }
-    if (route_->deferred() && !problem->gripped_dofs().empty()) instruments_.emplace(*problem);
+    if (route_->deferred() && has_grips()) instruments_.emplace(*problem);
     for (const std::string& what : plan_.left_out) leave_out(what);
   }
 

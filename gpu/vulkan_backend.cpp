@@ -84,7 +84,7 @@ class VulkanBackend final : public Backend {
   std::vector<KernelPlan> kernels() const override { return describe(device_->living_pipelines()); }
 
   std::shared_ptr<InstrumentForces> instrument_forces() override {
-    if (!instruments_ && !problem().gripped_dofs().empty() && body_->grip_factor()) {
+    if (!instruments_ && has_grips() && body_->grip_factor()) {
       instruments_.emplace(problem());
       if (solved_) publish_instruments();
     }
@@ -196,6 +196,7 @@ class VulkanBackend final : public Backend {
 
   /// Only once somebody has asked for them: the reactions are read back from the device.
   void publish_instruments() {
+    if (load_.displacements.size() != gripped_dofs().size()) return;  // of other grips
     reactions_.resize(gripped_dofs().size());
     body_->read_reactions(reactions_);
     instruments_->publish(*body_->grip_factor(), reactions_, load_.displacements);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "c/simulation.hpp"
+#include "c/structs.hpp"
 #include "sunder/instrument_forces.hpp"
 
 namespace sunder::c {
@@ -37,38 +38,97 @@ class GripsObject final : public Object {
   }
 
   [[nodiscard]] std::size_t size() const { return 3 * instruments_; }
+  void blend(double ms) { block_->blend(ms); }
 
-  /// Throws, with forces of 0, when there are none.
-  void forces(const double* displacements, double* forces) {
-    for (std::size_t g = 0; g < place_.size(); ++g) displacement_[g] = displacements[place_[g]];
-    std::fill_n(forces, size(), 0.0);  // may be the array of the displacements
-    if (gone_->load()) {
-      throw Failure(SUNDER_ERROR_HANDLE, "the simulation of these grips was destroyed");
+  /// Forces of the scene's grips (both null: they hold still) and of hands on a host's. Throws,
+  /// with forces of 0 and `felt` filled, when there are none.
+  void feel(const double* displacements, double* forces, std::span<sunder_hand> hands,
+            sunder_felt* felt) {
+    const bool own = forces != nullptr;
+    for (std::size_t g = 0; own && g < place_.size(); ++g) {
+      displacement_[g] = displacements[place_[g]];
     }
-    for (std::size_t g = 0; g < place_.size(); ++g) {
+    none(forces, hands);  // may be the array of the displacements
+    if (gone_->load()) end(SUNDER_FELT_GONE, felt);
+    for (std::size_t g = 0; own && g < place_.size(); ++g) {
       if (std::isfinite(displacement_[g])) continue;
+      say({FeltState::overflow}, felt);
       not_finite(displacement_[g], static_cast<std::ptrdiff_t>(place_[g]), "displacements");
     }
-    if (!block_->forces(displacement_, force_)) explain();
-    for (std::size_t g = 0; g < place_.size(); ++g) forces[place_[g]] += force_[g];
-    const bool finite =
-        std::all_of(forces, forces + size(), [](double f) { return std::isfinite(f); });
-    if (finite) return;
-    std::fill_n(forces, size(), 0.0);  // each node's was finite, their sum is not
-    overflow();
+    take(hands, felt);
+    const Felt now =
+        own ? block_->feel(displacement_, force_, hands_) : block_->feel({}, {}, hands_);
+    if (now.state != FeltState::live) end(static_cast<std::int32_t>(now.state), felt);
+    for (std::size_t g = 0; own && g < place_.size(); ++g) forces[place_[g]] += force_[g];
+    bool finite =
+        !own || std::all_of(forces, forces + size(), [](double f) { return std::isfinite(f); });
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+      const Hand& hand = hands_[i];
+      finite = finite && hand.force.allFinite() && hand.torque.allFinite();
+      hands[i].held = hand.held ? 1 : 0;
+      std::copy_n(hand.force.data(), 3, hands[i].force);
+      std::copy_n(hand.torque.data(), 3, hands[i].torque);
+    }
+    if (!finite) {  // each node's was, their sum is not
+      none(forces, hands);
+      end(SUNDER_FELT_OVERFLOW, felt);
+    }
+    say(now, felt);
   }
 
  private:
-  [[noreturn]] static void overflow() {
-    throw Failure(SUNDER_ERROR_VALUE, "the displacements are so large that their forces overflow");
+  void none(double* forces, std::span<sunder_hand> hands) const {
+    if (forces) std::fill_n(forces, size(), 0.0);
+    for (sunder_hand& hand : hands) {
+      hand.held = 0;
+      std::fill_n(hand.force, 3, 0.0);
+      std::fill_n(hand.torque, 3, 0.0);
+    }
   }
 
-  /// Returns when the first frame came in between, with the forces that it gives.
-  void explain() {
-    if (!block_->forces(std::vector<double>(place_.size()), force_)) {
+  /// The hands as the library has them. Room for as many as ever is kept.
+  void take(std::span<const sunder_hand> hands, sunder_felt* felt) {
+    hands_.resize(hands.size());
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+      const sunder_hand& of = hands[i];
+      try {
+        require_finite(of.position, 3, "position");
+        require_finite(of.quaternion, 4, "quaternion");
+      } catch (const Failure&) {
+        say({FeltState::overflow}, felt);
+        throw;
+      }
+      if (std::all_of(of.quaternion, of.quaternion + 4, [](double q) { return q == 0; })) {
+        say({FeltState::overflow}, felt);
+        throw Failure(SUNDER_ERROR_VALUE,
+                      "quaternion has length 0; of no turn it is 0, 0, 0, 1 (x, y, z, w)");
+      }
+      hands_[i].grip = of.grip;
+      hands_[i].position = Vec3(of.position);
+      std::copy_n(of.quaternion, 4, hands_[i].quaternion.begin());
+    }
+  }
+
+  static void say(const Felt& of, sunder_felt* felt) {
+    if (!felt) return;
+    auto out = sized<sunder_felt>();
+    out.state = static_cast<std::int32_t>(of.state);
+    out.solution = of.solution;
+    out.step = of.step;
+    out.age_ms = of.age_ms;
+    out.share = of.share;
+    write_struct(felt, out, "felt");
+  }
+
+  [[noreturn]] static void end(std::int32_t state, sunder_felt* felt) {
+    say({static_cast<FeltState>(state)}, felt);
+    if (state == SUNDER_FELT_GONE) {
+      throw Failure(SUNDER_ERROR_HANDLE, "the simulation of these grips was destroyed");
+    }
+    if (state == SUNDER_FELT_WAITING) {
       throw Failure(SUNDER_ERROR_ORDER, "there are no forces before the first step");
     }
-    if (!block_->forces(displacement_, force_)) overflow();
+    throw Failure(SUNDER_ERROR_VALUE, "the displacements are so large that their forces overflow");
   }
 
   std::shared_ptr<InstrumentForces> block_;
@@ -76,6 +136,7 @@ class GripsObject final : public Object {
   std::size_t instruments_;
   std::vector<std::size_t> place_;  // of each gripped unknown: 3 * instrument + axis
   std::vector<double> displacement_, force_;
+  std::vector<Hand> hands_;
 };
 
 }  // namespace
@@ -88,10 +149,12 @@ using namespace sunder::c;
 sunder_status sunder_grips_create(sunder_simulation simulation, sunder_grips* grips) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
     require(grips, "grips");
-    if (object.problem().gripped_dofs().empty()) {
-      throw Failure(SUNDER_ERROR_ORDER, "the scene has no instrument that holds nodes (a grip)");
+    if (!object.simulation().backend().has_grips()) {
+      throw Failure(
+          SUNDER_ERROR_ORDER,
+          "the scene has no instrument that holds nodes (a grip), and none can be grasped");
     }
-    auto block = object.simulation().backend().instrument_forces();
+    auto block = object.simulation().grip_forces();
     if (!block) {
       const auto info = object.simulation().backend().info();
       throw Failure(SUNDER_ERROR_DEVICE,
@@ -116,7 +179,31 @@ sunder_status sunder_grips_forces(sunder_grips grips, const double* displacement
     require_size(size, object.size(), "forces");
     require(displacements, "displacements");
     require(forces, "forces");
-    object.forces(displacements, forces);
+    object.feel(displacements, forces, {}, nullptr);
+  });
+}
+
+sunder_status sunder_grips_feel(sunder_grips grips, const double* displacements, double* forces,
+                                size_t size, sunder_hand* hands, size_t count, sunder_felt* felt) {
+  return call<GripsObject>(grips, [&](GripsObject& object) {
+    if (felt) static_cast<void>(stated_size(felt, "felt"));
+    if (displacements || forces || size > 0) {
+      require_size(size, object.size(), "forces");
+      require(displacements, "displacements");
+      require(forces, "forces");
+    }
+    if (count > 0) require(hands, "hands");
+    object.feel(displacements, forces, {hands, count}, felt);
+  });
+}
+
+sunder_status sunder_grips_blend(sunder_grips grips, double ms) {
+  return call<GripsObject>(grips, [&](GripsObject& object) {
+    if (!(ms >= 0) || !std::isfinite(ms)) {
+      throw Failure(SUNDER_ERROR_VALUE,
+                    "ms = " + std::to_string(ms) + " is not a time in ms, nor 0 for none");
+    }
+    object.blend(ms);
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -27,11 +28,16 @@ class Object {
   [[nodiscard]] bool take() noexcept { return !busy_.exchange(true, std::memory_order_acquire); }
   void release() noexcept { busy_.store(false, std::memory_order_release); }
 
+  /// Destroyed by the host, though a call of another thread may hold it a little longer. Returns
+  /// whether it was before.
+  bool close() noexcept { return closed_.exchange(true); }
+  [[nodiscard]] bool closed() const noexcept { return closed_.load(); }
+
   void set_error(const char* text) noexcept;
   [[nodiscard]] std::string error() const;
 
  private:
-  std::atomic<bool> busy_{false};
+  std::atomic<bool> busy_{false}, closed_{false};
   mutable std::mutex error_mutex_;
   std::array<char, kErrorText> error_{};
 };
@@ -52,14 +58,18 @@ class Registry {
   std::uintptr_t next_ = 16;
 };
 
+[[noreturn]] inline void refuse_handle(const char* what) {
+  throw Failure(SUNDER_ERROR_HANDLE,
+                std::string("the handle is not that of a ") + what + ", or was destroyed");
+}
+
 /// The object of type T behind a handle; `what` names the kind. Throws SUNDER_ERROR_HANDLE.
 template <class T>
 [[nodiscard]] std::shared_ptr<T> find(const void* handle, const char* what) {
   auto object = std::dynamic_pointer_cast<T>(
       Registry::instance().find(reinterpret_cast<std::uintptr_t>(handle)));
-  if (object) return object;
-  throw Failure(SUNDER_ERROR_HANDLE,
-                std::string("the handle is not that of a ") + what + ", or was destroyed");
+  if (!object) refuse_handle(what);
+  return object;
 }
 
 /// Keeps an object for one call. Throws SUNDER_ERROR_BUSY.
@@ -85,6 +95,7 @@ template <class T, class Body>
   return guarded([&] {
     const auto object = find<T>(handle, T::kName);
     const Hold hold(*object);
+    if (object->closed()) refuse_handle(T::kName);  // since it was found
     try {
       body(*object);
     } catch (...) {
@@ -104,6 +115,10 @@ template <class T>
 [[nodiscard]] sunder_status destroy(const void* handle) noexcept {
   return call<T>(handle, [&](T&) { forget(handle); });
 }
+
+/// Lets an object go on a thread of its own, and waits for that no longer than `until`: what is
+/// being prepared beside the frames may take its time to give up.
+void dispose(std::shared_ptr<Object> object, std::chrono::steady_clock::time_point until);
 
 /// A new handle for an object.
 template <class Handle>

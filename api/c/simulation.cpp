@@ -2,8 +2,10 @@
 // Create, step, drive, cancel.
 #include "c/simulation.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <optional>
+#include <thread>
 
 #include "c/engine.hpp"
 #include "c/simulation_create.hpp"
@@ -11,6 +13,11 @@
 namespace {
 
 using namespace sunder::c;
+
+/// How long destroying waits for what is going on: it returns within 50 ms.
+constexpr std::chrono::milliseconds kPatience{30};
+/// Unknowns of a body of which nothing that goes on takes long enough for a thread to let it go.
+constexpr sunder::Index kQuick = 300;
 
 sunder_step to_step(const sunder::StepReport& report) {
   auto step = sized<sunder_step>();
@@ -100,9 +107,25 @@ sunder_status sunder_simulation_create(sunder_scene scene, const sunder_callback
 }
 
 sunder_status sunder_simulation_destroy(sunder_simulation simulation) {
-  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
-    object.gone->store(true);
+  return guarded([&] {
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    auto object = find<SimulationObject>(simulation, SimulationObject::kName);
+    bool idle = object->take();
+    // Its device goes right after: nothing may use it any more.
+    while (!idle && !object->owns_device() && std::chrono::steady_clock::now() < until) {
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+      idle = object->take();
+    }
+    if ((!idle && !object->owns_device()) || !object->silence(until)) {
+      if (idle) object->release();
+      throw Failure(SUNDER_ERROR_BUSY, "the handle is in use by another call");
+    }
+    if (object->close()) refuse_handle(SimulationObject::kName);
+    object->gone->store(true);
+    object->cancel();
     forget(simulation);
+    const bool quick = object->problem().dof_count() <= kQuick;
+    if (idle && object->owns_device() && !quick) dispose(std::move(object), until);
   });
 }
 

@@ -33,6 +33,10 @@ class SimulationObject final : public Object {
   [[nodiscard]] StepReport step_within(double max_ms);
   void keep_history(int quick);
   void cancel() noexcept { cancelled_.store(true); }
+  /// No callback runs from now on; false: one was running all the time until then.
+  [[nodiscard]] bool silence(std::chrono::steady_clock::time_point until);
+  /// It can be made once more: its device is its own.
+  [[nodiscard]] bool owns_device() const { return static_cast<bool>(create_); }
 
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
@@ -51,9 +55,11 @@ class SimulationObject final : public Object {
 
  private:
   template <class Step>
-  [[nodiscard]] StepReport take(Step&& step);
+  [[nodiscard]] StepReport take_step(Step&& step);
   void log(std::int32_t level, const std::string& text) const;
   void log_warnings();
+  template <class Call>
+  [[nodiscard]] bool call_back(Call&& call) const;
   /// False: the host cancels.
   [[nodiscard]] bool tell(std::int32_t phase, int events) const;
   void enter(std::int32_t phase) const;
@@ -67,6 +73,8 @@ class SimulationObject final : public Object {
   int steps_;
   int events_ = 0;  // of this step
   std::atomic<bool> cancelled_{false};
+  enum Calling { kIdle, kInside, kSilent };
+  mutable std::atomic<int> calling_{kIdle};
 };
 
 /// Throws SUNDER_ERROR_ORDER for statics, which has no `what`.

@@ -2,6 +2,7 @@
 #include "c/simulation.hpp"
 
 #include <algorithm>
+#include <thread>
 
 #include "c/structs.hpp"
 #include "sunder/error.hpp"
@@ -29,11 +30,11 @@ SimulationObject::SimulationObject(const SceneObject& scene, const sunder_callba
 }
 
 StepReport SimulationObject::step(std::optional<double> dt) {
-  return take([&] { return dt ? simulation_->step(*dt) : simulation_->step(); });
+  return take_step([&] { return dt ? simulation_->step(*dt) : simulation_->step(); });
 }
 
 StepReport SimulationObject::step_within(double max_ms) {
-  return take([&] { return simulation_->step_within(max_ms); });
+  return take_step([&] { return simulation_->step_within(max_ms); });
 }
 
 void SimulationObject::keep_history(int quick) {
@@ -46,7 +47,7 @@ void SimulationObject::keep_history(int quick) {
 }
 
 template <class Step>
-StepReport SimulationObject::take(Step&& step) {
+StepReport SimulationObject::take_step(Step&& step) {
   events_ = 0;
   StepReport report;
   try {
@@ -66,8 +67,32 @@ std::vector<std::string> SimulationObject::warnings() const {
   return all;
 }
 
+/// False: the host has destroyed the simulation, and what callbacks use may be gone.
+template <class Call>
+bool SimulationObject::call_back(Call&& call) const {
+  int none = kIdle;
+  if (!calling_.compare_exchange_strong(none, kInside)) return false;
+  const struct Leave {
+    std::atomic<int>& calling;
+    ~Leave() { calling.store(kIdle); }
+  } leave{calling_};
+  call();
+  return true;
+}
+
+bool SimulationObject::silence(std::chrono::steady_clock::time_point until) {
+  int was = kIdle;
+  while (!calling_.compare_exchange_strong(was, kSilent) && was != kSilent) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    was = kIdle;
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return true;
+}
+
 void SimulationObject::log(std::int32_t level, const std::string& text) const {
-  if (callbacks_.log) callbacks_.log(callbacks_.log_user, level, text.c_str());
+  if (!callbacks_.log) return;
+  static_cast<void>(call_back([&] { callbacks_.log(callbacks_.log_user, level, text.c_str()); }));
 }
 
 /// Findings that are new. Those that count steps change their text with every step; they are told
@@ -93,7 +118,9 @@ bool SimulationObject::tell(std::int32_t phase, int events) const {
     progress.destroyed = static_cast<std::int32_t>(std::ranges::count(
         simulation_->destroyed(), false, [](const DestroyedElement& d) { return d.lives; }));
   }
-  return callbacks_.progress(callbacks_.progress_user, &progress) == 0;
+  std::int32_t answer = 0;
+  return call_back([&] { answer = callbacks_.progress(callbacks_.progress_user, &progress); }) &&
+         answer == 0;
 }
 
 void SimulationObject::enter(std::int32_t phase) const {

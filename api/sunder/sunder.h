@@ -29,8 +29,8 @@
 //
 // Threads: different handles may be used by different threads at once. One handle serves one
 // call at a time: a second one returns SUNDER_ERROR_BUSY at once and does nothing. Only
-// sunder_simulation_cancel may be called for a handle that is in use. Callbacks run on the thread
-// that made the call, during it, and find their own handle busy.
+// sunder_simulation_cancel and sunder_simulation_destroy may be called for a handle that is in use.
+// Callbacks run on the thread that made the call, during it, and find their own handle busy.
 #ifndef SUNDER_SUNDER_H
 #define SUNDER_SUNDER_H
 
@@ -436,6 +436,11 @@ typedef struct sunder_callbacks {
 SUNDER_API sunder_status sunder_simulation_create(sunder_scene scene,
                                                   const sunder_callbacks* callbacks,
                                                   sunder_simulation* simulation);
+/// At any moment, within 50 ms: no callback runs any more once it has returned. A call that is in
+/// work on another thread ends at its next event or solution, as SUNDER_ERROR_CANCELLED or with
+/// what it has found, and takes what it uses with it. SUNDER_ERROR_BUSY, and nothing changes: from
+/// within a callback, or while one does not return; on a lent device, which must not be used any
+/// more afterwards, while any call is in work: cancel it and try again.
 SUNDER_API sunder_status sunder_simulation_destroy(sunder_simulation simulation);
 SUNDER_API sunder_status sunder_simulation_engine(sunder_simulation simulation,
                                                   sunder_engine* engine);
@@ -864,6 +869,104 @@ SUNDER_API sunder_status sunder_simulation_set_skin(sunder_simulation simulation
 /// element that carries a vertex is destroyed; may be null. SUNDER_ERROR_ORDER without a skin.
 SUNDER_API sunder_status sunder_simulation_skin(sunder_simulation simulation, float* places,
                                                 size_t size, uint8_t* lives);
+
+/* ---- Hands and pictures on threads of their own ---------------------------------------------- */
+
+/// Where forces change with a new solution (a rupture), they go from those of the one before to
+/// those of the new one within so many milliseconds, both at the present displacement; 0 (the
+/// default): at once. A grip that is let go has no force at once, one newly held begins at none.
+SUNDER_API sunder_status sunder_grips_blend(sunder_grips grips, double ms);
+
+/// A grip that a host has grasped, between two steps. This struct has no version: it never changes.
+typedef struct sunder_hand {
+  int32_t grip;          ///< id of sunder_simulation_grasp
+  int32_t held;          ///< out: 0, with no force: let go, or no step has been taken with it yet
+  double position[3];    ///< in: where the hand has it [mm]
+  double quaternion[4];  ///< in: rotation since it took hold (x, y, z, w); of points not read
+  double force[3];       ///< out: on the body [N]; on the hand: minus both
+  double torque[3];      ///< out: about `position` [N mm]
+} sunder_hand;
+
+#define SUNDER_HAND_INIT                                  \
+  {                                                       \
+    0, 0, {0, 0, 0}, {0, 0, 0, 1}, {0, 0, 0}, { 0, 0, 0 } \
+  }
+
+enum {
+  SUNDER_FELT_WAITING = 0,  ///< no solution: before the first step, or undone to before it
+  SUNDER_FELT_LIVE = 1,
+  SUNDER_FELT_GONE = 2,     ///< the simulation was destroyed
+  SUNDER_FELT_OVERFLOW = 3  ///< a displacement is not finite, or so large that a force would not be
+};
+
+/// What forces come from.
+typedef struct sunder_felt {
+  uint32_t struct_size;
+  int32_t state;      ///< SUNDER_FELT_*
+  uint64_t solution;  ///< its number, from 1 on in the order of solutions; a rupture makes several
+  int32_t step;       ///< the step it belongs to, from 0 on; -1: unknown
+  int32_t reserved;
+  double age_ms;  ///< since it was found
+  double share;   ///< of it in the forces: below 1 while the one before is blended in
+} sunder_felt;
+
+#define SUNDER_FELT_INIT \
+  { sizeof(sunder_felt), 0, 0, 0, 0, 0, 0 }
+
+/// sunder_grips_forces with hands that move what a host has grasped: each gets its force and torque
+/// there. Those not named stay where the solution has them; so do the scene's grips where
+/// `displacements` and `forces` are null with size 0. A few microseconds; nothing is allocated, and
+/// no step is waited for. `felt` may be null; it is filled also with SUNDER_ERROR_ORDER (waiting),
+/// SUNDER_ERROR_HANDLE (gone) and SUNDER_ERROR_VALUE (overflow), where all forces are 0.
+SUNDER_API sunder_status sunder_grips_feel(sunder_grips grips, const double* displacements,
+                                           double* forces, size_t size, sunder_hand* hands,
+                                           size_t count, sunder_felt* felt);
+
+/// Fields of the last finished frame, for a thread of its own while the next one is computed.
+typedef struct sunder_frames_handle* sunder_frames;
+
+enum {
+  SUNDER_FRAME_DISPLACEMENT = 1,
+  SUNDER_FRAME_STRESS = 2,
+  SUNDER_FRAME_YIELD_RATIO = 4,
+  SUNDER_FRAME_DESTROYED = 8
+};
+
+/// `fields`, a sum of SUNDER_FRAME_*: each costs every step its copy. `nodes`, of which
+/// displacement is wanted (on route condensed those of the surface cost little, all of them a
+/// solve); null with count 0: all of the body. One handle at a time: a former one says
+/// SUNDER_ERROR_HANDLE.
+SUNDER_API sunder_status sunder_frames_create(sunder_simulation simulation, uint32_t fields,
+                                              const int32_t* nodes, size_t count,
+                                              sunder_frames* frames);
+SUNDER_API sunder_status sunder_frames_destroy(sunder_frames frames);
+
+typedef struct sunder_frame {
+  uint32_t struct_size;
+  int32_t step;        ///< that it is the end of, from 0 on; -1: before the first one
+  uint64_t number;     ///< another one where something may have changed; from 1 on
+  int32_t node_count;  ///< of the body
+  int32_t reserved;
+} sunder_frame;
+
+#define SUNDER_FRAME_INIT \
+  { sizeof(sunder_frame), 0, 0, 0, 0 }
+
+/// Takes the last finished frame: the fields below are its, until the next call.
+/// SUNDER_ERROR_HANDLE: the simulation was destroyed, as of the functions below.
+SUNDER_API sunder_status sunder_frames_take(sunder_frames frames, sunder_frame* frame);
+/// (wanted nodes x 3) [mm], or all of the body: size 3 * node_count. SUNDER_ERROR_ORDER, as of the
+/// others: the handle was made without it, or no frame was taken yet.
+SUNDER_API sunder_status sunder_frames_displacement(sunder_frames frames, double* values,
+                                                    size_t size);
+/// (elements x 6) [MPa], as sunder_simulation_stress.
+SUNDER_API sunder_status sunder_frames_stress(sunder_frames frames, double* values, size_t size);
+/// (elements), as sunder_simulation_yield_ratio.
+SUNDER_API sunder_status sunder_frames_yield_ratio(sunder_frames frames, double* values,
+                                                   size_t size);
+/// (elements), 1 where destroyed.
+SUNDER_API sunder_status sunder_frames_destroyed(sunder_frames frames, uint8_t* values,
+                                                 size_t size);
 
 #ifdef __cplusplus
 }

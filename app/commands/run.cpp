@@ -77,6 +77,7 @@ class Run {
     of_setup_ = record_.warnings;
     std::sort(wanted_.begin(), wanted_.end());
     wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
+    if (!scene.recording.empty()) open_recording(scene);
     if (scene.inputs) inputs_.emplace(*scene.inputs, hand_, problem_.scene().steps);
     note();
   }
@@ -86,6 +87,7 @@ class Run {
 
  private:
   std::unique_ptr<Simulation> make_simulation(const OpenedScene& scene);
+  void open_recording(const OpenedScene& scene);
   void observe();
   void begin();
   void compute();
@@ -110,7 +112,8 @@ class Run {
   RunRecord record_;
   std::unique_ptr<Simulation> simulation_;
   Hand hand_;
-  std::optional<Replay> inputs_;  ///< none: the scene's steps alone
+  std::optional<Replay> inputs_;  ///< none, and no recording: the scene's steps alone
+  bool recorded_ = false;         ///< a recording is played
   std::mutex turn_;
   ResultWriter writer_;
   Progress progress_;
@@ -132,6 +135,15 @@ std::unique_ptr<Simulation> Run::make_simulation(const OpenedScene& scene) {
   add_new(record_.warnings, created.warnings);
   created.backend->time_passes(true);
   return std::make_unique<Simulation>(scene.problem, std::move(created.backend));
+}
+
+void Run::open_recording(const OpenedScene& scene) {
+  try {
+    simulation_->open_recording(scene.recording);
+  } catch (const InputError& error) {
+    throw InputError(error.fault(), scene.recording_file.string() + ": " + error.what());
+  }
+  recorded_ = true;
 }
 
 /// Into the record: all that the simulation tells but its fields.
@@ -231,7 +243,7 @@ void Run::observe() {
 
 void Run::step() {
   const int number = simulation_->steps_done();
-  const StepReport report = simulation_->step();
+  const StepReport report = recorded_ ? simulation_->recorded_step() : simulation_->step();
   State state = capture(*simulation_, number);
   std::vector<TipState> tips;
   if (!simulation_->interrupted()) tips = simulation_->tips();
@@ -258,11 +270,11 @@ void Run::begin() {
   writer_.begin();
 }
 
-/// Inputs end the run, and may change the body after its last step.
+/// Inputs and a recording end the run, and may change the body after its last step.
 bool Run::reach_step() {
-  if (!inputs_) return !simulation_->done();
+  if (!inputs_ && !recorded_) return !simulation_->done();
   const std::size_t before = simulation_->destroyed().size();
-  if (inputs_->reach_step()) return true;
+  if (recorded_ ? simulation_->reach_recorded_step() : inputs_->reach_step()) return true;
   if (simulation_->destroyed().size() > before && simulation_->steps_done() > 0) {
     State state = capture(*simulation_, simulation_->steps_done() - 1);
     const std::lock_guard turn(turn_);

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "app/input/file_bytes.hpp"
 #include "app/input/mesh_import.hpp"
 #include "app/input/scene_toml.hpp"
 #include "sunder/error.hpp"
@@ -26,26 +27,27 @@ std::vector<std::string> overrides_of(const SceneArguments& arguments) {
   return all;
 }
 
-OpenedScene open_scene(const SceneArguments& arguments, bool live, bool mesh_too) {
-  OpenedScene opened;
+OpenedScene open_scene(const SceneArguments& arguments, bool live) {
   if (is_mesh_file(arguments.scene)) {
     const std::string file = arguments.scene.string();
-    if (!mesh_too) {
-      throw InputError(InputFault::unreadable_file,
-                       file +
-                           ": is a mesh, not a scene; write a scene that names it (docs/"
-                           "interface.md \"Scene\"), or look at it by `sunder view " +
-                           file + "`");
-    }
-    opened.warnings.push_back(file +
-                              " has no scene: its one end is held, the other gripped, its "
-                              "tissue liver; --set changes that");
+    throw InputError(InputFault::unreadable_file,
+                     file +
+                         ": is a mesh, not a scene; write a scene that names it "
+                         "(docs/interface.md \"Scene\"), or look at it by `sunder view " +
+                         file + "`");
   }
-  std::filesystem::path inputs;
+  OpenedScene opened;
+  constexpr std::size_t kLargestRecording = std::size_t{1} << 30;  // bytes
+  PlayedFiles played;
   opened.problem =
-      read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &inputs, live);
-  if (inputs.empty()) return opened;
-  opened.inputs = read_inputs(inputs.string());
+      read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &played, live);
+  if (!played.recording.empty()) {
+    const std::string bytes = read_file(played.recording, kLargestRecording);
+    opened.recording.assign(bytes.begin(), bytes.end());
+    opened.recording_file = played.recording;
+  }
+  if (played.inputs.empty()) return opened;
+  opened.inputs = read_inputs(played.inputs.string());
   resolve(*opened.inputs, *opened.problem);
   return opened;
 }

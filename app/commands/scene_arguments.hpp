@@ -27,11 +27,13 @@ struct OpenedScene {
   std::shared_ptr<const Problem> problem;
   std::vector<std::string> warnings;  ///< of reading; the problem's own come on top
   std::optional<Inputs> inputs;       ///< that the scene names, resolved
+  /// That the scene names, and its file; empty: none.
+  std::vector<std::uint8_t> recording;
+  std::filesystem::path recording_file;
 };
 
 /// Reads the scene and its inputs; the named options win over --set. `live`: any element may be
-/// removed, whatever the scene says. `mesh_too`: a mesh alone will do. Throws InputError.
-[[nodiscard]] OpenedScene open_scene(const SceneArguments& arguments, bool live = false,
-                                     bool mesh_too = false);
+/// removed, whatever the scene says. Throws InputError.
+[[nodiscard]] OpenedScene open_scene(const SceneArguments& arguments, bool live = false);
 
 }  // namespace sunder::app

@@ -6,6 +6,7 @@
 
 #include "app/commands/commands.hpp"
 #include "app/commands/in_folder.hpp"
+#include "app/commands/mesh_scene.hpp"
 #include "app/commands/waiting.hpp"
 #include "app/input/scene_toml.hpp"
 #include "app/output/text.hpp"
@@ -23,8 +24,6 @@ namespace sunder::app {
 #ifdef SUNDER_VIEW
 namespace {
 
-constexpr bool kMeshToo = true;
-
 /// The scene and the inputs that are played: of --script or the scene's own.
 struct Opened {
   OpenedScene scene;
@@ -34,7 +33,14 @@ struct Opened {
 Opened open_all(const ViewArguments& arguments) {
   Opened opened;
   if (arguments.script) opened.inputs = read_inputs(arguments.script->string());
-  opened.scene = open_scene(arguments.scene, opened.inputs.has_value(), kMeshToo);
+  // A mesh alone has nothing that acts but a hand.
+  const bool live = opened.inputs.has_value() || arguments.of_mesh;
+  opened.scene = open_scene(arguments.scene, live);
+  if (!opened.scene.recording.empty()) {
+    throw InputError(InputFault::unknown_key,
+                     arguments.scene.scene.string() +
+                         ": recording is for sunder run and plan; leave the key out here");
+  }
   if (opened.inputs && opened.scene.inputs) {
     throw UsageError("--script: the scene has inputs of its own, " + opened.scene.inputs->source +
                      "; play one or the other");
@@ -49,7 +55,7 @@ Opened open_all(const ViewArguments& arguments) {
 
 int count_of_frames(const ViewArguments& arguments, const Opened& opened) {
   if (arguments.frames) return *arguments.frames;
-  if (!opened.inputs) return opened.scene.problem->scene().steps;
+  if (!opened.inputs) return arguments.of_mesh ? 1 : opened.scene.problem->scene().steps;
   return std::max(opened.inputs->frames(), 1);
 }
 
@@ -117,7 +123,7 @@ int view_in_window(const ViewArguments& arguments) {
     throw UsageError("--script and --frames go with --headless: a window takes the mouse");
   }
   constexpr bool kLive = true;
-  const OpenedScene scene = open_scene(arguments.scene, kLive, kMeshToo);
+  const OpenedScene scene = open_scene(arguments.scene, kLive);
   if (scene.inputs) {
     throw UsageError("the scene has inputs, " + scene.inputs->source +
                      ", which a window does not play; add --headless, or leave the key out");
@@ -197,7 +203,14 @@ int view_headless(const ViewArguments& arguments, Interruption& interruption) {
 
 }  // namespace
 
-int view_scene(const ViewArguments& arguments, Interruption& interruption) {
+int view_scene(const ViewArguments& given, Interruption& interruption) {
+  ViewArguments arguments = given;
+  std::optional<MeshScene> of_mesh;
+  if (is_mesh_file(given.scene.scene)) {
+    of_mesh.emplace(given.scene.scene);
+    arguments.scene.scene = of_mesh->file();
+    arguments.of_mesh = true;
+  }
   if (arguments.headless) return view_headless(arguments, interruption);
   const Expecting open(interruption, Interruption::Duty{"the window was closed", {}, {}, {}});
   return view_in_window(arguments);

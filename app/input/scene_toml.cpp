@@ -5,7 +5,6 @@
 
 #include "app/input/file_bytes.hpp"
 #include "app/input/mesh_import.hpp"
-#include "app/input/mesh_scene.hpp"
 #include "app/input/scene_overrides.hpp"
 #include "app/input/scene_sections.hpp"
 #include "app/input/toml_guard.hpp"
@@ -73,19 +72,32 @@ ParsedScene parse_scene(std::string_view text, const std::string& source,
     result.inputs_path = *inputs;
     scene.live = true;
   }
+  if (const auto recording = root.text("recording")) {
+    if (recording->empty()) {
+      root.fail(InputFault::out_of_range, "recording",
+                "is empty; allowed: the path of a recording");
+    }
+    if (!result.inputs_path.empty()) {
+      root.fail(InputFault::unknown_key, "recording", "stands beside inputs; allowed: one of them");
+    }
+    result.recording_path = *recording;
+    scene.live = true;
+  }
   result.places = collect_places(parsed, source);
   return result;
 }
 
-void refuse_inputs(const ParsedScene& parsed) {
-  if (parsed.inputs_path.empty()) return;
-  throw InputError(
-      InputFault::unknown_key,
-      parsed.scene.source + ": inputs is for sunder run, plan and view; leave the key out here");
+void refuse_played(const ParsedScene& parsed) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(InputFault::unknown_key,
+                     parsed.scene.source + ": " + what + "; leave the key out here");
+  };
+  if (!parsed.inputs_path.empty()) refuse("inputs is for sunder run, plan and view");
+  if (!parsed.recording_path.empty()) refuse("recording is for sunder run and plan");
 }
 
 std::string scene_text(const std::filesystem::path& path) {
-  return is_mesh_file(path) ? mesh_scene_text(path) : read_file(path, kLargestScene);
+  return read_file(path, kLargestScene);
 }
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
@@ -107,6 +119,7 @@ std::string scene_text_for(const std::filesystem::path& path,
   parsed.insert_or_assign("mesh", absolute(mesh).lexically_proximate(absolute(folder)).string());
   if (!root.has("title")) parsed.insert_or_assign("title", path.stem().string());
   parsed.erase("inputs");
+  parsed.erase("recording");
   if (!inputs.empty()) parsed.insert_or_assign("inputs", inputs);
   std::ostringstream out;
   out << toml::toml_formatter(parsed) << "\n";
@@ -115,11 +128,14 @@ std::string scene_text_for(const std::filesystem::path& path,
 
 std::shared_ptr<const Problem> read_problem(const std::filesystem::path& path,
                                             const std::vector<std::string>& overrides,
-                                            std::vector<std::string>* warnings,
-                                            std::filesystem::path* inputs, bool live) {
+                                            std::vector<std::string>* warnings, PlayedFiles* played,
+                                            bool live) {
   ParsedScene parsed = read_with_mesh(path, overrides, warnings);
-  if (!inputs) refuse_inputs(parsed);
-  if (!parsed.inputs_path.empty() && inputs) *inputs = path.parent_path() / parsed.inputs_path;
+  if (!played) refuse_played(parsed);
+  const auto beside = [&](const std::string& file) {
+    return file.empty() ? std::filesystem::path() : path.parent_path() / file;
+  };
+  if (played) *played = {beside(parsed.inputs_path), beside(parsed.recording_path)};
   parsed.scene.live = parsed.scene.live || live;
   try {
     return std::make_shared<const Problem>(std::move(parsed.scene));

@@ -21,19 +21,24 @@ namespace sunder::app {
                                const std::vector<std::string>& overrides = {},
                                std::vector<std::string>* warnings = nullptr);
 
+/// Files that a scene names for what is done between its steps; empty: none.
+struct PlayedFiles {
+  std::filesystem::path inputs, recording;
+};
+
 /// Reads a scene and makes it a Problem, whose errors are reported with their place in the file.
-/// `inputs`: gets the path of the scene's file of inputs, empty without one; null: a scene with one
+/// `played`: gets the paths of what is done beside the scene's own loads; null: a scene with such
 /// is refused. `live`: the problem is so whatever the scene says (Scene::live).
 [[nodiscard]] std::shared_ptr<const Problem> read_problem(
     const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
-    std::vector<std::string>* warnings = nullptr, std::filesystem::path* inputs = nullptr,
-    bool live = false);
+    std::vector<std::string>* warnings = nullptr, PlayedFiles* played = nullptr, bool live = false);
 
 /// A scene's text, read; Scene::mesh is empty.
 struct ParsedScene {
   Scene scene;
-  std::string mesh_path;    ///< the value of the key `mesh`, as written
-  std::string inputs_path;  ///< likewise of `inputs`; empty: there are none, and Scene::live is off
+  std::string mesh_path;       ///< the value of the key `mesh`, as written
+  std::string inputs_path;     ///< likewise of `inputs`; empty: there are none
+  std::string recording_path;  ///< likewise of `recording`; with neither Scene::live is off
   ScenePlaces places;
 };
 
@@ -43,8 +48,8 @@ struct ParsedScene {
                                       const std::vector<std::string>& overrides = {},
                                       const std::vector<std::string>& varied = {});
 
-/// Throws InputError where a scene has inputs: nobody would carry them out.
-void refuse_inputs(const ParsedScene& parsed);
+/// Throws InputError where a scene has inputs or a recording: nobody would carry them out.
+void refuse_played(const ParsedScene& parsed);
 
 /// The scene of a file with its overrides, as a text that reads the same from `folder`; its key
 /// `inputs` is `inputs`, or absent where that is empty. Comments are lost. Throws InputError.
@@ -53,8 +58,7 @@ void refuse_inputs(const ParsedScene& parsed);
                                          const std::filesystem::path& folder,
                                          const std::string& inputs);
 
-/// The text of a scene's file; of a mesh's one that is made for it (mesh_scene.hpp). Throws
-/// InputError.
+/// The text of a scene's file. Throws InputError.
 [[nodiscard]] std::string scene_text(const std::filesystem::path& path);
 
 }  // namespace sunder::app

@@ -73,6 +73,35 @@ void Hand::remove(std::span<const Index> elements) {
   act(input::Remove{{elements.begin(), elements.end()}}, [&] { simulation_.remove(elements); });
 }
 
+int Hand::grasp(const input::Grasp& grasp) {
+  input::Grasp held = grasp;
+  const int undos = simulation_.undos();
+  held.grip = grasp.nodes.empty() ? simulation_.grasp(grasp.near, grasp.radius, grasp.rigid)
+                                  : simulation_.grasp(grasp.nodes, grasp.rigid);
+  done_.push_back({held, simulation_.undos() > undos});
+  undone_.clear();
+  return held.grip;
+}
+
+void Hand::pose(const input::Pose& pose) {
+  act(pose, [&] { simulation_.pose(pose.grip, {pose.position, pose.quaternion}); });
+}
+
+void Hand::release(int grip) {
+  act(input::Release{grip}, [&] { simulation_.release(grip); });
+}
+
+std::vector<int> Hand::grips() const {
+  std::vector<int> grips;
+  for (const Deed& deed : done_) {
+    if (const auto* grasp = std::get_if<input::Grasp>(&deed.what)) grips.push_back(grasp->grip);
+    if (const auto* release = std::get_if<input::Release>(&deed.what)) {
+      std::erase(grips, release->grip);
+    }
+  }
+  return grips;
+}
+
 int Hand::cut(std::span<const std::array<Vec3, 3>> swept) {
   const std::size_t rows = simulation_.destroyed().size();
   const int undos = simulation_.undos();
@@ -163,6 +192,12 @@ bool do_to_body(Hand& hand, const Inputs& inputs, const Input& input) {
       hand.turn(*turn);
     } else if (const auto* remove = std::get_if<input::Remove>(&input.what)) {
       hand.remove(remove->elements);
+    } else if (const auto* grasp = std::get_if<input::Grasp>(&input.what)) {
+      hand.grasp(*grasp);
+    } else if (const auto* pose = std::get_if<input::Pose>(&input.what)) {
+      hand.pose(*pose);
+    } else if (const auto* release = std::get_if<input::Release>(&input.what)) {
+      hand.release(release->grip);
     } else if (const auto* cut = std::get_if<input::Cut>(&input.what)) {
       hand.cut(swept_by(*cut));
     } else {

@@ -23,6 +23,12 @@ class Hand {
   void drive(const input::Drive& drive);
   void turn(const input::Turn& turn);
   void remove(std::span<const Index> elements);
+  /// Returns the grip's number.
+  int grasp(const input::Grasp& grasp);
+  void pose(const input::Pose& pose);
+  void release(int grip);
+  /// Grips that hold now, in the order in which they took hold.
+  [[nodiscard]] std::vector<int> grips() const;
   /// Returns how many elements went.
   int cut(std::span<const std::array<Vec3, 3>> swept);
   StepReport step();
@@ -40,7 +46,9 @@ class Hand {
 
  private:
   struct Deed {
-    std::variant<input::Drive, input::Turn, input::Remove, input::Step> what;
+    std::variant<input::Drive, input::Turn, input::Remove, input::Grasp, input::Pose,
+                 input::Release, input::Step>
+        what;
     bool broke = false;  ///< something: what undo() counts
   };
   template <class What, class Do>

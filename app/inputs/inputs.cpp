@@ -40,6 +40,36 @@ InputAction read_cut(Words& words) {
   return cut;
 }
 
+InputAction read_grasp(Words& words) {
+  input::Grasp grasp;
+  if (words.peek() == "nodes") {
+    words.take("");
+    do {
+      grasp.nodes.push_back(words.whole("a node to grasp", 0));
+    } while (words.left() > 0 && words.peek() != "rigid");
+  } else {
+    grasp.near = words.vector("where to grasp, or nodes and their numbers,");
+    grasp.radius = words.number("the radius of the grip [mm]");
+    if (!(grasp.radius > 0)) words.fail("the radius of a grip must be above 0 mm");
+  }
+  grasp.rigid = words.left() > 0 && words.word("rigid or nothing", {"rigid"}) == 0;
+  return grasp;
+}
+
+InputAction read_pose(Words& words) {
+  input::Pose pose;
+  pose.grip = words.whole("the grip's number", 0);
+  pose.position = words.vector("the grip's place");
+  if (words.left() == 0) return pose;
+  bool turns = false;
+  for (double& part : pose.quaternion) {
+    part = words.number("the grip's quaternion, x y z w,");
+    turns = turns || part != 0;
+  }
+  if (!turns) words.fail("the grip's quaternion is 0 0 0 0; of no turn it is 0 0 0 1");
+  return pose;
+}
+
 InputAction read_stroke(Words& words) {
   input::Stroke stroke;
   do {
@@ -124,6 +154,10 @@ constexpr std::array kVerbs{
     Verb{"turn", read_turn},
     Verb{"remove", read_remove},
     Verb{"cut", read_cut},
+    Verb{"grasp", read_grasp},
+    Verb{"pose", read_pose},
+    Verb{"release",
+         [](Words& w) -> InputAction { return input::Release{w.whole("the grip's number", 0)}; }},
     Verb{"stroke", read_stroke},
     Verb{"step", [](Words& w) -> InputAction { return input::Step{count(w, "steps")}; }},
     Verb{"frame", [](Words& w) -> InputAction { return input::Frame{count(w, "frames")}; }},

@@ -3,6 +3,7 @@
 // line (docs/view.md "Inputs").
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,6 +37,24 @@ struct Turn {
 };
 struct Remove {
   std::vector<Index> elements;
+};
+/// Takes hold of nodes, or of all within a radius of a place: a grip by the number that
+/// Simulation::grasp gives it, the first one as many as the scene has instruments.
+struct Grasp {
+  std::vector<Index> nodes;  ///< empty: near
+  Vec3 near = Vec3::Zero();  ///< [mm]
+  double radius = 0;         ///< [mm]
+  bool rigid = false;
+  int grip = kNone;  ///< that it has become
+};
+/// Brings a grip to a place and a rotation since it took hold (x, y, z, w).
+struct Pose {
+  int grip = 0;
+  Vec3 position = Vec3::Zero();  ///< [mm]
+  std::array<double, 4> quaternion{0, 0, 0, 1};
+};
+struct Release {
+  int grip = 0;
 };
 /// Places of a blade's edge, two points each [mm]: what it passes from one to the next is cut.
 struct Cut {
@@ -87,9 +106,10 @@ struct Show {
 }  // namespace input
 
 using InputAction =
-    std::variant<input::Drive, input::Turn, input::Remove, input::Cut, input::Step, input::Frame,
-                 input::Undo, input::Redo, input::Reset, input::Pause, input::Stroke, input::Camera,
-                 input::Look, input::Colour, input::Clip, input::Show>;
+    std::variant<input::Drive, input::Turn, input::Remove, input::Cut, input::Grasp, input::Pose,
+                 input::Release, input::Step, input::Frame, input::Undo, input::Redo, input::Reset,
+                 input::Pause, input::Stroke, input::Camera, input::Look, input::Colour,
+                 input::Clip, input::Show>;
 
 struct Input {
   int line = 0;  ///< from 1
@@ -121,6 +141,9 @@ void resolve(Inputs& inputs, const Problem& problem);
 [[nodiscard]] std::string text_of(const input::Drive& drive);
 [[nodiscard]] std::string text_of(const input::Turn& turn);
 [[nodiscard]] std::string text_of(const input::Remove& remove);
+[[nodiscard]] std::string text_of(const input::Grasp& grasp);
+[[nodiscard]] std::string text_of(const input::Pose& pose);
+[[nodiscard]] std::string text_of(const input::Release& release);
 [[nodiscard]] std::string text_of(const input::Step& step);
 
 }  // namespace sunder::app

@@ -34,6 +34,17 @@ class Resolver {
     }
   }
 
+  void operator()(input::Grasp& grasp) const {
+    for (const Index n : grasp.nodes) {
+      if (n < problem_.node_count()) continue;
+      fail("there is no node " + std::to_string(n) + "; the mesh has " +
+           std::to_string(problem_.node_count()) + ", from 0 on");
+    }
+  }
+
+  void operator()(input::Pose& pose) const { of_a_host(pose.grip); }
+  void operator()(input::Release& release) const { of_a_host(release.grip); }
+
   void operator()(input::Colour& colour) const {
     const auto& name = field_names()[static_cast<std::size_t>(colour.field)];
     const auto refuse = [&](const std::string& why) {
@@ -54,6 +65,14 @@ class Resolver {
   void operator()(Other&) const {}
 
  private:
+  void of_a_host(int grip) const {
+    const auto count = static_cast<int>(problem_.scene().instruments.size());
+    if (grip >= count) return;
+    fail("grip " + std::to_string(grip) +
+         " is an instrument of the scene; those that are grasped " + "have numbers from " +
+         std::to_string(count) + " on");
+  }
+
   [[nodiscard]] std::size_t instrument(const std::string& name) const {
     std::vector<std::string> names;
     const auto& all = problem_.scene().instruments;
@@ -107,6 +126,28 @@ std::string text_of(const input::Remove& remove) {
   std::string text = "remove";
   for (const Index e : remove.elements) text += " " + std::to_string(e);
   return text;
+}
+
+std::string text_of(const input::Grasp& grasp) {
+  std::string text = "grasp";
+  if (grasp.nodes.empty()) {
+    text += " " + numbers(grasp.near) + " " + number(grasp.radius);
+  } else {
+    text += " nodes";
+    for (const Index n : grasp.nodes) text += " " + std::to_string(n);
+  }
+  return text + (grasp.rigid ? " rigid" : "");
+}
+
+std::string text_of(const input::Pose& pose) {
+  std::string text = "pose " + std::to_string(pose.grip) + " " + numbers(pose.position);
+  if (pose.quaternion == input::Pose().quaternion) return text;
+  for (const double part : pose.quaternion) text += " " + number(part);
+  return text;
+}
+
+std::string text_of(const input::Release& release) {
+  return "release " + std::to_string(release.grip);
 }
 
 std::string text_of(const input::Step& step) {

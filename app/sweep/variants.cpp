@@ -77,7 +77,7 @@ void Variants::read(const std::vector<std::size_t>& places) const {
 
 std::shared_ptr<const Problem> Variants::problem(const std::vector<std::size_t>& places) {
   ParsedScene parsed = parse_scene(text_, scene_.string(), overrides_, overrides_at(axes_, places));
-  refuse_inputs(parsed);
+  refuse_played(parsed);
   parsed.scene.mesh = *mesh(parsed.mesh_path);
   // Preparing fractures shortens single frames; of many runs it only adds to the work.
   parsed.scene.solver.prepare = false;

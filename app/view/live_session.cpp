@@ -13,6 +13,9 @@ bool same_instrument(const InputAction& a, const InputAction& b) {
   const auto* one = std::get_if<input::Drive>(&a);
   const auto* other = std::get_if<input::Drive>(&b);
   if (one && other) return one->index == other->index && !one->further && !other->further;
+  const auto* posed = std::get_if<input::Pose>(&a);
+  const auto* anew = std::get_if<input::Pose>(&b);
+  if (posed && anew) return posed->grip == anew->grip;
   const auto* turned = std::get_if<input::Turn>(&a);
   const auto* again = std::get_if<input::Turn>(&b);
   return turned && again && turned->index == again->index;
@@ -21,7 +24,10 @@ bool same_instrument(const InputAction& a, const InputAction& b) {
 }  // namespace
 
 LiveSession::LiveSession(Session& session, std::chrono::duration<double> pace)
-    : session_(session), pace_(pace), due_(Clock::now()) {
+    : session_(session),
+      pace_(pace),
+      forces_(session.simulation().grip_forces()),
+      due_(Clock::now()) {
   session_.pause(false);  // this one pauses
   publish();
   thread_ = std::thread([this] { run(); });
@@ -97,20 +103,21 @@ void LiveSession::run() {
       step = goes_on() && Clock::now() >= due_;
     }
     if (step) due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pace_);
-    // The first of what goes wrong is told. What was asked for beside it is done all the same.
     std::optional<std::string> error;
     const auto attempt = [&](const auto& what) {
       try {
         what();
       } catch (const std::exception& wrong) {
         if (!error) error = wrong.what();
-        paused_.store(true);
       }
     };
+    // What cannot be done takes nothing of what comes after it along.
     for (const Task& task : tasks) attempt([&] { perform(task); });
     if (step && !error) attempt([&] { session_.step(); });
-    if (!step && tasks.empty()) continue;
-    attempt([&] { publish(); });
+    const bool anything = step || !tasks.empty();
+    if (anything) attempt([&] { publish(); });
+    if (error) paused_.store(true);
+    if (!anything) continue;
     const std::lock_guard lock(mutex_);
     if (error || !tasks.empty()) now_.error = std::move(error);
   }
@@ -129,8 +136,14 @@ void LiveSession::publish() {
        ++i) {
     ruptures.push_back(sentence_of(rows[i]));
   }
+  std::vector<HeldNodes> grips;
+  for (const int grip : session_.hand().grips()) {
+    const auto nodes = simulation.held_nodes(grip);
+    grips.push_back({grip, simulation.centre_of(grip), {nodes.begin(), nodes.end()}});
+  }
   const std::lock_guard lock(mutex_);
   now_.shown = std::move(shown);
+  now_.grips = std::move(grips);
   now_.values = std::move(values);
   now_.undos = simulation.undos();
   now_.redos = simulation.redos();

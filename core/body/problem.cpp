@@ -221,11 +221,6 @@ Problem::Problem(const Problem& whole, std::span<const Index> gripped)
       anchor_stiffness_(whole.anchor_stiffness_) {
   resolve_materials();
   std::ranges::sort(gripped_dofs_);
-  if (gripped.size() == whole.gripped_dofs_.size()) return;
-  for (Index d : whole.gripped_dofs_) {
-    own_grips_.push_back(
-        static_cast<Index>(std::ranges::lower_bound(gripped_dofs_, d) - gripped_dofs_.begin()));
-  }
 }
 
 void Problem::check_crack(const FractureOptions& f, const FractureModelRow& model) {

@@ -13,6 +13,7 @@
 #include "finite/statics_backend.hpp"
 #include "solver/finite_motion.hpp"
 #include "solver/finite_statics.hpp"
+#include "solver/grip_stiffness.hpp"
 #include "solver/plan.hpp"
 #include "sunder/in_quotes.hpp"
 #include "sunder/words.hpp"
@@ -236,10 +237,9 @@ std::vector<KernelPlan> LawBackend::kernels() const {
 }
 
 std::shared_ptr<InstrumentForces> LawBackend::instrument_forces() {
-  if (problem().gripped_dofs().empty() || route_ == Route::cg) return nullptr;
+  if (route_ == Route::cg || !has_grips()) return nullptr;
   if (!instruments_) {
     instruments_.emplace(problem());
-    reactions_.assign(problem().gripped_dofs().size(), 0.0);
     publish_instruments();
   }
   return instruments_->forces();
@@ -250,23 +250,25 @@ void LawBackend::take_over_instrument_forces(std::shared_ptr<InstrumentForces> f
 }
 
 void LawBackend::publish_instruments() {
-  if (!instruments_ || load_.displacements.size() < problem().gripped_dofs().size()) return;
-  const Eigen::MatrixXd l = grip_compliance();
-  if (l.size() == 0) return;
+  const auto computed_grips = computed().gripped_dofs();
+  if (!instruments_ || load_.displacements.size() < computed_grips.size()) return;
+  if (gripped_dofs().empty()) {  // but some may be grasped
+    instruments_->publish(Eigen::MatrixXd(0, 0), {}, {});
+    return;
+  }
+  const Eigen::MatrixXd stiffness = grip_stiffness();
+  if (stiffness.rows() < static_cast<Eigen::Index>(gripped_dofs().size())) return;  // unknown
+  std::vector<Eigen::Index> places;  // of gripped_dofs() in the computed body's, in order of dofs
+  held_.clear();
+  for (Index d : gripped_dofs()) {
+    places.push_back(std::ranges::lower_bound(computed_grips, d) - computed_grips.begin());
+    held_.push_back(load_.displacements[static_cast<std::size_t>(places.back())]);
+  }
   reactions_.resize(gripped_dofs().size());
   read_reactions(reactions_);
-  instruments_->publish(l, reactions_, own_displacements());
-}
-
-/// Of the problem's own grips.
-std::span<const double> LawBackend::own_displacements() {
-  const auto own = problem().gripped_dofs(), all = computed().gripped_dofs();
-  own_displacements_.clear();
-  for (Index d : own) {
-    const auto place = std::ranges::lower_bound(all, d) - all.begin();
-    own_displacements_.push_back(load_.displacements[static_cast<std::size_t>(place)]);
-  }
-  return own_displacements_;
+  instruments_->publish(solver::compliance_factor(stiffness(places, places),
+                                                  instruments_->anchors(gripped_dofs().size())),
+                        reactions_, held_);
 }
 
 StressSummary LawBackend::do_stress() {

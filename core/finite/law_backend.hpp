@@ -86,8 +86,8 @@ class LawBackend : public Backend {
 
   std::shared_ptr<InstrumentForces> instrument_forces() override;
   void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override;
-  /// Of the last solution, as InstrumentBlock::publish takes it; empty: unknown.
-  [[nodiscard]] virtual Eigen::MatrixXd grip_compliance() = 0;
+  /// Of the last solution, of the grips of computed(); empty: unknown.
+  [[nodiscard]] virtual Eigen::MatrixXd grip_stiffness() = 0;
   /// What computes the fields of a body.
   struct Computed {
     std::shared_ptr<const Problem> problem;
@@ -132,7 +132,6 @@ class LawBackend : public Backend {
  private:
   [[nodiscard]] Computed computed_as(std::shared_ptr<const Problem> problem);
   [[nodiscard]] Computed compute_as(const std::shared_ptr<const Problem>& problem);
-  [[nodiscard]] std::span<const double> own_displacements();
   [[nodiscard]] Route chosen_route() const;
   void leave_inverse_if_outgrown(const Problem& next);
   std::size_t check_options();
@@ -153,7 +152,7 @@ class LawBackend : public Backend {
   std::vector<Index> cut_off_;  // elements
   std::vector<std::uint8_t> excluded_;
   std::optional<solver::InstrumentBlock> instruments_;  // once asked for
-  std::vector<double> reactions_, own_displacements_;
+  std::vector<double> reactions_, held_;                // per gripped_dofs()
 };
 
 }  // namespace sunder::finite

@@ -113,8 +113,8 @@ class MotionBackend final : public LawBackend {
                          "solver.tolerance");
   }
 
-  Eigen::MatrixXd grip_compliance() override {
-    return motion_->grip_compliance(problem().scene().dynamics->felt_inertia);
+  Eigen::MatrixXd grip_stiffness() override {
+    return motion_->grip_stiffness(problem().scene().dynamics->felt_inertia);
   }
 
   void do_destroy(std::span<const Index> elements) override {

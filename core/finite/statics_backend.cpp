@@ -102,7 +102,7 @@ class StaticsBackend final : public LawBackend {
     throw NumericalError(out.str());
   }
 
-  Eigen::MatrixXd grip_compliance() override { return statics_->grip_compliance(); }
+  Eigen::MatrixXd grip_stiffness() override { return statics_->grip_stiffness(); }
 
   /// A piece that hangs on nothing has no stress to speak of.
   [[nodiscard]] std::span<const std::uint8_t> without_stress() const override {

@@ -247,13 +247,13 @@ void add_instruments(Hash& hash, const Problem& problem) {
   }
 }
 
-void add_options(Hash& hash, const Scene& scene) {
+void add_options(Hash& hash, const Scene& scene, bool live) {
   const FractureOptions& f = scene.fracture;
   for (const int word :
        {static_cast<int>(f.model), static_cast<int>(f.yield_measure), static_cast<int>(f.sigma0),
         static_cast<int>(f.crack_length), static_cast<int>(f.birth), static_cast<int>(f.sif),
         static_cast<int>(f.crack), static_cast<int>(f.stress), f.max_events, f.max_new_nodes,
-        scene.steps, scene.live ? 1 : 0}) {
+        scene.steps, live ? 1 : 0}) {
     hash.add_index(word);
   }
   for (const double v : {f.alpha, f.averaging, scene.solver.tolerance}) hash.add(v);
@@ -266,7 +266,7 @@ void add_options(Hash& hash, const Scene& scene) {
 
 }  // namespace
 
-std::uint64_t fingerprint(const Problem& problem, const BackendInfo& backend) {
+std::uint64_t fingerprint(const Problem& problem, const BackendInfo& backend, bool live) {
   Hash hash;
   add_body(hash, problem);
   add_instruments(hash, problem);
@@ -275,7 +275,7 @@ std::uint64_t fingerprint(const Problem& problem, const BackendInfo& backend) {
     for (const auto& elements : *lists) hash.add(std::span<const Index>(elements));
   }
   for (const ScriptedRemoval& removal : problem.scene().removals) hash.add_index(removal.step);
-  add_options(hash, problem.scene());
+  add_options(hash, problem.scene(), live);
   for (const std::string* word :
        {&backend.backend, &backend.precision, &backend.route, &backend.update}) {
     hash.add(*word);
@@ -300,7 +300,7 @@ std::vector<std::uint8_t> to_bytes(std::span<const std::shared_ptr<const Action>
 }
 
 std::vector<std::shared_ptr<const Action>> from_bytes(std::span<const std::uint8_t> bytes,
-                                                      std::uint64_t body) {
+                                                      std::span<const std::uint64_t> bodies) {
   if (bytes.size() < kMark.size() || !std::ranges::equal(bytes.first(kMark.size()), kMark)) {
     throw InputError(InputFault::syntax, "these bytes are no recording of sunder");
   }
@@ -316,7 +316,7 @@ std::vector<std::shared_ptr<const Action>> from_bytes(std::span<const std::uint8
   const auto told = bytes.first(bytes.size() - kCheck);
   if (checksum(told) != Reader(bytes.last(kCheck)).number()) damaged();
   Reader from(told.subspan(kMark.size() + 4));
-  if (from.number() != body) {
+  if (std::ranges::find(bodies, from.number()) == bodies.end()) {
     throw InputError(InputFault::unknown_name,
                      "the recording is of another body, scene or solver than this simulation");
   }

@@ -128,6 +128,8 @@ struct Simulation::History {
   std::shared_ptr<const int> self = std::make_shared<const int>(0);  // owner of the marks
   const Action* again = nullptr;                                     // that is being done
   bool travels = false;          // what is done was done before: nobody watches, and `undone` stays
+  Actions recording;             // that is played
+  std::size_t played = 0;        // of it
   std::size_t undone_broke = 0;  // of `undone`: how many actions in which something broke
 };
 

@@ -94,7 +94,10 @@ void Simulation::reserve() {
   reactions_.forces.reserve(problem_->scene().instruments.size());
 }
 
-Simulation::~Simulation() = default;
+Simulation::~Simulation() {
+  if (haptics_) haptics_->end();
+  if (frames_) frames_->end();
+}
 
 StepReport Simulation::step() { return take_step(std::nullopt, problem_->scene().solver.max_ms); }
 
@@ -125,6 +128,7 @@ StepReport Simulation::compute_step(double dt) {
   report.step = now_.next_step;
   report.load_factor = now_.scene_time;
   now_.interrupted = now_.out_of_time_now = false;
+  if (haptics_) haptics_->label(now_.next_step);
   events_this_step_ = 0;
   decisions_this_step_ = 0;
   pristine_.clear();
@@ -378,6 +382,7 @@ std::span<const double> Simulation::pristine_displacement() {
 /// The instrument behind a decision; the backend holds the same solution before and after.
 void Simulation::attribute_event() {
   if (decision_->elements.empty()) return;
+  const InstrumentForces::Quiet quiet(haptics_.get());  // solutions of other loads
   const Attribution a = attribution(*backend_, *loads_, decision_->elements.front().element);
   backend_->set_load(loads_->load());
   backend_->solve();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a host takes hold of a body by at run time, and pushes it with.
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -8,32 +7,12 @@
 #include "frame/act.hpp"
 #include "frame/history.hpp"
 #include "frame/loads.hpp"
+#include "frame/quaternion.hpp"
 #include "sunder/error.hpp"
 #include "sunder/words.hpp"
 
 namespace sunder {
 namespace {
-
-/// R - I of a rotation; exactly 0 where it turns nothing.
-Mat3 turn_by(const Eigen::Quaterniond& q) {
-  Mat3 cross;
-  cross << 0, -q.z(), q.y(), q.z(), 0, -q.x(), -q.y(), q.x(), 0;
-  return 2 * (q.w() * cross + cross * cross);
-}
-
-/// Of length 1. Throws UsageError for one without a direction.
-Eigen::Quaterniond unit(const std::array<double, 4>& of) {
-  const double largest = std::ranges::max(of, {}, [](double v) { return std::abs(v); });
-  const bool finite = std::ranges::all_of(of, [](double v) { return std::isfinite(v); });
-  if (!finite || largest == 0) {
-    throw UsageError(
-        "a grip's quaternion must be finite and of a length above 0: x, y, z, w, of no turn 0, 0, "
-        "0, 1");
-  }
-  const double scale = 1 / std::abs(largest);
-  return Eigen::Quaterniond(of[3] * scale, of[0] * scale, of[1] * scale, of[2] * scale)
-      .normalized();
-}
 
 [[noreturn]] void refuse_node(Index node, const std::string& what, const std::string& why) {
   throw UsageError("node " + std::to_string(node) + " cannot be " + what + ": " + why);
@@ -151,6 +130,7 @@ int Simulation::take_hold(const action::Grasp& what) {
     const std::vector<Index> dofs = dofs_of(tool, *problem_);
     id = loads_->take(std::move(tool));
     backend_->grasp(dofs);
+    describe_grips();
     follow_grips(loose_->pieces() > 0);
   });
   return id;
@@ -182,7 +162,12 @@ const Tool& Simulation::tool(int id, bool holds) const {
 void Simulation::pose(int id, const Pose& pose) {
   const Tool& of = tool(id, true);
   if (!pose.position.allFinite()) throw UsageError("a grip's place must be finite");
-  const Mat3 turn = turn_by(unit(pose.quaternion));
+  if (!names_a_turn(pose.quaternion)) {
+    throw UsageError(
+        "a grip's quaternion must be finite and of a length above 0: x, y, z, w, of no turn 0, 0, "
+        "0, 1");
+  }
+  const Mat3 turn = turn_by(pose.quaternion);
   if (!of.rigid && !turn.isZero(0)) {
     throw UsageError("grip " + std::to_string(id) +
                      " holds points, which do not turn; grasp them rigidly");
@@ -219,8 +204,10 @@ void Simulation::release(int id) {
   static_cast<void>(tool(id, true));
   act({Action::Release{id}}, [&](Action&) {
     const std::vector<Index> dofs = dofs_of(tool(id, true), *problem_);
+    if (haptics_) haptics_->let_go(id);
     loads_->drop(id);
     backend_->release(dofs);
+    describe_grips();
     follow_grips(now_.gone > 0);
   });
 }

@@ -82,6 +82,10 @@ bool Simulation::go_back(const Kept& kept) {
   if (!backend_->restore(*kept.backend)) return false;
   criterion_->restore(*kept.criterion);
   loads_->restore(kept.loads);
+  // The backend has published already, by grips that were not those of then.
+  describe_grips();
+  if (haptics_) haptics_->label(kept.now.next_step - 1);
+  if (haptics_ && kept.now.solved) haptics_->publish_again();
   if (averaged_) averaged_->exclude_only(kept.averaged);
   now_ = kept.now;
   destroyed_.erase(destroyed_.begin() + static_cast<std::ptrdiff_t>(kept.destroyed),
@@ -112,7 +116,9 @@ void Simulation::begin_anew() {
   // By the laws of finite deformation they cost every frame once somebody has asked.
   constexpr long kOurs = 2;  // the backend's own hold and this one
   auto forces = backend_->instrument_forces();
-  if (forces && forces.use_count() > kOurs) backend->take_over_instrument_forces(std::move(forces));
+  if (haptics_ || (forces && forces.use_count() > kOurs)) {
+    backend->take_over_instrument_forces(haptics_ ? haptics_ : std::move(forces));
+  }
   backend_ = std::move(backend);
   now_ = {};
   destroyed_.clear();
@@ -168,6 +174,7 @@ void Simulation::perform(const std::shared_ptr<const Action>& action) {
 /// start.
 bool Simulation::go_to(const Actions& actions, const std::shared_ptr<const Kept>& kept) {
   History& h = *history_;
+  const InstrumentForces::Quiet quiet(haptics_.get());  // nobody feels the way there
   const Actions path = actions;
   const std::size_t same = common(path, h.done);
   // The latest state on the way that the backend still goes back to.
@@ -190,6 +197,7 @@ bool Simulation::go_to(const Actions& actions, const std::shared_ptr<const Kept>
     h.done.resize(at);
   }
   for (std::size_t i = at; i < path.size(); ++i) perform(path[i]);
+  arrive();
   return !back;
 }
 
@@ -217,13 +225,14 @@ Travel Simulation::restore(const Mark& mark) {
 
 std::vector<std::uint8_t> Simulation::store() const {
   require_history();
-  return to_bytes(history_->done, fingerprint(*problem_, backend_->info()));
+  return to_bytes(history_->done, fingerprint(*problem_, backend_->info(), problem_->scene().live));
 }
 
 Travel Simulation::load(std::span<const std::uint8_t> bytes) {
   require_history();
   History& h = *history_;
-  const Actions actions = from_bytes(bytes, fingerprint(*problem_, backend_->info()));
+  const std::uint64_t body = fingerprint(*problem_, backend_->info(), problem_->scene().live);
+  const Actions actions = from_bytes(bytes, {&body, 1});
   Travel travel;
   travel.replayed = go_to(actions, nullptr);
   travel.events = now_.next_event;
@@ -261,6 +270,7 @@ Travel Simulation::redo(int actions) {
   }
   Travel travel;
   const int before = now_.next_event;
+  const InstrumentForces::Quiet quiet(haptics_.get());
   // With what came after it, up to the next in which something broke: undo() has taken it too.
   for (int left = actions; !h.undone.empty();) {
     const auto action = h.undone.front();
@@ -271,6 +281,7 @@ Travel Simulation::redo(int actions) {
     --left;
     --h.undone_broke;
   }
+  arrive();
   travel.events = now_.next_event - before;
   return travel;
 }

@@ -70,6 +70,7 @@ StepReport Simulation::take_step(std::optional<double> dt, double max_ms) {
     }
     note_end();
   });
+  finish_frame();
   return report;
 }
 
@@ -77,14 +78,15 @@ bool Simulation::replaying() const { return history_ && history_->travels; }
 
 /// After an event: whether the step in work is to end with the solution that follows.
 void Simulation::end_step_early() {
-  if (replaying()) {
-    const auto* step = std::get_if<Action::Step>(&history_->again->what);
+  if (!replaying() && observer_ && !observer_(decision_->elements)) now_.interrupted = true;
+  if (const Action* again = history_ ? history_->again : nullptr) {
+    const auto* step = std::get_if<Action::Step>(&again->what);
     if (!step || step->events != events_this_step_) return;
-    (step->by_time ? now_.out_of_time_now : now_.interrupted) = true;
+    // Of a recording that is played the step was ended so; whoever plays it has not ended it.
+    (step->by_time || !replaying() ? now_.out_of_time_now : now_.interrupted) = true;
     if (step->by_time) now_.out_of_time.add(now_.next_step);
     return;
   }
-  if (observer_ && !observer_(decision_->elements)) now_.interrupted = true;
   if (!in_work_ || !(max_ms_ > 0) || problem_->moves() || now_.interrupted) return;
   using Milliseconds = std::chrono::duration<double, std::milli>;
   if (Milliseconds(std::chrono::steady_clock::now() - began_).count() < max_ms_) return;
@@ -127,6 +129,7 @@ void Simulation::remove(std::span<const Index> elements) {
   check_removal(elements);
   if (elements.empty()) return;
   act({Action::Remove{{elements.begin(), elements.end()}}}, [&](Action&) { take_out(elements); });
+  finish_frame();
 }
 
 int Simulation::cut(std::span<const std::array<Vec3, 3>> swept) {
@@ -192,6 +195,7 @@ void Simulation::follow_removal() {
 void Simulation::warm_up() {
   if (now_.next_step > 0 || now_.solved || problem_->moves() || problem_->finite()) return;
   const auto before = backend_->save();
+  const InstrumentForces::Quiet quiet(haptics_.get());
   Load none;
   none.displacements.assign(backend_->gripped_dofs().size(), 0.0);
   backend_->set_load(none);
@@ -206,6 +210,7 @@ void Simulation::warm_up() {
     backend_->solve_pristine(none, displacement);
   }
   if (before) static_cast<void>(backend_->restore(*before));
+  if (haptics_) haptics_->withdraw();
 }
 
 }  // namespace sunder

@@ -146,6 +146,13 @@ std::vector<SceneKey> root_rows() {
           "([view.md](view.md) \"Inputs\"), as `sunder view` records it; every element may be "
           "removed then, and the run ends with the last input",
           "not there, no such input: error; `sweep`: error"),
+      row("", "recording", text, "",
+          "path, relative to the scene: what a host did to a simulation of this scene, as "
+          "`sunder_simulation_store` gives it ([embedding.md](embedding.md) \"A live body\"); "
+          "`run` "
+          "does it again, bit by bit, and ends with its last action",
+          "not there, damaged, of another body, scene, solver or version, or `inputs` beside it: "
+          "error; `sweep`, `view`: error"),
       row("", "material", table, "", "one table a named volume", "no such volume: error"),
       row("", "fixed", tables, "", "supports", "a body that can move as one: error"),
       row("", "instrument", tables, "", "what pulls, grips and presses; any number", ""),

@@ -102,7 +102,10 @@ void Deferred::reserve(Index columns) {
 }
 
 bool Deferred::factor_grips() {
-  if (grips() == 0) return true;
+  if (grips() == 0) {
+    if (grip_block_.rows() > 0) grip_block_ = Eigen::LLT<Eigen::MatrixXd>(Eigen::MatrixXd(0, 0));
+    return true;
+  }
   if (border_.empty()) {
     grip_block_.compute(grip_compliance_.leftCols(grips()));
   } else {
@@ -110,20 +113,7 @@ bool Deferred::factor_grips() {
     border_.add_to_grips(compliance);
     grip_block_.compute(compliance);
   }
-  if (grip_block_.info() != Eigen::Success || !grip_block_.matrixLLT().allFinite()) return false;
-  if (!grasped()) return true;
-  // Eliminated first, the others hold still for the problem's own.
-  const Eigen::Index all = grips(), own = static_cast<Eigen::Index>(problem_.gripped_dofs().size());
-  grasped_first_.resize(all, all);
-  const auto from = [&](Eigen::Index i) { return i < all - own ? own + i : i - (all - own); };
-  for (Eigen::Index j = 0; j < all; ++j) {
-    for (Eigen::Index i = 0; i < all; ++i) {
-      grasped_first_(i, j) = grip_compliance_(from(i), from(j));
-    }
-  }
-  grasped_block_.compute(grasped_first_);
-  own_factor_ = grasped_block_.matrixLLT().bottomRightCorner(own, own);
-  return grasped_block_.info() == Eigen::Success && own_factor_.allFinite();
+  return grip_block_.info() == Eigen::Success && grip_block_.matrixLLT().allFinite();
 }
 
 /// Which unknowns are gripped now, and (A^-1)_GG by M as it is.

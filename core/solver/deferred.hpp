@@ -90,10 +90,8 @@ class Deferred {
   /// Of all of them.
   [[nodiscard]] Eigen::VectorXd grip_forces() const;
 
-  /// L with L L^T = (A^-1)_GG of the problem's own grips while all others hold still.
-  [[nodiscard]] const Eigen::MatrixXd& grip_factor() const {
-    return grasped() ? own_factor_ : grip_block_.matrixLLT();
-  }
+  /// L with L L^T = (A^-1)_GG.
+  [[nodiscard]] const Eigen::MatrixXd& grip_factor() const { return grip_block_.matrixLLT(); }
 
   [[nodiscard]] Base& base() { return *base_; }
   [[nodiscard]] const Base& base() const { return *base_; }
@@ -165,8 +163,6 @@ class Deferred {
   [[nodiscard]] std::size_t go_to_sums();
   [[nodiscard]] bool replay();
   [[nodiscard]] bool factor_grips();
-  /// Some of the gripped unknowns are not the problem's own.
-  [[nodiscard]] bool grasped() const { return held_.size() > problem_.gripped_dofs().size(); }
   void find_grips();
   struct Columns {
     const double* data;
@@ -201,9 +197,6 @@ class Deferred {
   linear_algebra::RowMajor grip_columns_;     // of G, where they are not the first ones
   std::vector<Sums> sums_;                    // of fewer events first
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
-  // Where some are not the problem's own: those first, and what grip_factor() is.
-  Eigen::MatrixXd grasped_first_, own_factor_;
-  Eigen::LLT<Eigen::MatrixXd> grasped_block_{Eigen::MatrixXd(0, 0)};
   // The event in work: what it takes and what it adds, its update vectors and where they act, and
   // what comes of them.
   std::vector<Part> less_, more_;

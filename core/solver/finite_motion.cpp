@@ -129,14 +129,13 @@ void FiniteMotion::go_on_from(FiniteMotion& before) {
   if (base_ && !base_->grip(potential_.problem())) base_.reset();
 }
 
-Eigen::MatrixXd FiniteMotion::grip_compliance(bool with_inertia) {
+Eigen::MatrixXd FiniteMotion::grip_stiffness(bool with_inertia) {
   if (!base_ || rate_ == 0) return {};
   const GripTangent of{{rate_ * (rate_ + options_.damping), mass_},
                        options_.viscosity > 0 ? &viscosity_ : nullptr,
                        options_.viscosity * rate_,
                        with_inertia};
-  return compliance_factor(grip_stiffness(moving_, u_, pattern(), *base_, of),
-                           anchors_of(potential_.problem()));
+  return solver::grip_stiffness(moving_, u_, pattern(), *base_, of);
 }
 
 void FiniteMotion::leave_device(const FiniteMotionPast& past) {

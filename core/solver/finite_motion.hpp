@@ -111,9 +111,9 @@ class FiniteMotion {
   }
   /// (3 * nodes) [N], of what is live, at the rates of the last step; empty: there are none.
   [[nodiscard]] const std::vector<double>& viscous_forces() const { return viscous_; }
-  /// Lower L: L L^T is the compliance [mm/N] of the grips in the last step, anchors included;
-  /// empty: there is no base to find it by.
-  [[nodiscard]] Eigen::MatrixXd grip_compliance(bool with_inertia);
+  /// Stiffness [N/mm] that all grips of the body feel in the last step (grip_stiffness.hpp); empty:
+  /// there is no base to find it by.
+  [[nodiscard]] Eigen::MatrixXd grip_stiffness(bool with_inertia);
   /// Of all steps so far.
   [[nodiscard]] FiniteMotionBalance sum() const;
 

@@ -112,10 +112,9 @@ void FiniteStatics::go_on_from(FiniteStatics& before) {
 
 void FiniteStatics::destroyed(std::span<const Index>) { update_parts(); }
 
-Eigen::MatrixXd FiniteStatics::grip_compliance() {
+Eigen::MatrixXd FiniteStatics::grip_stiffness() {
   if (!base_) return {};
-  return compliance_factor(grip_stiffness(resting_, shown_.u, pattern_.get(), *base_, {}),
-                           anchors_of(body_.problem));
+  return solver::grip_stiffness(resting_, shown_.u, pattern_.get(), *base_, {});
 }
 
 void FiniteStatics::body_changed() {

@@ -71,9 +71,9 @@ class FiniteStatics {
   [[nodiscard]] const std::vector<double>& displacement() const { return shown_.u; }
   /// (3 * nodes) [N] at displacement(); what is destroyed or frozen adds nothing.
   [[nodiscard]] std::span<const double> internal_forces() const { return shown_.f; }
-  /// Lower L: L L^T is the compliance [mm/N] of the grips there, anchors included; empty: there is
+  /// Stiffness [N/mm] that all grips of the body feel there (grip_stiffness.hpp); empty: there is
   /// no base to find it by.
-  [[nodiscard]] Eigen::MatrixXd grip_compliance();
+  [[nodiscard]] Eigen::MatrixXd grip_stiffness();
   /// Per element 1: destroyed, or of a piece that nothing holds, whose stress has no meaning.
   [[nodiscard]] std::span<const std::uint8_t> out() const { return resting_.out(); }
 

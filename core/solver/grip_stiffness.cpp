@@ -108,10 +108,8 @@ class BlockConjugateGradients {
   FiniteBase& base_;
 };
 
-/// Grips of nodes that have parted go with those of the others; those of a host hold still.
+/// Grips of nodes that have parted go with those of the others.
 Eigen::MatrixXd of_whole_grips(const Problem& problem, Eigen::MatrixXd s) {
-  const auto own = problem.own_grips();
-  if (!own.empty()) return s(own, own);
   const auto parted = problem.parted_grips();
   const Eigen::Index whole = s.rows() - static_cast<Eigen::Index>(parted.size());
   for (std::size_t i = 0; i < parted.size(); ++i) {

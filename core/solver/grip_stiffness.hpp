@@ -20,8 +20,8 @@ struct GripTangent {
 };
 
 /// (gripped x gripped) [N/mm], symmetric: change of the grips' forces on the body per displacement
-/// of the grips, at the state u. The base has followed the body; it is turned to u. Where a host
-/// grips others besides (Problem::own_grips), of the scene's while those hold still.
+/// of the grips, at the state u, in the order of the body's gripped unknowns; a host's grips, which
+/// the body has as its own, are among them. The base has followed the body; it is turned to u.
 [[nodiscard]] Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u,
                                              const fem::TangentPattern& pattern, FiniteBase& base,
                                              const GripTangent& of);

@@ -11,8 +11,7 @@
 
 namespace sunder::solver {
 
-/// Stiffness [N/mm] of the anchor of each gripped unknown, where a host grips others besides of
-/// each of the scene's.
+/// Stiffness [N/mm] of the anchor of each gripped unknown.
 [[nodiscard]] std::vector<double> anchors_of(const Problem& problem);
 
 class InstrumentBlock {
@@ -23,14 +22,18 @@ class InstrumentBlock {
   /// Publishes to these from now on, which belonged to another backend of the same problem.
   void take_over(std::shared_ptr<InstrumentForces> forces) { forces_ = std::move(forces); }
 
-  /// `l`: L L^T = (A^-1)_GG, a lower triangle. The reactions are those of a solution with the grips
-  /// at `displacements`. Allocates nothing (up to 10,000 gripped unknowns).
+  /// Of so many gripped unknowns, the problem's and then those of a host, which have none: 0.
+  [[nodiscard]] std::span<const double> anchors(std::size_t grips);
+  /// `l`: L L^T = (A^-1)_GG, a lower triangle, of the problem's grips and then those of a host. The
+  /// reactions are those of a solution with the grips at `displacements`. Allocates nothing unless
+  /// there are more grips than ever.
   void publish(const Eigen::Ref<const Eigen::MatrixXd>& l, std::span<const double> reactions,
                std::span<const double> displacements);
 
  private:
   std::shared_ptr<InstrumentForces> forces_;
-  Eigen::VectorXd anchors_, f_, half_, u_0_;
+  std::vector<double> anchors_;
+  Eigen::VectorXd f_, half_, u_0_;
 };
 
 }  // namespace sunder::solver

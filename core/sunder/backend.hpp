@@ -180,6 +180,10 @@ class Backend {
   /// Reaction forces of the grips between frames, for another thread; after each solve() they
   /// belong to its solution. Null: there are no grips, or the backend has nothing of the kind.
   [[nodiscard]] virtual std::shared_ptr<InstrumentForces> instrument_forces() { return nullptr; }
+  /// Whether there are grips, or a host may take hold by some.
+  [[nodiscard]] bool has_grips() const {
+    return !problem_->gripped_dofs().empty() || (needs_.damage && why_no_grasp().empty());
+  }
   /// Publishes to these from the next solve() on: another backend of the same problem, now gone,
   /// did so before.
   virtual void take_over_instrument_forces(std::shared_ptr<InstrumentForces>) {}

@@ -108,9 +108,6 @@ class Problem {
   /// spring's force is known and is taken off the reaction.
   [[nodiscard]] double anchor_stiffness() const { return anchor_stiffness_; }
   [[nodiscard]] std::span<const Index> anchored_dofs() const { return anchored_dofs_; }
-  /// Where a host grips others besides: the places in gripped_dofs() of those of the scene. Empty:
-  /// all of them are.
-  [[nodiscard]] const std::vector<Index>& own_grips() const { return own_grips_; }
   /// The last gripped dofs are those of nodes that have parted: for each of them the place in
   /// gripped_dofs() of the one whose displacement it has.
   [[nodiscard]] std::span<const Index> parted_grips() const { return parted_grips_; }
@@ -158,7 +155,7 @@ class Problem {
   bool reads_toughness_ = false;  // the fracture model grows cracks
   std::vector<Index> dof_;
   Index dof_count_ = 0;
-  std::vector<Index> gripped_dofs_, anchored_dofs_, parted_grips_, own_grips_;
+  std::vector<Index> gripped_dofs_, anchored_dofs_, parted_grips_;
   double anchor_stiffness_ = 0;
   std::vector<InstrumentNodes> instrument_nodes_;
   std::vector<std::vector<Index>> crack_elements_, removal_elements_;

@@ -14,6 +14,7 @@
 
 #include "sunder/backend.hpp"
 #include "sunder/crack.hpp"
+#include "sunder/finished_frames.hpp"
 #include "sunder/report.hpp"
 
 namespace sunder {
@@ -121,6 +122,15 @@ class Simulation {
   /// What a grip exerts on the body in the last solve; zero before the first one since it took
   /// hold.
   [[nodiscard]] Wrench wrench(int grip) const;
+  /// Forces of all grips between frames, for one other thread, which says of a host's grips where
+  /// hands have them (Hand) and is told when this simulation is gone. Null where the backend gives
+  /// none: update eager, route cg. By the laws of finite deformation and in motion each step finds
+  /// them anew once they were asked for.
+  [[nodiscard]] std::shared_ptr<InstrumentForces> grip_forces();
+  /// Fields of the last finished frame, for one other thread: as after each step, each removal that
+  /// a solution followed, and where undo, redo and the like have led to. Those asked for before
+  /// end. Throws UsageError for a node that is not there, and stress where it was left out.
+  [[nodiscard]] std::shared_ptr<FinishedFrames> finished_frames(FinishedFields fields);
   /// Nodes that a grip holds, as they were named.
   [[nodiscard]] std::span<const Index> held_nodes(int grip) const;
   /// Lets go: from the next step on the body is as if it had never been held there. The scene's own
@@ -161,6 +171,15 @@ class Simulation {
   /// Does what such bytes tell, from the beginning: the same bits on the same backend. Throws
   /// InputError, and nothing changes, where they are damaged, of another version or another body.
   Travel load(std::span<const std::uint8_t> bytes);
+  /// Takes such bytes to be played step by step, with observers, in place of what load() does at
+  /// once; keeps a history, which takes nothing back quickly. Throws as load() does, and UsageError
+  /// once anything has been done. A body that is live (Scene::live) plays what one that is not has
+  /// recorded and the other way round, but for route condensed.
+  void open_recording(std::span<const std::uint8_t> bytes);
+  /// Does what the recording has before its next step; false: there is none.
+  [[nodiscard]] bool reach_recorded_step();
+  /// The recording's next step. What an observer ends earlier is as step() says.
+  StepReport recorded_step();
   /// How many actions undo() and redo() can take.
   [[nodiscard]] int undos() const;
   [[nodiscard]] int redos() const;
@@ -296,6 +315,8 @@ class Simulation {
 
   std::shared_ptr<const Problem> problem_;
   std::unique_ptr<Backend> backend_;
+  std::shared_ptr<InstrumentForces> haptics_;  // null: nobody has asked
+  std::shared_ptr<FinishedFrames> frames_;     // the same
   std::unique_ptr<Loads> loads_;
   std::unique_ptr<FractureCriterion> criterion_;
   std::unique_ptr<LooseSearch> loose_;
@@ -349,6 +370,9 @@ class Simulation {
   [[nodiscard]] std::vector<Vec3> displacement_of(std::span<const Index> nodes) const;
   [[nodiscard]] const Tool& tool(int id, bool holds) const;
   void follow_grips(bool looks);
+  void describe_grips();
+  void finish_frame();
+  void arrive();
   [[nodiscard]] double work_of_tools();
   void take_out(std::span<const Index> elements);
   void check_removal(std::span<const Index> elements) const;

@@ -22,6 +22,9 @@ struct initialised {
   sunder_crack grown;
   sunder_tip tip;
   sunder_surface surface;
+  sunder_hand hand;
+  sunder_felt felt;
+  sunder_frame frame;
   sunder_vulkan_buffer buffer;
   sunder_vulkan_host host;
   sunder_vulkan_display display;
@@ -34,8 +37,9 @@ struct initialised {
         SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FRACTURE_OPTIONS_INIT,          \
         SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT, SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT, \
         SUNDER_BODY_INIT, SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_TIP_INIT,                 \
-        SUNDER_SURFACE_INIT, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT,                 \
-        SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT                                   \
+        SUNDER_SURFACE_INIT, SUNDER_HAND_INIT, SUNDER_FELT_INIT, SUNDER_FRAME_INIT,              \
+        SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT, SUNDER_VULKAN_DISPLAY_INIT,          \
+        SUNDER_VULKAN_SIGNALS_INIT                                                               \
   }
 
 #endif

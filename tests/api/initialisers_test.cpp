@@ -26,6 +26,8 @@ TEST(CInitialisers, StateTheSizeAndNothingElseOfResults) {
   expect_only_size(all.event);
   expect_only_size(all.grown);
   expect_only_size(all.tip);
+  expect_only_size(all.felt);
+  expect_only_size(all.frame);
   expect_only_size(all.host);
   expect_only_size(all.display);
   expect_only_size(all.signals);

@@ -31,6 +31,12 @@ std::vector<Misuse> handles() {
        [](World&) { return sunder_error_of(nullptr, nullptr, 0, nullptr); }},
       {"grips_null", SUNDER_ERROR_HANDLE, "grips",
        [](World& w) { return sunder_grips_forces(nullptr, w.values, w.values, 3); }},
+      {"frames_null", SUNDER_ERROR_HANDLE, "frames",
+       [](World& w) { return sunder_frames_displacement(nullptr, w.values, 3); }},
+      {"simulation_for_frames", SUNDER_ERROR_HANDLE, "frames",
+       [](World& w) {
+         return sunder_frames_destroy(reinterpret_cast<sunder_frames>(w.simulation));
+       }},
       {"body_of_a_scene", SUNDER_ERROR_HANDLE, "simulation",
        [](World& w) {
          sunder_body body = SUNDER_BODY_INIT;
@@ -157,6 +163,15 @@ std::vector<Misuse> null_pointers() {
        [](World& w) { return sunder_simulation_crack_count(w.simulation, nullptr); }},
       {"drive_null", SUNDER_ERROR_NULL, "value",
        [](World& w) { return sunder_simulation_drive(w.simulation, 0, nullptr); }},
+      {"frames_create_null", SUNDER_ERROR_NULL, "frames",
+       [](World& w) {
+         return sunder_frames_create(w.simulation, SUNDER_FRAME_DESTROYED, nullptr, 0, nullptr);
+       }},
+      {"frames_nodes_null", SUNDER_ERROR_NULL, "nodes",
+       [](World& w) {
+         sunder_frames frames = nullptr;
+         return sunder_frames_create(w.simulation, SUNDER_FRAME_DISPLACEMENT, nullptr, 2, &frames);
+       }},
       {"grips_create_null", SUNDER_ERROR_NULL, "grips",
        [](World& w) { return sunder_grips_create(w.simulation, nullptr); }},
       {"device_count_null", SUNDER_ERROR_NULL, "count",

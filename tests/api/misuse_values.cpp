@@ -188,10 +188,21 @@ std::vector<Misuse> order() {
   return {
       {"support_reaction_before_step", SUNDER_ERROR_ORDER, "before the first",
        [](World& w) { return sunder_simulation_support_reaction(w.simulation, w.values, 3); }},
-      {"grips_without_grip", SUNDER_ERROR_ORDER, "holds nodes",
+      {"frames_of_no_field", SUNDER_ERROR_VALUE, "fields = 0",
        [](World& w) {
-         sunder_grips grips = nullptr;
-         return sunder_grips_create(w.simulation, &grips);
+         sunder_frames frames = nullptr;
+         return sunder_frames_create(w.simulation, 0, nullptr, 0, &frames);
+       }},
+      {"frames_of_a_new_field", SUNDER_ERROR_VALUE, "fields = 17",
+       [](World& w) {
+         sunder_frames frames = nullptr;
+         return sunder_frames_create(w.simulation, 17, nullptr, 0, &frames);
+       }},
+      {"frames_of_a_node_that_is_not_there", SUNDER_ERROR_VALUE, "nodes 5000",
+       [](World& w) {
+         sunder_frames frames = nullptr;
+         const std::int32_t node = 5000;
+         return sunder_frames_create(w.simulation, SUNDER_FRAME_DISPLACEMENT, &node, 1, &frames);
        }},
       {"undo_without_history", SUNDER_ERROR_ORDER, "keeps no history",
        [](World& w) { return sunder_simulation_undo(w.simulation, 1, nullptr, nullptr); }},

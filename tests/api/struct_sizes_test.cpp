@@ -32,15 +32,21 @@ struct World {
   sunder_scene scene = board_scene();
   sunder_plan plan = nullptr;
   sunder_simulation torn = board_simulation(), stepping = nullptr;
+  sunder_grips grips = nullptr;
+  sunder_frames frames = nullptr;
 
   World() {
     EXPECT_OK(sunder_plan_create(scene, &plan));
     for (int i = 0; i < 4; ++i) EXPECT_OK(sunder_simulation_step(torn, nullptr));
+    EXPECT_OK(sunder_grips_create(torn, &grips));
+    EXPECT_OK(sunder_frames_create(torn, SUNDER_FRAME_DESTROYED, nullptr, 0, &frames));
     EXPECT_OK(sunder_scene_set_steps(scene, 1000000));
     EXPECT_OK(sunder_simulation_create(scene, nullptr, &stepping));
   }
   ~World() {
     EXPECT_OK(sunder_plan_destroy(plan));
+    EXPECT_OK(sunder_grips_destroy(grips));
+    EXPECT_OK(sunder_frames_destroy(frames));
     EXPECT_OK(sunder_simulation_destroy(torn));
     EXPECT_OK(sunder_simulation_destroy(stepping));
     EXPECT_OK(sunder_scene_destroy(scene));
@@ -83,6 +89,12 @@ std::vector<Struct> results() {
        [](World& w, void* to) {
          return sunder_simulation_surface(w.torn, as<sunder_surface>(to));
        }},
+      {"felt", sizeof(sunder_felt), 40,
+       [](World& w, void* to) {
+         return sunder_grips_feel(w.grips, nullptr, nullptr, 0, nullptr, 0, as<sunder_felt>(to));
+       }},
+      {"frame", sizeof(sunder_frame), 24,
+       [](World& w, void* to) { return sunder_frames_take(w.frames, as<sunder_frame>(to)); }},
       {"crack", sizeof(sunder_crack), 160,
        [](World& w, void* to) {
          return sunder_simulation_crack_at(w.torn, 0, as<sunder_crack>(to));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thread rules of sunder.h, to be run under the thread sanitizer as well.
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <thread>
 
@@ -93,6 +94,137 @@ TEST(CThreads, AHandleInUseIsBusyButCanBeCancelled) {
   EXPECT_EQ(stepped, SUNDER_ERROR_CANCELLED);
   EXPECT_OK(sunder_simulation_destroy(simulation));
   EXPECT_OK(sunder_scene_destroy(scene));
+}
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+// Whatever is in work: a long step, its Newton iterations, a base made beside the frames.
+TEST(CThreads, DestroyReturnsWhileAStepGoesOn) {
+  for (const bool finite : {false, true}) {
+    const sunder_scene scene = board_scene(SUNDER_BACKEND_CPU, 24, finite ? -4 : -400);
+    if (finite) {
+      // By a law of its own: a step is many iterations and some factors.
+      sunder_material tissue = SUNDER_MATERIAL_INIT;
+      tissue.young = 5;
+      tissue.poisson = 0.4;
+      tissue.yield = 1e6;
+      tissue.law = SUNDER_LAW_NEO_HOOKEAN;
+      std::int32_t index = 0;
+      EXPECT_OK(sunder_scene_add_material(scene, &tissue, &index));
+      const Arrays a = board_arrays(24);
+      const std::vector<std::int32_t> of(a.tets.size() / 4, index);
+      EXPECT_OK(sunder_scene_set_mesh(scene, a.nodes.data(), a.nodes.size(), a.tets.data(),
+                                      a.tets.size(), of.data(), of.size()));
+    }
+    EXPECT_OK(sunder_scene_set_steps(scene, 1 << 30));
+    sunder_simulation simulation = nullptr;
+    ASSERT_OK(sunder_simulation_create(scene, nullptr, &simulation));
+    EXPECT_OK(sunder_scene_destroy(scene));
+    std::atomic<int> steps{0};
+    sunder_status last = SUNDER_OK;
+    std::thread worker([&] {
+      while (last == SUNDER_OK) {
+        last = sunder_simulation_step(simulation, nullptr);
+        ++steps;
+      }
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_OK(sunder_simulation_destroy(simulation));
+    const double took = ms_since(start);
+    EXPECT_EQ(sunder_simulation_destroy(simulation), SUNDER_ERROR_HANDLE);
+    worker.join();
+    EXPECT_TRUE(last == SUNDER_ERROR_HANDLE || last == SUNDER_ERROR_CANCELLED) << last;
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+    EXPECT_LE(took, 50) << "after " << steps << " steps";
+#else
+    static_cast<void>(took);
+#endif
+  }
+}
+
+// What callbacks use may go as soon as destroy has returned.
+TEST(CThreads, NoCallbackRunsAfterDestroy) {
+  struct Host {
+    std::atomic<bool> destroyed{false}, late{false}, called{false};
+    static std::int32_t progress(void* user, const sunder_progress*) {
+      auto& host = *static_cast<Host*>(user);
+      host.late = host.late || host.destroyed;
+      host.called = true;
+      return 0;
+    }
+  };
+  for (int i = 0; i < 10; ++i) {
+    Host host;
+    sunder_callbacks callbacks = SUNDER_CALLBACKS_INIT;
+    callbacks.progress = Host::progress;
+    callbacks.progress_user = &host;
+    const sunder_scene scene = board_scene(SUNDER_BACKEND_CPU, 8, -4000);
+    sunder_simulation simulation = nullptr;
+    ASSERT_OK(sunder_simulation_create(scene, &callbacks, &simulation));
+    EXPECT_OK(sunder_scene_destroy(scene));
+    host.called = false;
+    std::thread worker([&] { static_cast<void>(sunder_simulation_step(simulation, nullptr)); });
+    while (!host.called) std::this_thread::yield();
+    sunder_status ended = SUNDER_ERROR_BUSY;
+    while (ended == SUNDER_ERROR_BUSY) ended = sunder_simulation_destroy(simulation);
+    host.destroyed = true;
+    EXPECT_OK(ended);
+    worker.join();
+    EXPECT_FALSE(host.late);
+  }
+}
+
+TEST(CThreads, FramesAreReadWhileTheNextOneRuns) {
+  const sunder_scene scene = board_scene();
+  EXPECT_OK(sunder_scene_set_steps(scene, 200));
+  sunder_simulation simulation = nullptr;
+  ASSERT_OK(sunder_simulation_create(scene, nullptr, &simulation));
+  EXPECT_OK(sunder_scene_destroy(scene));
+  sunder_frames frames = nullptr;
+  ASSERT_OK(sunder_frames_create(simulation, SUNDER_FRAME_DISPLACEMENT | SUNDER_FRAME_DESTROYED,
+                                 nullptr, 0, &frames));
+  std::vector<std::vector<double>> of_step(200, std::vector<double>(150));
+  std::vector<double> seen(150);
+  std::vector<std::pair<std::int32_t, std::vector<double>>> read;
+  std::atomic<bool> done{false};
+  sunder_status worst = SUNDER_OK;
+  std::thread picture([&] {
+    while (!done) {
+      sunder_frame frame = SUNDER_FRAME_INIT;
+      sunder_status status = sunder_frames_take(frames, &frame);
+      if (status == SUNDER_OK) {
+        status = sunder_frames_displacement(frames, seen.data(), seen.size());
+      }
+      if (status != SUNDER_OK) worst = status;
+      if (read.empty() || read.back().first != frame.step) read.emplace_back(frame.step, seen);
+      std::this_thread::yield();
+    }
+  });
+  for (auto& u : of_step) {
+    ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+    ASSERT_OK(sunder_simulation_displacement(simulation, u.data(), u.size()));
+  }
+  done = true;
+  picture.join();
+  EXPECT_EQ(worst, SUNDER_OK);
+  EXPECT_GE(read.size(), 2u);
+  for (const auto& [step, u] : read) {
+    if (step < 0) {
+      EXPECT_EQ(u, std::vector<double>(150, 0.0));
+    } else {
+      EXPECT_EQ(u, of_step[static_cast<std::size_t>(step)]) << "whole, of step " << step;
+    }
+  }
+  sunder_frame frame = SUNDER_FRAME_INIT;
+  ASSERT_OK(sunder_frames_take(frames, &frame));
+  EXPECT_EQ(frame.step, 199) << "the last one";
+  EXPECT_OK(sunder_simulation_destroy(simulation));
+  EXPECT_EQ(sunder_frames_take(frames, &frame), SUNDER_ERROR_HANDLE);
+  EXPECT_OK(sunder_frames_destroy(frames));
 }
 
 TEST(CThreads, ErrorsBelongToTheirThread) {

@@ -117,6 +117,7 @@ struct Lost {
   bool in_wait = false;  ///< reported by the wait for a submit that the device took
 };
 
+class DeviceLostLive : public WithVulkan<testing::Test> {};
 class DeviceLost : public WithVulkan<testing::TestWithParam<Lost>> {};
 
 TEST_P(DeviceLost, LosesNothingWheneverItHappens) {
@@ -161,6 +162,75 @@ TEST_P(DeviceLost, LosesNothingWheneverItHappens) {
     ++losses;
   }
   EXPECT_GE(losses, validated() ? 5 : 2);
+}
+
+/// What a host does to a live body, and what it and a haptic thread are told of it.
+struct Handled {
+  Handled(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backend> backend)
+      : simulation(problem, std::move(backend)) {
+    Simulation& s = simulation;
+    const auto forces = s.grip_forces();
+    s.step();
+    const int left = s.grasp(Vec3(50, 25, 1.25), 3, true);
+    s.pose(left, {s.centre_of(left) + Vec3(0.4, -0.2, 0.1), {0, 0, 0.02, 1}});
+    s.step();
+    s.remove(std::vector<Index>{900, 901});
+    const int other = s.grasp(std::vector<Index>{40}),
+              push = s.push(std::vector<Index>{200}, Vec3(0, -1, 0));
+    s.step();
+    s.drop(push);
+    s.release(left);
+    s.pose(other, {s.centre_of(other) + Vec3(0.1, 0, 0)});
+    s.step();
+    force = s.wrench(other).force;
+    sunder::Hand hand;
+    hand.grip = other;
+    hand.position = s.centre_of(other);
+    felt = forces->feel({}, {}, {&hand, 1});
+    haptic = hand.force;
+    displacement = s.displacement();
+  }
+  Simulation simulation;
+  Vec3 force = Vec3::Zero(), haptic = Vec3::Zero();
+  Felt felt;
+  std::vector<Vec3> displacement;
+};
+
+TEST_F(DeviceLostLive, GripsPushesAndRemovalsGoOn) {
+  Scene scene = torn_board(FractureModel::none, 8, 6);
+  scene.live = true;
+  scene.solver.backend = "cpu";
+  const auto on_cpu = std::make_shared<const Problem>(scene);
+  const auto create_cpu = [&] { return cpu_reference::create(on_cpu, needs_of(*on_cpu)); };
+  const Handled reference(on_cpu, create_cpu());
+  ASSERT_GT(reference.force.norm(), 1e-3);
+  WatchedBackend watched(
+      scene, {.precision = Precision::fp64, .update = Update::deferred, .route = Route::inverse});
+  int losses = 0;
+  for (int submits = 1; submits < 100000; submits += submits / 2 + 1) {
+    watched.options.probe.submits_until_lost = submits;
+    std::unique_ptr<Backend> primary;
+    try {
+      primary = watched.create();
+    } catch (const sunder::DeviceLost&) {
+      continue;
+    }
+    SCOPED_TRACE("lost after " + std::to_string(submits) + " submits");
+    const Handled told(watched.problem,
+                       with_failover(watched.problem, std::move(primary), create_cpu));
+    double most = 0, largest = 0;
+    for (std::size_t n = 0; n < told.displacement.size(); ++n) {
+      most = std::max(most, (told.displacement[n] - reference.displacement[n]).norm());
+      largest = std::max(largest, reference.displacement[n].norm());
+    }
+    EXPECT_LE(most, 1e-6 * largest);
+    EXPECT_LE((told.force - reference.force).norm(), 1e-5 * reference.force.norm());
+    EXPECT_EQ(told.felt.state, FeltState::live);
+    EXPECT_LE((told.haptic - told.force).norm(), 1e-5 * reference.force.norm());
+    if (told.simulation.backend().info().backend == "vulkan") break;
+    ++losses;
+  }
+  EXPECT_GE(losses, 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -16,7 +16,7 @@ from .errors import (AllowedError, BusyError, Cancelled, DeviceError, Error, Han
 from .mesh import Mesh
 from .plotting import plot
 from .scene import Scene, devices, presets
-from .simulation import Grips, Simulation, Step, cause_name
+from .simulation import Frames, Grips, Simulation, Step, cause_name
 from .sweeping import sweep
 
 constants: dict[str, int] = _c.constants

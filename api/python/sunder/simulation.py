@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import ctypes as c
-from typing import Any, Callable, Iterator
+from typing import Any, Callable, Iterator, Sequence
 
 import numpy as np
 
 from . import _arrays, _c, _words
 from ._handle import Handled
 from ._live import Live
-from .errors import HandleError, InputError, check
+from ._threads import Frames, Grips
+from .errors import InputError, check
 from .scene import Scene, as_dict, text_of
 
 _lib = _c.library
@@ -194,9 +195,15 @@ class Simulation(Handled, Live):
             return self.instruments.index(instrument)
         return int(_arrays.ids(instrument, "instrument", ()))
 
-    def grips(self) -> "Grips":
+    def grips(self) -> Grips:
         """Forces of the grips between steps, for another thread; one at a time."""
         return Grips(self)
+
+    def frames(self, *fields: str, nodes: Sequence[int] | None = None) -> Frames:
+        """Fields of the last finished step, for another thread while the next one runs; one at a
+        time. `fields`: "displacement", "stress", "yield_ratio", "destroyed"; `nodes`: those whose
+        displacement is wanted, else all of the body."""
+        return Frames(self, fields, nodes)
 
     @property
     def engine(self) -> dict[str, Any]:
@@ -356,38 +363,3 @@ def cause_name(cause: int) -> str:
 
 def _three(value, what):
     return _arrays.reals(value, what, (3,)).ctypes.data_as(c.c_void_p)
-
-
-class Grips:
-    """Forces of the grips between steps, for a thread of its own: a call neither waits for a step nor
-    makes one wait."""
-
-    def __init__(self, simulation: Simulation):
-        handle = c.c_void_p()
-        self._handle = None
-        check(_lib.sunder_grips_create(simulation.handle, c.byref(handle)))
-        self._handle = handle.value
-        self._shape = (len(simulation.instruments), 3)
-
-    def forces(self, displacements: Any, out: np.ndarray | None = None) -> np.ndarray:
-        """(instruments, 3) [N] if the grips were at (instruments, 3) [mm]."""
-        if not self._handle:
-            raise HandleError("the grips are closed")
-        d = _arrays.reals(displacements, "displacements", self._shape)
-        array = _arrays.room(out, "forces", self._shape, np.float64)
-        check(_lib.sunder_grips_forces(self._handle, d.ctypes.data, array.ctypes.data, array.size))
-        return array
-
-    def close(self) -> None:
-        handle, self._handle = getattr(self, "_handle", None), None
-        if handle:
-            _lib.sunder_grips_destroy(handle)
-
-    def __enter__(self) -> "Grips":
-        return self
-
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def __del__(self):
-        self.close()

@@ -49,19 +49,6 @@ TEST(Headless, TheScenesOwnLoadsPlayAStepAFrame) {
   EXPECT_EQ(read_file(board.out("a") / "result.vtu"), read_file(board.out("scene") / "result.vtu"));
 }
 
-TEST(Headless, AMeshAloneWillDo) {
-  const TempFolder folder;
-  const std::string mesh = SUNDER_SCENES "/meshes/liver.msh", out = (folder / "o").string();
-  const Outcome outcome = run_program({"view", mesh, "--headless", "--frames", "2", "--size",
-                                       "160x120", "--steps", "60", "--out", out});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("liver.msh has no scene: its one end is held"), std::string::npos);
-  EXPECT_NE(read_file(folder / "o" / "recording.toml").find("[[instrument]]"), std::string::npos);
-  const Outcome run = run_program({"run", mesh});
-  EXPECT_EQ(run.exit_code, 3);
-  EXPECT_NE(run.err.find("is a mesh, not a scene"), std::string::npos) << run.err;
-}
-
 TEST(Headless, TheSameSceneTwiceGivesTheSameBytes) {
   const Board board;
   const std::string script = board.script("camera 40 20\nwireframe on\nframe 2\nremove 100\nframe");
@@ -102,6 +89,55 @@ TEST(Headless, AScriptPullsCutsAndGoesBackAndARunReplaysWhatIsLeft) {
   const std::string inputs = read_file(board.out("a") / "recording.inputs");
   EXPECT_EQ(inputs.find("undo"), std::string::npos);
   EXPECT_NE(inputs.find("remove "), std::string::npos) << inputs;
+}
+
+TEST(Headless, AScriptGraspsTurnsAndLetsGoAndARunReplaysIt) {
+  const Board board;
+  const std::string script = board.script(
+      "frame\n"  // 1
+      "grasp 50 25 1.25 6 rigid\n"
+      "pose 1 53 24 1.25 0 0 .1 1\n"
+      "frame\n"  // 2
+      "reset\n"  // the grasp goes, and what came after it
+      "frame\n"  // 3
+      "grasp nodes 60\n"
+      "grasp 50 25 1.25 6 rigid\n"
+      "pose 2 53 24 1.25 0 0 .1 1\n"
+      "frame\n"  // 4
+      "release 2\n"
+      "frame\n");
+  const Outcome outcome = board.view("a", {"--script", script});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string inputs = read_file(board.out("a") / "recording.inputs");
+  EXPECT_NE(inputs.find("grasp nodes 60\ngrasp 50 25 1.25 6 rigid\npose 2 53 24 1.25 0 0 0.1 1\n"),
+            std::string::npos)
+      << inputs;
+  EXPECT_NE(inputs.find("release 2"), std::string::npos) << inputs;
+  board.expect_replayed("a");
+}
+
+TEST(Headless, AMeshAloneIsTissueThatAHandTears) {
+  const Board board;
+  const std::string script =
+      board.script("frame\ngrasp 25 50 1.25 8 rigid\npose 0 25 90 1.25\nframe\nrelease 0\nframe\n");
+  const Outcome outcome =
+      run_program({"view", (board.folder / "board.msh").string(), "--headless", "--quiet", "--size",
+                   "320x240", "--out", board.out("m").string(), "--script", script});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(board.out("m") / "frame_0003.png"));
+  EXPECT_NE(read_file(board.out("m") / "events.csv").find("mss"), std::string::npos)
+      << "it has torn";
+  board.expect_replayed("m");
+  const Outcome plain = run_program({"view", (board.folder / "board.msh").string(), "--headless",
+                                     "--quiet", "--out", board.out("p").string()});
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  EXPECT_TRUE(std::filesystem::exists(board.out("p") / "frame_0001.png"));
+  EXPECT_FALSE(std::filesystem::exists(board.out("p") / "frame_0002.png"));
+  const Outcome none = run_program({"view", (board.folder / "none.msh").string(), "--headless"});
+  EXPECT_EQ(none.exit_code, 3) << none.err;
+  const Outcome run = run_program({"run", (board.folder / "board.msh").string()});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(run.err.find("is a mesh, not a scene"), std::string::npos) << run.err;
 }
 
 TEST(Headless, FramesBoundTheScriptAndGoOnAfterIt) {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand that does anything at all to a live session, round after round: nothing stops it, nothing
-// is lost, and what was recorded does the same again. For an hour in the soak, where
-// SUNDER_SOAK_SECONDS may say otherwise.
+// A hand that does anything at all to a live session, round after round: what was recorded does the
+// same again, bit by bit, and a reset leaves the body as it was.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <future>
 #include <random>
 #include <string>
@@ -22,11 +16,6 @@ namespace {
 
 using namespace app;
 
-#ifdef SUNDER_SOAK
-constexpr bool kSoak = true;
-#else
-constexpr bool kSoak = false;
-#endif
 constexpr int kActions = 120;  // a round
 
 class RandomHand {
@@ -78,14 +67,6 @@ class RandomHand {
   const Problem& problem_;
   std::mt19937 random_;
 };
-
-/// [bytes] that the process holds now.
-double resident() {
-  std::ifstream file("/proc/self/statm");
-  double all = 0, held = 0;
-  file >> all >> held;
-  return held * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
 
 struct Rounds {
   explicit Rounds(Route route) {
@@ -153,24 +134,11 @@ struct Rounds {
 
 class RandomInput : public testing::TestWithParam<Route> {};
 
-TEST_P(RandomInput, NeitherStopsNorLeaksAndIsRecorded) {
-  const char* asked = std::getenv("SUNDER_SOAK_SECONDS");
-  const double seconds = !kSoak ? 0 : asked ? std::atof(asked) : 3600;
-  constexpr unsigned kRounds = 3;
+TEST_P(RandomInput, IsRecordedAndTakenBack) {
   Rounds rounds(GetParam());
-  const auto start = std::chrono::steady_clock::now();
-  const auto passed = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  double early = 0;
-  unsigned round = 0;
-  while (round < kRounds || passed() < seconds / 2) {
+  for (unsigned round = 0; round < 3 && !HasFailure(); ++round) {
     ASSERT_NO_FATAL_FAILURE(rounds.round(round));
-    if (HasFailure()) return;
-    if (++round == kRounds || (early == 0 && passed() > seconds / 20)) early = resident();
   }
-  constexpr double kSlack = 64e6;  // what the allocator keeps
-  EXPECT_LE(resident(), 1.25 * early + kSlack) << round << " rounds";
 }
 
 INSTANTIATE_TEST_SUITE_P(Routes, RandomInput, testing::Values(Route::inverse, Route::factor),

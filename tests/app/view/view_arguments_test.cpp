@@ -44,6 +44,23 @@ TEST(ViewArguments, AScriptsWrongLineIsNamedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(ViewArguments, WrongGripsAreNamed) {
+  const TempFolder folder;
+  const std::string script = (folder / "s.inputs").string();
+  const auto expect = [&](const std::string& line, const std::string& part) {
+    write_text(script, line + "\nframe\n");
+    expect_refused(view({"--script", script, "--out", folder / "out"}), 3, "s.inputs:1: " + part);
+  };
+  expect("pose 0 1 2 3", "grip 0 is an instrument of the scene");
+  expect("release 0", "grip 0 is an instrument of the scene");
+  expect("grasp nodes 1 99999", "there is no node 99999");
+  expect("grasp 1 2 3 0", "the radius of a grip must be above 0 mm");
+  expect("grasp nodes 1 stiff", "a node to grasp");
+  expect("grasp 1 2 3 4 stiff", "rigid or nothing");
+  expect("pose 1 1 2 3 0 0 0 0", "the grip's quaternion is 0 0 0 0");
+  expect("pose 1 1 2 3 0 0", "the grip's quaternion");
+}
+
 TEST(ViewArguments, AFolderThatCannotBeWrittenToIsRefused) {
   const TempFolder folder;
   write_text(folder / "file", "x");

@@ -56,6 +56,36 @@ TEST(Recording, ToldToAnotherGivesTheSameBits) {
   expect_same_bits(RunState(first.simulation), RunState(second.simulation));
 }
 
+TEST(Recording, IsPlayedStepByStepBeforeObservers) {
+  Recorded first(gripped_to_break());
+  play(first.simulation);
+  const auto bytes = first.simulation.store();
+  Scene scene = gripped_to_break();
+  scene.live = true;  // plays what one that is not live has recorded
+  SceneRun second(scene);
+  Simulation& s = second.simulation;
+  s.open_recording(bytes);
+  std::size_t seen = 0;
+  int frames = 0, steps = 0;
+  s.observe_events([&](const auto& event) {
+    seen += event.size();
+    return true;
+  });
+  s.observe_frames([&] { ++frames; });
+  while (s.reach_recorded_step()) {
+    EXPECT_EQ(s.recorded_step().step, steps++);
+    EXPECT_FALSE(s.interrupted());
+  }
+  EXPECT_EQ(steps, 4);
+  EXPECT_GE(frames, steps);
+  EXPECT_EQ(seen + 3, s.destroyed().size()) << "all but what was removed";
+  expect_same_bits(RunState(first.simulation), RunState(s));
+  EXPECT_THROW(s.recorded_step(), UsageError);
+  EXPECT_THROW(s.open_recording(bytes), UsageError);
+  SceneRun other(gripped_to_break(0.7));
+  EXPECT_THROW(other.simulation.open_recording(bytes), InputError);
+}
+
 TEST(Recording, StandsForTheSameWithAnotherNumberOfThreadsAndAnotherClock) {
   // The scene's own bound on time does not decide again where a step ends.
   Scene scene = strip(0.35, 2, 3);

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/view/window/panels.hpp"
+
+#include <imgui/backends/imgui_impl_glfw.h>
+#include <imgui/backends/imgui_impl_vulkan.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+namespace sunder::app {
+namespace {
+
+constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr float kFontSize = 14;
+
+/// Keys as they come: some are pressed and let go between two frames.
+std::vector<int>& keys_of(GLFWwindow* window) {
+  return *static_cast<std::vector<int>*>(glfwGetWindowUserPointer(window));
+}
+
+/// Before Dear ImGui, which passes on to it.
+void listen(GLFWwindow* window, std::vector<int>& keys) {
+  glfwSetWindowUserPointer(window, &keys);
+  glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int) {
+    if (action == GLFW_PRESS) keys_of(of).push_back(key);
+  });
+}
+
+}  // namespace
+
+Panels::Panels(GLFWwindow* window, std::vector<int>& keys, view::Device& device,
+               view::Swapchain& chain)
+    : device_(device) {
+  listen(window, keys);
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;
+  std::error_code ignored;
+  if (std::filesystem::exists(kFont, ignored)) {
+    ImGui::GetIO().Fonts->AddFontFromFileTTF(kFont, kFontSize);
+  }
+  ImGui_ImplGlfw_InitForVulkan(window, true);
+  const std::array<VkDescriptorPoolSize, 1> sizes{
+      VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16}};
+  VkDescriptorPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+  pool.maxSets = 16;
+  pool.poolSizeCount = 1;
+  pool.pPoolSizes = sizes.data();
+  const auto& vk = device.vk();
+  pool_ = view::make<VkDescriptorPool>(device, vk.CreateDescriptorPool, pool,
+                                       vk.DestroyDescriptorPool, "vkCreateDescriptorPool");
+  ImGui_ImplVulkan_InitInfo info{};
+  info.Instance = device.instance();
+  info.PhysicalDevice = device.physical();
+  info.Device = device.handle();
+  info.QueueFamily = device.family();
+  info.Queue = device.queue();
+  info.DescriptorPool = pool_.get();
+  info.MinImageCount = 2;
+  info.ImageCount = std::max(2U, chain.image_count());
+  info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+  ImGui_ImplVulkan_Init(&info, chain.pass());
+  chain.once([](VkCommandBuffer commands) { ImGui_ImplVulkan_CreateFontsTexture(commands); });
+  ImGui_ImplVulkan_DestroyFontUploadObjects();
+}
+
+Panels::~Panels() {
+  device_.vk().DeviceWaitIdle(device_.handle());
+  ImGui_ImplVulkan_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void draw(const Overlay& over) {
+  ImDrawList& pen = *ImGui::GetBackgroundDrawList();
+  for (const Overlay::Polygon& p : over.polygons) {
+    std::vector<ImVec2> corners;
+    for (const Vec2& c : p.corners) corners.push_back(at(c));
+    pen.AddConvexPolyFilled(corners.data(), static_cast<int>(corners.size()), ink(p.fill));
+  }
+  for (const Overlay::Line& l : over.lines) {
+    pen.AddLine(at(l.from), at(l.to), ink(l.color), static_cast<float>(l.width));
+  }
+  ImFont* font = ImGui::GetFont();
+  for (const Overlay::Text& t : over.texts) {
+    const auto size = static_cast<float>(t.size);
+    const ImVec2 extent = font->CalcTextSizeA(size, 1e9F, 0, t.words.c_str());
+    const float shift = t.anchor == Overlay::Text::Anchor::left     ? 0
+                        : t.anchor == Overlay::Text::Anchor::middle ? extent.x / 2
+                                                                    : extent.x;
+    const ImVec2 corner{static_cast<float>(t.at.x()) - shift,
+                        static_cast<float>(t.at.y()) - 0.85F * size};
+    pen.AddText(font, size, {corner.x + 1, corner.y + 1}, ink(kBackground), t.words.c_str());
+    pen.AddText(font, size, corner, ink(kInk), t.words.c_str());
+  }
+}
+
+}  // namespace sunder::app

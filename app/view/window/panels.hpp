@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dear ImGui on the window's device: its set-up, and the overlay by its pen.
+#pragma once
+
+#include <vector>
+
+#include "app/view/overlay.hpp"
+#include "app/view/window/glfw.hpp"
+#include "app/view/window/swapchain.hpp"
+// After GLFW.
+#include <imgui/imgui.h>
+
+namespace sunder::app {
+
+/// Dear ImGui for as long as this lives. Keys come to `keys` as they are pressed: some are pressed
+/// and let go between two frames.
+class Panels {
+ public:
+  Panels(GLFWwindow* window, std::vector<int>& keys, view::Device& device, view::Swapchain& chain);
+  ~Panels();
+  Panels(const Panels&) = delete;
+  Panels& operator=(const Panels&) = delete;
+
+ private:
+  view::Device& device_;
+  view::Owned<VkDescriptorPool> pool_;
+};
+
+[[nodiscard]] inline ImU32 ink(Color c) { return IM_COL32(c.r, c.g, c.b, 255); }
+[[nodiscard]] inline ImVec2 at(const Vec2& p) {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y())};
+}
+
+/// With the window's own pen, behind its panels.
+void draw(const Overlay& over);
+
+}  // namespace sunder::app

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hand on a thread of its own holds the tissue of a session, and random input that goes on and
+// on: seconds here, an hour in the soak (SUNDER_VIEW_SECONDS).
+#include "app/view/haptic_loop.hpp"
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <random>
+#include <thread>
+
+#include "app/view/live_session.hpp"
+#include "core/frame/strip.hpp"
+#include "sunder/backends.hpp"
+
+namespace sunder::test {
+namespace {
+
+using app::HapticLoop;
+using app::LiveSession;
+using app::Session;
+using namespace std::chrono_literals;
+namespace input = app::input;
+
+struct Held {
+  explicit Held(double yield = 1e9) {
+    Scene scene = strip(yield, 0.2, 1 << 30);
+    scene.fracture.model = FractureModel::a;
+    scene.live = true;
+    scene.solver.route = Route::inverse;
+    problem = std::make_shared<const Problem>(std::move(scene));
+    session.emplace(
+        problem, [p = problem] { return create_backend(p, needs_of(*p)).backend; }, true,
+        app::PictureSize{});
+    live.emplace(*session);
+    loop.emplace(live->forces(), [this](const input::Pose& pose) { live->post(pose); });
+  }
+  ~Held() { loop.reset(); }
+  [[nodiscard]] static bool within(std::chrono::seconds limit, const std::function<bool()>& so) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    while (std::chrono::steady_clock::now() < end) {
+      if (so()) return true;
+      std::this_thread::sleep_for(1ms);
+    }
+    return false;
+  }
+
+  std::shared_ptr<const Problem> problem;
+  std::optional<Session> session;
+  std::optional<LiveSession> live;
+  std::optional<HapticLoop> loop;
+};
+
+TEST(HapticLoop, AHandHoldsTissueAndFeelsIt) {
+  Held held;
+  LiveSession& live = *held.live;
+  live.post(input::Step{});
+  live.post(input::Grasp{{10, 15, 20}, Vec3::Zero(), 0, true});
+  ASSERT_TRUE(held.within(20s, [&] { return live.now().grips.size() == 1; }));
+  const auto grip = live.now().grips.front();
+  EXPECT_EQ(grip.grip, 1);
+  EXPECT_FALSE(held.loop->now().holds);
+  const Vec3 there = grip.place + Vec3(-0.1, 0, 0);
+  held.loop->hold({grip.grip, grip.place, {0, 0, 0, 1}});
+  held.loop->aim(there, {0, 0, 0, 1});
+  live.pause(false);
+  ASSERT_TRUE(held.within(20s, [&] {
+    const auto hand = held.loop->now();
+    return hand.felt.state == FeltState::live && hand.force.norm() > 1e-3 &&
+           (hand.place - there).norm() < 1e-3;
+  }));
+  ASSERT_TRUE(held.within(20s, [&] {
+    return (live.now().grips.front().place - there).norm() < 1e-3;
+  })) << "the body follows";
+  held.loop->let_go();
+  live.post(input::Release{grip.grip});
+  ASSERT_TRUE(held.within(20s, [&] { return live.now().grips.empty(); }));
+  EXPECT_FALSE(live.now().error) << *live.now().error;
+  EXPECT_FALSE(held.loop->now().holds);
+}
+
+std::size_t heap() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
+
+/// What hands may do, by chance; some of it cannot be done, pauses and is told.
+class RandomHands {
+ public:
+  explicit RandomHands(Held& held) : held_(held) {}
+
+  void act() {
+    LiveSession& live = *held_.live;
+    const auto now = live.now();
+    if (live.paused() && below(2) == 0) live.pause(false);
+    switch (below(12)) {
+      case 0:
+        live.post(input::Grasp{{static_cast<Index>(below(90))}, Vec3::Zero(), 0, false});
+        break;
+      case 1:
+        live.post(input::Grasp{{}, Vec3(part(4), part(8), part(1)), 0.5 + part(1.5), true});
+        break;
+      case 2:
+      case 3:
+        if (now.grips.empty()) break;
+        hold(now.grips[below(static_cast<unsigned>(now.grips.size()))]);
+        break;
+      case 4:
+        held_.loop->let_go();
+        if (!now.grips.empty()) live.post(input::Release{now.grips.front().grip});
+        break;
+      case 5:
+        live.post(input::Drive{"pull", Vec3(part(0.2), -part(0.4), 0), false, 0});
+        break;
+      case 6: {
+        const double y = part(8);
+        live.post(input::Cut{
+            {Vec3(-1, y, -1), Vec3(-1, y, 2), Vec3(part(2), y, -1), Vec3(part(2), y, 2)}});
+        break;
+      }
+      case 7:
+        live.post(input::Undo{1});
+        break;
+      case 8:
+        live.post(input::Redo{1});
+        break;
+      case 9:
+        live.pause(below(2) == 0);
+        break;
+      case 10:
+        live.post(input::Step{});
+        break;
+      default:
+        live.post(input::Remove{{static_cast<Index>(below(192))}});
+    }
+  }
+
+ private:
+  void hold(const LiveSession::HeldNodes& grip) {
+    held_.loop->hold({grip.grip, grip.place, {0, 0, 0, 1}});
+    held_.loop->aim(grip.place + Vec3(part(0.6) - 0.3, part(0.6) - 0.3, 0), {0, 0, 0, 1});
+  }
+  unsigned below(unsigned n) { return static_cast<unsigned>(random_()) % n; }
+  double part(double of) { return std::uniform_real_distribution<double>(0, of)(random_); }
+
+  Held& held_;
+  std::mt19937 random_{24};
+};
+
+double seconds() {
+  const char* asked = std::getenv("SUNDER_VIEW_SECONDS");
+  return asked ? std::atof(asked) : 4;
+}
+
+TEST(HapticLoop, RandomInputNeitherStopsNorLeaks) {
+  Held held(1.2);
+  RandomHands hands(held);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto since = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  // A reset lets go of all that a history holds; from reset to reset the heap is the same.
+  std::vector<std::size_t> heaps;
+  long acts = 0;
+  do {
+    for (int i = 0; i < 300; ++i, ++acts) {
+      hands.act();
+      std::this_thread::sleep_for(1ms);
+    }
+    held.loop->let_go();
+    held.live->pause(true);
+    held.live->post(input::Reset{});
+    ASSERT_TRUE(held.within(60s, [&] {
+      const auto now = held.live->now();
+      return now.undos == 0 && now.grips.empty() && !now.shown->report;
+    })) << "it has stopped";
+    heaps.push_back(heap());
+  } while (since() < seconds() || heaps.size() < 4);
+  const std::size_t third = heaps[2], last = heaps.back();
+  EXPECT_LT(last, third + (std::size_t{4} << 20)) << "after " << acts << " inputs";
+  RecordProperty("inputs", std::to_string(acts));
+}
+
+}  // namespace
+}  // namespace sunder::test
