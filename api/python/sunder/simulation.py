@@ -379,6 +379,7 @@ class Grips:
         return array
 
     def close(self) -> None:
+        """Gives them back; closing twice does no harm."""
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
             _lib.sunder_grips_destroy(handle)
