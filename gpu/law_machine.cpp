@@ -3,7 +3,7 @@
 
 #include "gpu/choose_device.hpp"
 #include "gpu/finite_device.hpp"
-#include "solver/available_memory.hpp"
+#include "machine/memory.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -50,7 +50,7 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
   machine.info.device = physical.name;
   machine.info.driver = physical.driver;
   machine.info.precision = fp64 ? "fp64" : "fp32";
-  machine.memory = solver::available_memory();
+  machine.memory = machine::available_memory();
   const bool fits = FiniteDevice::inverse_bytes(open->kernels, problem) <=
                     FiniteDevice::largest_buffer(open->kernels);
   machine.most_dense = fits ? kMostDense : 0;

@@ -41,7 +41,9 @@
 #define SUNDER_VERSION_MINOR 1
 #define SUNDER_VERSION_PATCH 0
 
-#if defined(_WIN32)
+#if defined(_WIN32) && defined(SUNDER_MAKES_LIBRARY)
+#define SUNDER_API __declspec(dllexport)
+#elif defined(_WIN32)
 #define SUNDER_API
 #else
 #define SUNDER_API __attribute__((visibility("default")))
