@@ -879,10 +879,10 @@ enum {
 };
 
 /// A field in memory of the library's own, in place of an array of the caller's: where it lies
-/// (`values`) and how many numbers it has (`size`), in the shape of the function that reads it. Each
-/// call brings it up to date; the place of a simulation's field is the same every time. Valid, and
-/// unchanged, until the same field is lent again or the simulation is destroyed; a step leaves it
-/// as it was. Fails as the function that reads it, and then both are left alone.
+/// (`values`) and how many numbers it has (`size`), in the shape of the function that reads it.
+/// Each call brings it up to date; the place of a simulation's field is the same every time. Valid,
+/// and unchanged, until the same field is lent again or the simulation is destroyed; a step leaves
+/// it as it was. Fails as the function that reads it, and then both are left alone.
 SUNDER_API sunder_status sunder_simulation_lend(sunder_simulation simulation, sunder_field field,
                                                 const double** values, size_t* size);
 /// The same of sunder_simulation_destroyed.

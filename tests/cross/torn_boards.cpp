@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMost = 60;  // ruptures
 
 Scene board(Route route, FractureModel model) {
-  Scene scene = pulled_board();
+  Scene scene = pulled_board(Vec3(0, -130, 0));
   scene.fracture.model = model;
   scene.fracture.max_events = 3;
   scene.solver.route = route;

@@ -123,6 +123,8 @@ class Fields(unittest.TestCase):
         alone.close()
         with self.assertRaisesRegex(sunder.HandleError, "closed"):
             made(bodies=bodies)
+        with self.assertRaisesRegex(sunder.Error, "most is 0; allowed is 1 or more"):
+            sunder.Bodies(0)
 
     def test_what_tore_is_what_the_program_says(self):
         with tempfile.TemporaryDirectory() as folder:
