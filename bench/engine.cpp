@@ -25,7 +25,7 @@
 #include "cpu_reference/routes.hpp"
 #include "cpu_reference/stress.hpp"
 #include "run_rows.hpp"
-#include "solver/available_memory.hpp"
+#include "machine/memory.hpp"
 #include "solver/deferred.hpp"
 #include "solver/factor_base.hpp"
 #include "solver/frame_cost.hpp"
@@ -109,7 +109,7 @@ void cholmod_row(benchmark::State& state, Index cells, std::size_t k, void (Chol
 /// Whether the inverse of a board and what else there is fit into the free memory.
 bool has_room_for_inverse(Index cells) {
   const auto unknowns = static_cast<std::size_t>(board_of(cells).problem->dof_count());
-  return unknowns * unknowns * sizeof(double) < solver::available_memory();
+  return unknowns * unknowns * sizeof(double) < machine::available_memory();
 }
 
 /// The engine over an inverse or a factor; one inverse serves all rows of a board. None: no room.

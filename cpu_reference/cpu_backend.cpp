@@ -11,7 +11,7 @@
 #include "cpu_reference/prepared_bodies.hpp"
 #include "cpu_reference/routes.hpp"
 #include "finite/law_backend.hpp"
-#include "solver/available_memory.hpp"
+#include "machine/memory.hpp"
 #include "solver/condensed_route.hpp"
 #include "solver/frame_solver.hpp"
 #include "solver/host_frame.hpp"
@@ -372,7 +372,7 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
     throw DeviceError("backend cpu has device 0 only, not " +
                       std::to_string(problem->scene().solver.device));
   }
-  const std::size_t memory = options.memory > 0 ? options.memory : solver::available_memory();
+  const std::size_t memory = options.memory > 0 ? options.memory : machine::available_memory();
   if (problem->moves() || problem->finite()) {
     return finite::create(std::move(problem), std::move(needs), {info_of_device(), memory});
   }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cpu_reference/cpu_reference.hpp"
-#include "solver/available_memory.hpp"
+#include "machine/memory.hpp"
 
 namespace sunder::cpu_reference {
 namespace {
@@ -30,7 +30,7 @@ DeviceInfo device() {
   info.name = cpu_name();
   info.driver = eigen_version();
   info.precisions = "fp64";
-  info.limits = std::to_string(solver::available_memory() / 1000000) +
+  info.limits = std::to_string(machine::available_memory() / 1000000) +
                 " MB free memory, routes inverse, condensed, factor, cg";
   info.chosen = true;
   info.why = "always available";

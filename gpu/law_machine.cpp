@@ -5,7 +5,7 @@
 
 #include "gpu/choose_device.hpp"
 #include "gpu/finite_device.hpp"
-#include "solver/available_memory.hpp"
+#include "machine/memory.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -52,7 +52,7 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
   machine.info.device = physical.name;
   machine.info.driver = physical.driver;
   machine.info.precision = fp64 ? "fp64" : "fp32";
-  machine.memory = solver::available_memory();
+  machine.memory = machine::available_memory();
   machine.largest_dense = FiniteDevice::most_inverse(open->kernels);
   machine.most_dense = std::min(kMostDense, machine.largest_dense);
   machine.device = [open](const fem::HyperelasticBody& body, Route route, int pairs) {

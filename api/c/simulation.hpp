@@ -2,6 +2,8 @@
 // A simulation behind a handle, with the host's callbacks.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -49,7 +51,10 @@ class SimulationObject final : public Object {
   std::int32_t last_mark = 0;
   std::unique_ptr<Surface> surface;  ///< null: not asked for yet
   std::unique_ptr<Skin> skin;        ///< null: none was given
-  std::weak_ptr<Object> grips;       ///< the handle for forces between frames: one thread may ask
+  /// Fields as last lent, by sunder_field, and what was destroyed: where they lie never changes.
+  std::array<std::vector<double>, 5> lent;
+  std::vector<std::uint8_t> lent_destroyed;
+  std::weak_ptr<Object> grips;  ///< the handle for forces between frames: one thread may ask
   /// Destroyed by the host, though a call of another thread may hold this object a little longer.
   const std::shared_ptr<std::atomic<bool>> gone = std::make_shared<std::atomic<bool>>(false);
 

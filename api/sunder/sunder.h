@@ -41,7 +41,9 @@
 #define SUNDER_VERSION_MINOR 1
 #define SUNDER_VERSION_PATCH 0
 
-#if defined(_WIN32)
+#if defined(_WIN32) && defined(SUNDER_MAKES_LIBRARY)
+#define SUNDER_API __declspec(dllexport)
+#elif defined(_WIN32)
 #define SUNDER_API
 #else
 #define SUNDER_API __attribute__((visibility("default")))
@@ -967,6 +969,47 @@ SUNDER_API sunder_status sunder_frames_yield_ratio(sunder_frames frames, double*
 /// (elements), 1 where destroyed.
 SUNDER_API sunder_status sunder_frames_destroyed(sunder_frames frames, uint8_t* values,
                                                  size_t size);
+
+/* ---- Fields lent ----------------------------------------------------------------------------- */
+
+typedef int32_t sunder_field;
+enum {
+  SUNDER_FIELD_DISPLACEMENT = 0,  ///< as sunder_simulation_displacement, and so on
+  SUNDER_FIELD_VELOCITY = 1,
+  SUNDER_FIELD_STRESS = 2,
+  SUNDER_FIELD_MAX_SHEAR = 3,
+  SUNDER_FIELD_YIELD_RATIO = 4
+};
+
+/// A field in memory of the library's own, in place of an array of the caller's: where it lies
+/// (`values`) and how many numbers it has (`size`), in the shape of the function that reads it.
+/// Each call brings it up to date; the place of a simulation's field is the same every time. Valid,
+/// and unchanged, until the same field is lent again or the simulation is destroyed; a step leaves
+/// it as it was. Fails as the function that reads it, and then both are left alone.
+SUNDER_API sunder_status sunder_simulation_lend(sunder_simulation simulation, sunder_field field,
+                                                const double** values, size_t* size);
+/// The same of sunder_simulation_destroyed.
+SUNDER_API sunder_status sunder_simulation_lend_destroyed(sunder_simulation simulation,
+                                                          const uint8_t** values, size_t* size);
+
+/* ---- Bodies in common ------------------------------------------------------------------------ */
+
+/// What simulations of one intact body share on the CPU: the order of its unknowns, its factor and
+/// the dense inverse, made once by the first that needs them. Bodies are the same whose stiffness
+/// is: load, yield stress, instruments' places and what breaks may differ. By laws of finite
+/// deformation and in motion nothing is shared.
+typedef struct sunder_bodies_handle* sunder_bodies;
+
+/// Keeps the bodies asked for last, at most `most` (1 or more); those in use live on.
+SUNDER_API sunder_status sunder_bodies_create(int32_t most, sunder_bodies* bodies);
+/// Simulations made of it go on.
+SUNDER_API sunder_status sunder_bodies_destroy(sunder_bodies bodies);
+/// As sunder_simulation_create on the CPU, and no result other by a bit. By any number of threads
+/// at once, each with a scene of its own. SUNDER_ERROR_DEVICE where the scene asks for another
+/// backend than SUNDER_BACKEND_CPU or SUNDER_BACKEND_AUTO.
+SUNDER_API sunder_status sunder_simulation_create_of(sunder_scene scene, sunder_bodies bodies,
+                                                     const sunder_callbacks* callbacks,
+                                                     sunder_simulation* simulation);
 
 #ifdef __cplusplus
 }

@@ -5,9 +5,10 @@
 // be the same memory.
 #include "body/hyperelastic_lanes.hpp"
 
+#include <bit>
 #include <cmath>
 
-#include "linear_algebra/vectorised.hpp"
+#include "machine/compiler.hpp"
 #include "material/corotated.hpp"
 #include "material/lanes.hpp"
 #include "material/linear.hpp"
@@ -141,7 +142,7 @@ SUNDER_IN_LANES std::size_t rotations(const ElementBlock& b, const Lanes<9>& f, 
     for (int l = 0; l < kLanes; ++l) r[i][l] = scalar.r[i][l];
   }
   for (int l = 0; l < kLanes; ++l) trace[l] = scalar.trace[l];
-  return static_cast<std::size_t>(__builtin_popcount(left));
+  return static_cast<std::size_t>(std::popcount(left));
 }
 
 enum class LaneLaw { linear, corotated, neo_hookean, saint_venant_kirchhoff, other };

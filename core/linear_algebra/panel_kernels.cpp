@@ -5,24 +5,23 @@
 #include <cstddef>
 #include <cstring>
 
-#include "linear_algebra/vectorised.hpp"
+#include "machine/compiler.hpp"
 
 namespace sunder::linear_algebra {
 namespace {
 
-typedef double Lanes __attribute__((vector_size(kPanelLanes * sizeof(double))));
+using Lanes = machine::Lanes8;
+static_assert(sizeof(Lanes) == kPanelLanes * sizeof(double));
 constexpr int kTogether = 8;  // columns
 
-inline __attribute__((always_inline)) void load(const double* p, Lanes& v) {
-  std::memcpy(&v, p, sizeof(v));
-}
+SUNDER_FORCE_INLINE void load(const double* p, Lanes& v) { std::memcpy(&v, p, sizeof(v)); }
 
 /// What is to be read next, line by line of the cache: backward, panels are read from the last one
 /// on, and the processor's own prefetching goes the other way.
 struct Ahead {
   const double *at, *end;
-  inline __attribute__((always_inline)) void ask() {
-    if (at < end) __builtin_prefetch(at);
+  SUNDER_FORCE_INLINE void ask() {
+    if (at < end) machine::prefetch(at);
     at += kPanelLanes;
   }
 };
@@ -30,9 +29,8 @@ struct Ahead {
 /// sums[c] = column c . v over whole vectors, for columns that begin `stride` apart. The order of
 /// each sum is fixed: lanes, then (((0+4)+(2+6)) + ((1+5)+(3+7))).
 template <int Columns>
-inline __attribute__((always_inline)) void dots(const double* columns, std::ptrdiff_t stride,
-                                                Index vectors, const double* v, double* sums,
-                                                Ahead& ahead) {
+SUNDER_FORCE_INLINE void dots(const double* columns, std::ptrdiff_t stride, Index vectors,
+                              const double* v, double* sums, Ahead& ahead) {
   Lanes sum[Columns] = {};
   for (Index i = 0; i < vectors; ++i) {
     Lanes right, left;
@@ -50,9 +48,8 @@ inline __attribute__((always_inline)) void dots(const double* columns, std::ptrd
 }
 
 /// The same for any number of columns up to kTogether.
-inline __attribute__((always_inline)) void some_dots(const double* columns, std::ptrdiff_t stride,
-                                                     Index count, Index vectors, const double* v,
-                                                     double* sums, Ahead& ahead) {
+SUNDER_FORCE_INLINE void some_dots(const double* columns, std::ptrdiff_t stride, Index count,
+                                   Index vectors, const double* v, double* sums, Ahead& ahead) {
   if (count == kTogether) {
     dots<kTogether>(columns, stride, vectors, v, sums, ahead);
     return;
@@ -71,10 +68,9 @@ Index vectors_of(Index n) { return (n + kPanelLanes - 1) / kPanelLanes; }
 
 /// t_c += L x_c for some right sides c, in the order of L's columns; whole vectors of rows.
 template <int Few>
-inline __attribute__((always_inline)) void add_columns(const double* l, std::ptrdiff_t l_stride,
-                                                       Index columns, Index vectors,
-                                                       const double* x, double* t,
-                                                       std::ptrdiff_t stride) {
+SUNDER_FORCE_INLINE void add_columns(const double* l, std::ptrdiff_t l_stride, Index columns,
+                                     Index vectors, const double* x, double* t,
+                                     std::ptrdiff_t stride) {
   constexpr int kAtOnce = 4;
   Index k = 0;
   for (; k + kAtOnce <= columns; k += kAtOnce, l += kAtOnce * l_stride) {
@@ -102,9 +98,8 @@ inline __attribute__((always_inline)) void add_columns(const double* l, std::ptr
 }
 
 template <int Few>
-inline __attribute__((always_inline)) void forward_few(const double* panel, Index width,
-                                                       Index height, double* x, double* below,
-                                                       double* product, std::ptrdiff_t stride) {
+SUNDER_FORCE_INLINE void forward_few(const double* panel, Index width, Index height, double* x,
+                                     double* below, double* product, std::ptrdiff_t stride) {
   constexpr Index kColumns = 16;  // as in lower_solve()
   const std::ptrdiff_t tall = height;
   for (Index begin = 0; begin < width; begin += kColumns) {

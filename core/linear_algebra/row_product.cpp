@@ -5,40 +5,34 @@
 #include <cstring>
 #include <vector>
 
-#include "linear_algebra/vectorised.hpp"
+#include "machine/compiler.hpp"
 
 namespace sunder::linear_algebra {
 namespace {
 
 using Index = Eigen::Index;
 constexpr Index kLanes = 8;
-typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
-typedef double HalfLanes __attribute__((vector_size(kLanes / 2 * sizeof(double))));
+using Lanes = machine::Lanes8;
+using HalfLanes = machine::Lanes4;
 
 template <class Vector>
-inline __attribute__((always_inline)) void load(const double* p, Vector& v) {
+SUNDER_FORCE_INLINE void load(const double* p, Vector& v) {
   std::memcpy(&v, p, sizeof(v));
 }
 template <class Vector>
-inline __attribute__((always_inline)) void store(double* p, const Vector& v) {
+SUNDER_FORCE_INLINE void store(double* p, const Vector& v) {
   std::memcpy(p, &v, sizeof(v));
 }
 
 /// Whether a processor keeps four rows of sixteen sums in registers of eight numbers each. Another
 /// keeps four rows of eight in registers of four; more would go through memory (on a processor with
 /// AVX2: .8 instead of 3 Gflop/s and more). Every sum is the same by both.
-inline __attribute__((always_inline)) bool wide_registers() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx512f") != 0;
-#else
-  return true;
-#endif
-}
+SUNDER_FORCE_INLINE bool wide_registers() { return machine::wide_registers(); }
 
 /// Rows x (two vectors) entries of c, kept in registers.
 template <bool Add, int Rows, class Vector>
-inline __attribute__((always_inline)) void tile(const LeftFactor& a, Index row, const double* b,
-                                                Index b_stride, double* c, Index c_stride) {
+SUNDER_FORCE_INLINE void tile(const LeftFactor& a, Index row, const double* b, Index b_stride,
+                              double* c, Index c_stride) {
   constexpr int kVectors = 2;
   constexpr Index kEach = sizeof(Vector) / sizeof(double);
   Vector sum[Rows][kVectors] = {};
@@ -60,8 +54,8 @@ inline __attribute__((always_inline)) void tile(const LeftFactor& a, Index row, 
 }
 
 template <bool Add, class Vector>
-inline __attribute__((always_inline)) void strip(const LeftFactor& a, const double* b,
-                                                 Index b_stride, double* c, Index c_stride) {
+SUNDER_FORCE_INLINE void strip(const LeftFactor& a, const double* b, Index b_stride, double* c,
+                               Index c_stride) {
   constexpr int kRows = 4;
   Index i = 0;
   for (; i + kRows <= a.rows; i += kRows) {
@@ -71,9 +65,8 @@ inline __attribute__((always_inline)) void strip(const LeftFactor& a, const doub
 }
 
 template <bool Add>
-inline __attribute__((always_inline)) void product(const LeftFactor& a, const double* b,
-                                                   Index b_stride, Index width, double* c,
-                                                   Index c_stride) {
+SUNDER_FORCE_INLINE void product(const LeftFactor& a, const double* b, Index b_stride, Index width,
+                                 double* c, Index c_stride) {
   Index j = 0;
   for (; wide_registers() && j + 2 * kLanes <= width; j += 2 * kLanes) {
     strip<Add, Lanes>(a, b + j, b_stride, c + j, c_stride);
@@ -102,10 +95,8 @@ constexpr Index kTile = 4;
 
 /// Of a strip of b whose rows lie together, and tiles of A that do.
 template <class Vector>
-inline __attribute__((always_inline)) void packed_strip(const LeftFactor& a,
-                                                        const std::vector<double>& tiles_room,
-                                                        const double* b, double* c,
-                                                        Index c_stride) {
+SUNDER_FORCE_INLINE void packed_strip(const LeftFactor& a, const std::vector<double>& tiles_room,
+                                      const double* b, double* c, Index c_stride) {
   constexpr Index kStrip = 2 * sizeof(Vector) / sizeof(double);
   const Index tiles = a.rows / kTile, packed = kTile * a.columns;
   for (Index t = 0; t < tiles; ++t) {

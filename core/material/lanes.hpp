@@ -4,11 +4,14 @@
 // is right; these agree with them to rounding.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
-#define SUNDER_IN_LANES [[gnu::always_inline]] inline
+#include "machine/compiler.hpp"
+
+#define SUNDER_IN_LANES SUNDER_FORCE_INLINE
 
 namespace sunder::lanes {
 
@@ -45,7 +48,7 @@ struct Symmetric {
 
 /// sym(A^T B).
 SUNDER_IN_LANES Symmetric symmetric_product(const Matrix& a, const Matrix& b) {
-  const auto dot = [&](int i, int j) __attribute__((always_inline)) {
+  const auto dot = [&](int i, int j) SUNDER_FORCE_INLINE_LAMBDA {
     return a.at[0][i] * b.at[0][j] + a.at[1][i] * b.at[1][j] + a.at[2][i] * b.at[2][j];
   };
   return {dot(0, 0),
@@ -69,7 +72,7 @@ SUNDER_IN_LANES Symmetric symmetric_product_by_rows(const Matrix& a, const Matri
 
 /// F^T F.
 SUNDER_IN_LANES Symmetric cauchy_green(const Matrix& f) {
-  const auto dot = [&](int i, int j) __attribute__((always_inline)) {
+  const auto dot = [&](int i, int j) SUNDER_FORCE_INLINE_LAMBDA {
     return f.at[0][i] * f.at[0][j] + f.at[1][i] * f.at[1][j] + f.at[2][i] * f.at[2][j];
   };
   return {dot(0, 0), dot(1, 1), dot(2, 2), dot(0, 1), dot(1, 2), dot(2, 0)};
@@ -107,12 +110,12 @@ SUNDER_IN_LANES double log(double x) {
   constexpr double kLn2High = 0x1.62e42fee00000p-1, kLn2Low = 0x1.a39ef35793c76p-33;
   const bool small = x < std::numeric_limits<double>::min();
   const double scaled = x * (small ? kTwo54 : 1.0);
-  const std::uint64_t bits = __builtin_bit_cast(std::uint64_t, scaled) + (kOne - kRootHalf);
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(scaled) + (kOne - kRootHalf);
   // A number of less than 52 bits in the last places of 2^52 is that number.
   const double biased =
-      __builtin_bit_cast(double, (bits >> 52) | __builtin_bit_cast(std::uint64_t, kTwo52)) - kTwo52;
+      std::bit_cast<double>((bits >> 52) | std::bit_cast<std::uint64_t>(kTwo52)) - kTwo52;
   const double k = biased - (small ? 1023.0 + 54 : 1023.0);
-  const double f = __builtin_bit_cast(double, (bits & kMantissa) + kRootHalf) - 1;
+  const double f = std::bit_cast<double>((bits & kMantissa) + kRootHalf) - 1;
   const double z = f / (2 + f), zz = z * z;
   double series = 2.0 / 23;
   series = series * zz + 2.0 / 21;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "linear_algebra/vectorised.hpp"
+#include "machine/compiler.hpp"
 #include "solver/columns.hpp"
 
 namespace sunder::solver {

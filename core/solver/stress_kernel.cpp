@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "body/element.hpp"
-#include "linear_algebra/vectorised.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -170,9 +169,8 @@ inline void bound_principal(const double (&s)[6][StressKernel::kLanes],
 }  // namespace
 
 template <bool kMeasured>
-inline __attribute__((always_inline)) void StressKernel::run_all(const Block* blocks,
-                                                                 std::size_t count, const double* u,
-                                                                 Stores to, Partial& partial) {
+SUNDER_FORCE_INLINE void StressKernel::run_all(const Block* blocks, std::size_t count,
+                                               const double* u, Stores to, Partial& partial) {
   double largest[kLanes] = {}, check[kLanes] = {};
   GroupBounds most{};
   for (std::size_t k = 0; k < count; ++k) {

@@ -9,6 +9,7 @@
 
 #include "body/change.hpp"
 #include "linear_algebra/workers.hpp"
+#include "machine/compiler.hpp"
 #include "solver/deformation_search.hpp"
 #include "sunder/backend.hpp"
 
@@ -80,7 +81,7 @@ class StressKernel {
     Index element[kLanes];    // kNone: filler
 
     /// Displacement of corners 1..3 against corner 0: 3 * (corner - 1) + axis.
-    __attribute__((always_inline)) void differences(const double* u, double (&d)[9][kLanes]) const {
+    SUNDER_FORCE_INLINE void differences(const double* u, double (&d)[9][kLanes]) const {
       for (int axis = 0; axis < 3; ++axis) {
         for (int l = 0; l < kLanes; ++l) {
           const double u0 = u[corner[0][l] + axis];

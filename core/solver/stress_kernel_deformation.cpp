@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "linear_algebra/vectorised.hpp"
+#include "machine/compiler.hpp"
 #include "solver/stress_kernel.hpp"
 
 namespace sunder::solver {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/vulkan/instance.hpp"
 
-#include <dlfcn.h>
+#include <type_traits>
 
 #include "gpu/vulkan/check.hpp"
 
@@ -35,33 +35,25 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(Messages* messages) {
 
 Instance::Instance(const InstanceOptions& options) : messages_(options.messages) {
   open_loader(options.loader);
-  try {
-    create(options.validation);
-    vk_ = load_functions(get_, handle_);
-    if (options.validation) {
-      const auto info = messenger_info(messages_.get());
-      check(vk_.CreateDebugUtilsMessengerEXT(handle_, &info, nullptr, &messenger_),
-            "vkCreateDebugUtilsMessengerEXT");
-    }
-  } catch (...) {
-    dlclose(library_);
-    throw;
+  create(options.validation);
+  vk_ = load_functions(get_, handle_);
+  if (options.validation) {
+    const auto info = messenger_info(messages_.get());
+    check(vk_.CreateDebugUtilsMessengerEXT(handle_, &info, nullptr, &messenger_),
+          "vkCreateDebugUtilsMessengerEXT");
   }
 }
 
 Instance::~Instance() {
   if (messenger_) vk_.DestroyDebugUtilsMessengerEXT(handle_, messenger_, nullptr);
   vk_.DestroyInstance(handle_, nullptr);
-  dlclose(library_);
 }
 
 void Instance::open_loader(const char* name) {
-  library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
-  if (library_) {
-    get_ = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library_, "vkGetInstanceProcAddr"));
-  }
+  library_ = machine::SharedLibrary(name);
+  get_ =
+      library_.function<std::remove_pointer_t<PFN_vkGetInstanceProcAddr>>("vkGetInstanceProcAddr");
   if (!get_) {
-    if (library_) dlclose(library_);
     throw DeviceError(std::string("no Vulkan loader was found (") + name +
                       "); install libvulkan1 or use backend cpu");
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/vulkan/functions.hpp"
+#include "machine/shared_library.hpp"
 
 namespace sunder::vulkan {
 
@@ -19,7 +20,11 @@ struct InstanceOptions {
   /// Validation and synchronization validation; a message becomes a DeviceError at the next submit.
   bool validation = false;
   std::shared_ptr<Messages> messages = std::make_shared<Messages>();
+#if defined(_WIN32)
+  const char* loader = "vulkan-1.dll";
+#else
   const char* loader = "libvulkan.so.1";
+#endif
 };
 
 class Instance {
@@ -39,7 +44,7 @@ class Instance {
   void open_loader(const char* name);
   void create(bool validation);
 
-  void* library_ = nullptr;
+  machine::SharedLibrary library_;
   PFN_vkGetInstanceProcAddr get_ = nullptr;
   VkInstance handle_ = VK_NULL_HANDLE;
   InstanceFunctions vk_;

@@ -2,8 +2,15 @@
 // Bytes before a page that nobody may touch: a call that reads or writes beyond them ends the test.
 #pragma once
 
+#if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+#else
 #include <sys/mman.h>
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <cstdint>
@@ -18,16 +25,20 @@ class GuardedBytes {
 
   /// `size` bytes (at most a page), the first four of them a struct's `stated` size.
   GuardedBytes(std::size_t size, std::uint32_t stated)
-      : page_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))),
-        start_(
-            mmap(nullptr, 2 * page_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)),
+      : page_(page_size()),
+        start_(two_pages(page_)),
         bytes_(static_cast<unsigned char*>(start_) + page_ - size),
         size_(size) {
-    mprotect(static_cast<unsigned char*>(start_) + page_, page_, PROT_NONE);
     std::memset(bytes_, kUntouched, size_);
     state(stated);
   }
-  ~GuardedBytes() { munmap(start_, 2 * page_); }
+  ~GuardedBytes() {
+#if defined(_WIN32)
+    VirtualFree(start_, 0, MEM_RELEASE);
+#else
+    munmap(start_, 2 * page_);
+#endif
+  }
   GuardedBytes(const GuardedBytes&) = delete;
   GuardedBytes& operator=(const GuardedBytes&) = delete;
 
@@ -39,6 +50,30 @@ class GuardedBytes {
   }
 
  private:
+#if defined(_WIN32)
+  static std::size_t page_size() {
+    SYSTEM_INFO info{};
+    GetSystemInfo(&info);
+    return info.dwPageSize;
+  }
+  /// Of which the second may not be touched.
+  static void* two_pages(std::size_t page) {
+    void* start = VirtualAlloc(nullptr, 2 * page, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE);
+    DWORD before = 0;
+    VirtualProtect(static_cast<unsigned char*>(start) + page, page, PAGE_NOACCESS, &before);
+    return start;
+  }
+#else
+  static std::size_t page_size() { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
+  /// Of which the second may not be touched.
+  static void* two_pages(std::size_t page) {
+    void* start =
+        mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    mprotect(static_cast<unsigned char*>(start) + page, page, PROT_NONE);
+    return start;
+  }
+#endif
+
   std::size_t page_;
   void* start_;
   unsigned char* bytes_;

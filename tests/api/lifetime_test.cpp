@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Create, step, destroy, over and over: nothing is left. The leak sanitizer looks at the same
 // tests; here the heap is counted.
-#include <malloc.h>
-
 #include <algorithm>
 #include <cstdlib>
 
 #include "api/c_scene.hpp"
+#include "support/heap.hpp"
 
 namespace sunder::test {
 namespace {
-
-std::size_t heap_in_use() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
 
 void cycle(sunder_backend backend) {
   const sunder_scene scene = board_scene(backend, 2);

@@ -242,6 +242,29 @@ std::vector<Misuse> sizes() {
          std::uint8_t byte = 0;
          return sunder_simulation_destroyed(w.simulation, &byte, 1);
        }},
+      {"no_bodies", SUNDER_ERROR_VALUE, "most is 0; allowed is 1 or more",
+       [](World&) {
+         sunder_bodies bodies = nullptr;
+         return sunder_bodies_create(0, &bodies);
+       }},
+      {"simulation_of_no_bodies", SUNDER_ERROR_HANDLE, "set of bodies",
+       [](World& w) { return sunder_simulation_create_of(w.scene, nullptr, nullptr, &w.made); }},
+      {"lend_no_such_field", SUNDER_ERROR_VALUE, "field 5 does not exist",
+       [](World& w) {
+         const double* at = nullptr;
+         std::size_t size = 0;
+         return sunder_simulation_lend(w.simulation, 5, &at, &size);
+       }},
+      {"lend_to_nobody", SUNDER_ERROR_NULL, "values is null",
+       [](World& w) {
+         std::size_t size = 0;
+         return sunder_simulation_lend(w.simulation, SUNDER_FIELD_STRESS, nullptr, &size);
+       }},
+      {"lend_without_a_size", SUNDER_ERROR_NULL, "size is null",
+       [](World& w) {
+         const std::uint8_t* at = nullptr;
+         return sunder_simulation_lend_destroyed(w.simulation, &at, nullptr);
+       }},
       {"reactions_too_short", SUNDER_ERROR_SIZE, "must have 3",
        [](World& w) { return sunder_simulation_reactions(w.simulation, w.values, 2); }},
       {"support_reaction_too_long", SUNDER_ERROR_SIZE, "must have 3",

@@ -16,7 +16,7 @@ from .errors import (AllowedError, BusyError, Cancelled, DeviceError, Error, Han
 from .mesh import Mesh
 from .plotting import plot
 from .scene import Scene, devices, presets
-from .simulation import Frames, Grips, Simulation, Step, cause_name
+from .simulation import Bodies, Frames, Grips, Simulation, Step, cause_name
 from .sweeping import sweep
 
 constants: dict[str, int] = _c.constants
@@ -45,8 +45,8 @@ def run(source: Any, *, set: dict[str, Any] | None = None, mesh: Any = None,
 
 
 __all__ = [
-    "AllowedError", "BusyError", "Cancelled", "DeviceError", "Error", "Grips", "HandleError",
-    "InputError", "InternalError", "Mesh", "NumericalError", "OrderError", "OutOfMemory", "Scene",
+    "AllowedError", "Bodies", "BusyError", "Cancelled", "DeviceError", "Error", "Frames", "Grips",
+    "HandleError", "InputError", "InternalError", "Mesh", "NumericalError", "OrderError", "OutOfMemory", "Scene",
     "Simulation", "SizeError", "Step", "cause_name", "constants", "devices", "plot", "presets", "run",
     "sweep",
 ]

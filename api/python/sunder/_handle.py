@@ -4,9 +4,30 @@ from __future__ import annotations
 
 from typing import TypeVar
 
+import numpy as np
+
 from .errors import HandleError
 
 _Self = TypeVar("_Self", bound="Handled")
+
+
+class Lent:
+    """Memory of the library as numpy sees it, read-only; keeps whose it is from being given back."""
+
+    def __init__(self, owner, address, shape, dtype):
+        self._owner = owner
+        self.__array_interface__ = {"version": 3, "shape": tuple(shape), "typestr": np.dtype(dtype).str,
+                                    "data": (address, True)}
+
+
+class Owner:
+    """Gives a handle back when nothing refers to it any more."""
+
+    def __init__(self, handle, destroy):
+        self.handle, self._destroy = handle, destroy
+
+    def __del__(self):
+        self._destroy(self.handle)
 
 
 class Handled:

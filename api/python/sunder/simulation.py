@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterator, Sequence
 import numpy as np
 
 from . import _arrays, _c, _words
-from ._handle import Handled
+from ._handle import Handled, Lent, Owner
 from ._live import Live
 from ._threads import Frames, Grips
 from .errors import InputError, check
@@ -50,9 +50,37 @@ def _dtype(name, *left_out):
 _STEP = bytes(Step())
 _new_step, _step, _byref = Step.from_buffer_copy, _lib.sunder_simulation_step, c.byref
 
+# A field's number in the C interface, what its rows are of the mesh, and what a row has.
+_VIEWS = {
+    "displacement": (_c.constants["SUNDER_FIELD_DISPLACEMENT"], "nodes", (3,)),
+    "velocity": (_c.constants["SUNDER_FIELD_VELOCITY"], "nodes", (3,)),
+    "stress": (_c.constants["SUNDER_FIELD_STRESS"], "tets", (6,)),
+    "max_shear": (_c.constants["SUNDER_FIELD_MAX_SHEAR"], "tets", ()),
+    "yield_ratio": (_c.constants["SUNDER_FIELD_YIELD_RATIO"], "tets", ()),
+    "destroyed": (None, "tets", ()),
+}
+
 EVENT = _dtype("sunder_event")
 CRACK = _dtype("sunder_crack")
 TIP = _dtype("sunder_tip")
+
+
+class Bodies(Handled):
+    """What simulations of one intact body share on the CPU by the linear law in statics: its factor
+    and inverse, made once. A context manager; simulations made of it go on after its end.
+
+    most: so many bodies are kept, those asked for last.
+    """
+
+    def __init__(self, most: int = 1):
+        handle = c.c_void_p()
+        check(_lib.sunder_bodies_create(int(_arrays.ids(most, "most", ())), c.byref(handle)))
+        self._handle = handle.value
+
+    _what = "set of bodies"
+
+    def _destroy(self, handle):
+        _lib.sunder_bodies_destroy(handle)
 
 
 class Simulation(Handled, Live):
@@ -60,18 +88,21 @@ class Simulation(Handled, Live):
 
     scene: a Scene, or what Scene() takes.
     log: called with (level, text), level 0 info, 1 warning, 2 error.
+    bodies: what is made of one intact body is taken from there, or left there.
     progress: called with a dict (phase, step, steps, events, destroyed) before each phase of the
         set-up and after each event of a step; a true result cancels (Cancelled).
 
     Shapes are by the mesh at creation, n nodes and m tetrahedra. Each field takes `out`, an array of
-    its shape and type, into which the library writes; without it is a new one. The library keeps its
-    state where it computes, so a field is one copy of it and never two.
+    its shape and type, into which the library writes; without it is a new one. view() shows a field
+    in the library's own memory.
     """
 
     def __init__(self, scene: Scene | Any, *,
                  log: Callable[[int, str], None] | None = None,
-                 progress: Callable[[dict[str, int]], Any] | None = None):
+                 progress: Callable[[dict[str, int]], Any] | None = None,
+                 bodies: "Bodies | None" = None):
         self._handle = None
+        self._bodies = bodies
         self._open_grips: Grips | None = None
         if not isinstance(scene, Scene):
             with Scene(scene) as made:
@@ -89,9 +120,14 @@ class Simulation(Handled, Live):
         self._raised: BaseException | None = None
         self._callbacks = self._make_callbacks(log, progress)
         handle = c.c_void_p()
-        status = _lib.sunder_simulation_create(scene.handle, c.byref(self._callbacks), c.byref(handle))
+        if self._bodies is None:
+            status = _lib.sunder_simulation_create(scene.handle, c.byref(self._callbacks), c.byref(handle))
+        else:
+            status = _lib.sunder_simulation_create_of(scene.handle, self._bodies.handle,
+                                                      c.byref(self._callbacks), c.byref(handle))
         self._check(status)
         self._handle = handle.value
+        self._owner = Owner(self._handle, _lib.sunder_simulation_destroy)
 
     def _make_callbacks(self, log, progress):
         callbacks = _c.structs["sunder_callbacks"]()
@@ -127,7 +163,7 @@ class Simulation(Handled, Live):
     _what = "simulation"
 
     def _destroy(self, handle):
-        _lib.sunder_simulation_destroy(handle)
+        self._owner = None  # the last view of a field gives the memory back
 
     # ---- steps
 
@@ -226,6 +262,23 @@ class Simulation(Handled, Live):
     @property
     def _tets(self):
         return len(self.mesh.tets)
+
+    def view(self, field: str) -> np.ndarray:
+        """A field in the library's own memory, read-only and without a copy of numpy's: "displacement",
+        "velocity", "stress", "max_shear", "yield_ratio" or "destroyed", shaped as by the method of
+        that name. It stays as it is through further steps, until the same field is viewed again:
+        every view of it is the same memory. That lives as long as a view does, also after close()."""
+        if field not in _VIEWS:
+            raise InputError(f"field is {field!r}; allowed are {', '.join(_VIEWS)}")
+        number, per, columns = _VIEWS[field]
+        address, size = c.c_void_p(), c.c_size_t()
+        if number is None:
+            check(_lib.sunder_simulation_lend_destroyed(self.handle, c.byref(address), c.byref(size)))
+        else:
+            check(_lib.sunder_simulation_lend(self.handle, number, c.byref(address), c.byref(size)))
+        rows = len(getattr(self.mesh, per))
+        kind = np.bool_ if number is None else np.float64
+        return np.asarray(Lent(self._owner, address.value, (rows, *columns), kind))
 
     def displacement(self, out: np.ndarray | None = None) -> np.ndarray:
         """(n, 3) float64 [mm]; zero before the first step."""

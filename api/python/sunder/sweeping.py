@@ -5,6 +5,7 @@ from __future__ import annotations
 import concurrent.futures
 import itertools
 import os
+import threading
 from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
@@ -14,7 +15,7 @@ from ._progress import Line
 from .errors import Error, InputError
 from .mesh import Mesh
 from .scene import Scene
-from .simulation import Simulation, cause_name
+from .simulation import Bodies, Simulation, cause_name
 
 RESULT = np.dtype([
     ("run", "i8"), ("status", "i4"), ("steps_done", "i4"), ("events", "i4"), ("destroyed", "i4"),
@@ -49,15 +50,18 @@ def _measured(simulation, steps, record):
 
 
 def run_one(tree: Mapping[str, Any], run: int, values: Mapping[str, Any],
-            measure: Callable[[Simulation], Any] | None = None) -> tuple[np.ndarray, Any]:
+            measure: Callable[[Simulation], Any] | None = None,
+            bodies: Bodies | None = None) -> tuple[np.ndarray, Any]:
     """One run of a sweep, a function by itself so that a scheduler can carry it: (RESULT record,
-    what `measure` returned). An error of the scene or of the computation is in the record."""
+    what `measure` returned). An error of the scene or of the computation is in the record. Without
+    `bodies` the runs of a process share what is made of a body."""
     record = np.zeros((), RESULT)
     record["run"] = run
     measured = None
     try:
         with Scene(tree, set={**values, "solver.prepare": False}) as scene:
-            simulation = Simulation(scene)
+            shared = None if _elsewhere(tree, values) else bodies or _process_bodies()
+            simulation = Simulation(scene, bodies=shared)
         with simulation:
             steps = []
             try:
@@ -70,6 +74,25 @@ def run_one(tree: Mapping[str, Any], run: int, values: Mapping[str, Any],
     except Error as error:
         record["status"], record["message"] = error.status, str(error)[:300]
     return record, measured
+
+
+def _elsewhere(tree, values):
+    """Whether a run names another backend than the CPU's: that shares nothing."""
+    backend = values.get("solver.backend", (tree.get("solver") or {}).get("backend", "auto"))
+    return backend not in ("auto", "cpu")
+
+
+_of_process: Bodies | None = None
+_making = threading.Lock()
+
+
+def _process_bodies():
+    """Of a worker of a cluster, which has no place of its own for what its runs share."""
+    global _of_process
+    with _making:
+        if _of_process is None:
+            _of_process = Bodies(1)
+        return _of_process
 
 
 def _runs(vary):
@@ -102,8 +125,8 @@ def sweep(source: Any, vary: Mapping[str, Sequence[Any]], *, set: Mapping[str, A
     Returns an array of records RESULT, by run, or that and the list of `measure`. A run that is
     refused or fails has its status (as Error.status) and message; the others go on.
 
-    Each run prepares its body anew; `sunder sweep` shares it, and is the faster way for many runs of
-    one body.
+    On the CPU, which backend "auto" is here, runs of one intact body share its factor and inverse;
+    a worker of a cluster keeps those of the body that it had last.
     """
     tree, folder, _ = _fill.load(source, set or {})
     if mesh is not None:
@@ -129,8 +152,8 @@ def sweep(source: Any, vary: Mapping[str, Sequence[Any]], *, set: Mapping[str, A
 def _by_threads(tree, runs, measure, jobs):
     # The library computes without Python's lock, so threads are enough.
     count = jobs or len(os.sched_getaffinity(0))
-    with concurrent.futures.ThreadPoolExecutor(count) as pool:
-        waiting = [pool.submit(run_one, tree, run, values, measure) for run, values in runs]
+    with Bodies(count + 1) as bodies, concurrent.futures.ThreadPoolExecutor(count) as pool:
+        waiting = [pool.submit(run_one, tree, run, values, measure, bodies) for run, values in runs]
         try:
             for future in concurrent.futures.as_completed(waiting):
                 yield future.result()

@@ -224,7 +224,7 @@ TEST_P(Grasp, IsTakenBackToTheSameBits) {
   expect_same_bits(RunState(s), states.back());
   EXPECT_THROW(s.pose(left, {}), UsageError) << "it has let go";
   s.pose(right, {s.centre_of(right)});
-  for (const std::size_t to : {2UL, 5UL, 0UL, 3UL, 1UL, 4UL}) {
+  for (const std::size_t to : std::vector<std::size_t>{2, 5, 0, 3, 1, 4}) {
     s.restore(marks[to]);
     expect_same_bits(RunState(s), states[to]);
   }

@@ -175,7 +175,9 @@ TEST(Recording, RefusesDamageOtherVersionsAndOtherBodies) {
   Simulation& s = run.simulation;
   refused(s, {}, "no recording");
   refused(s, {'P', 'K', 3, 4, 0, 0, 0, 0, 0}, "no recording");
-  for (std::size_t length : {8UL, 12UL, 20UL, bytes.size() / 2, bytes.size() - 1}) {
+  const std::size_t whole = bytes.size();
+  for (const std::size_t length :
+       {std::size_t{8}, std::size_t{12}, std::size_t{20}, whole / 2, whole - 1}) {
     refused(s, {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)}, "damaged");
   }
   for (std::size_t at = 12; at < bytes.size(); ++at) {

@@ -20,6 +20,13 @@
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"
 
+#if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+#endif
+
 namespace sunder::test {
 namespace {
 
@@ -118,6 +125,26 @@ TEST_P(WhileFramesTear, EveryAnswerIsAFrames) {
   EXPECT_LE(answers.most, frames.most * (1 + 1e-7));
 }
 
+#if defined(_WIN32)
+
+/// Holds a thread wherever it is, whatever locks it has, until it is let go.
+class Hold {
+ public:
+  void take(std::thread& thread) const {
+    held_ = pthread_gethandle(thread.native_handle());
+    SuspendThread(held_);
+    CONTEXT context{};  // asked for, it says that the thread stands
+    context.ContextFlags = CONTEXT_CONTROL;
+    GetThreadContext(held_, &context);
+  }
+  void let_go() const { ResumeThread(held_); }
+
+ private:
+  mutable HANDLE held_ = nullptr;
+};
+
+#else
+
 /// Holds a thread wherever it is, whatever locks it has, until it is let go.
 class Hold {
  public:
@@ -155,6 +182,8 @@ class Hold {
   struct sigaction before_ {};
 };
 
+#endif
+
 // By logic, not by the clock: the frame's thread stands still in the middle of its work, with the
 // allocator's lock perhaps, and an answer that waited for it would never come.
 TEST_P(WhileFramesTear, NoAnswerWaitsForAFrame) {
@@ -170,13 +199,13 @@ TEST_P(WhileFramesTear, NoAnswerWaitsForAFrame) {
   std::vector<double> forces(held_.size());
   long answers = 0, bad = 0, holds = 0;
   for (; !torn; ++holds) {
-    Hold::take(frames);
+    hold.take(frames);
     for (int i = 0; i < 10; ++i) {
       const bool answered = instruments->forces(held_, forces);
       answers += answered;
       for (double f : forces) bad += !std::isfinite(f);
     }
-    Hold::let_go();
+    hold.let_go();
     std::this_thread::sleep_for(std::chrono::microseconds(300));
   }
   leave = true;

@@ -1,38 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene does not need does not exist: neither in the list of buffers nor on the heap.
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <string>
 
 #include "sunder/simulation.hpp"
 #include "support/body.hpp"
+#include "support/heap.hpp"
 #include "support/structured_board.hpp"
 #include "support/table1_board.hpp"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define SUNDER_ADDRESS_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define SUNDER_ADDRESS_SANITIZER
-#endif
-#endif
-#if defined(SUNDER_ADDRESS_SANITIZER)
-#include <sanitizer/allocator_interface.h>
-#endif
-
 namespace sunder::test {
 namespace {
-
-std::size_t heap() {
-#if defined(SUNDER_ADDRESS_SANITIZER)
-  return __sanitizer_get_current_allocated_bytes();
-#else
-  const auto info = mallinfo2();
-  return info.uordblks + info.hblkhd;
-#endif
-}
 
 // What the allocator itself keeps back or rounds up; every buffer looked for here is larger.
 constexpr std::size_t kSlack = 64 << 10;
@@ -56,7 +36,7 @@ Held held(const Needs& needs, Route route = Route::factor, Update update = Updat
   scene.solver.route = route;
   scene.solver.update = update;
   const auto problem = std::make_shared<Problem>(std::move(scene));
-  const std::size_t before = heap();
+  const std::size_t before = heap_in_use();
   const auto backend = cpu_reference::create(problem, needs);
   backend->set_load(corner_pull(*problem));
   if (needs.damage) backend->destroy(std::vector<Index>{700});
@@ -162,9 +142,9 @@ TEST(LeftOut, PressureTermsWithoutPressure) {
     Needs needs = needs_of(*problem);
     left_out = needs.left_out;
     auto backend = cpu_reference::create(problem, std::move(needs));
-    const std::size_t before = heap();
+    const std::size_t before = heap_in_use();
     const Simulation simulation(problem, std::move(backend));
-    return heap() - before;
+    return heap_in_use() - before;
   };
   const auto has = [](const std::vector<std::string>& list) {
     return std::ranges::count(list, "pressure terms K_b, K_c: no pressing instrument") == 1;

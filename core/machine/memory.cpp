@@ -1,14 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/available_memory.hpp"
+#include "machine/memory.hpp"
 
+#if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+#else
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <fstream>
 #include <optional>
 #include <string>
 
-namespace sunder::solver {
+namespace sunder::machine {
+
+#if defined(_WIN32)
+
+std::size_t available_memory() {
+  MEMORYSTATUSEX status{};
+  status.dwLength = sizeof(status);
+  return GlobalMemoryStatusEx(&status) ? static_cast<std::size_t>(status.ullAvailPhys) : 0;
+}
+
+#else
+
 namespace {
 
 /// "MemAvailable:  1234 kB" of a file: its number; none: the file has no such line.
@@ -45,4 +63,6 @@ std::size_t available_memory() {
   return std::min(bytes, *limit - std::min(*limit, held));
 }
 
-}  // namespace sunder::solver
+#endif
+
+}  // namespace sunder::machine

@@ -3,10 +3,10 @@
 
 #include <cstddef>
 
-namespace sunder::solver {
+namespace sunder::machine {
 
 /// Bytes that can be had without swapping: free ones and what caches files, within what a container
 /// is allowed.
 [[nodiscard]] std::size_t available_memory();
 
-}  // namespace sunder::solver
+}  // namespace sunder::machine

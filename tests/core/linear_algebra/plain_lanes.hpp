@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels of panels and products once more, as a compiler without gcc's extensions makes them.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sunder/types.hpp"
+
+namespace sunder::test {
+
+/// A b, of a row-major b; packed: as packed_product() sums it.
+[[nodiscard]] std::vector<double> plain_product(const Eigen::MatrixXd& a,
+                                                const std::vector<double>& b, Index width,
+                                                bool packed);
+/// As the functions of panel_kernels.hpp without `plain_`.
+void plain_forward_few(const double* panel, Index width, Index height, Index columns, double* x,
+                       double* below, double* product, Index stride);
+void plain_backward(const double* panel, Index width, Index height, double* x, const double* below,
+                    double* solved);
+
+}  // namespace sunder::test
