@@ -11,16 +11,10 @@
 #include <vector>
 
 #include "body/change.hpp"
+#include "fracture/face.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::fracture {
-
-/// The face of an element that lies opposite to one of its corners.
-struct Face {
-  Index element = 0;
-  int opposite = 0;
-  friend bool operator==(const Face&, const Face&) = default;
-};
 
 class SplitBody {
  public:
