@@ -102,13 +102,17 @@ void Deferred::reserve(Index columns) {
 
 bool Deferred::factor_grips() {
   if (grips() == 0) return true;
-  if (border_.empty()) {
-    grip_block_.compute(grip_compliance_.leftCols(grips()));
-  } else {
-    Eigen::MatrixXd compliance = grip_compliance_.leftCols(grips());
-    border_.add_to_grips(compliance);
-    grip_block_.compute(compliance);
+  const linear_algebra::RowMajor* compliance = &grip_compliance_;
+  if (!border_.empty()) {
+    std::vector<Eigen::Index> columns;
+    for (const Held& held : held_) columns.push_back(held.column);
+    border_.hold(std::move(columns));
+    Eigen::MatrixXd with_border = grip_compliance_.leftCols(grips());
+    border_.add_to_grips(with_border);
+    bordered_grips_ = with_border;
+    compliance = &bordered_grips_;
   }
+  grip_block_.compute(compliance->leftCols(grips()));
   if (grip_block_.info() != Eigen::Success || !grip_block_.matrixLLT().allFinite()) return false;
   if (!grasped()) return true;
   // Eliminated first, the others hold still for the problem's own.
@@ -117,7 +121,7 @@ bool Deferred::factor_grips() {
   const auto from = [&](Eigen::Index i) { return i < all - own ? own + i : i - (all - own); };
   for (Eigen::Index j = 0; j < all; ++j) {
     for (Eigen::Index i = 0; i < all; ++i) {
-      grasped_first_(i, j) = grip_compliance_(from(i), from(j));
+      grasped_first_(i, j) = (*compliance)(from(i), from(j));
     }
   }
   grasped_block_.compute(grasped_first_);
@@ -182,7 +186,6 @@ Eigen::VectorXd Deferred::grip_forces() const {
 
 bool Deferred::follow(const fem::Event& event) {
   if (event.of_grips()) {
-    if (!border_.empty()) throw UsageError("a body whose nodes have parted takes no other grips");
     damage_.add(event);
     return follow_last();
   }

@@ -198,6 +198,7 @@ class Deferred {
   bool stiffened_ = false;    // the last event has changed M
   Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
+  linear_algebra::RowMajor bordered_grips_;   // with what new unknowns add to it
   linear_algebra::RowMajor grip_columns_;     // of G, where they are not the first ones
   std::vector<Sums> sums_;                    // of fewer events first
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};

@@ -4,67 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <optional>
-#include <set>
 
 #include "core/frame/run_state.hpp"
-#include "cpu_reference/plain/finite.hpp"
-#include "split_against_fresh.hpp"
+#include "cut_board.hpp"
+#include "fracture/stress_intensity.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::test {
 namespace {
-
-using Blade = std::vector<std::array<Vec3, 3>>;
-
-/// From one place to another, seen from above, through the board.
-Blade through(const Vec2& a, const Vec2& b) {
-  const Vec3 p(a.x(), a.y(), -5), q(a.x(), a.y(), 9), r(b.x(), b.y(), -5), s(b.x(), b.y(), 9);
-  return {{p, q, r}, {q, s, r}};
-}
-
-struct CutCase {
-  std::optional<MaterialLaw> law;  // none: linear
-  Route route;
-  bool grip;
-};
-
-std::string name_of(const ::testing::TestParamInfo<CutCase>& info) {
-  const CutCase& c = info.param;
-  return std::string(!c.law                            ? "Linear"
-                     : c.law == MaterialLaw::corotated ? "Corotated"
-                                                       : "NeoHookean") +
-         (c.route == Route::inverse ? "Inverse" : "Factor") + (c.grip ? "Grip" : "Pull");
-}
-
-/// Ten by eight cells, held along y = 8, pulled or moved along y = 0; nothing breaks by itself.
-Scene scene_of(const CutCase& c, const Mesh& mesh) {
-  Scene scene = scene_of(SplitCase{c.route, c.grip, 0.3, false}, mesh);
-  if (c.law) {
-    scene.materials["board"].law = *c.law;
-    scene.solver.tolerance = 1e-8;
-  }
-  scene.materials["board"].yield = 1e6;
-  scene.steps = 50;
-  return scene;
-}
-
-Mesh board() {
-  std::mt19937 random(5);
-  return shaken_board({10, 8, 2, 10, 8, 2}, random, 0.2);
-}
-
-struct CutRun {
-  explicit CutRun(Scene scene)
-      : problem(std::make_shared<const Problem>(std::move(scene))),
-        simulation(problem, cpu_reference::create(problem, needs_of(*problem))) {
-    simulation.keep_history([p = problem] { return cpu_reference::create(p, needs_of(*p)); });
-  }
-  explicit CutRun(const CutCase& c) : CutRun(scene_of(c, board())) {}
-
-  std::shared_ptr<const Problem> problem;
-  Simulation simulation;
-};
 
 double volume_of(const Mesh& mesh) {
   double sum = 0;
@@ -73,38 +20,6 @@ double volume_of(const Mesh& mesh) {
     sum += (x[b] - x[a]).cross(x[c] - x[a]).dot(x[d] - x[a]) / 6;
   }
   return sum;
-}
-
-std::vector<double> flat(const std::vector<Vec3>& at) {
-  std::vector<double> u;
-  for (const Vec3& x : at) u.insert(u.end(), x.begin(), x.end());
-  return u;
-}
-
-/// Against the mesh whose faces are open from the start.
-void expect_as_fresh(const CutRun& run, const CutCase& c) {
-  const Simulation& s = run.simulation;
-  const Problem fresh(scene_of(c, s.mesh()));
-  const std::vector<std::uint8_t> none(fresh.mesh().tets.size(), 0);
-  std::vector<double> force(3 * fresh.mesh().nodes.size(), 0.0);
-  if (!c.grip) {
-    force = shared_force(run.problem->mesh(), run.problem->instrument_nodes()[0].nodes, kBy);
-    force.resize(3 * fresh.mesh().nodes.size(), 0.0);
-  }
-  const std::vector<double> u = flat(s.displacement());
-  const double tolerance = c.law ? 1e-7 : kCrackTolerance;
-  if (c.law) {
-    const plain::FiniteBody newton(fresh, none);
-    const auto expected = newton.solve(load_of(fresh, force, grips_of(fresh)), u);
-    EXPECT_LE(displacement_error(fresh.mesh(), none, u, expected.displacement), tolerance);
-    EXPECT_LE(
-        stress_error(none, s.stress(), newton.stress(expected.displacement, StressMeasure::cauchy)),
-        tolerance);
-    return;
-  }
-  const auto expected = yardstick(fresh, none, force, grips_of(fresh));
-  EXPECT_LE(displacement_error(fresh.mesh(), none, u, expected.displacement), tolerance);
-  EXPECT_LE(stress_error(none, s.stress(), expected.stress), tolerance);
 }
 
 class SplitCut : public ::testing::TestWithParam<CutCase> {};
@@ -124,7 +39,7 @@ TEST_P(SplitCut, OfHalfABoardIsTheMeshWithThoseFacesOpen) {
   s.step();
   const int before = s.backend().node_count();
   const int opened = s.cut(through({-1, 4.1}, {5.2, 4.3}));
-  EXPECT_GT(opened, 40);
+  EXPECT_GT(opened, 25);
   EXPECT_EQ(s.crack_faces().size(), static_cast<std::size_t>(opened));
   EXPECT_GT(s.backend().node_count(), before + 10);
   expect_as_fresh(run, GetParam());  // at once, under the same load
@@ -204,7 +119,9 @@ TEST(SplitCutAll, OfAWholeBoardMakesTwoPieces) {
   for (const std::optional<MaterialLaw> law :
        {std::optional<MaterialLaw>(), std::optional(MaterialLaw::corotated)}) {
     const CutCase c{law, Route::factor, false};
-    CutRun run(c);
+    Scene scene = scene_of(c, cut_board());
+    scene.fracture.alpha = FractureOptions{}.alpha;
+    CutRun run(std::move(scene));
     Simulation& s = run.simulation;
     s.step();
     EXPECT_GT(s.cut(through({-1, 4.1}, {11, 4.3})), 0);
@@ -216,10 +133,13 @@ TEST(SplitCutAll, OfAWholeBoardMakesTwoPieces) {
     for (const std::string& warning : s.warnings()) told += warning + "\n";
     EXPECT_NE(told.find("1 piece with "), std::string::npos) << told;
     EXPECT_NEAR(volume_of(s.mesh()), volume_of(run.problem->mesh()), 1e-12 * volume_of(s.mesh()));
-    // What still hangs is free of load.
+
+    // By the linear law it still hangs, as after a tear, by the share alpha that ties leave.
+    if (!law) continue;
     double most = 0;
     const Mesh mesh = s.mesh();
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+      // What is held is free of load.
       if (mesh.nodes[n].y() > 6) most = std::max(most, s.displacement()[n].norm());
     }
     EXPECT_LE(most, 1e-6);
@@ -245,14 +165,14 @@ TEST(SplitCutAll, OfABentBladeLeavesNoCrumbs) {
     for (const std::string& warning : s.warnings()) told += warning + "\n";
     EXPECT_NE(told.find("1 piece with "), std::string::npos) << seed << told;
     ASSERT_EQ(s.cracks().size(), 1U);
-    EXPECT_NEAR(s.cracks()[0].length, 16, 2.5);
+    EXPECT_NEAR(s.cracks()[0].length, 13.9, 0.6);
   }
 }
 
 /// Where K reaches the tissue's toughness the cut tears on.
 TEST(SplitCutAll, TearsOnFromItsTip) {
   CutCase c{{}, Route::factor, false};
-  Scene scene = scene_of(c, board());
+  Scene scene = scene_of(c, cut_board());
   scene.materials["board"].toughness = 0.05;
   scene.fracture.sif = SifSource::field;
   scene.instruments[0].ramp = Ramp{0, 1};
@@ -273,34 +193,37 @@ TEST(SplitCutAll, TearsOnFromItsTip) {
     EXPECT_GE(row.sif->k, 0.05);
   }
   EXPECT_GT(s.cracks()[0].length, length + 1);
-  EXPECT_EQ(s.undos(), 4);
+  s.undo(s.undos());
+  EXPECT_TRUE(s.cracks().empty());
 }
 
 /// The lips of a cut that is pressed together are kept apart where the scene asks for it.
 TEST(SplitCutAll, KeepsItsLipsApart) {
   const CutCase c{{}, Route::factor, false};
-  Scene scene = scene_of(c, board());
+  Scene scene = scene_of(c, cut_board());
   scene.fracture.contact = true;
   std::get<Pull>(scene.instruments[0].action).force = Vec3(0, 2, 0);
   CutRun run(std::move(scene));
   Simulation& s = run.simulation;
   s.step();
   s.cut(through({-1, 4.1}, {5.2, 4.3}));
-  const Mesh mesh = s.mesh();
+  const auto plane = fracture::Board(run.problem->mesh(), {}).plane();
+  const auto& path = s.cracks()[0].path;
+  const Vec3 left =
+      plane.lift_direction(fracture::left_of((path.back() - path.front()).normalized()));
   const auto u = s.displacement();
   double overlap = 0;
   for (const CrackFace& face : s.crack_faces()) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const double gap =
-          (u[static_cast<std::size_t>(face.left[i])] - u[static_cast<std::size_t>(face.right[i])])
-              .y();
-      const double upper = mesh.nodes[0].y() * 0 + gap;
-      overlap = std::max(overlap, std::abs(std::min(upper, 0.0)));
+      const Vec3 apart =
+          u[static_cast<std::size_t>(face.left[i])] - u[static_cast<std::size_t>(face.right[i])];
+      overlap = std::max(overlap, -apart.dot(left));
     }
   }
   double most = 0;
   for (const Vec3& x : u) most = std::max(most, x.norm());
-  EXPECT_LE(overlap, 0.05 * most);
+  EXPECT_GT(most, 0.01);
+  EXPECT_LE(overlap, 1e-3 * most);
 }
 
 /// In motion a body that was cut before it moved moves as the mesh whose faces are open.
@@ -313,12 +236,14 @@ TEST(SplitCutAll, InMotionMovesAsTheMeshWithThoseFacesOpen) {
     scene.dynamics->time_step = 1e-4;
     return scene;
   };
-  CutRun run(moving(board()));
+  CutRun run(moving(cut_board()));
   EXPECT_GT(run.simulation.cut(through({-1, 4.1}, {5.2, 4.3})), 0);
   CutRun fresh(moving(run.simulation.mesh()));
   const std::vector<std::uint8_t> none(run.problem->mesh().tets.size(), 0);
   for (int i = 0; i < 5; ++i) {
     run.simulation.step();
+    // After an event three steps are by backward Euler, at the start of a run one.
+    if (i == 1 || i == 2) fresh.simulation.set_velocity(fresh.simulation.velocity());
     fresh.simulation.step();
     EXPECT_LE(displacement_error(fresh.problem->mesh(), none, flat(run.simulation.displacement()),
                                  flat(fresh.simulation.displacement())),
@@ -342,7 +267,7 @@ void refused(Simulation& s, const Blade& blade, const std::string& why) {
 
 TEST(SplitCutAll, RefusesABladeThatCannotCut) {
   const CutCase c{{}, Route::factor, false};
-  Scene scene = scene_of(c, board());
+  Scene scene = scene_of(c, cut_board());
   scene.fracture.max_new_nodes = 20;
   CutRun run(std::move(scene));
   Simulation& s = run.simulation;

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a host takes hold of where cracks have split, against a body that is made anew.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/frame/run_state.hpp"
+#include "cut_board.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::test {
+namespace {
+
+class SplitGrasp : public ::testing::TestWithParam<CutCase> {};
+
+INSTANTIATE_TEST_SUITE_P(All, SplitGrasp,
+                         ::testing::Values(CutCase{{}, Route::inverse, false},
+                                           CutCase{{}, Route::factor, true},
+                                           CutCase{MaterialLaw::corotated, Route::factor, false},
+                                           CutCase{MaterialLaw::corotated, Route::inverse, true},
+                                           CutCase{MaterialLaw::neo_hookean, Route::factor, true}),
+                         name_of);
+
+/// Nodes that parted in a cut, and some beside them.
+std::vector<Index> nodes_of_lip(const Simulation& s, std::size_t most) {
+  std::vector<Index> nodes;
+  for (const CrackFace& face : s.crack_faces()) {
+    for (Index n : face.left) {
+      if (n >= s.problem().node_count() || std::ranges::find(nodes, n) != nodes.end()) continue;
+      if (s.problem().dof(n, 0) == kNone) continue;
+      if (nodes.size() < most) nodes.push_back(n);
+    }
+  }
+  return nodes;
+}
+
+TEST_P(SplitGrasp, OfALipMovesItAsTheFreshMeshSays) {
+  CutRun run(GetParam());
+  Simulation& s = run.simulation;
+  s.step();
+  ASSERT_GT(s.cut(through({-1, 4.1}, {5.2, 4.3})), 0);
+  s.step();
+  const auto before = s.displacement();
+  const int grip = s.grasp(nodes_of_lip(s, 4));
+  EXPECT_TRUE(s.displacement() == before) << "nothing moves by it";
+  s.step();
+  expect_as_fresh(run, GetParam());
+  s.pose(grip, {s.centre_of(grip) + Vec3(0.02, -0.1, 0.05)});
+  s.step();
+  expect_as_fresh(run, GetParam());
+  EXPECT_GT(s.wrench(grip).force.norm(), 1e-4);
+  // A second one, another cut under them, and letting go in the other order.
+  const int other = s.grasp(Vec3(7, 2, 1), 1.2, true);
+  s.step();
+  expect_as_fresh(run, GetParam());
+  EXPECT_GT(s.cut(through({6.2, 6}, {8, 5.5})), 0);
+  expect_as_fresh(run, GetParam());
+  s.release(grip);
+  s.step();
+  expect_as_fresh(run, GetParam());
+  s.pose(other, {s.centre_of(other) + Vec3(0, 0.03, 0)});
+  s.step();
+  expect_as_fresh(run, GetParam());
+  s.release(other);
+  s.step();
+  expect_as_fresh(run, GetParam());
+}
+
+/// A cut through what a grip holds: the lip that keeps the node stays held, the other one is free.
+TEST_P(SplitGrasp, ThatABladePassesHoldsTheNodesOfTheMesh) {
+  CutRun run(GetParam());
+  Simulation& s = run.simulation;
+  s.step();
+  const int grip = s.grasp(Vec3(3, 4, 1), 1.5);
+  s.pose(grip, {s.centre_of(grip) + Vec3(0.01, -0.04, 0.02)});
+  s.step();
+  ASSERT_GT(s.cut(through({-1, 4.1}, {5.2, 4.3})), 0);
+  expect_as_fresh(run, GetParam());
+  s.pose(grip, {s.centre_of(grip) + Vec3(0.01, -0.02, 0)});
+  s.step();
+  expect_as_fresh(run, GetParam());
+}
+
+TEST_P(SplitGrasp, IsTakenBackAndDoneAgainBitForBitAndTold) {
+  CutRun run(GetParam()), other(GetParam());
+  Simulation& s = run.simulation;
+  s.step();
+  s.cut(through({-1, 4.1}, {5.2, 4.3}));
+  const RunState cut(s);
+  const int grip = s.grasp(nodes_of_lip(s, 3));
+  s.pose(grip, {s.centre_of(grip) + Vec3(0, -0.05, 0)});
+  s.step();
+  s.release(grip);
+  s.step();
+  const RunState after(s);
+  s.undo(2);
+  expect_same_bits(cut, RunState(s));
+  s.redo(2);
+  expect_same_bits(after, RunState(s));
+  other.simulation.load(s.store());
+  expect_same_bits(after, RunState(other.simulation));
+}
+
+/// Bases that are made anew beside the frames take over what is gripped and what has parted.
+TEST(SplitGraspAll, OutlivesNewBases) {
+  const CutCase c{{}, Route::factor, false};
+  CutRun run(c);
+  Simulation& s = run.simulation;
+  s.step();
+  int grip = s.grasp(Vec3(5, 1, 1), 1.2, true);
+  for (int i = 0; i < 9; ++i) {
+    const double y = 0.9 + 0.75 * i;
+    EXPECT_GT(s.cut(through({i % 2 == 0 ? -1.0 : 6.0, y}, {i % 2 == 0 ? 4.0 : 11.0, y})), 0) << i;
+    s.pose(grip, {s.centre_of(grip) + Vec3(0, -0.01, 0.01)});
+    s.step();
+    expect_as_fresh(run, c);
+    if (i == 4) {
+      s.release(grip);
+      grip = s.grasp(Vec3(9, 3, 1), 1.0, true);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sunder::test
