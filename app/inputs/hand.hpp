@@ -23,8 +23,9 @@ class Hand {
   void drive(const input::Drive& drive);
   void turn(const input::Turn& turn);
   void remove(std::span<const Index> elements);
-  /// Returns how many elements went.
-  int cut(std::span<const std::array<Vec3, 3>> swept);
+  /// Returns how many elements went, or faces opened. Elements that go are recorded as such, of
+  /// what a blade has opened the blade.
+  int cut(const input::Cut& cut);
   StepReport step();
 
   void undo(int count);
@@ -40,7 +41,7 @@ class Hand {
 
  private:
   struct Deed {
-    std::variant<input::Drive, input::Turn, input::Remove, input::Step> what;
+    std::variant<input::Drive, input::Turn, input::Remove, input::Cut, input::Step> what;
     bool broke = false;  ///< something: what undo() counts
   };
   template <class What, class Do>

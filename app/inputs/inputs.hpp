@@ -121,6 +121,7 @@ void resolve(Inputs& inputs, const Problem& problem);
 [[nodiscard]] std::string text_of(const input::Drive& drive);
 [[nodiscard]] std::string text_of(const input::Turn& turn);
 [[nodiscard]] std::string text_of(const input::Remove& remove);
+[[nodiscard]] std::string text_of(const input::Cut& cut);
 [[nodiscard]] std::string text_of(const input::Step& step);
 
 }  // namespace sunder::app

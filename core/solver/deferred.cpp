@@ -101,12 +101,14 @@ void Deferred::reserve(Index columns) {
 }
 
 bool Deferred::factor_grips() {
-  if (grips() == 0) return true;
-  const linear_algebra::RowMajor* compliance = &grip_compliance_;
   if (!border_.empty()) {
     std::vector<Eigen::Index> columns;
     for (const Held& held : held_) columns.push_back(held.column);
     border_.hold(std::move(columns));
+  }
+  if (grips() == 0) return true;
+  const linear_algebra::RowMajor* compliance = &grip_compliance_;
+  if (!border_.empty()) {
     Eigen::MatrixXd with_border = grip_compliance_.leftCols(grips());
     border_.add_to_grips(with_border);
     bordered_grips_ = with_border;

@@ -112,7 +112,8 @@ class Simulation {
   /// live body"). Returns the grip's id, after those of the scene's instruments; none comes twice.
   /// Throws UsageError, and nothing changes, for a node that is not there, named twice, held by a
   /// support or another grip, of which all elements are gone or out of this route's reach; where
-  /// nothing can be destroyed (Scene::live), cracks split or the backend cannot.
+  /// nothing can be destroyed (Scene::live) or the backend cannot. Where a node of the mesh has
+  /// parted, or parts later, its grip holds the lip that keeps the node, and the other one is free.
   int grasp(std::span<const Index> nodes, bool rigid = false);
   /// The same of all nodes that are within a radius [mm] of a place now and could be grasped; the
   /// grip's place is that one. UsageError where there are none.

@@ -108,17 +108,29 @@ TEST(SplitGraspAll, OutlivesNewBases) {
   Simulation& s = run.simulation;
   s.step();
   int grip = s.grasp(Vec3(5, 1, 1), 1.2, true);
+  const auto border = [&] {
+    std::size_t bytes = 0;
+    for (const BufferPlan& b : s.backend().buffers()) {
+      if (b.name == "border of the new unknowns") bytes = b.bytes;
+    }
+    return bytes;
+  };
+  std::size_t before = 0;
+  int bases = 0;
   for (int i = 0; i < 9; ++i) {
     const double y = 0.9 + 0.75 * i;
     EXPECT_GT(s.cut(through({i % 2 == 0 ? -1.0 : 6.0, y}, {i % 2 == 0 ? 4.0 : 11.0, y})), 0) << i;
     s.pose(grip, {s.centre_of(grip) + Vec3(0, -0.01, 0.01)});
     s.step();
     expect_as_fresh(run, c);
+    bases += border() < before;  // what had parted is in a base now
+    before = border();
     if (i == 4) {
       s.release(grip);
       grip = s.grasp(Vec3(9, 3, 1), 1.0, true);
     }
   }
+  EXPECT_GT(bases, 0);
 }
 
 }  // namespace
