@@ -34,7 +34,7 @@ class SplitCracks final : public FractureCriterion {
                                                std::span<const Vec3> places,
                                                std::span<const std::uint8_t> gone) const override;
   void check_opening(std::span<const PassedFace> faces,
-                     std::span<const std::uint8_t> gone) const override;
+                     std::span<const std::uint8_t> gone) override;
   void open(std::span<const PassedFace> faces, const FractureState& state,
             Decision& decision) override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }

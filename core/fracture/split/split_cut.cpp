@@ -70,7 +70,7 @@ std::vector<PassedFace> SplitCracks::passed(std::span<const std::array<Vec3, 3>>
 }
 
 void SplitCracks::check_opening(std::span<const PassedFace> faces,
-                                std::span<const std::uint8_t> gone) const {
+                                std::span<const std::uint8_t> gone) {
   const auto refuse = [](const Face& face, const std::string& why) {
     throw UsageError("face " + std::to_string(face.opposite) + " of element " +
                      std::to_string(face.element) + " cannot be opened: " + why);
@@ -103,9 +103,7 @@ void SplitCracks::check_opening(std::span<const PassedFace> faces,
   }
   std::vector<Face> all;
   for (const PassedFace& passed : faces) all.push_back(passed.face);
-  SplitBody as_cut = body_;
-  fem::Change change;
-  if (!as_cut.open(all, gone, change)) {
+  if (!body_.can_open(all, gone)) {
     throw UsageError("the cut would bring more nodes than the " +
                      std::to_string(most_nodes_ - problem_.node_count()) +
                      " that splitting may add; set fracture.max_new_nodes higher, or cut less");

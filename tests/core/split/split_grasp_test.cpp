@@ -2,11 +2,7 @@
 // What a host takes hold of where cracks have split, against a body that is made anew.
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "core/frame/run_state.hpp"
-#include "cut_board.hpp"
-#include "sunder/error.hpp"
+#include "split_live.hpp"
 
 namespace sunder::test {
 namespace {
@@ -131,6 +127,13 @@ TEST(SplitGraspAll, OutlivesNewBases) {
     }
   }
   EXPECT_GT(bases, 0);
+}
+
+/// The soak has ten thousand (split_live_soak_test.cpp).
+TEST(SplitGraspAll, RandomActionsLeadToWhatTheBodyIsAnew) {
+  play_split({{}, Route::factor, false}, 3, 300, 10, 10);
+  play_split({{}, Route::inverse, true}, 4, 200, 10, 10);
+  play_split({MaterialLaw::corotated, Route::factor, false}, 5, 60, 10, 3);
 }
 
 }  // namespace
