@@ -100,10 +100,12 @@ TEST_P(SplitGrasp, IsTakenBackAndDoneAgainBitForBitAndTold) {
 /// Bases that are made anew beside the frames take over what is gripped and what has parted.
 TEST(SplitGraspAll, OutlivesNewBases) {
   const CutCase c{{}, Route::factor, false};
-  CutRun run(c);
+  Scene scene = scene_of(c, cut_board());
+  scene.steps = 1000;
+  CutRun run(std::move(scene));
   Simulation& s = run.simulation;
   s.step();
-  int grip = s.grasp(Vec3(5, 1, 1), 1.2, true);
+  const int grip = s.grasp(Vec3(5, 0.5, 1), 1.2, true);
   const auto border = [&] {
     std::size_t bytes = 0;
     for (const BufferPlan& b : s.backend().buffers()) {
@@ -113,19 +115,31 @@ TEST(SplitGraspAll, OutlivesNewBases) {
   };
   std::size_t before = 0;
   int bases = 0;
-  for (int i = 0; i < 9; ++i) {
-    const double y = 0.9 + 0.75 * i;
+  const auto look = [&] {
+    bases += border() < before;  // what had parted is in a base now
+    before = border();
+  };
+  for (int i = 0; i < 6; ++i) {
+    const double y = 1.2 + i;
     EXPECT_GT(s.cut(through({i % 2 == 0 ? -1.0 : 6.0, y}, {i % 2 == 0 ? 4.0 : 11.0, y})), 0) << i;
     s.pose(grip, {s.centre_of(grip) + Vec3(0, -0.01, 0.01)});
     s.step();
     expect_as_fresh(run, c);
-    bases += border() < before;  // what had parted is in a base now
-    before = border();
-    if (i == 4) {
-      s.release(grip);
-      grip = s.grasp(Vec3(9, 3, 1), 1.0, true);
-    }
+    look();
   }
+  // A base is taken some fifty events after its start.
+  for (int i = 0; i < 60; ++i) {
+    const int other = s.grasp(Vec3(0.8 + 0.14 * i, 5, 1), 1.0, i % 2 == 0);
+    s.pose(other, {s.centre_of(other) + Vec3(0.01, 0, 0)});
+    s.step();
+    look();
+    if (i % 6 == 0) expect_as_fresh(run, c);
+    s.release(other);
+    if (i == 45) s.cut(through({4.2, 7}, {6, 6.6}));
+  }
+  s.release(grip);
+  s.step();
+  expect_as_fresh(run, c);
   EXPECT_GT(bases, 0);
 }
 
