@@ -116,7 +116,7 @@ Course cut_and_grasped(const std::shared_ptr<const Problem>& problem,
   Simulation simulation(problem, std::move(backend));
   simulation.step();
   const Vec3 a(51, 15.2, -1), b(51, 15.2, 3), c(30, 16, -1), d(30, 16, 3);
-  EXPECT_GT(simulation.cut(std::vector<std::array<Vec3, 3>>{{a, b, c}, {b, d, c}}), 20);
+  EXPECT_GT(simulation.cut(std::vector<std::array<Vec3, 3>>{{a, b, c}, {b, d, c}}), 10);
   simulation.step();
   const int grip = simulation.grasp(Vec3(42, 14, 1), 3, true);
   simulation.pose(grip, {simulation.centre_of(grip) + Vec3(0.1, -0.2, 0.05)});
