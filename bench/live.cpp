@@ -25,13 +25,15 @@ struct LiveBoard {
   LiveBoard(Index cells, Route route) : LiveBoard(cells, route, true) {}
   /// `all`: anything may be removed; else a patch at the right edge, which route condensed
   /// computes.
-  LiveBoard(Index cells, Route route, bool all) : board(cells) {
+  LiveBoard(Index cells, Route route, bool all, CrackWay crack = CrackWay::destroyed)
+      : board(cells) {
     Scene scene = all ? TearingBoard::scene({cells, cells, 1, 50, 50, 2.5}) : patch_scene(cells);
     scene.instruments.clear();
     scene.instruments.push_back(
         {"forceps", Pull{Box{Vec3(49.99, -0.01, -1), Vec3(50.01, 0.01, 4)}, Vec3(0, -1, 0)}, {}});
     scene.solver.route = route;
     scene.fracture.model = FractureModel::b;
+    scene.fracture.crack = crack;
     scene.live = all;
     scene.steps = 1 << 30;
     problem = std::make_shared<const Problem>(std::move(scene));
@@ -103,9 +105,9 @@ void remove(benchmark::State& state, Index cells, Route route) {
   }
 }
 
-/// A blade of 5 mm into the right edge: the search and the removal.
-void cut(benchmark::State& state, Index cells, Route route) {
-  LiveBoard live(cells, route);
+/// A blade of 5 mm into the right edge: the search, and the removal or the faces that open.
+void cut(benchmark::State& state, Index cells, Route route, CrackWay crack) {
+  LiveBoard live(cells, route, true, crack);
   live.keep();
   live.simulation->step();
   const Vec3 a(45, 25.1, -1), b(45, 25.1, 4), c(51, 25.1, -1), d(51, 25.1, 4);
@@ -117,7 +119,7 @@ void cut(benchmark::State& state, Index cells, Route route) {
     state.SetIterationTime(since(start));
     live.simulation->undo();
   }
-  state.counters["removed"] = removed;
+  state.counters["removed_or_opened"] = removed;
 }
 
 /// Ten nodes near the board's right edge, above the tear.
@@ -273,7 +275,9 @@ const bool kRows = [] {
             [=](auto& s) { step(s, cells, route, history); });
       }
       add("remove" + of, [=](auto& s) { remove(s, cells, route); });
-      add("cut" + of, [=](auto& s) { cut(s, cells, route); });
+      add("cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::destroyed); });
+      if (route == Route::condensed) continue;  // cracks do not split there
+      add("split_cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::split); });
     }
     for (const auto& [route, word] : {std::pair{Route::inverse, "inverse"},
                                       {Route::condensed, "condensed"},

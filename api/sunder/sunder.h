@@ -735,8 +735,10 @@ SUNDER_API sunder_status sunder_simulation_remove(sunder_simulation simulation,
                                                   const int32_t* elements, size_t count);
 /// Removes the live elements that a blade has passed: those whose inside, as it is now, any of the
 /// triangles meets. (triangles x 3 x 3) [mm], size 9 * triangles; two places of a blade's edge one
-/// after the other make two. `removed`, how many, may be null. SUNDER_ERROR_ORDER where cracks
-/// split.
+/// after the other make two. `removed`, how many, may be null. Where cracks split nothing is
+/// removed: faces between live elements on both sides of the blade open, as a crack whose tips
+/// later steps may drive, and `removed` is their number. SUNDER_ERROR_ORDER, and nothing changes,
+/// for a blade that lies along the board's plane there, or more new nodes than may come.
 SUNDER_API sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* swept,
                                                size_t size, int32_t* removed);
 
@@ -745,7 +747,7 @@ SUNDER_API sunder_status sunder_simulation_cut(sunder_simulation simulation, con
 /// same way. `grip`: its id, after the indices of the scene's instruments; none comes twice.
 /// SUNDER_ERROR_ORDER, and nothing changes: a node that is not there, named twice, held by a
 /// support or another grip, of which all elements are gone, or out of this route's reach; nothing
-/// can be removed (sunder_scene_set_live), cracks split, or this backend and route hold no more
+/// can be removed (sunder_scene_set_live), or this backend and route hold no more
 /// nodes (the sentence names one that does).
 SUNDER_API sunder_status sunder_simulation_grasp(sunder_simulation simulation, const int32_t* nodes,
                                                  size_t count, int32_t rigid, int32_t* grip);

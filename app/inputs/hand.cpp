@@ -102,13 +102,18 @@ std::vector<int> Hand::grips() const {
   return grips;
 }
 
-int Hand::cut(std::span<const std::array<Vec3, 3>> swept) {
+int Hand::cut(const input::Cut& cut) {
+  const auto swept = swept_by(cut);
   const std::size_t rows = simulation_.destroyed().size();
   const int undos = simulation_.undos();
   const auto take_down = [&] {
-    const std::vector<Index> gone = taken_out(simulation_, rows);
-    if (gone.empty()) return;
-    done_.push_back({input::Remove{gone}, simulation_.undos() > undos});
+    if (simulation_.destroyed().size() == rows) return;  // beside the body
+    const bool broke = simulation_.undos() > undos;
+    if (simulation_.backend().needs().split) {
+      done_.push_back({cut, broke});
+    } else {
+      done_.push_back({input::Remove{taken_out(simulation_, rows)}, broke});
+    }
     undone_.clear();
   };
   int count = 0;
@@ -199,7 +204,7 @@ bool do_to_body(Hand& hand, const Inputs& inputs, const Input& input) {
     } else if (const auto* release = std::get_if<input::Release>(&input.what)) {
       hand.release(release->grip);
     } else if (const auto* cut = std::get_if<input::Cut>(&input.what)) {
-      hand.cut(swept_by(*cut));
+      hand.cut(*cut);
     } else {
       return false;
     }

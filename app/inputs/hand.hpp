@@ -29,8 +29,9 @@ class Hand {
   void release(int grip);
   /// Grips that hold now, in the order in which they took hold.
   [[nodiscard]] std::vector<int> grips() const;
-  /// Returns how many elements went.
-  int cut(std::span<const std::array<Vec3, 3>> swept);
+  /// Returns how many elements went, or faces opened. Elements that go are recorded as such, of
+  /// what a blade has opened the blade.
+  int cut(const input::Cut& cut);
   StepReport step();
 
   void undo(int count);
@@ -47,7 +48,7 @@ class Hand {
  private:
   struct Deed {
     std::variant<input::Drive, input::Turn, input::Remove, input::Grasp, input::Pose,
-                 input::Release, input::Step>
+                 input::Release, input::Cut, input::Step>
         what;
     bool broke = false;  ///< something: what undo() counts
   };

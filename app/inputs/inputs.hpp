@@ -144,6 +144,7 @@ void resolve(Inputs& inputs, const Problem& problem);
 [[nodiscard]] std::string text_of(const input::Grasp& grasp);
 [[nodiscard]] std::string text_of(const input::Pose& pose);
 [[nodiscard]] std::string text_of(const input::Release& release);
+[[nodiscard]] std::string text_of(const input::Cut& cut);
 [[nodiscard]] std::string text_of(const input::Step& step);
 
 }  // namespace sunder::app

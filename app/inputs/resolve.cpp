@@ -150,6 +150,12 @@ std::string text_of(const input::Release& release) {
   return "release " + std::to_string(release.grip);
 }
 
+std::string text_of(const input::Cut& cut) {
+  std::string text = "cut";
+  for (const Vec3& p : cut.edge) text += " " + numbers(p);
+  return text;
+}
+
 std::string text_of(const input::Step& step) {
   return step.count == 1 ? "step" : "step " + std::to_string(step.count);
 }

@@ -64,7 +64,7 @@ void Session::go_back(const Inputs& inputs, const Input& input) {
     if (const auto* redo = std::get_if<input::Redo>(&input.what)) hand_.redo(redo->count);
     if (std::holds_alternative<input::Reset>(input.what)) hand_.reset();
     if (const auto* stroke = std::get_if<input::Stroke>(&input.what)) {
-      hand_.cut(swept_by(cut_along(*stroke, camera())));
+      hand_.cut(cut_along(*stroke, camera()));
     }
   } catch (const UsageError& error) {
     throw InputError(InputFault::out_of_range, inputs.at(input) + error.what());

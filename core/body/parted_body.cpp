@@ -6,7 +6,10 @@
 namespace sunder::fem {
 
 std::shared_ptr<const Problem> parted_problem(const DamagedBody& body) {
-  const Problem& problem = body.problem();
+  return parted_problem(body, body.problem());
+}
+
+std::shared_ptr<const Problem> parted_problem(const DamagedBody& body, const Problem& problem) {
   std::vector<std::array<Index, 4>> corners = problem.mesh().tets;
   for (const auto& [element, form] : body.forms().came()) {
     corners[static_cast<std::size_t>(element)] = form.corners;
@@ -46,6 +49,8 @@ PartedBody::PartedBody(const DamagedBody& body)
     if (body.destroyed()[static_cast<std::size_t>(e)]) gone.push_back(e);
   }
   body_.destroy(gone);
+  const auto since = body.forms().gripped().subspan(whole_.gripped_dofs().size());
+  if (!since.empty()) body_.grip(since, {});
 }
 
 void PartedBody::add(const NewNode& node, Index by) {
@@ -65,6 +70,8 @@ Change PartedBody::translate(const Event& event) {
   told.come.assign(event.come.begin(), event.come.end());
   told.ties.assign(event.ties.begin(), event.ties.end());
   told.held = event.held;
+  told.grasp.assign(event.grasp.begin(), event.grasp.end());
+  told.release.assign(event.release.begin(), event.release.end());
   const Index first = whole_.node_count() + static_cast<Index>(kept_.size());
   for (std::size_t i = 0; i < event.nodes.size(); ++i) {
     const Index node = first + static_cast<Index>(i);

@@ -19,6 +19,9 @@ namespace sunder::fem {
 /// The body as a mesh of its own, its new nodes with unknowns like any other's. Elements that have
 /// another form than by their corners are as the mesh has them.
 [[nodiscard]] std::shared_ptr<const Problem> parted_problem(const DamagedBody& body);
+/// The same of `whole`, which is the body's problem but for what is gripped.
+[[nodiscard]] std::shared_ptr<const Problem> parted_problem(const DamagedBody& body,
+                                                            const Problem& whole);
 
 /// Whether new nodes of a body can be nodes of a mesh: each has an element, none is tied to its
 /// parent or kept to one that a grip moves, no element has another form than by its corners, and
@@ -30,7 +33,7 @@ class PartedBody {
   /// can_be_parted(body) must hold.
   explicit PartedBody(const DamagedBody& body);
 
-  /// Nothing has happened to it yet but that elements are destroyed.
+  /// Nothing has happened to it yet but that elements are destroyed and grips have taken hold.
   [[nodiscard]] const DamagedBody& body() const { return body_; }
   /// The event after the last one, in the terms of this body.
   [[nodiscard]] Change translate(const Event& event);

@@ -202,7 +202,9 @@ Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners
     mesh.nodes.push_back(Vec3(mesh.nodes[static_cast<std::size_t>(node.parent)]));
     for (int axis = 0; axis < 3; ++axis) {
       const auto grip = std::ranges::lower_bound(whole.gripped_dofs_, dof(node.parent, axis));
-      const bool gripped = grip != whole.gripped_dofs_.end() && *grip == dof(node.parent, axis);
+      // Where it has unknowns of its own, a grip that has come since holds its parent alone.
+      const bool gripped = !node.axes.has(axis) && grip != whole.gripped_dofs_.end() &&
+                           *grip == dof(node.parent, axis);
       dof_.push_back(node.axes.has(axis) || gripped ? dof_count_++ : kNone);
       if (!gripped) continue;
       gripped_dofs_.push_back(dof_.back());

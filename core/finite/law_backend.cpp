@@ -74,8 +74,15 @@ LawBackend::Computed LawBackend::compute_as(const std::shared_ptr<const Problem>
   return next;
 }
 
+/// With the nodes that have parted and all that is gripped now.
+std::shared_ptr<const Problem> LawBackend::body_now() const {
+  const auto gripped = std::make_shared<const Problem>(problem(), gripped_dofs());
+  if (damaged_body().forms().new_nodes().empty()) return gripped;
+  return fem::parted_problem(damaged_body(), *gripped);
+}
+
 LawBackend::Computed LawBackend::part() {
-  const auto parted = fem::parted_problem(damaged_body());
+  const auto parted = body_now();
   leave_inverse_if_outgrown(*parted);
   Computed next = compute_as(parted);
   const fem::Parting parting(computed(), *parted);
@@ -103,15 +110,17 @@ std::string LawBackend::why_no_grasp() const {
 }
 
 LawBackend::Computed LawBackend::take_grips(std::span<const Index> before) {
-  Computed next = compute_as(std::make_shared<const Problem>(problem(), gripped_dofs()));
+  Computed next = compute_as(body_now());
   // What is new is held where it is.
-  std::vector<double> at(static_cast<std::size_t>(problem().dof_count()), 0.0);
-  for (std::size_t i = 0; i < problem().dofs().size(); ++i) {
-    if (problem().dofs()[i] != kNone) at[static_cast<std::size_t>(problem().dofs()[i])] = u_[i];
+  std::vector<double> at(static_cast<std::size_t>(next.problem->dof_count()), 0.0);
+  for (std::size_t i = 0; i < next.problem->dofs().size(); ++i) {
+    const Index d = next.problem->dofs()[i];
+    if (d != kNone) at[static_cast<std::size_t>(d)] = u_[i];
   }
   const auto was = computed().gripped_dofs();
   for (std::size_t g = 0; g < std::min(was.size(), load_.displacements.size()); ++g) {
-    if (std::ranges::find(before, was[g]) != before.end()) {
+    const bool parted = was[g] >= problem().dof_count();  // with a node that was held before
+    if (parted || std::ranges::find(before, was[g]) != before.end()) {
       at[static_cast<std::size_t>(was[g])] = load_.displacements[g];
     }
   }
@@ -141,7 +150,10 @@ void LawBackend::sum_grips(const Eigen::VectorXd& forces, std::span<double> reac
   const auto parted = computed().parted_grips();
   for (std::size_t g = 0; g < reactions.size(); ++g) reactions[g] = forces[gripped_dofs()[g]];
   for (std::size_t i = 0; i < parted.size(); ++i) {
-    reactions[static_cast<std::size_t>(parted[i])] += forces[gripped[reactions.size() + i]];
+    // `parted` counts them in the order of the unknowns.
+    const Index of = gripped[static_cast<std::size_t>(parted[i])];
+    const auto g = std::ranges::find(gripped_dofs(), of) - gripped_dofs().begin();
+    reactions[static_cast<std::size_t>(g)] += forces[gripped[reactions.size() + i]];
   }
 }
 

@@ -98,6 +98,7 @@ class LawBackend : public Backend {
   /// To be called where nodes have parted: from now on the body is computed as it is now. Returns
   /// what was before, which must live while anything reads it.
   [[nodiscard]] Computed part();
+  [[nodiscard]] std::shared_ptr<const Problem> body_now() const;
   /// To be called where other unknowns are gripped: from now on the body is computed so. Returns as
   /// part() does.
   [[nodiscard]] Computed take_grips(std::span<const Index> before);

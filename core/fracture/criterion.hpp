@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "body/change.hpp"
+#include "fracture/face.hpp"
 #include "fracture/finding.hpp"
 #include "sunder/backend.hpp"
 #include "sunder/crack.hpp"
@@ -118,6 +119,19 @@ class FractureCriterion {
   [[nodiscard]] virtual std::vector<CrackFace> faces() const { return {}; }
   /// Of all elements, where cracks split them; empty: as the mesh has them.
   [[nodiscard]] virtual std::span<const std::array<Index, 4>> corners() const { return {}; }
+  /// Faces that a blade opens, where cracks split: of the body with all nodes at `places`, elements
+  /// marked in `gone` left out.
+  [[nodiscard]] virtual std::vector<fracture::PassedFace> passed(
+      std::span<const std::array<Vec3, 3>> /*blade*/, std::span<const Vec3> /*places*/,
+      std::span<const std::uint8_t> /*gone*/) const {
+    return {};
+  }
+  /// Throws UsageError for faces that open() cannot take.
+  virtual void check_opening(std::span<const fracture::PassedFace>,
+                             std::span<const std::uint8_t> /*gone*/) {}
+  /// Opens faces that check_opening() has passed, as cracks of their own: what decide() names for
+  /// cracks that grow.
+  virtual void open(std::span<const fracture::PassedFace>, const FractureState&, Decision&) {}
   /// The state of now; null: this criterion keeps none to go back to.
   [[nodiscard]] virtual std::shared_ptr<const CriterionState> state() const { return nullptr; }
   /// Goes back to one that state() gave, so that later decisions are bit by bit those of then.

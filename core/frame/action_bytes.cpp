@@ -13,8 +13,8 @@ namespace sunder {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMark{'S', 'U', 'N', 'D', 'E', 'R', 'R', 'C'};
-// 1: no grips and pushes of a host.
-constexpr std::uint32_t kFirstVersion = 1, kVersion = 2;
+// 1: no grips and pushes of a host. 2: no faces that a blade has opened.
+constexpr std::uint32_t kFirstVersion = 1, kVersion = 3;
 constexpr std::size_t kCheck = 8;  // bytes of the checksum, last
 
 /// FNV-1a of 64 bits.
@@ -125,6 +125,14 @@ void write(Writer& to, const std::vector<Index>& nodes) {
   to.number(nodes.size());
   for (Index n : nodes) to.index(n);
 }
+void write(Writer& to, const Action::Open& a) {
+  to.number(a.faces.size());
+  for (const auto& [face, place] : a.faces) {
+    to.index(face.element);
+    to.index(face.opposite);
+    to.vector(place);
+  }
+}
 void write(Writer& to, const Action::Grasp& a) {
   write(to, a.nodes);
   to.byte(a.rigid ? 1 : 0);
@@ -194,6 +202,14 @@ void read(Reader& from, Action::Move& a) {
   a.id = static_cast<int>(from.index());
   read(from, a.nodes);
   a.force = from.vector();
+}
+void read(Reader& from, Action::Open& a) {
+  a.faces.resize(from.count(2 * 8 + 3 * sizeof(double)));
+  for (auto& [face, place] : a.faces) {
+    face.element = static_cast<Index>(from.index());
+    face.opposite = static_cast<int>(from.index());
+    place = from.vector();
+  }
 }
 void read(Reader& from, Action::Drop& a) { a.id = static_cast<int>(from.index()); }
 

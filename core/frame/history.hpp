@@ -39,6 +39,9 @@ struct Step {
 struct Remove {
   std::vector<Index> elements;
 };
+struct Open {
+  std::vector<fracture::PassedFace> faces;
+};
 struct Grasp {
   std::vector<Index> nodes;
   bool rigid = false;
@@ -79,8 +82,9 @@ struct Action {
   using Push = action::Push;
   using Move = action::Move;
   using Drop = action::Drop;
+  using Open = action::Open;
   std::variant<Drive, Turn, Attribute, Velocity, Step, Remove, Grasp, Pose, Release, Push, Move,
-               Drop>
+               Drop, Open>
       what;
   bool failed = false;  // with a NumericalError
   bool broke = false;   // something, or a grip or a push came or went: undo() stops before it
@@ -92,7 +96,8 @@ struct Action {
   }
   /// Whether it may be one that undo() stops before.
   [[nodiscard]] bool undoable() const {
-    return of_tools() || std::holds_alternative<Step>(what) || std::holds_alternative<Remove>(what);
+    return of_tools() || std::holds_alternative<Step>(what) ||
+           std::holds_alternative<Remove>(what) || std::holds_alternative<Open>(what);
   }
 };
 

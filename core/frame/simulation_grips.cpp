@@ -39,11 +39,6 @@ void Simulation::require_grasp() const {
         "that "
         "it is live before the simulation was made");
   }
-  if (backend_->needs().split) {
-    throw UsageError(
-        "a grip cannot take hold of a body whose cracks split yet; take fracture.crack = "
-        "\"destroyed\"");
-  }
   if (const std::string why = backend_->why_no_grasp(); !why.empty()) {
     throw UsageError("nothing can be grasped: " + why);
   }

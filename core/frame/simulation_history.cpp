@@ -154,6 +154,7 @@ void Simulation::perform(const std::shared_ptr<const Action>& action) {
           if constexpr (std::is_same_v<What, Action::Velocity>) set_velocity(what.velocity);
           if constexpr (std::is_same_v<What, Action::Step>) take_step(what.dt, 0);
           if constexpr (std::is_same_v<What, Action::Remove>) remove(what.elements);
+          if constexpr (std::is_same_v<What, Action::Open>) open_faces(what.faces);
           if constexpr (std::is_same_v<What, Action::Grasp>) take_hold(what);
           if constexpr (std::is_same_v<What, Action::Pose>) {
             pose(what.id, {what.position, what.quaternion});

@@ -132,22 +132,25 @@ void Simulation::remove(std::span<const Index> elements) {
   finish_frame();
 }
 
-int Simulation::cut(std::span<const std::array<Vec3, 3>> swept) {
-  if (backend_->needs().split) {
-    throw UsageError(
-        "a blade cannot open the faces of split cracks yet; take fracture.crack = \"destroyed\"");
+/// Elements that a blade does not meet: those that are gone, and those that a preset crack takes.
+std::vector<std::uint8_t> Simulation::gone_to_blade() const {
+  std::vector<std::uint8_t> gone(backend_->destroyed().begin(), backend_->destroyed().end());
+  for (const auto& crack : problem_->crack_elements()) {
+    for (Index e : crack) gone[static_cast<std::size_t>(e)] = 1;
   }
+  return gone;
+}
+
+int Simulation::cut(std::span<const std::array<Vec3, 3>> swept) {
   for (const auto& triangle : swept) {
     for (const Vec3& p : triangle) {
       if (!p.allFinite()) throw UsageError("the places of a blade must be finite");
     }
   }
+  if (backend_->needs().split) return cut_faces(swept);
   std::vector<Index> passed;
   const std::vector<Vec3> moved = displacement();
-  std::vector<std::uint8_t> gone(backend_->destroyed().begin(), backend_->destroyed().end());
-  for (const auto& crack : problem_->crack_elements()) {
-    for (Index e : crack) gone[static_cast<std::size_t>(e)] = 1;
-  }
+  const std::vector<std::uint8_t> gone = gone_to_blade();
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (gone[static_cast<std::size_t>(e)]) continue;
     std::array<Vec3, 4> corners;
@@ -162,17 +165,46 @@ int Simulation::cut(std::span<const std::array<Vec3, 3>> swept) {
   return static_cast<int>(passed.size());
 }
 
+int Simulation::cut_faces(std::span<const std::array<Vec3, 3>> swept) {
+  std::vector<Vec3> places = mesh().nodes;
+  const std::vector<Vec3> moved = displacement();
+  for (std::size_t n = 0; n < places.size(); ++n) places[n] += moved[n];
+  const auto faces = criterion_->passed(swept, places, gone_to_blade());
+  open_faces(faces);
+  return static_cast<int>(faces.size());
+}
+
+void Simulation::open_faces(const std::vector<fracture::PassedFace>& faces) {
+  criterion_->check_opening(faces, gone_to_blade());
+  if (faces.empty()) return;
+  act({Action::Open{faces}}, [&](Action&) {
+    begin_by_hand();
+    FractureState state{*problem_, backend_->destroyed(), {}, {}, {}, Vec3::Zero(), {}};
+    criterion_->open(faces, state, *decision_);
+    finish_by_hand();
+  });
+}
+
 void Simulation::take_out(std::span<const Index> elements) {
-  now_.interrupted = now_.out_of_time_now = false;
-  events_this_step_ = 0;
-  if (!now_.preset) apply_presets();
-  decision_->clear();
+  begin_by_hand();
   for (Index e : elements) {
     DestroyedElement row;
     row.element = e;
     row.cause = Cause::script;
     decision_->elements.push_back(row);
   }
+  finish_by_hand();
+}
+
+/// An event that a host asks for between two steps.
+void Simulation::begin_by_hand() {
+  now_.interrupted = now_.out_of_time_now = false;
+  events_this_step_ = 0;
+  if (!now_.preset) apply_presets();
+  decision_->clear();
+}
+
+void Simulation::finish_by_hand() {
   apply_event();
   find_loose();
   if (now_.solved && !problem_->moves()) follow_removal();
@@ -187,6 +219,10 @@ void Simulation::follow_removal() {
   pristine_.clear();
   if (backend_->solve().polished) now_.polished.add(now_.next_step);
   loads_->solved();
+  if (backend_->needs().split) {
+    StepReport report;
+    settle_lips(report);
+  }
   if (!backend_->needs().stress) return;
   backend_->stress();
   if (averaged_) static_cast<void>(averaged_->summarize(*backend_));

@@ -62,7 +62,7 @@ bool Border::follow(const fem::Forms& forms, const fem::Event& event, Difference
   const Index from = anew ? 0 : std::min(changed, before);
   const Eigen::Index rows = anew ? 0 : rows_of_h_;
   resize(over.columns);
-  assemble(forms, basis, over.grips, from);
+  assemble(forms, basis, over.of_basis, from);
   multiply(g, m, over, from, rows);
   rows_of_h_ = over.columns;
   return factor(from);
@@ -77,14 +77,14 @@ void Border::resize(Eigen::Index rows) {
 }
 
 /// Columns of E and rows of F from `from` on; F is kept up to its diagonal.
-void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips,
-                      Index from) {
+void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis,
+                      std::span<const Index> of_basis, Index from) {
   for (std::size_t j = static_cast<std::size_t>(from); j < e_.size(); ++j) e_[j].clear();
   f_.bottomRows(size() - from).setZero();
   const Index first = forms.problem().node_count();
   for (const auto& [element, form] : forms.came()) {
     const bool at_new = std::ranges::any_of(form.corners, [&](Index n) { return n >= first; });
-    if (at_new && form.share > 0) add(forms, form, basis, grips, from);
+    if (at_new && form.share > 0) add(forms, form, basis, of_basis, from);
   }
   add_ties(from);
 }
@@ -107,7 +107,7 @@ void Border::add_ties(Index from) {
 
 /// An element's K = W W^T, W = share^1/2 B^T L V^1/2, joins E and F.
 void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
-                 Eigen::Index grips, Index from) {
+                 std::span<const Index> of_basis, Index from) {
   const std::array<Index, 12> columns = own(forms, form.corners);
   if (*std::ranges::max_element(columns) < from) return;
   const fem::UpdateFactor w =
@@ -118,7 +118,7 @@ void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis
     if (column < from) continue;  // kNone too
     auto& entries = e_[static_cast<std::size_t>(column)];
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const Index row = static_cast<Index>(grips) + rows_[r];
+      const Index row = of_basis[static_cast<std::size_t>(rows_[r])];
       const double value = y_.row(static_cast<Eigen::Index>(r)).head<6>().dot(w.row(j));
       const auto there = std::ranges::find(entries, row, &Entry::row);
       if (there == entries.end()) {
@@ -207,7 +207,8 @@ void Border::add_product(const Eigen::VectorXd& d, double sign, Eigen::VectorXd&
 
 void Border::add_to_grips(Eigen::MatrixXd& compliance) const {
   const Eigen::Index g = compliance.rows();
-  Eigen::MatrixXd t = h_.topRows(g).transpose();
+  Eigen::MatrixXd t(size(), g);
+  for (Eigen::Index i = 0; i < g; ++i) t.col(i) = h_.row(grips_[static_cast<std::size_t>(i)]);
   l_.triangularView<Eigen::Lower>().solveInPlace(t);
   compliance.noalias() += t.transpose() * t;
 }
@@ -256,12 +257,17 @@ double Border::correct(const Eigen::VectorXd& by_lack, Eigen::VectorXd& x, Eigen
   solve(step_);
   d_ += step_;
   add_product(step_, -1, x);
-  moved.noalias() -= h_.topRows(moved.size()) * step_;
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    moved[static_cast<Eigen::Index>(i)] -= h_.row(grips_[i]).dot(step_);
+  }
   return lack_.dot(step_);
 }
 
 void Border::follow_grips(const Eigen::VectorXd& forces, Eigen::VectorXd& x) {
-  step_.noalias() = h_.topRows(forces.size()).transpose() * forces;
+  step_.setZero(size());
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    step_ += forces[static_cast<Eigen::Index>(i)] * h_.row(grips_[i]).transpose();
+  }
   solve(step_);
   d_ -= step_;
   add_product(step_, 1, x);

@@ -29,12 +29,13 @@ class Border {
   [[nodiscard]] const fem::Offsets& unknowns() const { return unknowns_; }
 
   /// Follows an event that the forms have followed: E and F of the elements at new nodes, all of
-  /// them in the basis, S and its factor. E has `columns` rows, the first `grips` of them zero.
-  /// Reads the leading blocks of G and M; of M no more than `changed` rows are not 0, and with
-  /// `anew` it is another one than at the last event. False where S is not positive definite in
-  /// double precision.
+  /// them in the basis, S and its factor. E has `columns` rows: `of_basis` says which of them a
+  /// difference of the basis has; those of unit vectors are zero. Reads the leading blocks of G and
+  /// M; of M no more than `changed` rows are not 0, and with `anew` it is another one than at the
+  /// last event. False where S is not positive definite in double precision.
   struct Over {
-    Eigen::Index grips = 0, columns = 0, changed = 0;
+    std::span<const Index> of_basis;
+    Eigen::Index columns = 0, changed = 0;
     bool anew = false;
   };
   [[nodiscard]] bool follow(const fem::Forms& forms, const fem::Event& event,
@@ -42,6 +43,8 @@ class Border {
                             const linear_algebra::RowMajor& m, const Over& over);
   /// No event has happened.
   void clear() { *this = {}; }
+  /// Which columns of B are the unit vectors of what is gripped now, in their order.
+  void hold(std::vector<Eigen::Index> columns) { grips_ = std::move(columns); }
   /// What the border adds to (A^-1)_GG of the grips.
   void add_to_grips(Eigen::MatrixXd& compliance) const;
 
@@ -72,10 +75,11 @@ class Border {
   [[nodiscard]] std::array<Index, 12> own(const fem::Forms& forms,
                                           const std::array<Index, 4>& corners) const;
   void resize(Eigen::Index rows);
-  void assemble(const fem::Forms& forms, DifferenceBasis& basis, Eigen::Index grips, Index from);
+  void assemble(const fem::Forms& forms, DifferenceBasis& basis, std::span<const Index> of_basis,
+                Index from);
   void add_ties(Index from);
   void add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
-           Eigen::Index grips, Index from);
+           std::span<const Index> of_basis, Index from);
   void multiply(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
                 const Over& over, Index from, Eigen::Index rows);
   [[nodiscard]] bool factor(Index from);
@@ -88,6 +92,7 @@ class Border {
   std::vector<std::vector<Entry>> e_;  // by column
   Eigen::MatrixXd f_, n_, h_, l_;      // of N the rows beyond E, those of M; l_ l_^T = S
   Eigen::Index rows_of_h_ = 0;
+  std::vector<Eigen::Index> grips_;  // rows of H
   std::map<Index, std::array<Index, 4>>
       corners_;                             // of the elements at new nodes, at the last event
   Eigen::VectorXd load_, d_, lack_, step_;  // f_d; d; what lacks on d; a step of d

@@ -102,6 +102,11 @@ void Deferred::reserve(Index columns) {
 }
 
 bool Deferred::factor_grips() {
+  if (!border_.empty()) {
+    std::vector<Eigen::Index> columns;
+    for (const Held& held : held_) columns.push_back(held.column);
+    border_.hold(std::move(columns));
+  }
   if (grips() == 0) {
     if (grip_block_.rows() > 0) grip_block_ = Eigen::LLT<Eigen::MatrixXd>(Eigen::MatrixXd(0, 0));
     return true;
@@ -173,7 +178,6 @@ Eigen::VectorXd Deferred::grip_forces() const {
 
 bool Deferred::follow(const fem::Event& event) {
   if (event.of_grips()) {
-    if (!border_.empty()) throw UsageError("a body whose nodes have parted takes no other grips");
     damage_.add(event);
     return follow_last();
   }

@@ -119,7 +119,7 @@ void Deferred::sum_up_d() {
 bool Deferred::follow_border(const fem::Event& event, Eigen::Index columns) {
   if (border_.empty() && forms_.new_nodes().empty()) return true;
   return border_.follow(forms_, event, basis_, compliance_, m_,
-                        {heads_, columns, changed_, stiffened_});
+                        {column_, columns, changed_, stiffened_});
 }
 
 }  // namespace sunder::solver

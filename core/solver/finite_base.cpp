@@ -94,14 +94,16 @@ bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
   return border_.empty() || follow_border();
 }
 
-void FiniteBase::part(const Problem& now, const fem::Parting& parting,
+bool FiniteBase::part(const Problem& now, const fem::Parting& parting,
                       std::span<const double> mass) {
+  if (std::ranges::find(held_, std::uint8_t{1}) != held_.end()) return false;
   problem_ = &now;
   parting.nodal(u_);
   border_.part(now, mass);
   parted_ = true;
   coupled_.resize(static_cast<std::size_t>(now.dof_count()), 1);
   for (Index d : now.gripped_dofs()) coupled_[d] = 0;
+  return true;
 }
 
 bool FiniteBase::grip(const Problem& now) {

@@ -36,8 +36,10 @@ class FiniteBase {
   /// definite; then another base is needed.
   [[nodiscard]] bool follow(const RestingBody& now, Index most_rank);
   /// The body has parted into another one, whose problem must outlive it, as must its masses (per
-  /// unknown; empty: none). follow() comes next.
-  void part(const Problem& now, const fem::Parting& parting, std::span<const double> mass);
+  /// unknown; empty: none). follow() comes next. False: something has been gripped since the base
+  /// was made; then another one is needed.
+  [[nodiscard]] bool part(const Problem& now, const fem::Parting& parting,
+                          std::span<const double> mass);
   /// Other unknowns are gripped, as a problem of the same nodes says, which must outlive it: they
   /// are held still by the small matrix. False: nodes have parted, or one that the base holds by
   /// itself has been let go; then another base is needed. follow() comes next.

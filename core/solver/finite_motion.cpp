@@ -112,7 +112,7 @@ void FiniteMotion::go_on_from(FiniteMotion& before, const fem::Parting& parting)
   broken_ = before.broken_;
   parted_ = true;
   base_ = std::move(before.base_);
-  if (base_) base_->part(potential_.problem(), parting, mass_);
+  if (base_ && !base_->part(potential_.problem(), parting, mass_)) base_.reset();
 }
 
 void FiniteMotion::go_on_from(FiniteMotion& before) {

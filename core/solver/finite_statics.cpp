@@ -84,7 +84,7 @@ void FiniteStatics::go_on_from(FiniteStatics& before, const fem::Parting& partin
   parted_ = true;
   worn_ = before.worn_;
   base_ = std::move(before.base_);
-  if (base_) base_->part(body_.problem, parting, {});
+  if (base_ && !base_->part(body_.problem, parting, {})) base_.reset();
 }
 
 /// The force of a grip that has let go acts on as a part of the load, and leaves with the next

@@ -30,7 +30,8 @@ class Loads;
 class LooseSearch;
 namespace fracture {
 class AveragedStrength;
-}
+struct PassedFace;
+}  // namespace fracture
 struct Decision;
 struct Finding;
 struct FractureState;
@@ -97,7 +98,11 @@ class Simulation {
 
   /// Removes the live elements that a blade has passed: those whose inside, as displacement leaves
   /// them now, any of these triangles [mm] meets. Two places of a blade's edge one after the other
-  /// make two triangles. Returns how many. Where cracks split faces would have to open: UsageError.
+  /// make two triangles. Returns how many. Where cracks split, nothing is removed: faces between
+  /// live elements on both sides of the blade open, as a crack with tips that later steps may
+  /// drive, and their number is returned. A node that a support holds parts as little as by cracks
+  /// that grow. Throws UsageError, and nothing changes, for a blade that is not finite, one that
+  /// lies along the board's plane, or more new nodes than fracture.max_new_nodes allows.
   int cut(std::span<const std::array<Vec3, 3>> swept);
 
   /// Makes the backend of the same problem once more, as it was before the first step.
@@ -108,7 +113,8 @@ class Simulation {
   /// live body"). Returns the grip's id, after those of the scene's instruments; none comes twice.
   /// Throws UsageError, and nothing changes, for a node that is not there, named twice, held by a
   /// support or another grip, of which all elements are gone or out of this route's reach; where
-  /// nothing can be destroyed (Scene::live), cracks split or the backend cannot.
+  /// nothing can be destroyed (Scene::live) or the backend cannot. Where a node of the mesh has
+  /// parted, or parts later, its grip holds the lip that keeps the node, and the other one is free.
   int grasp(std::span<const Index> nodes, bool rigid = false);
   /// The same of all nodes that are within a radius [mm] of a place now and could be grasped; the
   /// grip's place is that one. UsageError where there are none.
@@ -375,6 +381,11 @@ class Simulation {
   void arrive();
   [[nodiscard]] double work_of_tools();
   void take_out(std::span<const Index> elements);
+  int cut_faces(std::span<const std::array<Vec3, 3>> swept);
+  void open_faces(const std::vector<fracture::PassedFace>& faces);
+  [[nodiscard]] std::vector<std::uint8_t> gone_to_blade() const;
+  void begin_by_hand();
+  void finish_by_hand();
   void check_removal(std::span<const Index> elements) const;
   void follow_removal();
   [[nodiscard]] std::shared_ptr<const Kept> keep() const;

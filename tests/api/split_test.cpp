@@ -147,6 +147,42 @@ TEST_F(CSplit, EventsSayThatNothingWasDestroyed) {
   }
 }
 
+// A blade opens faces and takes no element; it is undone, done again and told to another one.
+TEST_F(CSplit, ABladeOpensFacesAndAGripHoldsALip) {
+  ASSERT_OK(sunder_simulation_keep_history(simulation, 8));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  const double swept[18] = {-1, 4.1, -1, -1,  4.1, 2, 5.2, 4.3, -1,
+                            -1, 4.1, 2,  5.2, 4.3, 2, 5.2, 4.3, -1};
+  const std::int32_t torn = body_of(simulation).crack_face_count;  // by itself
+  std::int32_t opened = 0, rows = 0, cracks = 0;
+  ASSERT_OK(sunder_simulation_cut(simulation, swept, 18, &opened));
+  EXPECT_GT(opened, 3);
+  const sunder_body cut = body_of(simulation);
+  EXPECT_EQ(cut.crack_face_count, torn + opened);
+  EXPECT_GT(cut.node_count, static_cast<int>(kNodes));
+  std::vector<std::uint8_t> destroyed(kTets, 1);
+  EXPECT_OK(sunder_simulation_destroyed(simulation, destroyed.data(), destroyed.size()));
+  EXPECT_EQ(std::ranges::count(destroyed, 1), 0);
+  sunder_event event = SUNDER_EVENT_INIT;
+  ASSERT_OK(sunder_simulation_event_count(simulation, &rows));
+  ASSERT_OK(sunder_simulation_event_at(simulation, rows - 1, &event));
+  ASSERT_OK(sunder_simulation_crack_count(simulation, &cracks));
+  EXPECT_EQ(event.cause, SUNDER_CAUSE_SCRIPT);
+  EXPECT_EQ(event.lives, 1);
+  EXPECT_EQ(event.element, -1);
+  EXPECT_EQ(event.crack, cracks - 1);
+  std::int32_t grip = 0, events = 0, replayed = 0;
+  const double tip[3] = {2.5, 2.5, 0.5};
+  ASSERT_OK(sunder_simulation_grasp_near(simulation, tip, 1.5, 1, &grip));
+  ASSERT_OK(sunder_simulation_undo(simulation, 2, &events, &replayed));
+  EXPECT_EQ(events, 1);
+  EXPECT_EQ(body_of(simulation).crack_face_count, torn);
+  ASSERT_OK(sunder_simulation_redo(simulation, 1, &events));
+  EXPECT_EQ(body_of(simulation).crack_face_count, torn + opened);
+  const double flat[9] = {-1, -1, 0.51, 11, -1, 0.51, -1, 9, 0.51};
+  EXPECT_EQ(sunder_simulation_cut(simulation, flat, 9, &opened), SUNDER_ERROR_ORDER);
+}
+
 // The body hangs on its supports by the corners that elements have now.
 TEST_F(CSplit, SupportsHoldWhatTheForcepsPull) {
   tear();

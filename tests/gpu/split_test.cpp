@@ -110,6 +110,45 @@ TEST_P(SplitCracksOnTheDevice, GrowAsOnTheHost) {
   EXPECT_EQ(again.displacement, found.displacement);
 }
 
+/// A blade between two steps, and a grip beside what it has opened.
+Course cut_and_grasped(const std::shared_ptr<const Problem>& problem,
+                       std::unique_ptr<Backend> backend) {
+  Simulation simulation(problem, std::move(backend));
+  simulation.step();
+  const Vec3 a(51, 15.2, -1), b(51, 15.2, 3), c(30, 16, -1), d(30, 16, 3);
+  EXPECT_GT(simulation.cut(std::vector<std::array<Vec3, 3>>{{a, b, c}, {b, d, c}}), 10);
+  simulation.step();
+  const int grip = simulation.grasp(Vec3(42, 14, 1), 3, true);
+  simulation.pose(grip, {simulation.centre_of(grip) + Vec3(0.1, -0.2, 0.05)});
+  simulation.step();
+  EXPECT_GT(simulation.wrench(grip).force.norm(), 0);
+  Course of;
+  of.rows = simulation.destroyed();
+  for (const Vec3& u : simulation.displacement()) {
+    of.displacement.insert(of.displacement.end(), u.begin(), u.end());
+  }
+  of.stress = simulation.stress();
+  of.out.assign(simulation.backend().destroyed().begin(), simulation.backend().destroyed().end());
+  of.mesh = simulation.mesh();
+  of.info = simulation.backend().info();
+  return of;
+}
+
+TEST_P(SplitCracksOnTheDevice, AreCutAndHeldAsOnTheHost) {
+  const Torn& of = GetParam();
+  Scene scene = scene_of(of);
+  scene.instruments[0].ramp = Ramp{0, 4};  // nothing tears by itself
+  WatchedBackend watched(scene,
+                         {.precision = of.precision, .tolerance = kTight, .route = of.route});
+  const Course found = cut_and_grasped(watched.problem, watched.create());
+  EXPECT_EQ(found.info.backend, "vulkan");
+  EXPECT_EQ(found.info.why.find("took over"), std::string::npos) << found.info.why;
+  scene.solver = {.backend = "cpu", .tolerance = kTight};
+  const auto problem = std::make_shared<const Problem>(std::move(scene));
+  expect_alike(found, cut_and_grasped(problem, cpu_reference::create(problem, needs_of(*problem))),
+               1e-8);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, SplitCracksOnTheDevice,
     testing::Values(Torn{"linear", MaterialLaw::linear, false, Route::automatic},

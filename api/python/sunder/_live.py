@@ -102,7 +102,8 @@ class Live:
         check(_lib.sunder_simulation_remove(self.handle, ids.ctypes.data, ids.size))
 
     def cut(self, swept: Any) -> int:
-        """Removes what a blade has passed: triangles (t, 3, 3) [mm]. Returns how many elements."""
+        """Removes what a blade has passed: triangles (t, 3, 3) [mm]. Returns how many elements;
+        where cracks split, how many faces have opened, and nothing is removed."""
         removed = c.c_int32()
         t = _arrays.reals(swept, "swept", (None, 3, 3))
         check(_lib.sunder_simulation_cut(self.handle, t.ctypes.data, t.size, c.byref(removed)))

@@ -68,25 +68,41 @@ std::array<Index, 3> SplitBody::nodes(const Face& face) const {
   return nodes;
 }
 
-bool SplitBody::open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
-                     fem::Change& change) {
+/// Marks faces as open; returns the nodes at which something may part by it.
+std::vector<Index> SplitBody::mark_open(std::span<const Face> faces) {
   std::vector<Index> touched;
   for (const Face& face : faces) {
     for (Index n : nodes(face)) touched.push_back(n);
-  }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  const auto before = open_;
-  for (const Face& face : faces) {
     for (const Face& side : {face, other_side(face)}) {
       std::uint8_t& of = open_[static_cast<std::size_t>(side.element)];
       of = static_cast<std::uint8_t>(of | 1U << side.opposite);
     }
   }
-  // What parts at one node does not depend on the others.
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  return touched;
+}
+
+/// What parts at one node does not depend on the others.
+bool SplitBody::has_room(std::span<const Index> touched,
+                         std::span<const std::uint8_t> destroyed) const {
   std::size_t come = 0;
   for (Index n : touched) come += std::max<std::size_t>(parts_at(n, destroyed).size(), 1) - 1;
-  if (come > static_cast<std::size_t>(std::max<Index>(most_nodes_ - node_count(), 0))) {
+  return come <= static_cast<std::size_t>(std::max<Index>(most_nodes_ - node_count(), 0));
+}
+
+bool SplitBody::can_open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed) {
+  const auto before = open_;
+  const bool room = has_room(mark_open(faces), destroyed);
+  open_ = before;
+  return room;
+}
+
+bool SplitBody::open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
+                     fem::Change& change) {
+  const auto before = open_;
+  const std::vector<Index> touched = mark_open(faces);
+  if (!has_room(touched, destroyed)) {
     open_ = before;
     return false;
   }

@@ -11,16 +11,10 @@
 #include <vector>
 
 #include "body/change.hpp"
+#include "fracture/face.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::fracture {
-
-/// The face of an element that lies opposite to one of its corners.
-struct Face {
-  Index element = 0;
-  int opposite = 0;
-  friend bool operator==(const Face&, const Face&) = default;
-};
 
 class SplitBody {
  public:
@@ -63,6 +57,8 @@ class SplitBody {
   /// False, and nothing has changed: more nodes would come than are allowed.
   [[nodiscard]] bool open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed,
                           fem::Change& change);
+  /// Whether open() would, and changes nothing.
+  [[nodiscard]] bool can_open(std::span<const Face> faces, std::span<const std::uint8_t> destroyed);
   /// Whether the live elements at a node hang together by faces that are not open.
   [[nodiscard]] bool whole(Index node, std::span<const std::uint8_t> destroyed) const;
 
@@ -83,6 +79,9 @@ class SplitBody {
 
  private:
   void find_neighbours();
+  [[nodiscard]] std::vector<Index> mark_open(std::span<const Face> faces);
+  [[nodiscard]] bool has_room(std::span<const Index> touched,
+                              std::span<const std::uint8_t> destroyed) const;
   [[nodiscard]] std::vector<std::vector<Index>> parts_at(
       Index node, std::span<const std::uint8_t> destroyed) const;
   void split(Index node, std::span<const std::uint8_t> destroyed, fem::Change& change);

@@ -30,6 +30,13 @@ class SplitCracks final : public FractureCriterion {
   [[nodiscard]] LipState look_at_lips(const FractureState& state) override {
     return lips_.look(faces(), cracks_, state);
   }
+  [[nodiscard]] std::vector<PassedFace> passed(std::span<const std::array<Vec3, 3>> blade,
+                                               std::span<const Vec3> places,
+                                               std::span<const std::uint8_t> gone) const override;
+  void check_opening(std::span<const PassedFace> faces,
+                     std::span<const std::uint8_t> gone) override;
+  void open(std::span<const PassedFace> faces, const FractureState& state,
+            Decision& decision) override;
   [[nodiscard]] const std::vector<Crack>& cracks() const override { return cracks_; }
   [[nodiscard]] std::vector<CrackFace> faces() const override;
   [[nodiscard]] std::span<const std::array<Index, 4>> corners() const override {
@@ -68,6 +75,7 @@ class SplitCracks final : public FractureCriterion {
                             std::span<const std::uint8_t> destroyed) const;
   void add_toughness(const Crack& crack, std::size_t tip, const FieldView& field, TipState& state);
   [[nodiscard]] std::array<Index, 3> outward(const Face& face) const;
+  void end_passed_tips(const fem::Change& change);
   void tie_what_is_loose(const FractureState& state, Decision& decision);
 
   const Problem& problem_;

@@ -13,6 +13,7 @@
 
 #include "body/change.hpp"
 #include "fracture/board.hpp"
+#include "fracture/face.hpp"
 #include "fracture/split/split_body.hpp"
 #include "sunder/crack.hpp"
 
@@ -57,6 +58,10 @@ class SplitFront {
   /// thickness; lengthens the path until some do.
   [[nodiscard]] SplitStep bear(Crack& crack, SplitCrack& split, Index element,
                                std::span<const std::uint8_t> destroyed, const Parts& parts);
+  /// Makes a crack with a path (path_through()) of a sheet whose faces have just been opened: a tip
+  /// at each end of it that lies inside the body, on the mesh's front there.
+  void take_cut(Crack& crack, SplitCrack& split, std::span<const PassedFace> sheet,
+                std::span<const std::uint8_t> destroyed) const;
 
  private:
   struct Work;

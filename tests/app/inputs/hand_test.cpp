@@ -37,7 +37,7 @@ struct Handled {
   }
   std::shared_ptr<const Problem> problem;
   Simulation simulation;
-  std::optional<Hand> hand;
+  std::optional<app::Hand> hand;
 };
 
 /// The recording done again, as a run does it.
@@ -45,7 +45,7 @@ void expect_same_bits_again(Handled& done) {
   Inputs inputs = parse_inputs(done.hand->recording(), "recording");
   resolve(inputs, *done.problem);
   Simulation again(done.problem, backend_of(done.problem));
-  Hand hand(again, false);
+  app::Hand hand(again, false);
   Replay replay(inputs, hand, done.problem->scene().steps);
   while (replay.reach_step()) again.step();
   expect_same_bits(RunState(again), RunState(done.simulation));
@@ -56,7 +56,7 @@ input::Drive drive(const Vec3& value, bool further = false) {
 }
 
 void pull_cut_and_go_back(Handled& run) {
-  Hand& hand = *run.hand;
+  app::Hand& hand = *run.hand;
   hand.step();
   hand.drive(drive({3.3, 0.1, 0}));
   hand.step();
@@ -97,7 +97,7 @@ TEST(Hand, RecordsACutAsTheElementsThatItTook) {
                           {x, y, low.z() - 1},
                           {x, y, high.z() + 1}}};
   const std::size_t before = run.simulation.destroyed().size();
-  const int cut = run.hand->cut(swept_by(blade));
+  const int cut = run.hand->cut(blade);
   EXPECT_GT(cut, 0);
   EXPECT_EQ(run.simulation.destroyed().size(), before + static_cast<std::size_t>(cut));
   EXPECT_NE(run.hand->recording().find("remove "), std::string::npos);
@@ -105,9 +105,39 @@ TEST(Hand, RecordsACutAsTheElementsThatItTook) {
   expect_same_bits_again(run);
 }
 
+/// Where cracks split, faces open: the blade itself is the record.
+TEST(Hand, RecordsABladeThatOpensFaces) {
+  Scene scene = torn();
+  scene.fracture.model = FractureModel::b;
+  scene.fracture.crack = CrackWay::split;
+  scene.fracture.sif = SifSource::field;
+  Handled run(std::move(scene));
+  run.hand->step();
+  Vec3 low = run.problem->mesh().nodes.front(), high = low;
+  for (const Vec3& x : run.problem->mesh().nodes) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  const double x = (low.x() + high.x()) / 2 + 0.01, y = high.y() - (high.y() - low.y()) / 3;
+  const input::Cut blade{{{x, high.y() + 1, low.z() - 1},
+                          {x, high.y() + 1, high.z() + 1},
+                          {x, y, low.z() - 1},
+                          {x, y, high.z() + 1}}};
+  const std::size_t before = run.simulation.cracks().size();
+  EXPECT_GT(run.hand->cut(blade), 0);
+  EXPECT_EQ(run.simulation.cracks().size(), before + 1);
+  EXPECT_NE(run.hand->recording().find("cut "), std::string::npos);
+  run.hand->step();
+  run.hand->undo(1);
+  run.hand->redo(1);
+  const input::Cut beside{{{x + 900, 0, 0}, {x + 900, 0, 1}, {x + 901, 0, 0}, {x + 901, 0, 1}}};
+  EXPECT_EQ(run.hand->cut(beside), 0);
+  expect_same_bits_again(run);
+}
+
 TEST(Hand, ForgetsWhatWasUndoneAndAllAtAReset) {
   Handled run(torn());
-  Hand& hand = *run.hand;
+  app::Hand& hand = *run.hand;
   hand.step();
   const std::string first = hand.recording();
   EXPECT_EQ(first, "step\n");

@@ -334,12 +334,6 @@ TEST(GraspAbuse, SaysWhatCannot) {
   LiveRun fixed(std::move(none));
   grasp_refused(fixed.simulation, {3}, "live");
 
-  Scene split = notched(FractureModel::b);
-  split.fracture.crack = CrackWay::split;
-  split.fracture.sif = SifSource::field;
-  SceneRun parted(std::move(split));
-  grasp_refused(parted.simulation, {3}, "cracks split");
-
   // Only the lower half can break: route condensed computes nothing else.
   Scene part = strip(1e9, 2, 2);
   part.mesh = structured_board({4, 8, 1, 4, 8, 1}, [](const Vec3& at) {

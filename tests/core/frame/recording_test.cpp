@@ -186,8 +186,8 @@ TEST(Recording, RefusesDamageOtherVersionsAndOtherBodies) {
     refused(s, changed, "damaged");
   }
   auto later = bytes;
-  later[8] = 3;
-  refused(s, later, "version 3; this library reads versions 1 to 2");
+  later[8] = 4;
+  refused(s, later, "version 4; this library reads versions 1 to 3");
   Recorded stronger(gripped_to_break(0.7));
   refused(stronger.simulation, bytes, "another body");
   Scene other = gripped_to_break();

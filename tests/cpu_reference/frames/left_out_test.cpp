@@ -42,7 +42,7 @@ Held held(const Needs& needs, Route route = Route::factor, Update update = Updat
   if (needs.damage) backend->destroy(std::vector<Index>{700});
   backend->solve();
   if (needs.stress) backend->stress();
-  return {heap() - before, backend->buffers()};
+  return {heap_in_use() - before, backend->buffers()};
 }
 
 // The check of a frame takes the largest stress and K u with the kernel, and keeps neither.
