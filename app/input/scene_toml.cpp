@@ -96,9 +96,7 @@ void refuse_played(const ParsedScene& parsed) {
   if (!parsed.recording_path.empty()) refuse("recording is for sunder run and plan");
 }
 
-std::string scene_text(const std::filesystem::path& path) {
-  return read_file(path, kLargestScene);
-}
+std::string scene_text(const std::filesystem::path& path) { return read_file(path, kLargestScene); }
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                  std::vector<std::string>* warnings) {
