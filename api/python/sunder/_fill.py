@@ -109,8 +109,9 @@ def _check_keys(table, keys):
 
 def _fill(scene, tree, folder, name):
     _check_keys("", tree)
-    if "inputs" in tree:
-        raise InputError("inputs is for the program: sunder run, plan and view; leave the key out here")
+    for key, programs in (("inputs", "run, plan and view"), ("recording", "run and plan")):
+        if key in tree:
+            raise InputError(f"{key} is for the program: sunder {programs}; leave the key out here")
     scene.title = tree.get("title", pathlib.Path(name).stem)
     _fill_mesh(scene, tree, folder)
     for volume, keys in _table(tree, "material").items():

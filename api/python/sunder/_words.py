@@ -5,7 +5,7 @@ from . import _arrays
 from .errors import InputError
 
 KEYS = {
-    "": ("title", "mesh", "inputs", "material", "fixed", "instrument", "crack", "destroy", "fracture",
+    "": ("title", "mesh", "inputs", "recording", "material", "fixed", "instrument", "crack", "destroy", "fracture",
          "solver", "time", "output", "load", "dynamics"),
     "material": ("young", "poisson", "yield", "law", "density", "toughness", "energy", "preset"),
     "fixed": ("axes", "box", "nodes", "near", "radius", "surface"),
