@@ -5,8 +5,8 @@ from . import _arrays
 from .errors import InputError
 
 KEYS = {
-    "": ("title", "mesh", "inputs", "recording", "material", "fixed", "instrument", "crack", "destroy", "fracture",
-         "solver", "time", "output", "load", "dynamics"),
+    "": ("title", "mesh", "inputs", "recording", "material", "fixed", "instrument", "crack",
+         "destroy", "fracture", "solver", "time", "output", "load", "dynamics"),
     "material": ("young", "poisson", "yield", "law", "density", "toughness", "energy", "preset"),
     "fixed": ("axes", "box", "nodes", "near", "radius", "surface"),
     "instrument": ("name", "kind", "force", "displacement", "axes", "rigid", "turn", "ramp", "at",
