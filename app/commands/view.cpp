@@ -8,6 +8,7 @@
 #include "app/commands/in_folder.hpp"
 #include "app/commands/mesh_scene.hpp"
 #include "app/commands/waiting.hpp"
+#include "app/input/mesh_import.hpp"
 #include "app/input/scene_toml.hpp"
 #include "app/output/text.hpp"
 #ifdef SUNDER_VIEW
