@@ -2,10 +2,7 @@
 #include "machine/memory.hpp"
 
 #if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
-#include <windows.h>
+#include "machine/windows_api.hpp"
 #else
 #include <unistd.h>
 #endif

@@ -4,10 +4,7 @@
 #include <utility>
 
 #if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
-#include <windows.h>
+#include "machine/windows_api.hpp"
 
 #include <system_error>
 #else

@@ -48,16 +48,7 @@ struct Course {
   BackendInfo info;
 };
 
-/// Until the crack has grown some times.
-Course run(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backend> backend,
-           int growths = 6) {
-  Simulation simulation(problem, std::move(backend));
-  const auto grown = [&] {
-    return std::ranges::count_if(simulation.destroyed(),
-                                 [](const DestroyedElement& row) { return row.lives; });
-  };
-  while (!simulation.done() && grown() < growths) simulation.step();
-  EXPECT_GE(grown(), growths);
+Course course_of(const Simulation& simulation) {
   Course of;
   of.rows = simulation.destroyed();
   for (const Vec3& u : simulation.displacement()) {
@@ -68,6 +59,19 @@ Course run(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backen
   of.mesh = simulation.mesh();
   of.info = simulation.backend().info();
   return of;
+}
+
+/// Until the crack has grown some times.
+Course run(const std::shared_ptr<const Problem>& problem, std::unique_ptr<Backend> backend,
+           int growths = 6) {
+  Simulation simulation(problem, std::move(backend));
+  const auto grown = [&] {
+    return std::ranges::count_if(simulation.destroyed(),
+                                 [](const DestroyedElement& row) { return row.lives; });
+  };
+  while (!simulation.done() && grown() < growths) simulation.step();
+  EXPECT_GE(grown(), growths);
+  return course_of(simulation);
 }
 
 Course run_on_cpu(Scene scene, int growths = 6) {
@@ -122,16 +126,7 @@ Course cut_and_grasped(const std::shared_ptr<const Problem>& problem,
   simulation.pose(grip, {simulation.centre_of(grip) + Vec3(0.1, -0.2, 0.05)});
   simulation.step();
   EXPECT_GT(simulation.wrench(grip).force.norm(), 0);
-  Course of;
-  of.rows = simulation.destroyed();
-  for (const Vec3& u : simulation.displacement()) {
-    of.displacement.insert(of.displacement.end(), u.begin(), u.end());
-  }
-  of.stress = simulation.stress();
-  of.out.assign(simulation.backend().destroyed().begin(), simulation.backend().destroyed().end());
-  of.mesh = simulation.mesh();
-  of.info = simulation.backend().info();
-  return of;
+  return course_of(simulation);
 }
 
 TEST_P(SplitCracksOnTheDevice, AreCutAndHeldAsOnTheHost) {

@@ -83,19 +83,24 @@ TEST(Hand, RecordsWhatLedThereByALawOfFiniteDeformation) {
   expect_same_bits_again(run);
 }
 
-TEST(Hand, RecordsACutAsTheElementsThatItTook) {
-  Handled run(torn());
-  run.hand->step();
-  Vec3 low = run.problem->mesh().nodes.front(), high = low;
-  for (const Vec3& x : run.problem->mesh().nodes) {
+/// Upright, from above into a third of the body.
+input::Cut blade_into(const Problem& problem) {
+  Vec3 low = problem.mesh().nodes.front(), high = low;
+  for (const Vec3& x : problem.mesh().nodes) {
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
   const double x = (low.x() + high.x()) / 2 + 0.01, y = high.y() - (high.y() - low.y()) / 3;
-  const input::Cut blade{{{x, high.y() + 1, low.z() - 1},
-                          {x, high.y() + 1, high.z() + 1},
-                          {x, y, low.z() - 1},
-                          {x, y, high.z() + 1}}};
+  return {{{x, high.y() + 1, low.z() - 1},
+           {x, high.y() + 1, high.z() + 1},
+           {x, y, low.z() - 1},
+           {x, y, high.z() + 1}}};
+}
+
+TEST(Hand, RecordsACutAsTheElementsThatItTook) {
+  Handled run(torn());
+  run.hand->step();
+  const input::Cut blade = blade_into(*run.problem);
   const std::size_t before = run.simulation.destroyed().size();
   const int cut = run.hand->cut(blade);
   EXPECT_GT(cut, 0);
@@ -113,16 +118,7 @@ TEST(Hand, RecordsABladeThatOpensFaces) {
   scene.fracture.sif = SifSource::field;
   Handled run(std::move(scene));
   run.hand->step();
-  Vec3 low = run.problem->mesh().nodes.front(), high = low;
-  for (const Vec3& x : run.problem->mesh().nodes) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  const double x = (low.x() + high.x()) / 2 + 0.01, y = high.y() - (high.y() - low.y()) / 3;
-  const input::Cut blade{{{x, high.y() + 1, low.z() - 1},
-                          {x, high.y() + 1, high.z() + 1},
-                          {x, y, low.z() - 1},
-                          {x, y, high.z() + 1}}};
+  const input::Cut blade = blade_into(*run.problem);
   const std::size_t before = run.simulation.cracks().size();
   EXPECT_GT(run.hand->cut(blade), 0);
   EXPECT_EQ(run.simulation.cracks().size(), before + 1);
@@ -130,7 +126,7 @@ TEST(Hand, RecordsABladeThatOpensFaces) {
   run.hand->step();
   run.hand->undo(1);
   run.hand->redo(1);
-  const input::Cut beside{{{x + 900, 0, 0}, {x + 900, 0, 1}, {x + 901, 0, 0}, {x + 901, 0, 1}}};
+  const input::Cut beside{{{900, 0, 0}, {900, 0, 1}, {901, 0, 0}, {901, 0, 1}}};
   EXPECT_EQ(run.hand->cut(beside), 0);
   expect_same_bits_again(run);
 }

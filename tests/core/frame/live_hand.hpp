@@ -6,6 +6,7 @@
 
 #include "core/frame/live_world.hpp"
 #include "sunder/error.hpp"
+#include "support/bring.hpp"
 
 namespace sunder::test {
 
@@ -97,11 +98,7 @@ class LiveHand {
     const int grip = grips_[below(static_cast<unsigned>(grips_.size()))];
     Pose to{s_.centre_of(grip) + 0.05 * vector()};
     if (below(2) == 1) to.quaternion = {0.1 * part(), 0.1 * part(), 0.1 * part(), 1};
-    try {
-      s_.pose(grip, to);
-    } catch (const UsageError&) {  // of points, which do not turn
-      s_.pose(grip, {to.position});
-    }
+    bring(s_, grip, to);
     ++posed;
   }
   void release() {

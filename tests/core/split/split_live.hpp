@@ -9,6 +9,7 @@
 #include "core/frame/run_state.hpp"
 #include "cut_board.hpp"
 #include "sunder/error.hpp"
+#include "support/bring.hpp"
 
 namespace sunder::test {
 
@@ -102,11 +103,7 @@ class SplitHand {
     const int grip = there[below(static_cast<unsigned>(there.size()))];
     Pose to{s_.centre_of(grip) + 0.02 * vector()};
     if (below(2) == 1) to.quaternion = {0.03 * part(), 0.03 * part(), 0.03 * part(), 1};
-    try {
-      s_.pose(grip, to);
-    } catch (const UsageError&) {  // of points, which do not turn
-      s_.pose(grip, {to.position});
-    }
+    bring(s_, grip, to);
     ++posed;
   }
   void release() {
