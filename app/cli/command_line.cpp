@@ -99,6 +99,7 @@ int dispatch(int argc, const char* const* argv, Interruption& interruption) {
   app.set_help_flag("-h,--help", "Show this help");
   app.set_version_flag("--version", "sunder " SUNDER_VERSION);
   app.require_subcommand(1);
+  app.allow_windows_style_options(false);  // there "/name" is a path as well
   Options options;
   add_commands(app, options);
   try {

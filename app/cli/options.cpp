@@ -8,6 +8,7 @@
 
 #include "app/cli/values.hpp"
 #include "app/commands/commands.hpp"
+#include "app/system/utf8_path.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/error.hpp"
 #include "sunder/words.hpp"
@@ -105,7 +106,7 @@ void add_view_options(CLI::App& command, Options& o) {
 
 SceneArguments scene_arguments(const Options& o) {
   SceneArguments arguments;
-  arguments.scene = o.scene;
+  arguments.scene = system::utf8_path(o.scene);
   const auto word = [](const std::string& option, const Options::Text& value,
                        const std::vector<std::string>& allowed) {
     if (value) check_word(option, *value, allowed);
@@ -129,7 +130,7 @@ RunArguments run_arguments(const Options& o) {
   RunArguments arguments;
   arguments.scene = scene_arguments(o);
   if (o.out && o.out->empty()) throw UsageError("--out is \"\"; allowed is the name of a folder");
-  if (o.out) arguments.out = *o.out;
+  if (o.out) arguments.out = system::utf8_path(*o.out);
   if (o.snapshots) arguments.snapshots = number_list("--snapshots", *o.snapshots);
   arguments.series = o.series;
   arguments.quiet = o.quiet;
@@ -139,7 +140,7 @@ RunArguments run_arguments(const Options& o) {
 ReproduceArguments reproduce_arguments(const Options& o) {
   ReproduceArguments arguments;
   if (o.out && o.out->empty()) throw UsageError("--out is \"\"; allowed is the name of a folder");
-  if (o.out) arguments.out = *o.out;
+  if (o.out) arguments.out = system::utf8_path(*o.out);
   if (o.backend) check_word("--backend", *o.backend, {"auto", "cpu", "vulkan"});
   arguments.backend = o.backend.value_or(arguments.backend);
   arguments.quick = o.quick;
@@ -171,7 +172,7 @@ SweepArguments sweep_arguments(const Options& o) {
   arguments.scene = scene_arguments(o);
   arguments.vary = o.vary;
   if (!o.out || o.out->empty()) throw UsageError("sunder sweep needs --out, a folder of its own");
-  arguments.out = *o.out;
+  arguments.out = system::utf8_path(*o.out);
   constexpr int kMostJobs = 1024;
   arguments.jobs = o.jobs ? whole_number("--jobs", *o.jobs, 1)
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -216,8 +217,8 @@ ViewArguments view_arguments(const Options& o) {
   for (const auto& [option, value] : {std::pair("--out", &o.out), std::pair("--script", &o.script)})
     if (*value && (*value)->empty())
       throw UsageError(std::string(option) + " is \"\"; allowed is a name");
-  if (o.out) arguments.out = *o.out;
-  if (o.script) arguments.script = *o.script;
+  if (o.out) arguments.out = system::utf8_path(*o.out);
+  if (o.script) arguments.script = system::utf8_path(*o.script);
   if (o.frames) arguments.frames = whole_number("--frames", *o.frames, 1);
   if (o.size) arguments.size = picture_size(*o.size);
   arguments.headless = o.headless;
@@ -235,7 +236,7 @@ BoardArguments board_arguments(const Options& o) {
   if (o.thickness) board.thickness = positive_number("--thickness", *o.thickness);
   board.unstructured = o.unstructured;
   board.ascii = o.ascii;
-  arguments.file = o.mesh_file;
+  arguments.file = system::utf8_path(o.mesh_file);
   return arguments;
 }
 

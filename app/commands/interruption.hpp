@@ -18,10 +18,6 @@ namespace sunder::app {
 
 constexpr int kInterruptedExit = 130;  // 128 + SIGINT, as shells have it
 
-/// Holds SIGINT and SIGTERM back from this thread and from all that it starts: those that come
-/// wait until somebody looks for them.
-void hold_signals() noexcept;
-
 class Interruption {
  public:
   /// What a signal finds.
@@ -69,7 +65,6 @@ class Interruption {
 
  private:
   void watch();
-  [[nodiscard]] bool await(std::chrono::milliseconds limit) const;
   void lower_priority_of_others() const;
   void first();
   void write_without_it();
@@ -80,7 +75,7 @@ class Interruption {
   std::atomic<bool> requested_{false}, ended_{false};
   std::chrono::steady_clock::time_point came_;  // set before requested_
   double processor_at_ = 0;                     // [s], likewise
-  std::atomic<int> watcher_{0};                 // the thread's id in the kernel
+  std::atomic<long> watcher_{0};                // the thread's number
   std::mutex mutex_;
   Duty duty_;
   bool claimed_ = false;  // the computing writes its results itself

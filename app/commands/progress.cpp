@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands/progress.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <utility>
 
 #include "app/output/text.hpp"
+#include "app/system/process.hpp"
 
 namespace sunder::app {
 namespace {
@@ -22,7 +21,7 @@ Progress::Progress(int steps, bool shown, std::string counts, std::string unit)
       counts_(std::move(counts)),
       unit_(std::move(unit)),
       shown_(shown),
-      terminal_(::isatty(STDERR_FILENO) == 1) {}
+      terminal_(system::error_is_terminal()) {}
 
 Progress::~Progress() { finish(); }
 

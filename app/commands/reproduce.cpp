@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/reproduce/reproduce.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <iostream>
 #include <optional>
@@ -11,6 +9,7 @@
 #include "app/commands/in_folder.hpp"
 #include "app/output/text.hpp"
 #include "app/reproduce/notch_mesh.hpp"
+#include "app/system/process.hpp"
 
 namespace sunder::app {
 namespace {
@@ -18,7 +17,7 @@ namespace {
 /// One line that renews itself on a terminal, a line per task elsewhere.
 class TaskLine {
  public:
-  explicit TaskLine(bool shown) : shown_(shown), terminal_(::isatty(STDERR_FILENO) == 1) {}
+  explicit TaskLine(bool shown) : shown_(shown), terminal_(system::error_is_terminal()) {}
   ~TaskLine() { finish(); }
   void show(const std::string& what, std::size_t done, std::size_t all) const {
     if (!shown_) return;

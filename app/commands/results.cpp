@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "app/figure/raster.hpp"
 #include "app/output/summary.hpp"
 #include "app/output/tables.hpp"
 #include "app/output/text.hpp"
@@ -30,6 +31,14 @@ void ResultWriter::begin() {
 void ResultWriter::write(const std::string& name, std::string_view text) {
   folder_.write(name, text);
   files_.push_back(name);
+}
+
+std::string ResultWriter::write_picture(const std::string& name, const std::string& svg) {
+  write(name + ".svg", svg);
+  if (!draws_pixels()) return svg;
+  std::string png = FigurePainter::png(svg);
+  write(name + ".png", png);
+  return png;
 }
 
 void ResultWriter::write_state(const std::string& name, const State& state) {
@@ -65,12 +74,9 @@ void ResultWriter::step_done(const StepReport& report, const State& state,
 
 void ResultWriter::snapshot(int wanted, const State& state) {
   const std::string name = "snapshot_" + std::to_string(wanted);
-  const std::string svg = painter_.svg(state);
-  std::string png = FigurePainter::png(svg);
-  write(name + ".svg", svg);
-  write(name + ".png", png);
+  std::string picture = write_picture(name, painter_.svg(state));
   write_state(name + ".vtu", state);
-  snapshots_.push_back({wanted, broken(state), state.step, std::move(png)});
+  snapshots_.push_back({wanted, broken(state), state.step, std::move(picture)});
 }
 
 void ResultWriter::finish(const RunRecord& run) {
@@ -89,18 +95,13 @@ void ResultWriter::finish(const RunRecord& run) {
     if (series_) write("cracks.pvd", pvd(crack_entries_));
   }
   const std::string svg = painter_.svg(run.last);
-  const std::string png = FigurePainter::png(svg);
-  write("figure.svg", svg);
-  write("figure.png", png);
-  std::string film_png;
+  const std::string figure = write_picture("figure", svg);
+  std::string film;
   if (const auto pictures = film_.pictures(); !pictures.empty()) {
-    const std::string film = film_strip(painter_, problem_.scene().title, pictures);
-    film_png = FigurePainter::png(film);
-    write("film.svg", film);
-    write("film.png", film_png);
+    film = write_picture("film", film_strip(painter_, problem_.scene().title, pictures));
   }
   files_.push_back("summary.json");
-  write("index.html", report_html(run, {svg, png, snapshots_, film_png, files_}));
+  write("index.html", report_html(run, {svg, figure, snapshots_, film, files_}));
   folder_.write("summary.json", summary_json(run));
 }
 

@@ -33,6 +33,9 @@ class ResultWriter {
 
  private:
   void write(const std::string& name, std::string_view text);
+  /// NAME.svg and NAME.png; returns what goes into the page: the PNG, or the SVG where this build
+  /// makes no PNG.
+  std::string write_picture(const std::string& name, const std::string& svg);
   void write_state(const std::string& name, const State& state);
   void write_cracks(const std::string& name, const State& state);
 

@@ -12,6 +12,7 @@
 #include "app/commands/progress.hpp"
 #include "app/commands/results.hpp"
 #include "app/commands/waiting.hpp"
+#include "app/figure/raster.hpp"
 #include "app/inputs/hand.hpp"
 #include "app/output/text.hpp"
 #include "sunder/backends.hpp"
@@ -34,6 +35,9 @@ void add_new(std::vector<std::string>& to, const std::vector<std::string>& from)
 std::string of_steps(int step, const Problem& problem) {
   return std::to_string(step) + " of " + std::to_string(problem.scene().steps);
 }
+
+constexpr const char* kNoPixels =
+    "this build makes no PNG (it was built without librsvg): pictures are SVG alone";
 
 /// A picture to be taken within a step.
 struct Snapshot {
@@ -74,6 +78,7 @@ class Run {
                   cracks_split(problem_.scene()) ? "splits" : "destroyed"),
         wanted_(arguments.snapshots) {
     if (folder.warning()) record_.warnings.push_back(*folder.warning());
+    if (!draws_pixels()) record_.warnings.emplace_back(kNoPixels);
     of_setup_ = record_.warnings;
     std::sort(wanted_.begin(), wanted_.end());
     wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());

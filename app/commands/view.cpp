@@ -218,9 +218,8 @@ int view_scene(const ViewArguments& given, Interruption& interruption) {
 }
 #else
 int view_scene(const ViewArguments&, Interruption&) {
-  throw DeviceError(
-      "this build draws nothing: it was made without Vulkan (SUNDER_GPU=OFF); `sunder run` writes "
-      "figures");
+  throw DeviceError("this build draws nothing: it was made without " SUNDER_NO_VIEW
+                    "; `sunder run` writes figures");
 }
 #endif
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands/waiting.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdio>
 #include <utility>
+
+#include "app/system/process.hpp"
 
 namespace sunder::app {
 namespace {
@@ -29,7 +29,7 @@ Waiting::~Waiting() {
 }
 
 void Waiting::tell() {
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  const bool terminal = system::error_is_terminal();
   bool open = false;
   std::unique_lock lock(mutex_);
   for (int seconds = 1; !ended_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; });

@@ -10,8 +10,8 @@
 namespace sunder::app {
 namespace {
 
-/// Above this number of triangles the surface goes into the figure as an image: a picture of a
-/// million elements stays a small file.
+/// Above this number of triangles the surface goes into the figure as an image, where this build
+/// makes images: a picture of a million elements stays a small file.
 constexpr std::size_t kMostVectorTriangles = 12000;
 /// Mesh lines help the eye on a coarse mesh and darken a fine one.
 constexpr std::size_t kMostOutlined = 3000;
@@ -76,8 +76,9 @@ std::string image_surface(const std::vector<PaintedTriangle>& triangles, const C
 std::string painted(const std::vector<PaintedTriangle>& triangles, const Canvas& canvas,
                     double edge_length) {
   const double rim_width = std::clamp(kRimShare * edge_length, kThinnest, kThickest);
-  return triangles.size() <= kMostVectorTriangles ? vector_surface(triangles, rim_width)
-                                                  : image_surface(triangles, canvas, rim_width);
+  return triangles.size() <= kMostVectorTriangles || !draws_pixels()
+             ? vector_surface(triangles, rim_width)
+             : image_surface(triangles, canvas, rim_width);
 }
 
 }  // namespace sunder::app

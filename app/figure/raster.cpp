@@ -105,6 +105,8 @@ void draw_svg(RsvgHandle* handle, cairo_surface_t* surface, const SvgSize& size)
 
 }  // namespace
 
+bool draws_pixels() noexcept { return true; }
+
 std::string png_of_svg(std::string_view svg, double zoom) {
   const Handle handle = read_svg(svg);
   const SvgSize size = svg_size_of(handle.get());

@@ -25,6 +25,10 @@ struct PaintedTriangle {
 
 constexpr Color kRimColor{17, 17, 17};
 
+/// False in a build without librsvg, whose pictures are SVG alone: what makes PNG throws
+/// OutputError.
+[[nodiscard]] bool draws_pixels() noexcept;
+
 /// Renders an SVG document at `zoom` pixels per unit. Throws OutputError when it cannot be drawn.
 [[nodiscard]] std::string png_of_svg(std::string_view svg, double zoom);
 

@@ -8,6 +8,9 @@
 
 namespace sunder::app {
 
+/// False in a build without gmsh, where every task is answered by 'E' and a sentence.
+[[nodiscard]] bool has_gmsh() noexcept;
+
 /// "read" FILE, "mesh" FILE.geo, "board" TETS THICKNESS: 'M' and the bytes of a RawMesh;
 /// "convert" FROM TO: 'M'. What goes wrong: 'E' and gmsh's words.
 [[nodiscard]] std::string gmsh_task(const std::string& task,

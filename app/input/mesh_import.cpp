@@ -84,6 +84,12 @@ ChildLimits child_limits(const ImportLimits& limits, std::size_t file_bytes) {
 }
 
 RawMesh read_in_child(const std::filesystem::path& path, const ChildLimits& limits) {
+  if (!has_gmsh()) {
+    fail(path,
+         "this build has no gmsh (SUNDER_GMSH=OFF), which reads this format; save it as .msh or "
+         ".vtu",
+         "");
+  }
   const ChildOutcome outcome =
       run_in_child([&] { return gmsh_task("read", {path.string()}); }, limits);
   const std::string error = last_gmsh_error(outcome.error_text);

@@ -8,6 +8,7 @@
 #include "app/input/scene_overrides.hpp"
 #include "app/input/scene_sections.hpp"
 #include "app/input/toml_guard.hpp"
+#include "app/system/utf8_path.hpp"
 #include "sunder/scene_keys.hpp"
 
 namespace sunder::app {
@@ -33,7 +34,8 @@ ParsedScene read_with_mesh(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides,
                            std::vector<std::string>* warnings) {
   ParsedScene parsed = parse_scene(scene_text(path), path.string(), overrides);
-  parsed.scene.mesh = import_mesh(path.parent_path() / parsed.mesh_path, warnings);
+  parsed.scene.mesh =
+      import_mesh(path.parent_path() / system::utf8_path(parsed.mesh_path), warnings);
   return parsed;
 }
 
@@ -50,7 +52,7 @@ ParsedScene parse_scene(std::string_view text, const std::string& source,
   ParsedScene result;
   Scene& scene = result.scene;
   scene.source = source;
-  scene.title = root.text("title").value_or(std::filesystem::path(source).stem().string());
+  scene.title = root.text("title").value_or(system::utf8_path(source).stem().string());
   result.mesh_path = root.require("mesh", root.text("mesh"));
   if (result.mesh_path.empty())
     root.fail(InputFault::out_of_range, "mesh", "is empty; allowed: the path of a mesh file");
@@ -110,7 +112,8 @@ std::string scene_text_for(const std::filesystem::path& path,
   toml::table parsed = parse_toml(scene_text(path), source);
   for (const std::string& override_text : overrides) apply_override(parsed, override_text);
   const TomlTable root(parsed, source, "", key_names(""));
-  const std::filesystem::path mesh = path.parent_path() / root.require("mesh", root.text("mesh"));
+  const std::filesystem::path mesh =
+      path.parent_path() / system::utf8_path(root.require("mesh", root.text("mesh")));
   const auto absolute = [](const std::filesystem::path& p) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(p));
   };
@@ -131,7 +134,7 @@ std::shared_ptr<const Problem> read_problem(const std::filesystem::path& path,
   ParsedScene parsed = read_with_mesh(path, overrides, warnings);
   if (!played) refuse_played(parsed);
   const auto beside = [&](const std::string& file) {
-    return file.empty() ? std::filesystem::path() : path.parent_path() / file;
+    return file.empty() ? std::filesystem::path() : path.parent_path() / system::utf8_path(file);
   };
   if (played) *played = {beside(parsed.inputs_path), beside(parsed.recording_path)};
   parsed.scene.live = parsed.scene.live || live;

@@ -8,6 +8,7 @@
 #include "app/input/file_bytes.hpp"
 #include "app/input/nearest.hpp"
 #include "app/inputs/words.hpp"
+#include "app/system/utf8_path.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::app {
@@ -223,7 +224,7 @@ Inputs parse_inputs(std::string_view text, const std::string& source) {
 }
 
 Inputs read_inputs(const std::string& path) {
-  return parse_inputs(read_file(path, kLargestInputs), path);
+  return parse_inputs(read_file(system::utf8_path(path), kLargestInputs), path);
 }
 
 }  // namespace sunder::app

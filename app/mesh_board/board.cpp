@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/mesh_board/board.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -13,6 +11,8 @@
 #include "app/mesh_board/msh_writer.hpp"
 #include "app/mesh_board/structured_board.hpp"
 #include "app/output/result_file.hpp"
+#include "app/system/process.hpp"
+#include "app/system/utf8_path.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::app {
@@ -93,7 +93,7 @@ struct Temporary {
 
 // Beside the target, so that the last step is a rename in one folder.
 std::filesystem::path beside(const std::filesystem::path& file, const std::string& extension) {
-  return file.parent_path() / (".sunder-" + std::to_string(::getpid()) + extension);
+  return file.parent_path() / (".sunder-" + std::to_string(system::process_id()) + extension);
 }
 
 void write_through_gmsh(const std::string& msh, const std::filesystem::path& file) {
@@ -142,8 +142,8 @@ BoardReport write_board(const BoardOptions& options, const std::filesystem::path
 void remove_half_written(const std::filesystem::path& file) {
   std::error_code ignored;
   for (const std::filesystem::path& path :
-       {std::filesystem::path(temporary_name(file.string())), beside(file, ".msh"),
-        std::filesystem::path(temporary_name(beside(file, ".msh").string())),
+       {system::utf8_path(temporary_name(file.string())), beside(file, ".msh"),
+        system::utf8_path(temporary_name(beside(file, ".msh").string())),
         beside(file, file.extension().string())})
     std::filesystem::remove(path, ignored);
 }

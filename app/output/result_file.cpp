@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/output/result_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <utility>
 
 #include "app/output/result_folder.hpp"
+#include "app/system/process.hpp"
+#include "app/system/utf8_path.hpp"
 
 namespace sunder::app {
 namespace {
@@ -19,7 +15,7 @@ constexpr std::size_t kBufferBytes = 1 << 16;
 }  // namespace
 
 std::string temporary_name(const std::string& name) {
-  return name + "." + std::to_string(::getpid()) + ".partial";
+  return name + "." + std::to_string(system::process_id()) + ".partial";
 }
 
 ResultFile::ResultFile(std::filesystem::path path)
@@ -33,21 +29,24 @@ ResultFile::ResultFile(ResultFolder& folder, const std::string& name)
 }
 
 void ResultFile::open() {
-  descriptor_ = folder_
-                    ? folder_->open(temporary_)
-                    : ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail("create");
+  std::error_code error;
+  file_ = folder_ ? folder_->open(temporary_, error)
+                  : system::File(system::utf8_path(temporary_), system::File::Keep::nothing, error);
+  if (error) fail("create", error);
   buffer_.reserve(kBufferBytes);
 }
 
 ResultFile::~ResultFile() {
-  if (descriptor_ < 0) return;
-  ::close(descriptor_);
+  if (!file_.is_open()) return;
+  std::error_code ignored;
+  file_.close(ignored);
   remove();
 }
 
 void ResultFile::remove() const {
-  folder_ ? folder_->remove(temporary_) : static_cast<void>(::unlink(temporary_.c_str()));
+  std::error_code ignored;
+  folder_ ? folder_->remove(temporary_)
+          : static_cast<void>(std::filesystem::remove(system::utf8_path(temporary_), ignored));
 }
 
 void ResultFile::write(std::string_view text) {
@@ -56,33 +55,30 @@ void ResultFile::write(std::string_view text) {
 }
 
 void ResultFile::flush() {
-  std::string_view rest = buffer_;
-  while (!rest.empty()) {
-    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write");
-    rest.remove_prefix(static_cast<std::size_t>(written));
-  }
+  std::error_code error;
+  file_.append(buffer_, error);
+  if (error) fail("write", error);
   buffer_.clear();
 }
 
 void ResultFile::commit() {
   flush();
-  // close() may report what write() could only queue (NFS, quotas).
-  const bool closed = ::close(std::exchange(descriptor_, -1)) == 0;
-  const int renamed = !closed   ? -1
-                      : folder_ ? folder_->commit(temporary_, name_)
-                                : std::rename(temporary_.c_str(), name_.c_str());
-  if (renamed == 0) return;
-  const int cause = errno;
+  const char* doing = "write";
+  std::error_code error;
+  file_.close(error);  // may tell what writing could only queue (NFS, quotas)
+  if (!error) {
+    doing = "name";
+    folder_ ? folder_->commit(temporary_, name_, error)
+            : std::filesystem::rename(system::utf8_path(temporary_), path_, error);
+  }
+  if (!error) return;
   remove();
-  errno = cause;
-  fail(closed ? "name" : "write");
+  fail(doing, error);
 }
 
-void ResultFile::fail(const char* doing) {
+void ResultFile::fail(const char* doing, const std::error_code& error) const {
   throw OutputError(std::string("cannot ") + doing + " the result file " + path_.string() + ": " +
-                    std::strerror(errno) + "; nothing half-written was left under this name");
+                    error.message() + "; nothing half-written was left under this name");
 }
 
 void write_file(const std::filesystem::path& path, std::string_view text) {

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 
+#include "app/system/file.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::app {
@@ -41,13 +43,13 @@ class ResultFile {
  private:
   void open();
   void remove() const;
-  [[noreturn]] void fail(const char* doing);
+  [[noreturn]] void fail(const char* doing, const std::error_code& error) const;
 
   std::filesystem::path path_;
   ResultFolder* folder_ = nullptr;
   std::string name_, temporary_;  // in folder_, or paths
   std::string buffer_;
-  int descriptor_ = -1;
+  system::File file_;
 };
 
 /// Writes a whole file.

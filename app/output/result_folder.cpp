@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/output/result_folder.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <utility>
+
+#include "app/system/process.hpp"
 
 namespace sunder::app {
 namespace {
@@ -38,7 +32,7 @@ bool is_result(const std::string& name) {
 }
 
 bool is_plain(const std::string& name) {
-  return !name.empty() && name.front() != '.' && name.find('/') == std::string::npos;
+  return !name.empty() && name.front() != '.' && std::filesystem::path(name).filename() == name;
 }
 
 std::string process(const std::string& id) {
@@ -62,58 +56,41 @@ std::vector<std::filesystem::path> make_result_folder(const std::filesystem::pat
   if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored))
     refuse("it is a file");
   if (error) refuse(error.message());
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));
+  system::check_writable(folder, error);
+  if (error) refuse(error.message());
   return missing;
 }
 
 ResultFolder::ResultFolder(std::filesystem::path path)
     : path_(std::move(path)), made_(make_result_folder(path_)) {
-  try {
-    lock();
-  } catch (...) {
-    for (const int descriptor : {lock_, directory_})
-      if (descriptor >= 0) ::close(descriptor);
-    throw;
-  }
+  lock();
 }
 
-/// On a file in the folder, opened by its descriptor: of a folder that is renamed or removed in the
-/// meantime nothing lands in another one of its name.
 void ResultFolder::lock() {
   const auto refuse = [&](const std::string& why) {
     throw UsageError("--out: results cannot go to " + path_.string() + ": " + why);
   };
-  directory_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory_ < 0) refuse(std::strerror(errno));
-  for (;;) {
-    lock_ = ::openat(directory_, kLockName, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (lock_ < 0 && errno == EACCES)  // left by another user's run that was killed
-      lock_ = ::openat(directory_, kLockName, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-    if (lock_ < 0) refuse(std::string(kLockName) + ": " + std::strerror(errno));
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-      if (errno == EINTR) {
-        ::close(std::exchange(lock_, -1));
-        continue;
-      }
-      if (errno != EWOULDBLOCK) {
-        warning_ = "the file system of " + path_.string() + " has no locks (" +
-                   std::strerror(errno) +
-                   "): nothing keeps another run from writing there at the same time";
-        break;
-      }
+  std::error_code error;
+  directory_ = system::Folder(path_, error);
+  if (error) refuse(error.message());
+  switch (lock_.take(directory_, kLockName, error)) {
+    case system::LockFile::Taken::no:
+      refuse(std::string(kLockName) + ": " + error.message());
+      break;
+    case system::LockFile::Taken::held_by_another: {
       read_lock_file();
       const std::string holder = announced_.empty() ? "" : announced_.front();
       refuse(process(holder) +
              " is writing its results there; name another folder with --out, or wait until it is "
              "done");
-    }
-    struct stat mine {
-    }, there{};
-    if (::fstat(lock_, &mine) == 0 &&
-        ::fstatat(directory_, kLockName, &there, AT_SYMLINK_NOFOLLOW) == 0 &&
-        mine.st_ino == there.st_ino && mine.st_dev == there.st_dev)
       break;
-    ::close(std::exchange(lock_, -1));  // the run before gave it back in between
+    }
+    case system::LockFile::Taken::no_locks:
+      warning_ = "the file system of " + path_.string() + " has no locks (" + error.message() +
+                 "): nothing keeps another run from writing there at the same time";
+      break;
+    case system::LockFile::Taken::yes:
+      break;
   }
   read_lock_file();
   if (!announced_.empty()) announced_.erase(announced_.begin());
@@ -122,29 +99,19 @@ void ResultFolder::lock() {
 
 /// The process first, then a name a line.
 void ResultFolder::read_lock_file() {
-  std::string text;
-  char buffer[4096];
-  for (ssize_t got = 0;
-       (got = ::pread(lock_, buffer, sizeof buffer, static_cast<off_t>(text.size()))) > 0;)
-    text.append(buffer, static_cast<std::size_t>(got));
-  std::istringstream lines(text);
+  std::istringstream lines(lock_.read());
   announced_.clear();
   for (std::string line; std::getline(lines, line);) announced_.push_back(line);
 }
 
 /// What cannot be written there (a full disk) is missed by nobody but a reader of messages.
 void ResultFolder::write_lock_file() const {
-  std::string text = std::to_string(::getpid()) + "\n";
+  std::string text = std::to_string(system::process_id()) + "\n";
   for (const std::string& name : announced_) text += name + "\n";
-  if (::ftruncate(lock_, 0) != 0) return;
-  if (::pwrite(lock_, text.data(), text.size(), 0) < 0) return;
+  lock_.write(text);
 }
 
-ResultFolder::~ResultFolder() {
-  release();
-  ::close(lock_);
-  ::close(directory_);
-}
+ResultFolder::~ResultFolder() { release(); }
 
 void ResultFolder::release() {
   const std::lock_guard lock(mutex_);
@@ -153,11 +120,11 @@ void ResultFolder::release() {
 
 void ResultFolder::give_back() {
   if (std::exchange(released_, true)) return;
-  ::unlinkat(directory_, kLockName, 0);
-  ::flock(lock_, LOCK_UN);
-  // Only empty ones go.
-  for (auto place = made_.rbegin(); place != made_.rend() && ::rmdir(place->c_str()) == 0; ++place)
-    ;
+  lock_.release(directory_, kLockName);
+  directory_.let_go();
+  std::error_code error;
+  for (auto place = made_.rbegin(); place != made_.rend() && !error; ++place)
+    system::remove_empty_folder(*place, error);
 }
 
 void ResultFolder::clear() {
@@ -207,9 +174,11 @@ void ResultFolder::remove_results() {
 }
 
 void ResultFolder::remove_one(const std::string& name) const {
-  if (::unlinkat(directory_, name.c_str(), 0) == 0 || errno == ENOENT || errno == EISDIR) return;
+  std::error_code error;
+  directory_.remove(name, error);
+  if (!error) return;
   throw OutputError("cannot remove " + (path_ / name).string() +
-                    " of an earlier run: " + std::strerror(errno));
+                    " of an earlier run: " + error.message());
 }
 
 bool ResultFolder::drop() {
@@ -231,27 +200,24 @@ void ResultFolder::write(const std::string& name, std::string_view text) {
   file.commit();
 }
 
-/// As ::openat; fails once the results were dropped.
-int ResultFolder::open(const std::string& temporary) {
+/// Fails once the results were dropped.
+system::File ResultFolder::open(const std::string& temporary, std::error_code& error) {
   const std::lock_guard lock(mutex_);
-  if (dropped_) {
-    errno = ECANCELED;
-    return -1;
-  }
-  return ::openat(directory_, temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (!dropped_) return directory_.create(temporary, error);
+  error = std::make_error_code(std::errc::operation_canceled);
+  return {};
 }
 
-int ResultFolder::commit(const std::string& temporary, const std::string& name) {
+void ResultFolder::commit(const std::string& temporary, const std::string& name,
+                          std::error_code& error) {
   const std::lock_guard lock(mutex_);
-  if (dropped_) {
-    errno = ECANCELED;
-    return -1;
-  }
-  return ::renameat(directory_, temporary.c_str(), directory_, name.c_str());
+  if (!dropped_) return directory_.rename(temporary, name, error);
+  error = std::make_error_code(std::errc::operation_canceled);
 }
 
 void ResultFolder::remove(const std::string& temporary) const {
-  ::unlinkat(directory_, temporary.c_str(), 0);
+  std::error_code ignored;
+  directory_.remove(temporary, ignored);
 }
 
 }  // namespace sunder::app

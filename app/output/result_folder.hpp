@@ -7,9 +7,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "app/output/result_file.hpp"
+#include "app/system/folder.hpp"
+#include "app/system/lock_file.hpp"
 
 namespace sunder::app {
 
@@ -49,8 +52,8 @@ class ResultFolder {
 
  private:
   friend class ResultFile;
-  int open(const std::string& temporary);
-  int commit(const std::string& temporary, const std::string& name);
+  system::File open(const std::string& temporary, std::error_code& error);
+  void commit(const std::string& temporary, const std::string& name, std::error_code& error);
   void remove(const std::string& temporary) const;
 
   void lock();
@@ -63,7 +66,8 @@ class ResultFolder {
 
   std::filesystem::path path_;
   std::vector<std::filesystem::path> made_;
-  int directory_ = -1, lock_ = -1;  // descriptors
+  system::Folder directory_;
+  system::LockFile lock_;
   std::optional<std::string> warning_;
   std::mutex mutex_;
   std::vector<std::string> announced_;

@@ -11,25 +11,27 @@ namespace {
 /// Above this size the picture goes in as PNG.
 constexpr std::size_t kMostInlineSvg = 1'500'000;
 
-std::string embedded(const std::string& png, const std::string& alt) {
-  return "<img alt=\"" + escaped(alt) + "\" src=\"data:image/png;base64," + base64(png) + "\">\n";
+std::string embedded(const std::string& picture, const std::string& alt) {
+  const std::string type = picture.starts_with("\x89PNG") ? "png" : "svg+xml";
+  return "<img alt=\"" + escaped(alt) + "\" src=\"data:image/" + type + ";base64," +
+         base64(picture) + "\">\n";
 }
 
 std::string figure(const ReportPictures& pictures) {
   return "<figure class=\"paper\">\n" +
          (pictures.svg.size() <= kMostInlineSvg
               ? pictures.svg
-              : embedded(pictures.png, "Last frame: stress, destroyed elements, instruments")) +
+              : embedded(pictures.picture, "Last frame: stress, destroyed elements, instruments")) +
          "</figure>\n";
 }
 
 std::string film(const RunRecord& run, const ReportPictures& pictures) {
-  if (pictures.film_png.empty()) return {};
+  if (pictures.film.empty()) return {};
   const bool moves = run.problem.moves();
   return "<section><h2>" + std::string(moves ? "In motion" : "The tear") +
          "</h2>\n<figure class=\"paper\">" +
-         embedded(pictures.film_png, moves ? "The body at true scale over the time of the run"
-                                           : "The body as its cracks grow") +
+         embedded(pictures.film, moves ? "The body at true scale over the time of the run"
+                                       : "The body as its cracks grow") +
          "</figure></section>\n";
 }
 
@@ -38,8 +40,8 @@ std::string snapshots(const RunRecord& run, const ReportPictures& pictures) {
   std::string out = "<section><h2>On the way</h2>\n<div class=\"snapshots\">\n";
   for (const SnapshotPicture& s : pictures.snapshots)
     out += "<figure class=\"paper\">" +
-           embedded(s.png, "Snapshot at " + std::to_string(s.wanted) +
-                               (run.last.split ? " splits" : " destroyed elements")) +
+           embedded(s.picture, "Snapshot at " + std::to_string(s.wanted) +
+                                   (run.last.split ? " splits" : " destroyed elements")) +
            "<figcaption>" + counted(s.broken, run.last.split ? "split" : "element") +
            (run.last.split ? "" : " destroyed") + ", step " + std::to_string(s.step + 1) +
            "</figcaption></figure>\n";

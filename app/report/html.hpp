@@ -13,14 +13,14 @@ struct SnapshotPicture {
   int wanted = 0;  ///< destroyed elements, or splits, asked for
   int broken = 0;  ///< those at the event that reached it
   int step = 0;
-  std::string png;
+  std::string picture;  ///< PNG or SVG
 };
 
 struct ReportPictures {
   const std::string& svg;
-  const std::string& png;
+  const std::string& picture;  ///< the same as PNG, or as SVG
   const std::vector<SnapshotPicture>& snapshots;
-  const std::string& film_png;            ///< in motion, or of cracks that split; else empty
+  const std::string& film;  ///< PNG or SVG: in motion, or of cracks that split; else empty
   const std::vector<std::string>& files;  ///< of the result folder
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/reproduce/notch_mesh.hpp"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <stdexcept>
 
@@ -13,6 +11,8 @@
 #include "app/output/result_file.hpp"
 #include "app/output/text.hpp"
 #include "app/reproduce/paper_files.hpp"
+#include "app/system/process.hpp"
+#include "app/system/utf8_path.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::app::reproduce {
@@ -20,7 +20,7 @@ namespace {
 
 std::filesystem::path temporary_file() {
   return std::filesystem::temp_directory_path() /
-         ("sunder-reproduce-" + std::to_string(::getpid()) + ".geo");
+         ("sunder-reproduce-" + std::to_string(system::process_id()) + ".geo");
 }
 
 /// A geometry that gmsh can open; gone with the object.
@@ -92,9 +92,9 @@ std::shared_ptr<const Mesh> mesh_board(const BoardMesh& wanted) {
 
 void remove_temporary_files() {
   std::error_code ignored;
-  const std::string path = temporary_file().string();
+  const std::filesystem::path path = temporary_file();
   std::filesystem::remove(path, ignored);
-  std::filesystem::remove(temporary_name(path), ignored);
+  std::filesystem::remove(system::utf8_path(temporary_name(path.string())), ignored);
 }
 
 Mesh read_embedded_mesh(const std::string& file) {

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "app/figure/figure.hpp"
+#include "app/figure/raster.hpp"
 #include "app/reproduce/study_files.hpp"
 
 namespace sunder::app::reproduce {
@@ -57,7 +58,7 @@ std::vector<std::string> write_study(const Study& study, ResultFolder& folder) {
   for (const Chapter& chapter : study.chapters) {
     for (const Drawing& drawing : chapter.drawings) {
       files.emplace_back(drawing.name + ".svg", standalone(drawing));
-      if (!drawing.chart) pngs[drawing.name] = FigurePainter::png(drawing.svg);
+      if (!drawing.chart && draws_pixels()) pngs[drawing.name] = FigurePainter::png(drawing.svg);
     }
     for (const DataTable& table : chapter.tables)
       files.emplace_back(table.name + ".csv", csv(table));

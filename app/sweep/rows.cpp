@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/sweep/rows.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -46,29 +41,23 @@ Rows read_rows(const std::filesystem::path& folder, std::size_t cells) {
 
 RowFile::RowFile(const std::filesystem::path& folder, bool anew) : path_(folder / kRowFile) {
   if (!anew) size_ = whole_lines(path_).size();
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0 || ::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) {
-    throw OutputError("cannot create the result file " + path_.string() + ": " +
-                      std::strerror(errno));
+  std::error_code error;
+  file_ = system::File(path_, system::File::Keep::contents, error);
+  if (!error) file_.resize(size_, error);
+  if (error) {
+    throw OutputError("cannot create the result file " + path_.string() + ": " + error.message());
   }
 }
 
-RowFile::~RowFile() { ::close(descriptor_); }
-
 void RowFile::append(const std::string& row) {
   const std::string line = row + "\n";
-  for (std::size_t done = 0; done < line.size();) {
-    const ssize_t written = ::pwrite(descriptor_, line.data() + done, line.size() - done,
-                                     static_cast<off_t>(size_ + done));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const int cause = errno;
-      // What stays half-written has no end of line and counts for nothing.
-      if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) errno = cause;
-      throw OutputError("cannot write the result file " + path_.string() + ": " +
-                        std::strerror(cause) + "; the runs before are in it, --resume goes on");
-    }
-    done += static_cast<std::size_t>(written);
+  std::error_code error;
+  file_.write(size_, line, error);
+  if (error) {
+    std::error_code ignored;  // what stays half-written has no end of line and counts for nothing
+    file_.resize(size_, ignored);
+    throw OutputError("cannot write the result file " + path_.string() + ": " + error.message() +
+                      "; the runs before are in it, --resume goes on");
   }
   size_ += line.size();
 }

@@ -3,11 +3,13 @@
 // once it has its end, so that a process that is killed or a disk that is full costs no other run.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 
 #include "app/sweep/axes.hpp"
+#include "app/system/file.hpp"
 
 namespace sunder::app::sweep {
 
@@ -21,17 +23,14 @@ class RowFile {
  public:
   /// Opens it to go on behind its last whole line; `anew`: empties it. Throws OutputError.
   RowFile(const std::filesystem::path& folder, bool anew);
-  ~RowFile();
-  RowFile(const RowFile&) = delete;
-  RowFile& operator=(const RowFile&) = delete;
 
   /// Hands the line to the system. Throws OutputError; no half of it stays then.
   void append(const std::string& row);
 
  private:
   std::filesystem::path path_;
-  int descriptor_ = -1;
-  std::uintmax_t size_ = 0;
+  system::File file_;
+  std::uint64_t size_ = 0;
 };
 
 }  // namespace sunder::app::sweep

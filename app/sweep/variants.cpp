@@ -9,6 +9,7 @@
 
 #include "app/input/mesh_import.hpp"
 #include "app/input/scene_toml.hpp"
+#include "app/system/utf8_path.hpp"
 #include "sunder/same_stiffness.hpp"
 
 namespace sunder::app::sweep {
@@ -52,7 +53,8 @@ std::shared_ptr<const Mesh> Variants::mesh(const std::string& path) {
   const std::lock_guard lock(mutex_);
   std::shared_ptr<const Mesh>& mesh = meshes_[path];
   if (!mesh) {
-    mesh = std::make_shared<const Mesh>(import_mesh(scene_.parent_path() / path, &warnings_));
+    mesh = std::make_shared<const Mesh>(
+        import_mesh(scene_.parent_path() / system::utf8_path(path), &warnings_));
   }
   return mesh;
 }

@@ -10,4 +10,7 @@ set(CMAKE_EXE_LINKER_FLAGS_INIT "-static")
 set(CMAKE_SHARED_LINKER_FLAGS_INIT "-static")
 find_program(SUNDER_WINE NAMES wine64 wine64-stable wine PATHS /usr/lib/wine)
 set(CMAKE_CROSSCOMPILING_EMULATOR ${SUNDER_WINE})
+# Debian has zlib for it.
+set(ZLIB_INCLUDE_DIR /usr/x86_64-w64-mingw32/include CACHE PATH "zlib")
+set(ZLIB_LIBRARY /usr/x86_64-w64-mingw32/lib/libz.a CACHE FILEPATH "zlib")
 include(${CMAKE_CURRENT_LIST_DIR}/headers.cmake)

@@ -29,9 +29,19 @@ def _public(node):
     return not node.name.startswith("_")
 
 
+def _lacks(node):
+    """What a public class or function has to have and this one has not."""
+    lacking = [] if ast.get_docstring(node) else ["a docstring"]
+    if isinstance(node, ast.FunctionDef):
+        given = node.args.posonlyargs + node.args.args + node.args.kwonlyargs
+        hinted = all(a.annotation for a in given if a.arg not in ("self", "cls")) and node.returns
+        lacking += [] if hinted else ["type hints"]
+    return " and ".join(lacking)
+
+
 def page(package: pathlib.Path) -> str:
-    """Markdown of a package's folder: every public class and function that has a docstring.
-    Raises ValueError for a public function or class without one."""
+    """Markdown of a package's folder: every public class and function.
+    Raises ValueError for a public one without a docstring or type hints."""
     out = ["# Python package", "", ast.get_docstring(ast.parse((package / "__init__.py").read_text())), ""]
     bare = []
     for path in sorted(package.glob("*.py"), key=lambda p: (p.name.startswith("_") and p.name != "__init__.py", p.name)):
@@ -49,7 +59,7 @@ def page(package: pathlib.Path) -> str:
         else:
             out += [f"## {title}", "", ast.get_docstring(tree) or "", ""]
         for node in found:
-            bare += [f"{path.name}: {node.name}"] if not ast.get_docstring(node) else []
+            bare += [f"{path.name}: {node.name} lacks {_lacks(node)}"] if _lacks(node) else []
             if isinstance(node, ast.FunctionDef):
                 out += _function(node)
                 continue
@@ -62,8 +72,8 @@ def page(package: pathlib.Path) -> str:
                         *_text(ast.get_docstring(node) or "")]
             for part in node.body:
                 if isinstance(part, ast.FunctionDef) and _public(part):
-                    bare += [f"{path.name}: {name}.{part.name}"] if not ast.get_docstring(part) else []
+                    bare += [f"{path.name}: {name}.{part.name} lacks {_lacks(part)}"] if _lacks(part) else []
                     out += _function(part, name)
     if bare:
-        raise ValueError("without a docstring: " + ", ".join(bare))
+        raise ValueError("; ".join(bare))
     return "\n".join(out) + "\n"

@@ -67,7 +67,7 @@ _BY_STATUS = {e.status: e for e in (OrderError, InputError, DeviceError, Numeric
 _last_error = _c.library.sunder_last_error
 
 
-def check(status):
+def check(status: int) -> None:
     """Raises what a status other than 0 stands for."""
     if status == 0:
         return

@@ -344,7 +344,7 @@ def _buffer(plan, index):
     return name.value.decode(), size.value
 
 
-def text_of(function, *arguments):
+def text_of(function: Any, *arguments: Any) -> str:
     """A text that a function of the C interface hands out."""
     length = c.c_size_t()
     check(function(*arguments, None, 0, c.byref(length)))
@@ -353,7 +353,7 @@ def text_of(function, *arguments):
     return room.value.decode("utf-8", "replace")
 
 
-def as_dict(struct):
+def as_dict(struct: c.Structure) -> dict[str, Any]:
     """Members of a result by name; texts as str."""
     result = {}
     for name, _ in struct._fields_:

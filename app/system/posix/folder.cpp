@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/system/folder.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "app/system/posix/last_error.hpp"
+
+namespace sunder::app::system {
+
+Folder::Folder(std::filesystem::path path, std::error_code& error)
+    : path_(std::move(path)), handle_(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  error = handle_ < 0 ? last_error() : std::error_code();
+}
+
+Folder::Folder(Folder&& other) noexcept
+    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, -1)) {}
+
+Folder& Folder::operator=(Folder&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(handle_, other.handle_);
+  return *this;
+}
+
+Folder::~Folder() {
+  if (handle_ >= 0) ::close(static_cast<int>(handle_));
+}
+
+File Folder::create(const std::string& name, std::error_code& error) const {
+  File file(::openat(static_cast<int>(handle_), name.c_str(),
+                     O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  error = file.is_open() ? std::error_code() : last_error();
+  return file;
+}
+
+void Folder::rename(const std::string& from, const std::string& to, std::error_code& error) const {
+  const int here = static_cast<int>(handle_);
+  const bool done = ::renameat(here, from.c_str(), here, to.c_str()) == 0;
+  error = done ? std::error_code() : last_error();
+}
+
+void Folder::remove(const std::string& name, std::error_code& error) const {
+  const bool done = ::unlinkat(static_cast<int>(handle_), name.c_str(), 0) == 0 ||
+                    errno == ENOENT || errno == EISDIR;
+  error = done ? std::error_code() : last_error();
+}
+
+void Folder::let_go() noexcept {}
+
+void check_writable(const std::filesystem::path& folder, std::error_code& error) {
+  error = ::access(folder.c_str(), W_OK | X_OK) == 0 ? std::error_code() : last_error();
+}
+
+void remove_empty_folder(const std::filesystem::path& folder, std::error_code& error) {
+  error = ::rmdir(folder.c_str()) == 0 ? std::error_code() : last_error();
+}
+
+std::filesystem::path make_temporary_folder(const std::string& prefix, std::error_code& error) {
+  std::string name = (std::filesystem::temp_directory_path(error) / (prefix + "XXXXXX")).string();
+  if (error) return {};
+  if (::mkdtemp(name.data())) return name;
+  error = last_error();
+  return {};
+}
+
+}  // namespace sunder::app::system

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cerrno>
+#include <system_error>
+
+namespace sunder::app::system {
+
+/// Why the last call of the system failed.
+[[nodiscard]] inline std::error_code last_error() noexcept {
+  return {errno, std::generic_category()};
+}
+
+}  // namespace sunder::app::system

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/system/folder.hpp"
+
+#include <string>
+#include <utility>
+
+#include "app/system/process.hpp"
+#include "app/system/windows/handle.hpp"
+
+namespace sunder::app::system {
+
+Folder::Folder(std::filesystem::path path, std::error_code& error)
+    : path_(std::move(path)),
+      // Not shared for deletion, which a new name is as well.
+      handle_(
+          kept(CreateFileW(path_.c_str(), FILE_LIST_DIRECTORY, FILE_SHARE_READ | FILE_SHARE_WRITE,
+                           nullptr, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, nullptr))) {
+  error = handle_ == -1 ? last_error() : std::error_code();
+}
+
+Folder::Folder(Folder&& other) noexcept
+    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, -1)) {}
+
+Folder& Folder::operator=(Folder&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(handle_, other.handle_);
+  return *this;
+}
+
+Folder::~Folder() { let_go(); }
+
+File Folder::create(const std::string& name, std::error_code& error) const {
+  return {path_ / name, File::Keep::nothing, error};
+}
+
+void Folder::rename(const std::string& from, const std::string& to, std::error_code& error) const {
+  const bool done = MoveFileExW((path_ / from).c_str(), (path_ / to).c_str(),
+                                MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+  error = done ? std::error_code() : last_error();
+}
+
+void Folder::remove(const std::string& name, std::error_code& error) const {
+  const std::filesystem::path file = path_ / name;
+  const bool done = DeleteFileW(file.c_str()) || GetLastError() == ERROR_FILE_NOT_FOUND ||
+                    std::filesystem::is_directory(file, error);
+  error = done ? std::error_code() : last_error();
+}
+
+void Folder::let_go() noexcept {
+  if (handle_ != -1) CloseHandle(handle_of(std::exchange(handle_, -1)));
+}
+
+void check_writable(const std::filesystem::path&, std::error_code& error) { error.clear(); }
+
+void remove_empty_folder(const std::filesystem::path& folder, std::error_code& error) {
+  error = RemoveDirectoryW(folder.c_str()) ? std::error_code() : last_error();
+}
+
+std::filesystem::path make_temporary_folder(const std::string& prefix, std::error_code& error) {
+  const std::filesystem::path place = std::filesystem::temp_directory_path(error);
+  for (int i = 0; !error; ++i) {
+    const std::string name = prefix + std::to_string(process_id()) + "-" + std::to_string(i);
+    if (std::filesystem::create_directory(place / name, error)) return place / name;
+  }
+  return {};
+}
+
+}  // namespace sunder::app::system
