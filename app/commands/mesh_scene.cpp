@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands/mesh_scene.hpp"
 
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <sstream>
-#include <vector>
 
 #include "app/input/mesh_import.hpp"
 #include "app/output/text.hpp"
-#include "sunder/error.hpp"
 
 namespace sunder::app {
 namespace {
@@ -66,27 +58,9 @@ std::string scene_of_mesh(const Mesh& mesh, const std::filesystem::path& file) {
   return out.str();
 }
 
-MeshScene::MeshScene(const std::filesystem::path& mesh) {
-  const std::string text = scene_of_mesh(
-      import_mesh(mesh), std::filesystem::weakly_canonical(std::filesystem::absolute(mesh)));
-  std::string name = (std::filesystem::temp_directory_path() / "sunder-view-XXXXXX").string();
-  const auto fail = [&] {
-    throw InputError(InputFault::unreadable_file,
-                     name + ": the scene of a mesh cannot be written: " + std::strerror(errno));
-  };
-  if (!mkdtemp(name.data())) fail();
-  folder_ = name;
-  file_ = folder_ / (mesh.stem().string() + ".toml");
-  std::ofstream out(file_);
-  if (out << text && out.flush()) return;
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-  fail();
-}
-
-MeshScene::~MeshScene() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+std::string scene_of_mesh(const std::filesystem::path& file) {
+  return scene_of_mesh(import_mesh(file),
+                       std::filesystem::weakly_canonical(std::filesystem::absolute(file)));
 }
 
 }  // namespace sunder::app
