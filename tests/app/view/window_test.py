@@ -150,16 +150,19 @@ def change_the_material(display, recorded, scene):
         display.do("key", "Return")
         time.sleep(0.5)
         display.screenshot(OUT / "window-edit.png")
-        display.do("key", "a")
+
+    def applied(value):
+        display.do("key", "Return", "key", "a")  # the field lets the keys go first
+        return recorded("") is not None and value in scene.read_text()
 
     # Four volumes by name, each of a line and three rows of 24 px: lower is the second one.
     volume, row = 90, 24
     modulus = 128 + volume + 18 + row + row // 2 - 2
     enter(70, modulus, "2.5")
-    until("another modulus", lambda: recorded("") is not None and "young = 2.5" in scene.read_text())
+    until("another modulus", lambda: applied("young = 2.5"))
     until("what was cut", lambda: recorded(r"^remove "))
     enter(70, modulus + row, "0.75")
-    until("another yield stress", lambda: recorded("") is not None and "yield = 0.75" in scene.read_text())
+    until("another yield stress", lambda: applied("yield = 0.75"))
     time.sleep(1)
     display.screenshot(OUT / "window-material.png")
     display.do("key", "m")
