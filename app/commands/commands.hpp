@@ -43,7 +43,6 @@ struct ViewArguments {
   std::optional<PictureSize> size;  ///< default: that of PictureSize; a window's is larger
   bool headless = false;
   bool quiet = false;
-  bool of_mesh = false;  ///< the scene is a mesh's with defaults
 };
 
 struct SweepArguments {

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/commands/mesh_scene.hpp"
 
-#include <algorithm>
 #include <sstream>
-#include <vector>
 
 #include "app/input/mesh_import.hpp"
-#include "app/output/result_file.hpp"
 #include "app/output/text.hpp"
-#include "app/system/folder.hpp"
-#include "sunder/error.hpp"
 
 namespace sunder::app {
 namespace {
@@ -63,28 +58,9 @@ std::string scene_of_mesh(const Mesh& mesh, const std::filesystem::path& file) {
   return out.str();
 }
 
-MeshScene::MeshScene(const std::filesystem::path& mesh) {
-  const std::string text = scene_of_mesh(
-      import_mesh(mesh), std::filesystem::weakly_canonical(std::filesystem::absolute(mesh)));
-  std::error_code error;
-  folder_ = system::make_temporary_folder("sunder-view-", error);
-  if (error) {
-    throw InputError(
-        InputFault::unreadable_file,
-        std::string("no folder for the scene of a mesh can be made: ") + error.message());
-  }
-  file_ = folder_ / (mesh.stem().string() + ".toml");
-  try {
-    write_file(file_, text);
-  } catch (...) {
-    std::filesystem::remove_all(folder_, error);
-    throw;
-  }
-}
-
-MeshScene::~MeshScene() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+std::string scene_of_mesh(const std::filesystem::path& file) {
+  return scene_of_mesh(import_mesh(file),
+                       std::filesystem::weakly_canonical(std::filesystem::absolute(file)));
 }
 
 }  // namespace sunder::app

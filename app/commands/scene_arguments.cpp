@@ -28,7 +28,7 @@ std::vector<std::string> overrides_of(const SceneArguments& arguments) {
 }
 
 OpenedScene open_scene(const SceneArguments& arguments, bool live) {
-  if (is_mesh_file(arguments.scene)) {
+  if (!arguments.text && is_mesh_file(arguments.scene)) {
     const std::string file = arguments.scene.string();
     throw InputError(InputFault::unreadable_file,
                      file +
@@ -39,8 +39,8 @@ OpenedScene open_scene(const SceneArguments& arguments, bool live) {
   OpenedScene opened;
   constexpr std::size_t kLargestRecording = std::size_t{1} << 30;  // bytes
   PlayedFiles played;
-  opened.problem =
-      read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &played, live);
+  opened.problem = read_problem(arguments.scene, overrides_of(arguments), &opened.warnings, &played,
+                                live, arguments.text ? &*arguments.text : nullptr);
   if (!played.recording.empty()) {
     const std::string bytes = read_file(played.recording, kLargestRecording);
     opened.recording.assign(bytes.begin(), bytes.end());

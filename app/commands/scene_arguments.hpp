@@ -15,6 +15,7 @@ namespace sunder::app {
 
 struct SceneArguments {
   std::filesystem::path scene;
+  std::optional<std::string> text;  ///< of the scene, where the file is a mesh
   std::optional<std::string> backend, route, update, precision;
   std::optional<int> device, steps;
   std::vector<std::string> set;  ///< "key.path=value"

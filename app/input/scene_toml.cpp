@@ -30,10 +30,16 @@ toml::table parse_toml(std::string_view text, const std::string& source) {
   }
 }
 
-ParsedScene read_with_mesh(const std::filesystem::path& path,
+/// What begins messages about a scene.
+std::string source_of(const std::filesystem::path& path, const std::string* text) {
+  return path.string() + (text ? " (the scene of this mesh)" : "");
+}
+
+ParsedScene read_with_mesh(const std::filesystem::path& path, const std::string* text,
                            const std::vector<std::string>& overrides,
                            std::vector<std::string>* warnings) {
-  ParsedScene parsed = parse_scene(scene_text(path), path.string(), overrides);
+  ParsedScene parsed =
+      parse_scene(text ? *text : scene_text(path), source_of(path, text), overrides);
   parsed.scene.mesh =
       import_mesh(path.parent_path() / system::utf8_path(parsed.mesh_path), warnings);
   return parsed;
@@ -102,14 +108,15 @@ std::string scene_text(const std::filesystem::path& path) { return read_file(pat
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                  std::vector<std::string>* warnings) {
-  return read_with_mesh(path, overrides, warnings).scene;
+  return read_with_mesh(path, nullptr, overrides, warnings).scene;
 }
 
 std::string scene_text_for(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides,
-                           const std::filesystem::path& folder, const std::string& inputs) {
-  const std::string source = path.string();
-  toml::table parsed = parse_toml(scene_text(path), source);
+                           const std::filesystem::path& folder, const std::string& inputs,
+                           const std::string* text) {
+  const std::string source = source_of(path, text);
+  toml::table parsed = parse_toml(text ? *text : scene_text(path), source);
   for (const std::string& override_text : overrides) apply_override(parsed, override_text);
   const TomlTable root(parsed, source, "", key_names(""));
   const std::filesystem::path mesh =
@@ -130,8 +137,8 @@ std::string scene_text_for(const std::filesystem::path& path,
 std::shared_ptr<const Problem> read_problem(const std::filesystem::path& path,
                                             const std::vector<std::string>& overrides,
                                             std::vector<std::string>* warnings, PlayedFiles* played,
-                                            bool live) {
-  ParsedScene parsed = read_with_mesh(path, overrides, warnings);
+                                            bool live, const std::string* text) {
+  ParsedScene parsed = read_with_mesh(path, text, overrides, warnings);
   if (!played) refuse_played(parsed);
   const auto beside = [&](const std::string& file) {
     return file.empty() ? std::filesystem::path() : path.parent_path() / system::utf8_path(file);

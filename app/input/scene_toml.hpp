@@ -28,10 +28,12 @@ struct PlayedFiles {
 
 /// Reads a scene and makes it a Problem, whose errors are reported with their place in the file.
 /// `played`: gets the paths of what is done beside the scene's own loads; null: a scene with such
-/// is refused. `live`: the problem is so whatever the scene says (Scene::live).
+/// is refused. `live`: the problem is so whatever the scene says (Scene::live). `text`: the scene
+/// in place of the file's text, for a file that is a mesh; null: the file has it.
 [[nodiscard]] std::shared_ptr<const Problem> read_problem(
     const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
-    std::vector<std::string>* warnings = nullptr, PlayedFiles* played = nullptr, bool live = false);
+    std::vector<std::string>* warnings = nullptr, PlayedFiles* played = nullptr, bool live = false,
+    const std::string* text = nullptr);
 
 /// A scene's text, read; Scene::mesh is empty.
 struct ParsedScene {
@@ -52,11 +54,13 @@ struct ParsedScene {
 void refuse_played(const ParsedScene& parsed);
 
 /// The scene of a file with its overrides, as a text that reads the same from `folder`; its key
-/// `inputs` is `inputs`, or absent where that is empty. Comments are lost. Throws InputError.
+/// `inputs` is `inputs`, or absent where that is empty. Comments are lost. `text`: as
+/// read_problem() has it. Throws InputError.
 [[nodiscard]] std::string scene_text_for(const std::filesystem::path& path,
                                          const std::vector<std::string>& overrides,
                                          const std::filesystem::path& folder,
-                                         const std::string& inputs);
+                                         const std::string& inputs,
+                                         const std::string* text = nullptr);
 
 /// The text of a scene's file. Throws InputError.
 [[nodiscard]] std::string scene_text(const std::filesystem::path& path);

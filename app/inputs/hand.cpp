@@ -20,6 +20,21 @@ std::vector<Index> taken_out(const Simulation& simulation, std::size_t rows_befo
   return elements;
 }
 
+/// Of a grip's nodes, as displacement leaves them now [mm].
+Vec3 middle_of(const Simulation& simulation, int grip) {
+  const auto nodes = simulation.held_nodes(grip);
+  const bool parted = !simulation.corners().empty();
+  const std::vector<Vec3> places =
+      parted ? simulation.mesh().nodes : simulation.problem().mesh().nodes;
+  const std::vector<Vec3> displacement = simulation.displacement();
+  Vec3 sum = Vec3::Zero();
+  for (const Index n : nodes) {
+    const auto at = static_cast<std::size_t>(n);
+    sum += places[at] + displacement[at];
+  }
+  return sum / static_cast<double>(nodes.size());
+}
+
 }  // namespace
 
 Hand::Hand(Simulation& simulation, bool goes_back) : simulation_(simulation) {
@@ -44,17 +59,25 @@ void Hand::act(What what, Do&& act) {
 }
 
 Vec3 Hand::value(std::size_t instrument) const {
-  for (auto deed = done_.rbegin(); deed != done_.rend(); ++deed) {
-    const auto* drive = std::get_if<input::Drive>(&deed->what);
-    if (drive && drive->index == instrument) return drive->value;
-  }
-  const Scene& scene = simulation_.problem().scene();
-  const Instrument& tool = scene.instruments[instrument];
-  const double time = static_cast<double>(simulation_.steps_done()) / scene.steps;
-  const double factor = simulation_.steps_done() > 0 ? tool.factor(time) : 0.0;
-  if (const auto* grip = std::get_if<Grip>(&tool.action)) return factor * grip->displacement;
-  if (const auto* pull = std::get_if<Pull>(&tool.action)) return factor * pull->force;
-  return factor * std::get<Press>(tool.action).force;
+  if (const auto* drive = last<input::Drive>(instrument)) return drive->value;
+  const Instrument& tool = simulation_.problem().scene().instruments[instrument];
+  if (const auto* grip = std::get_if<Grip>(&tool.action)) return factor(tool) * grip->displacement;
+  if (const auto* pull = std::get_if<Pull>(&tool.action)) return factor(tool) * pull->force;
+  return factor(tool) * std::get<Press>(tool.action).force;
+}
+
+Vec3 Hand::rotation(std::size_t instrument) const {
+  if (const auto* turn = last<input::Turn>(instrument)) return turn->rotation;
+  const Instrument& tool = simulation_.problem().scene().instruments[instrument];
+  const auto* grip = std::get_if<Grip>(&tool.action);
+  return grip ? Vec3(factor(tool) * grip->turn) : Vec3::Zero();
+}
+
+/// Of the scene's ramp in the last step; nothing acts before the first.
+double Hand::factor(const Instrument& tool) const {
+  if (simulation_.steps_done() == 0) return 0;
+  return tool.factor(static_cast<double>(simulation_.steps_done()) /
+                     simulation_.problem().scene().steps);
 }
 
 void Hand::drive(const input::Drive& drive) {
@@ -80,6 +103,7 @@ int Hand::grasp(const input::Grasp& grasp) {
                                   : simulation_.grasp(grasp.nodes, grasp.rigid);
   done_.push_back({held, simulation_.undos() > undos});
   undone_.clear();
+  offsets_[held.grip] = middle_of(simulation_, held.grip) - simulation_.centre_of(held.grip);
   return held.grip;
 }
 
@@ -100,6 +124,23 @@ std::vector<int> Hand::grips() const {
     }
   }
   return grips;
+}
+
+std::vector<Hand::Held> Hand::held() const {
+  std::vector<Held> all;
+  for (const Deed& deed : done_) {
+    if (const auto* grasp = std::get_if<input::Grasp>(&deed.what)) {
+      all.push_back(
+          {grasp->grip, grasp->rigid, input::Pose().quaternion, offsets_.at(grasp->grip)});
+    } else if (const auto* pose = std::get_if<input::Pose>(&deed.what)) {
+      for (Held& held : all) {
+        if (held.grip == pose->grip) held.quaternion = pose->quaternion;
+      }
+    } else if (const auto* release = std::get_if<input::Release>(&deed.what)) {
+      std::erase_if(all, [&](const Held& held) { return held.grip == release->grip; });
+    }
+  }
+  return all;
 }
 
 int Hand::cut(const input::Cut& cut) {
@@ -228,6 +269,8 @@ Replay::Replay(const Inputs& inputs, Hand& hand, int steps) : inputs_(inputs), h
     if (std::holds_alternative<input::Reset>(i.what)) refuse(i, "reset");
     if (std::holds_alternative<input::Pause>(i.what)) refuse(i, "pause, or go,");
     if (std::holds_alternative<input::Stroke>(i.what)) refuse(i, "stroke");
+    if (std::holds_alternative<input::Set>(i.what)) refuse(i, "set");
+    if (std::holds_alternative<input::Open>(i.what)) refuse(i, "open");
     if (const auto* step = std::get_if<input::Step>(&i.what)) asked += step->count;
     if (const auto* frame = std::get_if<input::Frame>(&i.what)) asked += frame->count;
     if (asked <= steps) continue;

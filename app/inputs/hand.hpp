@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,14 @@ class Hand {
   void release(int grip);
   /// Grips that hold now, in the order in which they took hold.
   [[nodiscard]] std::vector<int> grips() const;
+  /// How a grip holds on.
+  struct Held {
+    int grip = kNone;
+    bool rigid = false;
+    std::array<double, 4> quaternion{0, 0, 0, 1};  ///< as posed last
+    Vec3 offset = Vec3::Zero();  ///< from its place to the mean of its nodes, as it took hold [mm]
+  };
+  [[nodiscard]] std::vector<Held> held() const;
   /// Returns how many elements went, or faces opened. Elements that go are recorded as such, of
   /// what a blade has opened the blade.
   int cut(const input::Cut& cut);
@@ -42,6 +51,11 @@ class Hand {
   /// Force [N] or displacement [mm] of an instrument as the last step had it, or as it was driven
   /// since.
   [[nodiscard]] Vec3 value(std::size_t instrument) const;
+  /// Rotation vector of a rigid grip of the scene's likewise [deg].
+  [[nodiscard]] Vec3 rotation(std::size_t instrument) const;
+  /// Whether drive() or turn() has taken the place of what the scene says.
+  [[nodiscard]] bool driven(std::size_t instrument) const { return last<input::Drive>(instrument); }
+  [[nodiscard]] bool turned(std::size_t instrument) const { return last<input::Turn>(instrument); }
   /// What led here, without what was taken back: inputs (parse_inputs).
   [[nodiscard]] std::string recording() const;
 
@@ -54,9 +68,20 @@ class Hand {
   };
   template <class What, class Do>
   void act(What what, Do&& act);
+  /// The last one of this instrument; null: there is none.
+  template <class What>
+  [[nodiscard]] const What* last(std::size_t instrument) const {
+    for (auto deed = done_.rbegin(); deed != done_.rend(); ++deed) {
+      const auto* what = std::get_if<What>(&deed->what);
+      if (what && what->index == instrument) return what;
+    }
+    return nullptr;
+  }
+  [[nodiscard]] double factor(const Instrument& tool) const;
 
   Simulation& simulation_;
   Mark start_;
+  std::map<int, Vec3> offsets_;      ///< of grips (Held::offset); numbers never come twice
   std::vector<Deed> done_, undone_;  ///< the latter in the order in which redo() does them
 };
 

@@ -143,6 +143,20 @@ InputAction read_turn(Words& words) {
   return turn;
 }
 
+InputAction read_set(Words& words) {
+  input::Set set;
+  do {
+    set.changes.push_back(words.take("a change, KEY.PATH=VALUE,"));
+    const std::string& change = set.changes.back();
+    if (change.find('=') == std::string::npos || change.front() == '=') {
+      words.fail(in_quotes(change) +
+                 " is no change of the scene; it is KEY.PATH=VALUE, such as "
+                 "material.upper.young=0.1");
+    }
+  } while (words.left() > 0);
+  return set;
+}
+
 struct Verb {
   const char* name;
   InputAction (*read)(Words& words);
@@ -167,6 +181,10 @@ constexpr std::array kVerbs{
     Verb{"reset", [](Words&) -> InputAction { return input::Reset{}; }},
     Verb{"pause", [](Words&) -> InputAction { return input::Pause{true}; }},
     Verb{"go", [](Words&) -> InputAction { return input::Pause{false}; }},
+    Verb{"set", read_set},
+    Verb{
+        "open",
+        [](Words& w) -> InputAction { return input::Open{w.take("the file of a scene or mesh")}; }},
     Verb{"camera", read_camera},
     Verb{"look", read_look},
     Verb{"colour", read_colour},

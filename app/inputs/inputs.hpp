@@ -103,13 +103,22 @@ struct Show {
   enum class What { wireframe, arrows, tips, text, pictures } what = What::wireframe;
   bool on = true;
 };
+// The body itself.
+/// Keys of its scene, "KEY.PATH=VALUE" as --set takes it.
+struct Set {
+  std::vector<std::string> changes;
+};
+/// Another scene or mesh in its place.
+struct Open {
+  std::string file;
+};
 }  // namespace input
 
 using InputAction =
     std::variant<input::Drive, input::Turn, input::Remove, input::Cut, input::Grasp, input::Pose,
                  input::Release, input::Step, input::Frame, input::Undo, input::Redo, input::Reset,
                  input::Pause, input::Stroke, input::Camera, input::Look, input::Colour,
-                 input::Clip, input::Show>;
+                 input::Clip, input::Show, input::Set, input::Open>;
 
 struct Input {
   int line = 0;  ///< from 1
@@ -134,8 +143,13 @@ struct Inputs {
 [[nodiscard]] Inputs read_inputs(const std::string& path);
 
 /// Fills in what the names stand for. Throws InputError with file and line for an instrument or an
-/// element that the problem does not have, and for a field that its scene does not compute.
+/// element that the problem does not have, and for a field that its scene does not compute. What
+/// comes after a change of the body stays as it is: it is for the body that is there then.
 void resolve(Inputs& inputs, const Problem& problem);
+/// Of one input.
+void resolve(const Inputs& inputs, Input& input, const Problem& problem);
+/// Whether an input leaves another body.
+[[nodiscard]] bool changes_body(const Input& input);
 
 /// As parse_inputs() reads it, without a line's end; what is seen has no text.
 [[nodiscard]] std::string text_of(const input::Drive& drive);

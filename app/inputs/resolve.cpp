@@ -110,7 +110,19 @@ std::string numbers(const Vec3& v) {
 }  // namespace
 
 void resolve(Inputs& inputs, const Problem& problem) {
-  for (Input& i : inputs.list) std::visit(Resolver(problem, inputs.at(i)), i.what);
+  for (Input& i : inputs.list) {
+    if (changes_body(i)) return;
+    resolve(inputs, i, problem);
+  }
+}
+
+void resolve(const Inputs& inputs, Input& input, const Problem& problem) {
+  std::visit(Resolver(problem, inputs.at(input)), input.what);
+}
+
+bool changes_body(const Input& input) {
+  return std::holds_alternative<input::Set>(input.what) ||
+         std::holds_alternative<input::Open>(input.what);
 }
 
 std::string text_of(const input::Drive& drive) {

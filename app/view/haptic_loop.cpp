@@ -21,8 +21,8 @@ constexpr double kBlend = 10;  // [ms]
 
 HapticLoop::HapticLoop(std::shared_ptr<InstrumentForces> forces,
                        std::function<void(const input::Pose&)> post)
-    : forces_(std::move(forces)), post_(std::move(post)) {
-  if (forces_) forces_->blend(kBlend);
+    : post_(std::move(post)) {
+  feel(std::move(forces));
   thread_ = std::thread([this] { run(); });
 }
 
@@ -34,8 +34,15 @@ HapticLoop::~HapticLoop() {
   thread_.join();
 }
 
-void HapticLoop::hold(const input::Pose& where) {
+void HapticLoop::feel(std::shared_ptr<InstrumentForces> forces) {
+  if (forces) forces->blend(kBlend);
   const std::lock_guard lock(mutex_);
+  forces_ = std::move(forces);
+}
+
+void HapticLoop::hold(const input::Pose& where, int of_body) {
+  const std::lock_guard lock(mutex_);
+  of_body_ = of_body;
   hand_ = aim_ = told_ = where;
   holds_ = true;
 }
@@ -75,9 +82,13 @@ void HapticLoop::run() {
 void HapticLoop::tick() {
   input::Pose tell;
   bool moved = false;
+  std::shared_ptr<InstrumentForces> forces;
+  sunder::Hand hand;
   {
     const std::lock_guard lock(mutex_);
     if (!holds_) return;
+    forces = forces_;
+    hand.grip = of_body_;
     hand_.position += kCloses * (aim_.position - hand_.position);
     double turned = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -88,12 +99,10 @@ void HapticLoop::tick() {
     if (moved) told_ = hand_;
     tell = hand_;
   }
-  sunder::Hand hand;
-  hand.grip = tell.grip;
   hand.position = tell.position;
   hand.quaternion = tell.quaternion;
   Felt felt;
-  if (forces_) felt = forces_->feel({}, {}, {&hand, 1});
+  if (forces) felt = forces->feel({}, {}, {&hand, 1});
   if (moved) post_(tell);
   const std::lock_guard lock(mutex_);
   if (holds_) now_ = {true, tell.position, hand.force, felt};

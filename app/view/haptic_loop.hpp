@@ -24,8 +24,10 @@ class HapticLoop {
   HapticLoop(const HapticLoop&) = delete;
   HapticLoop& operator=(const HapticLoop&) = delete;
 
-  /// Takes a grip in hand where it is.
-  void hold(const input::Pose& where);
+  /// Others, of another body; as in the constructor.
+  void feel(std::shared_ptr<InstrumentForces> forces);
+  /// Takes a grip in hand where it is; the forces know it as `of_body`.
+  void hold(const input::Pose& where, int of_body);
   /// Where the mouse wants it.
   void aim(const Vec3& place, const std::array<double, 4>& quaternion);
   /// The grip stays as it is.
@@ -48,6 +50,7 @@ class HapticLoop {
   mutable std::mutex mutex_;
   bool over_ = false, holds_ = false;
   input::Pose hand_, aim_, told_;
+  int of_body_ = 0;
   Now now_;
   std::thread thread_;  // last: it uses all above
 };

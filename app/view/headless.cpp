@@ -71,7 +71,10 @@ class Playing {
   }
 
   void take_frame() {
-    session_.advance();
+    {
+      const Timed timed(outcome_.stepping);
+      session_.advance();
+    }
     ++frame_;
     if (session_.look().pictures) take_picture();
     if (plan_.progress) plan_.progress(frame_);
@@ -123,7 +126,7 @@ class Playing {
     result.commit();
     outcome_.files.push_back("result.vtu");
     if (plan_.inputs) write("recording.inputs", session_.hand().recording());
-    write("recording.toml", plan_.recording);
+    write("recording.toml", plan_.recording(session_.origin()));
   }
 
   Session& session_;

@@ -14,7 +14,8 @@ namespace sunder::app {
 struct HeadlessPlan {
   const Inputs* inputs = nullptr;  ///< null: the scene's steps, one a picture
   int frames = 1;
-  std::string recording;  ///< the scene's text, as it stands beside the recorded inputs
+  /// The scene's text of an origin, as it stands beside the recorded inputs.
+  std::function<std::string(const Origin&)> recording;
   std::function<void(int frame)> progress;
 };
 
@@ -22,10 +23,11 @@ struct HeadlessOutcome {
   std::vector<std::string> files;
   std::optional<std::string> failure;  ///< of a step: it ended there, and what there is was written
   bool inputs_left = false;            ///< the pictures were over before the inputs
-  /// Of all pictures together: what a frame is copied out in, drawn in, and written as PNG in.
+  /// Of all pictures together: what a frame is computed in, copied out in, drawn in, and written as
+  /// PNG in.
   struct Stage {
     double seconds = 0, processor_seconds = 0;
-  } showing, drawing, writing;
+  } stepping, showing, drawing, writing;
   int pictures = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/view/live_session.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -21,9 +22,19 @@ bool same_instrument(const InputAction& a, const InputAction& b) {
   return turned && again && turned->index == again->index;
 }
 
+/// What is prepared.
+std::string words_of(const InputAction& what) {
+  if (const auto* open = std::get_if<input::Open>(&what)) return open->file;
+  std::string words;
+  for (const std::string& change : std::get<input::Set>(what).changes) {
+    words += (words.empty() ? "" : ", ") + change;
+  }
+  return words;
+}
+
 }  // namespace
 
-LiveSession::LiveSession(Session& session, std::chrono::duration<double> pace)
+LiveSession::LiveSession(Session& session, Pace* pace)
     : session_(session),
       pace_(pace),
       forces_(session.simulation().grip_forces()),
@@ -54,7 +65,7 @@ void LiveSession::post(InputAction what) {
   wake_.notify_one();
 }
 
-void LiveSession::record(std::function<void(const std::string&)> receive) {
+void LiveSession::record(Receive receive) {
   {
     const std::lock_guard lock(mutex_);
     tasks_.push_back({std::nullopt, std::move(receive)});
@@ -78,11 +89,60 @@ LiveSession::Now LiveSession::now() const {
 
 void LiveSession::perform(const Task& task) {
   if (task.receive) {
-    task.receive(session_.hand().recording());
+    task.receive(session_.hand().recording(), session_.origin());
     return;
   }
-  const Inputs inputs{"", {{0, *task.what}}};
+  InputAction what = *task.what;
+  if (!find_grip(what)) return;
+  changes_body({0, what}) ? prepare(what) : take(what);
+  for (const int grip : session_.hand().grips()) static_cast<void>(number_of(grip));
+}
+
+void LiveSession::take(const InputAction& what) {
+  const Inputs inputs{"", {{0, what}}};
   session_.take(inputs, inputs.list.front());
+}
+
+/// Whoever draws is told meanwhile, and goes on with the frame of the body before.
+void LiveSession::prepare(const InputAction& what) {
+  {
+    const std::lock_guard lock(mutex_);
+    now_.preparing = words_of(what);
+    now_.since = Clock::now();
+  }
+  struct Prepared {
+    LiveSession& of;
+    ~Prepared() {
+      const std::lock_guard lock(of.mutex_);
+      of.now_.preparing.clear();
+    }
+  } prepared{*this};
+  take(what);
+  forces_ = session_.simulation().grip_forces();
+  std::map<int, int> numbers;
+  for (const auto& [before, grip] : session_.carried()) numbers[grip] = number_of(before);
+  numbers_ = std::move(numbers);
+}
+
+/// As told, of a grip of the simulation's.
+int LiveSession::number_of(int grip) {
+  const auto [at, fresh] = numbers_.try_emplace(grip, std::max(grip, next_number_));
+  next_number_ = std::max(next_number_, at->second + 1);
+  return at->second;
+}
+
+/// The other way round. False: the grip has not gone along with a change of the body.
+bool LiveSession::find_grip(InputAction& what) {
+  auto* const pose = std::get_if<input::Pose>(&what);
+  auto* const release = std::get_if<input::Release>(&what);
+  if (!pose && !release) return true;
+  int& grip = pose ? pose->grip : release->grip;
+  for (const auto& [of_simulation, told] : numbers_) {
+    if (told != grip) continue;
+    grip = of_simulation;
+    return true;
+  }
+  return session_.body() == 0;  // the simulation says that there is none
 }
 
 /// What goes wrong pauses and is told; the body stays as it is.
@@ -102,7 +162,9 @@ void LiveSession::run() {
       tasks.swap(tasks_);
       step = goes_on() && Clock::now() >= due_;
     }
-    if (step) due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pace_);
+    if (step && pace_) {
+      due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pace_(session_.problem()));
+    }
     std::optional<std::string> error;
     const auto attempt = [&](const auto& what) {
       try {
@@ -139,7 +201,8 @@ void LiveSession::publish() {
   std::vector<HeldNodes> grips;
   for (const int grip : session_.hand().grips()) {
     const auto nodes = simulation.held_nodes(grip);
-    grips.push_back({grip, simulation.centre_of(grip), {nodes.begin(), nodes.end()}});
+    grips.push_back(
+        {number_of(grip), grip, simulation.centre_of(grip), {nodes.begin(), nodes.end()}});
   }
   const std::lock_guard lock(mutex_);
   now_.shown = std::move(shown);
@@ -149,6 +212,10 @@ void LiveSession::publish() {
   now_.redos = simulation.redos();
   now_.done = simulation.done();
   now_.ruptures = std::move(ruptures);
+  now_.body = session_.body();
+  now_.origin = session_.origin();
+  now_.said = session_.said();
+  now_.forces = forces_;
 }
 
 }  // namespace sunder::app

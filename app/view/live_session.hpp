@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -21,9 +22,10 @@ namespace sunder::app {
 
 class LiveSession {
  public:
-  /// Paused. The session must outlive it, and is nobody else's meanwhile. Steps that go on by
-  /// themselves are `pace` apart at least.
-  explicit LiveSession(Session& session, std::chrono::duration<double> pace = {});
+  /// How far apart steps that go on by themselves are at least.
+  using Pace = std::chrono::duration<double>(const Problem& problem);
+  /// Paused. The session must outlive it, and is nobody else's meanwhile. `pace`: null: none.
+  explicit LiveSession(Session& session, Pace* pace = nullptr);
   ~LiveSession();  ///< when the step in work is done
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -36,9 +38,11 @@ class LiveSession {
   /// Whoever draws has this version of the triangles (Painter::version).
   void drawn(std::uint64_t version) { drawn_.store(version); }
 
-  /// A grip of the hand's.
+  /// A grip of the hand's. Its number here is the simulation's until the body is changed: a grip
+  /// that goes along keeps it (input::Pose, input::Release).
   struct HeldNodes {
     int grip = 0;
+    int of_body = 0;            ///< the simulation's number
     Vec3 place = Vec3::Zero();  ///< as posed last [mm]
     std::vector<Index> nodes;
   };
@@ -50,28 +54,42 @@ class LiveSession {
     bool done = false;                 ///< all steps
     std::optional<std::string> error;  ///< it has paused for: until something is done or it goes on
     std::vector<std::string> ruptures;  ///< the last of them, the newest last
+    int body = 0;                       ///< Session::body, origin, said
+    Origin origin;
+    std::string said;
+    /// Forces of the grips between frames, for a thread of the caller's; null: the backend has
+    /// none. Others with each body.
+    std::shared_ptr<InstrumentForces> forces;
+    /// A body is being prepared, since when; empty: none is. What is shown is the one before it.
+    std::string preparing;
+    std::chrono::steady_clock::time_point since;
   };
-  /// Forces of the grips between frames, for a thread of the caller's; null: the backend has none.
-  [[nodiscard]] const std::shared_ptr<InstrumentForces>& forces() const { return forces_; }
   /// A copy of what is there; takes no longer than that.
   [[nodiscard]] Now now() const;
   /// Asks for the recording up to now; `receive` gets it on the session's thread.
-  void record(std::function<void(const std::string&)> receive);
+  using Receive = std::function<void(const std::string& inputs, const Origin& origin)>;
+  void record(Receive receive);
 
  private:
   struct Task {
     std::optional<InputAction> what;
-    std::function<void(const std::string&)> receive;
+    Receive receive;
   };
   void run();
   void perform(const Task& task);
+  void take(const InputAction& what);
+  void prepare(const InputAction& what);
+  [[nodiscard]] int number_of(int grip);
+  [[nodiscard]] bool find_grip(InputAction& what);
   void publish();
 
   using Clock = std::chrono::steady_clock;
 
   Session& session_;
-  const std::chrono::duration<double> pace_;
-  const std::shared_ptr<InstrumentForces> forces_;
+  Pace* const pace_;
+  std::shared_ptr<InstrumentForces> forces_;
+  std::map<int, int> numbers_;  ///< of grips, as told, by the simulation's; on its thread
+  int next_number_ = 0;
   Clock::time_point due_;  ///< the next step, on the session's thread
   std::atomic<bool> paused_{true};
   std::atomic<std::uint64_t> drawn_{0};

@@ -11,14 +11,16 @@
 
 namespace sunder::app {
 
-Painter::Painter(view::Device& device, const Problem& problem, const PictureSize& size)
-    : problem_(problem), renderer_(device, size) {}
+Painter::Painter(view::Device& device, const PictureSize& size) : renderer_(device, size) {}
 
 void Painter::draw(std::shared_ptr<const Shown> shown, const Look& look, const Camera& camera) {
+  const Problem& problem = *shown->problem;
   if (shown != shown_) {
-    if (shown->version != version_) {
+    const bool other = !shown_ || shown_->problem != shown->problem;
+    if (shown->version != version_ || other) {
       std::vector<std::uint32_t> all;
-      if (shown->since > version_) {  // it was shown to another painter, before this one
+      // It was shown to another painter, before this one, or as what follows another body.
+      if (shown->since > version_ || other) {
         all.resize(shown->triangles.size());
         std::iota(all.begin(), all.end(), 0U);
       }
@@ -29,11 +31,11 @@ void Painter::draw(std::shared_ptr<const Shown> shown, const Look& look, const C
     renderer_.set_points(shown->places, shown->normals);
     shown_ = std::move(shown);
   }
-  const input::Colour colour = look.colour.value_or(input::Colour{standard_field(problem_), {}});
-  const Paint paint = app::paint(problem_, shown_->state, shown_->triangles, colour);
+  const input::Colour colour = look.colour.value_or(input::Colour{standard_field(problem), {}});
+  const Paint paint = app::paint(problem, shown_->state, shown_->triangles, colour);
   renderer_.set_colours(paint.triangles);
   renderer_.draw(camera, look);
-  over_ = overlay(problem_, *shown_, paint, look, camera);
+  over_ = overlay(problem, *shown_, paint, look, camera);
 }
 
 std::string Painter::png() const {

@@ -13,11 +13,11 @@ namespace sunder::app {
 
 class Painter {
  public:
-  /// Both must outlive it.
-  Painter(view::Device& device, const Problem& problem, const PictureSize& size);
+  /// Which must outlive it.
+  Painter(view::Device& device, const PictureSize& size);
 
-  /// The version of triangles that it has; a frame to be drawn was shown since that one or an
-  /// earlier one.
+  /// The version of triangles that it has, of the body that it has drawn last; a frame to be drawn
+  /// was shown since that one or an earlier one, or is another body's.
   [[nodiscard]] std::uint64_t version() const { return version_; }
   /// Draws a frame; what stands over it is beside, in over().
   void draw(std::shared_ptr<const Shown> shown, const Look& look, const Camera& camera);
@@ -29,7 +29,6 @@ class Painter {
   [[nodiscard]] const view::Renderer& renderer() const { return renderer_; }
 
  private:
-  const Problem& problem_;
   view::Renderer renderer_;
   std::uint64_t version_ = 0;
   std::shared_ptr<const Shown> shown_;  // that the device has

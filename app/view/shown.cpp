@@ -65,6 +65,7 @@ Showing::Showing(Simulation& simulation)
 
 std::shared_ptr<Shown> Showing::show(std::uint64_t since) {
   auto shown = std::make_shared<Shown>();
+  shown->problem = simulation_.shared_problem();
   shown->state = state_of(simulation_);
   shown->version = surface_.update();
   shown->since = since;

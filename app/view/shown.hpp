@@ -24,6 +24,7 @@ struct FrameWords {
 };
 
 struct Shown {
+  std::shared_ptr<const Problem> problem;  ///< whose body it is
   State state;
   std::vector<SurfaceTriangle> triangles;
   /// Of the triangles (Surface::version); those that have changed since version `since` have their

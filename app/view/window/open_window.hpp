@@ -20,7 +20,7 @@ struct WindowPlan {
   /// On the device that the window draws on.
   std::function<std::unique_ptr<Session>(view::Device&)> make_session;
   /// Writes what was done so far; returns a sentence that says where.
-  std::function<std::string(const std::string& inputs)> record;
+  std::function<std::string(const std::string& inputs, const Origin& origin)> record;
   std::vector<std::string> warnings;  ///< told in it
 };
 

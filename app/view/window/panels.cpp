@@ -14,25 +14,27 @@ namespace {
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr float kFontSize = 14;
 
-/// Keys as they come: some are pressed and let go between two frames.
-std::vector<int>& keys_of(GLFWwindow* window) {
-  return *static_cast<std::vector<int>*>(glfwGetWindowUserPointer(window));
+WindowEvents& events_of(GLFWwindow* window) {
+  return *static_cast<WindowEvents*>(glfwGetWindowUserPointer(window));
 }
 
 /// Before Dear ImGui, which passes on to it.
-void listen(GLFWwindow* window, std::vector<int>& keys) {
-  glfwSetWindowUserPointer(window, &keys);
+void listen(GLFWwindow* window, WindowEvents& events) {
+  glfwSetWindowUserPointer(window, &events);
   glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int) {
-    if (action == GLFW_PRESS) keys_of(of).push_back(key);
+    if (action == GLFW_PRESS) events_of(of).keys.push_back(key);
+  });
+  glfwSetDropCallback(window, [](GLFWwindow* of, int count, const char** files) {
+    events_of(of).files.insert(events_of(of).files.end(), files, files + count);
   });
 }
 
 }  // namespace
 
-Panels::Panels(GLFWwindow* window, std::vector<int>& keys, view::Device& device,
+Panels::Panels(GLFWwindow* window, WindowEvents& events, view::Device& device,
                view::Swapchain& chain)
     : device_(device) {
-  listen(window, keys);
+  listen(window, events);
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   std::error_code ignored;

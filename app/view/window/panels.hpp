@@ -2,6 +2,7 @@
 // Dear ImGui on the window's device: its set-up, and the overlay by its pen.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "app/view/overlay.hpp"
@@ -12,11 +13,16 @@
 
 namespace sunder::app {
 
-/// Dear ImGui for as long as this lives. Keys come to `keys` as they are pressed: some are pressed
-/// and let go between two frames.
+/// What GLFW tells between two frames.
+struct WindowEvents {
+  std::vector<int> keys;           ///< pressed; some are let go again between two frames
+  std::vector<std::string> files;  ///< dropped on the window
+};
+
+/// Dear ImGui for as long as this lives. What happens to the window comes to `events`.
 class Panels {
  public:
-  Panels(GLFWwindow* window, std::vector<int>& keys, view::Device& device, view::Swapchain& chain);
+  Panels(GLFWwindow* window, WindowEvents& events, view::Device& device, view::Swapchain& chain);
   ~Panels();
   Panels(const Panels&) = delete;
   Panels& operator=(const Panels&) = delete;

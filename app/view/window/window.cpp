@@ -30,17 +30,14 @@ Window::Window(const WindowPlan& plan)
       chain_(device_, surface_.surface),
       session_(plan.make_session(device_)),
       shown_points_(shown_points(session_->problem())),
-      panels_(window_.get(), keys_, device_, chain_),
-      live_(*session_, pace_of(session_->problem())),
-      haptics_(live_.forces(), [this](const input::Pose& pose) { live_.post(pose); }) {
-  look_.camera = standard_camera(session_->problem().mesh());
-  look_.colour = input::Colour{standard_field(session_->problem()), {}};
-  Vec3 low = session_->problem().mesh().nodes.front(), high = low;
-  for (const Vec3& x : session_->problem().mesh().nodes) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  largest_patch_ = static_cast<float>((high - low).maxCoeff() / 5);
+      panels_(window_.get(), events_, device_, chain_),
+      live_(*session_, pace_of),
+      now_(live_.now()),
+      file_(now_.origin.file),
+      haptics_(now_.forces, [this](const input::Pose& pose) { live_.post(pose); }) {
+  look_.camera = standard_camera(problem().mesh());
+  look_.colour = input::Colour{standard_field(problem()), {}};
+  take_measure();
 }
 
 Window::~Window() { device_.vk().DeviceWaitIdle(device_.handle()); }
@@ -49,6 +46,8 @@ void Window::run() {
   while (!glfwWindowShouldClose(window_.get())) {
     glfwWaitEventsTimeout(kWaitSeconds);
     now_ = live_.now();
+    meet_body();
+    take_files();
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -57,12 +56,13 @@ void Window::run() {
     const Camera camera(look_.camera, look_.at, shown_points_, size_);
     if (!ImGui::GetIO().WantCaptureMouse || holds_ != Holds::nothing) take_mouse(camera);
     if (!ImGui::GetIO().WantTextInput) take_keys();
-    keys_.clear();
+    events_.keys.clear();
     picture(camera);
     draw(painter_->over());
     draw_stroke();
     draw_hands(camera);
     panel();
+    scene_panel();
     ImGui::Render();
     chain_.show(painter_->renderer().image(),
                 {static_cast<std::uint32_t>(size_.width), static_cast<std::uint32_t>(size_.height)},
@@ -91,7 +91,7 @@ void Window::take_size() {
   }
   if (painter_ && width == size_.width && height == size_.height) return;
   size_ = {width, height};
-  painter_.emplace(device_, session_->problem(), size_);
+  painter_.emplace(device_, size_);
   live_.drawn(0);
 }
 
@@ -104,7 +104,9 @@ void Window::picture(const Camera& camera) {
 }
 
 void Window::take_keys() {
-  const auto pressed = [this](int key) { return std::ranges::find(keys_, key) != keys_.end(); };
+  const auto pressed = [this](int key) {
+    return std::ranges::find(events_.keys, key) != events_.keys.end();
+  };
   if (pressed(GLFW_KEY_SPACE)) live_.pause(!live_.paused());
   if (pressed(GLFW_KEY_S)) single_step();
   if (pressed(GLFW_KEY_Z)) live_.post(input::Undo{});
@@ -114,11 +116,20 @@ void Window::take_keys() {
   if (pressed(GLFW_KEY_P)) pin();
   if (pressed(GLFW_KEY_W)) look_.wireframe = !look_.wireframe;
   if (pressed(GLFW_KEY_C)) toggle_clip();
+  constexpr float kPatches = 10;  // sizes of a patch
+  if (pressed(GLFW_KEY_EQUAL) || pressed(GLFW_KEY_KP_ADD)) size_patch(largest_patch_ / kPatches);
+  if (pressed(GLFW_KEY_MINUS) || pressed(GLFW_KEY_KP_SUBTRACT)) {
+    size_patch(-largest_patch_ / kPatches);
+  }
+  if (pressed(GLFW_KEY_M)) edits_ = !edits_;
+  if (pressed(GLFW_KEY_A)) apply();
   for (int f = 0; f < static_cast<int>(field_names().size()); ++f) {
     if (pressed(GLFW_KEY_1 + f)) colour_by(static_cast<Field>(f));
   }
   if (pressed(GLFW_KEY_ESCAPE)) glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
 }
+
+void Window::size_patch(float by) { patch_ = std::clamp(patch_ + by, 0.0F, largest_patch_); }
 
 void Window::single_step() {
   live_.pause(true);
@@ -131,16 +142,19 @@ void Window::reset() {
 }
 
 void Window::record() {
-  live_.record([this](const std::string& inputs) {
-    std::string said;
+  live_.record([this](const std::string& inputs, const Origin& origin) {
     try {
-      said = plan_.record(inputs);
+      say(plan_.record(inputs, origin));
     } catch (const std::exception& error) {
-      said = error.what();
+      say(error.what());
     }
-    const std::lock_guard lock(said_lock_);
-    said_ = said;
   });
+}
+
+/// Beside the picture, until something else is said.
+void Window::say(const std::string& sentence) {
+  const std::lock_guard lock(said_lock_);
+  said_ = sentence;
 }
 
 void Window::toggle_clip() {
@@ -155,11 +169,20 @@ void Window::toggle_clip() {
 void Window::colour_by(Field field) {
   Inputs one{"", {{0, input::Colour{field, {}}}}};
   try {
-    resolve(one, session_->problem());
+    resolve(one, problem());
     look_.colour = std::get<input::Colour>(one.list.front().what);
   } catch (const InputError& error) {
-    const std::lock_guard lock(said_lock_);
-    said_ = error.what();
+    say(error.what());
+  }
+}
+
+bool Window::computes(Field field) const {
+  Inputs one{"", {{0, input::Colour{field, {}}}}};
+  try {
+    resolve(one, problem());
+    return true;
+  } catch (const InputError&) {
+    return false;
   }
 }
 

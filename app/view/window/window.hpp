@@ -14,6 +14,7 @@
 #include "app/view/haptic_loop.hpp"
 #include "app/view/live_session.hpp"
 #include "app/view/painter.hpp"
+#include "app/view/scene_edit.hpp"
 #include "app/view/window/panels.hpp"
 
 namespace sunder::app {
@@ -35,10 +36,15 @@ class Window {
   void picture(const Camera& camera);
   void take_keys();
   void single_step();
+  void size_patch(float by);
   void reset();
   void record();
   void toggle_clip();
   void colour_by(Field field);
+  [[nodiscard]] bool computes(Field field) const;
+  void say(const std::string& sentence);
+  /// Whose body is shown.
+  [[nodiscard]] const Problem& problem() const { return *now_.shown->problem; }
 
   // window_mouse.cpp
   [[nodiscard]] std::optional<Vec3> place_of(std::size_t instrument) const;
@@ -65,6 +71,15 @@ class Window {
   void numbers() const;
   void colours();
 
+  // window_scene.cpp
+  void meet_body();
+  void take_measure();
+  void take_files();
+  void preparing() const;
+  void scene_panel();
+  void scene_fields();
+  void apply();
+
   // In this order they come and, the other way round, go.
   const WindowPlan& plan_;
   Glfw glfw_;
@@ -80,7 +95,7 @@ class Window {
   view::Swapchain chain_;
   std::unique_ptr<Session> session_;
   std::vector<Vec3> shown_points_;
-  std::vector<int> keys_;  // pressed since the last frame
+  WindowEvents events_;  // since the last frame
   Panels panels_;
   PictureSize size_;
   std::optional<Painter> painter_;
@@ -88,6 +103,10 @@ class Window {
   std::string said_;
   LiveSession live_;
   LiveSession::Now now_;
+  int body_ = 0;                     // that is shown, by LiveSession::Now
+  std::filesystem::path file_;       // it is of
+  std::optional<SceneEdit> edited_;  // none: nothing is, since the body has come
+  bool edits_ = false;               // the panel for that is there
   Look look_;
   HapticLoop haptics_;
   Holds holds_ = Holds::nothing;

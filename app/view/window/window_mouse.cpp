@@ -24,7 +24,7 @@ std::optional<Vec3> Window::place_of(std::size_t instrument) const {
   const Shown& shown = *now_.shown;
   const auto& nodes = instrument < shown.state.instruments.size()
                           ? shown.state.instruments[instrument].nodes
-                          : session_->problem().instrument_nodes()[instrument].nodes;
+                          : problem().instrument_nodes()[instrument].nodes;
   if (nodes.empty()) return std::nullopt;
   Vec3 middle = Vec3::Zero();
   for (const Index n : nodes) middle += shown.places[static_cast<std::size_t>(n)];
@@ -34,7 +34,7 @@ std::optional<Vec3> Window::place_of(std::size_t instrument) const {
 std::optional<std::size_t> Window::instrument_near(const Vec2& p, const Camera& camera) {
   std::optional<std::size_t> nearest;
   double least = kReach;
-  for (std::size_t i = 0; i < session_->problem().scene().instruments.size(); ++i) {
+  for (std::size_t i = 0; i < problem().scene().instruments.size(); ++i) {
     const auto place = place_of(i);
     if (!place) continue;
     const double distance = (camera.project(*place) - p).norm();
@@ -96,7 +96,7 @@ void Window::take_mouse(const Camera& camera) {
 }
 
 void Window::pull(const Vec3& way, const Camera& camera) {
-  const Instrument& tool = session_->problem().scene().instruments[held_];
+  const Instrument& tool = problem().scene().instruments[held_];
   double factor = 1;
   if (!std::holds_alternative<Grip>(tool.action)) {
     const auto* force = std::get_if<Pull>(&tool.action);
@@ -136,7 +136,7 @@ void Window::take_hold(const Vec2& p, const Camera& camera) {
     grip_ = grip.grip;
     aim_ = grip.place;
     turn_ = turns_.contains(grip_) ? turns_[grip_] : input::Pose().quaternion;
-    haptics_.hold({grip_, aim_, turn_});
+    haptics_.hold({grip_, aim_, turn_}, grip.of_body);
     return;
   }
   if (const auto near = instrument_near(p, camera)) {
@@ -180,7 +180,7 @@ void Window::follow_grasp() {
   grip_ = now_.grips.back().grip;
   aim_ = now_.grips.back().place + way_;
   turns_[grip_] = turn_;
-  haptics_.hold({grip_, now_.grips.back().place, turn_});
+  haptics_.hold({grip_, now_.grips.back().place, turn_}, now_.grips.back().of_body);
   haptics_.aim(aim_, turn_);
   if (live_.paused() && !way_.isZero()) live_.pause(false);
 }

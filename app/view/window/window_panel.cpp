@@ -19,9 +19,11 @@ void Window::panel() {
   colours();
   ImGui::TextDisabled(
       "left: tissue, an instrument, or turn; right: cut; middle: shift; wheel: zoom");
-  ImGui::TextDisabled("in hand: P pins it there, shift turns a patch");
+  ImGui::TextDisabled("in hand: P pins it there, shift turns a patch; M: law, crack, material");
   for (const std::string& line : now_.ruptures) ImGui::TextUnformatted(line.c_str());
   if (now_.error) told(*now_.error);
+  preparing();
+  if (!now_.said.empty()) ImGui::TextWrapped("%s", now_.said.c_str());
   {
     const std::lock_guard lock(said_lock_);
     if (!said_.empty()) ImGui::TextWrapped("%s", said_.c_str());
@@ -56,7 +58,8 @@ void Window::buttons() {
 /// What is in the hand, by its own thread.
 void Window::hands() {
   ImGui::SetNextItemWidth(140);
-  ImGui::SliderFloat("patch [mm]", &patch_, 0, largest_patch_, patch_ > 0 ? "%.2f" : "a node");
+  ImGui::SliderFloat("patch [mm] (+ -)", &patch_, 0, largest_patch_,
+                     patch_ > 0 ? "%.2f" : "a node");
   const HapticLoop::Now hand = haptics_.now();
   if (!hand.holds) {
     if (!now_.grips.empty()) {
@@ -86,7 +89,7 @@ void Window::numbers() const {
   ImGui::Text("  decide %.2f  update %.2f;  drawn in %.1f ms", t.decide, t.update, drawing_ms_);
   ImGui::Text("error %.1e  back-solves %d", report->error, report->back_solves);
   if (!report->deformation) return;
-  const bool small = !session_->problem().finite();
+  const bool small = !problem().finite();
   ImGui::Text("strain %.1f %%%s  rotation %.1f deg%s", 100 * report->deformation->strain,
               small ? " (law linear: to 10)" : "", report->deformation->rotation_deg,
               small ? " (to 10)" : "");

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <iostream>
 #include <random>
 #include <thread>
 
@@ -27,18 +28,31 @@ namespace input = app::input;
 
 struct Held {
   explicit Held(double yield = 1e9) {
+    const app::BodyPlan first = plan(yield, 5);
+    session.emplace(first.problem, first.make, true, app::PictureSize{});
+    session->can_change({}, [this](const app::Origin& origin) {
+      double to[2] = {1, 1};  // "yield=", "young="
+      for (const std::string& c : origin.changes)
+        to[c[0] == 'y' && c[1] == 'o'] = std::stod(c.substr(6));
+      return plan(to[0], to[1]);
+    });
+    live.emplace(*session);
+    loop.emplace(live->now().forces, [this](const input::Pose& pose) { live->post(pose); });
+  }
+  ~Held() { loop.reset(); }
+  [[nodiscard]] app::BodyPlan plan(double yield, double young) const {
     Scene scene = strip(yield, 0.2, 1 << 30);
+    scene.materials.begin()->second.young = young;
     scene.fracture.model = FractureModel::a;
     scene.live = true;
     scene.solver.route = Route::inverse;
-    problem = std::make_shared<const Problem>(std::move(scene));
-    session.emplace(
-        problem, [p = problem] { return create_backend(p, needs_of(*p)).backend; }, true,
-        app::PictureSize{});
-    live.emplace(*session);
-    loop.emplace(live->forces(), [this](const input::Pose& pose) { live->post(pose); });
+    const auto problem = std::make_shared<const Problem>(std::move(scene));
+    return {problem,
+            [problem, prepared = prepared] {
+              return create_prepared_backend(problem, needs_of(*problem), prepared).backend;
+            },
+            {}};
   }
-  ~Held() { loop.reset(); }
   [[nodiscard]] static bool within(std::chrono::seconds limit, const std::function<bool()>& so) {
     const auto end = std::chrono::steady_clock::now() + limit;
     while (std::chrono::steady_clock::now() < end) {
@@ -48,7 +62,7 @@ struct Held {
     return false;
   }
 
-  std::shared_ptr<const Problem> problem;
+  std::shared_ptr<cpu_reference::PreparedBodies> prepared = prepared_bodies(2);
   std::optional<Session> session;
   std::optional<LiveSession> live;
   std::optional<HapticLoop> loop;
@@ -64,7 +78,7 @@ TEST(HapticLoop, AHandHoldsTissueAndFeelsIt) {
   EXPECT_EQ(grip.grip, 1);
   EXPECT_FALSE(held.loop->now().holds);
   const Vec3 there = grip.place + Vec3(-0.1, 0, 0);
-  held.loop->hold({grip.grip, grip.place, {0, 0, 0, 1}});
+  held.loop->hold({grip.grip, grip.place, {0, 0, 0, 1}}, grip.of_body);
   held.loop->aim(there, {0, 0, 0, 1});
   live.pause(false);
   ASSERT_TRUE(held.within(20s, [&] {
@@ -93,7 +107,7 @@ class RandomHands {
     LiveSession& live = *held_.live;
     const auto now = live.now();
     if (live.paused() && below(2) == 0) live.pause(false);
-    switch (below(12)) {
+    switch (below(13)) {
       case 0:
         live.post(input::Grasp{{static_cast<Index>(below(90))}, Vec3::Zero(), 0, false});
         break;
@@ -110,7 +124,7 @@ class RandomHands {
         if (!now.grips.empty()) live.post(input::Release{now.grips.front().grip});
         break;
       case 5:
-        live.post(input::Drive{"pull", Vec3(part(0.2), -part(0.4), 0), false, 0});
+        live.post(input::Drive{"forceps", Vec3(part(0.2), -part(0.4), 0), false, 0});
         break;
       case 6: {
         const double y = part(8);
@@ -123,6 +137,11 @@ class RandomHands {
         break;
       case 8:
         live.post(input::Redo{1});
+        break;
+      case 11:
+        if (below(8) > 0) break;  // rarely: it takes everything along
+        live.post(input::Set{
+            {"yield=" + std::to_string(below(2) + 0.5), "young=" + std::to_string(below(2) + 4)}});
         break;
       case 9:
         live.pause(below(2) == 0);
@@ -137,7 +156,7 @@ class RandomHands {
 
  private:
   void hold(const LiveSession::HeldNodes& grip) {
-    held_.loop->hold({grip.grip, grip.place, {0, 0, 0, 1}});
+    held_.loop->hold({grip.grip, grip.place, {0, 0, 0, 1}}, grip.of_body);
     held_.loop->aim(grip.place + Vec3(part(0.6) - 0.3, part(0.6) - 0.3, 0), {0, 0, 0, 1});
   }
   unsigned below(unsigned n) { return static_cast<unsigned>(random_()) % n; }
@@ -179,6 +198,9 @@ TEST(HapticLoop, RandomInputNeitherStopsNorLeaks) {
   const std::size_t third = heaps[2], last = heaps.back();
   EXPECT_LT(last, third + (std::size_t{4} << 20)) << "after " << acts << " inputs";
   RecordProperty("inputs", std::to_string(acts));
+  std::cout << acts << " inputs in " << since() << " s, " << held.live->now().body
+            << " changes of the body; heap after the third reset " << third
+            << " bytes, after the last, " << heaps.size() << "., " << last << std::endl;
 }
 
 }  // namespace

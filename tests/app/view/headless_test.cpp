@@ -140,6 +140,60 @@ TEST(Headless, AMeshAloneIsTissueThatAHandTears) {
   EXPECT_NE(run.err.find("is a mesh, not a scene"), std::string::npos) << run.err;
 }
 
+TEST(Headless, LawCrackWayAndMaterialChangeAndTheRecordingIsOfTheChangedBody) {
+  const Board board;
+  const std::string script = board.script(
+      "frame 2\n"
+      "grasp 50 25 1.25 6 rigid\n"
+      "set material.lower.young=2 \"material.'upper'.yield=3\"\n"
+      "pose 1 52 24 1.25\n"  // the grip that has gone along
+      "frame\n"
+      "set fracture.crack=split fracture.sif=field\n"
+      "cut -1 30 -1 -1 30 5 18 30 -1 18 30 5\n"
+      "frame 2\n"
+      "set material.lower.law=corotated\n"
+      "frame\n");
+  const Outcome outcome = board.view("a", {"--script", script});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(board.out("a") / "frame_0006.png"));
+  const std::string scene = read_file(board.out("a") / "recording.toml");
+  for (const char* part : {"young = 2", "'split'", "'corotated'"}) {
+    EXPECT_NE(scene.find(part), std::string::npos) << part << "\n" << scene;
+  }
+  EXPECT_NE(read_file(board.out("a") / "recording.inputs").find("grasp nodes"), std::string::npos);
+  board.expect_replayed("a");
+}
+
+TEST(Headless, AChangeOnVulkanIsPreparedOnTheDeviceThatDraws) {
+  const Board board;
+  const Outcome outcome =
+      board.view("a", {"--backend", "vulkan", "--script",
+                       board.script("frame\nremove 100\nset material.lower.young=2\nframe\n")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("vulkan"), std::string::npos) << outcome.out;
+  board.expect_replayed("a");
+}
+
+TEST(Headless, AnotherFileIsOpenedAndABadOneNamesItsLine) {
+  const Board board;
+  const std::string mesh = (board.folder / "board.msh").string();
+  ASSERT_EQ(board.view("a", {"--script", board.script("frame\nopen \"" + mesh + "\"\nframe\n")})
+                .exit_code,
+            0);
+  board.expect_replayed("a");
+  EXPECT_NE(read_file(board.out("a") / "recording.toml").find("0.05"), std::string::npos)
+      << "the scene of the mesh";
+  const Outcome bad = board.view("b", {"--script", board.script("frame\nopen none.toml\nframe\n")});
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_NE(bad.err.find("s.inputs:2: "), std::string::npos) << bad.err;
+  EXPECT_NE(bad.err.find("none.toml"), std::string::npos) << bad.err;
+  const Outcome odd =
+      board.view("c", {"--script", board.script("frame\nset material.lower.law=lineal\nframe\n")});
+  EXPECT_EQ(odd.exit_code, 3);
+  EXPECT_NE(odd.err.find("s.inputs:2: --set material.lower.law=lineal"), std::string::npos)
+      << odd.err;
+}
+
 TEST(Headless, FramesBoundTheScriptAndGoOnAfterIt) {
   const Board board;
   const std::string script = board.script("frame 3\nremove 100\n");

@@ -43,7 +43,7 @@ struct Live {
   }
   std::string recording() {
     std::promise<std::string> got;
-    live->record([&](const std::string& inputs) { got.set_value(inputs); });
+    live->record([&](const std::string& inputs, const Origin&) { got.set_value(inputs); });
     return got.get_future().get();
   }
 
@@ -107,7 +107,7 @@ TEST(LiveSession, WhatGoesWrongPausesAndIsTold) {
 TEST(LiveSession, DrivingAgainTakesThePlaceOfWhatWasNotDone) {
   Live live;
   std::promise<void> begin;
-  live.live->record([&](const std::string&) { begin.get_future().wait(); });
+  live.live->record([&](const std::string&, const Origin&) { begin.get_future().wait(); });
   std::this_thread::sleep_for(5ms);
   for (int i = 1; i <= 9; ++i) live.live->post(input::Drive{"forceps", Vec3(0, -i, 0), false, 0});
   begin.set_value();
@@ -119,7 +119,8 @@ TEST(LiveSession, DrivingAgainTakesThePlaceOfWhatWasNotDone) {
 TEST(LiveSession, NobodyWaitsForAStep) {
   Live live;
   std::promise<void> end;
-  live.live->record([&](const std::string&) { end.get_future().wait(); });  // a long one
+  live.live->record(
+      [&](const std::string&, const Origin&) { end.get_future().wait(); });  // a long one
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 100; ++i) {
     EXPECT_TRUE(live.live->now().shown);

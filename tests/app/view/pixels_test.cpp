@@ -24,7 +24,7 @@ struct Seen {
         problem, [p = problem] { return create_backend(p, needs_of(*p)).backend; }, goes_back,
         kSize);
     session->look().camera = {0, 0, 1};
-    painter.emplace(device, *problem, kSize);
+    painter.emplace(device, kSize);
   }
 
   void draw() {
@@ -198,7 +198,7 @@ TEST(Pixels, ASimulationOnTheSameDeviceDrawsAsOneOnTheProcessor) {
       [&] { return create_backend_on(problem, needs_of(*problem), device.lend()).backend; }, false,
       kSize);
   session.look().camera = {0, 0, 1};
-  Painter painter(device, *problem, kSize);
+  Painter painter(device, kSize);
   Seen other(strip(0.6, 0.2, 2));
   for (int i = 0; i < 2; ++i) {
     session.step();

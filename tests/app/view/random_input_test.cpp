@@ -88,7 +88,7 @@ struct Rounds {
   }
   std::string recorded() {
     std::promise<std::string> got;
-    live->record([&](const std::string& inputs) { got.set_value(inputs); });
+    live->record([&](const std::string& inputs, const Origin&) { got.set_value(inputs); });
     return got.get_future().get();
   }
 

@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -105,6 +106,92 @@ def expect(condition, what):
         raise AssertionError(what)
 
 
+def turn_a_patch(display, recorded):
+    """With shift a patch in the hand turns where it is."""
+    display.do("key", "r")
+    until("a body at its start", lambda: recorded("") == "" or "grasp" not in recorded(""))
+    for _ in range(4):
+        display.do("key", "plus")
+    x, y = projected((25, 25, 2.5))
+    display.do("mousemove", round(x), round(y))
+    time.sleep(0.5)
+    display.do("mousedown", 1)
+    time.sleep(1)
+    display.do("keydown", "shift")
+    for i in range(30):
+        time.sleep(0.04)
+        display.do("mousemove", round(x + 2 * i), round(y))
+    turned = until("a turn", lambda: recorded(r"grasp \S+ \S+ \S+ \S+ rigid\n(.*\n)*pose \d+( \S+){7}\n"))
+    display.screenshot(OUT / "window-patch.png")
+    display.do("keyup", "shift")
+    display.do("mouseup", 1)
+    places = re.findall(r"pose \d+ (\S+) (\S+) (\S+) (\S+) (\S+) (\S+) (\S+)\n", turned)
+    quaternion = [float(part) for part in places[-1][3:]]
+    expect(abs(quaternion[3]) < 0.999 * math.hypot(*quaternion), f"it has not turned: {places[-1]}")
+    way = [float(a) - float(b) for a, b in zip(places[-1][:3], places[0][:3])]
+    expect(math.hypot(*way) < 1e-6, f"it has moved: {way}")
+    until("a patch let go", lambda: recorded(r"release \d+"))
+
+
+def change_the_material(display, recorded, scene):
+    """By the panel: E of volume lower, which takes a new base, then its yield stress, which takes none."""
+    display.drag(3, [projected((-4, 26, 1.25)), projected((6, 26, 1.25)), projected((14, 26, 1.25))], 0.1)
+    until("a cut", lambda: recorded(r"remove "))
+    display.do("key", "m")
+    time.sleep(1)
+
+    def enter(x, y, text):
+        display.do("mousemove", x, y, "click", 1)
+        time.sleep(0.5)
+        display.do("key", "ctrl+a")
+        time.sleep(0.3)
+        display.do("type", "--delay", 120, text)
+        time.sleep(0.3)
+        display.do("key", "Return")
+        time.sleep(0.5)
+        display.screenshot(OUT / "window-edit.png")
+
+    def applied(value):
+        display.do("key", "Return", "key", "a")  # the field lets the keys go first
+        return recorded("") is not None and value in scene.read_text()
+
+    # Four volumes by name, each of a line and three rows of 24 px: lower is the second one.
+    volume, row = 90, 24
+    modulus = 128 + volume + 18 + row + row // 2 - 2
+    enter(70, modulus, "2.5")
+    until("another modulus", lambda: applied("young = 2.5"))
+    until("what was cut", lambda: recorded(r"^remove "))
+    enter(70, modulus + row, "0.75")
+    until("another yield stress", lambda: applied("yield = 0.75"))
+    time.sleep(1)
+    display.screenshot(OUT / "window-material.png")
+    display.do("key", "m")
+
+
+def drop_files(display, view, recorded, scene, environment):
+    """As a file manager does. A bad one is told of, and the body stays; another scene takes its place."""
+    drop = pathlib.Path(__file__).with_name("drop_files.py")
+
+    def dropped(*files):
+        done = subprocess.run([sys.executable, drop, display.name, "Board", *files], capture_output=True, text=True)
+        expect(done.returncode == 0, done.stderr)
+
+    bad = scene.parent / "bad.toml"
+    bad.write_text("mesh = 3\n")
+    before = recorded("")
+    dropped(bad)
+    time.sleep(2)
+    display.screenshot(OUT / "window-bad-file.png")
+    expect(view.poll() is None, "the window went away with a bad file")
+    expect(recorded("").startswith(before.rsplit("step", 1)[0]), "what was done is lost")
+    dropped(SCENES / "finite" / "liver.toml")
+    until("another title", lambda: subprocess.run(["xdotool", "search", "--name", "liver"], capture_output=True,
+                                                  env=environment).stdout)
+    display.do("key", "s")
+    until("its recording", lambda: recorded("step") and "liver" in scene.read_text())
+    display.screenshot(OUT / "window-liver.png")
+
+
 def main():
     OUT.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as name:
@@ -188,12 +275,19 @@ def main():
             time.sleep(1)
             display.screenshot(OUT / "window-error.png")
             expect(view.poll() is None, "the window went away with an error")
+            shutil.copytree(folder / "out", folder / "hands")  # which is replayed at the end
+            turn_a_patch(display, recorded)
+            change_the_material(display, recorded, folder / "out" / "recording.toml")
+            drop_files(display, view, recorded, folder / "out" / "recording.toml", environment)
             display.do("key", "Escape")
             errors = view.communicate(timeout=LIMIT)[1]
             expect(view.returncode == 0, f"exit code {view.returncode}: {errors}")
-            run = subprocess.run([PROGRAM, "run", folder / "out" / "recording.toml", "--out", folder / "run",
+            run = subprocess.run([PROGRAM, "run", folder / "hands" / "recording.toml", "--out", folder / "run",
                                   "--quiet"], capture_output=True, text=True)
             expect(run.returncode == 0, run.stderr)
+            last = subprocess.run([PROGRAM, "run", folder / "out" / "recording.toml", "--out",
+                                   folder / "last", "--quiet"], capture_output=True, text=True)
+            expect(last.returncode == 0, last.stderr)
             gone = re.findall(r"\d+", re.search(r"\nremove (.*)", text)[1])
             events = (folder / "run" / "events.csv").read_text()
             expect(all(f",{e},script" in events for e in gone), "the run has not removed what was cut")
