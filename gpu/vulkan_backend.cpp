@@ -131,6 +131,10 @@ class VulkanBackend final : public Backend {
   std::size_t bytes_read() const { return device_->bytes_read(); }
   const std::vector<std::string>& plan_warnings() const { return plan_.warnings; }
   Display* display() { return display_.get(); }
+  LentField lent_displacement() {
+    if (!display_) return {};
+    return {&kernels_, &body_->fields().nodal(Field::displacement)};
+  }
 
  private:
   [[nodiscard]] solver::FrameShape shape() const {
@@ -323,6 +327,11 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
 Display* display_of(Backend& backend) {
   auto* of_vulkan = dynamic_cast<VulkanBackend*>(&backend);
   return of_vulkan ? of_vulkan->display() : nullptr;
+}
+
+LentField lent_displacement(Backend& backend) {
+  auto* of_vulkan = dynamic_cast<VulkanBackend*>(&backend);
+  return of_vulkan ? of_vulkan->lent_displacement() : LentField{};
 }
 
 DeviceUse device_use(const Backend& backend) {

@@ -53,6 +53,14 @@ struct VulkanOptions {
 /// What a host draws, of a backend on a lent device; else null.
 [[nodiscard]] Display* display_of(Backend& backend);
 
+/// Displacement at all nodes (Fields::nodal) of a backend on a lent device, for passes there that
+/// must go before it; else nulls.
+struct LentField {
+  const KernelFactory* kernels = nullptr;
+  const vulkan::Buffer* displacement = nullptr;
+};
+[[nodiscard]] LentField lent_displacement(Backend& backend);
+
 /// What a backend that create() returned holds and has held on its device; else nothing.
 struct DeviceUse {
   std::size_t bytes = 0;       ///< of buffers, now

@@ -86,6 +86,28 @@ struct DisplayPush {
   uint stress;  // 1: it is there
 };
 
+// A surface that a host draws (gpu/passes/surface_writer.cpp). Of an element: which of its faces
+// show, by the corner opposite, and kGone.
+SUNDER_CONST kGone = 16u;
+SUNDER_CONST kTriangleWords = 7u;  // of a change: place, three nodes, element, piece, opened
+SUNDER_CONST kElementWords = 6u;   // element, what shows of it, four corners
+SUNDER_CONST kNodeWords = 2u;      // node, the one of the mesh that it lies at undeformed
+
+// All offsets and strides of a host's buffers are in words of four bytes; a stride of 0: not
+// wanted.
+struct SurfaceChangesPush {
+  uint triangles, elements, nodes;  // how many have changed; in that order in the list
+  uint triangles_at, triangles_stride;
+  uint facts_at, facts_stride;
+};
+
+// Of nodes: places and normals; of a fine mesh: places and lives.
+struct SurfacePointsPush {
+  uint count;
+  uint places_at, places_stride;
+  uint others_at, others_stride;
+};
+
 struct SummaryPush {
   uint element_parts;  // partial results of the stress pass
   uint node_parts;     // of the residual pass; 0: none

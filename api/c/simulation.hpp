@@ -18,6 +18,8 @@
 
 namespace sunder::c {
 
+class VulkanSurface;
+
 class SimulationObject final : public Object {
  public:
   static constexpr const char* kName = "simulation";
@@ -37,8 +39,13 @@ class SimulationObject final : public Object {
   void cancel() noexcept { cancelled_.store(true); }
   /// No callback runs from now on; false: one was running all the time until then.
   [[nodiscard]] bool silence(std::chrono::steady_clock::time_point until);
-  /// It can be made once more: its device is its own.
-  [[nodiscard]] bool owns_device() const { return static_cast<bool>(create_); }
+  /// The surface as the body is now.
+  Surface& follow_surface();
+  /// Nothing of a host's device is in use.
+  [[nodiscard]] bool owns_device() const { return create_ && !draws_on_host_; }
+  /// A host has lent buffers of its device, or (null) has them back.
+  void draw_on(std::shared_ptr<VulkanSurface> surface);
+  [[nodiscard]] VulkanSurface* vulkan_surface() { return vulkan_surface_.get(); }
 
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
@@ -51,6 +58,7 @@ class SimulationObject final : public Object {
   std::int32_t last_mark = 0;
   std::unique_ptr<Surface> surface;  ///< null: not asked for yet
   std::unique_ptr<Skin> skin;        ///< null: none was given
+  int skins = 0;                     ///< given so far
   /// Fields as last lent, by sunder_field, and what was destroyed: where they lie never changes.
   std::array<std::vector<double>, 5> lent;
   std::vector<std::uint8_t> lent_destroyed;
@@ -80,7 +88,12 @@ class SimulationObject final : public Object {
   std::atomic<bool> cancelled_{false};
   enum Calling { kIdle, kInside, kSilent };
   mutable std::atomic<int> calling_{kIdle};
+  std::atomic<bool> draws_on_host_{false};
+  std::shared_ptr<VulkanSurface>
+      vulkan_surface_;  // goes before the simulation, whose device it has
 };
+
+[[nodiscard]] sunder_surface to_c(const Surface& surface);
 
 /// Throws SUNDER_ERROR_ORDER for statics, which has no `what`.
 void require_motion(const SimulationObject& object, const char* what);

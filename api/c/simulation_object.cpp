@@ -46,6 +46,29 @@ void SimulationObject::keep_history(int quick) {
   simulation_->keep_history(std::move(make), quick);
 }
 
+Surface& SimulationObject::follow_surface() {
+  if (surface) {
+    surface->update();
+  } else {
+    surface = std::make_unique<Surface>(*simulation_);
+  }
+  return *surface;
+}
+
+sunder_surface to_c(const Surface& surface) {
+  auto out = sized<sunder_surface>();
+  out.triangle_count = static_cast<std::int32_t>(surface.triangles().size());
+  out.node_count = static_cast<std::int32_t>(surface.node_count());
+  out.version = surface.version();
+  return out;
+}
+
+void SimulationObject::draw_on(std::shared_ptr<VulkanSurface> surface) {
+  if (surface) draws_on_host_ = true;
+  vulkan_surface_ = std::move(surface);  // what was before goes here
+  draws_on_host_ = vulkan_surface_ != nullptr;
+}
+
 template <class Step>
 StepReport SimulationObject::take_step(Step&& step) {
   events_ = 0;

@@ -38,16 +38,7 @@ extern "C" {
 sunder_status sunder_simulation_surface(sunder_simulation simulation, sunder_surface* surface) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
     static_cast<void>(stated_size(surface, "surface"));
-    if (object.surface) {
-      object.surface->update();
-    } else {
-      object.surface = std::make_unique<sunder::Surface>(object.simulation());
-    }
-    auto out = sized<sunder_surface>();
-    out.triangle_count = static_cast<std::int32_t>(object.surface->triangles().size());
-    out.node_count = static_cast<std::int32_t>(object.surface->node_count());
-    out.version = object.surface->version();
-    write_struct(surface, out, "surface");
+    write_struct(surface, to_c(object.follow_surface()), "surface");
   });
 }
 
@@ -90,6 +81,7 @@ sunder_status sunder_simulation_set_skin(sunder_simulation simulation, const dou
     std::vector<Vec3> at(size / 3);
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = Vec3(vertices + 3 * v);
     object.skin = std::make_unique<sunder::Skin>(object.simulation(), at);
+    ++object.skins;
   });
 }
 

@@ -3,48 +3,15 @@
 #include "sunder/sunder_vulkan.h"
 
 #include "c/simulation_create.hpp"
-#ifdef SUNDER_GPU
-#include "gpu/vulkan_backend.hpp"
-#include "lent_host.hpp"
-#endif
+#include "c/vulkan_host.hpp"
 
 namespace {
 
 using namespace sunder::c;
 
 #ifdef SUNDER_GPU
-// Non-dispatchable handles are pointers here; elsewhere they are the number itself.
-static_assert(sizeof(VkBuffer) == sizeof(std::uint64_t));
-
-sunder::gpu::DisplayTarget to_target(const sunder_vulkan_buffer& b) {
-  return {reinterpret_cast<VkBuffer>(b.buffer), b.offset, b.size};
-}
-
 sunder_vulkan_buffer to_part(const sunder::vulkan::Buffer& b, std::uint64_t size) {
   return {reinterpret_cast<std::uint64_t>(b.handle()), b.offset(), size};
-}
-
-void check_handles(const sunder_vulkan_host& host) {
-  if (!host.get_instance_proc_addr) {
-    throw Failure(SUNDER_ERROR_NULL, "host: get_instance_proc_addr is null");
-  }
-  require(host.instance, "host: instance");
-  require(host.physical_device, "host: physical_device");
-  require(host.device, "host: device");
-  require(host.queue, "host: queue");
-  if (!host.lock != !host.unlock) {
-    throw Failure(SUNDER_ERROR_NULL, "host: lock and unlock come in pairs; one of them is null");
-  }
-}
-
-void check_features(const sunder_vulkan_host& host) {
-  constexpr std::uint32_t known =
-      SUNDER_VULKAN_SHADER_FLOAT64 | SUNDER_VULKAN_SHADER_INT64 | SUNDER_VULKAN_TIMELINE_SEMAPHORE;
-  if (host.features & ~known) {
-    throw Failure(SUNDER_ERROR_VALUE, "host: features = " + std::to_string(host.features) +
-                                          " is no sum of SUNDER_VULKAN_SHADER_FLOAT64, " +
-                                          "_SHADER_INT64 and _TIMELINE_SEMAPHORE");
-  }
 }
 
 /// A buffer of the host's, if it lends one.
@@ -63,27 +30,11 @@ void check_buffer(const sunder_vulkan_buffer& b, std::uint64_t bytes, const char
   }
 }
 
-/// All that can be said before anything is prepared, but for buffers.
-void check_host(const sunder_vulkan_host& host) {
-  check_handles(host);
-  check_features(host);
-  const auto lent = sunder::to_lent(host);
-  require_index(host.queue_family, sunder::vulkan::queue_families(lent), "host: queue_family");
-  sunder::vulkan::check_device(lent);
-}
-
 void check_buffers(const sunder_vulkan_host& host, const sunder::Problem& problem) {
   const auto bytes = sunder::gpu::display_bytes(problem);
   check_buffer(host.displacement, bytes.displacement, "displacement");
   check_buffer(host.stress, bytes.stress, "stress");
   check_buffer(host.live, bytes.live, "live");
-}
-
-sunder::gpu::VulkanOptions to_options(const sunder_vulkan_host& host) {
-  sunder::gpu::VulkanOptions options;
-  options.lent = sunder::to_lent(host);
-  options.display = {to_target(host.displacement), to_target(host.stress), to_target(host.live)};
-  return options;
 }
 
 sunder::gpu::Display& display_of(SimulationObject& object) {
@@ -94,10 +45,6 @@ sunder::gpu::Display& display_of(SimulationObject& object) {
 
 void require_solved(const SimulationObject& object) {
   if (!object.solved()) throw Failure(SUNDER_ERROR_ORDER, "there are no fields before a step");
-}
-#else
-[[noreturn]] void without_vulkan() {
-  throw Failure(SUNDER_ERROR_DEVICE, "this build leaves out the backend vulkan (SUNDER_GPU=OFF)");
 }
 #endif
 

@@ -120,6 +120,65 @@ typedef struct sunder_vulkan_signals {
 SUNDER_API sunder_status sunder_vulkan_submit(sunder_simulation simulation,
                                               const sunder_vulkan_signals* signals);
 
+/* ---- The surface, in buffers of the host's --------------------------------------------------- */
+
+/// Items of one kind in a VkBuffer of the host's. This struct has no version: it never changes.
+typedef struct sunder_vulkan_items {
+  uint64_t buffer;  ///< VkBuffer; 0: not wanted
+  uint64_t offset;  ///< of the first item [bytes], a multiple of 4
+  uint64_t size;    ///< [bytes], from the offset on
+  uint32_t usage;   ///< VkBufferUsageFlags that it was made with; STORAGE_BUFFER among them
+  uint32_t stride;  ///< from one item to the next [bytes], a multiple of 4; 0: none lies between
+} sunder_vulkan_items;
+
+#define SUNDER_VULKAN_ITEMS_INIT \
+  { 0, 0, 0, 0, 0 }
+
+/// Where a host's renderer wants what sunder_simulation_surface and sunder_simulation_skin tell.
+/// Several may lie in one VkBuffer, places and normals of a vertex side by side for one.
+typedef struct sunder_vulkan_surface {
+  uint32_t struct_size;
+  uint32_t reserved;
+  sunder_vulkan_items places;      ///< per node of the body: float x, y, z [mm]
+  sunder_vulkan_items normals;     ///< per node: float x, y, z, unit; 0 for nodes inside
+  sunder_vulkan_items triangles;   ///< per triangle: three uint32, its nodes: an index buffer
+  sunder_vulkan_items facts;       ///< per triangle: int32 element, piece, opened
+  sunder_vulkan_items skin;        ///< per vertex of the skin: float x, y, z [mm]
+  sunder_vulkan_items skin_lives;  ///< per vertex: uint32, 0 where what carries it is destroyed
+} sunder_vulkan_surface;
+
+#define SUNDER_VULKAN_SURFACE_INIT                                                        \
+  {                                                                                       \
+    sizeof(sunder_vulkan_surface), 0, SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_ITEMS_INIT, \
+        SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_ITEMS_INIT,     \
+        SUNDER_VULKAN_ITEMS_INIT                                                          \
+  }
+
+/// Lends buffers for the surface, in place of those before; null: takes them back, which the host
+/// does before it destroys them. `host`: null where the simulation is on the host's device
+/// (sunder_vulkan_create): its displacement is read there, and nothing crosses. For any other
+/// simulation, as one with cracks that split or on backend cpu, it names the device of the buffers,
+/// as sunder_vulkan_create is told (its own three buffers are not read): then the displacement is
+/// written to mapped memory, once a recording, and the rest is done on the device all the same. The
+/// skin is the one that the simulation has by now. SUNDER_ERROR_ORDER, and nothing changes: `host`
+/// is null and the simulation is not on a host's device, or the other way round; a skin is wanted
+/// and there is none. SUNDER_ERROR_VALUE: an offset, a stride or a usage that cannot be.
+SUNDER_API sunder_status sunder_vulkan_lend_surface(sunder_simulation simulation,
+                                                    const sunder_vulkan_host* host,
+                                                    const sunder_vulkan_surface* buffers);
+/// Follows what has happened, as sunder_simulation_surface, whose result `surface` gets (may be
+/// null), and records what brings it to the buffers: all places, normals and the skin, and of
+/// triangles and facts those that have changed since the recording before. Places in the index
+/// buffer that have become free name node 0 three times. As sunder_vulkan_record, but the command
+/// buffer is executed once, in the order of recording, and completed before the next recording and
+/// the next step; one that is dropped is made good by lending the buffers again. SUNDER_ERROR_SIZE,
+/// and nothing is recorded: a buffer has become too small; `surface` tells what is there, and the
+/// sentence how many bytes it takes. SUNDER_ERROR_ORDER: no buffers are lent, the skin was given
+/// anew since, or there was no step yet on the host's device.
+SUNDER_API sunder_status sunder_vulkan_record_surface(sunder_simulation simulation,
+                                                      void* command_buffer,
+                                                      sunder_surface* surface);
+
 #ifdef __cplusplus
 }
 #endif

@@ -20,15 +20,16 @@ class Skin {
 
   [[nodiscard]] std::size_t size() const { return carriers_.size(); }
   [[nodiscard]] Index element(std::size_t vertex) const { return carriers_[vertex].element; }
+  struct Carrier {
+    Index element = kNone;
+    std::array<double, 4> share{};  ///< of its corners; they sum up to 1
+  };
+  [[nodiscard]] std::span<const Carrier> carriers() const { return carriers_; }
   /// Places as the body is now [mm], 3 each; `lives` (one each, or empty): 0 where the element that
   /// carries a vertex is destroyed.
   void places(std::span<float> places, std::span<std::uint8_t> lives) const;
 
  private:
-  struct Carrier {
-    Index element = kNone;
-    std::array<double, 4> share{};  // of its corners; they sum up to 1
-  };
   const Simulation& simulation_;
   std::vector<Carrier> carriers_;
 };

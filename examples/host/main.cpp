@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A trainer in small: its own Vulkan device and renderer, and a board that tears on that device.
-//   host PICTURE.png [--validation]    demands the validation layer; else it is used if installed
+//   host PICTURE.png [--surface] [--validation]
+//     --surface     draws the surface that the library keeps in buffers of ours, not all elements
+//     --validation  demands the validation layer; else it is used if installed
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -31,7 +33,7 @@ sunder_simulation lend(const Device& device, sunder_scene scene) {
   return simulation;
 }
 
-void run(Device& device, const char* path) {
+void run(Device& device, const char* path, bool surface) {
   const Board board;
   const sunder_scene scene = make_scene(board, kSteps);
   const sunder_simulation simulation = lend(device, scene);
@@ -39,7 +41,8 @@ void run(Device& device, const char* path) {
   sunder_vulkan_display display = SUNDER_VULKAN_DISPLAY_INIT;
   check(sunder_vulkan_get_display(simulation, &display));
   {
-    Renderer renderer(device, board, display, std::size(kPanelEnds));
+    Renderer renderer(device, board, display, std::size(kPanelEnds), surface);
+    if (surface) renderer.lend(simulation);
     sunder_step step = SUNDER_STEP_INIT;
     std::uint32_t panel = 0;
     for (int i = 0; i < kSteps; ++i) {
@@ -57,13 +60,18 @@ void run(Device& device, const char* path) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const bool validation = argc == 3 && std::strcmp(argv[2], "--validation") == 0;
-  if (argc != 2 && !validation) {
-    return std::fprintf(stderr, "usage: host PICTURE.png [--validation]\n"), 2;
+  bool validation = false, surface = false, known = argc >= 2;
+  for (int i = 2; i < argc; ++i) {
+    const bool is_surface = std::strcmp(argv[i], "--surface") == 0;
+    (is_surface ? surface : validation) = true;
+    known = known && (is_surface || std::strcmp(argv[i], "--validation") == 0);
+  }
+  if (!known) {
+    return std::fprintf(stderr, "usage: host PICTURE.png [--surface] [--validation]\n"), 2;
   }
   Device device(validation);
   std::printf("validation layer: %s\n", device.validated ? "on" : "not installed, runs without");
-  run(device, argv[1]);
+  run(device, argv[1], surface);
   for (const std::string& message : device.messages) std::fprintf(stderr, "%s\n", message.c_str());
   return device.messages.empty() ? 0 : 1;
 } catch (const std::exception& error) {

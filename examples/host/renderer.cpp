@@ -7,6 +7,9 @@
 
 namespace {
 
+constexpr std::uint32_t kVertex =
+    32;  // bytes of a node of the surface: place and normal, vec4 each
+
 constexpr VkClearColorValue kBackground{{1, 1, 1, 1}};
 
 /// Parallel projection of the board, turned a little so that its thickness is seen [mm -> clip].
@@ -44,11 +47,14 @@ std::vector<float> padded(const std::vector<double>& nodes) {
 }  // namespace
 
 Renderer::Renderer(Device& device, const Board& board, const sunder_vulkan_display& display,
-                   std::uint32_t panels)
+                   std::uint32_t panels, bool surface)
     : device_(device),
       width_(panels * kPanel),
       vertices_(static_cast<std::uint32_t>(12 * board.tet_count())),
-      pulled_node_(static_cast<std::uint32_t>(board.pulled_node)) {
+      pulled_node_(static_cast<std::uint32_t>(board.pulled_node)),
+      surface_(surface),
+      nodes_(static_cast<std::uint32_t>(board.nodes.size() / 3)),
+      most_triangles_(static_cast<std::uint32_t>(2 * board.tet_count())) {
   const auto rest = padded(board.nodes);
   rest_ =
       device.buffer(rest.size() * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, rest.data());
@@ -56,6 +62,12 @@ Renderer::Renderer(Device& device, const Board& board, const sunder_vulkan_displ
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, board.tets.data());
   pixels_ =
       device.buffer(VkDeviceSize{4} * width_ * kHeight, VK_BUFFER_USAGE_TRANSFER_DST_BIT, nullptr);
+  vertices_of_surface_ =
+      device.buffer(VkDeviceSize{kVertex} * nodes_, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, nullptr);
+  for (Buffer* of_triangles : {&triangles_, &facts_}) {
+    *of_triangles = device.buffer(VkDeviceSize{12} * most_triangles_,
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, nullptr);
+  }
   create_image(kColour,
                VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                    VK_IMAGE_USAGE_TRANSFER_DST_BIT,
@@ -83,7 +95,9 @@ Renderer::~Renderer() {
   for (VkImageView view : {colour_view_, depth_view_}) vkDestroyImageView(d, view, nullptr);
   for (VkImage image : {colour_, depth_}) vkDestroyImage(d, image, nullptr);
   for (VkDeviceMemory memory : {colour_memory_, depth_memory_}) vkFreeMemory(d, memory, nullptr);
-  for (const Buffer& buffer : {rest_, tets_, pixels_}) device_.destroy(buffer);
+  for (const Buffer& buffer : {rest_, tets_, pixels_, vertices_of_surface_, triangles_, facts_}) {
+    device_.destroy(buffer);
+  }
 }
 
 void Renderer::create_commands() {
@@ -136,9 +150,31 @@ void Renderer::clear_picture() {
   submit();
 }
 
+void Renderer::lend(sunder_simulation simulation) {
+  const auto items = [](const Buffer& buffer, std::uint64_t offset, std::uint64_t size,
+                        std::uint32_t stride) {
+    return sunder_vulkan_items{reinterpret_cast<std::uint64_t>(buffer.handle), offset,
+                               size - offset, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, stride};
+  };
+  sunder_vulkan_surface surface = SUNDER_VULKAN_SURFACE_INIT;
+  const std::uint64_t vertices = std::uint64_t{kVertex} * nodes_;
+  surface.places = items(vertices_of_surface_, 0, vertices, kVertex);
+  surface.normals = items(vertices_of_surface_, kVertex / 2, vertices, kVertex);
+  surface.triangles = items(triangles_, 0, std::uint64_t{12} * most_triangles_, 0);
+  surface.facts = items(facts_, 0, std::uint64_t{12} * most_triangles_, 0);
+  check(sunder_vulkan_lend_surface(simulation, nullptr, &surface));
+}
+
+void Renderer::record_surface(sunder_simulation simulation) {
+  sunder_surface surface = SUNDER_SURFACE_INIT;
+  check(sunder_vulkan_record_surface(simulation, commands_, &surface));
+  drawn_ = static_cast<std::uint32_t>(surface.triangle_count);
+}
+
 void Renderer::frame(sunder_simulation simulation, std::uint32_t panel) {
   begin();
   check(sunder_vulkan_record(simulation, commands_));
+  if (surface_) record_surface(simulation);
   VkClearValue depth{};
   depth.depthStencil.depth = 1;
   const VkClearValue clear[] = {{}, depth};
@@ -169,7 +205,7 @@ void Renderer::draw(std::uint32_t panel) {
   const Push push{view(), {0, -9, 0, 0}, pulled_node_};
   vkCmdPushConstants(commands_, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, body_);
-  vkCmdDraw(commands_, vertices_, 1, 0, 0);
+  vkCmdDraw(commands_, surface_ ? 3 * drawn_ : vertices_, 1, 0, 0);
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, mark_);
   vkCmdDraw(commands_, 9, 1, 0, 0);
 }

@@ -15,12 +15,16 @@ class Renderer {
  public:
   static constexpr std::uint32_t kPanel = 600, kHeight = 700;  // pixels
 
+  /// `surface`: draws the surface that the library keeps in buffers of ours, in place of all
+  /// elements.
   Renderer(Device& device, const Board& board, const sunder_vulkan_display& display,
-           std::uint32_t panels);
+           std::uint32_t panels, bool surface);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
+  /// Lends it the buffers for its surface.
+  void lend(sunder_simulation simulation);
   /// One frame in one submit: lets `simulation` bring its fields, then draws them into a panel.
   void frame(sunder_simulation simulation, std::uint32_t panel);
   void save(const std::string& path);
@@ -42,12 +46,15 @@ class Renderer {
   void create_commands();
   void begin();
   void submit();
+  void record_surface(sunder_simulation simulation);
   void draw(std::uint32_t panel);
   void clear_picture();
 
   Device& device_;
   std::uint32_t width_, vertices_, pulled_node_;
-  Buffer rest_, tets_, pixels_;
+  bool surface_;
+  std::uint32_t nodes_, most_triangles_, drawn_ = 0;
+  Buffer rest_, tets_, pixels_, vertices_of_surface_, triangles_, facts_;
   VkImage colour_{}, depth_{};
   VkDeviceMemory colour_memory_{}, depth_memory_{};
   VkImageView colour_view_{}, depth_view_{};

@@ -7,6 +7,7 @@ namespace {
 #include "body_vert.h"
 #include "flat_frag.h"
 #include "mark_vert.h"
+#include "surface_vert.h"
 
 VkShaderModule shader(const Device& device, std::span<const std::uint32_t> words) {
   VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
@@ -80,7 +81,7 @@ void Renderer::create_pass() {
 }
 
 void Renderer::create_descriptors(const sunder_vulkan_display& display) {
-  constexpr std::uint32_t kCount = 5;
+  constexpr std::uint32_t kCount = 8;
   VkDescriptorSetLayoutBinding bindings[kCount]{};
   for (std::uint32_t b = 0; b < kCount; ++b) {
     bindings[b] = {b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, nullptr};
@@ -107,7 +108,10 @@ void Renderer::create_descriptors(const sunder_vulkan_display& display) {
                                                   {tets_.handle, 0, VK_WHOLE_SIZE},
                                                   of(display.displacement),
                                                   of(display.stress),
-                                                  of(display.live)};
+                                                  of(display.live),
+                                                  {vertices_of_surface_.handle, 0, VK_WHOLE_SIZE},
+                                                  {triangles_.handle, 0, VK_WHOLE_SIZE},
+                                                  {facts_.handle, 0, VK_WHOLE_SIZE}};
   VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
   write.dstSet = set_;
   write.descriptorCount = kCount;
@@ -180,6 +184,6 @@ VkPipeline Renderer::create_pipeline(std::span<const std::uint32_t> vertex) {
 }
 
 void Renderer::create_pipelines() {
-  body_ = create_pipeline(body_vert);
+  body_ = surface_ ? create_pipeline(surface_vert) : create_pipeline(body_vert);
   mark_ = create_pipeline(mark_vert);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gpu/vulkan/check.hpp"
+#include "gpu/vulkan/host_commands.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -57,30 +58,11 @@ vulkan::Buffer Display::target(const DisplayTarget& given, std::size_t bytes,
   return vulkan::Buffer::lent(given.buffer, given.offset, bytes);
 }
 
-void Display::barrier(VkCommandBuffer commands, VkAccessFlags from, VkAccessFlags to) const {
-  VkMemoryBarrier memory{};
-  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-  memory.srcAccessMask = from;
-  memory.dstAccessMask = to;
-  // All stages: a host's queue may be one of compute alone, where vertex stages may not be named.
-  device_.vk().CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                                  VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &memory, 0, nullptr, 0,
-                                  nullptr);
-}
-
 void Display::record(VkCommandBuffer commands) const {
-  const auto& vk = device_.vk();
-  const VkDescriptorSet set = binding_->set();
+  vulkan::HostCommands out(device_, commands);
   const std::uint32_t count = std::max(push_.nodes, push_.elements);
-  barrier(commands, VK_ACCESS_MEMORY_WRITE_BIT,
-          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-  vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel_->pipeline());
-  vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel_->layout(), 0, 1, &set,
-                           0, nullptr);
-  vk.CmdPushConstants(commands, kernel_->layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push_,
-                      &push_);
-  vk.CmdDispatch(commands, round_up(count, shaders::kGroup) / shaders::kGroup, 1, 1);
-  barrier(commands, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_MEMORY_READ_BIT);
+  out.dispatch(*binding_, push_, round_up(count, shaders::kGroup) / shaders::kGroup);
+  out.end();
 }
 
 void Display::create_own_commands() {

@@ -64,7 +64,6 @@ class Display {
  private:
   [[nodiscard]] vulkan::Buffer target(const DisplayTarget& given, std::size_t bytes,
                                       const char* what) const;
-  void barrier(VkCommandBuffer commands, VkAccessFlags from, VkAccessFlags to) const;
   void create_own_commands();
 
   vulkan::Device& device_;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "body/element.hpp"
+#include "gpu/passes/two_floats.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -17,18 +18,6 @@ namespace {
 
 using vulkan::Buffer;
 using vulkan::Placement;
-
-/// An fp64 number as two floats, interleaved (shaders/two_float.glsl).
-std::vector<float> two_floats(std::span<const double> values) {
-  std::vector<float> pairs;
-  pairs.reserve(2 * values.size());
-  for (double v : values) {
-    const auto high = static_cast<float>(v);
-    pairs.push_back(high);
-    pairs.push_back(static_cast<float>(v - static_cast<double>(high)));
-  }
-  return pairs;
-}
 
 }  // namespace
 
@@ -182,7 +171,7 @@ void Fields::upload_shapes() {
     }
   }
   shape_ = Buffer(kernels_.device(), shape.size() * sizeof(double), Placement::device);
-  write_wide(shape_, shape);
+  write_wide(kernels_, shape_, shape);
 }
 
 void Fields::create_kernels() {
@@ -227,15 +216,7 @@ void Fields::set_load(std::span<const double> force, std::span<const double> dis
     auto* load = load_.mapped<double>();
     for (Index d = 0; d < problem_.dof_count(); ++d) load[place_[d]] = force[d];
   }
-  if (!displacements.empty()) write_wide(prescribed_, displacements);
-}
-
-void Fields::write_wide(Buffer& buffer, std::span<const double> values) const {
-  if (kernels_.single()) {
-    buffer.write(std::span<const float>(two_floats(values)));
-  } else {
-    buffer.write(values);
-  }
+  if (!displacements.empty()) write_wide(kernels_, prescribed_, displacements);
 }
 
 void Fields::read_wide(const Buffer& buffer, std::span<double> values, std::size_t first) const {
@@ -321,7 +302,7 @@ void Fields::write_residual(std::span<const double> residual) {
 void Fields::write_unknowns(Field field, const Eigen::VectorXd& values) {
   std::vector<double> padded(4 * problem_.mesh().nodes.size(), 0.0);
   for (Index d = 0; d < problem_.dof_count(); ++d) padded[place_[d]] = values[d];
-  write_wide(nodal(field), padded);
+  write_wide(kernels_, nodal(field), padded);
 }
 
 std::vector<Index> Fields::over_yield() const {
@@ -447,7 +428,7 @@ void Fields::write_displacement(std::span<const double> nodal) {
   for (std::size_t n = 0; n < problem_.mesh().nodes.size(); ++n) {
     std::copy_n(&nodal[3 * n], 3, &padded[4 * n]);
   }
-  write_wide(displacement_, padded);
+  write_wide(kernels_, displacement_, padded);
 }
 
 void Fields::read(Field field, std::span<double> nodal) const {

@@ -142,7 +142,6 @@ class Fields {
   void upload_dofs();
   [[nodiscard]] shaders::ElementPush element_push(std::uint32_t keep) const;
   [[nodiscard]] shaders::Summary summary(std::size_t slot) const;
-  void write_wide(vulkan::Buffer& buffer, std::span<const double> values) const;
   void read_wide(const vulkan::Buffer& buffer, std::span<double> values,
                  std::size_t first = 0) const;
 

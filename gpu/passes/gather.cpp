@@ -2,22 +2,13 @@
 #include "gpu/passes/gather.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 
-#include "gpu/passes/fields.hpp"
+#include "gpu/passes/two_floats.hpp"
 
 namespace sunder::gpu {
 
 using vulkan::Buffer;
 using vulkan::Placement;
-
-void join_two_floats(std::span<double> values) {
-  for (double& v : values) {
-    const auto parts = std::bit_cast<std::array<float, 2>>(v);
-    v = static_cast<double>(parts[0]) + static_cast<double>(parts[1]);
-  }
-}
 
 Gather::Gather(const KernelFactory& kernels, const Buffer& values)
     : device_(kernels.device()),

@@ -12,9 +12,6 @@
 
 namespace sunder::gpu {
 
-/// Numbers of two floats each (shaders/two_float.glsl), read as if they were fp64, to fp64.
-void join_two_floats(std::span<double> values);
-
 class Gather {
  public:
   /// `values`: fp64, or two floats each where the device has no fp64; it must outlive this and stay

@@ -29,6 +29,8 @@ struct initialised {
   sunder_vulkan_host host;
   sunder_vulkan_display display;
   sunder_vulkan_signals signals;
+  sunder_vulkan_items items;
+  sunder_vulkan_surface drawn;
 };
 
 #define INITIALISED                                                                              \
@@ -39,7 +41,7 @@ struct initialised {
         SUNDER_BODY_INIT, SUNDER_EVENT_INIT, SUNDER_CRACK_INIT, SUNDER_TIP_INIT,                 \
         SUNDER_SURFACE_INIT, SUNDER_HAND_INIT, SUNDER_FELT_INIT, SUNDER_FRAME_INIT,              \
         SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT, SUNDER_VULKAN_DISPLAY_INIT,          \
-        SUNDER_VULKAN_SIGNALS_INIT                                                               \
+        SUNDER_VULKAN_SIGNALS_INIT, SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_SURFACE_INIT         \
   }
 
 #endif

@@ -31,6 +31,7 @@ TEST(CInitialisers, StateTheSizeAndNothingElseOfResults) {
   expect_only_size(all.host);
   expect_only_size(all.display);
   expect_only_size(all.signals);
+  expect_only_size(all.drawn);
 }
 
 template <class T>

@@ -1,0 +1,523 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surface in buffers of a host's own: what sunder_simulation_surface and its like tell, written
+// by the device, after all that changes a body; nothing beside it, nothing that has not changed,
+// and refusals by name.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+
+#include "api/c_scene.hpp"
+#include "api/vulkan_host.hpp"
+
+namespace sunder::test {
+namespace {
+
+constexpr double kRounding = 0x1p-23;  // of one number in fp32, and one more for another order
+
+// Of 8 steps the fourth tears the intact board.
+constexpr double kPull = -12;  // N
+
+struct Environment {
+  explicit Environment(const char* probe) { setenv("SUNDER_VULKAN_PROBE", probe, 1); }
+  ~Environment() { unsetenv("SUNDER_VULKAN_PROBE"); }
+};
+
+/// What a host lends: places and normals side by side in one buffer, whatever else in its own.
+class Buffers {
+ public:
+  static constexpr std::uint32_t kVertex = 32;  // bytes: place, a gap, normal, a gap
+  static constexpr std::uint64_t kNormalAt = 16;
+  Buffers(const VulkanHost& host, std::uint64_t nodes, std::uint64_t triangles,
+          std::uint64_t vertices)
+      : host_(host),
+        vertices_(host.allocate(kBefore + kVertex * nodes + kAfter, kUsage)),
+        triangles_(host.allocate(kBefore + 12 * triangles + kAfter, kUsage)),
+        facts_(host.allocate(kBefore + 12 * triangles + kAfter, kUsage)),
+        skin_(host.allocate(kBefore + 12 * vertices + kAfter, kUsage)),
+        lives_(host.allocate(kBefore + 4 * vertices + kAfter, kUsage)) {
+    surface.places = items(vertices_, 0, kVertex * nodes);
+    surface.normals = items(vertices_, kNormalAt, kVertex * nodes - kNormalAt);
+    surface.places.stride = surface.normals.stride = kVertex;
+    surface.triangles = items(triangles_, 0, 12 * triangles);
+    surface.facts = items(facts_, 0, 12 * triangles);
+    if (vertices == 0) return;
+    surface.skin = items(skin_, 0, 12 * vertices);
+    surface.skin_lives = items(lives_, 0, 4 * vertices);
+  }
+  ~Buffers() {
+    for (const auto& memory : {vertices_, triangles_, facts_, skin_, lives_}) host_.free(memory);
+  }
+  Buffers(const Buffers&) = delete;
+  Buffers& operator=(const Buffers&) = delete;
+
+  template <class T>
+  [[nodiscard]] static std::vector<T> read(const sunder_vulkan_items& items,
+                                           const VulkanHost::Memory& memory, std::size_t count,
+                                           std::size_t each) {
+    const std::size_t stride = items.stride > 0 ? items.stride : each * sizeof(T);
+    std::vector<T> values(count * each);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::memcpy(values.data() + each * i,
+                  static_cast<const std::byte*>(memory.mapped) + items.offset + stride * i,
+                  each * sizeof(T));
+    }
+    return values;
+  }
+  [[nodiscard]] std::vector<float> places(std::size_t n) const {
+    return read<float>(surface.places, vertices_, n, 3);
+  }
+  [[nodiscard]] std::vector<float> normals(std::size_t n) const {
+    return read<float>(surface.normals, vertices_, n, 3);
+  }
+  [[nodiscard]] std::vector<std::int32_t> triangles(std::size_t n) const {
+    return read<std::int32_t>(surface.triangles, triangles_, n, 3);
+  }
+  [[nodiscard]] std::vector<std::int32_t> facts(std::size_t n) const {
+    return read<std::int32_t>(surface.facts, facts_, n, 3);
+  }
+  [[nodiscard]] std::vector<float> skin(std::size_t n) const {
+    return read<float>(surface.skin, skin_, n, 3);
+  }
+  [[nodiscard]] std::vector<std::uint32_t> lives(std::size_t n) const {
+    return read<std::uint32_t>(surface.skin_lives, lives_, n, 1);
+  }
+  /// Bytes of triangles that are not as allocate() and forget() fill them, by triangle.
+  [[nodiscard]] std::vector<std::size_t> written() const {
+    std::vector<std::size_t> list;
+    const auto all = triangles(surface.triangles.size / 12);
+    for (std::size_t t = 0; 3 * t < all.size(); ++t) {
+      if (all[3 * t] != kFilled) list.push_back(t);
+    }
+    return list;
+  }
+  void forget() const {
+    std::memset(triangles_.mapped, 0xa5, triangles_.size);
+    std::memset(facts_.mapped, 0xa5, facts_.size);
+  }
+  void expect_nothing_beside() const {
+    for (const auto& memory : {vertices_, triangles_, facts_, skin_, lives_}) {
+      const auto* bytes = static_cast<const std::byte*>(memory.mapped);
+      const auto untouched = [](std::byte b) { return b == std::byte{0xa5}; };
+      EXPECT_TRUE(std::all_of(bytes, bytes + kBefore, untouched));
+      EXPECT_TRUE(std::all_of(bytes + memory.size - kAfter, bytes + memory.size, untouched));
+    }
+    const auto* first = static_cast<const std::byte*>(vertices_.mapped) + kBefore;
+    for (std::uint64_t at = 0; at + kVertex <= vertices_.size - kBefore - kAfter; at += kVertex) {
+      for (std::uint64_t gap : {at + 12, at + kNormalAt + 12}) {
+        EXPECT_TRUE(std::all_of(first + gap, first + gap + 4,
+                                [](std::byte b) { return b == std::byte{0xa5}; }));
+      }
+    }
+  }
+
+  sunder_vulkan_surface surface = SUNDER_VULKAN_SURFACE_INIT;
+
+ private:
+  static constexpr std::uint64_t kBefore = 36, kAfter = 64;  // bytes
+  static constexpr std::int32_t kFilled = static_cast<std::int32_t>(0xa5a5a5a5);
+  static constexpr VkBufferUsageFlags kUsage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+  [[nodiscard]] static sunder_vulkan_items items(const VulkanHost::Memory& memory, std::uint64_t at,
+                                                 std::uint64_t size) {
+    return {reinterpret_cast<std::uint64_t>(memory.buffer), kBefore + at, size, kUsage, 0};
+  }
+  const VulkanHost& host_;
+  VulkanHost::Memory vertices_, triangles_, facts_, skin_, lives_;
+};
+
+/// Vertices inside the board, on its faces and beyond them.
+std::vector<double> fine_mesh() {
+  std::vector<double> at;
+  for (int i = 0; i < 40; ++i) at.insert(at.end(), {0.26 * i, 10.1 - 0.25 * i, 0.031 * i});
+  return at;
+}
+
+class CVulkanSurface : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (std::getenv("SUNDER_EXPECT_NO_VULKAN")) {
+      GTEST_SKIP() << "no Vulkan device is expected";
+    }
+    if (*GetParam()) probe.emplace(GetParam());
+    host.emplace();
+  }
+  void TearDown() override {
+    if (!host) return;
+    if (simulation) {
+      EXPECT_OK(sunder_simulation_destroy(simulation));
+    }
+    buffers.reset();
+    EXPECT_FALSE(VulkanHost::calls.submitted_unlocked);
+    EXPECT_EQ(VulkanHost::calls.device_waits, 0);
+  }
+  /// On the host's device, or on the CPU with the host's device for drawing alone.
+  void create(bool shared, const std::function<void(sunder_scene)>& change = {}) {
+    const sunder_scene scene =
+        board_scene(shared ? SUNDER_BACKEND_VULKAN : SUNDER_BACKEND_CPU, 4, kPull);
+    EXPECT_OK(sunder_scene_set_steps(scene, 8));
+    if (change) change(scene);
+    on_device = shared;
+    const sunder_vulkan_host lent = host->lend();
+    if (shared) {
+      ASSERT_OK(sunder_vulkan_create(scene, &lent, nullptr, &simulation));
+    } else {
+      ASSERT_OK(sunder_simulation_create(scene, nullptr, &simulation));
+      ASSERT_OK(sunder_simulation_keep_history(simulation, 100));
+    }
+    EXPECT_OK(sunder_scene_destroy(scene));
+    const auto fine = fine_mesh();
+    ASSERT_OK(sunder_simulation_set_skin(simulation, fine.data(), fine.size()));
+    vertices = fine.size() / 3;
+  }
+  void lend(std::uint64_t triangles = 400, std::uint64_t nodes = 200) {
+    auto more = std::make_unique<Buffers>(*host, nodes, triangles, vertices);
+    const sunder_vulkan_host device = host->lend();
+    ASSERT_OK(
+        sunder_vulkan_lend_surface(simulation, on_device ? nullptr : &device, &more->surface));
+    buffers = std::move(more);
+  }
+  void step() { ASSERT_OK(sunder_simulation_step(simulation, nullptr)); }
+  sunder_surface record() {
+    sunder_surface surface = SUNDER_SURFACE_INIT;
+    host->run([&](VkCommandBuffer commands) {
+      EXPECT_OK(sunder_vulkan_record_surface(simulation, commands, &surface));
+    });
+    return surface;
+  }
+  /// How much larger than the sum of a node's triangles are the products that it is made of: what a
+  /// rounding of these costs the unit normal.
+  [[nodiscard]] static std::vector<double> amplification(std::span<const float> places,
+                                                         std::span<const std::int32_t> triangles) {
+    std::vector<Vec3> sum(places.size() / 3, Vec3::Zero());
+    std::vector<double> products(sum.size(), 0.0);
+    const auto at = [&](std::int32_t n) {
+      return Eigen::Map<const Eigen::Vector3f>(places.data() + 3 * n).cast<double>().eval();
+    };
+    for (std::size_t t = 0; t < triangles.size(); t += 3) {
+      const Vec3 a = at(triangles[t + 1]) - at(triangles[t]);
+      const Vec3 b = at(triangles[t + 2]) - at(triangles[t]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto n = static_cast<std::size_t>(triangles[t + i]);
+        sum[n] += a.cross(b);
+        products[n] += a.norm() * b.norm();
+      }
+    }
+    for (std::size_t n = 0; n < sum.size(); ++n) {
+      products[n] = sum[n].norm() > 0 ? products[n] / sum[n].norm() : 0;
+    }
+    return products;
+  }
+
+  /// All of the buffers is what the functions that hand it out on the host say: places as they are
+  /// rounded, normals within what roundings of `unit` cost them.
+  void expect_shown(double unit = 0x1p-52, double ulps = 1) {
+    const sunder_surface surface = record();
+    const auto nodes = static_cast<std::size_t>(surface.node_count);
+    const auto count = static_cast<std::size_t>(surface.triangle_count);
+    std::vector<float> places(3 * nodes), normals(3 * nodes), skin(3 * vertices);
+    EXPECT_OK(
+        sunder_simulation_surface_points(simulation, places.data(), normals.data(), places.size()));
+    const auto shown = buffers->places(nodes), outward = buffers->normals(nodes);
+    const auto triangles = buffers->triangles(count), facts = buffers->facts(count);
+    const auto costs = amplification(places, triangles);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      EXPECT_NEAR(shown[i], places[i], ulps * kRounding * std::abs(places[i])) << i;
+      EXPECT_NEAR(outward[i], normals[i], kRounding + 8 * unit * costs[i / 3]) << i;
+    }
+    std::vector<sunder_triangle> all(count + 400);
+    std::size_t there = 0;
+    EXPECT_OK(sunder_simulation_surface_changes(simulation, 0, all.data(), all.size(), &there));
+    ASSERT_EQ(there, count);
+    for (std::size_t t = 0; t < count; ++t) {
+      const std::int32_t told[] = {all[t].element, all[t].piece, all[t].opened};
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(triangles[3 * t + i], all[t].nodes[i]) << t;
+        EXPECT_EQ(facts[3 * t + i], told[i]) << t;
+      }
+    }
+    std::vector<std::uint8_t> lives(vertices);
+    EXPECT_OK(sunder_simulation_skin(simulation, skin.data(), skin.size(), lives.data()));
+    const auto carried = buffers->skin(vertices);
+    for (std::size_t i = 0; i < skin.size(); ++i) {
+      EXPECT_NEAR(carried[i], skin[i], ulps * kRounding * std::abs(skin[i])) << i;
+    }
+    const auto living = buffers->lives(vertices);
+    EXPECT_TRUE(std::ranges::equal(living, lives, {}, {}, [](std::uint8_t l) { return l; }));
+    buffers->expect_nothing_beside();
+  }
+  /// Five cells at the left edge go, and the one between them comes loose.
+  void cut_a_cell_off() {
+    std::vector<std::uint8_t> gone(96);
+    EXPECT_OK(sunder_simulation_destroyed(simulation, gone.data(), gone.size()));
+    std::vector<std::int32_t> elements;
+    for (std::int32_t cell : {4, 5, 9, 12, 13}) {
+      for (std::int32_t e = 6 * cell; e < 6 * cell + 6; ++e) {
+        if (!gone[static_cast<std::size_t>(e)]) elements.push_back(e);
+      }
+    }
+    ASSERT_OK(sunder_simulation_remove(simulation, elements.data(), elements.size()));
+  }
+  [[nodiscard]] bool has_pieces() const {
+    const auto facts = buffers->facts(static_cast<std::size_t>(state().triangle_count));
+    for (std::size_t t = 0; 3 * t < facts.size(); ++t) {
+      if (facts[3 * t + 1] >= 0) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] sunder_surface state() const {
+    sunder_surface surface = SUNDER_SURFACE_INIT;
+    EXPECT_OK(sunder_simulation_surface(simulation, &surface));
+    return surface;
+  }
+  void refused(sunder_status status, const char* says, sunder_status is) const {
+    EXPECT_EQ(is, status);
+    EXPECT_NE(std::string(sunder_last_error()).find(says), std::string::npos)
+        << sunder_last_error();
+  }
+
+  std::optional<Environment> probe;
+  std::optional<VulkanHost> host;
+  std::unique_ptr<Buffers> buffers;
+  sunder_simulation simulation = nullptr;
+  bool on_device = false;
+  std::size_t vertices = 0;
+};
+
+TEST_P(CVulkanSurface, FollowsRupturesAndPiecesOnTheHostsDevice) {
+  create(true);
+  lend();
+  step();
+  expect_shown();
+  cut_a_cell_off();
+  expect_shown();
+  EXPECT_TRUE(has_pieces());
+  const std::int32_t cut = state().triangle_count;
+  for (int i = 0; i < 5; ++i) {
+    step();
+    expect_shown();
+  }
+  EXPECT_NE(state().triangle_count, cut) << "nothing broke";
+}
+
+TEST_P(CVulkanSurface, FollowsUndoOfASimulationElsewhere) {
+  create(false);
+  lend();
+  expect_shown();  // before the first step
+  step();
+  cut_a_cell_off();
+  expect_shown();
+  EXPECT_TRUE(has_pieces());
+  for (int i = 0; i < 5; ++i) {
+    step();
+    expect_shown();
+  }
+  const std::int32_t torn = state().triangle_count;
+  std::int32_t undos = 0;
+  ASSERT_OK(sunder_simulation_history(simulation, &undos, nullptr));
+  ASSERT_GT(undos, 1);
+  for (std::int32_t i = 0; i < undos; ++i) {
+    ASSERT_OK(sunder_simulation_undo(simulation, 1, nullptr, nullptr));
+    expect_shown();
+  }
+  EXPECT_FALSE(has_pieces());
+  EXPECT_NE(state().triangle_count, torn);
+  ASSERT_OK(sunder_simulation_redo(simulation, undos, nullptr));
+  expect_shown();
+  EXPECT_EQ(state().triangle_count, torn);
+}
+
+TEST_P(CVulkanSurface, FollowsCracksThatSplitAndTheirUndo) {
+  create(false, [](sunder_scene scene) {
+    auto fracture = model(SUNDER_FRACTURE_B);
+    fracture.crack = SUNDER_CRACK_SPLIT;
+    fracture.sif = SUNDER_SIF_FIELD;
+    fracture.alpha = 1e-8;
+    EXPECT_OK(sunder_scene_set_fracture(scene, &fracture));
+  });
+  lend();
+  const std::int32_t whole = state().node_count;
+  for (int i = 0; i < 5; ++i) {
+    step();
+    expect_shown();
+  }
+  const std::int32_t parted = state().node_count;
+  EXPECT_GT(parted, whole);
+  ASSERT_OK(sunder_simulation_undo(simulation, 1, nullptr, nullptr));
+  expect_shown();
+  EXPECT_LT(state().node_count, parted);
+  ASSERT_OK(sunder_simulation_redo(simulation, 1, nullptr));
+  EXPECT_EQ(state().node_count, parted);
+  expect_shown();
+}
+
+// Numbers of two floats each: some 48 bits go into a sum, and its parts are rounded in fp32.
+TEST_P(CVulkanSurface, DoesWithoutFloat64) {
+  host.reset();
+  VulkanHost::Options few;
+  few.float64 = false;
+  host.emplace(few);
+  create(true);
+  lend();
+  for (int i = 0; i < 5; ++i) {
+    step();
+    expect_shown(0x1p-24, 2);
+  }
+}
+
+TEST_P(CVulkanSurface, WritesOnlyTheTrianglesThatHaveChanged) {
+  create(true, [](sunder_scene scene) {
+    const auto none = model(SUNDER_FRACTURE_NONE);
+    EXPECT_OK(sunder_scene_set_fracture(scene, &none));
+    EXPECT_OK(sunder_scene_set_live(scene, 1));
+  });
+  lend();
+  step();
+  const sunder_surface first = record();
+  EXPECT_EQ(buffers->written().size(), static_cast<std::size_t>(first.triangle_count));
+  buffers->forget();
+  step();
+  record();
+  EXPECT_TRUE(buffers->written().empty());
+  const std::int32_t element = 40;
+  ASSERT_OK(sunder_simulation_remove(simulation, &element, 1));
+  const sunder_surface then = record();
+  std::vector<sunder_triangle> changes(400);
+  std::size_t count = 0;
+  ASSERT_OK(sunder_simulation_surface_changes(simulation, first.version, changes.data(),
+                                              changes.size(), &count));
+  ASSERT_GT(count, 0u);
+  ASSERT_LT(count, static_cast<std::size_t>(then.triangle_count));
+  const auto written = buffers->written();
+  ASSERT_EQ(written.size(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    EXPECT_EQ(written[i], static_cast<std::size_t>(changes[i].place));
+  }
+}
+
+TEST_P(CVulkanSurface, AddsNoSubmitCopyOrReadToTheFrame) {
+  create(true);
+  lend();
+  step();
+  record();
+  step();
+  const Calls before = VulkanHost::calls;
+  record();
+  EXPECT_EQ(VulkanHost::calls.submits, before.submits);
+  EXPECT_EQ(VulkanHost::calls.copies, before.copies);
+  EXPECT_LE(VulkanHost::calls.dispatches, before.dispatches + 3);
+}
+
+TEST_P(CVulkanSurface, SaysWhatHasBecomeTooSmallAndTakesLargerOnes) {
+  create(true);
+  const auto intact = static_cast<std::uint64_t>(state().triangle_count);
+  lend(intact, 50);
+  step();
+  cut_a_cell_off();
+  const auto now = static_cast<std::uint64_t>(state().triangle_count);
+  ASSERT_NE(now, intact);
+  lend(std::min(now, intact) - 1, 50);
+  sunder_surface told = SUNDER_SURFACE_INIT;
+  host->run([&](VkCommandBuffer commands) {
+    refused(SUNDER_ERROR_SIZE,
+            ("triangles has " + std::to_string(12 * (std::min(now, intact) - 1)) +
+             " bytes; it must have " + std::to_string(12 * now))
+                .c_str(),
+            sunder_vulkan_record_surface(simulation, commands, &told));
+  });
+  EXPECT_EQ(told.triangle_count, static_cast<std::int32_t>(now));
+  lend(now, 49);
+  host->run([&](VkCommandBuffer commands) {
+    refused(SUNDER_ERROR_SIZE, "places has 1568 bytes; it must have 1580",
+            sunder_vulkan_record_surface(simulation, commands, nullptr));
+  });
+  EXPECT_TRUE(buffers->written().empty());
+  lend(now, 50);
+  expect_shown();
+}
+
+TEST_P(CVulkanSurface, RefusesByName) {
+  create(true);
+  const auto device = host->lend();
+  host->run([&](VkCommandBuffer commands) {
+    refused(SUNDER_ERROR_ORDER, "no buffers are lent",
+            sunder_vulkan_record_surface(simulation, commands, nullptr));
+  });
+  Buffers some(*host, 200, 400, vertices);
+  const auto lend_changed = [&](void (*change)(sunder_vulkan_surface&)) {
+    sunder_vulkan_surface surface = some.surface;
+    change(surface);
+    return sunder_vulkan_lend_surface(simulation, nullptr, &surface);
+  };
+  refused(SUNDER_ERROR_VALUE, "places has usage = 128, without VK_BUFFER_USAGE_STORAGE_BUFFER_BIT",
+          lend_changed([](auto& s) { s.places.usage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT; }));
+  refused(SUNDER_ERROR_VALUE, "normals has offset = 54",
+          lend_changed([](auto& s) { s.normals.offset += 2; }));
+  refused(SUNDER_ERROR_VALUE, "triangles has stride = 8",
+          lend_changed([](auto& s) { s.triangles.stride = 8; }));
+  refused(SUNDER_ERROR_VALUE, "facts has stride = 14",
+          lend_changed([](auto& s) { s.facts.stride = 14; }));
+  refused(SUNDER_ERROR_STRUCT_SIZE, "surface", lend_changed([](auto& s) { s.struct_size = 3; }));
+  refused(SUNDER_ERROR_ORDER, "the simulation is on a host's device",
+          sunder_vulkan_lend_surface(simulation, &device, &some.surface));
+  ASSERT_OK(sunder_vulkan_lend_surface(simulation, nullptr, &some.surface));
+  refused(SUNDER_ERROR_NULL, "command buffer",
+          sunder_vulkan_record_surface(simulation, nullptr, nullptr));
+  host->run([&](VkCommandBuffer commands) {
+    refused(SUNDER_ERROR_ORDER, "before a step",
+            sunder_vulkan_record_surface(simulation, commands, nullptr));
+    sunder_surface unset = SUNDER_SURFACE_INIT;
+    unset.struct_size = 1;
+    refused(SUNDER_ERROR_STRUCT_SIZE, "surface",
+            sunder_vulkan_record_surface(simulation, commands, &unset));
+  });
+  step();
+  const auto fine = fine_mesh();
+  ASSERT_OK(sunder_simulation_set_skin(simulation, fine.data(), 30));
+  host->run([&](VkCommandBuffer commands) {
+    refused(SUNDER_ERROR_ORDER, "the skin was given anew",
+            sunder_vulkan_record_surface(simulation, commands, nullptr));
+  });
+  ASSERT_OK(sunder_vulkan_lend_surface(simulation, nullptr, nullptr));  // takes them back
+  host->run([&](VkCommandBuffer commands) {
+    refused(SUNDER_ERROR_ORDER, "no buffers are lent",
+            sunder_vulkan_record_surface(simulation, commands, nullptr));
+  });
+  const sunder_simulation gone = simulation;
+  ASSERT_OK(sunder_simulation_destroy(simulation));
+  simulation = nullptr;
+  refused(SUNDER_ERROR_HANDLE, "destroyed",
+          sunder_vulkan_lend_surface(gone, nullptr, &some.surface));
+  host->run([&](VkCommandBuffer commands) {
+    refused(SUNDER_ERROR_HANDLE, "destroyed",
+            sunder_vulkan_record_surface(gone, commands, nullptr));
+  });
+}
+
+TEST_P(CVulkanSurface, AsksASimulationElsewhereForTheDevice) {
+  create(false);
+  Buffers some(*host, 200, 400, vertices);
+  refused(SUNDER_ERROR_ORDER, "not on a host's device (backend cpu): host must name",
+          sunder_vulkan_lend_surface(simulation, nullptr, &some.surface));
+  auto device = host->lend();
+  device.queue_family = 77;
+  refused(SUNDER_ERROR_VALUE, "queue_family 77",
+          sunder_vulkan_lend_surface(simulation, &device, &some.surface));
+  device = host->lend();
+  device.device = nullptr;
+  refused(SUNDER_ERROR_NULL, "host: device is null",
+          sunder_vulkan_lend_surface(simulation, &device, &some.surface));
+  const sunder_simulation bare = board_simulation();
+  device = host->lend();
+  refused(SUNDER_ERROR_ORDER, "no skin", sunder_vulkan_lend_surface(bare, &device, &some.surface));
+  EXPECT_OK(sunder_simulation_destroy(bare));
+}
+
+INSTANTIATE_TEST_SUITE_P(Memory, CVulkanSurface, testing::Values("", "as_gpu"),
+                         [](const auto& info) {
+                           return std::string(*info.param ? info.param : "mapped");
+                         });
+
+}  // namespace
+}  // namespace sunder::test
