@@ -102,7 +102,6 @@ struct Product {
     commands.begin();
     commands.pass("product");
     const std::uint32_t chunks = first();
-    commands.barrier();
     partials.record_sum(commands, *sum, chunks, false);
     commands.end();
   }

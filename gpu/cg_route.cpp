@@ -97,7 +97,6 @@ void CgRoute::record_start(double reduction, bool guess) {
   commands_.fill_zero(x, 0, x.bytes());
   const auto dispatch = [&](const Pass& pass, std::uint32_t groups) {
     commands_.dispatch(*pass.binding, of_start, groups);
-    commands_.barrier();
   };
   dispatch(begin_, matrix_.groups());
   dispatch(multiply_, matrix_.groups());
@@ -112,7 +111,6 @@ void CgRoute::record_iterations() {
   const shaders::CgPush of_iteration = push(false);
   const auto dispatch = [&](const Pass& pass, std::size_t size) {
     commands_.dispatch_indirect(*pass.binding, of_iteration, arguments_, size);
-    commands_.barrier();
   };
   for (int i = 0; i < kIterations; ++i) {
     dispatch(multiply_, kNodes);
@@ -155,7 +153,6 @@ void CgRoute::refresh_state(bool add) {
   if (add) {
     commands_.pass("refine");
     add_.record(commands_);
-    commands_.barrier();
   }
   fields_.record_hold(commands_, Field::displacement);
   fields_.record_state(commands_);

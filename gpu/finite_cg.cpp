@@ -144,14 +144,11 @@ void FiniteCg::record_multiply(vulkan::Commands& commands, bool indirect) const 
                                    static_cast<std::uint32_t>(problem_.dof_count())};
   if (indirect) {
     commands.dispatch_indirect(*apply_.binding, push, arguments_, kByElement);
-    commands.barrier();
     commands.dispatch_indirect(*multiply_.binding, push, arguments_, kByNode);
   } else {
     commands.dispatch(*apply_.binding, push, element_groups_);
-    commands.barrier();
     commands.dispatch(*multiply_.binding, push, node_groups_);
   }
-  commands.barrier();
 }
 
 void FiniteCg::record(vulkan::Commands& commands, const shaders::FinitePush& of_body,
@@ -160,7 +157,6 @@ void FiniteCg::record(vulkan::Commands& commands, const shaders::FinitePush& of_
                                          static_cast<std::uint32_t>(problem_.dof_count())};
   const auto dispatch = [&](const Pass& pass, const auto& push, std::uint32_t groups) {
     commands.dispatch(*pass.binding, push, groups);
-    commands.barrier();
   };
   commands.pass("tangent");
   commands.fill_zero(x_, 0, x_.bytes());
@@ -172,19 +168,16 @@ void FiniteCg::record(vulkan::Commands& commands, const shaders::FinitePush& of_
   record_multiply(commands, false);
   dispatch(length_, start, 1);
   commands.dispatch(*step_.binding, node_groups_);
-  commands.barrier();
   rigid_.record(commands, start);
   dispatch(check_, start, 1);
   dispatch(direction_, start, node_groups_);
   const auto again = [&](const Pass& pass, std::size_t size) {
     commands.dispatch_indirect(*pass.binding, on, arguments_, size);
-    commands.barrier();
   };
   for (int i = 0; i < recorded_; ++i) {
     record_multiply(commands, true);
     again(length_, kByOne);
     commands.dispatch_indirect(*step_.binding, arguments_, kByNode);
-    commands.barrier();
     rigid_.record_indirect(commands, on, arguments_);
     again(check_, kByOne);
     again(direction_, kByNode);

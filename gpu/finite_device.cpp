@@ -380,7 +380,6 @@ void FiniteDevice::over(const Pass& pass, const FinitePush& push, std::uint32_t 
                         std::uint32_t rows) {
   const std::uint32_t groups = round_up(count, shaders::kGroup) / shaders::kGroup;
   commands_.dispatch(*pass.binding[first_state_], push, std::max(groups, 1U), rows);
-  commands_.barrier();
 }
 
 void FiniteDevice::record_direction() {
@@ -408,7 +407,6 @@ void FiniteDevice::record_evaluation(const FinitePush& push, bool next) {
   const auto dispatch = [&](const Pass& pass, std::uint32_t count) {
     commands_.dispatch(*pass.binding[which], push,
                        round_up(count, shaders::kGroup) / shaders::kGroup);
-    commands_.barrier();
   };
   commands_.pass("internal forces");
   dispatch(law_, elements_);

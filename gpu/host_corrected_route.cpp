@@ -78,11 +78,7 @@ int HostCorrectedRoute::solve(const Load& load, double energy_tolerance, bool ba
   commands_.begin();
   commands_.pass("solve");
   const std::uint32_t chunks = base_.record_loaded(commands_, 0);
-  if (chunks > 0) {
-    commands_.barrier();
-    partials_.record_sum(commands_, *sum_displacement_, chunks, true);
-  }
-  commands_.barrier();
+  if (chunks > 0) partials_.record_sum(commands_, *sum_displacement_, chunks, true);
   fields_.record_hold(commands_, Field::displacement);
   fields_.record_state(commands_, balance);
   commands_.end();
@@ -107,7 +103,6 @@ void HostCorrectedRoute::add_correction() {
   commands_.begin();
   commands_.pass("refine");
   add_.record(commands_);
-  commands_.barrier();
   fields_.record_state(commands_);
   commands_.end();
   commands_.submit();

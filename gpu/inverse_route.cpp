@@ -127,10 +127,8 @@ void InverseRoute::hold_loads(const Load& load) {
 }
 
 void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) {
-  commands_.barrier();
   partials_.record_sum(
       commands_, field == Field::displacement ? *sum_displacement_ : *sum_correction_, chunks, add);
-  commands_.barrier();
 }
 
 int InverseRoute::solve(const Load& load, double energy_tolerance, bool balance) {
@@ -178,7 +176,6 @@ void InverseRoute::solve_deferred(const Load& load, double energy_tolerance, boo
   fields_.record_keep(commands_);
   commands_.pass("solve");
   std::uint32_t chunks = base_.record_loaded(commands_, 0);
-  if (chunks > 0) commands_.barrier();
   chunks += exact_.record_apply(commands_, chunks);
   record_solution(Field::displacement, chunks, false);
   fields_.record_hold(commands_, Field::displacement);
@@ -199,7 +196,6 @@ void InverseRoute::solve_on_exact(bool balance) {
     fields_.record_keep(commands);
     commands.pass("solve");
     exact_.record_solve(commands);
-    commands.barrier();
     fields_.record_hold(commands, Field::displacement);
     fields_.record_state(commands, balance);
     commands.end();
@@ -267,7 +263,6 @@ void InverseRoute::add_correction() {
   commands_.begin();
   commands_.pass("refine");
   add_.record(commands_);
-  commands_.barrier();
   fields_.record_state(commands_, true);
   commands_.end();
   commands_.submit();

@@ -220,7 +220,7 @@ std::uint32_t DenseInverse::record_loaded(vulkan::Commands& commands,
     const std::uint32_t last = lower_ ? all : panel.last_entry;
     if (first == last) continue;
     const bool add = lower_ && panel.first > 0;
-    if (add) commands.barrier();
+    if (!add) commands.apart();  // chunks of its own
     const std::uint32_t groups = round_up(last - first, shaders::kChunk) / shaders::kChunk;
     commands.dispatch(*panel.loaded,
                       shaders::ApplyPush{rows_ / 4, first, last, 0, lower_ ? first_chunk : chunk,
@@ -233,14 +233,11 @@ std::uint32_t DenseInverse::record_loaded(vulkan::Commands& commands,
 
 std::uint32_t DenseInverse::record_dense(vulkan::Commands& commands, std::uint32_t first_chunk) {
   if (!panels_.front().dense) create_dense();
-  if (narrowing_) {
-    commands.dispatch(*narrowing_, rows_ / shaders::kRowPad);
-    commands.barrier();
-  }
+  if (narrowing_) commands.dispatch(*narrowing_, rows_ / shaders::kRowPad);
   for (const Panel& panel : panels_) {
     const std::uint32_t tile = panel.first / shaders::kTile;
     const bool add = lower_ && panel.first > 0;
-    if (add) commands.barrier();
+    if (!add) commands.apart();
     commands.dispatch(
         *panel.dense,
         shaders::ApplyPush{rows_ / 4, lower_ ? tile : 0, 0, lower_ ? 0 : panel.first / 4,
@@ -287,11 +284,11 @@ Eigen::MatrixXd DenseInverse::pick(std::span<const Index> rows, std::span<const 
   vulkan::Commands commands(kernels_.device());
   commands.begin();
   for (const Panel& panel : panels_) {
+    commands.apart();  // the panel's own columns
     commands.dispatch(
         *panel.pick,
         shaders::PickPush{u32(rows.size()), u32(columns.size()), panel.first, panel.columns, rows_},
         round_up(u32(rows.size()), shaders::kGroup) / shaders::kGroup, u32(columns.size()));
-    commands.barrier();
   }
   commands.end();
   commands.submit();
@@ -354,7 +351,6 @@ void DenseInverse::record_vectors(vulkan::Commands& commands, std::span<const In
                       shaders::VectorsPush{rows_ / 4, 0, u32(dofs.size()), blocks, panel.first,
                                            panel.columns, add ? 1u : 0u},
                       rows_ / shaders::kRowPad, blocks);
-    commands.barrier();
     add = true;
   }
 }

@@ -78,7 +78,6 @@ void ExactColumns::allocate(std::uint32_t capacity) {
   commands.begin();
   commands.copy(before.handle(), before.offset(), columns_.handle(), columns_.offset(),
                 std::size_t{zeroed_} * rows_ * sizeof(double));
-  commands.barrier();
   commands.end();
   commands.submit();
 }

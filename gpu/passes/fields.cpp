@@ -333,7 +333,6 @@ void Fields::record_keep(vulkan::Commands& commands) {
   keep_ = false;
   commands.copy(displacement_.handle(), displacement_.offset(), kept_.handle(), kept_.offset(),
                 displacement_.bytes());
-  commands.barrier();
 }
 
 void Fields::restore() {
@@ -341,7 +340,6 @@ void Fields::restore() {
   commands.begin();
   commands.copy(kept_.handle(), kept_.offset(), displacement_.handle(), displacement_.offset(),
                 displacement_.bytes());
-  commands.barrier();
   record_state(commands);
   commands.end();
   commands.submit();
@@ -363,7 +361,6 @@ void Fields::record_hold(vulkan::Commands& commands, Field field) const {
   commands.dispatch(correction ? *correction_hold_ : *hold_pass_.binding,
                     shaders::HoldPush{count, correction ? 1u : 0u},
                     round_up(count, shaders::kGroup) / shaders::kGroup);
-  commands.barrier();
 }
 
 void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits) {
@@ -407,7 +404,6 @@ void Fields::record_state(vulkan::Commands& commands, bool balance) const {
     commands.pass("residual");
     commands.dispatch(*residual_pass_.binding, node_groups);
   }
-  commands.barrier();
   commands.pass(norms_ ? "stress" : "residual");
   commands.dispatch(*summary_pass_.binding,
                     shaders::SummaryPush{norms_ ? element_parts_ : 0, balance ? node_parts_ : 0, 0},
@@ -419,7 +415,6 @@ void Fields::record_correction(vulkan::Commands& commands) const {
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
   commands.pass("estimate");
   commands.dispatch(*correction_stress_, element_push(0), element_groups);
-  commands.barrier();
   commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_parts_, 0, 1}, 1);
 }
 

@@ -95,17 +95,13 @@ void RigidSpace::bind(const Buffer& r) {
 
 void RigidSpace::record(vulkan::Commands& commands, const shaders::CgPush& push) const {
   commands.dispatch(*restrict_binding_, groups());
-  commands.barrier();
   commands.dispatch(*solve_binding_, push, solve_groups());
-  commands.barrier();
 }
 
 void RigidSpace::record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
                                  const Buffer& arguments) const {
   commands.dispatch_indirect(*restrict_binding_, arguments, 3 * sizeof(std::uint32_t));
-  commands.barrier();
   commands.dispatch_indirect(*solve_binding_, push, arguments, 6 * sizeof(std::uint32_t));
-  commands.barrier();
 }
 
 void RigidSpace::destroy(std::span<const Index> elements) {

@@ -2,6 +2,7 @@
 #include "gpu/vulkan/commands.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gpu/vulkan/check.hpp"
 
@@ -29,6 +30,8 @@ Commands::~Commands() {
 
 void Commands::begin() {
   passes_.clear();
+  uses_.clear();
+  barriers_ = 0;
   VkCommandBufferBeginInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   check(device_.vk().BeginCommandBuffer(handle_, &info), "vkBeginCommandBuffer");
@@ -37,13 +40,7 @@ void Commands::begin() {
 
 void Commands::end() {
   if (!passes_.empty()) write_time();
-  VkMemoryBarrier to_host{};
-  to_host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-  to_host.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-  to_host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-  device_.vk().CmdPipelineBarrier(
-      handle_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-      VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0, nullptr, 0, nullptr);
+  memory_barrier(VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
   check(device_.vk().EndCommandBuffer(handle_), "vkEndCommandBuffer");
 }
 
@@ -92,27 +89,51 @@ void Commands::dispatch_indirect(const Buffer& arguments, std::size_t offset) {
   device_.vk().CmdDispatchIndirect(handle_, arguments.handle(), arguments.offset() + offset);
 }
 
-void Commands::barrier() {
+void Commands::wait_for(const Binding& binding, const Buffer& arguments, std::size_t offset) {
+  const std::size_t begin = arguments.offset() + offset;
+  const MemoryUse size{
+      arguments.handle(), begin, begin + sizeof(VkDispatchIndirectCommand), {.reads = true}};
+  wait_for(binding.uses(), {&size, 1});
+}
+
+void Commands::wait_for(std::span<const MemoryUse> uses, std::span<const MemoryUse> size) {
+  if (uses_.conflict(uses, std::exchange(apart_, false)) || uses_.conflict(size)) {
+    memory_barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT |
+                       VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                       VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
+                       VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+    uses_.clear();
+    ++barriers_;
+  }
+  uses_.add(uses);
+  uses_.add(size);
+}
+
+void Commands::memory_barrier(VkPipelineStageFlags to_stages, VkAccessFlags to) {
   VkMemoryBarrier all{};
   all.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
   all.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-  all.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
-                      VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
-                      VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
-  constexpr VkPipelineStageFlags stages =
-      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-  device_.vk().CmdPipelineBarrier(handle_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0,
-                                  1, &all, 0, nullptr, 0, nullptr);
+  all.dstAccessMask = to;
+  device_.vk().CmdPipelineBarrier(
+      handle_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, to_stages, 0,
+      1, &all, 0, nullptr, 0, nullptr);
 }
 
 void Commands::copy(VkBuffer from, std::size_t from_offset, VkBuffer to, std::size_t to_offset,
                     std::size_t bytes) {
+  const MemoryUse uses[] = {{from, from_offset, from_offset + bytes, {.reads = true}},
+                            {to, to_offset, to_offset + bytes, {.writes = true}}};
+  wait_for(uses);
   const VkBufferCopy region{from_offset, to_offset, bytes};
   device_.vk().CmdCopyBuffer(handle_, from, to, 1, &region);
 }
 
 void Commands::fill_zero(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
-  device_.vk().CmdFillBuffer(handle_, buffer.handle(), buffer.offset() + offset, bytes, 0);
+  const std::size_t begin = buffer.offset() + offset;
+  const MemoryUse use{buffer.handle(), begin, begin + bytes, {.writes = true}};
+  wait_for({&use, 1});
+  device_.vk().CmdFillBuffer(handle_, buffer.handle(), begin, bytes, 0);
 }
 
 std::vector<PassTime> Commands::pass_times() const {

@@ -17,7 +17,9 @@ Kernel::Kernel(Device& device, const KernelCode& code)
     : device_(device),
       name_(code.name),
       bindings_(code.bindings.begin(), code.bindings.end()),
+      uses_(shader_uses(code.spirv)),
       push_bytes_(code.push_bytes) {
+  uses_.resize(bindings_.size());
   try {
     create_layouts();
     create_pipeline(code);
@@ -100,7 +102,10 @@ Binding::Binding(Device& device, const Kernel& kernel, std::span<const Buffer* c
   try {
     allocate();
     for (std::uint32_t b = 0; b < kernel.bindings().size(); ++b) {
-      write(b, kernel.bindings()[b], *buffers[b]);
+      const Buffer& of = *buffers[b];
+      write(b, kernel.bindings()[b], of);
+      uses_.push_back(
+          {of.handle(), of.offset(), of.offset() + of.bytes(), kernel.uses()[b], &kernel});
     }
   } catch (...) {
     release();

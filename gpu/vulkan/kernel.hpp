@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gpu/vulkan/buffer.hpp"
+#include "gpu/vulkan/memory_uses.hpp"
 
 namespace sunder::vulkan {
 
@@ -40,6 +41,8 @@ class Kernel {
   [[nodiscard]] VkDescriptorSetLayout set_layout() const { return set_layout_; }
   [[nodiscard]] const std::vector<Access>& bindings() const { return bindings_; }
   [[nodiscard]] std::uint32_t push_bytes() const { return push_bytes_; }
+  /// What its code does with each binding.
+  [[nodiscard]] const std::vector<Use>& uses() const { return uses_; }
 
  private:
   void create_layouts();
@@ -49,6 +52,7 @@ class Kernel {
   Device& device_;
   std::string name_;
   std::vector<Access> bindings_;
+  std::vector<Use> uses_;
   std::uint32_t push_bytes_;
   VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
@@ -65,6 +69,8 @@ class Binding {
 
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
   [[nodiscard]] VkDescriptorSet set() const { return set_; }
+  /// What a dispatch does with the buffers.
+  [[nodiscard]] std::span<const MemoryUse> uses() const { return uses_; }
 
  private:
   void allocate();
@@ -76,6 +82,7 @@ class Binding {
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
   std::vector<VkBufferView> views_;
+  std::vector<MemoryUse> uses_;
 };
 
 }  // namespace sunder::vulkan

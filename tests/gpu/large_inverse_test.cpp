@@ -61,7 +61,6 @@ TEST_P(LargeInverse, TakesSeveralBuffers) {
   vulkan::Commands commands(*device_);
   commands.begin();
   const std::uint32_t chunks = inverse.record_dense(commands, 0);
-  commands.barrier();
   partials.record_sum(commands, *sum, chunks, false);
   commands.end();
   commands.submit();
