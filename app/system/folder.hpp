@@ -45,9 +45,4 @@ void check_writable(const std::filesystem::path& folder, std::error_code& error)
 /// `error`: why it is still there, say because something lies in it.
 void remove_empty_folder(const std::filesystem::path& folder, std::error_code& error);
 
-/// Makes an empty folder of this process alone in the system's folder for what is temporary: its
-/// name begins with `prefix`. `error`: why there is none.
-[[nodiscard]] std::filesystem::path make_temporary_folder(const std::string& prefix,
-                                                          std::error_code& error);
-
 }  // namespace sunder::app::system

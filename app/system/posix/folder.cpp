@@ -60,12 +60,4 @@ void remove_empty_folder(const std::filesystem::path& folder, std::error_code& e
   error = ::rmdir(folder.c_str()) == 0 ? std::error_code() : last_error();
 }
 
-std::filesystem::path make_temporary_folder(const std::string& prefix, std::error_code& error) {
-  std::string name = (std::filesystem::temp_directory_path(error) / (prefix + "XXXXXX")).string();
-  if (error) return {};
-  if (::mkdtemp(name.data())) return name;
-  error = last_error();
-  return {};
-}
-
 }  // namespace sunder::app::system

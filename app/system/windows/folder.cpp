@@ -56,13 +56,4 @@ void remove_empty_folder(const std::filesystem::path& folder, std::error_code& e
   error = RemoveDirectoryW(folder.c_str()) ? std::error_code() : last_error();
 }
 
-std::filesystem::path make_temporary_folder(const std::string& prefix, std::error_code& error) {
-  const std::filesystem::path place = std::filesystem::temp_directory_path(error);
-  for (int i = 0; !error; ++i) {
-    const std::string name = prefix + std::to_string(process_id()) + "-" + std::to_string(i);
-    if (std::filesystem::create_directory(place / name, error)) return place / name;
-  }
-  return {};
-}
-
 }  // namespace sunder::app::system
