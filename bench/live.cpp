@@ -183,6 +183,24 @@ void new_load(benchmark::State& state, Index cells, Route route, bool all) {
   }
 }
 
+/// The first step of all, or the second, both another way than any before.
+void first_step(benchmark::State& state, Index cells, Route route, bool warm, int number) {
+  int back_solves = 0;
+  double seconds = 0;
+  for (auto _ : state) {
+    LiveBoard live(cells, route);
+    if (warm) live.simulation->warm_up();
+    for (int step = 0; step < number; ++step) {
+      live.simulation->drive(0, Vec3(std::sin(1.0 + step), -1, std::cos(1.7 * step)));
+      const auto start = Clock::now();
+      back_solves = live.simulation->step().back_solves;
+      seconds = since(start);
+    }
+    state.SetIterationTime(seconds);
+  }
+  state.counters["back_solves"] = back_solves;
+}
+
 /// Letting go, with the frame after it.
 void release(benchmark::State& state, Index cells, Route route, bool all) {
   LiveBoard live(cells, route, all);
@@ -276,6 +294,16 @@ const bool kRows = [] {
       }
       add("remove" + of, [=](auto& s) { remove(s, cells, route); });
       add("cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::destroyed); });
+      for (bool warm : {false, true}) {
+        for (int number : {1, 2}) {
+          const std::string name = "first_step" + of + (warm ? "/warm/" : "/cold/");
+          benchmark::RegisterBenchmark((name + std::to_string(number)).c_str(),
+                                       [=](auto& s) { first_step(s, cells, route, warm, number); })
+              ->Unit(benchmark::kMillisecond)
+              ->UseManualTime()
+              ->Iterations(5);
+        }
+      }
       if (route == Route::condensed) continue;  // cracks do not split there
       add("split_cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::split); });
     }

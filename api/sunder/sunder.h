@@ -722,9 +722,11 @@ SUNDER_API sunder_status sunder_simulation_warning_at(sunder_simulation simulati
 /// `out_of_time`; what is still to break is left to the next one. 0: none.
 SUNDER_API sunder_status sunder_simulation_step_within(sunder_simulation simulation, double max_ms,
                                                        sunder_step* step);
-/// Before the first step: does once, under no load, what a step does first, so that the first one
-/// costs what the second does. No result changes. Nothing later on, in motion and by the laws of
-/// finite deformation.
+/// Before the first step: does once what a step does first, and solves for loads that span what the
+/// instruments can do, whichever way they are driven, so that the first step costs what the second
+/// does. Later results are as accurate as those of a cold simulation, but may differ by rounding; a
+/// history takes it down, so that what is done again has the same bits. Nothing later on, in motion
+/// and by the laws of finite deformation.
 SUNDER_API sunder_status sunder_simulation_warm_up(sunder_simulation simulation);
 
 /// Takes live elements out between two steps, by one event with SUNDER_CAUSE_SCRIPT. In statics,

@@ -13,8 +13,8 @@ namespace sunder {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMark{'S', 'U', 'N', 'D', 'E', 'R', 'R', 'C'};
-// 1: no grips and pushes of a host. 2: no faces that a blade has opened.
-constexpr std::uint32_t kFirstVersion = 1, kVersion = 3;
+// 1: no grips and pushes of a host. 2: no faces that a blade has opened. 3: no warm-up.
+constexpr std::uint32_t kFirstVersion = 1, kVersion = 4;
 constexpr std::size_t kCheck = 8;  // bytes of the checksum, last
 
 /// FNV-1a of 64 bits.
@@ -154,6 +154,7 @@ void write(Writer& to, const Action::Move& a) {
   to.vector(a.force);
 }
 void write(Writer& to, const Action::Drop& a) { to.index(a.id); }
+void write(Writer&, const Action::WarmUp&) {}
 
 void read(Reader& from, Action::Drive& a) {
   a.instrument = static_cast<std::size_t>(from.number());
@@ -212,6 +213,7 @@ void read(Reader& from, Action::Open& a) {
   }
 }
 void read(Reader& from, Action::Drop& a) { a.id = static_cast<int>(from.index()); }
+void read(Reader&, Action::WarmUp&) {}
 
 using What = decltype(Action::what);
 

@@ -67,6 +67,7 @@ struct Move {
 struct Drop {
   int id = 0;
 };
+struct WarmUp {};
 }  // namespace action
 
 struct Action {
@@ -83,8 +84,9 @@ struct Action {
   using Move = action::Move;
   using Drop = action::Drop;
   using Open = action::Open;
+  using WarmUp = action::WarmUp;
   std::variant<Drive, Turn, Attribute, Velocity, Step, Remove, Grasp, Pose, Release, Push, Move,
-               Drop, Open>
+               Drop, Open, WarmUp>
       what;
   bool failed = false;  // with a NumericalError
   bool broke = false;   // something, or a grip or a push came or went: undo() stops before it

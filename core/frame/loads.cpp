@@ -240,11 +240,10 @@ void Loads::take_turns(double time) {
   }
 }
 
-void Loads::update(double time, const FractureCriterion& criterion,
-                   std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings) {
+/// All but the pressing instruments.
+void Loads::expand(double time) {
   const auto& instruments = problem_.scene().instruments;
   shares_.clear();
-  acting_.clear();
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     if (!std::holds_alternative<Pull>(instruments[i].action)) continue;
     forces_[i] = value(i, time);
@@ -270,6 +269,13 @@ void Loads::update(double time, const FractureCriterion& criterion,
                                       moved.data() + 3);
     }
   }
+}
+
+void Loads::update(double time, const FractureCriterion& criterion,
+                   std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings) {
+  const auto& instruments = problem_.scene().instruments;
+  acting_.clear();
+  expand(time);
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* press = std::get_if<Press>(&instruments[i].action);
     if (!press) continue;

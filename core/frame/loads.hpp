@@ -24,6 +24,11 @@ class Loads {
   void update(double time, const FractureCriterion& criterion,
               std::span<const std::uint8_t> destroyed, std::vector<Finding>& findings);
 
+  /// Loads that all those of the instruments, of a host's grips and pushes and of the weight are
+  /// sums of, but for presses, on the unknowns of all of these: as many as a solver remembers at
+  /// most, shifts before turns. The last one is the scene's own at a time, whatever a host drives.
+  [[nodiscard]] std::vector<Load> span(double time);
+
   /// Instrument i has this force or displacement from the next update on, whatever the scene says.
   void drive(std::size_t instrument, const Vec3& value) { driven_[instrument] = value; }
   /// A rigid grip has turned so far from the next update on [deg].
@@ -85,6 +90,8 @@ class Loads {
                             std::vector<Finding>& findings);
   void reserve();
   void take_turns(double time);
+  void expand(double time);
+  [[nodiscard]] std::vector<Load> span_on(const Load& first) const;
   void add(std::span<const Index> nodes, const Vec3& force);
   [[nodiscard]] Vec3 on_supports(std::span<const Index> nodes, const Vec3& force) const;
   void tools_changed();

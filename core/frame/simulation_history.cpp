@@ -39,7 +39,8 @@ void Simulation::keep_history(MakeBackend make, int quick) {
   history_ = std::make_unique<History>();
   history_->make = std::move(make);
   history_->quick = static_cast<std::size_t>(quick);
-  // What was set before is the beginning: it is done again first.
+  // What was set before is the beginning: it is done again first. No drive reaches a warm-up.
+  if (now_.warm) record({Action::WarmUp{}}, nullptr, 0);
   if (now_.attribute) record({Action::Attribute{true}}, nullptr, 0);
   const Loads::State loads = loads_->state();
   for (std::size_t i = 0; i < loads.driven.size(); ++i) {
@@ -163,6 +164,7 @@ void Simulation::perform(const std::shared_ptr<const Action>& action) {
           if constexpr (std::is_same_v<What, Action::Push>) push(what.nodes, what.force);
           if constexpr (std::is_same_v<What, Action::Move>) move(what.id, what.nodes, what.force);
           if constexpr (std::is_same_v<What, Action::Drop>) drop(what.id);
+          if constexpr (std::is_same_v<What, Action::WarmUp>) warm_up();
         },
         action->what);
   } catch (const NumericalError&) {

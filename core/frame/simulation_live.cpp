@@ -228,25 +228,41 @@ void Simulation::follow_removal() {
   if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
 }
 
+/// Of a step what comes before its decision; nothing of it shows.
+void Simulation::try_load(const Load& load) {
+  backend_->set_load(load);
+  backend_->solve();
+  if (!backend_->needs().stress) return;
+  backend_->stress();
+  static_cast<void>(backend_->deformation());
+  if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
+}
+
 void Simulation::warm_up() {
   if (now_.next_step > 0 || now_.solved || problem_->moves() || problem_->finite()) return;
-  const auto before = backend_->save();
-  const InstrumentForces::Quiet quiet(haptics_.get());
-  Load none;
-  none.displacements.assign(backend_->gripped_dofs().size(), 0.0);
-  backend_->set_load(none);
-  backend_->solve();
-  if (backend_->needs().stress) {
-    backend_->stress();
-    static_cast<void>(backend_->deformation());
-    if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
-  }
-  if (backend_->needs().pristine) {
-    std::vector<double> displacement(3 * problem_->mesh().nodes.size());
-    backend_->solve_pristine(none, displacement);
-  }
-  if (before) static_cast<void>(backend_->restore(*before));
-  if (haptics_) haptics_->withdraw();
+  act({Action::WarmUp{}}, [&](Action&) {
+    const auto before = backend_->save();
+    const InstrumentForces::Quiet quiet(haptics_.get());
+    Load none;
+    none.displacements.assign(backend_->gripped_dofs().size(), 0.0);
+    try_load(none);
+    if (backend_->needs().pristine) {
+      std::vector<double> displacement(3 * problem_->mesh().nodes.size());
+      backend_->solve_pristine(none, displacement);
+    }
+    if (before) static_cast<void>(backend_->restore(*before));
+    now_.warm = true;
+    if (backend_->info().route != "cg") {
+      for (const Load& load : loads_->span(1.0 / problem_->scene().steps)) {
+        try {
+          try_load(load);
+        } catch (const NumericalError&) {
+          // A way that nobody may go: the step that does will say so.
+        }
+      }
+    }
+    if (haptics_) haptics_->withdraw();
+  });
 }
 
 }  // namespace sunder

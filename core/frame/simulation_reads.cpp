@@ -58,7 +58,7 @@ void Simulation::read(Reactions& r) const {
     r.forces.push_back(loads_->force(i));
   }
   r.grips.assign(backend_->gripped_dofs().size(), 0.0);
-  if (r.grips.empty() || (!now_.solved && loads_->gripped().empty())) return;
+  if (r.grips.empty() || (!now_.solved && (now_.warm || loads_->gripped().empty()))) return;
   backend_->read_reactions(r.grips);
   for (std::size_t g = 0; g < loads_->gripped().size(); ++g) {
     r.grips[g] -= loads_->weight_on_grip(g);

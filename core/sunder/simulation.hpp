@@ -207,9 +207,15 @@ class Simulation {
   /// what is still to break is left to the next one. 0: none. Throws UsageError for any other value
   /// that is not finite and above 0.
   StepReport step_within(double max_ms);
-  /// Before the first step: does once what a step does first, under no load, so that the first step
-  /// costs what the second does. No later result changes by a bit. Nothing in motion, by the laws
-  /// of finite deformation, which go on from where they are, or later on.
+  /// Before the first step: does once what a step does first, and solves for loads that span what
+  /// the scene's instruments can do, whichever way they are driven, and a host's grips and pushes
+  /// that are there already: what checks find of these stays known, so that the first step costs
+  /// what the second does. Later results may differ from those of a cold simulation by what the
+  /// tolerance allows; a history has it, so that what is done again has the same bits. Instruments
+  /// that press, for which there is no crack yet, and preset cracks, which come out at the first
+  /// step, are left to that. Nothing in motion, by the laws of finite deformation, which go on from
+  /// where they are, or later on; on route cg, which checks every solution, no loads are solved
+  /// for.
   void warm_up();
 
   /// Within a step, for its observers: what its report would say by now, the device's times and
@@ -355,6 +361,7 @@ class Simulation {
     double lip_overlap = 0;
     std::vector<std::uint8_t> cut_off;  // per element; empty: none yet
     bool solved = false;                // the backend holds fields
+    bool warm = false;                  // warm_up() has left a solution that nobody has asked for
     std::size_t loose_nodes = 0, loose_pieces = 0, loose_elements = 0;
     int loose_nodes_step = kNone, loose_pieces_step = kNone;  // first seen
   };
@@ -388,6 +395,7 @@ class Simulation {
   void finish_by_hand();
   void check_removal(std::span<const Index> elements) const;
   void follow_removal();
+  void try_load(const Load& load);
   [[nodiscard]] std::shared_ptr<const Kept> keep() const;
   [[nodiscard]] bool go_back(const Kept& kept);
   void begin_anew();

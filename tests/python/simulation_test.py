@@ -159,6 +159,40 @@ class Fields(unittest.TestCase):
             np.testing.assert_array_equal(parents[faces[:, 1:4]], parents[faces[:, 4:]])
             self.assertTrue((simulation.events()["lives"] == 1).any())
 
+    def test_a_blade_opens_split_bodies(self):
+        with sunder.Simulation(SCENES / "split/board-split.toml") as simulation:
+            simulation.keep_history()
+            nodes = simulation.mesh.nodes
+            low, high = nodes.min(axis=0), nodes.max(axis=0)
+            x, y = (low[0] + 0.3 * (high[0] - low[0])), 0.45 * (low[1] + high[1])
+            # Two places of a blade that stands across the board: two triangles.
+            a, b = [low[0] - 1, y, low[2] - 1], [low[0] - 1, y, high[2] + 1]
+            c, d = [x, y, low[2] - 1], [x, y, high[2] + 1]
+            opened = simulation.cut([[a, b, c], [b, d, c]])
+            self.assertGreater(opened, 0)
+            body = simulation.body
+            self.assertEqual(body["crack_face_count"], opened)
+            self.assertGreater(body["node_count"], len(nodes))
+            self.assertFalse(simulation.destroyed().any())
+            faces, parents = simulation.crack_faces(), simulation.body_parents()
+            np.testing.assert_array_equal(parents[faces[:, 1:4]], parents[faces[:, 4:]])
+            surface = simulation.surface()
+            self.assertEqual(int(simulation.surface_changes()["opened"].sum()), 2 * opened)
+            simulation.step()
+            moved = simulation.body_displacement()
+            self.assertEqual(moved.shape, (simulation.body["node_count"], 3))
+            self.assertTrue(np.isfinite(moved).all())
+            while simulation.history()[0] > 0:
+                simulation.undo()
+            self.assertEqual(simulation.body["node_count"], len(nodes))
+            self.assertGreater(simulation.surface()["version"], surface["version"])
+            self.assertEqual(simulation.surface_changes()["opened"].sum(), 0)
+            with self.assertRaises(sunder.Error):
+                simulation.cut([[a, b, [x, y, float("nan")]]])
+            with self.assertRaises(sunder.Error):  # it lies along the board's plane
+                z = (low[2] + high[2]) / 2
+                simulation.cut([[[0, 0, z], [9, 0, z], [0, 9, z]]])
+
     def test_motion(self):
         with sunder.Simulation(sunder.Scene(SCENES / "motion/board.toml")) as simulation:
             first = simulation.step()

@@ -135,6 +135,53 @@ TEST_P(GraspLaws, AreRecordedAndTakenBack) {
   expect_same_bits(RunState(s), states.back());
 }
 
+// The tangent that the last step ended with tells what the next one finds, to first order in the
+// way; the forces carry the number and the step of their solution, and blend.
+TEST_P(GraspLaws, AreFeltToFirstOrder) {
+  LiveRun run(law_strip(GetParam()));
+  Simulation& s = run.simulation;
+  const auto forces = s.grip_forces();
+  ASSERT_TRUE(forces);
+  const int grip = s.grasp(kLeft, true);
+  Hand hands[1];
+  hands[0].grip = grip;
+  hands[0].position = s.centre_of(grip);
+  EXPECT_EQ(forces->feel({}, {}, hands).state, FeltState::waiting);
+  s.pose(grip, {s.centre_of(grip) + Vec3(-0.1, 0.05, 0)});
+  settle(s, GetParam().moves ? 200 : 1);
+  const Wrench before = s.wrench(grip);
+  const Vec3 way(2e-3, -1e-3, 1e-3);
+  hands[0].position = s.centre_of(grip) + way;
+  const Felt felt = forces->feel({}, {}, hands);
+  ASSERT_EQ(felt.state, FeltState::live);
+  EXPECT_TRUE(hands[0].held);
+  // In motion a step of a body that has come to rest brings no other solution.
+  EXPECT_LE(felt.step, s.steps_done() - 1);
+  if (!GetParam().moves) {
+    EXPECT_EQ(felt.step, s.steps_done() - 1);
+  }
+  EXPECT_EQ(felt.share, 1);
+  EXPECT_GE(felt.age_ms, 0);
+  s.pose(grip, {hands[0].position});
+  forces->blend(1000);
+  if (GetParam().moves) {
+    s.step();
+  } else {
+    settle(s);
+  }
+  const Wrench after = s.wrench(grip);
+  const double change = (after.force - before.force).norm();
+  EXPECT_GT(change, 1e-4 * before.force.norm());
+  EXPECT_LE((hands[0].force - after.force).norm(), 0.05 * change);
+  const auto now = InstrumentForces::Clock::now();
+  const Felt next = forces->feel({}, {}, hands, now);
+  EXPECT_GT(next.solution, felt.solution);
+  EXPECT_EQ(next.step, s.steps_done() - 1);
+  EXPECT_LT(next.share, 1) << "the solution before is blended in";
+  EXPECT_EQ(forces->feel({}, {}, hands, now + std::chrono::seconds(3)).share, 1);
+  EXPECT_LE((hands[0].force - after.force).norm(), 0.05 * change);
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, GraspLaws, testing::ValuesIn(kLaws),
                          [](const auto& of) { return std::string(of.param.name); });
 

@@ -156,29 +156,6 @@ TEST(Removal, RefusesWhatItCannotTakeAndChangesNothing) {
   condensed.simulation.remove(std::vector<Index>{0});
 }
 
-TEST(WarmUp, ChangesNoLaterBit) {
-  for (const Route route : {Route::inverse, Route::factor, Route::condensed, Route::cg}) {
-    for (const MaterialLaw law : {MaterialLaw::linear, MaterialLaw::corotated}) {
-      if (law != MaterialLaw::linear && route != Route::factor) continue;
-      SCOPED_TRACE(std::to_string(static_cast<int>(route)) + " " +
-                   std::to_string(static_cast<int>(law)));
-      Scene scene = strip(0.6, 3, 3);
-      scene.materials["board"].law = law;
-      scene.solver.route = route;
-      SceneRun cold(scene), warm(scene);
-      warm.simulation.warm_up();
-      EXPECT_EQ(warm.simulation.steps_done(), 0);
-      EXPECT_EQ(largest(warm.simulation.displacement()), 0);
-      cold.all();
-      warm.all();
-      warm.simulation.warm_up();  // too late: nothing
-      EXPECT_TRUE(cold.simulation.displacement() == warm.simulation.displacement());
-      EXPECT_TRUE(cold.simulation.stress() == warm.simulation.stress());
-      EXPECT_EQ(cold.simulation.destroyed().size(), warm.simulation.destroyed().size());
-    }
-  }
-}
-
 // The clock decides how many events a step has, but not what the sequence is.
 TEST(TimeBound, LeavesWhatIsLeftToTheNextStep) {
   Scene scene = strip(0.35, 2, 200);
