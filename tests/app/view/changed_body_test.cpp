@@ -161,6 +161,22 @@ TEST(ChangedBody, WhatIsRefusedLeavesEverythingAsItIs) {
   EXPECT_THROW(parse_inputs("open", "in"), InputError);
 }
 
+TEST(ChangedBody, WhatHasNoSolutionThenOrNoDeviceIsRefusedToo) {
+  Looked looked;
+  looked.take("step\nremove 100\ndrive 0 0 -1e308 0");
+  const auto* body = &looked.session->simulation();
+  EXPECT_THROW(looked.take("set material.upper.young=7"), NumericalError);
+  EXPECT_EQ(&looked.session->simulation(), body);
+  EXPECT_TRUE(looked.session->origin().changes.empty());
+  looked.session->can_change({looked.board.scene, {}}, [](const Origin&) -> BodyPlan {
+    throw DeviceError("the device was lost");
+  });
+  EXPECT_THROW(looked.take("set material.upper.young=7"), DeviceError);
+  EXPECT_EQ(&looked.session->simulation(), body);
+  looked.take("drive 0 0 -1 0\nstep");
+  EXPECT_EQ(looked.session->simulation().steps_done(), 2);
+}
+
 TEST(ChangedBody, AnotherSceneComesInItsPlace) {
   Looked looked;
   looked.take("camera 90 0 3\nset material.upper.young=6\nstep\nremove 100");

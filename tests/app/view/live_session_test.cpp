@@ -104,6 +104,22 @@ TEST(LiveSession, WhatGoesWrongPausesAndIsTold) {
   }));
 }
 
+TEST(LiveSession, AFrameThatIsRefusedPausesAndTheLastOneStays) {
+  Live live;
+  live.live->post(input::Step{});
+  ASSERT_TRUE(live.within(60s, [](const auto& now) { return Live::steps(now) == 1; }));
+  const auto before = live.live->now().shown->places;
+  live.live->post(input::Drive{"forceps", Vec3(0, -1e308, 0), false, 0});  // beyond numbers
+  live.live->pause(false);
+  ASSERT_TRUE(live.within(60s, [](const auto& now) { return now.error.has_value(); }));
+  EXPECT_TRUE(live.live->paused());
+  EXPECT_EQ(Live::steps(live.live->now()), 1);
+  EXPECT_EQ(live.live->now().shown->places, before);
+  live.live->post(input::Drive{"forceps", Vec3(0, -0.1, 0), false, 0});
+  live.live->pause(false);
+  EXPECT_TRUE(live.within(60s, [](const auto& now) { return !now.error && Live::steps(now) > 3; }));
+}
+
 TEST(LiveSession, DrivingAgainTakesThePlaceOfWhatWasNotDone) {
   Live live;
   std::promise<void> begin;

@@ -184,12 +184,14 @@ def drop_files(display, view, recorded, scene, environment):
     display.screenshot(OUT / "window-bad-file.png")
     expect(view.poll() is None, "the window went away with a bad file")
     expect(recorded("").startswith(before.rsplit("step", 1)[0]), "what was done is lost")
-    dropped(SCENES / "finite" / "liver.toml")
-    until("another title", lambda: subprocess.run(["xdotool", "search", "--name", "liver"], capture_output=True,
+    other = SCENES / "two-instruments.toml"
+    title = re.search(r'title = "(.*)"', other.read_text())[1]
+    dropped(other)
+    until("another title", lambda: subprocess.run(["xdotool", "search", "--name", title], capture_output=True,
                                                   env=environment).stdout)
     display.do("key", "s")
-    until("its recording", lambda: recorded("step") and "liver" in scene.read_text())
-    display.screenshot(OUT / "window-liver.png")
+    until("its recording", lambda: recorded("step") and title in scene.read_text())
+    display.screenshot(OUT / "window-another.png")
 
 
 def main():
