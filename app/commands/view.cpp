@@ -44,6 +44,7 @@ int count_of_frames(const ViewArguments& arguments, const std::optional<Inputs>&
 /// That of the simulation, where it is to be Vulkan's.
 view::DeviceOptions device_options(const SolverOptions& solver) {
   view::DeviceOptions options;
+  options.probe = view::probe_from_environment();
   if (solver.backend == "vulkan") options.index = solver.device;
   return options;
 }
@@ -107,17 +108,19 @@ int view_in_window(const ViewArguments& arguments) {
   }
   warnings = scene.warnings;
   WindowPlan plan;
-  plan.device = device_options(scene.problem->scene().solver).index;
+  const view::DeviceOptions asked = device_options(scene.problem->scene().solver);
+  plan.device = asked.index;
+  plan.probe = asked.probe;
   constexpr PictureSize kWindow{1280, 800};
   plan.size = arguments.size.value_or(kWindow);
   plan.name = scene.problem->scene().title;
   plan.warnings = scene.warnings;
-  plan.make_session = [&](view::Device& device) {
+  plan.make_session = [&](view::Devices& devices) {
     const Waiting waiting("preparing " + counted(scene.problem->dof_count(), "unknown"),
                           !arguments.quiet);
-    auto session = std::make_unique<Session>(scene.problem, bodies.make(scene.problem, device),
+    auto session = std::make_unique<Session>(scene.problem, bodies.make(scene.problem, devices),
                                              true, plan.size);
-    session->can_change(bodies.first(), bodies.plan(device));
+    session->can_change(bodies.first(), bodies.plan(devices));
     return session;
   };
   plan.record = [&](const std::string& inputs, const Origin& origin) {
@@ -149,16 +152,18 @@ int view_headless(const ViewArguments& arguments, Interruption& interruption) {
       in_folder(interruption, folder, out, "no picture was kept, and nothing written to ");
   warnings = opened.warnings;
   if (folder->warning()) warnings.push_back(*folder->warning());
-  view::Device device(device_options(problem->scene().solver));
+  view::Devices devices(device_options(problem->scene().solver));
   const PictureSize size = arguments.size.value_or(PictureSize{});
   std::optional<Session> session;
   {
     const Waiting waiting("preparing " + counted(problem->dof_count(), "unknown"),
                           !arguments.quiet);
-    session.emplace(problem, bodies.make(problem, device), inputs.has_value(), size);
-    session->can_change(bodies.first(), bodies.plan(device));
+    // A simulation on the device that draws does again what it did should that be lost.
+    const bool goes_back = inputs || problem->scene().solver.backend == "vulkan";
+    session.emplace(problem, bodies.make(problem, devices), goes_back, size);
+    session->can_change(bodies.first(), bodies.plan(devices));
   }
-  Painter painter(device, size);
+  auto painter = std::make_unique<Painter>(devices.now(), size);
   HeadlessPlan plan;
   plan.inputs = inputs ? &*inputs : nullptr;
   plan.frames = count_of_frames(arguments, inputs, problem->scene());
@@ -169,9 +174,22 @@ int view_headless(const ViewArguments& arguments, Interruption& interruption) {
   plan.progress = [&](int frame) {
     progress.update(frame, static_cast<int>(session->simulation().destroyed().size()));
   };
+  plan.renew = [&](const std::string& why) -> Painter& {
+    warnings.push_back(why + "; it went on with a new device, and nothing is missing");
+    painter.reset();
+    devices.renew();
+    session->renew();
+    painter = std::make_unique<Painter>(devices.now(), size);
+    return *painter;
+  };
   folder->clear();
-  const HeadlessOutcome outcome = play(*session, painter, *folder, plan);
+  const HeadlessOutcome outcome = play(*session, *painter, *folder, plan);
   progress.finish();
+  if (outcome.lost) {
+    throw DeviceError("the device was lost under the drawing, and there is none in its place: " +
+                      *outcome.lost + "; what was done is in " + (out / "recording.toml").string() +
+                      ", which sunder run does again");
+  }
   if (outcome.failure) {
     throw NumericalError(*outcome.failure + " (in step " +
                          std::to_string(session->simulation().steps_done() + 1) +
@@ -183,7 +201,7 @@ int view_headless(const ViewArguments& arguments, Interruption& interruption) {
                        ": what comes after them was left out");
   }
   if (!arguments.quiet) tell(warnings);
-  print_pictures(*session, outcome, device, plan.frames, out);
+  print_pictures(*session, outcome, devices.now(), plan.frames, out);
   return 0;
 }
 

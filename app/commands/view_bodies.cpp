@@ -50,11 +50,12 @@ OpenedScene ViewBodies::open(const Origin& origin, bool live) const {
 }
 
 Simulation::MakeBackend ViewBodies::make(std::shared_ptr<const Problem> problem,
-                                         view::Device& device) const {
-  return [this, problem = std::move(problem), &device] {
+                                         view::Devices& devices) const {
+  return [this, problem = std::move(problem), &devices] {
     const Needs needs = needs_of(*problem);
     const std::string& backend = problem->scene().solver.backend;
-    CreatedBackend created = backend == "vulkan" ? create_backend_on(problem, needs, device.lend())
+    CreatedBackend created = backend == "vulkan"
+                                 ? create_backend_on(problem, needs, devices.now().lend())
                              : prepared_ ? create_prepared_backend(problem, needs, prepared_)
                                          : create_backend(problem, needs);
     for (std::string& w : created.warnings) {
@@ -64,8 +65,8 @@ Simulation::MakeBackend ViewBodies::make(std::shared_ptr<const Problem> problem,
   };
 }
 
-PlanBody ViewBodies::plan(view::Device& device) const {
-  return [this, &device](const Origin& origin) {
+PlanBody ViewBodies::plan(view::Devices& devices) const {
+  return [this, &devices](const Origin& origin) {
     constexpr bool kLive = true;
     OpenedScene opened = open(origin, kLive);
     if (opened.inputs && origin.file != arguments_.scene) {
@@ -73,7 +74,7 @@ PlanBody ViewBodies::plan(view::Device& device) const {
                        origin.file.string() +
                            ": the scene has inputs, which are not played here; leave the key out");
     }
-    return BodyPlan{opened.problem, make(opened.problem, device), std::move(opened.warnings)};
+    return BodyPlan{opened.problem, make(opened.problem, devices), std::move(opened.warnings)};
   };
 }
 

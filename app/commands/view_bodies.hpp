@@ -28,11 +28,11 @@ class ViewBodies {
   /// Of another file the arguments hold without --set. Throws InputError.
   [[nodiscard]] OpenedScene open(const Origin& origin, bool live) const;
   /// The backend of a problem, as often as it is asked for: on the device that draws where Vulkan
-  /// is to compute. This and the device outlive it.
+  /// is to compute. This and the devices outlive it.
   [[nodiscard]] Simulation::MakeBackend make(std::shared_ptr<const Problem> problem,
-                                             view::Device& device) const;
-  /// For bodies that a hand does anything to. This and the device outlive it.
-  [[nodiscard]] PlanBody plan(view::Device& device) const;
+                                             view::Devices& devices) const;
+  /// For bodies that a hand does anything to. This and the devices outlive it.
+  [[nodiscard]] PlanBody plan(view::Devices& devices) const;
   /// The text of the scene for a folder, with inputs beside it; empty: none.
   [[nodiscard]] std::string text_for(const Origin& origin, const std::filesystem::path& folder,
                                      const std::string& inputs) const;

@@ -44,7 +44,11 @@ std::string picture_name(int frame) {
 class Playing {
  public:
   Playing(Session& session, Painter& painter, ResultFolder& folder, const HeadlessPlan& plan)
-      : session_(session), painter_(painter), folder_(folder), plan_(plan) {}
+      : session_(session),
+        painter_(&painter),
+        size_(painter.renderer().size()),
+        folder_(folder),
+        plan_(plan) {}
 
   HeadlessOutcome play() {
     try {
@@ -52,6 +56,11 @@ class Playing {
       while (frame_ < plan_.frames) take_frame();
     } catch (const NumericalError& error) {
       outcome_.failure = error.what();
+    } catch (const DeviceError& error) {
+      if (!lost_) throw;
+      outcome_.lost = error.what();
+      record();
+      return std::move(outcome_);
     }
     finish();
     return std::move(outcome_);
@@ -85,14 +94,28 @@ class Playing {
     std::shared_ptr<const Shown> shown;
     {
       const Timed timed(outcome_.showing);
-      shown = session_.show(painter_.version());
+      shown = session_.show(painter_->version());
     }
     {
       const Timed timed(outcome_.drawing);
-      painter_.draw(std::move(shown), session_.look(), session_.camera());
+      draw(shown);
     }
     const Timed timed(outcome_.writing);
-    write(picture_name(frame_), keep(painter_.png()));
+    write(picture_name(frame_), keep(painter_->png()));
+  }
+
+  /// Once more on another device where the first is lost under it.
+  void draw(const std::shared_ptr<const Shown>& shown) {
+    try {
+      painter_->draw(shown, session_.look(), session_.camera());
+    } catch (const DeviceLost& error) {
+      if (!plan_.renew) throw;
+      lost_ = true;
+      painter_ = nullptr;
+      painter_ = &plan_.renew(error.what());
+      painter_->draw(shown, session_.look(), session_.camera());
+      lost_ = false;
+    }
   }
 
   /// The last picture of each sixth of the frames goes on the strip as well.
@@ -115,8 +138,7 @@ class Playing {
   /// The recording comes last: where it is, all is there.
   void finish() {
     if (!film_.empty()) {
-      write("film.png",
-            film_of(session_.problem().scene().title, film_, painter_.renderer().size()));
+      write("film.png", film_of(session_.problem().scene().title, film_, size_));
     }
     std::string events = events_header();
     for (const DestroyedElement& row : session_.simulation().destroyed()) events += events_row(row);
@@ -125,16 +147,22 @@ class Playing {
     write_vtu(result, session_.problem(), state_of(session_.simulation()));
     result.commit();
     outcome_.files.push_back("result.vtu");
+    record();
+  }
+
+  void record() {
     if (plan_.inputs) write("recording.inputs", session_.hand().recording());
     write("recording.toml", plan_.recording(session_.origin()));
   }
 
   Session& session_;
-  Painter& painter_;
+  Painter* painter_;  // null: it went with its device
+  const PictureSize size_;
   ResultFolder& folder_;
   const HeadlessPlan& plan_;
   HeadlessOutcome outcome_;
   int frame_ = 0;
+  bool lost_ = false;  // the device, and there is no other yet
   std::string last_;
   std::vector<FilmFrame> film_;
 };

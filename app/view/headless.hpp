@@ -17,11 +17,15 @@ struct HeadlessPlan {
   /// The scene's text of an origin, as it stands beside the recorded inputs.
   std::function<std::string(const Origin&)> recording;
   std::function<void(int frame)> progress;
+  /// The device was lost under a picture: another painter, with the session on its device. Throws
+  /// DeviceError where there is none; without it that is told at once.
+  std::function<Painter&(const std::string& why)> renew;
 };
 
 struct HeadlessOutcome {
   std::vector<std::string> files;
   std::optional<std::string> failure;  ///< of a step: it ended there, and what there is was written
+  std::optional<std::string> lost;     ///< the device for good: there are pictures and a recording
   bool inputs_left = false;            ///< the pictures were over before the inputs
   /// Of all pictures together: what a frame is computed in, copied out in, drawn in, and written as
   /// PNG in.

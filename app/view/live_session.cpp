@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "sunder/error.hpp"
+
 namespace sunder::app {
 namespace {
 
@@ -59,7 +61,7 @@ void LiveSession::post(InputAction what) {
     if (!tasks_.empty() && tasks_.back().what && same_instrument(*tasks_.back().what, what)) {
       tasks_.back().what = std::move(what);
     } else {
-      tasks_.push_back({std::move(what), {}});
+      tasks_.push_back({std::move(what), {}, {}});
     }
   }
   wake_.notify_one();
@@ -68,7 +70,7 @@ void LiveSession::post(InputAction what) {
 void LiveSession::record(Receive receive) {
   {
     const std::lock_guard lock(mutex_);
-    tasks_.push_back({std::nullopt, std::move(receive)});
+    tasks_.push_back({std::nullopt, std::move(receive), {}});
   }
   wake_.notify_one();
 }
@@ -82,6 +84,15 @@ void LiveSession::pause(bool on) {
   wake_.notify_one();
 }
 
+void LiveSession::renew(std::string told) {
+  {
+    const std::lock_guard lock(mutex_);
+    paused_.store(true);
+    tasks_.push_front({std::nullopt, {}, std::move(told)});
+  }
+  wake_.notify_one();
+}
+
 LiveSession::Now LiveSession::now() const {
   const std::lock_guard lock(mutex_);
   return now_;
@@ -91,6 +102,10 @@ void LiveSession::perform(const Task& task) {
   if (task.receive) {
     task.receive(session_.hand().recording(), session_.origin());
     return;
+  }
+  if (!task.renewed.empty()) {
+    session_.renew();
+    throw DeviceLost(task.renewed);  // which is told as what goes wrong is
   }
   InputAction what = *task.what;
   if (!find_grip(what)) return;

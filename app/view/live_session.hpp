@@ -69,11 +69,15 @@ class LiveSession {
   /// Asks for the recording up to now; `receive` gets it on the session's thread.
   using Receive = std::function<void(const std::string& inputs, const Origin& origin)>;
   void record(Receive receive);
+  /// Before all else that is to be done: the device that draws was lost, and there is another one
+  /// (Session::renew). Pauses; `told` is the error then.
+  void renew(std::string told);
 
  private:
   struct Task {
     std::optional<InputAction> what;
     Receive receive;
+    std::string renewed;  ///< not empty: of renew()
   };
   void run();
   void perform(const Task& task);

@@ -46,6 +46,10 @@ void Session::advance() {
   if (!paused_) step();
 }
 
+void Session::renew() {
+  if (problem().scene().solver.backend == "vulkan") simulation().renew_backend();
+}
+
 void Session::go_back(const Inputs& inputs, const Input& input) {
   try {
     if (const auto* undo = std::get_if<input::Undo>(&input.what)) hand().undo(undo->count);

@@ -31,6 +31,10 @@ class Session {
   void step() { body_->step(); }
   /// A step unless paused.
   void advance();
+  /// The device that draws was lost, and there is another one: a simulation on it begins anew there
+  /// and does again what was done, to the same bits. Any other stays. Throws what
+  /// Simulation::renew_backend throws.
+  void renew();
 
   [[nodiscard]] const Simulation& simulation() const { return body_->simulation; }
   [[nodiscard]] Simulation& simulation() { return body_->simulation; }

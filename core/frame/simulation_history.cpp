@@ -116,7 +116,12 @@ void Simulation::begin_anew() {
   }
   // By the laws of finite deformation they cost every frame once somebody has asked.
   constexpr long kOurs = 2;  // the backend's own hold and this one
-  auto forces = backend_->instrument_forces();
+  std::shared_ptr<InstrumentForces> forces;
+  try {
+    forces = backend_->instrument_forces();
+  } catch (const DeviceLost&) {
+    // It has none that anybody has: those were there already.
+  }
   if (haptics_ || (forces && forces.use_count() > kOurs)) {
     backend->take_over_instrument_forces(haptics_ ? haptics_ : std::move(forces));
   }
@@ -202,6 +207,15 @@ bool Simulation::go_to(const Actions& actions, const std::shared_ptr<const Kept>
   for (std::size_t i = at; i < path.size(); ++i) perform(path[i]);
   arrive();
   return !back;
+}
+
+void Simulation::renew_backend() {
+  require_history();
+  const InstrumentForces::Quiet quiet(haptics_.get());
+  const Actions path = history_->done;
+  begin_anew();
+  for (const auto& action : path) perform(action);
+  arrive();
 }
 
 Mark Simulation::save() {

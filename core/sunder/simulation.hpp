@@ -171,6 +171,11 @@ class Simulation {
   /// Does again what undo() took back, quiet steps that came after it included. Throws UsageError
   /// where there is less, as after any step or action since.
   Travel redo(int actions = 1);
+  /// Goes on with a new backend by keep_history()'s `make`, where the device of the one before is
+  /// lost: does again all that was done, to the same bits, and can take back what it could. Throws
+  /// UsageError without a history or `make`, and what `make` throws: nothing changes then. A step
+  /// that fails on the way (NumericalError, DeviceLost) ends it there.
+  void renew_backend();
   /// The history as bytes: what was done, with where steps ended; not the body. Throws UsageError
   /// without keep_history().
   [[nodiscard]] std::vector<std::uint8_t> store() const;

@@ -46,10 +46,7 @@ void Commands::run(VkSemaphore after, VkSemaphore done) {
   info.pCommandBuffers = &buffer_;
   info.signalSemaphoreCount = done ? 1 : 0;
   info.pSignalSemaphores = &done;
-  {
-    const std::lock_guard lock(device_.queue_lock());
-    check(vk.QueueSubmit(device_.queue(), 1, &info, fence_.get()), "vkQueueSubmit");
-  }
+  device_.submit(info, fence_.get());
   constexpr auto kForever = std::numeric_limits<std::uint64_t>::max();
   check(vk.WaitForFences(device_.handle(), 1, fence_.address(), VK_TRUE, kForever),
         "vkWaitForFences");

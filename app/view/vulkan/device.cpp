@@ -30,11 +30,13 @@ void check(VkResult result, const char* call) {
                            : result == VK_ERROR_OUT_OF_DEVICE_MEMORY ? "out of device memory"
                            : result == VK_ERROR_OUT_OF_HOST_MEMORY   ? "out of memory"
                                                                      : "error";
-  throw DeviceError("drawing failed in " + std::string(call) + ": " + what + " (" +
-                    std::to_string(result) + ")");
+  const std::string sentence =
+      "drawing failed in " + std::string(call) + ": " + what + " (" + std::to_string(result) + ")";
+  if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(sentence);
+  throw DeviceError(sentence);
 }
 
-Device::Device(const DeviceOptions& options) {
+Device::Device(const DeviceOptions& options) : probe_(options.probe) {
   try {
     open_loader();
     create_instance(options);
@@ -180,6 +182,43 @@ std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags n
     }
   }
   throw DeviceError("device " + name_ + " has no memory of a kind that drawing takes");
+}
+
+void Device::submit(const VkSubmitInfo& info, VkFence done) {
+  const std::lock_guard lock(lock_);
+  std::error_code ignored;
+  if (probe_.submits == 0 ||
+      (!probe_.submit_file.empty() && std::filesystem::remove(probe_.submit_file, ignored))) {
+    check(VK_ERROR_DEVICE_LOST, "vkQueueSubmit");
+  }
+  if (probe_.submits > 0) --probe_.submits;
+  check(vk_.QueueSubmit(queue_, 1, &info, done), "vkQueueSubmit");
+}
+
+VkResult Device::present(PFN_vkQueuePresentKHR by, const VkPresentInfoKHR& info) {
+  const std::lock_guard lock(lock_);
+  std::error_code ignored;
+  if (!probe_.present_file.empty() && std::filesystem::remove(probe_.present_file, ignored)) {
+    return VK_ERROR_DEVICE_LOST;
+  }
+  return by(queue_, &info);
+}
+
+Devices::Devices(DeviceOptions options) : options_(std::move(options)) { renew(); }
+
+Device& Devices::now() const {
+  const std::lock_guard lock(lock_);
+  return *all_.back();
+}
+
+void Devices::renew() {
+  DeviceProbe& probe = options_.probe;
+  if (probe.devices == 0) throw DeviceError("there is no further device to draw with");
+  auto device = std::make_unique<Device>(options_);
+  if (probe.devices > 0) --probe.devices;
+  probe.submits = -1;
+  const std::lock_guard lock(lock_);
+  all_.push_back(std::move(device));
 }
 
 sunder_vulkan_host Device::lend() {

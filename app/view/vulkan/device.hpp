@@ -2,7 +2,9 @@
 // The Vulkan device that pictures are drawn on, and what lives on it.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -14,8 +16,24 @@
 
 namespace sunder::app::view {
 
+/// What tests ask of the devices that draw.
+struct DeviceProbe {
+  /// After so many submits the first device reports that it is lost, and ever after. Negative:
+  /// never.
+  int submits = -1;
+  /// Where there is a file of that name, a submit, or the showing of a picture in a window, takes
+  /// it away and reports the loss. Empty: there is none.
+  std::filesystem::path submit_file, present_file;
+  /// Devices that can be made. Negative: as many as one likes.
+  int devices = -1;
+};
+
+/// What SUNDER_VIEW_PROBE asks for. Throws UsageError for what it may not have.
+[[nodiscard]] DeviceProbe probe_from_environment();
+
 /// What a window adds: extensions, and which device can show pictures on it.
 struct DeviceOptions {
+  DeviceProbe probe;
   int index = kNone;  ///< among all devices, kNone: the first GPU, else the first device
   std::vector<const char*> instance_extensions, device_extensions;
   /// Called with the instance before a device is chosen.
@@ -40,8 +58,10 @@ class Device {
   [[nodiscard]] std::uint32_t family() const { return family_; }
   [[nodiscard]] PFN_vkGetInstanceProcAddr get() const { return get_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Whoever submits holds it.
-  [[nodiscard]] std::mutex& queue_lock() { return lock_; }
+  /// Hands it over, with the queue held. Throws DeviceLost, or DeviceError.
+  void submit(const VkSubmitInfo& info, VkFence done);
+  /// Shows an image by a window's own function, with the queue held.
+  [[nodiscard]] VkResult present(PFN_vkQueuePresentKHR by, const VkPresentInfoKHR& info);
 
   /// A memory type among `allowed` with all these properties, and with `wanted` where there is one.
   [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
@@ -68,7 +88,26 @@ class Device {
   std::uint32_t family_ = 0, features_ = 0;  // the latter as sunder_vulkan.h has them
   VkPhysicalDeviceMemoryProperties memory_{};
   std::string name_;
-  std::mutex lock_;
+  std::mutex lock_;  // whoever submits holds it
+  DeviceProbe probe_;
+};
+
+/// The device that draws now, and those that were lost before: a simulation may still hold what is
+/// of them, so that they go when this does.
+class Devices {
+ public:
+  /// Makes the first. Throws DeviceError.
+  explicit Devices(DeviceOptions options);
+
+  /// Stays as it is until this goes, whatever comes after it. Any thread may ask.
+  [[nodiscard]] Device& now() const;
+  /// Makes another in place of one that was lost. Throws DeviceError, and nothing changes.
+  void renew();
+
+ private:
+  DeviceOptions options_;
+  mutable std::mutex lock_;
+  std::vector<std::unique_ptr<Device>> all_;  // the last one draws
 };
 
 /// One object of a device, destroyed with this.

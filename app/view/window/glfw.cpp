@@ -33,6 +33,7 @@ WindowHandle make_window(const WindowPlan& plan) {
 view::DeviceOptions device_options(const WindowPlan& plan, GLFWwindow* window, WithSurface& made) {
   view::DeviceOptions options;
   options.index = plan.device;
+  options.probe = plan.probe;
   std::uint32_t count = 0;
   const char** names = glfwGetRequiredInstanceExtensions(&count);
   if (names) options.instance_extensions.assign(names, names + count);

@@ -36,6 +36,11 @@ struct WithSurface {
   VkInstance instance = VK_NULL_HANDLE;
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   PFN_vkDestroySurfaceKHR destroy = nullptr;
+
+  void end() {
+    if (surface) destroy(instance, surface, nullptr);
+    surface = VK_NULL_HANDLE;
+  }
 };
 
 /// Of a device that can present; the surface is `made` with the instance.

@@ -31,9 +31,7 @@ void listen(GLFWwindow* window, WindowEvents& events) {
 
 }  // namespace
 
-Panels::Panels(GLFWwindow* window, WindowEvents& events, view::Device& device,
-               view::Swapchain& chain)
-    : device_(device) {
+Panels::Panels(GLFWwindow* window, WindowEvents& events) {
   listen(window, events);
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
@@ -42,6 +40,9 @@ Panels::Panels(GLFWwindow* window, WindowEvents& events, view::Device& device,
     ImGui::GetIO().Fonts->AddFontFromFileTTF(kFont, kFontSize);
   }
   ImGui_ImplGlfw_InitForVulkan(window, true);
+}
+
+void Panels::enter(view::Device& device, view::Swapchain& chain) {
   const std::array<VkDescriptorPoolSize, 1> sizes{
       VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16}};
   VkDescriptorPoolCreateInfo pool{};
@@ -63,14 +64,23 @@ Panels::Panels(GLFWwindow* window, WindowEvents& events, view::Device& device,
   info.MinImageCount = 2;
   info.ImageCount = std::max(2U, chain.image_count());
   info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+  info.CheckVkResultFn = [](VkResult result) { view::check(result, "the panels' part"); };
   ImGui_ImplVulkan_Init(&info, chain.pass());
+  device_ = &device;
   chain.once([](VkCommandBuffer commands) { ImGui_ImplVulkan_CreateFontsTexture(commands); });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-Panels::~Panels() {
-  device_.vk().DeviceWaitIdle(device_.handle());
+void Panels::leave() {
+  if (!device_) return;
+  device_->vk().DeviceWaitIdle(device_->handle());
   ImGui_ImplVulkan_Shutdown();
+  pool_ = {};
+  device_ = nullptr;
+}
+
+Panels::~Panels() {
+  leave();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
 }

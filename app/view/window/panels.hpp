@@ -22,13 +22,19 @@ struct WindowEvents {
 /// Dear ImGui for as long as this lives. What happens to the window comes to `events`.
 class Panels {
  public:
-  Panels(GLFWwindow* window, WindowEvents& events, view::Device& device, view::Swapchain& chain);
+  /// Without a device yet.
+  Panels(GLFWwindow* window, WindowEvents& events);
   ~Panels();
   Panels(const Panels&) = delete;
   Panels& operator=(const Panels&) = delete;
 
+  /// Its part on a device, which must outlive this or leave(). Throws DeviceError, as what is drawn
+  /// there does.
+  void enter(view::Device& device, view::Swapchain& chain);
+  void leave();
+
  private:
-  view::Device& device_;
+  view::Device* device_ = nullptr;  // null: none
   view::Owned<VkDescriptorPool> pool_;
 };
 

@@ -216,11 +216,7 @@ void Swapchain::show(VkImage picture, VkExtent2D size,
   present.swapchainCount = 1;
   present.pSwapchains = chain_.address();
   present.pImageIndices = &index;
-  VkResult shown = VK_SUCCESS;
-  {
-    const std::lock_guard lock(device_.queue_lock());
-    shown = of_.QueuePresentKHR(device_.queue(), &present);
-  }
+  const VkResult shown = device_.present(of_.QueuePresentKHR, present);
   if (shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR) {
     make();
   } else {

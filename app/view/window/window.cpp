@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 
 #include "sunder/error.hpp"
 
@@ -26,21 +27,22 @@ std::chrono::duration<double> pace_of(const Problem& problem) {
 Window::Window(const WindowPlan& plan)
     : plan_(plan),
       window_(make_window(plan)),
-      device_(device_options(plan, window_.get(), surface_)),
-      chain_(device_, surface_.surface),
-      session_(plan.make_session(device_)),
+      devices_(device_options(plan, window_.get(), surface_)),
+      chain_(std::in_place, devices_.now(), surface_.surface),
+      session_(plan.make_session(devices_)),
       shown_points_(shown_points(session_->problem())),
-      panels_(window_.get(), events_, device_, chain_),
+      panels_(window_.get(), events_),
       live_(*session_, pace_of),
       now_(live_.now()),
       file_(now_.origin.file),
       haptics_(now_.forces, [this](const input::Pose& pose) { live_.post(pose); }) {
+  panels_.enter(devices_.now(), *chain_);
   look_.camera = standard_camera(problem().mesh());
   look_.colour = input::Colour{standard_field(problem()), {}};
   take_measure();
 }
 
-Window::~Window() { device_.vk().DeviceWaitIdle(device_.handle()); }
+Window::~Window() { devices_.now().vk().DeviceWaitIdle(devices_.now().handle()); }
 
 void Window::run() {
   while (!glfwWindowShouldClose(window_.get())) {
@@ -48,28 +50,78 @@ void Window::run() {
     now_ = live_.now();
     meet_body();
     take_files();
-    ImGui_ImplVulkan_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-    take_size();
-    drop_lost_grip();
-    const Camera camera(look_.camera, look_.at, shown_points_, size_);
-    if (!ImGui::GetIO().WantCaptureMouse || holds_ != Holds::nothing) take_mouse(camera);
-    if (!ImGui::GetIO().WantTextInput) take_keys();
-    events_.keys.clear();
-    picture(camera);
-    draw(painter_->over());
-    draw_stroke();
-    draw_hands(camera);
-    panel();
-    scene_panel();
-    ImGui::Render();
-    chain_.show(painter_->renderer().image(),
-                {static_cast<std::uint32_t>(size_.width), static_cast<std::uint32_t>(size_.height)},
-                [](VkCommandBuffer commands) {
-                  ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
-                });
+    try {
+      frame();
+      shown_on_it_ = true;
+    } catch (const DeviceLost& error) {
+      recover(error.what());
+    }
   }
+}
+
+void Window::frame() {
+  ImGui_ImplVulkan_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  take_size();
+  drop_lost_grip();
+  const Camera camera(look_.camera, look_.at, shown_points_, size_);
+  if (!ImGui::GetIO().WantCaptureMouse || holds_ != Holds::nothing) take_mouse(camera);
+  if (!ImGui::GetIO().WantTextInput) take_keys();
+  events_.keys.clear();
+  picture(camera);
+  draw(painter_->over());
+  draw_stroke();
+  draw_hands(camera);
+  panel();
+  scene_panel();
+  ImGui::Render();
+  chain_->show(painter_->renderer().image(),
+               {static_cast<std::uint32_t>(size_.width), static_cast<std::uint32_t>(size_.height)},
+               [](VkCommandBuffer commands) {
+                 ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
+               });
+}
+
+/// The device was lost: all that was on it is made anew on another, and the body goes on as it was.
+/// Where that cannot be, or a device is lost before it has shown anything, what was done is
+/// recorded before the end.
+void Window::recover(const std::string& why) {
+  ImGui::EndFrame();
+  try {
+    if (!shown_on_it_) throw DeviceError("it is the second one in a row");
+    painter_.reset();
+    panels_.leave();
+    chain_.reset();
+    surface_.end();
+    try {
+      devices_.renew();
+    } catch (const DeviceError&) {
+      surface_.surface = VK_NULL_HANDLE;  // what was made went with its instance
+      throw;
+    }
+    chain_.emplace(devices_.now(), surface_.surface);
+    panels_.enter(devices_.now(), *chain_);
+    shown_on_it_ = false;
+    live_.drawn(0);
+  } catch (const DeviceError& error) {
+    throw DeviceError(why + ", and there is no device in its place: " + error.what() + "; " +
+                      keep());
+  }
+  live_.renew(why + "; there is a new one, and the body is as it was");
+}
+
+/// Records what was done, and waits for it.
+std::string Window::keep() {
+  auto said = std::make_shared<std::promise<std::string>>();
+  live_.record([this, said](const std::string& inputs, const Origin& origin) {
+    try {
+      said->set_value("what was done is recorded: " + plan_.record(inputs, origin));
+    } catch (const std::exception& error) {
+      said->set_value(std::string("what was done is not recorded: ") + error.what());
+    }
+  });
+  return said->get_future().get();
 }
 
 /// An undo, or what has gone wrong, may have taken the grip that is in the hand.
@@ -91,7 +143,7 @@ void Window::take_size() {
   }
   if (painter_ && width == size_.width && height == size_.height) return;
   size_ = {width, height};
-  painter_.emplace(device_, size_);
+  painter_.emplace(devices_.now(), size_);
   live_.drawn(0);
 }
 

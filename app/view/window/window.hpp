@@ -32,6 +32,9 @@ class Window {
  private:
   enum class Holds { nothing, camera, middle, instrument, tissue, blade };
 
+  void frame();
+  void recover(const std::string& why);
+  [[nodiscard]] std::string keep();
   void take_size();
   void picture(const Camera& camera);
   void take_keys();
@@ -85,14 +88,12 @@ class Window {
   Glfw glfw_;
   WindowHandle window_;
   WithSurface surface_;
-  view::Device device_;
+  view::Devices devices_;
   struct Surface {
     WithSurface& of;
-    ~Surface() {
-      if (of.surface) of.destroy(of.instance, of.surface, nullptr);
-    }
+    ~Surface() { of.end(); }
   } surface_end_{surface_};
-  view::Swapchain chain_;
+  std::optional<view::Swapchain> chain_;
   std::unique_ptr<Session> session_;
   std::vector<Vec3> shown_points_;
   WindowEvents events_;  // since the last frame
@@ -123,6 +124,7 @@ class Window {
   Vec2 from_ = Vec2::Zero(), last_ = Vec2::Zero();
   std::vector<Vec2> stroke_;
   double drawing_ms_ = 0;
+  bool shown_on_it_ = false;  // a frame, on the device of now
 };
 
 }  // namespace sunder::app

@@ -106,6 +106,20 @@ def expect(condition, what):
         raise AssertionError(what)
 
 
+def validated(folder, display):
+    """The environment of a program in the display, under Vulkan's validation."""
+    settings = folder / "vk_layer_settings.txt"
+    settings.write_text(SETTINGS.format(log=folder / "layer.log"))
+    return dict(os.environ, DISPLAY=display.name, VK_INSTANCE_LAYERS="VK_LAYER_KHRONOS_validation",
+                VK_LAYER_SETTINGS_PATH=str(settings))
+
+
+def expect_valid(folder):
+    log = folder / "layer.log"
+    said = log.read_text() if log.exists() else ""
+    expect("VUID" not in said and "SYNC" not in said and "error" not in said.lower(), said)
+
+
 def turn_a_patch(display, recorded):
     """With shift a patch in the hand turns where it is."""
     display.do("key", "r")
@@ -198,13 +212,10 @@ def main():
     OUT.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        log = folder / "layer.log"
-        (folder / "vk_layer_settings.txt").write_text(SETTINGS.format(log=log))
         display = Display(name)
         view = None
         try:
-            environment = dict(os.environ, DISPLAY=display.name, VK_INSTANCE_LAYERS="VK_LAYER_KHRONOS_validation",
-                               VK_LAYER_SETTINGS_PATH=str(folder / "vk_layer_settings.txt"))
+            environment = validated(folder, display)
             scene = SCENES / "board-grip-b.toml"
             view = subprocess.Popen([PROGRAM, "view", scene, "--out", folder / "out", "--steps", "2000", *MORE],
                                     env=environment, stderr=subprocess.PIPE, text=True)
@@ -293,8 +304,7 @@ def main():
             gone = re.findall(r"\d+", re.search(r"\nremove (.*)", text)[1])
             events = (folder / "run" / "events.csv").read_text()
             expect(all(f",{e},script" in events for e in gone), "the run has not removed what was cut")
-            said = log.read_text() if log.exists() else ""
-            expect("VUID" not in said and "SYNC" not in said and "error" not in said.lower(), said)
+            expect_valid(folder)
         finally:
             if view and view.poll() is None:
                 view.kill()
@@ -303,4 +313,5 @@ def main():
     print("ok; screenshots in", OUT)
 
 
-main()
+if __name__ == "__main__":
+    main()

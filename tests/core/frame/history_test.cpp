@@ -178,6 +178,27 @@ TEST_P(Back, RedoAndMarksComeToTheSameBits) {
   expect_same_bits(RunState(s), other);
 }
 
+TEST_P(Back, ANewBackendGoesOnWithTheSameBits) {
+  HistoryRun run(GetParam().scene());
+  Simulation& s = run.simulation;
+  const RunState start(s);
+  s.renew_backend();
+  expect_same_bits(RunState(s), start);
+  while (!s.done() && s.undos() < 2) s.step();
+  const RunState late(s);
+  s.undo();
+  const RunState early(s);
+  const Backend* const before = &s.backend();
+  const int undos = s.undos();
+  s.renew_backend();
+  EXPECT_NE(&s.backend(), before);
+  expect_same_bits(RunState(s), early);
+  EXPECT_EQ(s.undos(), undos);
+  EXPECT_EQ(s.redos(), 1) << "what was taken back can still be done again";
+  s.redo();
+  expect_same_bits(RunState(s), late);
+}
+
 INSTANTIATE_TEST_SUITE_P(Worlds, Back, testing::ValuesIn(worlds()),
                          [](const auto& of) { return std::string(of.param.name); });
 
@@ -300,6 +321,7 @@ TEST(History, RefusesInOneSentence) {
   SceneRun none(strip(0.6, 3, 6));
   refused([&] { static_cast<void>(none.simulation.save()); }, "keeps no history");
   refused([&] { none.simulation.undo(); }, "keeps no history");
+  refused([&] { none.simulation.renew_backend(); }, "keeps no history");
   none.simulation.step();
   refused([&] { none.simulation.keep_history(); }, "before the first step");
 
@@ -316,6 +338,7 @@ TEST(History, RefusesInOneSentence) {
   while (alone.simulation.undos() == 0) alone.simulation.step();
   const RunState state(alone.simulation);
   refused([&] { alone.simulation.undo(); }, "needs a new backend");
+  refused([&] { alone.simulation.renew_backend(); }, "needs a new backend");
   expect_same_bits(RunState(alone.simulation), state);
 }
 
