@@ -242,10 +242,6 @@ class VulkanBackend final : public Backend {
   }
 
   std::string why_no_grasp() const override {
-    if (plan_.route == Route::cg) {
-      return "on backend vulkan route cg holds the scene's grips alone; take route inverse or "
-             "condensed, or backend cpu";
-    }
     if (plan_.eager) {
       return "on backend vulkan update eager holds the scene's grips alone; take update deferred, "
              "or "
