@@ -52,7 +52,7 @@ TEST(ViewArguments, WrongGripsAreNamed) {
     expect_refused(view({"--script", script, "--out", folder / "out"}), 3, "s.inputs:1: " + part);
   };
   expect("pose 0 1 2 3", "grip 0 is an instrument of the scene");
-  expect("release 0", "grip 0 is an instrument of the scene");
+  expect("release 0", "instrument 0 holds nothing");
   expect("grasp nodes 1 99999", "there is no node 99999");
   expect("grasp 1 2 3 0", "the radius of a grip must be above 0 mm");
   expect("grasp nodes 1 stiff", "a node to grasp");
