@@ -16,8 +16,8 @@ namespace sunder::solver {
 /// host. Finds them anew, and allocates, only where others are gripped than at the last call.
 class Anchors {
  public:
-  /// The problem must outlive it.
-  explicit Anchors(const Problem& problem) : problem_(problem) {}
+  /// Of the problem's own. The problem must outlive it.
+  explicit Anchors(const Problem& problem) : problem_(problem) { (void)of(problem.gripped_dofs()); }
   /// One per unknown, until the next call.
   [[nodiscard]] std::span<const double> of(std::span<const Index> gripped);
 
