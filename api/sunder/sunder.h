@@ -9,7 +9,7 @@
 //   destroyed handles, and handles of another kind, give SUNDER_ERROR_HANDLE.
 // - Ids are 0-based and 32-bit. Arrays are dense, row by row; the caller owns them, and they are
 //   copied before the call returns. The size of an array is its number of values, and it must be
-//   exactly what the function states (else SUNDER_ERROR_SIZE).
+//   exactly what the function states (else SUNDER_ERROR_SIZE, as of more than 2^31 - 1 rows).
 // - Text goes out as UTF-8 into a buffer of the caller's: at most `capacity` bytes with the closing
 //   zero are written, `length` (may be null) receives the length without it. A null buffer with
 //   capacity 0 asks for the length alone.
