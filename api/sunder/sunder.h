@@ -476,9 +476,9 @@ typedef struct sunder_step {
   double momentum[3];          ///< [t mm/s]
   double angular_momentum[3];  ///< about the origin [t mm^2/s]
   int32_t out_of_time;         ///< 1: ended by time: what was still to break is left to the next
-  /// New bases (factors or inverses of the body as it is) that this step and what was done since the
-  /// one before went over to: grips, cuts, removals, going back. 0 up to the damage at which `plan`
-  /// says that a new one is cheaper, and by law linear for every grip.
+  /// New bases (factors or inverses of the body as it is) that this step and what was done since
+  /// the one before went over to: grips, cuts, removals, going back. 0 up to the damage at which
+  /// `plan` says that a new one is cheaper, and by law linear for every grip.
   int32_t new_bases;
   double ms_new_bases;  ///< how long the step and those calls waited for them
 } sunder_step;
@@ -783,8 +783,9 @@ SUNDER_API sunder_status sunder_simulation_wrench(sunder_simulation simulation, 
                                                   double force[3], double torque[3]);
 /// Lets go: from the next step on the body is as if it had never been held there. A grip of the
 /// scene, by its instrument's number, lets go for good: its reaction is zero, it cannot be driven
-/// any more (SUNDER_ERROR_ORDER), and its nodes can be grasped. SUNDER_ERROR_ORDER, with the reason:
-/// it is no grip, or in statics grips of the scene alone hold the body, or a crack of split nodes has reached one of its.
+/// any more (SUNDER_ERROR_ORDER), and its nodes can be grasped. SUNDER_ERROR_ORDER, with the
+/// reason: it is no grip, or in statics grips of the scene alone hold the body, or a crack of split
+/// nodes has reached one of its.
 SUNDER_API sunder_status sunder_simulation_release(sunder_simulation simulation, int32_t grip);
 /// A force [N] in equal parts on nodes, from the next step on until it is dropped. `push`: an id as
 /// of a grip. SUNDER_ERROR_ORDER, and nothing changes: a node that is not there, named twice or

@@ -9,8 +9,8 @@
 #include "body/stiffness_factor.hpp"
 #include "solver/background_rebase.hpp"
 #include "solver/condensed_update.hpp"
-#include "solver/new_base_timer.hpp"
 #include "solver/load_room.hpp"
+#include "solver/new_base_timer.hpp"
 #include "solver/whole_solution.hpp"
 #include "sunder/error.hpp"
 

@@ -143,8 +143,8 @@ class Simulation {
   /// scene's own, by its instrument's number, lets go for good: it prescribes nothing any more, its
   /// reaction is zero, and its nodes can be grasped. Throws UsageError, and nothing changes, for a
   /// grip that is not there or has let go; for one of the scene where nothing can be grasped, where
-  /// in statics grips of the scene alone hold the body, and where a crack of split nodes has reached a
-  /// node that it holds.
+  /// in statics grips of the scene alone hold the body, and where a crack of split nodes has
+  /// reached a node that it holds.
   void release(int grip);
   /// A force [N] in equal parts on nodes, from the next step on until it is dropped; what acts on
   /// held axes goes into the reaction there. Returns an id as grasp() does. Throws UsageError for a
