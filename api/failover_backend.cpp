@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "failover_backend.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,6 +42,7 @@ class FailoverBackend final : public Backend {
   bool can_grasp(Index node) const override { return current_->can_grasp(node); }
   void time_passes(bool on) override { current_->time_passes(on); }
   std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
+  NewBases take_new_bases() override { return current_->take_new_bases(); }
   std::shared_ptr<InstrumentForces> instrument_forces() override {
     return instruments_ = current_->instrument_forces();
   }
@@ -47,8 +50,12 @@ class FailoverBackend final : public Backend {
  private:
   void do_set_load(const Load& load) override {
     load_ = load;
-    const auto grasped = gripped_dofs().subspan(problem().gripped_dofs().size());
+    const auto own = own_gripped_dofs(), grasped = gripped_dofs().subspan(own.size());
     grasped_.assign(grasped.begin(), grasped.end());
+    let_go_.clear();
+    const auto all = problem().gripped_dofs();
+    std::set_difference(all.begin(), all.end(), own.begin(), own.end(),
+                        std::back_inserter(let_go_));
     grips_since_.clear();
     attempt([&] { current_->set_load(load); });
   }
@@ -131,6 +138,7 @@ class FailoverBackend final : public Backend {
     if (!events_.empty()) current_->destroy(events_);
     if (needs().yield) current_->exclude_candidates(excluded_);
     if (!cut_off_.empty()) current_->cut_off(cut_off_);
+    current_->release(let_go_);
     current_->grasp(grasped_);
     if (load_) current_->set_load(*load_);
     if (solved_) current_->solve();
@@ -155,8 +163,8 @@ class FailoverBackend final : public Backend {
   std::shared_ptr<InstrumentForces> instruments_;  // as handed out
   std::vector<Index> events_, excluded_, cut_off_;
   std::optional<Load> load_;
-  std::vector<Index> grasped_;      // beside the problem's own, under load_
-  std::vector<Grips> grips_since_;  // since load_
+  std::vector<Index> grasped_, let_go_;  // beside the problem's own, and of these, under load_
+  std::vector<Grips> grips_since_;       // since load_
   bool solved_ = false, stressed_ = false;
 };
 

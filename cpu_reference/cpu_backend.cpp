@@ -178,6 +178,10 @@ class CpuBackend final : public Backend {
 
   void do_set_load(const Load& load) override { frame_.set_load(load); }
 
+  NewBases take_new_bases() override {
+    const NewBases all = route_->new_bases(), before = std::exchange(taken_, all);
+    return {all.count - before.count, all.waited_ms - before.waited_ms};
+  }
   std::shared_ptr<InstrumentForces> instrument_forces() override {
     return instruments_ ? instruments_->forces() : nullptr;
   }
@@ -220,14 +224,15 @@ class CpuBackend final : public Backend {
     SolveReport report = solver_.solve(frame_.load());
     report.stress_ms = frame_.stress_ms() - stress_before;
     publish();
-    report.waited_ms = route_->waited_ms() - waited_ms_;
-    waited_ms_ = route_->waited_ms();
+    const double waited = route_->new_bases().waited_ms;
+    report.waited_ms = waited - waited_ms_;
+    waited_ms_ = waited;
     if (instruments_) publish_instruments();
     return report;
   }
 
   void publish_instruments() {
-    instruments_->publish(route_->deferred()->grip_factor(), frame_.reactions(),
+    instruments_->publish(gripped_dofs(), route_->deferred()->grip_factor(), frame_.reactions(),
                           frame_.load().displacements);
   }
 
@@ -353,7 +358,8 @@ class CpuBackend final : public Backend {
   Eigen::VectorXd pristine_force_, pristine_u_;  // of the intact body
   std::optional<PresentGrips> pristine_grips_;
   std::optional<solver::InstrumentBlock> instruments_;
-  double waited_ms_ = 0;  // for rebases, as reported so far
+  double waited_ms_ = 0;  // for rebases, as reported so far by solve()
+  NewBases taken_;        // by take_new_bases() so far
   PreparationReport preparation_;
   std::vector<std::uint8_t> is_prepared_;  // per element; empty: nothing ever was
   std::vector<Index> prepared_;

@@ -117,7 +117,7 @@ class DeferredRoute final : public InverseRoute {
   void set_energy_tolerance(double energy) override { energy_tolerance_ = energy; }
   int bases() const override { return update_->bases(); }
   const solver::BaseCheck& base_check() const override { return update_->base_check(); }
-  double waited_ms() const override { return update_->waited_ms(); }
+  NewBases new_bases() const override { return update_->new_bases(); }
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan = update_->deferred().buffers();

@@ -24,6 +24,7 @@ constexpr double kCorrection = 1e-4;
 
 CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fields& fields)
     : kernels_(kernels),
+      body_(body),
       fields_(fields),
       matrix_(fields.matrix()),
       rigid_(kernels, body.problem(), body.destroyed(), body.problem().scene().fracture.alpha),

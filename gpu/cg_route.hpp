@@ -25,6 +25,7 @@ class CgRoute final : public DeviceRoute {
   void destroy(std::span<const Index> elements) override {
     rigid_.destroy(elements);  // Fields' matrix follows by itself
   }
+  void grip(const fem::Event&) override { rigid_.grip(body_.forms().gripped()); }
 
   std::vector<BufferPlan> buffers() const override;
 
@@ -45,6 +46,7 @@ class CgRoute final : public DeviceRoute {
   void refresh_state(bool add);
 
   const KernelFactory& kernels_;
+  const fem::DamagedBody& body_;
   Fields& fields_;
   const BlockMatrix& matrix_;
   RigidSpace rigid_;

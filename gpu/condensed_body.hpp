@@ -42,7 +42,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void solve_pristine(const Load& load, std::span<double> displacement) override;
 
   std::vector<BufferPlan> buffers() const override;
-  double waited_ms() const override { return route_->waited_ms(); }
+  NewBases new_bases() const override { return route_->new_bases(); }
 
  private:
   std::optional<double> take(const Eigen::VectorXd& u) override;

@@ -74,8 +74,8 @@ class DeviceBody {
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
   /// The deferred update of the whole body; null: it has another or none.
   [[nodiscard]] virtual const solver::RenewedUpdate* update() const { return nullptr; }
-  /// Milliseconds that frames have waited for a new base so far.
-  [[nodiscard]] virtual double waited_ms() const = 0;
+  /// Bases after the first one so far.
+  [[nodiscard]] virtual NewBases new_bases() const = 0;
 };
 
 }  // namespace sunder::gpu

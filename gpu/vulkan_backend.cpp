@@ -6,6 +6,7 @@
 #include <future>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 #include "gpu/choose_device.hpp"
 #include "gpu/condensed_body.hpp"
@@ -83,6 +84,10 @@ class VulkanBackend final : public Backend {
 
   std::vector<KernelPlan> kernels() const override { return describe(device_->living_pipelines()); }
 
+  NewBases take_new_bases() override {
+    const NewBases all = body_->new_bases(), before = std::exchange(taken_, all);
+    return {all.count - before.count, all.waited_ms - before.waited_ms};
+  }
   std::shared_ptr<InstrumentForces> instrument_forces() override {
     if (!instruments_ && has_grips() && body_->grip_factor()) {
       instruments_.emplace(problem());
@@ -171,8 +176,9 @@ class VulkanBackend final : public Backend {
     try {
       SolveReport report = solver_->solve(load_);
       body_->publish(solver_->everywhere());
-      report.waited_ms = body_->waited_ms() - waited_ms_;
-      waited_ms_ = body_->waited_ms();
+      const double waited = body_->new_bases().waited_ms;
+      report.waited_ms = waited - waited_ms_;
+      waited_ms_ = waited;
       if (!known) handed_out_ = handed_out();  // linear in the load, as the rest of the error
       add_handed_out(report);
       solved_ = true;
@@ -203,7 +209,7 @@ class VulkanBackend final : public Backend {
     if (load_.displacements.size() != gripped_dofs().size()) return;  // of other grips
     reactions_.resize(gripped_dofs().size());
     body_->read_reactions(reactions_);
-    instruments_->publish(*body_->grip_factor(), reactions_, load_.displacements);
+    instruments_->publish(gripped_dofs(), *body_->grip_factor(), reactions_, load_.displacements);
   }
 
   double tolerance() const { return problem().scene().solver.tolerance; }
@@ -240,10 +246,6 @@ class VulkanBackend final : public Backend {
   }
 
   std::string why_no_grasp() const override {
-    if (plan_.route == Route::cg) {
-      return "on backend vulkan route cg holds the scene's grips alone; take route inverse or "
-             "condensed, or backend cpu";
-    }
     if (plan_.eager) {
       return "on backend vulkan update eager holds the scene's grips alone; take update deferred, "
              "or "
@@ -295,7 +297,8 @@ class VulkanBackend final : public Backend {
   InverseOptions inverse_;  // of routes inverse and condensed
   std::unique_ptr<DeviceBody> body_;
   std::optional<solver::FrameSolver> solver_;
-  double waited_ms_ = 0;  // for new bases, as reported so far
+  double waited_ms_ = 0;  // for new bases, as reported so far by solve()
+  NewBases taken_;        // by take_new_bases() so far
   std::unique_ptr<Display> display_;
   Load load_;
   bool renew_ = false;  // the summary was made before the last pieces were cut off

@@ -71,7 +71,7 @@ void WholeBody::destroy(std::span<const Index> elements) {
 }
 
 void WholeBody::grip(const fem::Event& event, std::span<const Index>) {
-  fields_.grip(damaged_.forms().gripped());
+  fields_.grip(damaged_.forms().gripped(), damaged_.scale());
   route_->grip(event);
   if (pristine_ && !pristine_->follow(event)) {
     throw NumericalError("the compliance of the gripped nodes is singular in double precision");

@@ -42,7 +42,7 @@ class WholeBody final : public DeviceBody {
 
   std::vector<BufferPlan> buffers() const override;
   const solver::RenewedUpdate* update() const override { return route_->update(); }
-  double waited_ms() const override { return update() ? update()->waited_ms() : 0; }
+  NewBases new_bases() const override { return update() ? update()->new_bases() : NewBases{}; }
 
  private:
   void make_route(const DeviceSetup& setup, IntactInverse intact);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <string>
 
 #include "sunder/sunder.h"
@@ -54,6 +56,14 @@ inline void require_size(std::size_t size, std::size_t wanted, const char* what)
   if (size == wanted) return;
   throw Failure(SUNDER_ERROR_SIZE, std::string(what) + " has " + std::to_string(size) +
                                        " values; it must have " + std::to_string(wanted));
+}
+
+/// Throws SUNDER_ERROR_SIZE where ids of 32 bits could not tell the rows of an array apart: such a
+/// size was never meant, and what it says is there cannot be read.
+inline void require_rows(std::size_t rows, const char* what) {
+  if (rows <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) return;
+  throw Failure(SUNDER_ERROR_SIZE, std::string(what) + " has " + std::to_string(rows) +
+                                       " rows; it may have at most 2^31 - 1");
 }
 
 /// Throws SUNDER_ERROR_VALUE unless 0 <= index < count.

@@ -80,6 +80,7 @@ sunder_status sunder_frames_create(sunder_simulation simulation, uint32_t fields
                                             std::to_string(kKnown));
     }
     if (count > 0) require(nodes, "nodes");
+    require_rows(count, "nodes");
     sunder::FinishedFields wanted;
     wanted.displacement = fields & SUNDER_FRAME_DISPLACEMENT;
     wanted.stress = fields & SUNDER_FRAME_STRESS;

@@ -193,6 +193,7 @@ sunder_status sunder_grips_feel(sunder_grips grips, const double* displacements,
       require(forces, "forces");
     }
     if (count > 0) require(hands, "hands");
+    require_rows(count, "hands");
     object.feel(displacements, forces, {hands, count}, felt);
   });
 }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace sunder::c;
 
-void require_rows(std::size_t size, std::size_t columns, const char* what) {
+void require_mesh_rows(std::size_t size, std::size_t columns, const char* what) {
   const std::size_t most = static_cast<std::size_t>(std::numeric_limits<sunder::Index>::max());
   if (size > 0 && size % columns == 0 && size / columns <= most) return;
   throw Failure(SUNDER_ERROR_SIZE, std::string(what) + " has " + std::to_string(size) +
@@ -30,8 +30,8 @@ sunder_status sunder_scene_set_mesh(sunder_scene scene, const double* nodes, siz
   return call<SceneObject>(scene, [&](SceneObject& object) {
     require(nodes, "nodes");
     require(tets, "tets");
-    require_rows(nodes_size, 3, "nodes");
-    require_rows(tets_size, 4, "tets");
+    require_mesh_rows(nodes_size, 3, "nodes");
+    require_mesh_rows(tets_size, 4, "tets");
     const std::size_t count = tets_size / 4;
     if (material_of) {
       require_size(material_of_size, count, "material_of");

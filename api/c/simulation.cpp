@@ -47,6 +47,8 @@ sunder_step to_step(const sunder::StepReport& report) {
   }
   step.capped = report.capped ? 1 : 0;
   step.out_of_time = report.out_of_time ? 1 : 0;
+  step.new_bases = report.new_bases.count;
+  step.ms_new_bases = report.new_bases.waited_ms;
   if (report.motion) {
     step.moves = 1;
     step.time = report.motion->time;

@@ -13,6 +13,7 @@ using sunder::Vec3;
 
 std::span<const Index> to_nodes(const std::int32_t* nodes, std::size_t count) {
   if (count > 0) require(nodes, "nodes");
+  require_rows(count, "nodes");
   return {nodes, count};
 }
 

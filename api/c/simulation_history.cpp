@@ -40,6 +40,7 @@ sunder_status sunder_simulation_remove(sunder_simulation simulation, const int32
                                        size_t count) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
     if (count > 0) require(elements, "elements");
+    require_rows(count, "elements");
     object.simulation().remove({elements, count});
   });
 }
@@ -52,6 +53,7 @@ sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* 
       throw Failure(SUNDER_ERROR_SIZE, "swept has " + std::to_string(size) +
                                            " values; it must have 9 for each triangle");
     }
+    require_rows(size / 9, "swept");
     require_finite(swept, size, "swept");
     std::vector<std::array<Vec3, 3>> triangles(size / 9);
     for (std::size_t t = 0; t < triangles.size(); ++t) {

@@ -77,6 +77,7 @@ sunder_status sunder_simulation_set_skin(sunder_simulation simulation, const dou
       throw Failure(SUNDER_ERROR_SIZE, "vertices has " + std::to_string(size) +
                                            " values; it must have 3 for each vertex");
     }
+    require_rows(size / 3, "vertices");
     require_finite(vertices, size, "vertices");
     std::vector<Vec3> at(size / 3);
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = Vec3(vertices + 3 * v);

@@ -9,7 +9,7 @@
 //   destroyed handles, and handles of another kind, give SUNDER_ERROR_HANDLE.
 // - Ids are 0-based and 32-bit. Arrays are dense, row by row; the caller owns them, and they are
 //   copied before the call returns. The size of an array is its number of values, and it must be
-//   exactly what the function states (else SUNDER_ERROR_SIZE).
+//   exactly what the function states (else SUNDER_ERROR_SIZE, as of more than 2^31 - 1 rows).
 // - Text goes out as UTF-8 into a buffer of the caller's: at most `capacity` bytes with the closing
 //   zero are written, `length` (may be null) receives the length without it. A null buffer with
 //   capacity 0 asks for the length alone.
@@ -476,13 +476,17 @@ typedef struct sunder_step {
   double momentum[3];          ///< [t mm/s]
   double angular_momentum[3];  ///< about the origin [t mm^2/s]
   int32_t out_of_time;         ///< 1: ended by time: what was still to break is left to the next
-  int32_t reserved;
+  /// New bases (factors or inverses of the body as it is) that this step and what was done since
+  /// the one before went over to: grips, cuts, removals, going back. 0 up to the damage at which
+  /// `plan` says that a new one is cheaper, and by law linear for every grip.
+  int32_t new_bases;
+  double ms_new_bases;  ///< how long the step and those calls waited for them
 } sunder_step;
 
 #define SUNDER_STEP_INIT                                                                         \
   {                                                                                              \
     sizeof(sunder_step), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0, 0, {0, 0, 0}, {0, 0, 0}, 0, 0                                                \
+        0, 0, 0, 0, 0, {0, 0, 0}, {0, 0, 0}, 0, 0, 0                                             \
   }
 
 /// Computes the next step: loads, displacement, stress, decision, update, until nothing breaks.
@@ -777,7 +781,11 @@ SUNDER_API sunder_status sunder_simulation_pose(sunder_simulation simulation, in
 /// Zero before the first solve since it took hold.
 SUNDER_API sunder_status sunder_simulation_wrench(sunder_simulation simulation, int32_t grip,
                                                   double force[3], double torque[3]);
-/// Lets go: from the next step on the body is as if it had never been held there.
+/// Lets go: from the next step on the body is as if it had never been held there. A grip of the
+/// scene, by its instrument's number, lets go for good: its reaction is zero, it cannot be driven
+/// any more (SUNDER_ERROR_ORDER), and its nodes can be grasped. SUNDER_ERROR_ORDER, with the
+/// reason: it is no grip, or in statics grips of the scene alone hold the body, or a crack of split
+/// nodes has reached one of its.
 SUNDER_API sunder_status sunder_simulation_release(sunder_simulation simulation, int32_t grip);
 /// A force [N] in equal parts on nodes, from the next step on until it is dropped. `push`: an id as
 /// of a grip. SUNDER_ERROR_ORDER, and nothing changes: a node that is not there, named twice or

@@ -43,7 +43,16 @@ class Resolver {
   }
 
   void operator()(input::Pose& pose) const { of_a_host(pose.grip); }
-  void operator()(input::Release& release) const { of_a_host(release.grip); }
+  /// A grip of the scene lets go too.
+  void operator()(input::Release& release) const {
+    const auto& all = problem_.scene().instruments;
+    if (static_cast<std::size_t>(release.grip) >= all.size() ||
+        std::holds_alternative<Grip>(all[static_cast<std::size_t>(release.grip)].action)) {
+      return;
+    }
+    fail("instrument " + std::to_string(release.grip) +
+         " holds nothing that it could let go; drive its force to 0");
+  }
 
   void operator()(input::Colour& colour) const {
     const auto& name = field_names()[static_cast<std::size_t>(colour.field)];

@@ -103,14 +103,20 @@ Event Damage::operator[](std::size_t i) const {
 Forms::Forms(const Problem& problem)
     : problem_(&problem),
       destroyed_(static_cast<std::size_t>(problem.tet_count()), 0),
-      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()) {}
+      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
+      own_gripped_(gripped_.size()) {}
 
 void Forms::add(std::span<const NewNode> nodes) {
   nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
 }
 
 void Forms::follow(const Event& event) {
-  for (Index d : event.release) std::erase(gripped_, d);
+  for (Index d : event.release) {
+    const auto at = std::ranges::find(gripped_, d);
+    if (at == gripped_.end()) continue;
+    if (at - gripped_.begin() < static_cast<std::ptrdiff_t>(own_gripped_)) --own_gripped_;
+    gripped_.erase(at);
+  }
   gripped_.insert(gripped_.end(), event.grasp.begin(), event.grasp.end());
   for (const Tie& tie : event.ties) {
     NewNode& node = nodes_[static_cast<std::size_t>(tie.node - problem_->node_count())];

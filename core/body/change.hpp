@@ -115,9 +115,13 @@ class Forms {
   [[nodiscard]] std::span<const std::uint8_t> destroyed() const { return destroyed_; }
   /// In the order of their ids, which begin after the mesh's.
   [[nodiscard]] std::span<const NewNode> new_nodes() const { return nodes_; }
-  /// Unknowns whose displacement grips prescribe: those of the problem, then others in the order in
-  /// which they were grasped.
+  /// Unknowns whose displacement grips prescribe: those of the problem that are still held, then
+  /// others in the order in which they were grasped.
   [[nodiscard]] std::span<const Index> gripped() const { return gripped_; }
+  /// The first of them: those of the problem that have not been let go.
+  [[nodiscard]] std::span<const Index> own_gripped() const {
+    return std::span(gripped_).first(own_gripped_);
+  }
   /// The corners' nodes of the mesh: a new node's is its parent.
   [[nodiscard]] std::array<Index, 4> parents(const std::array<Index, 4>& corners) const;
   [[nodiscard]] const Problem& problem() const { return *problem_; }
@@ -128,6 +132,7 @@ class Forms {
   std::map<Index, Form> came_;
   std::vector<NewNode> nodes_;
   std::vector<Index> gripped_;
+  std::size_t own_gripped_;
 };
 
 /// An element's form in the mesh.

@@ -2,6 +2,7 @@
 #include "body/parted_body.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace sunder::fem {
 
@@ -49,7 +50,12 @@ PartedBody::PartedBody(const DamagedBody& body)
     if (body.destroyed()[static_cast<std::size_t>(e)]) gone.push_back(e);
   }
   body_.destroy(gone);
-  const auto since = body.forms().gripped().subspan(whole_.gripped_dofs().size());
+  const auto own = body.forms().own_gripped();
+  const auto since = body.forms().gripped().subspan(own.size());
+  std::vector<Index> let_go;
+  const auto all = whole_.gripped_dofs();
+  std::set_difference(all.begin(), all.end(), own.begin(), own.end(), std::back_inserter(let_go));
+  if (!let_go.empty()) body_.grip({}, let_go);
   if (!since.empty()) body_.grip(since, {});
 }
 

@@ -6,33 +6,44 @@
 namespace sunder {
 
 LooseSearch::LooseSearch(const Problem& problem)
-    : problem_(problem), used_(used_nodes(problem.mesh())) {
+    : problem_(problem),
+      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
+      used_(used_nodes(problem.mesh())) {
   unused_ = static_cast<std::size_t>(std::ranges::count(used_, std::uint8_t{0}));
-  const auto gripped = problem.gripped_dofs();
-  for (Index n = 0; n < problem.node_count(); ++n) {
-    if (!used_[static_cast<std::size_t>(n)]) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Index d = problem.dof(n, axis);
-      if (d == kNone || std::binary_search(gripped.begin(), gripped.end(), d)) {
-        all_held_.push_back({n, axis});
-      }
-    }
-  }
-  held_.resize(all_held_.size());
+  collect_held();
   const std::size_t most = problem.mesh().nodes.size() / 4;  // bodies
   held_end_.reserve(most + 1);
   piece_of_body_.reserve(most);
 }
 
-bool LooseSearch::hold(std::span<const Index> nodes) {
-  if (std::ranges::equal(nodes, also_held_)) return false;
-  all_held_.resize(all_held_.size() - 3 * also_held_.size());
+bool LooseSearch::hold(std::span<const Index> unknowns, std::span<const Index> nodes) {
+  const bool others = !std::ranges::equal(unknowns, gripped_);
+  if (!others && std::ranges::equal(nodes, also_held_)) return false;
+  if (others) {
+    gripped_.assign(unknowns.begin(), unknowns.end());
+    collect_held();
+  }
   also_held_.assign(nodes.begin(), nodes.end());
+  all_held_.resize(of_problem_);
   for (Index n : nodes) {
     for (int axis = 0; axis < 3; ++axis) all_held_.push_back({n, axis});
   }
   held_.resize(all_held_.size());
   return true;
+}
+
+/// By supports and the problem's grips; the nodes besides, and new ones, come after them.
+void LooseSearch::collect_held() {
+  all_held_.clear();
+  for (Index n = 0; n < problem_.node_count(); ++n) {
+    if (!used_[static_cast<std::size_t>(n)]) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem_.dof(n, axis);
+      if (d == kNone || std::ranges::binary_search(gripped_, d)) all_held_.push_back({n, axis});
+    }
+  }
+  of_problem_ = all_held_.size();
+  held_.resize(of_problem_);
 }
 
 /// held_ by body, each in the order of nodes.

@@ -17,9 +17,9 @@ class LooseSearch {
  public:
   explicit LooseSearch(const Problem& problem);
   void look(std::span<const std::uint8_t> destroyed);
-  /// Nodes of the mesh that hold a piece besides supports and the problem's grips, in place of
-  /// those before. Whether they are others.
-  bool hold(std::span<const Index> nodes);
+  /// What holds a piece besides supports, in place of what did: unknowns of the problem's grips,
+  /// ascending (at first all of them), and nodes of the mesh. Whether something else holds now.
+  bool hold(std::span<const Index> unknowns, std::span<const Index> nodes);
   /// Of a body in which elements have other corners than in the mesh, where nodes have come.
   void look(std::span<const std::uint8_t> destroyed, std::span<const std::array<Index, 4>> corners,
             Index nodes);
@@ -41,12 +41,14 @@ class LooseSearch {
   void search(const Mesh& mesh, std::span<const std::uint8_t> destroyed);
   void follow(std::span<const std::array<Index, 4>> corners, Index nodes);
   void sort_held();
+  void collect_held();
 
   const Problem& problem_;
   fem::Bodies bodies_;
   fem::BodyRoom room_;
   std::vector<fem::HeldDof> all_held_, held_;  // of the whole; sorted by body
-  std::vector<Index> also_held_;               // nodes, after those of the problem in all_held_
+  std::vector<Index> gripped_, also_held_;     // unknowns of the problem's grips; nodes
+  std::size_t of_problem_ = 0;                 // of all_held_, the first ones
   std::vector<std::uint8_t> used_;             // per node: belongs to an element
   std::size_t unused_ = 0;
   std::vector<std::size_t> held_end_;  // per body

@@ -219,10 +219,12 @@ Problem::Problem(const Problem& whole, std::span<const Index> gripped)
       dof_(whole.dof_),
       dof_count_(whole.dof_count_),
       gripped_dofs_(gripped.begin(), gripped.end()),
-      anchored_dofs_(whole.anchored_dofs_),
       anchor_stiffness_(whole.anchor_stiffness_) {
   resolve_materials();
   std::ranges::sort(gripped_dofs_);
+  for (Index d : whole.anchored_dofs_) {
+    if (std::ranges::binary_search(gripped_dofs_, d)) anchored_dofs_.push_back(d);
+  }
 }
 
 void Problem::check_crack(const FractureOptions& f, const FractureModelRow& model) {

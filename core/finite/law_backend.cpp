@@ -135,7 +135,7 @@ LawBackend::Computed LawBackend::take_grips(std::span<const Index> before) {
 /// A body computed by itself has its gripped unknowns in ascending order.
 void LawBackend::do_set_load(const Load& load) {
   load_ = load;
-  if (gripped_dofs().size() > problem().gripped_dofs().size()) {
+  if (!std::ranges::equal(gripped_dofs(), problem().gripped_dofs())) {
     const auto sorted = computed().gripped_dofs();
     for (std::size_t g = 0; g < load.displacements.size(); ++g) {
       const auto place = std::ranges::lower_bound(sorted, gripped_dofs()[g]) - sorted.begin();
@@ -265,7 +265,7 @@ void LawBackend::publish_instruments() {
   const auto computed_grips = computed().gripped_dofs();
   if (!instruments_ || load_.displacements.size() < computed_grips.size()) return;
   if (gripped_dofs().empty()) {  // but some may be grasped
-    instruments_->publish(Eigen::MatrixXd(0, 0), {}, {});
+    instruments_->publish({}, Eigen::MatrixXd(0, 0), {}, {});
     return;
   }
   const Eigen::MatrixXd stiffness = grip_stiffness();
@@ -278,9 +278,10 @@ void LawBackend::publish_instruments() {
   }
   reactions_.resize(gripped_dofs().size());
   read_reactions(reactions_);
-  instruments_->publish(solver::compliance_factor(stiffness(places, places),
-                                                  instruments_->anchors(gripped_dofs().size())),
-                        reactions_, held_);
+  instruments_->publish(
+      gripped_dofs(),
+      solver::compliance_factor(stiffness(places, places), instruments_->anchors(gripped_dofs())),
+      reactions_, held_);
 }
 
 StressSummary LawBackend::do_stress() {

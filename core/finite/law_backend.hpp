@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "body/hyperelastic_pass.hpp"
@@ -55,6 +56,8 @@ class LawBackend : public Backend {
   [[nodiscard]] const Problem& computed() const { return *now_.problem; }
   [[nodiscard]] const fem::HyperelasticBody& body() const { return *now_.body; }
   [[nodiscard]] const fem::HyperelasticBody& intact() const { return intact_; }
+  /// What take_new_bases() tells.
+  [[nodiscard]] NewBases& new_bases() { return new_bases_; }
   /// Null: the host.
   [[nodiscard]] solver::FiniteDevice* device() const { return now_.device.get(); }
   [[nodiscard]] solver::FiniteDevice* device_of_intact() const { return device_of_intact_.get(); }
@@ -84,6 +87,7 @@ class LawBackend : public Backend {
   /// The host goes on from the state before the operation.
   virtual void leave_device() = 0;
 
+  NewBases take_new_bases() override { return std::exchange(new_bases_, {}); }
   std::shared_ptr<InstrumentForces> instrument_forces() override;
   void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override;
   /// Of the last solution, of the grips of computed(); empty: unknown.
@@ -153,6 +157,7 @@ class LawBackend : public Backend {
   std::vector<Index> cut_off_;  // elements
   std::vector<std::uint8_t> excluded_;
   std::optional<solver::InstrumentBlock> instruments_;  // once asked for
+  NewBases new_bases_;                                  // since they were asked for
   std::vector<double> reactions_, held_;                // per gripped_dofs()
 };
 

@@ -94,6 +94,7 @@ class MotionBackend final : public LawBackend {
     intact_known_ = false;
     remember();
     const auto found = attempt([&] { return motion_->step(load_, dt); });
+    new_bases() += found.new_bases;
     if (found.stuck) fail(found, dt);
     if (!found.still) moved_to(motion_->displacement());
     // At rest they stay as they are, once the scheme too is that of the step before.
@@ -102,7 +103,8 @@ class MotionBackend final : public LawBackend {
     return {.residual = found.residual,
             .error = found.error,
             .back_solves = found.back_solves,
-            .capped = found.capped};
+            .capped = found.capped,
+            .waited_ms = found.new_bases.waited_ms};
   }
 
   [[noreturn]] static void fail(const solver::FiniteMotionReport& found, double dt) {

@@ -67,7 +67,9 @@ class StaticsBackend final : public LawBackend {
     const auto found = attempt([&] { return statics_->solve(load_); });
     spent_.back_solves += found.back_solves;
     spent_.factors += found.factors;
+    new_bases() += found.new_bases;
     SolveReport report;
+    report.waited_ms = found.new_bases.waited_ms;
     report.residual = found.residual;
     report.error = found.error;
     report.back_solves = found.back_solves;

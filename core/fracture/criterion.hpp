@@ -129,6 +129,8 @@ class FractureCriterion {
   /// Throws UsageError for faces that open() cannot take.
   virtual void check_opening(std::span<const fracture::PassedFace>,
                              std::span<const std::uint8_t> /*gone*/) {}
+  /// Unknowns that the scene's grips hold from now on, ascending; at first all of them.
+  virtual void hold(std::span<const Index> /*unknowns*/) {}
   /// Opens faces that check_opening() has passed, as cracks of their own: what decide() names for
   /// cracks that grow.
   virtual void open(std::span<const fracture::PassedFace>, const FractureState&, Decision&) {}

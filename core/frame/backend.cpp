@@ -151,6 +151,10 @@ void Backend::change(const fem::Change& change) {
 
 std::span<const Index> Backend::gripped_dofs() const { return damaged_body_->forms().gripped(); }
 
+std::span<const Index> Backend::own_gripped_dofs() const {
+  return damaged_body_->forms().own_gripped();
+}
+
 std::string Backend::why_no_grasp() const {
   const BackendInfo is = info();
   return "backend " + is.backend + " by route " + is.route +
@@ -171,10 +175,14 @@ void Backend::grasp(std::span<const Index> dofs) {
 }
 
 void Backend::release(std::span<const Index> dofs) {
-  const auto live = gripped_dofs().subspan(problem_->gripped_dofs().size());
-  for (Index d : dofs) {
-    require(std::ranges::find(live, d) != live.end(), "a dof to let go was never grasped");
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    require(std::ranges::find(gripped_dofs(), dofs[i]) != gripped_dofs().end() &&
+                std::find(dofs.begin(), dofs.begin() + static_cast<std::ptrdiff_t>(i), dofs[i]) ==
+                    dofs.begin() + static_cast<std::ptrdiff_t>(i),
+            "a dof to let go is not gripped");
   }
+  if (dofs.empty()) return;
+  require(needs_.damage && why_no_grasp().empty(), "this backend lets no grips go");
   change_grips({}, dofs);
 }
 

@@ -30,7 +30,7 @@ void InstrumentForces::publish(const Eigen::Ref<const Eigen::MatrixXd>& l,
                                const Eigen::Ref<const Eigen::VectorXd>& u_0,
                                std::span<const double> held) {
   const Eigen::Index all = u_0.size();
-  if (all < size_ || l.rows() != all || l.cols() != all ||
+  if (l.rows() != all || l.cols() != all ||
       (!held.empty() && held.size() != static_cast<std::size_t>(all))) {
     throw UsageError("instrument forces have one row per gripped dof");
   }
@@ -54,10 +54,20 @@ void InstrumentForces::publish(const Eigen::Ref<const Eigen::MatrixXd>& l,
 
 /// Whether the gripped unknowns are those of the grips that it is said to hold.
 bool InstrumentForces::fits(const Solution& solution) const {
-  if (!solution.grips) return true;
-  Index all = size_;
-  for (const HeldGrip& grip : *solution.grips) all += unknowns_of(grip);
+  if (!solution.grips) return solution.u_0.size() >= size_;
+  auto all = static_cast<Index>(solution.grips->own.size());
+  for (const HeldGrip& grip : solution.grips->grips) all += unknowns_of(grip);
   return all == solution.u_0.size();
+}
+
+/// How many of the gripped unknowns are the scene's: the first ones.
+std::size_t InstrumentForces::own_of(const Solution& solution) const {
+  return solution.grips ? solution.grips->own.size() : static_cast<std::size_t>(size_);
+}
+
+/// Of the i-th of them: its place among all that the scene's grips held at first.
+Index InstrumentForces::own_place(const Solution& solution, std::size_t i) const {
+  return solution.grips ? solution.grips->own[i] : static_cast<Index>(i);
 }
 
 void InstrumentForces::hand_over() {
@@ -69,8 +79,8 @@ void InstrumentForces::hand_over() {
   handover_.hand_over();
 }
 
-void InstrumentForces::describe(std::vector<HeldGrip> grips) {
-  grips_ = std::make_shared<const std::vector<HeldGrip>>(std::move(grips));
+void InstrumentForces::describe(std::vector<HeldGrip> grips, std::vector<Index> own) {
+  grips_ = std::make_shared<const Held>(Held{std::move(grips), std::move(own)});
 }
 
 void InstrumentForces::publish_again() {
@@ -84,31 +94,54 @@ void InstrumentForces::withdraw() {
   hand_over();
 }
 
-/// Without a grip the others' compliance and displacement are what they were: its rows go.
 void InstrumentForces::let_go(int grip) {
   if (!last_.filled || !last_.grips) return;
-  const auto& all = *last_.grips;
-  const auto gone = std::ranges::find(all, grip, &HeldGrip::id);
-  if (gone == all.end()) return;
-  std::vector<HeldGrip> left;
+  const auto& all = last_.grips->grips;
+  if (std::ranges::find(all, grip, &HeldGrip::id) == all.end()) return;
+  Held left{{}, last_.grips->own};
   std::vector<Eigen::Index> rows;
-  for (Eigen::Index i = 0; i < size_; ++i) rows.push_back(i);
+  for (std::size_t i = 0; i < left.own.size(); ++i) rows.push_back(static_cast<Eigen::Index>(i));
   for (const HeldGrip& of : all) {
     if (of.id == grip) continue;
+    left.grips.push_back(of);
+    left.grips.back().first = rows.size();
     for (Index i = 0; i < unknowns_of(of); ++i) {
       rows.push_back(static_cast<Eigen::Index>(of.first) + i);
     }
-    left.push_back(of);
-    left.back().first = rows.size() - static_cast<std::size_t>(unknowns_of(of));
   }
+  keep_rows(rows, std::move(left));
+}
+
+void InstrumentForces::let_go(std::vector<Index> own) {
+  if (!last_.filled || !last_.grips) return;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < last_.grips->own.size(); ++i) {
+    if (std::ranges::binary_search(own, last_.grips->own[i])) {
+      rows.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+  Held left{{}, std::move(own)};
+  for (const HeldGrip& of : last_.grips->grips) {
+    left.grips.push_back(of);
+    left.grips.back().first = rows.size();
+    for (Index i = 0; i < unknowns_of(of); ++i) {
+      rows.push_back(static_cast<Eigen::Index>(of.first) + i);
+    }
+  }
+  keep_rows(rows, std::move(left));
+}
+
+/// Without a grip the others' compliance and displacement are what they were: its rows go.
+void InstrumentForces::keep_rows(const std::vector<Eigen::Index>& rows, Held left) {
   const Eigen::MatrixXd l = last_.l.triangularView<Eigen::Lower>();
   const Eigen::MatrixXd compliance = l(rows, Eigen::all) * l(rows, Eigen::all).transpose();
   const Eigen::LLT<Eigen::MatrixXd> factor(compliance);
-  last_.filled = factor.info() == Eigen::Success && factor.matrixLLT().allFinite();
+  last_.filled =
+      rows.empty() || (factor.info() == Eigen::Success && factor.matrixLLT().allFinite());
   last_.l = factor.matrixLLT();
   last_.u_0 = Eigen::VectorXd(last_.u_0(rows));
   last_.held = Eigen::VectorXd(last_.held(rows));
-  last_.grips = std::make_shared<const std::vector<HeldGrip>>(std::move(left));
+  last_.grips = std::make_shared<const Held>(std::move(left));
   hand_over();
 }
 
@@ -123,7 +156,7 @@ InstrumentForces::Quiet::~Quiet() {
 
 const HeldGrip* InstrumentForces::find(const Copy& copy, int grip) const {
   if (!copy.of.grips) return nullptr;
-  for (const HeldGrip& of : *copy.of.grips) {
+  for (const HeldGrip& of : copy.of.grips->grips) {
     if (of.id == grip) return &of;
   }
   return nullptr;
@@ -134,8 +167,10 @@ bool InstrumentForces::evaluate(Copy& copy, std::span<const double> displacement
                                 std::span<const Hand> hands) const {
   Eigen::VectorXd &d = copy.d, &h = copy.h;
   d = copy.of.held;
-  if (!displacements.empty()) {
-    d.head(size_) = Eigen::Map<const Eigen::VectorXd>(displacements.data(), size_);
+  const std::size_t own = own_of(copy.of);
+  for (std::size_t i = 0; i < own && !displacements.empty(); ++i) {
+    d[static_cast<Eigen::Index>(i)] =
+        displacements[static_cast<std::size_t>(own_place(copy.of, i))];
   }
   for (const Hand& hand : hands) {
     const HeldGrip* grip = find(copy, hand.grip);
@@ -151,7 +186,10 @@ bool InstrumentForces::evaluate(Copy& copy, std::span<const double> displacement
   h = d - copy.of.u_0;
   copy.of.l.triangularView<Eigen::Lower>().solveInPlace(h);
   copy.of.l.transpose().triangularView<Eigen::Upper>().solveInPlace(h);
-  h.head(size_).array() -= anchors_.array() * d.head(size_).array();
+  for (std::size_t i = 0; i < own; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    h[at] -= anchors_[own_place(copy.of, i)] * d[at];  // whose share is no reaction
+  }
   return h.allFinite();
 }
 
@@ -160,9 +198,14 @@ void InstrumentForces::add_before(Copy& now, const Copy& before, double share,
                                   bool with_jump) const {
   now.h *= share;
   if (with_jump) now.h += (1 - share) * now.jump;
-  now.h.head(size_) += (1 - share) * before.h.head(size_);
+  for (std::size_t i = 0, j = 0; i < own_of(now.of); ++i) {
+    while (j < own_of(before.of) && own_place(before.of, j) < own_place(now.of, i)) ++j;
+    if (j == own_of(before.of)) break;
+    if (own_place(before.of, j) != own_place(now.of, i)) continue;
+    now.h[static_cast<Eigen::Index>(i)] += (1 - share) * before.h[static_cast<Eigen::Index>(j)];
+  }
   if (!now.of.grips) return;
-  for (const HeldGrip& grip : *now.of.grips) {
+  for (const HeldGrip& grip : now.of.grips->grips) {
     const HeldGrip* was = find(before, grip.id);
     if (!was) continue;
     now.h.segment(static_cast<Eigen::Index>(grip.first), unknowns_of(grip)) +=
@@ -256,7 +299,11 @@ Felt InstrumentForces::feel(std::span<const double> displacements, std::span<dou
   felt.step = of.step;
   felt.age_ms = std::max(0.0, std::chrono::duration<double, std::milli>(now - of.found).count());
   felt.share = share(now);
-  std::copy_n(handover_.read().h.begin(), forces.size(), forces.begin());
+  std::ranges::fill(forces, 0.0);
+  for (std::size_t i = 0; i < own_of(of) && !forces.empty(); ++i) {
+    forces[static_cast<std::size_t>(own_place(of, i))] =
+        handover_.read().h[static_cast<Eigen::Index>(i)];
+  }
   for (Hand& hand : hands) {
     hand.held = false, hand.force.setZero(), hand.torque.setZero();
     tell(hand);

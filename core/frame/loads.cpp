@@ -42,31 +42,58 @@ Loads::Loads(const Problem& problem) : problem_(problem) {
   driven_.resize(instruments.size());
   turned_.resize(instruments.size());
   turn_.assign(instruments.size(), Mat3::Zero());
-  const auto gripped = problem.gripped_dofs();
-  gripped_.resize(gripped.size());
+  let_go_.assign(instruments.size(), 0);
   next_tool_ = static_cast<int>(instruments.size());
-  expansion_.displacements.assign(gripped.size(), 0.0);
+  find_gripped();
   reserve();
+}
+
+/// What the scene's grips hold, by ascending unknowns.
+void Loads::find_gripped() {
+  const auto& instruments = problem_.scene().instruments;
+  std::vector<std::pair<Index, Gripped>> found;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* grip = std::get_if<Grip>(&instruments[i].action);
-    if (!grip) continue;
-    const auto& nodes = problem.instrument_nodes()[i].nodes;
-    const Vec3 centre = grip->rigid ? centroid(problem.mesh(), nodes) : Vec3::Zero();
+    if (!grip || let_go_[i]) continue;
+    const auto& nodes = problem_.instrument_nodes()[i].nodes;
+    const Vec3 centre = grip->rigid ? centroid(problem_.mesh(), nodes) : Vec3::Zero();
     for (Index n : nodes) {
-      const Vec3 arm = grip->rigid ? Vec3(problem.mesh().nodes[n] - centre) : Vec3::Zero();
+      const Vec3 arm = grip->rigid ? Vec3(problem_.mesh().nodes[n] - centre) : Vec3::Zero();
       for (int axis = 0; axis < 3; ++axis) {
-        if (!grip->axes.has(axis)) continue;
-        const auto it = std::lower_bound(gripped.begin(), gripped.end(), problem.dof(n, axis));
-        gripped_[it - gripped.begin()] = {i, n, axis, arm};
+        if (grip->axes.has(axis)) found.push_back({problem_.dof(n, axis), {i, n, axis, arm}});
       }
     }
   }
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  gripped_.clear();
+  held_unknowns_.clear();
+  for (const auto& [dof, of] : found) {
+    gripped_.push_back(of);
+    held_unknowns_.push_back(dof);
+  }
+  expansion_.displacements.assign(gripped_.size(), 0.0);
+}
+
+std::vector<Index> Loads::let_go(std::size_t instrument) {
+  std::vector<Index> unknowns;
+  for (std::size_t g = 0; g < gripped_.size(); ++g) {
+    if (gripped_[g].instrument == instrument) unknowns.push_back(held_unknowns_[g]);
+  }
+  let_go_[instrument] = 1;
+  find_gripped();
+  tools_changed();
+  return unknowns;
 }
 
 void Loads::restore(const State& state) {
   pressed_ = state.pressed;
   driven_ = state.driven;
   turned_ = state.turned;
+  if (let_go_ != state.let_go) {
+    let_go_ = state.let_go;
+    find_gripped();
+  }
   tools_ = state.tools;
   next_tool_ = state.next_tool;
   tools_changed();
@@ -116,7 +143,7 @@ void Loads::tools_changed() {
     tool.first = grips;
     if (tool.holds) grips += 3 * tool.nodes.size();
   }
-  if (weight_) weight_->hold(held_nodes());
+  if (weight_) weight_->hold(held_unknowns_, held_nodes());
   reserve();
 }
 

@@ -40,10 +40,13 @@ class Loads {
   struct State {
     std::vector<std::vector<Index>> pressed;
     std::vector<std::optional<Vec3>> driven, turned;
+    std::vector<std::uint8_t> let_go;
     std::vector<Tool> tools;
     int next_tool = 0;
   };
-  [[nodiscard]] State state() const { return {pressed_, driven_, turned_, tools_, next_tool_}; }
+  [[nodiscard]] State state() const {
+    return {pressed_, driven_, turned_, let_go_, tools_, next_tool_};
+  }
   void restore(const State& state);
 
   /// What a host holds and pushes the body by, in the order in which it came: the displacements of
@@ -61,6 +64,11 @@ class Loads {
   [[nodiscard]] int next_tool() const { return next_tool_; }
   /// Nodes that grips of a host hold.
   [[nodiscard]] std::vector<Index> held_nodes() const;
+  /// A grip of the scene prescribes nothing from the next update on. Returns its unknowns.
+  std::vector<Index> let_go(std::size_t instrument);
+  [[nodiscard]] bool has_let_go(std::size_t instrument) const { return let_go_[instrument] != 0; }
+  /// Unknowns that the scene's grips hold, as gripped().
+  [[nodiscard]] std::span<const Index> held_unknowns() const { return held_unknowns_; }
 
   [[nodiscard]] const Load& load() const { return all_; }
   /// Without the pressing instruments (the pristine field's load).
@@ -75,7 +83,8 @@ class Loads {
   [[nodiscard]] Vec3 force_on_supports() const;
   /// Of the body on gripped dof g of the scene, in statics: a part of the grip's reaction.
   [[nodiscard]] double weight_on_grip(std::size_t g) const;
-  /// Per gripped dof of the scene: the instrument that grips it, and the axis.
+  /// Per gripped dof of the scene that has not been let go: the instrument that grips it, and the
+  /// axis.
   struct Gripped {
     std::size_t instrument;
     Index node;
@@ -95,6 +104,7 @@ class Loads {
   void add(std::span<const Index> nodes, const Vec3& force);
   [[nodiscard]] Vec3 on_supports(std::span<const Index> nodes, const Vec3& force) const;
   void tools_changed();
+  void find_gripped();
   void sum_into(Load& load);
 
   /// A share of an instrument's force; those of a dof are summed in the order they came in.
@@ -109,6 +119,8 @@ class Loads {
   std::optional<Weight> weight_;                  // only in statics under gravity
   std::vector<std::vector<Index>> pressed_;       // per instrument
   std::vector<Gripped> gripped_;
+  std::vector<Index> held_unknowns_;  // as gripped_
+  std::vector<std::uint8_t> let_go_;  // per instrument
   std::vector<std::optional<Vec3>> driven_, turned_;
   std::vector<Tool> tools_;
   int next_tool_ = 0;

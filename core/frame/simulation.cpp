@@ -189,6 +189,7 @@ StepReport Simulation::compute_step(double dt) {
   report.destroyed = now_.gone;
   report.compliance = compliance();
   report.passes = backend_->take_pass_times();
+  report.new_bases = backend_->take_new_bases();
   if (moves) {
     report.motion = backend_->motion();
     report.motion->time = time;  // a sum of steps rounds
@@ -353,17 +354,17 @@ std::span<const NodalForce> Simulation::instrument_forces() {
 }
 
 void Simulation::add_grip_forces() {
-  const auto gripped = problem_->gripped_dofs();
-  if (gripped.empty()) return;
+  const auto held = loads_->held_unknowns();
+  if (held.empty()) return;
   const auto& instruments = problem_->scene().instruments;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const auto* grip = std::get_if<Grip>(&instruments[i].action);
-    if (!grip) continue;
+    if (!grip || loads_->has_let_go(i)) continue;
     for (Index n : loads_->nodes(i)) {
       NodalForce at{n, Vec3::Zero()};
       for (int axis = 0; axis < 3; ++axis) {
         const Index d = problem_->dof(n, axis);
-        const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
+        const auto g = std::ranges::lower_bound(held, d) - held.begin();
         if (grip->axes.has(axis)) at.force[axis] = reactions_.grips[static_cast<std::size_t>(g)];
       }
       instrument_forces_.push_back(at);

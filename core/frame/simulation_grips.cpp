@@ -133,7 +133,8 @@ int Simulation::take_hold(const action::Grasp& what) {
 
 /// What holds pieces has changed; `looks`: some may be loose now, or no longer.
 void Simulation::follow_grips(bool looks) {
-  loose_->hold(loads_->held_nodes());
+  loose_->hold(loads_->held_unknowns(), loads_->held_nodes());
+  criterion_->hold(loads_->held_unknowns());
   if (looks) find_loose();
 }
 
@@ -142,7 +143,7 @@ const Tool& Simulation::tool(int id, bool holds) const {
   const char* const what = holds ? "grip" : "push";
   if (id >= 0 && id < scene) {
     throw UsageError("instrument " + std::to_string(id) + " is the scene's own, no " + what +
-                     " of a host: it is driven and turned, and stays");
+                     " of a host: it is driven and turned");
   }
   const Tool* found = loads_->tool(id);
   if (!found || found->holds != holds) {
@@ -196,6 +197,10 @@ Wrench Simulation::wrench(int id) const {
 }
 
 void Simulation::release(int id) {
+  if (id >= 0 && id < static_cast<int>(problem_->scene().instruments.size())) {
+    release_own(static_cast<std::size_t>(id));
+    return;
+  }
   static_cast<void>(tool(id, true));
   act({Action::Release{id}}, [&](Action&) {
     const std::vector<Index> dofs = dofs_of(tool(id, true), *problem_);
@@ -205,6 +210,55 @@ void Simulation::release(int id) {
     describe_grips();
     follow_grips(now_.gone > 0);
   });
+}
+
+/// A grip of the scene.
+void Simulation::release_own(std::size_t instrument) {
+  check_release(instrument);
+  act({Action::Release{static_cast<int>(instrument)}}, [&](Action&) {
+    const std::vector<Index> dofs = loads_->let_go(instrument);
+    if (haptics_) haptics_->let_go(own_grips());
+    backend_->release(dofs);
+    describe_grips();
+    follow_grips(now_.gone > 0);
+  });
+}
+
+void Simulation::check_release(std::size_t instrument) const {
+  const std::string name = "instrument " + std::to_string(instrument);
+  const Instrument& of = problem_->scene().instruments[instrument];
+  if (!std::holds_alternative<Grip>(of.action)) {
+    throw UsageError(name + " cannot let go: it holds nothing; drive its force to 0");
+  }
+  if (loads_->has_let_go(instrument)) throw UsageError(name + " has let go already");
+  const std::string cannot = name + " cannot let go: ";
+  if (!backend_->needs().damage) {
+    throw UsageError(cannot +
+                     "the scene has neither fracture nor removals, and was not told that it is "
+                     "live before the simulation was made");
+  }
+  if (const std::string why = backend_->why_no_grasp(); !why.empty())
+    throw UsageError(cannot + why);
+  const auto anchored = problem_->anchored_dofs();
+  // Where a split crack has come by, the body would have parted further had the node been free.
+  std::vector<Index> of_cracks;
+  for (const CrackFace& face : criterion_->faces()) {
+    of_cracks.insert(of_cracks.end(), face.left.begin(), face.left.end());
+    of_cracks.insert(of_cracks.end(), face.right.begin(), face.right.end());
+  }
+  for (std::size_t g = 0; g < loads_->gripped().size(); ++g) {
+    const Loads::Gripped& held = loads_->gripped()[g];
+    if (held.instrument != instrument) continue;
+    if (std::ranges::find(anchored, loads_->held_unknowns()[g]) != anchored.end()) {
+      throw UsageError(cannot + "the body with node " + std::to_string(held.node) +
+                       " is held by grips of the scene alone, and in statics it would have no "
+                       "place; hold it with [[fixed]]");
+    }
+    if (std::ranges::find(of_cracks, held.node) != of_cracks.end()) {
+      throw UsageError(cannot + "a crack of split nodes has reached node " +
+                       std::to_string(held.node) + ", which it holds");
+    }
+  }
 }
 
 void Simulation::check_push(std::span<const Index> nodes, const Vec3& force) const {

@@ -35,6 +35,11 @@ void Simulation::keep_history(MakeBackend make, int quick) {
   if (loads_->next_tool() > static_cast<int>(problem_->scene().instruments.size())) {
     throw UsageError("a history begins before the first grip and the first push of a host");
   }
+  for (std::size_t i = 0; i < problem_->scene().instruments.size(); ++i) {
+    if (loads_->has_let_go(i)) {
+      throw UsageError("a history begins before a grip of the scene lets go");
+    }
+  }
   if (quick < 0) throw UsageError("the number of quick undos must not be below 0");
   history_ = std::make_unique<History>();
   history_->make = std::move(make);
@@ -98,7 +103,8 @@ bool Simulation::go_back(const Kept& kept) {
     loads_->update(now_.scene_time, *criterion_, backend_->destroyed(), of_loads_);
     if (averaged_) static_cast<void>(averaged_->summarize(*backend_));
   }
-  loose_->hold(loads_->held_nodes());
+  loose_->hold(loads_->held_unknowns(), loads_->held_nodes());
+  criterion_->hold(loads_->held_unknowns());
   loose_->look(backend_->destroyed(), criterion_->corners(), backend_->node_count());
   ++looks_;
   return true;

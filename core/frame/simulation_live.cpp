@@ -17,7 +17,14 @@ void Simulation::drive(std::size_t instrument, const Vec3& value) {
     throw UsageError("there is no instrument " + std::to_string(instrument));
   }
   if (!value.allFinite()) throw UsageError("an instrument's value must be finite");
+  refuse_let_go(instrument, "driven");
   act({Action::Drive{instrument, value}}, [&](Action&) { loads_->drive(instrument, value); });
+}
+
+void Simulation::refuse_let_go(std::size_t instrument, const std::string& what) const {
+  if (!loads_->has_let_go(instrument)) return;
+  throw UsageError("instrument " + std::to_string(instrument) + " cannot be " + what +
+                   ": it has let go");
 }
 
 void Simulation::turn(std::size_t instrument, const Vec3& rotation) {
@@ -29,6 +36,7 @@ void Simulation::turn(std::size_t instrument, const Vec3& rotation) {
     throw UsageError("instrument " + std::to_string(instrument) + " is no rigid grip");
   }
   if (!rotation.allFinite()) throw UsageError("a grip's turn must be finite");
+  refuse_let_go(instrument, "turned");
   act({Action::Turn{instrument, rotation}}, [&](Action&) { loads_->turn(instrument, rotation); });
 }
 

@@ -32,7 +32,17 @@ void Simulation::describe_grips() {
     if (!tool.holds) continue;
     grips.push_back({tool.id, tool.rigid, tool.first, tool.centre, tool.moved, tool.arms});
   }
-  haptics_->describe(std::move(grips));
+  haptics_->describe(std::move(grips), own_grips());
+}
+
+/// Places of the unknowns that the scene's grips hold among all of Problem::gripped_dofs().
+std::vector<Index> Simulation::own_grips() const {
+  std::vector<Index> places;
+  const auto gripped = problem_->gripped_dofs();
+  for (Index d : loads_->held_unknowns()) {
+    places.push_back(static_cast<Index>(std::ranges::lower_bound(gripped, d) - gripped.begin()));
+  }
+  return places;
 }
 
 /// After going back or forth.

@@ -12,6 +12,7 @@ Weight::Weight(const Problem& problem)
       gravity_(problem.scene().gravity),
       mass_(fem::lumped_masses(problem)),
       weighs_(mass_.size(), 1),
+      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
       search_(problem) {
   collect(intact_);
   present_ = intact_;
@@ -19,6 +20,18 @@ Weight::Weight(const Problem& problem)
     load->force_dofs.reserve(static_cast<std::size_t>(problem.dof_count()));
     load->forces.reserve(static_cast<std::size_t>(problem.dof_count()));
   }
+}
+
+void Weight::hold(std::span<const Index> unknowns, std::span<const Index> nodes) {
+  if (!std::ranges::equal(unknowns, gripped_)) {
+    gripped_.assign(unknowns.begin(), unknowns.end());
+    const auto weighs = weighs_;
+    std::ranges::fill(weighs_, std::uint8_t{1});
+    collect(intact_);
+    weighs_ = weighs;
+    collect(present_);
+  }
+  if (search_.hold(unknowns, nodes)) destroyed_ = -1;
 }
 
 void Weight::look(std::span<const std::uint8_t> destroyed) {
@@ -38,12 +51,11 @@ void Weight::look(std::span<const std::uint8_t> destroyed) {
 void Weight::collect(Load& weight) const {
   weight.force_dofs.clear();
   weight.forces.clear();
-  const auto gripped = problem_.gripped_dofs();
   for (Index n = 0; n < problem_.node_count(); ++n) {
     for (int axis = 0; axis < 3; ++axis) {
       const Index d = problem_.dof(n, axis);
       const double force = of(n, axis);
-      if (d == kNone || force == 0 || std::ranges::binary_search(gripped, d)) continue;
+      if (d == kNone || force == 0 || std::ranges::binary_search(gripped_, d)) continue;
       weight.force_dofs.push_back(d);
       weight.forces.push_back(force);
     }

@@ -19,10 +19,9 @@ class Weight {
   /// What is cut off weighs nothing any more: nothing would hold it up but the small stiffness
   /// that destroyed elements keep.
   void look(std::span<const std::uint8_t> destroyed);
-  /// Nodes that a host holds besides: what they hold up weighs.
-  void hold(std::span<const Index> nodes) {
-    if (search_.hold(nodes)) destroyed_ = -1;
-  }
+  /// Unknowns that the scene's grips hold, ascending (at first all of them): a part of their
+  /// reactions, no force on the body. And nodes that a host holds. What they hold up weighs.
+  void hold(std::span<const Index> unknowns, std::span<const Index> nodes);
 
   /// The intact body's, and the present one's, added to the forces of a load.
   void add_intact(Load& load) { add(intact_, load); }
@@ -43,6 +42,7 @@ class Weight {
   Vec3 gravity_;
   std::vector<double> mass_;          // per node [t]
   std::vector<std::uint8_t> weighs_;  // per node
+  std::vector<Index> gripped_;        // by the scene's grips
   LooseSearch search_;
   std::ptrdiff_t destroyed_ = 0;  // elements at the last look
   Load intact_, present_, sum_;

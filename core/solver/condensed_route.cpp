@@ -10,6 +10,7 @@
 #include "solver/background_rebase.hpp"
 #include "solver/condensed_update.hpp"
 #include "solver/load_room.hpp"
+#include "solver/new_base_timer.hpp"
 #include "solver/whole_solution.hpp"
 #include "sunder/error.hpp"
 
@@ -265,6 +266,7 @@ class CondensedRoute final : public InverseRoute {
   bool rebase() override {
     if (!coming_) return false;
     body_.refuse_new_unknowns();
+    const NewBaseTimer timer(new_bases_);
     coming_->give_up();
     next_->release();
     based_ = {};  // frees the old base first
@@ -280,7 +282,11 @@ class CondensedRoute final : public InverseRoute {
   void set_energy_tolerance(double energy) override { energy_tolerance_ = energy; }
   int bases() const override { return bases_; }
   const BaseCheck& base_check() const override { return based_.check; }
-  double waited_ms() const override { return coming_ ? coming_->waited_ms() : 0; }
+  NewBases new_bases() const override {
+    NewBases all = new_bases_;
+    if (coming_) all.waited_ms += coming_->waited_ms();
+    return all;
+  }
 
   std::vector<BufferPlan> buffers() const override {
     std::vector<BufferPlan> plan = based_.laid_over().buffers();
@@ -348,7 +354,7 @@ class CondensedRoute final : public InverseRoute {
     const Deferred& deferred = based_.laid_over();
     // A base has unit vectors of all that is gripped; the load is the last frame's.
     const auto grasped =
-        static_cast<std::size_t>(deferred.grips()) - body_.problem().gripped_dofs().size();
+        static_cast<std::size_t>(deferred.grips()) - body_.forms().own_gripped().size();
     const bool fits = load_.displacements.empty() ||
                       load_.displacements.size() == static_cast<std::size_t>(deferred.grips());
     return !coming_->making() && fits &&
@@ -361,6 +367,7 @@ class CondensedRoute final : public InverseRoute {
     if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
     if (based_.factor != factor) factored_ = started_;
     ++bases_;
+    ++new_bases_.count;
   }
 
   const fem::DamagedBody& body_;
@@ -375,6 +382,7 @@ class CondensedRoute final : public InverseRoute {
   Eigen::VectorXd everywhere_;
   double energy_tolerance_ = 0;
   int bases_ = 1;
+  NewBases new_bases_;
   // Where something can be destroyed.
   std::optional<NextBase> next_;
   std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above

@@ -19,11 +19,14 @@ constexpr double kAmplified = 100;
 constexpr double kRefined = 1e-10;
 // A displacement so many times that of the last full check (a piece has come loose) needs another.
 constexpr double kGrowth = 10;
+// What rounding of the displacement costs by its bound, so many times.
+constexpr double kRoundings = 10;
 
 }  // namespace
 
 EnergyCheck::EnergyCheck(const Problem& problem)
     : problem_(problem),
+      stress_of_rounding_(solver::stress_of_rounding(problem, 1)),
       stress_of_energy_(solver::largest_stress_of_energy(problem)),
       known_(problem) {}
 
@@ -61,6 +64,23 @@ std::optional<SolveReport> EnergyCheck::known(const CheckedLoads::Sum& expected,
   report.error = kAmplified * of_base + lacking;
   if (!(report.error <= std::min(kEnough, tolerance / 10))) return std::nullopt;
   return report;
+}
+
+std::optional<SolveReport> EnergyCheck::known_by_base(const SolveReport& report, double unrefined,
+                                                      double energy, double largest_u,
+                                                      double largest) const {
+  if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
+  if (!(unrefined > 0)) return std::nullopt;  // an exact solution says nothing about others
+  SolveReport known = report;
+  known.polished = false;
+  known.iterations = 0;
+  known.back_solves = 1;
+  known.error = kAmplified * unrefined + kRoundings * stress_of_rounding_ * largest_u / largest +
+                stress_of_energy_ * std::sqrt(std::max(0.0, energy)) / largest;
+  if (!(known.error <= std::min(kEnough, problem_.scene().solver.tolerance / 10))) {
+    return std::nullopt;
+  }
+  return known;
 }
 
 }  // namespace sunder::solver

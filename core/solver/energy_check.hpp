@@ -40,11 +40,18 @@ class EnergyCheck {
   /// what the deferred update lacked (Deferred::defect_energy).
   [[nodiscard]] std::optional<SolveReport> known(const CheckedLoads::Sum& expected, double energy,
                                                  double largest_u, double largest) const;
+  /// The same where grips are new since the last full check on this base, which said `report` and
+  /// found `unrefined` before it refined. What they exert are forces on the region, as those of
+  /// damage are: the base gives those wrong by as much, with the same room.
+  [[nodiscard]] std::optional<SolveReport> known_by_base(const SolveReport& report,
+                                                         double unrefined, double energy,
+                                                         double largest_u, double largest) const;
 
  private:
   const Problem& problem_;
-  double stress_of_energy_;  // sqrt of the largest stress^2 per energy over all elements
-  SolveReport report_;       // of the last full check
+  double stress_of_rounding_;  // of a displacement of 1 mm
+  double stress_of_energy_;    // sqrt of the largest stress^2 per energy over all elements
+  SolveReport report_;         // of the last full check
   CheckedLoads known_;
 };
 

@@ -9,6 +9,7 @@
 #include "solver/frame_cost.hpp"
 #include "solver/grip_stiffness.hpp"
 #include "solver/instrument_block.hpp"
+#include "solver/new_base_timer.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
@@ -284,6 +285,7 @@ bool FiniteMotion::better_where_it_is(const FiniteTarget& target) const {
 
 bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
                          Report& report) {
+  const NewBaseTimer timer(report.new_bases);
   base_ = projected_base(moving_.body(), u, pattern(), report.factors, {}, inertia);
   if (base_ && options_.inverse && !parted_) base_->keep_inverse();
   return base_ != nullptr;
@@ -339,6 +341,7 @@ bool FiniteMotion::minimise(const FiniteTarget& target, Report& report) {
 /// A base of the exact tangent, for the state in work alone; false: it is not positive definite.
 bool FiniteMotion::take_exact(const std::vector<double>& u, const fem::Inertia& inertia,
                               Report& report) {
+  const NewBaseTimer timer(report.new_bases);
   ++report.factors;
   try {
     base_ =
@@ -372,6 +375,7 @@ FiniteMotionReport FiniteMotion::in_parts(const Load& load, double dt, const Rep
       const Report part = one_step(i < parts ? on_the_way : load, dt / parts);
       all.back_solves += part.back_solves;
       all.factors += part.factors;
+      all.new_bases += part.new_bases;
       all.bases += part.bases;
       all.stuck = part.stuck;
       all.capped = all.capped || part.capped;
@@ -395,6 +399,7 @@ FiniteMotionReport FiniteMotion::one_step(const Load& load, double dt) {
   FiniteTarget end = target(load, by);
   if (is_still(by, end)) return stay(end, by, dt);
   if (renewal_.base_asked() && --until_taken_ <= 0) {
+    const NewBaseTimer timer(report.new_bases);
     if (auto base = renewal_.take_base()) {
       base_ = std::move(base);
       ++report.bases;

@@ -71,6 +71,7 @@ struct FiniteMotionReport {
   int bases = 0;  ///< made beside the steps, that it took
   Index rank = 0;
   FiniteMotionBalance balance;
+  NewBases new_bases;  ///< as in FiniteStaticsReport
 };
 
 /// All that the next step goes on from, but for the base.

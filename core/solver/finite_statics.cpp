@@ -9,6 +9,7 @@
 #include "solver/grip_stiffness.hpp"
 #include "solver/instrument_block.hpp"
 #include "solver/lowest_mode.hpp"
+#include "solver/new_base_timer.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
@@ -125,6 +126,7 @@ void FiniteStatics::body_changed() {
 
 /// Makes a base; false: the tangent is not positive definite.
 bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Report& report) {
+  const NewBaseTimer timer(report.new_bases);
   if (kind == fem::Tangent::projected) {
     base_ = projected_base(resting_.body(), u, pattern_.get(), report.factors);
     return base_ != nullptr;
@@ -339,7 +341,7 @@ FiniteStaticsReport FiniteStatics::solve(const Load& load) {
   FiniteScale scale = scale_;
   scale.force = std::max(scale.force, acting_);
   minimiser_.set_scale(scale);
-  take_renewed();
+  take_renewed(report);
   if (!path_.running()) {
     step_begin_ = u_;
     step_begin_target_ = reached_;
@@ -367,9 +369,10 @@ void FiniteStatics::go_back() {
 }
 
 /// At their counts, not when they are ready.
-void FiniteStatics::take_renewed() {
+void FiniteStatics::take_renewed(Report& report) {
   ++since_asked_;
   if (renewal_.base_asked() && since_asked_ >= options_.taken_after) {
+    const NewBaseTimer timer(report.new_bases);
     if (auto base = renewal_.take_base()) base_ = std::move(base);
   }
   if (renewal_.judgement_asked() && since_asked_ >= 2 * options_.taken_after) {
@@ -411,9 +414,12 @@ void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   if (!hard && !check) return;
   first_ = false;
   worn_ = 0;
-  if (auto base = base_at_rest(resting_.body(), u_, pattern_.get(), report.factors)) {
-    if (options_.inverse) base->keep_inverse();
-    base_ = std::move(base);
+  {
+    const NewBaseTimer timer(report.new_bases);
+    if (auto base = base_at_rest(resting_.body(), u_, pattern_.get(), report.factors)) {
+      if (options_.inverse) base->keep_inverse();
+      base_ = std::move(base);
+    }
   }
   if (!check) return;
   ++report.factors;

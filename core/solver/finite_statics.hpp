@@ -57,6 +57,7 @@ struct FiniteStaticsReport {
   int buckled = 0;  ///< how often an unstable rest was left
   Index rank = 0;   ///< unknowns by which the base differed from the body
   FrozenParts frozen;
+  NewBases new_bases;  ///< made by the step, or beside the steps and taken by it
 };
 
 class FiniteStatics {
@@ -109,7 +110,7 @@ class FiniteStatics {
   void follow_path(const FiniteTarget& end, Report& report);
   void rest_at(const FiniteTarget& target);
   void go_back();
-  void take_renewed();
+  void take_renewed(Report& report);
   void judged(bool stable);
   void ask(bool base, bool judgement);
   void renew_if_due(const FiniteTarget& end, Report& report);

@@ -46,6 +46,7 @@ FrameSolver::FrameSolver(const Problem& problem, FrameDevice& device)
 
 void FrameSolver::grips_changed() {
   last_.holds = false;
+  checked_base_.other_grips = true;
   if (checks_) {
     for (FrameCheck& check : checks_->all()) check.forget();
   }
@@ -72,6 +73,7 @@ void FrameSolver::restore(const State& state) {
   if (state.energy_checks_) energy_checks_.emplace(*state.energy_checks_);
   kept_error_ = state.kept_error_;
   last_ = state.last_;
+  checked_base_ = state.checked_base_;
   check_ = nullptr;
   load_ = nullptr;
 }
@@ -143,12 +145,24 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
       return *known;
     }
   }
+  if (auto known = solve_by_base(check)) return *known;
   SolveReport report;
   solve_once(0, report);
   check_fully(report);
   const auto [largest_u, largest] = device_.on_region();
   check.checked(load, report, unrefined_, device_.bases(), largest_u, largest);
+  checked_base_ = {device_.bases(), unrefined_, report, false};
   return report;
+}
+
+/// Under loads of grips that have come or gone since the last full check; nothing: it needs one.
+std::optional<SolveReport> FrameSolver::solve_by_base(const EnergyCheck& check) {
+  if (!checked_base_.other_grips || checked_base_.number != device_.bases()) return std::nullopt;
+  const auto [largest_u, largest] = device_.solve_region(0);
+  auto known = check.known_by_base(checked_base_.report, checked_base_.unrefined,
+                                   device_.deferred()->defect_energy(), largest_u, largest);
+  if (known) everywhere_ = false;
+  return known;
 }
 
 void FrameSolver::solve_once(double energy_tolerance, SolveReport& report) {

@@ -39,6 +39,7 @@ class FrameSolver {
   SolveReport solve_everywhere(const Load& load);
   SolveReport solve_condensed(const Load& load);
   [[nodiscard]] std::optional<SolveReport> solve_known(const Load& load);
+  [[nodiscard]] std::optional<SolveReport> solve_by_base(const EnergyCheck& check);
   [[nodiscard]] FrameCheck* check_of(const Load& load);
 
   void solve_once(double energy_tolerance, SolveReport& report);
@@ -75,6 +76,14 @@ class FrameSolver {
     bool holds = false;
   };
   Last last_;
+  // What the last full check of a condensed frame has said of its base.
+  struct CheckedBase {
+    int number = 0;  // 0: there was none
+    double unrefined = 0;
+    SolveReport report;
+    bool other_grips = false;  // than then
+  };
+  CheckedBase checked_base_;
 };
 
 class FrameSolver::State {
@@ -83,7 +92,8 @@ class FrameSolver::State {
       : checks_(of.checks_),
         energy_checks_(of.energy_checks_),
         kept_error_(of.kept_error_),
-        last_(of.last_) {}
+        last_(of.last_),
+        checked_base_(of.checked_base_) {}
 
  private:
   friend class FrameSolver;
@@ -91,6 +101,7 @@ class FrameSolver::State {
   std::optional<RecentChecks<EnergyCheck>> energy_checks_;
   double kept_error_;
   Last last_;
+  CheckedBase checked_base_;
 };
 
 }  // namespace sunder::solver

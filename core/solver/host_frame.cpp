@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/instrument_block.hpp"
 #include "solver/load_room.hpp"
 
 namespace sunder::solver {
@@ -31,7 +30,7 @@ HostFrame::HostFrame(const fem::DamagedBody& body, InverseRoute& route, HostFiel
       fields_(fields),
       yardstick_(yardstick),
       fall_back_(std::move(fall_back)),
-      anchors_(anchors_of(problem())) {
+      anchors_(problem()) {
   reserve(load_, problem());
   force_.setZero(problem().dof_count());
   u_ = force_;
@@ -142,9 +141,9 @@ FrameDevice::OnRegion HostFrame::solve_region(double energy_tolerance) {
   route_.set_energy_tolerance(energy_tolerance);
   route_.solve(load_, force_, u_);
   const OnRegion found = on_region();
+  const auto anchors = anchors_.of(gripped());
   for (std::size_t g = 0; g < gripped().size(); ++g) {
-    const double anchor = g < anchors_.size() ? anchors_[g] : 0;
-    reactions_[g] = grip_force(g) - anchor * u_[gripped()[g]];  // the anchor's share
+    reactions_[g] = grip_force(g) - anchors[g] * u_[gripped()[g]];  // the anchor's share
   }
   return found;
 }

@@ -12,6 +12,7 @@
 #include "body/offsets.hpp"
 #include "solver/frame_device.hpp"
 #include "solver/host_fields.hpp"
+#include "solver/instrument_block.hpp"
 #include "solver/inverse_route.hpp"
 
 namespace sunder::solver {
@@ -78,7 +79,7 @@ class HostFrame final : public FrameDevice {
   bool yardstick_;
   MakeRoute fall_back_;
   std::unique_ptr<InverseRoute> other_;  // while a frame falls back
-  std::vector<double> anchors_;          // stiffness of the anchor of each of the problem's grips
+  Anchors anchors_;
 
   fem::Offsets offsets_;
   Load load_;

@@ -7,33 +7,36 @@
 
 namespace sunder::solver {
 
-std::vector<double> anchors_of(const Problem& problem) {
-  const auto gripped = problem.gripped_dofs();
-  std::vector<double> anchors(gripped.size(), 0.0);
-  for (Index d : problem.anchored_dofs()) {
-    const auto g = std::lower_bound(gripped.begin(), gripped.end(), d) - gripped.begin();
-    anchors[static_cast<std::size_t>(g)] = problem.anchor_stiffness();
+std::span<const double> Anchors::of(std::span<const Index> gripped) {
+  if (stiffness_.size() == gripped.size() && std::ranges::equal(gripped, gripped_)) {
+    return stiffness_;
   }
-  return anchors;
+  gripped_.assign(gripped.begin(), gripped.end());
+  stiffness_.assign(gripped.size(), 0.0);
+  for (Index d : problem_.anchored_dofs()) {
+    const auto g = std::ranges::find(gripped_, d) - gripped_.begin();
+    if (g < static_cast<std::ptrdiff_t>(gripped_.size())) {
+      stiffness_[static_cast<std::size_t>(g)] = problem_.anchor_stiffness();
+    }
+  }
+  return stiffness_;
 }
 
-InstrumentBlock::InstrumentBlock(const Problem& problem) : anchors_(anchors_of(problem)) {
-  forces_ = std::make_shared<InstrumentForces>(anchors_);
-  f_ = half_ = u_0_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(anchors_.size()));
+InstrumentBlock::InstrumentBlock(const Problem& problem) : anchors_(problem) {
+  const auto gripped = problem.gripped_dofs();
+  forces_ = std::make_shared<InstrumentForces>(anchors_.of(gripped));
+  f_ = half_ = u_0_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(gripped.size()));
 }
 
-std::span<const double> InstrumentBlock::anchors(std::size_t grips) {
-  anchors_.resize(grips, 0.0);
-  return anchors_;
-}
-
-void InstrumentBlock::publish(const Eigen::Ref<const Eigen::MatrixXd>& l,
+void InstrumentBlock::publish(std::span<const Index> gripped,
+                              const Eigen::Ref<const Eigen::MatrixXd>& l,
                               std::span<const double> reactions,
                               std::span<const double> displacements) {
   const auto g = static_cast<Eigen::Index>(reactions.size());
-  if (l.rows() != g) throw UsageError("a compliance of other grips than the reactions'");
+  if (l.rows() != g || gripped.size() != reactions.size())
+    throw UsageError("a compliance of other grips than the reactions'");
   const Eigen::Map<const Eigen::VectorXd> r(reactions.data(), g), d(displacements.data(), g),
-      anchors(this->anchors(reactions.size()).data(), g);
+      anchors(this->anchors(gripped).data(), g);
   f_ = r.array() + anchors.array() * d.array();  // anchors pull as well
   half_.noalias() = l.transpose().triangularView<Eigen::Upper>() * f_;
   u_0_ = d;

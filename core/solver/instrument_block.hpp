@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sunder/instrument_forces.hpp"
@@ -11,8 +12,20 @@
 
 namespace sunder::solver {
 
-/// Stiffness [N/mm] of the anchor of each gripped unknown.
-[[nodiscard]] std::vector<double> anchors_of(const Problem& problem);
+/// Stiffness [N/mm] of the anchors of gripped unknowns, 0 where one has none, as with those of a
+/// host. Finds them anew, and allocates, only where others are gripped than at the last call.
+class Anchors {
+ public:
+  /// Of the problem's own. The problem must outlive it.
+  explicit Anchors(const Problem& problem) : problem_(problem) { (void)of(problem.gripped_dofs()); }
+  /// One per unknown, until the next call.
+  [[nodiscard]] std::span<const double> of(std::span<const Index> gripped);
+
+ private:
+  const Problem& problem_;
+  std::vector<Index> gripped_;
+  std::vector<double> stiffness_;
+};
 
 class InstrumentBlock {
  public:
@@ -22,17 +35,18 @@ class InstrumentBlock {
   /// Publishes to these from now on, which belonged to another backend of the same problem.
   void take_over(std::shared_ptr<InstrumentForces> forces) { forces_ = std::move(forces); }
 
-  /// Of so many gripped unknowns, the problem's and then those of a host, which have none: 0.
-  [[nodiscard]] std::span<const double> anchors(std::size_t grips);
-  /// `l`: L L^T = (A^-1)_GG, a lower triangle, of the problem's grips and then those of a host. The
-  /// reactions are those of a solution with the grips at `displacements`. Allocates nothing unless
-  /// there are more grips than ever.
-  void publish(const Eigen::Ref<const Eigen::MatrixXd>& l, std::span<const double> reactions,
-               std::span<const double> displacements);
+  [[nodiscard]] std::span<const double> anchors(std::span<const Index> gripped) {
+    return anchors_.of(gripped);
+  }
+  /// `l`: L L^T = (A^-1)_GG, a lower triangle, of the unknowns `gripped`: the problem's and then
+  /// those of a host. The reactions are those of a solution with the grips at `displacements`.
+  /// Allocates nothing unless others are gripped than before.
+  void publish(std::span<const Index> gripped, const Eigen::Ref<const Eigen::MatrixXd>& l,
+               std::span<const double> reactions, std::span<const double> displacements);
 
  private:
   std::shared_ptr<InstrumentForces> forces_;
-  std::vector<double> anchors_;
+  Anchors anchors_;
   Eigen::VectorXd f_, half_, u_0_;
 };
 

@@ -60,8 +60,8 @@ class InverseRoute {
     static const BaseCheck none;
     return none;
   }
-  /// Milliseconds that frames have waited for a rebase so far.
-  [[nodiscard]] virtual double waited_ms() const { return 0; }
+  /// Bases after the first one so far; going back takes none of these away.
+  [[nodiscard]] virtual NewBases new_bases() const { return {}; }
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
 };
 

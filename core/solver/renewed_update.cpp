@@ -2,6 +2,7 @@
 #include "solver/renewed_update.hpp"
 
 #include "solver/load_room.hpp"
+#include "solver/new_base_timer.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
@@ -85,7 +86,7 @@ bool RenewedUpdate::can_be_renewed() const {
 
 bool RenewedUpdate::begins() const {
   const Deferred& deferred = based_.laid_over();
-  const auto own = static_cast<Index>(body_.problem().gripped_dofs().size());
+  const auto own = static_cast<Index>(body_.forms().own_gripped().size());
   // A base has unit vectors of all that is gripped, which is no reason for the next one.
   const Eigen::Index columns =
       deferred.rank() - (deferred.grips() - own) + deferred.offsets().size();
@@ -98,6 +99,7 @@ bool RenewedUpdate::begins() const {
 
 bool RenewedUpdate::rebase() {
   if (!coming_ || !can_be_renewed()) return false;
+  const NewBaseTimer timer(new_bases_);
   coming_->give_up();
   saved_ms_ = saved_ms();
   based_ = {};  // frees the old base first
@@ -110,6 +112,7 @@ void RenewedUpdate::take_base() {
   const double saved = saved_ms();
   if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
   saved_ms_ = saved;
+  ++new_bases_.count;
   renewed();
 }
 

@@ -67,7 +67,12 @@ class RenewedUpdate {
   [[nodiscard]] const linear_algebra::Factor* factor() const { return based_.factor.get(); }
   [[nodiscard]] int bases() const { return bases_; }
   [[nodiscard]] const BaseCheck& base_check() const { return based_.check; }
-  [[nodiscard]] double waited_ms() const { return coming_ ? coming_->waited_ms() : 0; }
+  /// All after the first one so far.
+  [[nodiscard]] NewBases new_bases() const {
+    NewBases all = new_bases_;
+    if (coming_) all.waited_ms += coming_->waited_ms();
+    return all;
+  }
   [[nodiscard]] double saved_ms() const {
     return saved_ms_ + (based_.deferred ? based_.deferred->saved_ms() : 0);
   }
@@ -90,6 +95,7 @@ class RenewedUpdate {
   Make make_;
   std::size_t threshold_ = 0;  // columns at which a new base begins
   int bases_ = 1;
+  NewBases new_bases_;
   double saved_ms_ = 0;                     // by the bases before this one
   std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
 };

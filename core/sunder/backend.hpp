@@ -46,6 +46,19 @@ struct GripChange {
   std::span<const Index> grasp, release, before;
 };
 
+/// Bases that a body has gone over to: new factors or inverses of it as it is, or on route
+/// condensed the last one updated. By laws of finite deformation and in motion those of new
+/// tangents.
+struct NewBases {
+  int count = 0;
+  double waited_ms = 0;  ///< how long their making kept frames and calls waiting
+  NewBases& operator+=(const NewBases& other) {
+    count += other.count;
+    waited_ms += other.waited_ms;
+    return *this;
+  }
+};
+
 struct SolveReport {
   double residual = 0;  ///< |f - K u| / |f|, fp64, 0 without load (design.md "Accuracy")
   double error = 0;     ///< estimate: largest |stress(du)| / largest |stress(u)| over live elements
@@ -54,7 +67,7 @@ struct SolveReport {
   bool unfinished = false;  ///< the next solve() goes on towards rest; never without end
   bool capped = false;      ///< in motion: ended by the cap on iterations, its error not promised
   bool polished = false;    ///< the frame was over tolerance and was refined
-  double waited_ms = 0;     ///< for a new base from another thread, since the last solve
+  double waited_ms = 0;     ///< for new bases, since the last solve
   double stress_ms = 0;     ///< of its time: the stress that it is checked by; 0: a device's own
 };
 
@@ -177,6 +190,8 @@ class Backend {
   virtual void time_passes(bool) {}
   /// Device time per pass since the last call; empty: no device clock, or it is off.
   [[nodiscard]] virtual std::vector<PassTime> take_pass_times() { return {}; }
+  /// Bases since the last call; that of the start is none.
+  [[nodiscard]] virtual NewBases take_new_bases() { return {}; }
   /// Reaction forces of the grips between frames, for another thread; after each solve() they
   /// belong to its solution. Null: there are no grips, or the backend has nothing of the kind.
   [[nodiscard]] virtual std::shared_ptr<InstrumentForces> instrument_forces() { return nullptr; }
@@ -243,10 +258,13 @@ class Backend {
   /// read. They must be unknowns of the problem, distinct, not gripped yet. Throws UsageError
   /// otherwise.
   void grasp(std::span<const Index> dofs);
-  /// Lets some of these go: none of the problem's own.
+  /// Lets gripped unknowns go, the problem's own too: they are free from now on. Throws UsageError
+  /// where one is not gripped or named twice.
   void release(std::span<const Index> dofs);
-  /// Those of the problem, then those grasped since, in order.
+  /// Those of the problem that have not been let go, ascending, then those grasped since, in order.
   [[nodiscard]] std::span<const Index> gripped_dofs() const;
+  /// The first of them: the problem's.
+  [[nodiscard]] std::span<const Index> own_gripped_dofs() const;
 
   /// Nodes of the mesh and, with ids after theirs, those that changes have brought.
   [[nodiscard]] Index node_count() const;

@@ -53,8 +53,8 @@ struct Felt {
 };
 
 /// With L L^T the compliance C of the gripped unknowns G and u_0 their displacement without grips,
-/// prescribed displacements d take the forces C^-1 (d - u_0). G: those of the scene's grips, then
-/// those of a host's.
+/// prescribed displacements d take the forces C^-1 (d - u_0). G: those of the scene's grips that
+/// hold, then those of a host's.
 ///
 /// One thread publishes, one other thread asks; neither ever waits for the other, and the asking
 /// one sees a whole frame or the whole one before it.
@@ -71,12 +71,15 @@ class InstrumentForces {
   /// other grips than described. Throws UsageError where sizes do not fit.
   void publish(const Eigen::Ref<const Eigen::MatrixXd>& l,
                const Eigen::Ref<const Eigen::VectorXd>& u_0, std::span<const double> held = {});
-  /// Frame's side: grips of a host that what is published from now on holds.
-  void describe(std::vector<HeldGrip> grips);
+  /// Frame's side: grips of a host that what is published from now on holds, and which unknowns of
+  /// the scene's grips, as places below size(), ascending. Before the first call all of these.
+  void describe(std::vector<HeldGrip> grips, std::vector<Index> own);
   /// Frame's side: step that what is published from now on belongs to.
   void label(int step) { step_ = step; }
   /// Frame's side: a grip is let go; the last solution goes on without it at once.
   void let_go(int grip);
+  /// Frame's side: the same of the scene's; `own`: what they hold from now on, as in describe().
+  void let_go(std::vector<Index> own);
   /// Frame's side: there is no solution any more; a blend ends too.
   void withdraw();
   /// Frame's side: the last solution once more, by the grips described since, where they fit.
@@ -103,7 +106,8 @@ class InstrumentForces {
   void blend(double ms) { blend_ms_.store(ms, std::memory_order_relaxed); }
 
   /// Instruments' side: forces [N] on the body for displacements [mm] of the unknowns that the
-  /// scene's grips hold, in the order of Problem::gripped_dofs(); a host's grips hold still.
+  /// scene's grips hold, in the order of Problem::gripped_dofs(); a host's grips hold still. Of one
+  /// that has let go the displacement is not read and the force is 0.
   /// Returns false, with zeros, before the first frame, for displacements that are not finite and
   /// once the simulation is gone. Allocates nothing. Cost g^2 multiply-adds, twice that while it
   /// blends.
@@ -120,7 +124,11 @@ class InstrumentForces {
   [[nodiscard]] std::uint64_t frames() const { return frames_.load(std::memory_order_relaxed); }
 
  private:
-  using Grips = std::shared_ptr<const std::vector<HeldGrip>>;
+  struct Held {
+    std::vector<HeldGrip> grips;
+    std::vector<Index> own;
+  };
+  using Grips = std::shared_ptr<const Held>;
   struct Solution {
     Eigen::MatrixXd l;
     Eigen::VectorXd u_0, held;
@@ -138,6 +146,9 @@ class InstrumentForces {
 
   void hand_over();
   [[nodiscard]] bool fits(const Solution& solution) const;
+  [[nodiscard]] std::size_t own_of(const Solution& solution) const;
+  [[nodiscard]] Index own_place(const Solution& solution, std::size_t i) const;
+  void keep_rows(const std::vector<Eigen::Index>& rows, Held left);
   [[nodiscard]] const HeldGrip* find(const Copy& copy, int grip) const;
   [[nodiscard]] bool evaluate(Copy& copy, std::span<const double> displacements,
                               std::span<const Hand> hands) const;

@@ -57,8 +57,8 @@ class Problem {
   /// is not.
   Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners,
           std::span<const NodeThatParts> nodes);
-  /// The same body with these unknowns gripped, those of its own among them; kept ascending. What
-  /// is selected is not.
+  /// The same body with these unknowns gripped, in place of its own; kept ascending. What is
+  /// selected is not.
   Problem(const Problem& whole, std::span<const Index> gripped);
   Problem(const Problem&) = delete;  // holds pointers into its own scene
   Problem& operator=(const Problem&) = delete;

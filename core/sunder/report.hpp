@@ -58,6 +58,9 @@ struct StepReport {
   bool capped = false;  ///< in motion: ended by dynamics.max_iterations, its error not promised
   /// Ended by time between two events: what was still to break is left to the next step.
   bool out_of_time = false;
+  /// Of this step and of what a host did since the one before: grips, cuts, removals, going back.
+  /// None up to as many columns of damage as `plan` tells, and by law linear none for a grip.
+  NewBases new_bases;
   StageTimes times;
   /// Device time per pass of all solves and updates of the step; empty without a device clock
   /// (Backend::time_passes).

@@ -139,8 +139,12 @@ class Simulation {
   [[nodiscard]] std::shared_ptr<FinishedFrames> finished_frames(FinishedFields fields);
   /// Nodes that a grip holds, as they were named.
   [[nodiscard]] std::span<const Index> held_nodes(int grip) const;
-  /// Lets go: from the next step on the body is as if it had never been held there. The scene's own
-  /// instruments stay.
+  /// Lets go: from the next step on the body is as if it had never been held there. A grip of the
+  /// scene's own, by its instrument's number, lets go for good: it prescribes nothing any more, its
+  /// reaction is zero, and its nodes can be grasped. Throws UsageError, and nothing changes, for a
+  /// grip that is not there or has let go; for one of the scene where nothing can be grasped, where
+  /// in statics grips of the scene alone hold the body, and where a crack of split nodes has
+  /// reached a node that it holds.
   void release(int grip);
   /// A force [N] in equal parts on nodes, from the next step on until it is dropped; what acts on
   /// held axes goes into the reaction there. Returns an id as grasp() does. Throws UsageError for a
@@ -389,6 +393,10 @@ class Simulation {
   [[nodiscard]] const Tool& tool(int id, bool holds) const;
   void follow_grips(bool looks);
   void describe_grips();
+  [[nodiscard]] std::vector<Index> own_grips() const;
+  void release_own(std::size_t instrument);
+  void check_release(std::size_t instrument) const;
+  void refuse_let_go(std::size_t instrument, const std::string& what) const;
   void finish_frame();
   void arrive();
   [[nodiscard]] double work_of_tools();

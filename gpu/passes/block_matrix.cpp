@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "body/element.hpp"
@@ -22,6 +23,7 @@ Index corner_of(const std::array<Index, 4>& tet, Index node) {
 
 BlockMatrix::BlockMatrix(const Problem& problem)
     : problem_(problem),
+      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
       groups_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup) /
               shaders::kGroup),
       elements_of_(problem.mesh().nodes.size()),
@@ -129,12 +131,11 @@ std::size_t BlockMatrix::place(std::size_t row, std::size_t k) const {
 
 /// Inverse of a diagonal block over the axes that neither a support nor a grip holds.
 Mat3 BlockMatrix::inverse_of_free(Index node, const Mat3& diagonal) const {
-  const auto gripped = problem_.gripped_dofs();
   Mat3 matrix = diagonal;
   std::array<bool, 3> held{};
   for (int axis = 0; axis < 3; ++axis) {
     const Index dof = problem_.dof(node, axis);
-    held[axis] = dof == kNone || std::binary_search(gripped.begin(), gripped.end(), dof);
+    held[axis] = dof == kNone || std::ranges::binary_search(gripped_, dof);
     if (!held[axis]) continue;
     matrix.row(axis).setZero();
     matrix.col(axis).setZero();
@@ -167,6 +168,26 @@ void BlockMatrix::destroy(std::span<const Index> elements, std::span<const doubl
       pack(inverse_of_free(i, block(i, i, scale)), 0, packed.data());
       preconditioner_.write(std::span<const double>(packed), n * kBlockDoubles);
     }
+  }
+}
+
+void BlockMatrix::grip(std::span<const Index> gripped, std::span<const double> scale) {
+  std::vector<Index> now(gripped.begin(), gripped.end()), others;
+  std::ranges::sort(now);
+  std::set_symmetric_difference(now.begin(), now.end(), gripped_.begin(), gripped_.end(),
+                                std::back_inserter(others));
+  gripped_ = std::move(now);
+  if (preconditioner_.bytes() == 0) return;
+  std::array<double, kBlockDoubles> packed{};
+  for (Index n = 0; n < problem_.node_count(); ++n) {
+    bool other = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      other = other || std::ranges::binary_search(others, problem_.dof(n, axis));
+    }
+    if (!other) continue;
+    pack(inverse_of_free(n, block(n, n, scale)), 0, packed.data());
+    preconditioner_.write(std::span<const double>(packed),
+                          static_cast<std::size_t>(n) * kBlockDoubles);
   }
 }
 

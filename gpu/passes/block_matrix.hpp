@@ -31,6 +31,9 @@ class BlockMatrix {
 
   /// Follows an event; `scale`: a_e after it.
   void destroy(std::span<const Index> elements, std::span<const double> scale);
+  /// These unknowns are gripped from now on, those of the problem at first: what preconditions
+  /// their nodes is made anew. `scale` as there.
+  void grip(std::span<const Index> gripped, std::span<const double> scale);
 
   [[nodiscard]] const vulkan::Buffer& blocks() const { return blocks_; }
   [[nodiscard]] const vulkan::Buffer& slices() const { return slices_; }
@@ -52,6 +55,7 @@ class BlockMatrix {
   [[nodiscard]] Mat3 inverse_of_free(Index node, const Mat3& diagonal) const;
 
   const Problem& problem_;
+  std::vector<Index> gripped_;  // ascending
   std::uint32_t groups_;
   std::vector<std::vector<Index>> elements_of_;  // per node, ascending
   std::vector<std::vector<Index>> neighbours_;   // per node, ascending

@@ -151,9 +151,10 @@ void Fields::upload_dofs() {
   dofs_.write(std::span<const std::uint32_t>(dofs));
 }
 
-void Fields::grip(std::span<const Index> gripped) {
+void Fields::grip(std::span<const Index> gripped, std::span<const double> scale) {
   gripped_.assign(gripped.begin(), gripped.end());
   if (host_balance_) host_balance_->grip(gripped_);
+  if (has_residual_ && !host_balance_) matrix_.grip(gripped_, scale);
   upload_dofs();
   create_hold();
 }

@@ -50,7 +50,7 @@ class Fields {
   void set_load(std::span<const double> force, std::span<const double> displacements);
   /// These unknowns are gripped from now on, those of the problem at first: what was recorded by
   /// others is to be recorded anew.
-  void grip(std::span<const Index> gripped);
+  void grip(std::span<const Index> gripped, std::span<const double> scale);
   /// Follows an event; `scale`: a_e after it (fem::DamagedBody::scale()), which stays where it is.
   void destroy(std::span<const Index> elements, std::span<const double> scale);
   void exclude(std::span<const Index> elements);

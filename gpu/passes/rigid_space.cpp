@@ -45,15 +45,7 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
       share_(share),
       held_(problem_.mesh().nodes.size(), 0) {
   if (apart) kind_ = kinds_of_nodes();
-  const auto gripped = problem.gripped_dofs();
-  for (Index n = 0; n < problem.node_count(); ++n) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const Index dof = problem.dof(n, axis);
-      if (dof == kNone || std::binary_search(gripped.begin(), gripped.end(), dof)) {
-        held_[n] |= static_cast<std::uint8_t>(1 << axis);
-      }
-    }
-  }
+  hold(problem.gripped_dofs());
   const std::size_t nodes =
       round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
   const auto make = [&](std::size_t bytes, Placement placement) {
@@ -102,6 +94,26 @@ void RigidSpace::record_indirect(vulkan::Commands& commands, const shaders::CgPu
                                  const Buffer& arguments) const {
   commands.dispatch_indirect(*restrict_binding_, arguments, 3 * sizeof(std::uint32_t));
   commands.dispatch_indirect(*solve_binding_, push, arguments, 6 * sizeof(std::uint32_t));
+}
+
+/// By supports and these unknowns, ascending.
+void RigidSpace::hold(std::span<const Index> gripped) {
+  for (Index n = 0; n < problem_.node_count(); ++n) {
+    held_[n] = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index dof = problem_.dof(n, axis);
+      if (dof == kNone || std::ranges::binary_search(gripped, dof)) {
+        held_[n] |= static_cast<std::uint8_t>(1 << axis);
+      }
+    }
+  }
+}
+
+void RigidSpace::grip(std::span<const Index> gripped) {
+  std::vector<Index> ascending(gripped.begin(), gripped.end());
+  std::ranges::sort(ascending);
+  hold(ascending);
+  forget();
 }
 
 void RigidSpace::destroy(std::span<const Index> elements) {

@@ -33,6 +33,8 @@ class RigidSpace {
 
   /// Follows an event that the body has recorded already.
   void destroy(std::span<const Index> elements);
+  /// These unknowns are gripped from now on, those of the problem at first: all of it is made anew.
+  void grip(std::span<const Index> gripped);
   /// Elements are back: all of it is made anew.
   void forget();
   /// Springs of inertia that are in K; where they are much as they were nothing changes.
@@ -64,6 +66,7 @@ class RigidSpace {
  private:
   [[nodiscard]] std::vector<std::vector<Index>> grouped();
   [[nodiscard]] std::vector<Index> kinds_of_nodes() const;
+  void hold(std::span<const Index> gripped);
   void split(std::span<Index> nodes, Index count, std::vector<std::vector<Index>>& groups) const;
   void place_modes(std::span<const double> u);
   void add_element(Index element, double scale);

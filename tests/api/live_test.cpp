@@ -217,6 +217,40 @@ TEST_F(CLive, RefusedGripsChangeNothing) {
   EXPECT_TRUE(Read(simulation) == before);
 }
 
+// A grip of the scene: its reaction is gone, and undoing brings the grip back.
+TEST(CLiveScene, ItsGripsLetGo) {
+  const sunder_scene scene = board_scene(SUNDER_BACKEND_CPU, 4, -1);
+  sunder_instrument held = corner_pull();
+  held.kind = SUNDER_DISPLACEMENT;
+  held.nodes = box(-0.01, -0.01, 0.01, 0.01);
+  held.value[0] = -0.3, held.value[1] = 0;
+  ASSERT_OK(sunder_scene_add_instrument(scene, &held, nullptr));
+  sunder_simulation simulation = nullptr;
+  ASSERT_OK(sunder_simulation_create(scene, nullptr, &simulation));
+  ASSERT_OK(sunder_scene_destroy(scene));
+  ASSERT_OK(sunder_simulation_keep_history(simulation, 100));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  double before[6], after[6];
+  ASSERT_OK(sunder_simulation_reactions(simulation, before, 6));
+  EXPECT_NE(before[3], 0);
+  EXPECT_EQ(sunder_simulation_release(simulation, 0), SUNDER_ERROR_ORDER) << "a pull";
+  ASSERT_OK(sunder_simulation_release(simulation, 1));
+  EXPECT_EQ(sunder_simulation_release(simulation, 1), SUNDER_ERROR_ORDER);
+  const double way[3] = {0, 0, 0};
+  EXPECT_EQ(sunder_simulation_drive(simulation, 1, way), SUNDER_ERROR_ORDER);
+  sunder_step step = SUNDER_STEP_INIT;
+  ASSERT_OK(sunder_simulation_step(simulation, &step));
+  EXPECT_EQ(step.new_bases, 0);
+  EXPECT_EQ(step.ms_new_bases, 0);
+  ASSERT_OK(sunder_simulation_reactions(simulation, after, 6));
+  for (int axis = 3; axis < 6; ++axis) EXPECT_EQ(after[axis], 0);
+  std::int32_t events = 0, replayed = 0;
+  ASSERT_OK(sunder_simulation_undo(simulation, 1, &events, &replayed));
+  ASSERT_OK(sunder_simulation_reactions(simulation, after, 6));
+  for (int axis = 0; axis < 6; ++axis) EXPECT_EQ(after[axis], before[axis]);
+  ASSERT_OK(sunder_simulation_destroy(simulation));
+}
+
 TEST_F(CLive, StepsAreBoundByTime) {
   sunder_step step = SUNDER_STEP_INIT;
   while (step.events == 0) ASSERT_OK(sunder_simulation_step_within(simulation, 1e-6, &step));

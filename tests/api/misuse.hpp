@@ -120,5 +120,9 @@ std::vector<Misuse> values();
 std::vector<Misuse> scenes();
 std::vector<Misuse> order();
 std::vector<Misuse> not_finite();
+// ... to a live body.
+std::vector<Misuse> live_pointers();
+std::vector<Misuse> live_counts();
+std::vector<Misuse> live_values();
 
 }  // namespace sunder::test

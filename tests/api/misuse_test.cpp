@@ -30,8 +30,9 @@ TEST(CNotFinite, IsNoMatterWhereItIsNotRead) {
 
 std::vector<Misuse> all() {
   std::vector<Misuse> list;
-  for (const auto& part : {handles(), null_pointers(), sizes(), struct_sizes(), values(),
-                           not_finite(), scenes(), order()}) {
+  for (const auto& part :
+       {handles(), null_pointers(), sizes(), struct_sizes(), values(), not_finite(), scenes(),
+        order(), live_pointers(), live_counts(), live_values()}) {
     list.insert(list.end(), part.begin(), part.end());
   }
   return list;

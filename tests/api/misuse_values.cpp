@@ -244,7 +244,7 @@ std::vector<Misuse> order() {
        }},
       {"pose_of_none", SUNDER_ERROR_ORDER, "there is no grip 1",
        [](World& w) { return sunder_simulation_pose(w.simulation, 1, w.values, nullptr); }},
-      {"release_of_an_instrument", SUNDER_ERROR_ORDER, "instrument 0 is the scene's own",
+      {"release_of_an_instrument", SUNDER_ERROR_ORDER, "instrument 0 cannot let go",
        [](World& w) { return sunder_simulation_release(w.simulation, 0); }},
       {"wrench_of_none", SUNDER_ERROR_ORDER, "there is no grip -1",
        [](World& w) { return sunder_simulation_wrench(w.simulation, -1, w.values, w.values + 3); }},

@@ -2,6 +2,7 @@
 // The thread rules of sunder.h, to be run under the thread sanitizer as well.
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <thread>
 
@@ -225,6 +226,129 @@ TEST(CThreads, FramesAreReadWhileTheNextOneRuns) {
   EXPECT_OK(sunder_simulation_destroy(simulation));
   EXPECT_EQ(sunder_frames_take(frames, &frame), SUNDER_ERROR_HANDLE);
   EXPECT_OK(sunder_frames_destroy(frames));
+}
+
+/// The board with a grip of the scene's, torn and grasped by one thread.
+sunder_simulation handled_board() {
+  const sunder_scene scene = board_scene(SUNDER_BACKEND_CPU, 8);
+  sunder_instrument grip = corner_pull();
+  grip.kind = SUNDER_DISPLACEMENT;
+  grip.nodes = box(-0.01, -0.01, 0.01, 0.01);
+  EXPECT_OK(sunder_scene_add_instrument(scene, &grip, nullptr));
+  EXPECT_OK(sunder_scene_set_live(scene, 1));
+  EXPECT_OK(sunder_scene_set_steps(scene, 1 << 30));
+  sunder_simulation simulation = nullptr;
+  EXPECT_OK(sunder_simulation_create(scene, nullptr, &simulation));
+  EXPECT_OK(sunder_scene_destroy(scene));
+  EXPECT_OK(sunder_simulation_keep_history(simulation, 10));
+  return simulation;
+}
+
+/// Grasps, poses, steps, lets go, goes back and forth, until the simulation is gone: the status
+/// that said so. `rounds`: how often so far.
+sunder_status handle_until_gone(sunder_simulation simulation, std::atomic<int>& rounds) {
+  sunder_status status = SUNDER_OK;
+  const auto done = [&](sunder_status of) {
+    status = of;
+    return of == SUNDER_OK;
+  };
+  std::int32_t mark = 0;
+  if (!done(sunder_simulation_save(simulation, &mark))) return status;
+  for (int i = 0;; ++i) {
+    const double pull[3] = {0, -0.5 * (i % 5), 0}, near[3] = {5, 0, 0.5};
+    std::int32_t grip = 0;
+    double place[3] = {};
+    if (!done(sunder_simulation_drive(simulation, 0, pull)) ||
+        !done(sunder_simulation_grasp_near(simulation, near, 1.5, 1, &grip)) ||
+        !done(sunder_simulation_step(simulation, nullptr)) ||
+        !done(sunder_simulation_grip_place(simulation, grip, place))) {
+      return status;
+    }
+    place[0] += 0.01;
+    const double turn[4] = {0, 0, 0.01, 1};
+    if (!done(sunder_simulation_pose(simulation, grip, place, turn)) ||
+        !done(sunder_simulation_step(simulation, nullptr)) ||
+        !done(sunder_simulation_release(simulation, grip)) ||
+        !done(sunder_simulation_undo(simulation, 1, nullptr, nullptr)) ||
+        !done(sunder_simulation_step(simulation, nullptr)) ||
+        !done(sunder_simulation_restore(simulation, mark, nullptr))) {
+      return status;
+    }
+    ++rounds;
+  }
+}
+
+// Three threads ask for what a fourth one makes of the body, and a fifth ends it in the midst.
+TEST(CThreads, EverybodyAsksUntilTheBodyIsGone) {
+  for (int time = 0; time < 4; ++time) {
+    const sunder_simulation simulation = handled_board();
+    sunder_grips grips = nullptr;
+    sunder_frames frames = nullptr;
+    ASSERT_OK(sunder_grips_create(simulation, &grips));
+    ASSERT_OK(sunder_frames_create(simulation, SUNDER_FRAME_DISPLACEMENT | SUNDER_FRAME_STRESS,
+                                   nullptr, 0, &frames));
+    std::atomic<int> rounds{0}, felt_answers{0}, force_answers{0}, pictures{0}, wrong{0};
+    // Hands and forces share a handle: one of the two is told that it is busy.
+    const auto answers = [&wrong](sunder_status status, std::atomic<int>& count) {
+      if (status == SUNDER_OK) ++count;
+      const bool fine = status == SUNDER_OK || status == SUNDER_ERROR_ORDER ||
+                        status == SUNDER_ERROR_BUSY || status == SUNDER_ERROR_HANDLE;
+      if (!fine) ++wrong;
+      std::this_thread::yield();
+      return status != SUNDER_ERROR_HANDLE;
+    };
+    std::atomic<sunder_status> last{SUNDER_OK};
+    std::vector<std::thread> threads;
+    threads.emplace_back([&] { last = handle_until_gone(simulation, rounds); });
+    threads.emplace_back([&] {
+      sunder_felt felt = SUNDER_FELT_INIT;
+      sunder_hand hand = SUNDER_HAND_INIT;
+      sunder_status status = SUNDER_OK;
+      for (int i = 0; answers(status, felt_answers); ++i) {
+        hand.grip = 2 + i % 3;
+        static_cast<void>(sunder_grips_blend(grips, i % 2 ? 5 : 0));
+        status = sunder_grips_feel(grips, nullptr, nullptr, 0, &hand, 1, &felt);
+        const bool told = felt.solution >= 1 && felt.age_ms >= 0 && felt.share >= 0 &&
+                          felt.share <= 1 && std::isfinite(hand.force[0] + hand.torque[2]);
+        if (status == SUNDER_OK && !told) ++wrong;
+      }
+    });
+    threads.emplace_back([&] {
+      const std::vector<double> held(6, 0.01);
+      std::vector<double> forces(6);
+      sunder_status status = SUNDER_OK;
+      while (answers(status, force_answers)) {
+        status = sunder_grips_forces(grips, held.data(), forces.data(), 6);
+        if (!std::isfinite(forces[3] + forces[4] + forces[5])) ++wrong;
+      }
+    });
+    threads.emplace_back([&] {
+      sunder_frame frame = SUNDER_FRAME_INIT;
+      std::vector<double> u(3 * 162), stress(6 * 384);
+      sunder_status status = SUNDER_OK;
+      while (answers(status, pictures)) {
+        status = sunder_frames_take(frames, &frame);
+        if (status == SUNDER_OK) status = sunder_frames_displacement(frames, u.data(), u.size());
+        if (status == SUNDER_OK) {
+          status = sunder_frames_stress(frames, stress.data(), stress.size());
+        }
+      }
+    });
+    const auto waits = [&] {
+      return rounds < 2 + time || felt_answers < 10 || force_answers < 10 || pictures < 10;
+    };
+    while (waits() && last == SUNDER_OK) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    sunder_status ended = SUNDER_ERROR_BUSY;  // a sanitizer may hold a call up for longer
+    while (ended == SUNDER_ERROR_BUSY) ended = sunder_simulation_destroy(simulation);
+    EXPECT_OK(ended);
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_TRUE(last == SUNDER_ERROR_HANDLE || last == SUNDER_ERROR_CANCELLED) << last;
+    EXPECT_EQ(wrong, 0);
+    EXPECT_OK(sunder_grips_destroy(grips));
+    EXPECT_OK(sunder_frames_destroy(frames));
+  }
 }
 
 TEST(CThreads, ErrorsBelongToTheirThread) {

@@ -74,7 +74,8 @@ class Live:
         return force, torque
 
     def release(self, grip: int) -> None:
-        """Lets go: from the next step on the body is as if it had never been held there."""
+        """Lets go: from the next step on the body is as if it had never been held there. A grip of
+        the scene lets go by its instrument's number."""
         check(_lib.sunder_simulation_release(self.handle, grip))
 
     def push(self, nodes: Sequence[int], force: Any) -> int:

@@ -5,24 +5,20 @@
 #include <utility>
 
 namespace sunder::fracture {
-namespace {
-
 /// Axes on which a node can move by itself: neither a support nor a grip holds its parent there.
-Axes free_axes(const Problem& problem, Index parent) {
-  const auto gripped = problem.gripped_dofs();
+Axes SplitBody::free_axes(Index parent) const {
   Axes axes{0};
   for (int axis = 0; axis < 3; ++axis) {
-    const Index dof = problem.dof(parent, axis);
-    if (dof == kNone || std::binary_search(gripped.begin(), gripped.end(), dof)) continue;
+    const Index dof = problem_.dof(parent, axis);
+    if (dof == kNone || std::ranges::binary_search(gripped_, dof)) continue;
     axes.bits = static_cast<std::uint8_t>(axes.bits | 1U << axis);
   }
   return axes;
 }
 
-}  // namespace
-
 SplitBody::SplitBody(const Problem& problem)
     : problem_(problem),
+      gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
       corners_(problem.mesh().tets.begin(), problem.mesh().tets.end()),
       behind_(corners_.size(), {kNone, kNone, kNone, kNone}),
       open_(corners_.size(), 0),
@@ -155,7 +151,7 @@ std::vector<std::vector<Index>> SplitBody::groups(Index node,
 /// Groups that get nodes of their own, or keep the one that they share.
 std::vector<std::vector<Index>> SplitBody::parts_at(Index node,
                                                     std::span<const std::uint8_t> destroyed) const {
-  if (free_axes(problem_, in_mesh(node)).bits == 0) return {};  // held, whoever's it is
+  if (free_axes(in_mesh(node)).bits == 0) return {};  // held, whoever's it is
   return groups(node, destroyed);
 }
 
@@ -186,7 +182,7 @@ Index SplitBody::add_node(Index node, std::span<const Index> group, fem::Change&
   const Index added = node_count(), parent = in_mesh(node);
   parents_.push_back(parent);
   at_node_.emplace_back();
-  change.nodes.push_back({parent, free_axes(problem_, parent), 0});
+  change.nodes.push_back({parent, free_axes(parent), 0});
   for (Index e : group) {
     auto& own = corners_[static_cast<std::size_t>(e)];
     std::ranges::replace(own, node, added);

@@ -50,6 +50,9 @@ class SplitBody {
   /// Nodes of a face, by the element's order of corners.
   [[nodiscard]] std::array<Index, 3> nodes(const Face& face) const;
 
+  /// Unknowns that the scene's grips hold from now on, ascending; at first all of them. Nodes do
+  /// not part along what is held.
+  void hold(std::span<const Index> unknowns) { gripped_.assign(unknowns.begin(), unknowns.end()); }
   /// Never more nodes than this, the mesh's included.
   void allow(Index nodes) { most_nodes_ = nodes; }
   /// Opens faces between two elements and names what changes by it: elements with other corners and
@@ -89,7 +92,10 @@ class SplitBody {
       Index node, std::span<const std::uint8_t> destroyed) const;
   [[nodiscard]] Index add_node(Index node, std::span<const Index> group, fem::Change& change);
 
+  [[nodiscard]] Axes free_axes(Index parent) const;
+
   const Problem& problem_;
+  std::vector<Index> gripped_;
   Index most_nodes_ = std::numeric_limits<Index>::max();
   std::vector<std::array<Index, 4>> corners_, behind_;  // per element
   std::vector<std::uint8_t> open_;                      // per element, a bit a face

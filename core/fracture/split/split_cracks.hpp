@@ -42,6 +42,10 @@ class SplitCracks final : public FractureCriterion {
   [[nodiscard]] std::span<const std::array<Index, 4>> corners() const override {
     return body_.corners();
   }
+  void hold(std::span<const Index> unknowns) override {
+    body_.hold(unknowns);
+    loose_.hold(unknowns, {});
+  }
   [[nodiscard]] std::shared_ptr<const CriterionState> state() const override;
   void restore(const CriterionState& of) override;
 

@@ -165,7 +165,8 @@ TEST(Hand, MovesAnInstrumentFromWhereItIs) {
 
 TEST(Replay, RefusesWhatGoesBackOrLooks) {
   Handled run(torn());
-  for (const char* text : {"undo", "redo", "reset", "pause", "go", "stroke 0 0 1 1", "set a=1", "open a.toml"}) {
+  for (const char* text :
+       {"undo", "redo", "reset", "pause", "go", "stroke 0 0 1 1", "set a=1", "open a.toml"}) {
     SCOPED_TRACE(text);
     const Inputs inputs = parse_inputs(text, "in.txt");
     try {

@@ -47,12 +47,14 @@ TEST(ViewArguments, AScriptsWrongLineIsNamedBeforeAnythingIsWritten) {
 TEST(ViewArguments, WrongGripsAreNamed) {
   const TempFolder folder;
   const std::string script = (folder / "s.inputs").string();
-  const auto expect = [&](const std::string& line, const std::string& part) {
+  const auto expect = [&](const std::string& line, const std::string& part,
+                          const std::string& scene = "board-grip-b") {
     write_text(script, line + "\nframe\n");
-    expect_refused(view({"--script", script, "--out", folder / "out"}), 3, "s.inputs:1: " + part);
+    expect_refused(view({"--script", script, "--out", folder / "out"}, scene), 3,
+                   "s.inputs:1: " + part);
   };
   expect("pose 0 1 2 3", "grip 0 is an instrument of the scene");
-  expect("release 0", "grip 0 is an instrument of the scene");
+  expect("release 0", "instrument 0 holds nothing", "board-pull-b");
   expect("grasp nodes 1 99999", "there is no node 99999");
   expect("grasp 1 2 3 0", "the radius of a grip must be above 0 mm");
   expect("grasp nodes 1 stiff", "a node to grasp");

@@ -243,7 +243,7 @@ TEST(HapticBlend, CarriesNumberAgeAndStep) {
 
 TEST(HapticBlend, RefusesWhatIsNotFinite) {
   InstrumentForces forces({});
-  forces.describe({{3, true, 0, Vec3::Zero(), {Vec3::Zero()}, {Vec3::Zero()}}});
+  forces.describe({{3, true, 0, Vec3::Zero(), {Vec3::Zero()}, {Vec3::Zero()}}}, {});
   forces.publish(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
   Hand hands[1];
   hands[0].grip = 3;

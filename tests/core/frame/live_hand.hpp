@@ -12,7 +12,12 @@ namespace sunder::test {
 
 class LiveHand {
  public:
-  LiveHand(LiveRun& run, unsigned seed) : run_(run), s_(run.simulation), random_(seed) {}
+  LiveHand(LiveRun& run, unsigned seed) : run_(run), s_(run.simulation), random_(seed) {
+    const auto& instruments = run.problem->scene().instruments;
+    for (std::size_t i = 0; i < instruments.size(); ++i) {
+      if (std::holds_alternative<Grip>(instruments[i].action)) own_.push_back(static_cast<int>(i));
+    }
+  }
 
   /// Nothing a hand does here may fail but where a piece hangs on nothing.
   void act() {
@@ -33,13 +38,13 @@ class LiveHand {
     }
   }
 
-  int failed = 0, grasped = 0, posed = 0, released = 0, removed = 0, back = 0;
+  int failed = 0, grasped = 0, posed = 0, released = 0, removed = 0, back = 0, own = 0;
 
  private:
   struct Acting {
     std::optional<Vec3> driven;
     std::map<int, std::pair<std::vector<Index>, Vec3>> pushes;
-    std::vector<int> grips;
+    std::vector<int> grips, own;
   };
   struct Marked {
     Mark mark;
@@ -102,6 +107,12 @@ class LiveHand {
     ++posed;
   }
   void release() {
+    if (!own_.empty() && below(2) == 1) {
+      s_.release(own_.back());
+      own_.pop_back();
+      ++own;
+      return;
+    }
     if (grips_.empty()) return;
     const auto at = grips_.begin() + below(static_cast<unsigned>(grips_.size()));
     s_.release(*at);
@@ -162,17 +173,18 @@ class LiveHand {
     ++back;
   }
 
-  [[nodiscard]] Acting acting() const { return {run_.driven, run_.pushes, grips_}; }
+  [[nodiscard]] Acting acting() const { return {run_.driven, run_.pushes, grips_, own_}; }
   void take(const Acting& of) {
     run_.driven = of.driven;
     run_.pushes = of.pushes;
     grips_ = of.grips;
+    own_ = of.own;
   }
 
   LiveRun& run_;
   Simulation& s_;
   std::mt19937 random_;
-  std::vector<int> grips_;
+  std::vector<int> grips_, own_;  // of a host; of the scene
   bool travels_ = false;
   std::vector<Acting> points_, undone_;
   std::vector<Marked> marks_;

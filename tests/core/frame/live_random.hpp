@@ -9,7 +9,8 @@
 namespace sunder::test {
 
 struct Played {
-  int checked = 0, recorded = 0, grasped = 0, posed = 0, released = 0, removed = 0, back = 0;
+  int checked = 0, recorded = 0, grasped = 0, posed = 0, released = 0, removed = 0, back = 0,
+      own = 0;
 };
 
 /// Checks after so many actions, and the recording after so many checks.
@@ -47,6 +48,7 @@ inline Played play_at_random(const std::shared_ptr<const Problem>& problem,
   played.released = hand.released;
   played.removed = hand.removed;
   played.back = hand.back;
+  played.own = hand.own;
   return played;
 }
 
