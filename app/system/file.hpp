@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <utility>
+
+#include "app/system/handle.hpp"
 
 namespace sunder::app::system {
 
@@ -18,13 +21,8 @@ class File {
   File() = default;
   /// Creates the file where it is missing. `error`: why it is not open.
   File(const std::filesystem::path& path, Keep keep, std::error_code& error);
-  File(File&& other) noexcept;
-  File& operator=(File&& other) noexcept;
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File();
 
-  [[nodiscard]] bool is_open() const noexcept { return handle_ != kNone; }
+  [[nodiscard]] bool is_open() const noexcept { return handle_.is_open(); }
   /// All bytes, behind those appended before. After an error a part of them may be there.
   void append(std::string_view bytes, std::error_code& error) const;
   /// The same from `position` on, which only a file has that is not a pipe.
@@ -35,10 +33,9 @@ class File {
 
  private:
   friend class Folder;
-  static constexpr std::intptr_t kNone = -1;
-  explicit File(std::intptr_t handle) : handle_(handle) {}
+  explicit File(Handle handle) : handle_(std::move(handle)) {}
 
-  std::intptr_t handle_ = kNone;  // a descriptor; on Windows a HANDLE
+  Handle handle_;
 };
 
 }  // namespace sunder::app::system

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <system_error>
 
 #include "app/system/file.hpp"
+#include "app/system/handle.hpp"
 
 namespace sunder::app::system {
 
@@ -18,11 +18,6 @@ class Folder {
   Folder() = default;
   /// `error`: why it is not open.
   Folder(std::filesystem::path path, std::error_code& error);
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  Folder(Folder&& other) noexcept;
-  Folder& operator=(Folder&& other) noexcept;
-  ~Folder();
 
   /// A new or emptied file in it.
   [[nodiscard]] File create(const std::string& name, std::error_code& error) const;
@@ -36,7 +31,7 @@ class Folder {
  private:
   friend class LockFile;
   std::filesystem::path path_;
-  std::intptr_t handle_ = -1;
+  Handle handle_;
 };
 
 /// Whether files can be created in a folder; `error`: why not. Windows tells at the first file.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 #include "app/system/folder.hpp"
+#include "app/system/handle.hpp"
 
 namespace sunder::app::system {
 
@@ -15,11 +15,6 @@ namespace sunder::app::system {
 class LockFile {
  public:
   enum class Taken { yes, held_by_another, no_locks, no };
-
-  LockFile() = default;
-  LockFile(const LockFile&) = delete;
-  LockFile& operator=(const LockFile&) = delete;
-  ~LockFile();
 
   /// Creates the file where it is missing. `no_locks`: the file system has none, the file is open
   /// all the same; `no`: it cannot be opened. `error` has the cause of both.
@@ -32,9 +27,14 @@ class LockFile {
   void release(const Folder& folder, const std::string& name);
 
  private:
-  void close();
+  /// Makes it `handle_`.
+  void open(const Folder& folder, const std::string& name, std::error_code& error);
+  /// `yes`, `held_by_another` or `no_locks`.
+  [[nodiscard]] Taken lock(std::error_code& error) const;
+  /// Whether the open file is the folder's of this name.
+  [[nodiscard]] bool still_there(const Folder& folder, const std::string& name) const;
 
-  std::intptr_t handle_ = -1;
+  Handle handle_;
 };
 
 }  // namespace sunder::app::system

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a host takes hold of on Vulkan, against the body computed anew.
+#include "core/frame/live_laws.hpp"
 #include "core/frame/live_random.hpp"
 #include "gpu_body.hpp"
 #include "sunder/error.hpp"
@@ -109,14 +110,10 @@ TEST_F(Grasps, OfTheSceneLetGo) {
 TEST_F(Grasps, OfTheSceneLetGoByOtherLaws) {
   for (const bool moves : {false, true}) {
     SCOPED_TRACE(moves);
-    Scene scene = strip_to_hold();
-    scene.materials["board"].law = MaterialLaw::corotated;
-    scene.materials["board"].density = 1e-9;
-    scene.instruments[0].action = Pull{band(-1, 0.1), Vec3(0, -0.3, 0)};
+    Scene scene = law_strip({"vulkan", MaterialLaw::corotated, Route::automatic, moves});
     Instrument forceps;
     forceps.action = Grip{std::vector<Index>(kLeft), Vec3(-0.1, 0, 0), Axes{7}};
     scene.instruments.push_back(forceps);
-    if (moves) scene.dynamics = Dynamics{.time_step = 2e-4, .mass_damping = 500};
     LiveRun cpu(scene);
     const WatchedBackend watched(scene, {.route = Route::automatic});
     LiveRun gpu(watched.problem, [&] { return watched.create(); });
@@ -164,11 +161,7 @@ TEST_F(Grasps, AreRefusedWhereTheyCannotBe) {
 TEST_F(Grasps, ByALawOfFiniteDeformationAndInMotion) {
   for (const bool moves : {false, true}) {
     SCOPED_TRACE(moves);
-    Scene scene = strip_to_hold();
-    scene.materials["board"].law = MaterialLaw::corotated;
-    scene.materials["board"].density = 1e-9;
-    scene.instruments[0].action = Pull{band(-1, 0.1), Vec3(0, -0.3, 0)};
-    if (moves) scene.dynamics = Dynamics{.time_step = 2e-4, .mass_damping = 500};
+    Scene scene = law_strip({"vulkan", MaterialLaw::corotated, Route::automatic, moves});
     LiveRun cpu(scene);
     const WatchedBackend watched(scene, {.route = Route::automatic});
     LiveRun gpu(watched.problem, [&] { return watched.create(); });

@@ -5,9 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <utility>
 
-#include "app/system/posix/last_error.hpp"
+#include "app/system/posix/handle.hpp"
 
 namespace sunder::app::system {
 namespace {
@@ -31,42 +30,30 @@ void write_all(std::string_view bytes, std::error_code& error, const Some& some)
 
 File::File(const std::filesystem::path& path, Keep keep, std::error_code& error) {
   const int cut = keep == Keep::nothing ? O_TRUNC : 0;
-  handle_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | cut, 0666);
+  handle_ = Handle(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | cut, 0666));
   error = is_open() ? std::error_code() : last_error();
-}
-
-File::File(File&& other) noexcept : handle_(std::exchange(other.handle_, kNone)) {}
-
-File& File::operator=(File&& other) noexcept {
-  std::swap(handle_, other.handle_);
-  return *this;
-}
-
-File::~File() {
-  if (is_open()) ::close(static_cast<int>(handle_));
 }
 
 void File::append(std::string_view bytes, std::error_code& error) const {
   write_all(bytes, error, [this](std::string_view rest) {
-    return ::write(static_cast<int>(handle_), rest.data(), rest.size());
+    return ::write(descriptor(handle_), rest.data(), rest.size());
   });
 }
 
 void File::write(std::uint64_t position, std::string_view bytes, std::error_code& error) const {
   write_all(bytes, error, [&](std::string_view rest) {
     const std::uint64_t at = position + (bytes.size() - rest.size());
-    return ::pwrite(static_cast<int>(handle_), rest.data(), rest.size(), static_cast<off_t>(at));
+    return ::pwrite(descriptor(handle_), rest.data(), rest.size(), static_cast<off_t>(at));
   });
 }
 
 void File::resize(std::uint64_t bytes, std::error_code& error) const {
-  const bool done = ::ftruncate(static_cast<int>(handle_), static_cast<off_t>(bytes)) == 0;
+  const bool done = ::ftruncate(descriptor(handle_), static_cast<off_t>(bytes)) == 0;
   error = done ? std::error_code() : last_error();
 }
 
 void File::close(std::error_code& error) {
-  const bool done = ::close(static_cast<int>(std::exchange(handle_, kNone))) == 0;
-  error = done ? std::error_code() : last_error();
+  error = handle_.close() ? std::error_code() : last_error();
 }
 
 }  // namespace sunder::app::system

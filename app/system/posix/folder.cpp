@@ -6,47 +6,33 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <utility>
 
-#include "app/system/posix/last_error.hpp"
+#include "app/system/posix/handle.hpp"
 
 namespace sunder::app::system {
 
 Folder::Folder(std::filesystem::path path, std::error_code& error)
     : path_(std::move(path)), handle_(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  error = handle_ < 0 ? last_error() : std::error_code();
-}
-
-Folder::Folder(Folder&& other) noexcept
-    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, -1)) {}
-
-Folder& Folder::operator=(Folder&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(handle_, other.handle_);
-  return *this;
-}
-
-Folder::~Folder() {
-  if (handle_ >= 0) ::close(static_cast<int>(handle_));
+  error = handle_.is_open() ? std::error_code() : last_error();
 }
 
 File Folder::create(const std::string& name, std::error_code& error) const {
-  File file(::openat(static_cast<int>(handle_), name.c_str(),
-                     O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  File file(Handle(
+      ::openat(descriptor(handle_), name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)));
   error = file.is_open() ? std::error_code() : last_error();
   return file;
 }
 
 void Folder::rename(const std::string& from, const std::string& to, std::error_code& error) const {
-  const int here = static_cast<int>(handle_);
+  const int here = descriptor(handle_);
   const bool done = ::renameat(here, from.c_str(), here, to.c_str()) == 0;
   error = done ? std::error_code() : last_error();
 }
 
 void Folder::remove(const std::string& name, std::error_code& error) const {
-  const bool done = ::unlinkat(static_cast<int>(handle_), name.c_str(), 0) == 0 ||
-                    errno == ENOENT || errno == EISDIR;
+  const bool done =
+      ::unlinkat(descriptor(handle_), name.c_str(), 0) == 0 || errno == ENOENT || errno == EISDIR;
   error = done ? std::error_code() : last_error();
 }
 

@@ -2,7 +2,6 @@
 #include "app/system/file.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "app/system/windows/handle.hpp"
 
@@ -36,17 +35,6 @@ File::File(const std::filesystem::path& path, Keep keep, std::error_code& error)
   error = is_open() ? std::error_code() : last_error();
 }
 
-File::File(File&& other) noexcept : handle_(std::exchange(other.handle_, kNone)) {}
-
-File& File::operator=(File&& other) noexcept {
-  std::swap(handle_, other.handle_);
-  return *this;
-}
-
-File::~File() {
-  if (is_open()) CloseHandle(handle_of(handle_));
-}
-
 void File::append(std::string_view bytes, std::error_code& error) const {
   write_all(handle_of(handle_), bytes, nullptr, error);
 }
@@ -64,8 +52,7 @@ void File::resize(std::uint64_t bytes, std::error_code& error) const {
 }
 
 void File::close(std::error_code& error) {
-  const bool done = CloseHandle(handle_of(std::exchange(handle_, kNone))) != 0;
-  error = done ? std::error_code() : last_error();
+  error = handle_.close() ? std::error_code() : last_error();
 }
 
 }  // namespace sunder::app::system

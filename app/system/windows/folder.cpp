@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "app/system/process.hpp"
 #include "app/system/windows/handle.hpp"
 
 namespace sunder::app::system {
@@ -15,19 +14,8 @@ Folder::Folder(std::filesystem::path path, std::error_code& error)
       handle_(
           kept(CreateFileW(path_.c_str(), FILE_LIST_DIRECTORY, FILE_SHARE_READ | FILE_SHARE_WRITE,
                            nullptr, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, nullptr))) {
-  error = handle_ == -1 ? last_error() : std::error_code();
+  error = handle_.is_open() ? std::error_code() : last_error();
 }
-
-Folder::Folder(Folder&& other) noexcept
-    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, -1)) {}
-
-Folder& Folder::operator=(Folder&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(handle_, other.handle_);
-  return *this;
-}
-
-Folder::~Folder() { let_go(); }
 
 File Folder::create(const std::string& name, std::error_code& error) const {
   return {path_ / name, File::Keep::nothing, error};
@@ -46,9 +34,7 @@ void Folder::remove(const std::string& name, std::error_code& error) const {
   error = done ? std::error_code() : last_error();
 }
 
-void Folder::let_go() noexcept {
-  if (handle_ != -1) CloseHandle(handle_of(std::exchange(handle_, -1)));
-}
+void Folder::let_go() noexcept { handle_.close(); }
 
 void check_writable(const std::filesystem::path&, std::error_code& error) { error.clear(); }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <system_error>
 
+#include "app/system/handle.hpp"
 #include "machine/windows_api.hpp"
 
 namespace sunder::app::system {
@@ -14,11 +15,14 @@ namespace sunder::app::system {
 }
 
 /// As it is kept in headers that do not know windows.h, and back.
-[[nodiscard]] inline std::intptr_t kept(HANDLE handle) noexcept {
-  return reinterpret_cast<std::intptr_t>(handle);
+[[nodiscard]] inline Handle kept(HANDLE handle) noexcept {
+  return Handle(reinterpret_cast<std::intptr_t>(handle));
 }
 [[nodiscard]] inline HANDLE handle_of(std::intptr_t kept) noexcept {
   return reinterpret_cast<HANDLE>(kept);
+}
+[[nodiscard]] inline HANDLE handle_of(const Handle& kept) noexcept {
+  return handle_of(kept.value());
 }
 
 /// What others may do with a file of ours meanwhile: read it, and take it away.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/system/lock_file.hpp"
 
-#include <utility>
-
 #include "app/system/windows/handle.hpp"
 
 namespace sunder::app::system {
@@ -11,54 +9,39 @@ namespace {
 /// A lock keeps others from reading what it covers: this byte is far behind what stands there.
 constexpr std::uint64_t kLockedByte = std::uint64_t{1} << 62U;
 
-/// A file that was removed while others have it open can be opened by nobody until they close it.
-HANDLE open_lock(const std::filesystem::path& path) {
-  constexpr int kMostTries = 100;
-  constexpr DWORD kMilliseconds = 10;
-  HANDLE lock = INVALID_HANDLE_VALUE;
-  for (int i = 0; i < kMostTries && lock == INVALID_HANDLE_VALUE; ++i) {
-    if (i > 0) Sleep(kMilliseconds);
-    lock = CreateFileW(path.c_str(), GENERIC_READ | GENERIC_WRITE, kShared | FILE_SHARE_WRITE,
-                       nullptr, OPEN_ALWAYS, FILE_ATTRIBUTE_NORMAL, nullptr);
-    if (lock == INVALID_HANDLE_VALUE && GetLastError() != ERROR_ACCESS_DENIED) break;
-  }
-  return lock;
-}
-
-/// The one before may have given it back, and removed the file, in between.
-bool still_there(HANDLE lock) {
-  FILE_STANDARD_INFO info{};
-  return GetFileInformationByHandleEx(lock, FileStandardInfo, &info, sizeof info) &&
-         !info.DeletePending;
-}
-
 }  // namespace
 
-LockFile::~LockFile() { close(); }
-
-void LockFile::close() {
-  if (handle_ != -1) CloseHandle(handle_of(std::exchange(handle_, -1)));
+/// A file that was removed while others have it open can be opened by nobody until they close it.
+void LockFile::open(const Folder& folder, const std::string& name, std::error_code& error) {
+  constexpr int kMostTries = 100;
+  constexpr DWORD kMilliseconds = 10;
+  const std::filesystem::path path = folder.path_ / name;
+  for (int i = 0; i < kMostTries; ++i) {
+    if (i > 0) Sleep(kMilliseconds);
+    handle_ =
+        kept(CreateFileW(path.c_str(), GENERIC_READ | GENERIC_WRITE, kShared | FILE_SHARE_WRITE,
+                         nullptr, OPEN_ALWAYS, FILE_ATTRIBUTE_NORMAL, nullptr));
+    error = last_error();
+    if (handle_.is_open() || GetLastError() != ERROR_ACCESS_DENIED) return;
+  }
 }
 
-LockFile::Taken LockFile::take(const Folder& folder, const std::string& name,
-                               std::error_code& error) {
-  for (;; close()) {
-    const HANDLE lock = open_lock(folder.path_ / name);
-    handle_ = kept(lock);
-    error = last_error();
-    if (lock == INVALID_HANDLE_VALUE) return Taken::no;
-    OVERLAPPED place = at(kLockedByte);
-    if (LockFileEx(lock, LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &place)) {
-      if (still_there(lock)) break;
-    } else if (GetLastError() == ERROR_LOCK_VIOLATION || GetLastError() == ERROR_IO_PENDING) {
-      return Taken::held_by_another;
-    } else {
-      error = last_error();
-      return Taken::no_locks;
-    }
-  }
+LockFile::Taken LockFile::lock(std::error_code& error) const {
   error.clear();
-  return Taken::yes;
+  constexpr DWORD kOrFail = LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY;
+  OVERLAPPED place = at(kLockedByte);
+  if (LockFileEx(handle_of(handle_), kOrFail, 0, 1, 0, &place)) return Taken::yes;
+  if (GetLastError() == ERROR_LOCK_VIOLATION || GetLastError() == ERROR_IO_PENDING) {
+    return Taken::held_by_another;
+  }
+  error = last_error();
+  return Taken::no_locks;
+}
+
+bool LockFile::still_there(const Folder&, const std::string&) const {
+  FILE_STANDARD_INFO info{};
+  return GetFileInformationByHandleEx(handle_of(handle_), FileStandardInfo, &info, sizeof info) &&
+         !info.DeletePending;
 }
 
 std::string LockFile::read() const {
@@ -83,7 +66,7 @@ void LockFile::write(std::string_view text) const {
 /// Removed first: closing gives it back, and takes it away.
 void LockFile::release(const Folder& folder, const std::string& name) {
   DeleteFileW((folder.path_ / name).c_str());
-  close();
+  handle_.close();
 }
 
 }  // namespace sunder::app::system

@@ -4,48 +4,14 @@
 
 #include <Eigen/Geometry>
 
-#include "core/frame/live_world.hpp"
+#include "core/frame/live_laws.hpp"
 #include "core/frame/run_state.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::test {
 namespace {
 
-struct LawWay {
-  const char* name;
-  MaterialLaw law;
-  Route route;
-  bool moves;
-};
-void PrintTo(const LawWay& way, std::ostream* out) { *out << way.name; }
-
-const std::vector<LawWay> kLaws{
-    {"corotated", MaterialLaw::corotated, Route::factor, false},
-    {"neo_hookean_by_inverse", MaterialLaw::neo_hookean, Route::inverse, false},
-    {"saint_venant_kirchhoff", MaterialLaw::saint_venant_kirchhoff, Route::factor, false},
-    {"motion_linear", MaterialLaw::linear, Route::factor, true},
-    {"motion_corotated", MaterialLaw::corotated, Route::factor, true},
-    {"motion_by_inverse", MaterialLaw::neo_hookean, Route::inverse, true},
-};
-
-Scene law_strip(const LawWay& way, double force = 0.3) {
-  Scene scene = live_strip({way.name, way.route});
-  scene.instruments[0].action = Pull{band(-1, 0.1), Vec3(0, -force, 0)};
-  scene.materials["board"].law = way.law;
-  scene.materials["board"].density = 1e-9;
-  scene.solver.tolerance = 1e-7;
-  if (way.moves) scene.dynamics = Dynamics{.time_step = 2e-4, .mass_damping = 500};
-  return scene;
-}
-
 class GraspLaws : public testing::TestWithParam<LawWay> {};
-
-/// So many steps, and in statics on until it is at rest.
-void settle(Simulation& s, int steps = 1) {
-  for (int i = 0; i < steps; ++i) s.step();
-  for (int i = 0; i < 200 && s.step().unfinished; ++i) {
-  }
-}
 
 // A grip of the scene that a host turns goes through the same states as one that it grasped before
 // the first step.

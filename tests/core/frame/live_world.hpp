@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/frame/strip.hpp"
+#include "sunder/error.hpp"
 #include "support/fresh_body.hpp"
 
 namespace sunder::test {
@@ -91,5 +92,16 @@ struct LiveRun {
   std::optional<Vec3> driven;  // of the scene's instrument, where it pulls
   std::map<int, std::pair<std::vector<Index>, Vec3>> pushes;
 };
+
+/// Throws UsageError with `why` in its sentence.
+template <class Do>
+void refused(Do&& act, const std::string& why) {
+  try {
+    act();
+    ADD_FAILURE() << why;
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+  }
+}
 
 }  // namespace sunder::test

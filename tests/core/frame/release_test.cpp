@@ -191,38 +191,13 @@ TEST(ReleaseAtRandom, LeadsToWhatTheBodyIsAnew) {
 }
 
 // By other laws and in motion.
-struct ReleaseLaw {
-  const char* name;
-  MaterialLaw law;
-  Route route;
-  bool moves;
-};
-void PrintTo(const ReleaseLaw& way, std::ostream* out) { *out << way.name; }
-const std::vector<ReleaseLaw> kReleaseLaws{
-    {"corotated", MaterialLaw::corotated, Route::factor, false},
-    {"neo_hookean_by_inverse", MaterialLaw::neo_hookean, Route::inverse, false},
-    {"saint_venant_kirchhoff", MaterialLaw::saint_venant_kirchhoff, Route::factor, false},
-    {"motion_linear", MaterialLaw::linear, Route::factor, true},
-    {"motion_corotated", MaterialLaw::corotated, Route::factor, true},
-    {"motion_by_inverse", MaterialLaw::neo_hookean, Route::inverse, true},
-};
-
-class ReleaseLaws : public testing::TestWithParam<ReleaseLaw> {
+class ReleaseLaws : public testing::TestWithParam<LawWay> {
  protected:
   static Scene scene(bool held) {
-    Scene scene = live_strip({GetParam().name, GetParam().route});
-    scene.instruments[0].action = Pull{band(-1, 0.1), Vec3(0, -0.3, 0)};
-    scene.materials["board"].law = GetParam().law;
-    scene.materials["board"].density = 1e-9;
-    scene.solver.tolerance = 1e-7;
-    if (GetParam().moves) scene.dynamics = Dynamics{.time_step = 2e-4, .mass_damping = 500};
+    Scene scene = law_strip(GetParam());
     return held ? held_strip(std::move(scene)) : scene;
   }
-  static void settle(Simulation& s) {
-    for (int i = 0; i < (GetParam().moves ? 400 : 1); ++i) s.step();
-    for (int i = 0; i < 200 && s.step().unfinished; ++i) {
-    }
-  }
+  static void settle(Simulation& s) { test::settle(s, GetParam().moves ? 400 : 1); }
 };
 
 TEST_P(ReleaseLaws, AreAsIfTheGripHadNeverBeen) {
@@ -279,18 +254,8 @@ TEST_P(ReleaseLaws, AreRecordedAndTakenBack) {
   expect_same_bits(RunState(s), states.back());
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, ReleaseLaws, testing::ValuesIn(kReleaseLaws),
+INSTANTIATE_TEST_SUITE_P(Laws, ReleaseLaws, testing::ValuesIn(kLaws),
                          [](const auto& of) { return std::string(of.param.name); });
-
-template <class Do>
-void refused(Do&& act, const std::string& why) {
-  try {
-    act();
-    ADD_FAILURE() << why;
-  } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-  }
-}
 
 TEST(ReleaseAbuse, IsRefusedInASentence) {
   LiveRun run(held_strip(live_strip(kLiveWays[0])));
