@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solution by the small matrices over the base: the forces of damage and grips, and what refines
+// them.
+#include "solver/columns.hpp"
+#include "solver/deferred.hpp"
+
+namespace sunder::solver {
+namespace {
+
+/// y = S x for a symmetric S of which the leading k rows and columns alone are not 0; n entries of
+/// x and y.
+void multiply(const linear_algebra::RowMajor& s, Eigen::Index n, Eigen::Index k,
+              const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+  y.head(n).setZero();
+  add_product(s.data(), s.outerStride(), k, x.data(), k, y.data());
+}
+
+}  // namespace
+
+const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
+                                              std::span<const double> displacement,
+                                              double energy_tolerance) {
+  constexpr int kRefinements = 4;
+  const Eigen::VectorXd& p = base_->load(on_body(forces));
+  start(p, displacement);
+  converged_ = before_.empty();
+  defect_energy_ = 0;
+  for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
+    const double before = defect_energy_;
+    defect_energy_ = refine(p, displacement);
+    converged_ = defect_energy_ <= energy_tolerance || (pass > 0 && !(defect_energy_ < before / 4));
+  }
+  return x_;
+}
+
+void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
+                     double energy_tolerance) {
+  base_->expand(coefficients(forces, displacement, energy_tolerance), u);
+  for (std::size_t i = 0; i < held_.size(); ++i) {  // free of rounding
+    u[held_[i].dof] = displacement.empty() ? 0.0 : displacement[i];
+  }
+}
+
+void Deferred::correct(const Forces& residual, Eigen::VectorXd& du) {
+  base_->expand(correct(base_->load(on_body(residual))), du);
+  for (const Held& held : held_) du[held.dof] = 0;
+}
+
+const Eigen::VectorXd& Deferred::correction_coefficients(const Eigen::VectorXd& projection) {
+  border_.take_none();
+  return correct(projection);
+}
+
+const Eigen::VectorXd& Deferred::correct(const Eigen::VectorXd& projection) {
+  start(projection, {});
+  return x_;
+}
+
+/// The forces but those on new unknowns, which the border takes.
+Forces Deferred::on_body(const Forces& forces) {
+  return border_.empty() ? forces : border_.take(forces, base_->size());
+}
+
+/// x = M p and what the grips add: A^-1 as it is stored.
+void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacement) {
+  multiply(m_, count(), changed_, p, x_);
+  if (!border_.empty()) border_.start(p, x_);
+  if (held_.empty()) return;
+  forces_.resize(grips());
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] = -p[held_[i].column];
+  }
+  subtract_at_grips(x_, forces_);
+  add_grips(displacement);
+}
+
+/// One step towards x = D B^T u, u_G = displacement; returns the energy of what was lacking.
+double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displacement) {
+  const Eigen::Index n = count();
+  multiply(compliance_, n, n, x_, v_);
+  v_.head(n) += p.head(n);               // B^T u
+  multiply(d_, n, changed_, v_, lack_);  // D B^T u - x
+  lack_.head(n) -= x_.head(n);
+  for (Index d : units_) lack_[unit_[d]] = 0;  // where only grips act
+  if (!border_.empty()) border_.add_lack(v_, lack_);
+  multiply(compliance_, n, n, lack_, gx_);
+  multiply(m_, n, changed_, gx_, mgx_);
+  double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n));
+  x_.head(n) += lack_.head(n);
+  x_.head(n) += mgx_.head(n);
+  if (!border_.empty()) {
+    moved_.setZero(grips());
+    energy += border_.correct(gx_, x_, moved_);
+  }
+  if (held_.empty()) return energy;
+  forces_.resize(grips());
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] = -v_[held_[i].column] - gx_[held_[i].column];
+  }
+  if (!border_.empty()) forces_ -= moved_;
+  subtract_at_grips(mgx_, forces_);
+  add_grips(displacement);
+  return energy;
+}
+
+/// Adds the grips' forces that move u_G, which is at -forces_, to the displacement.
+void Deferred::add_grips(std::span<const double> displacement) {
+  const Eigen::Index n = count();
+  for (std::size_t i = 0; i < held_.size() && !displacement.empty(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] += displacement[i];
+  }
+  grip_block_.solveInPlace(forces_);
+  gx_.head(n).setZero();
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    gx_.head(n) += forces_[static_cast<Eigen::Index>(i)] *
+                   compliance_.row(held_[i].column).head(n).transpose();
+  }
+  multiply(m_, n, changed_, gx_, mgx_);
+  x_.head(n) += mgx_.head(n);
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    x_[held_[i].column] += forces_[static_cast<Eigen::Index>(i)];
+  }
+  if (!border_.empty()) border_.follow_grips(forces_, x_);
+}
+
+}  // namespace sunder::solver
