@@ -193,12 +193,13 @@ TEST_P(WhileFramesTear, NoAnswerWaitsForAFrame) {
   std::thread frames([&] {
     tear([] {});
     torn = true;
-    while (!leave) std::this_thread::yield();
+    while (!leave) body_.backend->solve();
   });
   while (instruments->frames() == 0) std::this_thread::yield();
   std::vector<double> forces(held_.size());
+  constexpr long kHolds = 20;  // a quick machine may tear the body in fewer
   long answers = 0, bad = 0, holds = 0;
-  for (; !torn; ++holds) {
+  for (; !torn || holds < kHolds; ++holds) {
     hold.take(frames);
     for (int i = 0; i < 10; ++i) {
       const bool answered = instruments->forces(held_, forces);
@@ -211,7 +212,6 @@ TEST_P(WhileFramesTear, NoAnswerWaitsForAFrame) {
   leave = true;
   frames.join();
   EXPECT_TRUE(has_new_base());
-  EXPECT_GT(holds, 10);
   EXPECT_EQ(answers, 10 * holds);
   EXPECT_EQ(bad, 0);
 }
