@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every public function, method and class of the package says what it does; where arrays go in or come
-out, it has the shape of each in brackets and its unit, or says by type or word that it has none."""
+out, it has the shape of each in brackets and its unit, or says by type or word that it has none. What goes
+in and comes out has type hints."""
 import ast
 import importlib
 import inspect
@@ -46,8 +47,8 @@ def modules():
         yield importlib.import_module("sunder." + path.stem)
 
 
-def public():
-    """(name, docstring, arrays that go in, arrays that come out)."""
+def public_things():
+    """Functions and classes by their full names."""
     found = {f"{m.__name__}.{n}": thing for m in modules() for n, thing in vars(m).items()
              if not n.startswith("_") and getattr(thing, "__module__", "") == m.__name__}
     for name in sunder.__all__:
@@ -55,7 +56,12 @@ def public():
             module, own = getattr(thing, "__module__", ""), getattr(thing, "__name__", "_")
             if module.startswith("sunder.") and module != "sunder._c" and not own.startswith("_"):
                 found[f"{module}.{own}"] = thing
-    for where, thing in found.items():
+    return found
+
+
+def public():
+    """(name, docstring, arrays that go in, arrays that come out)."""
+    for where, thing in public_things().items():
         if inspect.isclass(thing):
             yield from members(where, thing)
         elif inspect.isfunction(thing):
@@ -67,10 +73,14 @@ def arrays_out(function):
     return max(text.count("ndarray") for text in alternatives)
 
 
-def members(where, cls):
+def functions_of(cls):
     functions = {n: getattr(f, "__func__", getattr(f, "fget", None)) or f for n, f in vars(cls).items()}
-    functions = {n: f for n, f in functions.items()
-                 if inspect.isfunction(f) and "sunder" in f.__code__.co_filename}  # a dataclass has others
+    return {n: f for n, f in functions.items()
+            if inspect.isfunction(f) and "sunder" in f.__code__.co_filename}  # a dataclass has others
+
+
+def members(where, cls):
+    functions = functions_of(cls)
     called = {name for f in functions.values() for name, _ in calls(body_of(f))}
     # What a class is made of stands in its own text; so does what is called by a name that is put together.
     own = [f for n, f in functions.items() if n.startswith("_") and n not in called]
@@ -92,6 +102,22 @@ class Docstrings(unittest.TestCase):
                 self.assertGreaterEqual(shapes, count, f"{count} arrays, shapes named: {shapes}\n{text}")
                 self.assertGreaterEqual(units, count, f"{count} arrays, units named: {units}\n{text}")
         self.assertGreater(with_arrays, 35)
+
+    def test_every_public_function_has_type_hints(self):
+        count = 0
+        for where, thing in public_things().items():
+            functions = functions_of(thing) if inspect.isclass(thing) else {"": thing}
+            for name, function in functions.items():
+                if not inspect.isfunction(function) or name.startswith("_") and name != "__init__":
+                    continue
+                count += 1
+                signature = inspect.signature(function)
+                bare = [p.name for p in signature.parameters.values()
+                        if p.annotation is p.empty and p.name not in ("self", "cls")]
+                self.assertEqual(bare, [], f"{where}.{name}")
+                if name != "__init__":
+                    self.assertIsNot(signature.return_annotation, signature.empty, f"{where}.{name}")
+        self.assertGreater(count, 100)
 
     def test_the_search_sees_what_goes_in_and_comes_out(self):
         found = {name: (a, b) for name, _, a, b in public()}
