@@ -50,6 +50,18 @@ class Documents(unittest.TestCase):
         self.assertGreater(len(named), 40)
         self.assertEqual([n for n in named if not (SOURCE / n).exists()], [])
 
+    def test_every_stage_of_ci_is_told_of_with_its_seconds(self):
+        script = (SOURCE / ".ci/run").read_text(encoding="utf-8")
+        stages = re.search(r"^stages=\((.*?)\)$", script, flags=re.M)[1].split()
+        self.assertTrue({"test", "windows", "arm"} <= set(stages))
+        head = script[:script.index("set -euo pipefail")]
+        table = (SOURCE / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        for stage in stages:
+            self.assertIn(f"\nstage_{stage}() {{", script)
+            self.assertRegex(head, rf"\n#     {stage} +\w")
+            if stage != "format":  # a second
+                self.assertRegex(table, rf"\n\| `{stage}` \|.*\d")
+
     def test_links_lead_somewhere(self):
         dead = []
         for path in documents():
