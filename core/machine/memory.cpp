@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,9 @@ namespace sunder::machine {
 #if defined(_WIN32)
 
 std::size_t available_memory() {
+  // Wine keeps an answer for a second, and hands it to other threads before it is there: as 0.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   MEMORYSTATUSEX status{};
   status.dwLength = sizeof(status);
   return GlobalMemoryStatusEx(&status) ? static_cast<std::size_t>(status.ullAvailPhys) : 0;

@@ -255,11 +255,11 @@ sunder_status handle_until_gone(sunder_simulation simulation, std::atomic<int>& 
   std::int32_t mark = 0;
   if (!done(sunder_simulation_save(simulation, &mark))) return status;
   for (int i = 0;; ++i) {
-    const double pull[3] = {0, -0.5 * (i % 5), 0}, near[3] = {5, 0, 0.5};
+    const double pull[3] = {0, -0.5 * (i % 5), 0}, at[3] = {5, 0, 0.5};
     std::int32_t grip = 0;
     double place[3] = {};
     if (!done(sunder_simulation_drive(simulation, 0, pull)) ||
-        !done(sunder_simulation_grasp_near(simulation, near, 1.5, 1, &grip)) ||
+        !done(sunder_simulation_grasp_near(simulation, at, 1.5, 1, &grip)) ||
         !done(sunder_simulation_step(simulation, nullptr)) ||
         !done(sunder_simulation_grip_place(simulation, grip, place))) {
       return status;

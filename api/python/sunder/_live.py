@@ -29,8 +29,8 @@ class Live:
 
     def grasp(self, nodes: Sequence[int] | None = None, *, near: Any = None,
               radius: float | None = None, rigid: bool = False) -> int:
-        """Takes hold of `nodes`, or of all within `radius` [mm] of the place `near`, where they are
-        now. rigid: as one solid, which may turn. Returns the grip's id."""
+        """Takes hold of `nodes`, ids (k,), or of all within `radius` [mm] of the place `near`, (3,)
+        [mm], where they are now. rigid: as one solid, which may turn. Returns the grip's id."""
         grip = c.c_int32()
         if (nodes is None) == (near is None) or (near is None) != (radius is None):
             raise InputError("a grip takes nodes, or near with radius")
@@ -60,8 +60,8 @@ class Live:
         return place
 
     def pose(self, grip: int, position: Any, quaternion: Any = None) -> None:
-        """Brings a grip to a place (3,) [mm] and a rotation since it took hold, (4,) as x, y, z, w of
-        any length, from the next step on."""
+        """Brings a grip to a place (3,) [mm] and a rotation since it took hold, a quaternion (4,)
+        as x, y, z, w of any length, no unit, from the next step on."""
         place = _arrays.reals(position, "position", (3,))
         turn = None if quaternion is None else _arrays.reals(quaternion, "quaternion", (4,))
         check(_lib.sunder_simulation_pose(self.handle, grip, place.ctypes.data,
@@ -79,7 +79,7 @@ class Live:
         check(_lib.sunder_simulation_release(self.handle, grip))
 
     def push(self, nodes: Sequence[int], force: Any) -> int:
-        """A force (3,) [N] in equal parts on nodes until it is dropped. Returns its id."""
+        """A force (3,) [N] in equal parts on nodes, ids (k,), until it is dropped. Returns its id."""
         push = c.c_int32()
         ids, f = _arrays.ids(nodes, "nodes", (None,)), _arrays.reals(force, "force", (3,))
         check(_lib.sunder_simulation_push(self.handle, ids.ctypes.data, ids.size, f.ctypes.data,
@@ -87,7 +87,7 @@ class Live:
         return push.value
 
     def move(self, push: int, nodes: Sequence[int], force: Any) -> None:
-        """A push acts on these nodes, with this force."""
+        """A push acts on these nodes, ids (k,), with this force, (3,) [N]."""
         ids, f = _arrays.ids(nodes, "nodes", (None,)), _arrays.reals(force, "force", (3,))
         check(_lib.sunder_simulation_move(self.handle, push, ids.ctypes.data, ids.size, f.ctypes.data))
 
@@ -98,7 +98,7 @@ class Live:
     # ---- elements
 
     def remove(self, elements: Sequence[int]) -> None:
-        """Takes live elements out, by one event."""
+        """Takes live elements out, ids (k,), by one event."""
         ids = _arrays.ids(elements, "elements", (None,))
         check(_lib.sunder_simulation_remove(self.handle, ids.ctypes.data, ids.size))
 
@@ -173,8 +173,8 @@ class Live:
         return {name: getattr(surface, name) for name in ("triangle_count", "node_count", "version")}
 
     def surface_changes(self, since: int = 0) -> np.ndarray:
-        """One record per triangle that has changed since a version (0: all): place, nodes, element,
-        piece, opened. Those in places from triangle_count on are gone."""
+        """(k,) records, one per triangle that has changed since a version (0: all): place, nodes,
+        element, piece, opened. Those in places from triangle_count on are gone."""
         count = c.c_size_t()
         check(_lib.sunder_simulation_surface_changes(self.handle, since, None, 0, c.byref(count)))
         triangles = np.empty(count.value, TRIANGLE)
@@ -183,7 +183,8 @@ class Live:
         return triangles
 
     def surface_points(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where the body's nodes are (node_count, 3) float32 [mm], and their unit normals."""
+        """Where the body's nodes are (node_count, 3) float32 [mm], and their normals of length 1,
+        (node_count, 3) float32, no unit."""
         count = self.surface()["node_count"]
         places, normals = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
         check(_lib.sunder_simulation_surface_points(self.handle, places.ctypes.data, normals.ctypes.data,

@@ -52,7 +52,7 @@ class Grips:
 
     def feel(self, hands: Mapping[int, Any]) -> tuple[dict[int, tuple[np.ndarray, np.ndarray]], Felt]:
         """Of grips that were grasped at run time, by id: where a hand has each, a place (3,) [mm] or a
-        pair of place and quaternion (4,). Returns force (3,) [N] and torque (3,) about that place
+        pair of place and quaternion (4,), no unit. Returns force (3,) [N] and torque (3,) about that place
         [N mm] of each that is held, and what they come from: `Felt`, whose state is "waiting" (no
         solution), "live" or "gone" (the simulation is closed)."""
         array = (_c.structs["sunder_hand"] * len(hands))()
@@ -79,6 +79,7 @@ class Grips:
         return self._handle
 
     def close(self) -> None:
+        """Gives them back; twice does no harm."""
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
             _lib.sunder_grips_destroy(handle)
@@ -95,7 +96,7 @@ class Grips:
 
 class Frames:
     """Fields of the last finished step, for a thread of its own: a call neither waits for a step nor
-    makes one wait."""
+    makes one wait. `nodes`: ids (k,) of those whose displacement is wanted; none: all of the body."""
 
     def __init__(self, simulation: Any, fields: Sequence[str], nodes: Sequence[int] | None):
         handle = c.c_void_p()
@@ -132,6 +133,7 @@ class Frames:
         return frame.step, result
 
     def close(self) -> None:
+        """Gives them back; twice does no harm."""
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
             _lib.sunder_frames_destroy(handle)

@@ -74,7 +74,7 @@ class Mesh:
         return cls(**_of_meshio(mesh))
 
     def surface_nodes(self, name: str) -> np.ndarray:
-        """Ids of a named surface's nodes, ascending."""
+        """(k,) ids of a named surface's nodes, ascending."""
         if name not in self.surfaces:
             raise InputError(f'the mesh has no surface "{name}"; it has {list(self.surfaces)}')
         return np.unique(self.surfaces[name])

@@ -15,7 +15,8 @@ _FIELDS = ("max_shear", "yield_ratio", "displacement")
 
 
 def free_faces(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles (faces, 3) that one of the tetrahedra (m, 4) alone has, and whose they are (faces,)."""
+    """Triangles (faces, 3), node ids, that one of the tetrahedra (m, 4) alone has, and the ids of those
+    whose they are (faces,)."""
     triangles = corners[:, _FACES].reshape(-1, 3)
     _, first, count = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True,
                                 return_counts=True)

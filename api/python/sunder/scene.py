@@ -18,8 +18,9 @@ _AXES = {"x": 1, "y": 2, "z": 4}
 
 
 class Selection:
-    """Nodes or elements, by exactly one of: `nodes` or `elements` (ids), `box` ([[min], [max]], closed
-    [mm]), `near` with `radius` (a ball [mm]), `surface` or `volume` (a name of the mesh)."""
+    """Nodes or elements, by exactly one of: `nodes`, ids (k,); `elements`, ids (k,); `box`, (2, 3) [mm],
+    [min, max], closed; `near`, (3,) [mm], with `radius` [mm], a ball; `surface` or `volume`, a name of
+    the mesh."""
 
     def __init__(self, mesh: Mesh | None, what: str, given: Mapping[str, Any]):
         self.struct = _c.structs["sunder_selection"]()
@@ -229,7 +230,8 @@ class Scene(Handled):
     def add_crack(self, *, mouth: Sequence[float] | None = None, tip: Sequence[float] | None = None,
                   tips: Any = None, **elements: Any) -> None:
         """A crack that is there from the start: its elements (Selection; [] where nodes of the mesh
-        are split), with `mouth` and `tip` (an edge crack) or `tips` (2, 3), all [mm]."""
+        are split), with `mouth` (3,) [mm] and `tip` (3,) [mm], an edge crack, or with `tips` (2, 3)
+        [mm]."""
         if (mouth is None) != (tip is None) or (mouth is None) == (tips is None):
             raise InputError("a crack has a mouth and a tip, or tips")
         k = _c.structs["sunder_preset_crack"]()

@@ -265,9 +265,10 @@ class Simulation(Handled, Live):
 
     def view(self, field: str) -> np.ndarray:
         """A field in the library's own memory, read-only and without a copy of numpy's: "displacement",
-        "velocity", "stress", "max_shear", "yield_ratio" or "destroyed", shaped as by the method of
-        that name. It stays as it is through further steps, until the same field is viewed again:
-        every view of it is the same memory. That lives as long as a view does, also after close()."""
+        "velocity": (n, 3) [mm], [mm/s]; "stress": (m, 6) [MPa]; "max_shear", "yield_ratio",
+        "destroyed": (m,) [MPa], no unit, bool. It stays as it is through further steps, until the same
+        field is viewed again: every view of it is the same memory. That lives as long as a view does,
+        also after close()."""
         if field not in _VIEWS:
             raise InputError(f"field is {field!r}; allowed are {', '.join(_VIEWS)}")
         number, per, columns = _VIEWS[field]
@@ -302,7 +303,7 @@ class Simulation(Handled, Live):
         return self._field(_lib.sunder_simulation_max_shear, "max_shear", (self._tets,), out)
 
     def yield_ratio(self, out: np.ndarray | None = None) -> np.ndarray:
-        """(m,) float64: yield measure over yield stress; 0 where unbreakable or destroyed."""
+        """(m,) float64, no unit: yield measure over yield stress; 0 where unbreakable or destroyed."""
         return self._field(_lib.sunder_simulation_yield_ratio, "yield_ratio", (self._tets,), out)
 
     def destroyed(self, out: np.ndarray | None = None) -> np.ndarray:
@@ -360,14 +361,14 @@ class Simulation(Handled, Live):
         return records
 
     def events(self) -> np.ndarray:
-        """One record per destroyed element, growth or birth of a crack: members as sunder_event has
-        them (order, step, event, element, cause, crack, load_factor, ratio, k [MPa sqrt(mm)],
+        """(k,) records, one per destroyed element, growth or birth of a crack: members as sunder_event
+        has them (order, step, event, element, cause, crack, load_factor, ratio, k [MPa sqrt(mm)],
         theta [deg] ...). cause_name() has the words."""
         return self._records(_lib.sunder_simulation_event_count, _lib.sunder_simulation_event_at,
                              EVENT, _c.structs["sunder_event"])
 
     def cracks(self) -> np.ndarray:
-        """One record per crack: id, kind, tip_count, mouth, tips, directions, length [mm] ..."""
+        """(k,) records, one per crack: id, kind, tip_count, mouth, tips, directions, length [mm] ..."""
         return self._records(_lib.sunder_simulation_crack_count, _lib.sunder_simulation_crack_at,
                              CRACK, _c.structs["sunder_crack"])
 
@@ -391,7 +392,7 @@ class Simulation(Handled, Live):
         return struct
 
     def tips(self) -> np.ndarray:
-        """One record per tip as the last solve leaves it: crack, tip, ended, known (a sum of
+        """(k,) records, one per tip as the last solve leaves it: crack, tip, ended, known (a sum of
         constants["SUNDER_TIP_..."]), position [mm], k [MPa sqrt(mm)], theta [deg], j [N/mm] ..."""
         return self._records(_lib.sunder_simulation_measure_tips, _lib.sunder_simulation_tip_at, TIP,
                              _c.structs["sunder_tip"])

@@ -52,9 +52,10 @@ def _measured(simulation, steps, record):
 def run_one(tree: Mapping[str, Any], run: int, values: Mapping[str, Any],
             measure: Callable[[Simulation], Any] | None = None,
             bodies: Bodies | None = None) -> tuple[np.ndarray, Any]:
-    """One run of a sweep, a function by itself so that a scheduler can carry it: (RESULT record,
-    what `measure` returned). An error of the scene or of the computation is in the record. Without
-    `bodies` the runs of a process share what is made of a body."""
+    """One run of a sweep, a function by itself so that a scheduler can carry it. Returns one of the
+    records RESULT, an array of shape (), and what `measure` returned. An error of the scene or of the
+    computation is in the record. Without `bodies` the runs of a process share what is made of a
+    body."""
     record = np.zeros((), RESULT)
     record["run"] = run
     measured = None
@@ -122,7 +123,7 @@ def sweep(source: Any, vary: Mapping[str, Sequence[Any]], *, set: Mapping[str, A
         the time of its runs, which others do again.
     measure: called with each simulation at its end; what it returns comes back as a list. For a
         client it has to be a function that can be pickled.
-    Returns an array of records RESULT, by run, or that and the list of `measure`. A run that is
+    Returns (runs,) records RESULT, by run, or that and the list of `measure`. A run that is
     refused or fails has its status (as Error.status) and message; the others go on.
 
     On the CPU, which backend "auto" is here, runs of one intact body share its factor and inverse;
