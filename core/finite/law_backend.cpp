@@ -15,6 +15,7 @@
 #include "solver/finite_statics.hpp"
 #include "solver/grip_stiffness.hpp"
 #include "solver/plan.hpp"
+#include "sunder/error.hpp"
 #include "sunder/in_quotes.hpp"
 #include "sunder/words.hpp"
 
@@ -296,11 +297,15 @@ StressSummary LawBackend::do_stress() {
     wanted.measure = problem().scene().fracture.stress;
     now_.pass->run(u_, wanted);
   });
-  stress_known_ = true;
   const auto none = without_stress();
   for (std::size_t e = 0; e < stress_.size(); ++e) {
     if (none[e]) stress_[e].setZero();
+    if (!stress_[e].allFinite()) {
+      throw NumericalError("the stress of element " + std::to_string(e) +
+                           " is beyond what double precision holds; take a smaller load");
+    }
   }
+  stress_known_ = true;
   return needs().yield ? fem::summarize(problem(), destroyed(), excluded_, stress_)
                        : StressSummary{};
 }

@@ -227,6 +227,22 @@ class Fields(unittest.TestCase):
             with self.assertRaises(sunder.AllowedError):
                 simulation.turn(0, [1, 0, 0])
 
+    def test_a_grip_of_the_scene_lets_go(self):
+        with sunder.Simulation(two_tets(force=1, steps=2)) as simulation:
+            simulation.run()
+            never_held = simulation.displacement()
+        scene = two_tets(force=1, steps=100)
+        scene.add_instrument("clamp", displacement=[0.1, 0, 0], nodes=[1])
+        scene.set_live()
+        with sunder.Simulation(scene) as simulation:
+            simulation.step()
+            np.testing.assert_allclose(simulation.displacement()[1], [0.1, 0, 0])
+            self.assertGreater(abs(simulation.reactions()[1]).max(), 0.1)
+            simulation.release(1)
+            simulation.step()
+            self.assertEqual(abs(simulation.reactions()[1]).max(), 0)
+            np.testing.assert_allclose(simulation.displacement(), never_held, rtol=1e-9)
+
     def test_a_live_body(self):
         # Three layers of six tetrahedra, held below.
         nodes = np.array([[x, y, z] for z in range(4) for y in range(2) for x in range(2)], float)

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <iostream>
 #include <random>
@@ -60,6 +61,18 @@ struct Held {
       std::this_thread::sleep_for(1ms);
     }
     return false;
+  }
+
+  /// The same, but a machine that leaves it little of its processors is given longer: until so much
+  /// of their time has been its own.
+  [[nodiscard]] static bool within_own(std::chrono::seconds limit,
+                                       const std::function<bool()>& so) {
+    constexpr double kOwn = 10;  // [s]; a reset takes under one
+    const std::clock_t begin = std::clock();
+    while (!within(limit, so)) {
+      if (static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC > kOwn) return false;
+    }
+    return true;
   }
 
   std::shared_ptr<cpu_reference::PreparedBodies> prepared = prepared_bodies(2);
@@ -189,10 +202,12 @@ TEST(HapticLoop, RandomInputNeitherStopsNorLeaks) {
     held.loop->let_go();
     held.live->pause(true);
     held.live->post(input::Reset{});
-    ASSERT_TRUE(held.within(60s, [&] {
-      const auto now = held.live->now();
-      return now.undos == 0 && now.grips.empty() && !now.shown->report;
-    })) << "it has stopped";
+    ASSERT_TRUE(held.within_own(60s,
+                                [&] {
+                                  const auto now = held.live->now();
+                                  return now.undos == 0 && now.grips.empty() && !now.shown->report;
+                                }))
+        << "it has stopped after " << acts << " inputs";
     heaps.push_back(heap());
   } while (since() < seconds() || heaps.size() < 4);
   const std::size_t third = heaps[2], last = heaps.back();

@@ -3,6 +3,7 @@
 // "Model P").
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "cpu_reference/cpu_reference.hpp"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/frame/live_laws.hpp"
 #include "core/frame/live_random.hpp"
 #include "core/frame/run_state.hpp"
 #include "sunder/error.hpp"
