@@ -105,6 +105,7 @@ class PlainBackend final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs) {
+  if (problem->pools()) throw DeviceError("the yardstick does not pool volume; use backend cpu");
   return std::make_unique<PlainBackend>(std::move(problem), std::move(needs));
 }
 
