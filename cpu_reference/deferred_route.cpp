@@ -16,6 +16,8 @@ namespace {
 // Columns that a fracture of one element adds to the damage, along a tear.
 constexpr double kColumns = 1.75;
 constexpr double kFewestColumns = 64;
+// The same where an element shares its volume with a patch, whose nodes come with it.
+constexpr double kPooledColumns = 8, kFewestPooledColumns = 256;
 // Columns beyond those that a base is expected to serve, in fractures of several elements.
 constexpr Index kSpare = 64;
 
@@ -42,6 +44,8 @@ class DeferredRoute final : public InverseRoute {
       update_.emplace(body, std::move(first));
       return;
     }
+    const bool pools = body.problem().pools() != nullptr;
+    const double each = pools ? kPooledColumns : kColumns;
     const int frames = solver::frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
     solver::Renewal renewal;
     renewal.events = frames;
@@ -49,8 +53,9 @@ class DeferredRoute final : public InverseRoute {
     // As many as have followed a base when it is taken: where frames tear without a pause, the next
     // one begins at once.
     renewal.columns = body.problem().gripped_dofs().size() +
-                      static_cast<std::size_t>(std::max(kColumns * frames, kFewestColumns));
-    const Index followed = static_cast<Index>(kColumns * frames) + kSpare;
+                      static_cast<std::size_t>(
+                          std::max(each * frames, pools ? kFewestPooledColumns : kFewestColumns));
+    const Index followed = static_cast<Index>(each * frames) + kSpare;
     const Index columns = static_cast<Index>(renewal.columns) + followed;
     // The factor that takes the inverse's place solves backward for as much as so many columns.
     renewal.first_columns =
@@ -154,10 +159,10 @@ class DeferredRoute final : public InverseRoute {
       based.parted = std::make_shared<fem::PartedBody>(body);
       based.factor = std::make_shared<const linear_algebra::Factor>(
           fem::factor_stiffness(based.parted->body(), work));
-    } else if (body.others().empty()) {
+    } else if (body.others().empty() && !body.problem().pools()) {
       stiffness_->follow(body);
       based.factor = std::make_shared<const linear_algebra::Factor>(stiffness_->factor(work));
-    } else {  // entries that the intact body's stiffness has no place for
+    } else {  // entries that the intact body's stiffness has no place for, or patches' pressures
       based.factor =
           std::make_shared<const linear_algebra::Factor>(fem::factor_stiffness(body, work));
     }

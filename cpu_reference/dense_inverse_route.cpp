@@ -35,7 +35,7 @@ class DenseInverseRoute final : public InverseRoute {
       grips_.read(x_);
       return;
     }
-    if (body_.forms().came().empty()) {
+    if (body_.forms().came().empty() && !body_.problem().pools()) {
       update_.gather(body_.problem(), event.leave);
       if (update_.apply(x_)) {
         grips_.read(x_);

@@ -112,6 +112,7 @@ sunder_status sunder_scene_add_material(sunder_scene scene, const sunder_materia
     if (given.density != 0) m.density = given.density;
     if (given.toughness != 0) m.toughness = given.toughness;
     if (given.energy != 0) m.energy = given.energy;
+    m.volume = word<sunder::MaterialVolume>(given.volume, "material", "volume");
     object.materials.push_back(m);
     object.scene.mesh.volumes.push_back(
         {given.name ? given.name : std::to_string(number), static_cast<int>(number)});

@@ -23,6 +23,7 @@ internal struct NativeMaterial {
   public IntPtr name;
   public int law, reserved2;
   public double density, toughness, energy;
+  public int volume, reserved3;
 }
 
 [StructLayout(LayoutKind.Sequential)]

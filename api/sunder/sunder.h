@@ -133,6 +133,10 @@ enum {
   SUNDER_LAW_SAINT_VENANT_KIRCHHOFF = 3
 };
 
+/// element: each element changes its volume by itself; pooled: some 8 as one, so that nearly
+/// incompressible tissue does not lock (docs/method.md).
+enum { SUNDER_VOLUME_ELEMENT = 0, SUNDER_VOLUME_POOLED = 1 };
+
 typedef struct sunder_material {
   uint32_t struct_size;
   uint32_t reserved;
@@ -146,10 +150,12 @@ typedef struct sunder_material {
   /// K_c [MPa sqrt(mm)] at which cracks of model B grow; 0: none, Eq. 1 by yield decides
   double toughness;
   double energy;  ///< G_c [N/mm] in its place (1000 J/m^2); 0: none; one of the two
+  int32_t volume;    ///< SUNDER_VOLUME_*
+  int32_t reserved3;
 } sunder_material;
 
 #define SUNDER_MATERIAL_INIT \
-  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0, 0, 0 }
+  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0, 0, 0, SUNDER_VOLUME_ELEMENT, 0 }
 
 SUNDER_API void sunder_material_init(sunder_material* material);
 /// Tissues by name, with their sources in docs/tissues.md: how many, and the name of each.

@@ -54,6 +54,7 @@ std::vector<std::string> changes_of(const SceneEdit& before, const SceneEdit& no
     add_number(changes, path + ".yield", was.yield, is.yield);
     add_number(changes, path + ".toughness", was.toughness, is.toughness);
     add_number(changes, path + ".energy", was.energy, is.energy);
+    add_word(changes, "material", "volume", was.volume, is.volume, path);
   }
   add_word(changes, "fracture", "model", before.model, now.model, "fracture");
   add_word(changes, "fracture", "crack", before.crack, now.crack, "fracture");
@@ -66,7 +67,8 @@ bool changes_stiffness(const SceneEdit& before, const SceneEdit& now) {
                      now.volumes.end(), [](const auto& a, const auto& b) {
                        return a.material.young == b.material.young &&
                               a.material.poisson == b.material.poisson &&
-                              a.material.law == b.material.law;
+                              a.material.law == b.material.law &&
+                              a.material.volume == b.material.volume;
                      });
 }
 

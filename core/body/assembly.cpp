@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::fem {
@@ -40,11 +41,13 @@ linear_algebra::SparseMatrix assemble_elements(
 }
 
 linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale) {
-  return assemble_elements(problem, [&](Index e) {
+  linear_algebra::SparseMatrix lower = assemble_elements(problem, [&](Index e) {
     ElementMatrix k = element_stiffness(problem, e);
     if (!scale.empty()) k *= scale[e];
     return k;
   });
+  if (problem.pools()) lower += assemble_pressure(problem, scale);
+  return lower;
 }
 
 linear_algebra::SparseMatrix assemble_forms(const Problem& problem, std::span<const Form> forms) {
@@ -61,9 +64,10 @@ linear_algebra::SparseMatrix assemble_forms(const Problem& problem, std::span<co
 void apply_stiffness(const Problem& problem, std::span<const double> scale,
                      std::span<const double> u, std::span<double> y) {
   std::fill(y.begin(), y.end(), 0.0);
+  const StressField field(problem, scale, u);
   for (Index e = 0; e < problem.tet_count(); ++e) {
     const TetShape& shape = problem.shape(e);
-    const Voigt s = stress(problem, e, u);
+    const Voigt s = field.of(e);
     const double weight = shape.volume * (scale.empty() ? 1.0 : scale[e]);
     const Eigen::Matrix<double, 3, 4> force = weight * (tensor(s) * shape.gradient);
     for (int a = 0; a < 4; ++a) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "body/element.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::fem {
@@ -171,7 +172,7 @@ std::array<Index, 4> Forms::parents(const std::array<Index, 4>& corners) const {
 
 Form form_in_mesh(const Problem& problem, Index element) {
   return {problem.mesh().tets[static_cast<std::size_t>(element)], problem.shape(element),
-          problem.small_strain(element), 1};
+          own_law(problem, element), 1};
 }
 
 bool same_matter(const Forms& forms, const Form& a, const Form& b) {

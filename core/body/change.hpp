@@ -18,7 +18,7 @@ namespace sunder::fem {
 struct Form {
   std::array<Index, 4> corners{};  ///< nodes of the mesh and, with ids after theirs, new ones
   TetShape shape;
-  SmallStrain law;
+  SmallStrain law;   ///< own_law() (element.hpp)
   double share = 1;  ///< of its stiffness: alpha once it has left, 0 before it first came
 };
 /// An element that comes takes this form, whatever form it had.

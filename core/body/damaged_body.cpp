@@ -7,6 +7,7 @@
 #include "body/assembly.hpp"
 #include "body/element.hpp"
 #include "body/held_together.hpp"
+#include "body/pools.hpp"
 #include "sunder/error.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -180,9 +181,10 @@ void DamagedBody::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
 
 double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
   scatter(x);
+  const StressField field(*problem_, scale_, nodal_in_);
   Largest largest;
   for (Index e = 0; e < problem_->tet_count(); ++e) {
-    if (!destroyed()[e]) largest.add(squared(scale_[e] * stress(*problem_, e, nodal_in_)));
+    if (!destroyed()[e]) largest.add(squared(scale_[e] * field.of(e)));
   }
   for (const Form& form : others_) largest.add(squared(stress_of(form, nodal_in_)));
   return largest.norm();
@@ -191,9 +193,10 @@ double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
 double DamagedBody::largest_stress(const Eigen::VectorXd& x,
                                    std::span<const Index> elements) const {
   scatter(x);
+  const StressField field(*problem_, scale_, nodal_in_);
   Largest largest;
   for (Index e : elements) {
-    if (!destroyed()[e]) largest.add(squared(scale_[e] * stress(*problem_, e, nodal_in_)));
+    if (!destroyed()[e]) largest.add(squared(scale_[e] * field.of(e)));
   }
   return largest.norm();
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "body/element.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -41,8 +40,8 @@ ElementMatrix element_stiffness(const TetShape& shape, const Matrix6& d) {
   return shape.volume * (b.transpose() * d * b);
 }
 
-UpdateFactor update_factor(const TetShape& shape, const Matrix6& d, double alpha) {
-  const Matrix6 l = d.llt().matrixL();
+UpdateFactor update_factor(const TetShape& shape, const SmallStrain& law, double alpha) {
+  const Matrix6 l = elasticity_factor(law);
   return strain_displacement(shape).transpose() * l * std::sqrt(shape.volume * (1 - alpha));
 }
 
@@ -64,18 +63,21 @@ Eigen::Matrix<double, 3, 4> corner_displacement(const Mesh& mesh, Index e,
   return corners;
 }
 
+SmallStrain own_law(const Problem& problem, Index e) {
+  const bool pools = problem.pools() && problem.material(e).volume == MaterialVolume::pooled;
+  return pools ? without_pressure(problem.small_strain(e)) : problem.small_strain(e);
+}
+
 ElementMatrix element_stiffness(const Problem& problem, Index e) {
-  return element_stiffness(problem.shape(e), elasticity(problem.small_strain(e)));
+  return element_stiffness(problem.shape(e), elasticity(own_law(problem, e)));
 }
 
 UpdateFactor update_factor(const Problem& problem, Index e) {
-  return update_factor(problem.shape(e), elasticity(problem.small_strain(e)),
-                       problem.scene().fracture.alpha);
+  return update_factor(problem.shape(e), own_law(problem, e), problem.scene().fracture.alpha);
 }
 
-Voigt stress(const Problem& problem, Index e, std::span<const double> u) {
-  return stress(problem.shape(e), problem.small_strain(e),
-                corner_displacement(problem.mesh(), e, u));
+Voigt stress_by_itself(const Problem& problem, Index e, std::span<const double> u) {
+  return stress(problem.shape(e), own_law(problem, e), corner_displacement(problem.mesh(), e, u));
 }
 
 }  // namespace sunder::fem

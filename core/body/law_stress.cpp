@@ -59,4 +59,10 @@ Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e,
   return shape.volume * (p * shape.gradient).eval();
 }
 
+Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e, const StressField& field,
+                                          double share) {
+  const TetShape& shape = problem.shape(e);
+  return share * shape.volume * (tensor(field.of(e)) * shape.gradient).eval();
+}
+
 }  // namespace sunder::fem

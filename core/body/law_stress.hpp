@@ -4,6 +4,7 @@
 #pragma once
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "material/law.hpp"
 
 namespace sunder::fem {
@@ -24,5 +25,9 @@ namespace sunder::fem {
 /// at all nodes (3 * nodes). Of a destroyed one a share alpha, and none at finite deformation.
 [[nodiscard]] Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e,
                                                         std::span<const double> u, bool destroyed);
+/// The same of an element whose volume may be pooled, in statics by law "linear"; `field` is that
+/// of u, `share` its a_e.
+[[nodiscard]] Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e,
+                                                        const StressField& field, double share);
 
 }  // namespace sunder::fem

@@ -7,6 +7,7 @@
 #include "body/board_check.hpp"
 #include "body/element.hpp"
 #include "body/instrument_name.hpp"
+#include "body/pools.hpp"
 #include "body/selection.hpp"
 #include "body/supports.hpp"
 #include "material/linear.hpp"
@@ -87,6 +88,7 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
     check_options();
     resolve_materials();
     build_shapes();
+    make_pools();
     resolve_elements();
     std::vector<std::uint8_t> held = held_axes();
     select_instrument_nodes();
@@ -216,6 +218,7 @@ Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners
 Problem::Problem(const Problem& whole, std::span<const Index> gripped)
     : scene_(whole.scene_),
       shapes_(whole.shapes_),
+      pools_(whole.pools_),
       dof_(whole.dof_),
       dof_count_(whole.dof_count_),
       gripped_dofs_(gripped.begin(), gripped.end()),
@@ -391,6 +394,61 @@ void Problem::build_shapes() {
     const auto& x = mesh().nodes;
     shapes_.push_back(fem::tet_shape(x[t[0]], x[t[1]], x[t[2]], x[t[3]]));
   }
+}
+
+/// Past it linear tetrahedra lock: figures in docs/limits.md.
+constexpr double kLocks = 0.49;
+
+void Problem::make_pools() {
+  std::vector<std::uint8_t> used(mesh().volumes.size(), 0);
+  for (Index v : mesh().volume_of) used[static_cast<std::size_t>(v)] = 1;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    const Material& material = *material_of_volume_[v];
+    const std::string what = "material " + in_quotes(mesh().volumes[v].name);
+    if (material.volume == MaterialVolume::pooled) {
+      check_pooled(what);
+    } else if (material.poisson > kLocks) {
+      warnings_.push_back(what + " has poisson = " + in_digits(material.poisson) +
+                          " with volume = \"element\": linear tetrahedra lock over 0.49, a thick "
+                          "cylinder is 4 % too stiff at 0.49, 16 % at 0.499 and 24 % at 0.4999, "
+                          "thin layers many times (docs/verification.md)" +
+                          (can_pool() ? "; volume = \"pooled\" does not" : ""));
+    }
+  }
+  pools_ = fem::pools_of(*this);
+  if (pools_ && pools_->small_count() > 0) {
+    warnings_.push_back(count_of(pools_->small_count(), "patch") +
+                        " of pooled volume of fewer than " + std::to_string(fem::Pools::kFewest) +
+                        " elements: pieces of a material that has no more; they are too stiff, as "
+                        "with volume = \"element\" (docs/limits.md)");
+  }
+}
+
+/// Whether anything of the scene speaks against pooled volume.
+bool Problem::can_pool() const {
+  return !finite() && !moves() && !row_of(scene_.fracture.model).grows_cracks;
+}
+
+void Problem::check_pooled(const std::string& what) const {
+  if (can_pool()) return;
+  const std::string asks = what +
+                           " has volume = \"pooled\", which is there for law \"linear\" in "
+                           "statics with model \"none\", \"A\" or \"P\", but ";
+  if (finite()) {
+    throw InputError(InputFault::out_of_range,
+                     asks + "the scene has law " + in_quotes(law()) +
+                         "; take volume = \"element\" or law \"linear\" for all materials");
+  }
+  if (moves()) {
+    throw InputError(InputFault::out_of_range,
+                     asks +
+                         "[dynamics] makes the scene move; take volume = \"element\" or leave "
+                         "[dynamics] out");
+  }
+  throw InputError(InputFault::out_of_range,
+                   asks + "model " + in_quotes(row_of(scene_.fracture.model).name) +
+                       " grows cracks; take volume = \"element\" or model \"A\"");
 }
 
 void Problem::resolve_elements() {

@@ -21,6 +21,7 @@ bool same_stiffness(const Problem& a, const Problem& b) {
   }
   for (Index e = 0; e < a.tet_count(); ++e) {
     if (!same_elasticity(a.small_strain(e), b.small_strain(e))) return false;
+    if (a.material(e).volume != b.material(e).volume) return false;
   }
   return true;
 }

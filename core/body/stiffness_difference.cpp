@@ -3,14 +3,12 @@
 
 #include <cmath>
 
-#include "material/linear.hpp"
-
 namespace sunder::fem {
 namespace {
 
 StiffnessPart part(const Forms& forms, const Form& form, double share) {
-  return {forms.parents(form.corners),
-          update_factor(form.shape, elasticity(form.law), 0) * std::sqrt(share)};
+  return {forms.parents(form.corners), update_factor(form.shape, form.law, 0) * std::sqrt(share),
+          kNone};
 }
 
 }  // namespace
@@ -38,7 +36,8 @@ StiffnessDifference difference(const Forms& before, const Forms& after, Index el
   }
   if (!after.destroyed()[at] || before.destroyed()[at]) return {};
   const Problem& problem = after.problem();
-  return {StiffnessPart{problem.mesh().tets[at], update_factor(problem, element)}, std::nullopt};
+  return {StiffnessPart{problem.mesh().tets[at], update_factor(problem, element), kNone},
+          std::nullopt};
 }
 
 }  // namespace sunder::fem

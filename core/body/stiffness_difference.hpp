@@ -15,6 +15,9 @@ namespace sunder::fem {
 struct StiffnessPart {
   std::array<Index, 4> nodes{};
   UpdateFactor u;
+  /// Where it is a share of a patch's vector (pools.hpp): U's first column is an addend of it, the
+  /// others are 0, and what stands side by side in a list with the same patch adds up.
+  Index patch = kNone;
 };
 struct StiffnessDifference {
   std::optional<StiffnessPart> less, more;

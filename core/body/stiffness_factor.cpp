@@ -4,6 +4,7 @@
 #include <array>
 
 #include "body/assembly.hpp"
+#include "body/pools.hpp"
 #include "linear_algebra/nested_dissection.hpp"
 
 namespace sunder::fem {
@@ -13,7 +14,12 @@ std::vector<Index> elimination_order(const Problem& problem) {
   for (Index n = 0; n < problem.node_count(); ++n) {
     for (int axis = 0; axis < 3; ++axis) unknowns[n][axis] = problem.dof(n, axis);
   }
-  return linear_algebra::nested_dissection({problem.mesh().nodes, unknowns, problem.mesh().tets});
+  if (!problem.pools()) {
+    return linear_algebra::nested_dissection({problem.mesh().nodes, unknowns, problem.mesh().tets});
+  }
+  std::vector<std::array<Index, 4>> groups = problem.mesh().tets;
+  append_couplings(problem, groups);
+  return linear_algebra::nested_dissection({problem.mesh().nodes, unknowns, groups});
 }
 
 linear_algebra::Factor factor_stiffness(const Problem& problem, std::span<const double> scale,

@@ -239,6 +239,8 @@ void add_body(Hash& hash, const Problem& problem) {
       hash.add(v);
     }
     hash.add(static_cast<std::uint8_t>(m.law));
+    // By element as in recordings that are older than the word.
+    if (m.volume != MaterialVolume::element) hash.add(static_cast<std::uint8_t>(m.volume));
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is read of a simulation.
+#include <algorithm>
 #include <numeric>
 
 #include "body/law_stress.hpp"
@@ -74,6 +75,7 @@ Vec3 Simulation::support_reaction() const {
   const auto split = criterion_->corners();
   Vec3 sum = -loads_->force_on_supports();
   if (problem_->moves()) sum += backend_->held_beside();
+  if (problem_->pools()) return sum + pooled_reaction(displacement);
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     const auto& tet = problem_->mesh().tets[e];
     const auto& corners = split.empty() ? tet : split[static_cast<std::size_t>(e)];
@@ -92,6 +94,33 @@ Vec3 Simulation::support_reaction() const {
         }
         known = true;
         sum[axis] += forces(axis, a);
+      }
+    }
+  }
+  return sum;
+}
+
+/// The same where patches have a pressure of all their elements' displacement.
+Vec3 Simulation::pooled_reaction(std::span<const Vec3> displacement) const {
+  std::vector<double> u;
+  u.reserve(3 * displacement.size());
+  for (const Vec3& x : displacement) u.insert(u.end(), x.data(), x.data() + 3);
+  std::vector<double> scale;
+  scale.reserve(problem_->mesh().tets.size());
+  for (std::uint8_t gone : backend_->destroyed()) {
+    scale.push_back(gone ? problem_->scene().fracture.alpha : 1.0);
+  }
+  const fem::StressField field(*problem_, scale, u);
+  Vec3 sum = Vec3::Zero();
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    const auto& tet = problem_->mesh().tets[static_cast<std::size_t>(e)];
+    const auto held = [&](Index n, int axis) { return problem_->dof(n, axis) == kNone; };
+    const auto at_support = [&](Index n) { return held(n, 0) || held(n, 1) || held(n, 2); };
+    if (std::ranges::none_of(tet, at_support)) continue;
+    const auto forces = fem::corner_forces(*problem_, e, field, scale[static_cast<std::size_t>(e)]);
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (held(tet[a], axis)) sum[axis] += forces(axis, static_cast<Eigen::Index>(a));
       }
     }
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/linear.hpp"
 
+#include <Eigen/Cholesky>
+#include <cmath>
+
 #include "sunder/stress_measures.hpp"
 
 namespace sunder {
@@ -48,6 +51,22 @@ Matrix6 elasticity(const SmallStrain& law) {
   d.diagonal().head<3>().array() += 2 * law.mu;
   d.diagonal().tail<3>().setConstant(law.mu);
   return d;
+}
+
+SmallStrain without_pressure(const SmallStrain& law) {
+  SmallStrain deviatoric = law;
+  deviatoric.lambda = -law.double_shear / 3;
+  deviatoric.triple_bulk = 0;
+  return deviatoric;
+}
+
+Matrix6 elasticity_factor(const SmallStrain& law) {
+  if (law.triple_bulk != 0 || !(law.lambda < 0)) return elasticity(law).llt().matrixL();
+  Matrix6 l = Matrix6::Zero();
+  l.col(0).head<3>() = std::sqrt(law.mu) * Vec3(1, -1, 0);
+  l.col(1).head<3>() = std::sqrt(law.mu / 3) * Vec3(1, 1, -2);
+  l.diagonal().tail<3>().setConstant(std::sqrt(law.mu));
+  return l;
 }
 
 }  // namespace sunder

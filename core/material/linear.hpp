@@ -18,6 +18,12 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// D of stress = D strain, Voigt order (xx, yy, zz, xy, yz, zx), engineering shear [MPa].
 [[nodiscard]] Matrix6 elasticity(const SmallStrain& law);
 
+/// The same law without its resistance to a change of volume: its stress has no mean.
+[[nodiscard]] SmallStrain without_pressure(const SmallStrain& law);
+
+/// L with L L^T = D. Without pressure D has rank 5, and L's third column is 0.
+[[nodiscard]] Matrix6 elasticity_factor(const SmallStrain& law);
+
 /// Stress of a displacement gradient H_ij = du_i/dx_j [MPa]. Inline: criteria ask for it element by
 /// element.
 [[nodiscard]] inline Voigt stress(const SmallStrain& law, const Mat3& h) {

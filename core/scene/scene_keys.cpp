@@ -293,6 +293,15 @@ std::span<const MemberKey<Material>> material_keys() {
                              "G_c [N/mm] in place of `toughness`, 1000 J/m^2 each: K_c = "
                              "sqrt(G_c E')",
                              "as `toughness`"),
+      row<&Material::volume>(
+          "material", "volume",
+          "\"element\": each changes its volume by itself; \"pooled\": some 8 as one, so that "
+          "nearly "
+          "incompressible tissue does not lock (method.md \"Pooled volume\")",
+          "\"element\" with `poisson` over 0.49: warning; \"pooled\" with another law, in motion "
+          "or "
+          "with a model that grows cracks: error; with a backend or route that cannot: exit code 4",
+          {.words = {"element", "pooled"}}),
   };
   return keys;
 }

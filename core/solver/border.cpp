@@ -110,8 +110,7 @@ void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis
                  std::span<const Index> of_basis, Index from) {
   const std::array<Index, 12> columns = own(forms, form.corners);
   if (*std::ranges::max_element(columns) < from) return;
-  const fem::UpdateFactor w =
-      fem::update_factor(form.shape, elasticity(form.law), 0) * std::sqrt(form.share);
+  const fem::UpdateFactor w = fem::update_factor(form.shape, form.law, 0) * std::sqrt(form.share);
   basis.coordinates(forms.parents(form.corners), w, rows_, y_);
   for (int j = 0; j < 12; ++j) {
     const Index column = columns[static_cast<std::size_t>(j)];

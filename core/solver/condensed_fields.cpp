@@ -74,7 +74,7 @@ std::span<const Voigt> CondensedFields::stress() {
   const auto scale = published ? published->scale() : body_.scale();
   stress_.resize(scale.size());
   for (Index e = 0; e < problem_.tet_count(); ++e) {
-    stress_[e] = scale[e] * fem::stress(problem_, e, of_stress_.nodal);
+    stress_[e] = scale[e] * fem::stress_by_itself(problem_, e, of_stress_.nodal);
   }
   stress_known_ = true;
   return stress_;

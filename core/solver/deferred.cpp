@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "solver/update_vectors.hpp"
 #include "sunder/error.hpp"
 
@@ -214,6 +215,7 @@ void Deferred::push(const fem::Event& event) {
     if (c.element < forms_.element_count()) connect(glued(c.element));
     connect(forms_.parents(c.form.corners));
   }
+  if (problem_.pools()) connect_patches(event);
   const auto differences = basis_.differences().subspan(had.differences);
   for (std::size_t i = 0; i < differences.size(); ++i) {
     column_.push_back(count_ + static_cast<Index>(i));
@@ -223,6 +225,17 @@ void Deferred::push(const fem::Event& event) {
   push_units(event.grasp);
   had.pushed = count_ > before;
   before_.push_back(had);
+}
+
+/// A patch of pooled volume has one pressure: what changes one of its elements changes what it
+/// exerts on all of their nodes.
+void Deferred::connect_patches(const fem::Event& event) {
+  pooled_.assign(event.leave.begin(), event.leave.end());
+  for (const fem::Coming& c : event.come) pooled_.push_back(c.element);
+  problem_.pools()->of(pooled_, patches_);
+  for (Index patch : patches_) {
+    for (Index e : problem_.pools()->elements(patch)) connect(glued(e));
+  }
 }
 
 /// Unit vectors of unknowns that have none yet.
@@ -264,6 +277,10 @@ void Deferred::prepare(std::span<const Index> elements) {
   wanted_.reserve(kPredicted);
   for (Index e : elements) {
     basis_.add(e);
+    const Index patch = problem_.pools() ? problem_.pools()->of(e) : kNone;
+    if (patch != kNone) {
+      for (Index other : problem_.pools()->elements(patch)) basis_.add(other);
+    }
     const auto added = basis_.differences().subspan(before);
     wanted_.insert(wanted_.end(), added.begin(), added.end());
     basis_.shrink(before);
@@ -346,7 +363,7 @@ bool Deferred::replay() {
 /// The event's update vectors: where they act in B, and U, padded to full vectors.
 void Deferred::gather(std::span<const Part> parts) {
   rank_ = 6;
-  if (parts.size() == 1) {
+  if (parts.size() == 1 && parts[0].patch == kNone) {
     basis_.coordinates(parts[0].nodes, parts[0].u, rows_, u_);
   } else {
     gather_event(parts);
@@ -372,14 +389,24 @@ void Deferred::gather_event(std::span<const Part> all) {
   std::sort(rows_.begin(), rows_.end());
   rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
   const auto height = static_cast<Eigen::Index>(rows_.size());
-  rank_ = 6 * static_cast<Eigen::Index>(all.size());
+  // Six columns an element, one for what patches add up to.
+  const auto begins_column = [&](std::size_t p) {
+    return all[p].patch == kNone || p == 0 || all[p].patch != all[p - 1].patch;
+  };
+  rank_ = 0;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    if (begins_column(p)) rank_ += all[p].patch == kNone ? 6 : 1;
+  }
   parts.w.assign(static_cast<std::size_t>(height * rank_), 0.0);
+  Eigen::Map<Eigen::MatrixXd> w(parts.w.data(), height, rank_);
+  Eigen::Index column = 0, width = 0;
   for (std::size_t p = 0, i = 0; p < parts.ends.size(); ++p) {
-    Eigen::Map<Eigen::MatrixXd> w(parts.w.data(), height, rank_);
+    if (begins_column(p)) column += width;
+    width = all[p].patch == kNone ? 6 : 1;
     for (; i < parts.ends[p]; ++i) {
       const auto row = std::lower_bound(rows_.begin(), rows_.end(), parts.rows[i]);
-      w.block<1, 6>(row - rows_.begin(), 6 * static_cast<Eigen::Index>(p)) =
-          Eigen::Map<const Eigen::Matrix<double, 1, 6>>(&parts.values[6 * i]);
+      w.block(row - rows_.begin(), column, 1, width) +=
+          Eigen::Map<const Eigen::Matrix<double, 1, 6>>(&parts.values[6 * i]).leftCols(width);
     }
   }
   if (rank_ > height) rank_ = compress(height, rank_, parts.w, parts.compress);

@@ -137,6 +137,7 @@ class Deferred {
   void reserve(Index columns);
   [[nodiscard]] bool follow_last();
   void push(const fem::Event& event);
+  void connect_patches(const fem::Event& event);
   void push(std::span<const Difference> vectors);
   void push_units(std::span<const Index> dofs);
   [[nodiscard]] std::array<Index, 4> glued(Index element) const;
@@ -145,6 +146,7 @@ class Deferred {
   [[nodiscard]] bool apply(const fem::Event& event);
   void collect(const fem::Event& event);
   void collect(const fem::StiffnessDifference& between);
+  void collect_pressure(const fem::Event& event);
   [[nodiscard]] bool update(std::span<const Part> parts, bool more);
   void gather(std::span<const Part> parts);
   void gather_event(std::span<const Part> parts);
@@ -152,6 +154,7 @@ class Deferred {
   [[nodiscard]] bool update_both();
   void collect_all();
   void sum_up_d();
+  void sum_up_d(std::span<const Part> parts, bool more);
   [[nodiscard]] bool follow_border(const fem::Event& event, Eigen::Index columns);
   [[nodiscard]] Forces on_body(const Forces& forces);
   void start(const Eigen::VectorXd& p, std::span<const double> displacement);
@@ -200,6 +203,8 @@ class Deferred {
   // The event in work: what it takes and what it adds, its update vectors and where they act, and
   // what comes of them.
   std::vector<Part> less_, more_;
+  std::vector<Index> patches_;  // of pooled volume that it touches, and the elements that do
+  std::vector<Index> pooled_;
   std::vector<Index> rows_;
   Eigen::Index rank_ = 0;
   struct EventRoom {                // of an event with several elements

@@ -6,6 +6,7 @@
 
 #include "body/element.hpp"
 #include "body/held_together.hpp"
+#include "body/pools.hpp"
 #include "solver/deferred.hpp"
 #include "sunder/error.hpp"
 
@@ -48,8 +49,8 @@ void Deferred::collect(const fem::Event& event) {
     const auto comes = [e](const fem::Coming& c) { return c.element == e; };
     if (std::ranges::any_of(event.come, comes)) continue;  // below
     if (!forms_.came().contains(e)) {
-      less_.push_back(
-          {problem_.mesh().tets[static_cast<std::size_t>(e)], fem::update_factor(problem_, e)});
+      less_.push_back({problem_.mesh().tets[static_cast<std::size_t>(e)],
+                       fem::update_factor(problem_, e), kNone});
       continue;
     }
     fem::Form gone = forms_.of(e);
@@ -61,6 +62,26 @@ void Deferred::collect(const fem::Event& event) {
     before.share = 0;
     if (c.element < forms_.element_count()) before = forms_.of(c.element);
     collect(fem::difference(forms_, before, c.form));
+  }
+  if (problem_.pools()) collect_pressure(event);
+}
+
+/// Of the patches whose elements an event changes: what they exerted, which goes, and what they
+/// exert after it, which comes. So the stiffness of what stays may grow where elements leave.
+void Deferred::collect_pressure(const fem::Event& event) {
+  pooled_.assign(event.leave.begin(), event.leave.end());
+  for (const fem::Coming& c : event.come) pooled_.push_back(c.element);
+  problem_.pools()->of(pooled_, patches_);
+  const double alpha = problem_.scene().fracture.alpha;
+  const auto before = [this](Index e) { return forms_.share(e); };
+  const auto after = [&](Index e) {
+    const auto came = std::ranges::find(event.come, e, &fem::Coming::element);
+    if (came != event.come.end()) return came->form.share;
+    return std::ranges::find(event.leave, e) != event.leave.end() ? alpha : forms_.share(e);
+  };
+  for (Index patch : patches_) {
+    fem::append_pressure(problem_, patch, before, less_);
+    fem::append_pressure(problem_, patch, after, more_);
   }
 }
 
@@ -100,19 +121,31 @@ void Deferred::collect_all() {
   for (const auto& [element, form] : forms_.came()) {
     collect(fem::difference(in_base_, forms_, element));
   }
+  const fem::Pools* pools = problem_.pools();
+  for (Index patch = 0; pools && patch < pools->count(); ++patch) {
+    const auto differs = [this](Index e) { return in_base_.share(e) != forms_.share(e); };
+    if (!std::ranges::any_of(pools->elements(patch), differs)) continue;
+    fem::append_pressure(
+        problem_, patch, [this](Index e) { return in_base_.share(e); }, less_);
+    fem::append_pressure(
+        problem_, patch, [this](Index e) { return forms_.share(e); }, more_);
+  }
 }
 
 /// D element by element: what has come back leaves no rounding of its own stiffness in that of its
 /// neighbours.
 void Deferred::sum_up_d() {
   d_.topLeftCorner(count(), count()).setZero();
-  for (const Part& part : more_) {
-    gather({&part, 1});
-    if (!rows_.empty()) add_to_d(true);
-  }
-  for (const Part& part : less_) {
-    gather({&part, 1});
-    if (!rows_.empty()) add_to_d(false);
+  sum_up_d(more_, true);
+  sum_up_d(less_, false);
+}
+
+void Deferred::sum_up_d(std::span<const Part> parts, bool more) {
+  for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
+    const Index patch = parts[begin].patch;
+    for (end = begin + 1; end < parts.size() && patch != kNone && parts[end].patch == patch;) ++end;
+    gather(parts.subspan(begin, end - begin));
+    if (!rows_.empty()) add_to_d(more);
   }
 }
 

@@ -41,6 +41,11 @@ std::string asked_for(const std::string& detail = {}) {
 // condensed: the inverse of a region, always on the host.
 
 std::string against_condensed(const Question& q) {
+  if (q.problem.pools()) {
+    return "route condensed does not compute pooled volume (volume = \"pooled\"); use route "
+           "factor, "
+           "inverse or cg";
+  }
   if (q.needs.split) {
     return "route condensed has no room for the unknowns which split nodes bring; use route "
            "inverse "

@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
+#include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -71,11 +73,21 @@ StressKernel::StressKernel(std::shared_ptr<const Problem> problem, std::vector<I
     place_[e] = static_cast<Index>(i);
     b.element[l] = e;
     for (int g = 0; g < 9; ++g) b.gradient[g][l] = problem_->shape(e).gradient(g % 3, g / 3 + 1);
-    b.mu[l] = problem_->small_strain(e).mu;
-    b.lambda[l] = problem_->small_strain(e).lambda;
+    const SmallStrain law = fem::own_law(*problem_, e);
+    b.mu[l] = law.mu;
+    b.lambda[l] = law.lambda;
     b.volume[l] = problem_->shape(e).volume;
     bring(b, l, e);
     for (int a = 0; a < 4; ++a) b.corner[a][l] = 3 * problem_->mesh().tets[e][a];
+  }
+  if (problem_->pools()) {
+    if (size_ != all) throw UsageError("pooled volume needs the stress of all elements");
+    pooled_.assign(blocks_.size() * kLanes, 0.0);
+    pooled_volume_ = pooled_;
+    for (Index e = 0; e < problem_->tet_count(); ++e) {
+      if (problem_->pools()->of(e) == kNone) continue;
+      pooled_volume_[static_cast<std::size_t>(e)] = problem_->shape(e).volume;
+    }
   }
   workers_ = std::make_unique<Workers>(threads > 0 ? threads : threads_for(elements.size()));
   partials_.resize(static_cast<std::size_t>(workers_->count()));
@@ -168,7 +180,7 @@ inline void bound_principal(const double (&s)[6][StressKernel::kLanes],
 
 }  // namespace
 
-template <bool kMeasured>
+template <bool kMeasured, bool kPooled>
 SUNDER_FORCE_INLINE void StressKernel::run_all(const Block* blocks, std::size_t count,
                                                const double* u, Stores to, Partial& partial) {
   double largest[kLanes] = {}, check[kLanes] = {};
@@ -189,7 +201,8 @@ SUNDER_FORCE_INLINE void StressKernel::run_all(const Block* blocks, std::size_t 
         }
       }
       const double mu = b.mu[l], two_mu = 2 * mu, scale = b.scale[l];
-      const double pressure = b.lambda[l] * (h[0][0] + (h[1][1] + h[2][2]));
+      double pressure = b.lambda[l] * (h[0][0] + (h[1][1] + h[2][2]));
+      if constexpr (kPooled) pressure += to.pressures[k * kLanes + static_cast<std::size_t>(l)];
       const double xx = pressure + two_mu * h[0][0], yy = pressure + two_mu * h[1][1],
                    zz = pressure + two_mu * h[2][2], xy = mu * (h[0][1] + h[1][0]),
                    yz = mu * (h[1][2] + h[2][1]), zx = mu * (h[2][0] + h[0][2]);
@@ -260,13 +273,64 @@ SUNDER_FORCE_INLINE void StressKernel::run_all(const Block* blocks, std::size_t 
 SUNDER_VECTORISED
 void StressKernel::run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                               Partial& partial) {
-  run_all<false>(blocks, count, u, to, partial);
+  run_all<false, false>(blocks, count, u, to, partial);
 }
 
 SUNDER_VECTORISED
 void StressKernel::run_and_bound(const Block* blocks, std::size_t count, const double* u, Stores to,
                                  Partial& partial) {
-  run_all<true>(blocks, count, u, to, partial);
+  run_all<true, false>(blocks, count, u, to, partial);
+}
+
+SUNDER_VECTORISED
+void StressKernel::run_pooled(const Block* blocks, std::size_t count, const double* u, Stores to,
+                              Partial& partial) {
+  run_all<false, true>(blocks, count, u, to, partial);
+}
+
+SUNDER_VECTORISED
+void StressKernel::run_pooled_and_bound(const Block* blocks, std::size_t count, const double* u,
+                                        Stores to, Partial& partial) {
+  run_all<true, true>(blocks, count, u, to, partial);
+}
+
+/// Two passes over all elements: what each adds to its patch's volume, and each patch's pressure,
+/// summed in the order of its elements: the same bits for any number of threads.
+void StressKernel::find_pressures(std::span<const double> u) {
+  const fem::Pools& pools = *problem_->pools();
+  workers_->run([&](int worker) {
+    const auto w = static_cast<std::size_t>(worker), all = partials_.size();
+    for (std::size_t k = blocks_.size() * w / all; k < blocks_.size() * (w + 1) / all; ++k) {
+      const Block& b = blocks_[k];
+      double d[9][kLanes];
+      b.differences(u.data(), d);
+      for (int l = 0; l < kLanes; ++l) {
+        double trace = 0;
+        for (int c = 0; c < 3; ++c) {
+          for (int axis = 0; axis < 3; ++axis) {
+            trace += d[3 * c + axis][l] * b.gradient[3 * c + axis][l];
+          }
+        }
+        const std::size_t at = k * kLanes + static_cast<std::size_t>(l);
+        pooled_[at] = b.scale[l] * pooled_volume_[at] * trace;
+      }
+    }
+  });
+  workers_->run([&](int worker) {
+    const auto w = static_cast<Index>(worker), all = static_cast<Index>(partials_.size());
+    const Index count = pools.count();
+    for (Index p = count * w / all; p < count * (w + 1) / all; ++p) {
+      double change = 0, volume = 0;
+      for (Index e : pools.elements(p)) {
+        const auto at = static_cast<std::size_t>(e);
+        const Block& b = blocks_[at / kLanes];
+        change += pooled_[at];
+        volume += b.scale[at % kLanes] * pooled_volume_[at];
+      }
+      const double pressure = pools.bulk(p) * change / volume;
+      for (Index e : pools.elements(p)) pooled_[static_cast<std::size_t>(e)] = pressure;
+    }
+  });
 }
 
 double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
@@ -279,6 +343,10 @@ double StressKernel::run(std::span<const double> u, std::span<Voigt> stress) {
 double StressKernel::largest(std::span<const double> u) { return run_storing(u, Stores{}); }
 
 double StressKernel::run_storing(std::span<const double> u, Stores to) {
+  if (!pooled_.empty()) {
+    find_pressures(u);
+    to.pressures = pooled_.data();
+  }
   workers_->run([&](int worker) {
     const auto w = static_cast<std::size_t>(worker), all = partials_.size();
     const std::size_t groups = (blocks_.size() + kGroup - 1) / kGroup;
@@ -290,7 +358,10 @@ double StressKernel::run_storing(std::span<const double> u, Stores to) {
     if (part.forces) part.forces += begin * kForces;
     partials_[w] = {};
     if (part.stress) part.stress += begin * kLanes;
-    const auto run = part.groups ? &run_and_bound : &run_blocks;
+    if (part.pressures) part.pressures += begin * kLanes;
+    const auto run = part.pressures ? (part.groups ? &run_pooled_and_bound : &run_pooled)
+                     : part.groups  ? &run_and_bound
+                                    : &run_blocks;
     run(blocks_.data() + begin, end - begin, u.data(), part, partials_[w]);
   });
   Partial sum;
@@ -399,7 +470,7 @@ StressSummary StressKernel::summarize(std::span<const std::uint8_t> excluded,
 }
 
 std::size_t StressKernel::bytes() const {
-  return blocks_.size() * sizeof(Block) + bounds_.size() * sizeof(double) +
+  return blocks_.size() * sizeof(Block) + (bounds_.size() + 2 * pooled_.size()) * sizeof(double) +
          (place_.size() + at_node_.size()) * sizeof(Index) + forces_.size() * sizeof(double) +
          groups_.size() * sizeof(GroupBounds) + cut_off_.size() +
          node_begin_.size() * sizeof(std::size_t);

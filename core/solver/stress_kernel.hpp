@@ -111,14 +111,20 @@ class StressKernel {
     double* bounds = nullptr;
     double* forces = nullptr;
     GroupBounds* groups = nullptr;
-    bool principal = false;  // the bounds are of the largest principal stress
+    bool principal = false;             // the bounds are of the largest principal stress
+    const double* pressures = nullptr;  // read: of pooled volume, at each place
   };
   void bring(Block& block, std::size_t lane, Index element) const;
   static void run_blocks(const Block* blocks, std::size_t count, const double* u, Stores to,
                          Partial& partial);
   static void run_and_bound(const Block* blocks, std::size_t count, const double* u, Stores to,
                             Partial& partial);
-  template <bool kMeasured>
+  static void run_pooled(const Block* blocks, std::size_t count, const double* u, Stores to,
+                         Partial& partial);
+  static void run_pooled_and_bound(const Block* blocks, std::size_t count, const double* u,
+                                   Stores to, Partial& partial);
+  void find_pressures(std::span<const double> u);
+  template <bool kMeasured, bool kPooled>
   static void run_all(const Block* blocks, std::size_t count, const double* u, Stores to,
                       Partial& partial);
   [[nodiscard]] double run_storing(std::span<const double> u, Stores to);
@@ -164,6 +170,8 @@ class StressKernel {
   std::vector<Index> at_node_;
   std::vector<Index> changed_;  // elements with corners at new nodes, ascending
   std::vector<Partial> partials_;
+  // Of pooled volume, none without: a_e V_e tr eps at each place, then the pressure there.
+  std::vector<double> pooled_, pooled_volume_;  // V_e there, 0 of others
   std::unique_ptr<Workers> workers_;
 };
 

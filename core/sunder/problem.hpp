@@ -19,7 +19,8 @@ struct FractureModelRow;
 
 namespace fem {
 struct Bodies;
-}
+class Pools;
+}  // namespace fem
 
 /// Constant-strain tetrahedron: gradients of the four shape functions [1/mm] and volume [mm^3].
 struct TetShape {
@@ -78,6 +79,8 @@ class Problem {
   [[nodiscard]] const SmallStrain& small_strain(Index e) const {
     return small_strain_of_volume_[mesh().volume_of[e]];
   }
+  /// Patches of the elements that pool their volume (body/pools.hpp); null where none does.
+  [[nodiscard]] const fem::Pools* pools() const { return pools_.get(); }
   /// Whether a law of its elements is one of finite deformation.
   [[nodiscard]] bool finite() const { return finite_; }
   /// Whether its steps are steps of time.
@@ -129,6 +132,9 @@ class Problem {
  private:
   void resolve_materials();
   void build_shapes();
+  void make_pools();
+  [[nodiscard]] bool can_pool() const;
+  void check_pooled(const std::string& what) const;
   [[nodiscard]] std::vector<std::uint8_t> held_axes() const;
   void select_instrument_nodes();
   void leave_out_what_nothing_holds(const fem::Bodies& bodies, std::vector<std::uint8_t>& held);
@@ -151,6 +157,7 @@ class Problem {
   std::vector<TetShape> shapes_;
   std::vector<const Material*> material_of_volume_;
   std::vector<SmallStrain> small_strain_of_volume_;
+  std::shared_ptr<const fem::Pools> pools_;
   bool finite_ = false;
   bool reads_toughness_ = false;  // the fracture model grows cracks
   std::vector<Index> dof_;

@@ -17,6 +17,10 @@ namespace sunder {
 /// "Finite deformation"). A body whose materials are not all linear is computed by the latter.
 enum class MaterialLaw { linear, corotated, neo_hookean, saint_venant_kirchhoff };
 
+/// Whether an element has its change of volume to itself or shares it with some others of its
+/// material, so that nearly incompressible tissue does not lock (method.md "Pooled volume").
+enum class MaterialVolume { element, pooled };
+
 /// Isotropic elasticity; without yield nothing ruptures in it, without yield and toughness it is
 /// unbreakable (method.md "Elasticity").
 struct Material {
@@ -29,6 +33,7 @@ struct Material {
   /// What lets a crack of model "B" grow in it (method.md "Toughness"): K_c [MPa sqrt(mm)] or G_c
   /// [N/mm], finite and > 0, at most one of them; none: Eq. 1's reach, by yield.
   std::optional<double> toughness = {}, energy = {};
+  MaterialVolume volume = MaterialVolume::element;
   [[nodiscard]] bool tough() const { return toughness || energy; }
 };
 

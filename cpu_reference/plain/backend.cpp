@@ -25,9 +25,7 @@ class PlainBackend final : public Backend {
         excluded_(problem->mesh().tets.size(), 0),
         cut_off_(excluded_) {}
 
-  BackendInfo info() const override {
-    return {"plain", "", "", "fp64", "LDL^T", "anew", "it judges the other routes"};
-  }
+  BackendInfo info() const override { return {"plain", "", "", "fp64", "LDL^T", "anew", "judge"}; }
   std::vector<BufferPlan> buffers() const override { return {}; }
   std::vector<KernelPlan> kernels() const override { return {}; }
 
@@ -105,6 +103,7 @@ class PlainBackend final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs) {
+  if (problem->pools()) throw DeviceError("the yardstick does not pool volume; use backend cpu");
   return std::make_unique<PlainBackend>(std::move(problem), std::move(needs));
 }
 

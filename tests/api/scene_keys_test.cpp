@@ -129,6 +129,21 @@ TEST(SceneKeys, LawsHaveTheirWordsInC) {
   EXPECT_EQ(sunder_scene_add_material(scene.get(), &material, nullptr), SUNDER_ERROR_VALUE);
 }
 
+TEST(SceneKeys, VolumesHaveTheirWordsInC) {
+  const auto& volumes = key_words("material", "volume");
+  EXPECT_EQ(volumes.at(SUNDER_VOLUME_ELEMENT), "element");
+  EXPECT_EQ(volumes.at(SUNDER_VOLUME_POOLED), "pooled");
+  const CScene scene;
+  sunder_material material = SUNDER_MATERIAL_INIT;
+  material.young = 5;
+  material.volume = SUNDER_VOLUME_POOLED;
+  EXPECT_EQ(sunder_scene_add_material(scene.get(), &material, nullptr), SUNDER_OK);
+  material.volume = static_cast<int32_t>(volumes.size());
+  EXPECT_EQ(sunder_scene_add_material(scene.get(), &material, nullptr), SUNDER_ERROR_VALUE);
+  material.struct_size = offsetof(sunder_material, volume);  // of a caller before it came
+  EXPECT_EQ(sunder_scene_add_material(scene.get(), &material, nullptr), SUNDER_OK);
+}
+
 TEST(SceneKeys, HaveTheirWordsInC) {
   expect_words(fracture_keys(), fracture_members(), sunder_fracture_options_init,
                sunder_scene_set_fracture);

@@ -46,6 +46,19 @@ Scene small_scene() {
   return scene;
 }
 
+TEST(VulkanPooled, PooledVolumeIsRefusedAndAutoTakesTheCpu) {
+  Scene scene = small_scene();
+  scene.materials["board"].volume = MaterialVolume::pooled;
+  scene.solver.backend = "vulkan";
+  const auto problem = std::make_shared<const Problem>(scene);
+  EXPECT_EQ(message_of([&] { static_cast<void>(create_backend(problem, all_needs())); }),
+            "backend vulkan does not compute pooled volume (volume = \"pooled\"); use backend cpu");
+  scene.solver.backend = "auto";
+  const auto created = create_backend(std::make_shared<const Problem>(scene), all_needs());
+  EXPECT_EQ(created.backend->info().backend, "cpu");
+  EXPECT_TRUE(created.warnings.empty());
+}
+
 // Run by the test below in a process without drivers.
 TEST(VulkanWithoutDriver, DISABLED_AutoTakesTheCpuAndVulkanSaysWhy) {
   EXPECT_TRUE(gpu::devices().empty());

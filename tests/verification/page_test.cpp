@@ -9,6 +9,7 @@
 
 #include "core/field_sif/published.hpp"
 #include "verification/engine_cases.hpp"
+#include "verification/pooled_cases.hpp"
 #ifdef SUNDER_GMSH
 #include "verification/first_growth.hpp"
 #endif
@@ -29,6 +30,18 @@ void expect_cell(const std::string& section, const std::vector<std::string>& key
       << section << ", row " << key.front() << ", column " << column << ": the page has "
       << committed << ", the run " << ours << "; write it anew with: verification "
       << "docs/verification.md";
+}
+
+TEST(PooledVolume, IsThatOfThePage) {
+  const LameErrors errors = lame_errors(MaterialVolume::pooled, 0.4999, 12);
+  expect_cell("Thick cylinder, pooled volume", {"0.4999"}, "pooled: displacement",
+              text("%+.2f %%", 100 * errors.u));
+  expect_cell("Thick cylinder, pooled volume", {"0.4999"}, "pooled: stress",
+              text("%.2f %%", 100 * errors.tresca));
+  expect_cell("Cook's membrane, pooled volume", {"32 x 32"}, "pooled [mm]",
+              text("%.3f", incompressible_cook(MaterialVolume::pooled, 32)));
+  expect_cell("Bonded block, pooled volume", {"1536"}, "pooled [N]",
+              text("%.2f", bonded_block_force(MaterialVolume::pooled, 8)));
 }
 
 class Strips : public ::testing::TestWithParam<Notch> {

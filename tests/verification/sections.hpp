@@ -11,6 +11,7 @@ namespace sunder::test {
 void write_patch(std::ostream& out);
 void write_cantilever(std::ostream& out);
 void write_cook(std::ostream& out);
+void write_pooled(std::ostream& out);
 void write_calculix(std::ostream& out);
 
 void write_strips(std::ostream& out, Notch notch);

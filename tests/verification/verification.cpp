@@ -24,6 +24,7 @@ void write(std::ostream& out) {
   write_patch(out);
   write_cantilever(out);
   write_cook(out);
+  write_pooled(out);
   write_calculix(out);
   write_strips(out, Notch::edge);
   write_strips(out, Notch::centre);

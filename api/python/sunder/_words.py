@@ -7,7 +7,8 @@ from .errors import InputError
 KEYS = {
     "": ("title", "mesh", "inputs", "recording", "material", "fixed", "instrument", "crack",
          "destroy", "fracture", "solver", "time", "output", "load", "dynamics"),
-    "material": ("young", "poisson", "yield", "law", "density", "toughness", "energy", "preset"),
+    "material": ("young", "poisson", "yield", "law", "density", "toughness", "energy", "volume",
+                 "preset"),
     "fixed": ("axes", "box", "nodes", "near", "radius", "surface"),
     "instrument": ("name", "kind", "force", "displacement", "axes", "rigid", "turn", "ramp", "at",
                    "side", "crack", "box", "nodes", "near", "radius", "surface"),
@@ -23,6 +24,7 @@ KEYS = {
 }
 FLAGS = {("fracture", "contact")}  # members of C that are 0 or 1
 WORDS = {
+    ("material", "volume"): ("element", "pooled"),
     ("material", "law"): ("linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"),
     ("instrument", "kind"): ("expansion", "pressure"),
     ("instrument", "side"): ("upper", "lower"),

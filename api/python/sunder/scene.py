@@ -141,7 +141,7 @@ class Scene(Handled):
 
         young [MPa], poisson, yield_stress [MPa] (left out: unbreakable; `yield` by **{"yield": 2}),
         law ("linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"), density [t/mm^3],
-        toughness [MPa sqrt(mm)] or energy [N/mm]; preset: a tissue of presets(), which they override.
+        toughness [MPa sqrt(mm)] or energy [N/mm], volume ("element", "pooled"); preset: a tissue of presets(), which they override.
         """
         m = _c.options("sunder_material")
         what = f"material {name!r}"
@@ -153,8 +153,8 @@ class Scene(Handled):
         if given.get("toughness") is not None or given.get("energy") is not None:
             m.toughness = m.energy = 0  # in the preset's place
         for key, value in given.items():
-            if key == "law":
-                m.law = _words.place("material", "law", value)
+            if key in ("law", "volume"):
+                setattr(m, key, _words.place("material", key, value))
             elif key in ("young", "poisson", "yield", "density", "toughness", "energy"):
                 if value is not None:
                     setattr(m, key, _number(value, f"{key} of {what}"))

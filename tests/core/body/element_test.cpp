@@ -85,7 +85,7 @@ TEST(Element, StiffnessAgreesWithIndependentDerivation) {
 TEST(Element, UpdateFactorSquaresToTheDestroyedShare) {
   const Matrix6 d = elasticity(small_strain({8, 0.4, std::nullopt}));
   const double alpha = 1e-6;
-  const UpdateFactor u = update_factor(hand_tet(), d, alpha);
+  const UpdateFactor u = update_factor(hand_tet(), small_strain({8, 0.4, std::nullopt}), alpha);
   const ElementMatrix expected = (1 - alpha) * element_stiffness(hand_tet(), d);
   EXPECT_LE((u * u.transpose() - expected).norm(), 1e-14 * expected.norm());
 }

@@ -10,6 +10,7 @@
 
 #include "body/assembly.hpp"
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 #include "support/accuracy.hpp"
@@ -52,6 +53,40 @@ TEST(StressKernel, EqualsThePlainStressBitByBitForAnyNumberOfThreads) {
       if (field.live[e]) expected = std::max(expected, test::tensor_norm(field.plain(e)));
     }
     EXPECT_NEAR(largest, expected, 4e-16 * expected) << threads << " threads";
+  }
+}
+
+TEST(StressKernel, PooledVolumeHasThePressureOfItsPatchForAnyNumberOfThreads) {
+  Scene scene = test::pulled_board();
+  scene.materials["upper"].volume = MaterialVolume::pooled;  // the lower half is by element
+  test::set_poisson(scene, 0.499);
+  Field field;
+  field.problem = std::make_shared<Problem>(std::move(scene));
+  std::vector<double> scale(field.live.size(), 1.0);
+  for (Index e : field.destroyed) scale[static_cast<std::size_t>(e)] = 1e-6;
+  const fem::StressField right(*field.problem, scale, field.u);
+  std::vector<Voigt> first;
+  for (int threads : {1, 2, 4, 7}) {
+    StressKernel kernel(field.problem, {}, threads);
+    kernel.keep_forces();
+    kernel.destroy(field.destroyed);
+    std::vector<Voigt> stress(field.live.size());
+    const double largest = kernel.run(field.u, stress);
+    for (Index e = 0; e < field.problem->tet_count(); ++e) {
+      const auto at = static_cast<std::size_t>(e);
+      ASSERT_LE((stress[at] - scale[at] * right.of(e)).norm(), 1e-12 * largest) << e;
+    }
+    if (first.empty()) first = stress;
+    EXPECT_EQ(stress, first) << threads << " threads";
+    std::vector<double> forces(field.u.size()), expected(field.u.size());
+    kernel.nodal_forces(forces);
+    fem::apply_stiffness(*field.problem, scale, field.u, expected);
+    double most = 0, off = 0;
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      most = std::max(most, std::abs(expected[i]));
+      off = std::max(off, std::abs(forces[i] - expected[i]));
+    }
+    EXPECT_LE(off, 1e-13 * most);
   }
 }
 

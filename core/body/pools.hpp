@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pooled volume (method.md "Pooled volume"): patches of elements of one material that change their
+// volume as one. Each element keeps its deviator, the patch has one pressure; so linear tetrahedra
+// do not lock where tissue is nearly incompressible. Patches are made once, of the intact mesh.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "body/stiffness_difference.hpp"
+#include "linear_algebra/sparse_matrix.hpp"
+#include "sunder/problem.hpp"
+
+namespace sunder::fem {
+
+class Pools {
+ public:
+  /// Elements of a patch where there are enough; none is left with fewer than `kFewest` that has
+  /// neighbours to join, and those that join make it larger.
+  static constexpr std::size_t kSize = 8, kFewest = 4;
+
+  /// Of the elements whose material pools its volume: joined by faces, of one volume of the mesh,
+  /// the same for the same mesh on any machine but for the last digits of its coordinates.
+  explicit Pools(const Problem& problem);
+
+  [[nodiscard]] Index count() const { return static_cast<Index>(bulk_.size()); }
+  /// Patch of an element; kNone: its material does not pool.
+  [[nodiscard]] Index of(Index element) const { return of_[static_cast<std::size_t>(element)]; }
+  /// Ascending.
+  [[nodiscard]] std::span<const Index> elements(Index patch) const {
+    const auto p = static_cast<std::size_t>(patch);
+    return std::span(elements_).subspan(begin_[p], begin_[p + 1] - begin_[p]);
+  }
+  /// kappa of its material [MPa].
+  [[nodiscard]] double bulk(Index patch) const { return bulk_[static_cast<std::size_t>(patch)]; }
+  /// Those with fewer than kFewest elements: pieces that have no more.
+  [[nodiscard]] Index small_count() const { return small_; }
+  /// Nodes of a patch's elements, ascending.
+  [[nodiscard]] std::vector<Index> nodes(const Problem& problem, Index patch) const;
+  /// Patches of some elements, ascending, each once.
+  void of(std::span<const Index> elements, std::vector<Index>& patches) const;
+
+ private:
+  std::vector<Index> of_;
+  std::vector<std::size_t> begin_;
+  std::vector<Index> elements_;
+  std::vector<double> bulk_;
+  Index small_ = 0;
+};
+
+/// Pools of a problem; null where no material pools.
+[[nodiscard]] std::shared_ptr<const Pools> pools_of(const Problem& problem);
+
+/// Share of stiffness of an element.
+using ShareOf = std::function<double(Index element)>;
+
+/// The patch's stiffness kappa / V_p b_p b_p^T, V_p = sum a_e V_e, b_p = sum a_e V_e grad N, as
+/// parts, one an element, whose first columns add up to one vector (StiffnessPart::patch).
+void append_pressure(const Problem& problem, Index patch, const ShareOf& share,
+                     std::vector<StiffnessPart>& parts);
+
+/// Sum of kappa / V_p b_p b_p^T over the unknowns: lower triangle. `scale`: a_e of each element;
+/// empty: intact.
+[[nodiscard]] linear_algebra::SparseMatrix assemble_pressure(const Problem& problem,
+                                                             std::span<const double> scale);
+
+/// Groups of nodes that patches couple beyond those of elements.
+void append_couplings(const Problem& problem, std::vector<std::array<Index, 4>>& groups);
+
+/// Stress of elements in one displacement: what an element bears by itself, and the pressure
+/// kappa b_p . u / V_p of its patch where it pools.
+class StressField {
+ public:
+  /// `scale` as above, `u`: at all nodes (3 * nodes). All three must outlive it.
+  StressField(const Problem& problem, std::span<const double> scale, std::span<const double> u);
+  /// As a live element has it: not scaled.
+  [[nodiscard]] Voigt of(Index element) const;
+
+ private:
+  const Problem& problem_;
+  std::span<const double> u_;
+  std::vector<double> pressure_;  // of each patch
+};
+
+}  // namespace sunder::fem
