@@ -118,8 +118,8 @@ int view_in_window(const ViewArguments& arguments) {
   plan.make_session = [&](view::Devices& devices) {
     const Waiting waiting("preparing " + counted(scene.problem->dof_count(), "unknown"),
                           !arguments.quiet);
-    auto session = std::make_unique<Session>(scene.problem, bodies.make(scene.problem, devices),
-                                             true, plan.size);
+    const BodyPlan body = bodies.body(scene.problem, devices);
+    auto session = std::make_unique<Session>(body.problem, body.make, true, plan.size, body.points);
     session->can_change(bodies.first(), bodies.plan(devices));
     return session;
   };
@@ -160,7 +160,8 @@ int view_headless(const ViewArguments& arguments, Interruption& interruption) {
                           !arguments.quiet);
     // A simulation on the device that draws does again what it did should that be lost.
     const bool goes_back = inputs || problem->scene().solver.backend == "vulkan";
-    session.emplace(problem, bodies.make(problem, devices), goes_back, size);
+    const BodyPlan body = bodies.body(problem, devices);
+    session.emplace(body.problem, body.make, goes_back, size, body.points);
     session->can_change(bodies.first(), bodies.plan(devices));
   }
   auto painter = std::make_unique<Painter>(devices.now(), size);

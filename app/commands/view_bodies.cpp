@@ -49,20 +49,30 @@ OpenedScene ViewBodies::open(const Origin& origin, bool live) const {
   return opened;
 }
 
-Simulation::MakeBackend ViewBodies::make(std::shared_ptr<const Problem> problem,
-                                         view::Devices& devices) const {
-  return [this, problem = std::move(problem), &devices] {
+BodyPlan ViewBodies::body(std::shared_ptr<const Problem> problem, view::Devices& devices) const {
+  BodyPlan plan;
+  plan.problem = problem;
+  if (problem->scene().solver.backend == "vulkan") {
+    plan.points = std::make_shared<view::SharedPoints>();
+  }
+  plan.make = [this, problem = std::move(problem), points = plan.points, &devices] {
     const Needs needs = needs_of(*problem);
-    const std::string& backend = problem->scene().solver.backend;
-    CreatedBackend created = backend == "vulkan"
-                                 ? create_backend_on(problem, needs, devices.now().lend())
-                             : prepared_ ? create_prepared_backend(problem, needs, prepared_)
-                                         : create_backend(problem, needs);
+    CreatedBackend created;
+    if (points) {
+      points->leave();
+      view::Device& device = devices.now();
+      created = create_backend_on(problem, needs, device.lend());
+      points->begin(device);
+    } else {
+      created = prepared_ ? create_prepared_backend(problem, needs, prepared_)
+                          : create_backend(problem, needs);
+    }
     for (std::string& w : created.warnings) {
       if (std::ranges::find(warnings_, w) == warnings_.end()) warnings_.push_back(std::move(w));
     }
     return std::move(created.backend);
   };
+  return plan;
 }
 
 PlanBody ViewBodies::plan(view::Devices& devices) const {
@@ -74,7 +84,9 @@ PlanBody ViewBodies::plan(view::Devices& devices) const {
                        origin.file.string() +
                            ": the scene has inputs, which are not played here; leave the key out");
     }
-    return BodyPlan{opened.problem, make(opened.problem, devices), std::move(opened.warnings)};
+    BodyPlan plan = body(opened.problem, devices);
+    plan.warnings = std::move(opened.warnings);
+    return plan;
   };
 }
 

@@ -27,10 +27,9 @@ class ViewBodies {
   [[nodiscard]] Origin first() const { return {arguments_.scene, {}}; }
   /// Of another file the arguments hold without --set. Throws InputError.
   [[nodiscard]] OpenedScene open(const Origin& origin, bool live) const;
-  /// The backend of a problem, as often as it is asked for: on the device that draws where Vulkan
-  /// is to compute. This and the devices outlive it.
-  [[nodiscard]] Simulation::MakeBackend make(std::shared_ptr<const Problem> problem,
-                                             view::Devices& devices) const;
+  /// The body of a problem. It makes its backend as often as it is asked for: on the device that
+  /// draws where Vulkan is to compute. This and the devices outlive it.
+  [[nodiscard]] BodyPlan body(std::shared_ptr<const Problem> problem, view::Devices& devices) const;
   /// For bodies that a hand does anything to. This and the devices outlive it.
   [[nodiscard]] PlanBody plan(view::Devices& devices) const;
   /// The text of the scene for a folder, with inputs beside it; empty: none.

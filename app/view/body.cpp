@@ -30,10 +30,10 @@ std::vector<std::string> changed(std::vector<std::string> before,
 }
 
 Body::Body(const std::shared_ptr<const Problem>& problem, const Simulation::MakeBackend& make,
-           bool goes_back)
+           bool goes_back, std::shared_ptr<view::SharedPoints> shared)
     : simulation(problem, make()),
       hand(with_history(simulation, make, goes_back), goes_back),
-      showing(simulation),
+      showing(simulation, std::move(shared)),
       points(shown_points(*problem)) {}
 
 void Body::step() {

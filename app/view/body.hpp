@@ -27,14 +27,17 @@ struct BodyPlan {
   std::shared_ptr<const Problem> problem;
   Simulation::MakeBackend make;
   std::vector<std::string> warnings;  ///< of reading
+  /// What `make` tells of backends on the device that draws; null: it makes none.
+  std::shared_ptr<view::SharedPoints> points = nullptr;
 };
 /// Reads an origin. Throws InputError where it cannot be read or is wrong.
 using PlanBody = std::function<BodyPlan(const Origin&)>;
 
 struct Body {
   /// `make`: the backend, once and, `goes_back`, whenever going back takes a new one. Prepares it.
+  /// `shared`: as BodyPlan::points.
   Body(const std::shared_ptr<const Problem>& problem, const Simulation::MakeBackend& make,
-       bool goes_back);
+       bool goes_back, std::shared_ptr<view::SharedPoints> shared = nullptr);
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
 

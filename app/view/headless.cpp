@@ -91,29 +91,31 @@ class Playing {
 
   void take_picture() {
     ++outcome_.pictures;
+    show_or_go_on();
+    const Timed timed(outcome_.writing);
+    write(picture_name(frame_), keep(painter_->png()));
+  }
+
+  void show() {
     std::shared_ptr<const Shown> shown;
     {
       const Timed timed(outcome_.showing);
       shown = session_.show(painter_->version());
     }
-    {
-      const Timed timed(outcome_.drawing);
-      draw(shown);
-    }
-    const Timed timed(outcome_.writing);
-    write(picture_name(frame_), keep(painter_->png()));
+    const Timed timed(outcome_.drawing);
+    painter_->draw(std::move(shown), session_.look(), session_.camera());
   }
 
   /// Once more on another device where the first is lost under it.
-  void draw(const std::shared_ptr<const Shown>& shown) {
+  void show_or_go_on() {
     try {
-      painter_->draw(shown, session_.look(), session_.camera());
+      show();
     } catch (const DeviceLost& error) {
       if (!plan_.renew) throw;
       lost_ = true;
       painter_ = nullptr;
       painter_ = &plan_.renew(error.what());
-      painter_->draw(shown, session_.look(), session_.camera());
+      show();
       lost_ = false;
     }
   }

@@ -11,7 +11,8 @@
 
 namespace sunder::app {
 
-Painter::Painter(view::Device& device, const PictureSize& size) : renderer_(device, size) {}
+Painter::Painter(view::Device& device, const PictureSize& size)
+    : device_(device), renderer_(device, size) {}
 
 void Painter::draw(std::shared_ptr<const Shown> shown, const Look& look, const Camera& camera) {
   const Problem& problem = *shown->problem;
@@ -28,7 +29,13 @@ void Painter::draw(std::shared_ptr<const Shown> shown, const Look& look, const C
       renderer_.set_lips(shown->lips);
       version_ = shown->version;
     }
-    renderer_.set_points(shown->places, shown->normals);
+    if (shown->points && &shown->points->device == &device_) {
+      renderer_.set_points(shown->points);
+    } else if (shown->points) {  // they were on a device that was lost
+      renderer_.set_points(shown->places, normals_of(shown->triangles, shown->places));
+    } else {
+      renderer_.set_points(shown->places, shown->normals);
+    }
     shown_ = std::move(shown);
   }
   const input::Colour colour = look.colour.value_or(input::Colour{standard_field(problem), {}});

@@ -29,6 +29,7 @@ class Painter {
   [[nodiscard]] const view::Renderer& renderer() const { return renderer_; }
 
  private:
+  const view::Device& device_;
   view::Renderer renderer_;
   std::uint64_t version_ = 0;
   std::shared_ptr<const Shown> shown_;  // that the device has

@@ -30,8 +30,11 @@ std::string sentence_of(const DestroyedElement& row) {
 }
 
 Session::Session(const std::shared_ptr<const Problem>& problem, const Simulation::MakeBackend& make,
-                 bool goes_back, const PictureSize& size)
-    : goes_back_(goes_back), body_(std::make_unique<Body>(problem, make, goes_back)), size_(size) {
+                 bool goes_back, const PictureSize& size,
+                 std::shared_ptr<view::SharedPoints> points)
+    : goes_back_(goes_back),
+      body_(std::make_unique<Body>(problem, make, goes_back, std::move(points))),
+      size_(size) {
   look_.camera = standard_camera(problem->mesh());
 }
 
@@ -88,7 +91,7 @@ void Session::take(const Inputs& inputs, const Input& given) {
 std::unique_ptr<Body> Session::prepared(const Origin& origin) const {
   if (!plan_) throw UsageError("this body cannot be changed: it is of no file");
   const BodyPlan plan = plan_(origin);
-  return std::make_unique<Body>(plan.problem, plan.make, goes_back_);
+  return std::make_unique<Body>(plan.problem, plan.make, goes_back_, plan.points);
 }
 
 void Session::take_on(std::unique_ptr<Body> body, Origin origin) {

@@ -16,9 +16,11 @@ namespace sunder::app {
 
 class Session {
  public:
-  /// `make`: the backend, once and, `goes_back`, whenever going back takes a new one.
+  /// `make`: the backend, once and, `goes_back`, whenever going back takes a new one. `points`: as
+  /// BodyPlan has them.
   Session(const std::shared_ptr<const Problem>& problem, const Simulation::MakeBackend& make,
-          bool goes_back, const PictureSize& size);
+          bool goes_back, const PictureSize& size,
+          std::shared_ptr<view::SharedPoints> points = nullptr);
 
   /// From here on its scene can be changed and others opened (input::Set, input::Open).
   void can_change(Origin origin, PlanBody plan);

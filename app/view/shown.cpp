@@ -57,11 +57,16 @@ std::vector<Vec3> normals_of(std::span<const SurfaceTriangle> triangles,
   return normals;
 }
 
-Showing::Showing(Simulation& simulation)
+Showing::Showing(Simulation& simulation, std::shared_ptr<view::SharedPoints> points)
     : simulation_(simulation),
+      points_(std::move(points)),
       plane_(board_plane(simulation.problem().mesh(),
                          simulation.problem().scene().fracture.plane_normal)),
       surface_(simulation) {}
+
+Showing::~Showing() {
+  if (points_) points_->leave();  // the simulation goes next
+}
 
 std::shared_ptr<Shown> Showing::show(std::uint64_t since) {
   auto shown = std::make_shared<Shown>();
@@ -76,8 +81,11 @@ std::shared_ptr<Shown> Showing::show(std::uint64_t since) {
   lips_version_ = shown->version;
   shown->lips = lips_;
   constexpr double kTrue = 1;
-  shown->places = std::move(pose_of(simulation_.problem(), plane_, shown->state, kTrue).position);
-  shown->normals = normals_of(triangles, shown->places);
+  Pose pose = pose_of(simulation_.problem(), plane_, shown->state, kTrue);
+  shown->places = std::move(pose.position);
+  // A piece that is cut off is not drawn where the device computes it.
+  if (points_ && !pose.loose_piece) shown->points = points_->write(simulation_, surface_);
+  if (!shown->points) shown->normals = normals_of(triangles, shown->places);
   shown->tips = simulation_.tips();
   return shown;
 }

@@ -12,6 +12,7 @@
 
 #include "app/figure/pose.hpp"
 #include "app/output/state.hpp"
+#include "app/view/vulkan/shared_points.hpp"
 #include "sunder/board_plane.hpp"
 #include "sunder/surface.hpp"
 
@@ -33,6 +34,9 @@ struct Shown {
   std::vector<std::uint32_t> changed;
   std::vector<Vec3> places;   ///< of all nodes [mm]
   std::vector<Vec3> normals;  ///< likewise, outward and unit; 0: no triangle ends there
+  /// Both on the device that draws, in place of uploading these; `normals` is empty then. Null:
+  /// what is drawn is where the host says.
+  std::shared_ptr<const view::Points> points;
   /// Edges between what the mesh always showed and what a tear has laid open; as of `version`.
   std::vector<std::array<Index, 2>> lips;
   std::vector<TipState> tips;
@@ -43,7 +47,11 @@ struct Shown {
 /// Makes them of a simulation as it goes on; it must outlive this.
 class Showing {
  public:
-  explicit Showing(Simulation& simulation);
+  /// `points`: what the simulation shares with the device that draws; null: nothing.
+  explicit Showing(Simulation& simulation, std::shared_ptr<view::SharedPoints> points = nullptr);
+  ~Showing();
+  Showing(const Showing&) = delete;
+  Showing& operator=(const Showing&) = delete;
 
   /// What is there now but for its words and report. No step is in work. `since`: the version of
   /// triangles that whoever draws has; 0: none.
@@ -51,6 +59,7 @@ class Showing {
 
  private:
   Simulation& simulation_;
+  const std::shared_ptr<view::SharedPoints> points_;
   BoardPlane plane_;
   Surface surface_;
   std::uint64_t lips_version_ = 0;

@@ -255,6 +255,10 @@ void Renderer::reserve(Binding binding, std::size_t bytes) {
     std::memcpy(larger.as<std::uint8_t>(), buffer.as<std::uint8_t>(), buffer.size());
   }
   buffer = std::move(larger);
+  if (!points_ || binding > kNormals) bind(binding, buffer);
+}
+
+void Renderer::bind(Binding binding, const HostBuffer& buffer) {
   const VkDescriptorBufferInfo whole{buffer.get(), 0, VK_WHOLE_SIZE};
   VkWriteDescriptorSet write{};
   write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -276,28 +280,46 @@ void Renderer::set_triangles(std::span<const SurfaceTriangle> triangles,
     const SurfaceTriangle& t = triangles[place];
     rows[place] = {static_cast<std::uint32_t>(t.nodes[0]), static_cast<std::uint32_t>(t.nodes[1]),
                    static_cast<std::uint32_t>(t.nodes[2]), t.opened ? kOpened : 0};
+    uploaded_ += sizeof(Row);
   }
   triangle_count_ = static_cast<std::uint32_t>(triangles.size());
 }
 
 void Renderer::set_points(std::span<const Vec3> places, std::span<const Vec3> normals) {
   using Row = std::array<float, 4>;
+  if (points_) {
+    points_.reset();
+    bind(kPlaces, buffers_[kPlaces]);
+    bind(kNormals, buffers_[kNormals]);
+  }
   const auto put = [&](Binding binding, std::span<const Vec3> points) {
     reserve(binding, points.size() * sizeof(Row));
     Row* const rows = buffers_[binding].as<Row>();
     for (std::size_t i = 0; i < points.size(); ++i) rows[i] = four(points[i], 0);
+    uploaded_ += points.size() * sizeof(Row);
   };
   put(kPlaces, places);
   put(kNormals, normals);
 }
 
+void Renderer::set_points(std::shared_ptr<const Points> points) {
+  bind(kPlaces, points->places);
+  bind(kNormals, points->normals);
+  points_ = std::move(points);
+}
+
 void Renderer::set_colours(std::span<const Color> colours) {
   reserve(kColours, colours.size() * sizeof(std::uint32_t));
   auto* const rows = buffers_[kColours].as<std::uint32_t>();
+  const std::size_t known = std::min(colours_.size(), colours.size());
+  colours_.resize(colours.size());
   for (std::size_t i = 0; i < colours.size(); ++i) {
     const Color c = colours[i];
-    rows[i] = 0xff000000U | static_cast<std::uint32_t>(c.b) << 16U |
-              static_cast<std::uint32_t>(c.g) << 8U | c.r;
+    const std::uint32_t word = 0xff000000U | static_cast<std::uint32_t>(c.b) << 16U |
+                               static_cast<std::uint32_t>(c.g) << 8U | c.r;
+    if (i < known && colours_[i] == word) continue;
+    rows[i] = colours_[i] = word;
+    uploaded_ += sizeof word;
   }
 }
 
@@ -308,6 +330,7 @@ void Renderer::set_lips(std::span<const std::array<Index, 2>> lips) {
   for (std::size_t i = 0; i < lips.size(); ++i) {
     rows[i] = {static_cast<std::uint32_t>(lips[i][0]), static_cast<std::uint32_t>(lips[i][1])};
   }
+  uploaded_ += lips.size() * sizeof(Row);
   lip_count_ = static_cast<std::uint32_t>(lips.size());
 }
 

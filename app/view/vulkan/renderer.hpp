@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "app/figure/raster.hpp"
 #include "app/view/camera.hpp"
 #include "app/view/look.hpp"
-#include "app/view/vulkan/commands.hpp"
+#include "app/view/vulkan/shared_points.hpp"
 #include "sunder/surface.hpp"
 
 namespace sunder::app::view {
@@ -24,7 +26,9 @@ class Renderer {
   void set_triangles(std::span<const SurfaceTriangle> triangles,
                      std::span<const std::uint32_t> changed);
   void set_points(std::span<const Vec3> places, std::span<const Vec3> normals);
-  /// One per triangle.
+  /// Those that are on its device; kept until others come.
+  void set_points(std::shared_ptr<const Points> points);
+  /// One per triangle; those that are as they were are not written again.
   void set_colours(std::span<const Color> colours);
   void set_lips(std::span<const std::array<Index, 2>> lips);
 
@@ -33,6 +37,8 @@ class Renderer {
   /// The last picture.
   [[nodiscard]] Pixels read() const;
 
+  /// Bytes that the host has written of what is drawn, so far.
+  [[nodiscard]] std::uint64_t uploaded() const { return uploaded_; }
   [[nodiscard]] const PictureSize& size() const { return size_; }
   /// Of the last picture, R8G8B8A8, in layout TRANSFER_SRC_OPTIMAL.
   [[nodiscard]] VkImage image() const { return colour_.get(); }
@@ -46,6 +52,7 @@ class Renderer {
   [[nodiscard]] Owned<VkPipeline> make_pipeline(std::span<const std::uint32_t> vertex,
                                                 std::span<const std::uint32_t> fragment);
   void reserve(Binding binding, std::size_t bytes);
+  void bind(Binding binding, const HostBuffer& buffer);
   void record(const Camera& camera, const Look& look);
 
   Device& device_;
@@ -62,6 +69,9 @@ class Renderer {
   Commands commands_;
   HostBuffer pixels_;
   std::array<HostBuffer, kBindings> buffers_;
+  std::shared_ptr<const Points> points_;  // bound in place of the first two
+  std::vector<std::uint32_t> colours_;    // as the device has them
+  std::uint64_t uploaded_ = 0;
   std::uint32_t triangle_count_ = 0, lip_count_ = 0;
 };
 
