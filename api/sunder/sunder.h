@@ -149,13 +149,16 @@ typedef struct sunder_material {
   double density;  ///< [t/mm^3], water 1e-9; needed in motion and under gravity; 0: none
   /// K_c [MPa sqrt(mm)] at which cracks of model B grow; 0: none, Eq. 1 by yield decides
   double toughness;
-  double energy;  ///< G_c [N/mm] in its place (1000 J/m^2); 0: none; one of the two
-  int32_t volume;    ///< SUNDER_VOLUME_*
+  double energy;   ///< G_c [N/mm] in its place (1000 J/m^2); 0: none; one of the two
+  int32_t volume;  ///< SUNDER_VOLUME_*
   int32_t reserved3;
 } sunder_material;
 
-#define SUNDER_MATERIAL_INIT \
-  { sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0, 0, 0, SUNDER_VOLUME_ELEMENT, 0 }
+#define SUNDER_MATERIAL_INIT                                                  \
+  {                                                                           \
+    sizeof(sunder_material), 0, 0, 0, 0, NULL, SUNDER_LAW_LINEAR, 0, 0, 0, 0, \
+        SUNDER_VOLUME_ELEMENT, 0                                              \
+  }
 
 SUNDER_API void sunder_material_init(sunder_material* material);
 /// Tissues by name, with their sources in docs/tissues.md: how many, and the name of each.
