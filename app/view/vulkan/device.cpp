@@ -195,6 +195,11 @@ void Device::submit(const VkSubmitInfo& info, VkFence done) {
   check(vk_.QueueSubmit(queue_, 1, &info, done), "vkQueueSubmit");
 }
 
+void Device::wait_idle() {
+  const std::lock_guard lock(lock_);
+  vk_.DeviceWaitIdle(device_);  // a lost one is told where it is used next
+}
+
 VkResult Device::present(PFN_vkQueuePresentKHR by, const VkPresentInfoKHR& info) {
   const std::lock_guard lock(lock_);
   std::error_code ignored;

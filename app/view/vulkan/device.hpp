@@ -60,6 +60,8 @@ class Device {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Hands it over, with the queue held. Throws DeviceLost, or DeviceError.
   void submit(const VkSubmitInfo& info, VkFence done);
+  /// Until nothing of it runs any more, with the queue held: no other thread may submit meanwhile.
+  void wait_idle();
   /// Shows an image by a window's own function, with the queue held.
   [[nodiscard]] VkResult present(PFN_vkQueuePresentKHR by, const VkPresentInfoKHR& info);
 

@@ -73,7 +73,7 @@ void Panels::enter(view::Device& device, view::Swapchain& chain) {
 
 void Panels::leave() {
   if (!device_) return;
-  device_->vk().DeviceWaitIdle(device_->handle());
+  device_->wait_idle();
   ImGui_ImplVulkan_Shutdown();
   pool_ = {};
   device_ = nullptr;

@@ -85,7 +85,7 @@ void Swapchain::make_pass() {
 
 void Swapchain::make() {
   const DeviceFunctions& vk = device_.vk();
-  vk.DeviceWaitIdle(device_.handle());
+  device_.wait_idle();
   frames_.clear();
   VkSurfaceCapabilitiesKHR can{};
   check(of_.GetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &can),

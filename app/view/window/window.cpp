@@ -42,7 +42,7 @@ Window::Window(const WindowPlan& plan)
   take_measure();
 }
 
-Window::~Window() { devices_.now().vk().DeviceWaitIdle(devices_.now().handle()); }
+Window::~Window() { devices_.now().wait_idle(); }
 
 void Window::run() {
   while (!glfwWindowShouldClose(window_.get())) {
