@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/cg_route.hpp"
 
+#include <algorithm>
+
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -20,6 +22,24 @@ constexpr int kMaxIterations = 50000;
 constexpr double kSolution = 1e-22;
 constexpr double kCorrection = 1e-4;
 
+std::uint32_t nodes_of(const Problem& problem) {
+  return round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
+}
+
+std::size_t known_slot(std::size_t nodes) { return nodes * 4 * sizeof(double); }
+
+/// Two hands that shift and turn; no more than a scene's instruments can do, nor than a buffer of
+/// the device holds.
+std::uint32_t most_known(const KernelFactory& kernels, const Problem& problem) {
+  constexpr std::size_t kMost = 12, kOfAHand = 6;
+  const auto& scene = problem.scene();
+  const std::size_t wanted =
+      scene.live ? kMost : std::clamp<std::size_t>(kOfAHand * scene.instruments.size(), 1, kMost);
+  const std::size_t held =
+      kernels.device().physical().largest_buffer / known_slot(nodes_of(problem));
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(held, 1, wanted));
+}
+
 }  // namespace
 
 CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fields& fields)
@@ -29,6 +49,7 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
       matrix_(fields.matrix()),
       rigid_(kernels, body.problem(), body.destroyed(), body.problem().scene().fracture.alpha),
       add_(kernels, fields),
+      most_known_(most_known(kernels, body.problem())),
       commands_(kernels.device()) {
   const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;
   for (Buffer* vector : {&r_, &p_, &q_, &z_}) {
@@ -39,6 +60,8 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
     *sums = Buffer(kernels.device(), partials() * 4 * sizeof(double), Placement::device);
     sums->fill_zero();
   }
+  known_ = Buffer(kernels.device(), known_slot(nodes) * most_known_, Placement::device);
+  known_.fill_zero();
   state_ = Buffer(kernels.device(), sizeof(shaders::CgState), Placement::host);
   arguments_ = Buffer(kernels.device(), kArguments * sizeof(std::uint32_t), Placement::device);
   create_kernels(fields);
@@ -49,9 +72,9 @@ std::uint32_t CgRoute::partials() const {
 }
 
 std::size_t CgRoute::planned_bytes(const KernelFactory& kernels, const Problem& problem) {
-  const std::uint32_t nodes =
-      round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
+  const std::uint32_t nodes = nodes_of(problem);
   return std::size_t{4} * nodes * 4 * sizeof(double) +
+         known_slot(nodes) * most_known(kernels, problem) +
          2 * round_up(nodes / shaders::kGroup * kernels.parts(), 4) * sizeof(double) +
          Buffer::padded(sizeof(shaders::CgState)) +
          Buffer::padded(kArguments * sizeof(std::uint32_t)) + RigidSpace::planned_bytes(problem);
@@ -71,6 +94,7 @@ void CgRoute::create_kernels(const Fields& fields) {
   const Buffer& m = matrix_.preconditioner();
   make(begin_, "cg_begin", all,
        {&fields.residual(), &fields.dofs(), &fields.nodal(Field::displacement), &r_, &p_, &rz_});
+  make(known_step_, "cg_known", all, {&known_, &fields.dofs(), &r_, &p_, &rz_});
   make(multiply_, "cg_multiply", all,
        {&matrix_.blocks(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_});
   make(length_, "cg_length", one, {&pq_, &rz_, &state_});
@@ -90,9 +114,8 @@ shaders::CgPush CgRoute::push(bool first) const {
   return push;
 }
 
-void CgRoute::record_start(double reduction, bool guess) {
+void CgRoute::record_start(double reduction, bool solution) {
   shaders::CgPush of_start = push(true);
-  of_start.guess = guess ? 1 : 0;
   of_start.reduction = reduction;
   const Buffer& x = fields_.nodal(Field::correction);
   commands_.fill_zero(x, 0, x.bytes());
@@ -100,9 +123,24 @@ void CgRoute::record_start(double reduction, bool guess) {
     commands_.dispatch(*pass.binding, of_start, groups);
   };
   dispatch(begin_, matrix_.groups());
-  dispatch(multiply_, matrix_.groups());
-  dispatch(length_, 1);
-  dispatch(step_, matrix_.groups());
+  const auto step = [&] {
+    dispatch(multiply_, matrix_.groups());
+    dispatch(length_, 1);
+    dispatch(step_, matrix_.groups());
+  };
+  if (solution) {
+    of_start.guess = 2;
+    for (; of_start.known < std::max(known_count_, 1u); ++of_start.known) {
+      dispatch(known_step_, matrix_.groups());
+      step();
+    }
+  } else {
+    step();
+  }
+  if (solution && known_count_ > 0) {  // what is left of x is the next one that is known
+    add_.record(commands_);
+    commands_.fill_zero(x, 0, x.bytes());
+  }
   rigid_.record(commands_, of_start);
   dispatch(check_, 1);
   dispatch(direction_, matrix_.groups());
@@ -123,12 +161,12 @@ void CgRoute::record_iterations() {
   }
 }
 
-int CgRoute::run(double reduction, bool guess) {
+int CgRoute::run(double reduction, bool solution) {
   rigid_.update();
   for (int submits = 0;; ++submits) {
     commands_.begin();
     commands_.pass("solve");
-    if (submits == 0) record_start(reduction, guess);
+    if (submits == 0) record_start(reduction, solution);
     record_iterations();
     commands_.end();
     commands_.submit();
@@ -148,13 +186,32 @@ int CgRoute::run(double reduction, bool guess) {
   }
 }
 
-void CgRoute::refresh_state(bool add) {
+void CgRoute::begin_solution() {
+  Buffer& u = fields_.nodal(Field::displacement);
   commands_.begin();
   fields_.record_keep(commands_);
-  if (add) {
-    commands_.pass("refine");
-    add_.record(commands_);
+  if (known_count_ == 0) {
+    commands_.copy(u.handle(), u.offset(), known_.handle(), known_.offset(), slot_bytes());
   }
+  commands_.fill_zero(u, 0, u.bytes());
+  fields_.record_hold(commands_, Field::displacement);
+  fields_.record_state(commands_);
+  commands_.end();
+  commands_.submit();
+}
+
+void CgRoute::finish(bool keep_known) {
+  commands_.begin();
+  if (keep_known) {
+    const Buffer& x = fields_.nodal(Field::correction);
+    next_known_ = known_count_ == 0 ? 0 : next_known_;
+    commands_.copy(x.handle(), x.offset(), known_.handle(),
+                   known_.offset() + next_known_ * slot_bytes(), slot_bytes());
+    known_count_ = std::min(known_count_ + 1, most_known_);
+    next_known_ = (next_known_ + 1) % most_known_;
+  }
+  commands_.pass("refine");
+  add_.record(commands_);
   fields_.record_hold(commands_, Field::displacement);
   fields_.record_state(commands_);
   commands_.end();
@@ -162,9 +219,10 @@ void CgRoute::refresh_state(bool add) {
 }
 
 int CgRoute::solve(const Load&, double, bool) {
-  refresh_state(false);  // f - K u of the last displacement, a multiple of which is the first guess
+  begin_solution();
   const int iterations = run(kSolution, true);
-  refresh_state(true);
+  // One that costs no more than to be known is rounding of the others.
+  finish(iterations > static_cast<int>(most_known_));
   return iterations;
 }
 
@@ -177,12 +235,13 @@ int CgRoute::correct() {
   return iterations;
 }
 
-void CgRoute::add_correction() { refresh_state(true); }
+void CgRoute::add_correction() { finish(false); }
 
 std::vector<BufferPlan> CgRoute::buffers() const {
   const std::size_t vectors = r_.bytes() + p_.bytes() + q_.bytes() + z_.bytes() + pq_.bytes() +
                               rz_.bytes() + state_.bytes() + arguments_.bytes();
   return {{"conjugate gradient vectors (device)", vectors},
+          {"solutions that conjugate gradients begin with (device)", known_.bytes()},
           {"rigid motions of groups of nodes (device)", rigid_.bytes()}};
 }
 

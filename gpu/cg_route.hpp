@@ -24,8 +24,12 @@ class CgRoute final : public DeviceRoute {
   void add_correction() override;
   void destroy(std::span<const Index> elements) override {
     rigid_.destroy(elements);  // Fields' matrix follows by itself
+    known_count_ = 0;
   }
-  void grip(const fem::Event&) override { rigid_.grip(body_.forms().gripped()); }
+  void grip(const fem::Event&) override {
+    rigid_.grip(body_.forms().gripped());
+    known_count_ = 0;
+  }
 
   std::vector<BufferPlan> buffers() const override;
 
@@ -35,15 +39,22 @@ class CgRoute final : public DeviceRoute {
 
  private:
   void create_kernels(const Fields& fields);
-  /// correction = K^-1 r, to a share of the first r^T M r; with a guess, or of u's energy if that
-  /// is more. Returns iterations.
-  int run(double reduction, bool guess);
+  /// correction = K^-1 r, to a share of the first r^T M r; of a solution, or of its energy if that
+  /// is more: then what is known of it goes to the displacement first. Returns iterations.
+  int run(double reduction, bool solution);
   [[nodiscard]] shaders::CgPush push(bool first) const;
   /// Of one sum, in packs of four.
   [[nodiscard]] std::uint32_t partials() const;
-  void record_start(double reduction, bool guess);
+  /// Bytes of a solution that is known.
+  [[nodiscard]] std::size_t slot_bytes() const { return known_.bytes() / most_known_; }
+  void record_start(double reduction, bool solution);
+  void record_known();
   void record_iterations();
-  void refresh_state(bool add);
+  /// The displacement where nothing but grips has moved; of bodies of which nothing is known the
+  /// last one takes the place of that.
+  void begin_solution();
+  /// displacement += correction, with its state.
+  void finish(bool keep_known);
 
   const KernelFactory& kernels_;
   const fem::DamagedBody& body_;
@@ -52,11 +63,15 @@ class CgRoute final : public DeviceRoute {
   RigidSpace rigid_;
   AddCorrection add_;
   vulkan::Buffer r_, p_, q_, z_, pq_, rz_, state_, arguments_;
+  // Solutions of this body, each of a load's share that those before it left over: K keeps them
+  // apart, so that a load that is a sum of former ones takes a step along each and no iteration.
+  vulkan::Buffer known_;
+  std::uint32_t most_known_, known_count_ = 0, next_known_ = 0;
   struct Pass {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::unique_ptr<vulkan::Binding> binding;
   };
-  Pass begin_, multiply_, length_, step_, check_, direction_;
+  Pass begin_, known_step_, multiply_, length_, step_, check_, direction_;
   vulkan::Commands commands_;
 };
 

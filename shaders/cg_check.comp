@@ -11,6 +11,9 @@ INOUT(2, State, CgState, state)
 OUT(3, Arguments, uint, arguments)
 layout(push_constant) uniform Push { CgPush p; };
 
+// What a sum of known solutions may leave, by the target: each was solved to that of its own load.
+const double kOfASum = 100;
+
 void start(double rz) {
   state.data[0].target = max(rz, state.data[0].energy) * p.reduction;
   state.data[0].iterations = 0u;
@@ -38,7 +41,8 @@ void main() {
     if (!(rz >= 0) || isinf(rz)) state.data[0].broken = 1u;
   }
   state.data[0].rz = rz;
-  const bool run = state.data[0].broken == 0u && rz > state.data[0].target;
+  const double enough = p.first == 1u && p.guess == 2u ? kOfASum : 1.0LF;
+  const bool run = state.data[0].broken == 0u && rz > enough * state.data[0].target;
   state.data[0].running = run ? 1u : 0u;
   arguments.data[0] = run ? p.groups : 0u;
   arguments.data[3] = run ? p.rigid_groups : 0u;

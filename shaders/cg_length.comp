@@ -1,6 +1,8 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// One workgroup: a = r^T M r / p^T q; first: a = r^T p / p^T q, and the energy of u + a p with p = u.
+// One workgroup: a = r^T M r / p^T q; first: a = r^T p / p^T q, and the energy of the first guess: of
+// u + a p with p = u, or of all a p so far where each p is a solution that is known and K keeps them
+// apart.
 #extension GL_GOOGLE_include_directive : require
 #include "cg.glsl"
 
@@ -13,7 +15,10 @@ void start(double pq, double rp) {
   const bool sound = pq > 0 && !isinf(pq) && !isnan(rp) && !isinf(rp);  // no guess: pq = 0
   const double a = sound ? rp / pq : 0.0LF;
   state.data[0].length_ = a;
-  state.data[0].energy = sound ? (1.0LF + a) * (1.0LF + a) * pq : 0.0LF;
+  const bool known = p.guess == 2u;
+  const double before = known && p.known > 0u ? state.data[0].energy : 0.0LF;
+  const double share = known ? a : 1.0LF + a;
+  state.data[0].energy = before + (sound ? share * share * pq : 0.0LF);
 }
 
 void main() {

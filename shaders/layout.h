@@ -158,10 +158,10 @@ struct CgPush {
   uint rigid_groups;  // of the second level: groups of nodes
   uint rigid_solves;  // of the second level: workgroups of four unknowns
   uint first;         // 1: nothing has been iterated yet
-  uint guess;         // 1: the first step goes along u
+  uint guess;         // the first step goes along: 0 nothing, 1 u, 2 a solution that is known
   double reduction;   // stop at this share of the first r^T M r, or of u's energy
   uint elements;      // workgroups of 64 elements, where a kernel goes over these
-  uint unused;
+  uint known;         // which of those
 };
 
 // Kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup, elements.

@@ -165,6 +165,40 @@ TEST_P(CgKernels, MultiplyByTheDamagedStiffness) {
   }
 }
 
+/// Steps along solutions that are known take the place of iterations, until the body is another
+/// one.
+TEST_P(CgKernels, ASumOfFormerLoadsTakesNoIteration) {
+  Scene scene;
+  scene.mesh = structured_board({7, 5, 1});
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, 9.9, -1), Vec3(11, 11, 2)}, Axes{7}});
+  scene.live = true;
+  fem::DamagedBody body(std::make_shared<const Problem>(scene));
+  gpu::Fields fields(*factory_, body.problem(), all_needs(), {0, true});
+  gpu::CgRoute route(*factory_, body, fields);
+  const auto iterations_of = [&](double a, double b, double c) {
+    std::vector<double> force(fields.rows(), 0.0);
+    force[0] = a;
+    force[1] = b;
+    force[17] = c;
+    fields.set_load(force, {});
+    return route.solve({}, 0, true);
+  };
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_GT(iterations_of(1e-3, 0, 0), 12);
+    EXPECT_GT(iterations_of(1e-3, 2e-3, 0), 12);
+    EXPECT_GT(iterations_of(0, 1e-3, -1e-3), 12);
+    for (double c : {1e-3, -3e-3, 2e-5}) {
+      EXPECT_EQ(iterations_of(c, -1e-3, 2e-3 - c), 0) << c;
+      EXPECT_EQ(iterations_of(0, c, 0), 0) << c;
+    }
+    const Index gone[] = {40};
+    body.destroy(gone);
+    fields.destroy(gone, body.scale());
+    route.destroy(gone);
+  }
+}
+
 /// The iterations recorded beyond the last one that is needed do nothing.
 TEST_P(CgKernels, DispatchesBeyondConvergenceAreEmpty) {
   Scene scene;
@@ -230,6 +264,33 @@ TEST_P(CgKernels, BeginTakesWhatIsFree) {
   }
 }
 
+TEST_P(CgKernels, KnownSolutionsAreTakenWhereTheyAreFree) {
+  Words dofs(4 * kNodes, 0);
+  for (std::size_t i = 0; i < 4 * kNodes; ++i) {
+    if (i % 4 == 3) dofs[i] = static_cast<std::uint32_t>(generator_() % 8);
+    if (i % 4 != 3 && generator_() % 5 == 0) dofs[i] = shaders::kHeld;
+  }
+  constexpr std::uint32_t kKnown = 3;
+  const Doubles known = random_values(4 * kNodes * kKnown), r = random_nodes();
+  const auto of_known = buffer(known), of_r = buffer(r);
+  const auto of_dofs = buffer(dofs);
+  for (std::uint32_t k = 0; k < kKnown; ++k) {
+    const auto p = empty(4 * kNodes), sums = empty(kNodes);
+    shaders::CgPush push{};
+    push.groups = kGroups;
+    push.known = k;
+    run("cg_known", {&of_known, &of_dofs, &of_r, &p, &sums}, push, kGroups);
+    Doubles expected(4 * kNodes, 0);
+    for (std::size_t i = 0; i < 4 * kNodes; ++i) {
+      const std::size_t axis = i % 4;
+      if (axis == 3 || dofs[i] == shaders::kHeld || (dofs[i - axis + 3] >> axis & 1)) continue;
+      expected[i] = known[4 * kNodes * k + i];
+    }
+    EXPECT_EQ(read(p, 4 * kNodes), expected);
+    expect_parts(sums, r, expected);
+  }
+}
+
 TEST_P(CgKernels, StepAndItsPreconditioner) {
   vulkan::Buffer of_state;
   const double a = state(of_state).length_ = 0.7321;
@@ -272,15 +333,18 @@ TEST_P(CgKernels, LengthOfAStep) {
     along += v;
     size += std::abs(v);
   }
-  const auto length = [&](const Doubles& of_pq, bool first) {
+  const auto length = [&](const Doubles& of_pq, bool first, std::uint32_t known = 0) {
     vulkan::Buffer of_state;
     shaders::CgState& s = state(of_state);
     s.rz = 3.25;
+    s.energy = 5.5;
     s.broken = 7;
     const auto pq_sums = buffer(of_pq), rp_sums = buffer(rp);
     shaders::CgPush push{};
     push.partials = kPacks;
     push.first = first ? 1 : 0;
+    push.guess = known > 0 ? 2 : 1;
+    push.known = known > 0 ? known - 1 : 0;
     run("cg_length", {&pq_sums, &rp_sums, &of_state}, push, 1, factory_->summing_group());
     return s;
   };
@@ -293,6 +357,15 @@ TEST_P(CgKernels, LengthOfAStep) {
   EXPECT_NEAR(first.length_, a, error);
   EXPECT_NEAR(first.energy, (1 + a) * (1 + a) * sum,
               2 * std::abs(1 + a) * sum * error + (kTerms + 4) * kEps64 * (1 + a) * (1 + a) * sum);
+  // Along what is known: the first one's energy, and what a further one adds.
+  const double more = a * a * sum, of_more = 2 * std::abs(a) * sum * error + 4 * kEps64 * more;
+  for (const std::uint32_t known : {1u, 2u}) {
+    const shaders::CgState along_known = length(pq, true, known);
+    EXPECT_EQ(along_known.length_, first.length_);
+    EXPECT_NEAR(along_known.energy, more + (known == 2 ? 5.5 : 0),
+                of_more + kTerms * kEps64 * (more + 5.5));
+  }
+  EXPECT_EQ(length(Doubles(4 * kPacks, 0.0), true, 2).energy, 5.5);
   // Not positive, or no number: it ends; without a guess there is no step along it.
   for (const double bad : {-1e3, kNaN, std::numeric_limits<double>::infinity()}) {
     Doubles broken = pq;
@@ -321,7 +394,8 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
     shaders::CgState state;
     Words arguments;
   };
-  const auto check = [&](const Doubles& of_rz, shaders::CgState before, bool first) {
+  const auto check = [&](const Doubles& of_rz, shaders::CgState before, bool first,
+                         std::uint32_t guess = 1) {
     vulkan::Buffer of_state;
     state(of_state) = before;
     const auto sums = buffer(of_rz), of_terms = buffer(terms);
@@ -333,6 +407,7 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
     push.rigid_solves = kSolves;
     push.elements = 31;
     push.first = first ? 1 : 0;
+    push.guess = guess;
     push.reduction = 1e-3;
     run("cg_check", {&sums, &of_terms, &of_state, &arguments}, push, 1, factory_->summing_group());
     Words sizes(15);
@@ -350,6 +425,13 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
   EXPECT_EQ(first.state.broken, 0u);
   EXPECT_EQ(first.state.running, 1u);
   EXPECT_EQ(first.arguments, on);
+  // What a sum of known solutions leaves has to be a hundred times the target to be worth
+  // iterations.
+  EXPECT_EQ(check(rz, before, true, 2).state.running, 1u);
+  before.energy = 20 * sum;
+  EXPECT_EQ(check(rz, before, true).state.running, 1u);
+  EXPECT_EQ(check(rz, before, true, 2).state.running, 0u);
+  EXPECT_EQ(check(rz, before, false, 2).state.running, 1u);
   before.energy = 0;
   EXPECT_NEAR(check(rz, before, true).state.target, sum * 1e-3, 1e-3 * error);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Route cg on the device against the CPU reference.
+#include <random>
+
 #include "gpu_body.hpp"
 #include "sunder/error.hpp"
 
@@ -81,6 +83,50 @@ TEST_P(ConjugateGradient, LoadsThatGrowTurnVanishAndComeBack) {
   for (double u : Pair::displacement(*pair.vulkan)) EXPECT_EQ(u, 0);
   pair.load(corner);
   expect(pair.solve(), kIntactTolerance, "after none");
+}
+
+/// A sum of former loads takes a step along each of their solutions and no iteration (CgKernels);
+/// what is left here are those of the error's estimate.
+TEST_P(ConjugateGradient, HandsThatWanderStayRight) {
+  Scene scene = held_board();
+  Instrument low;
+  low.action = Grip{Box{Vec3(-1, -0.001, -1), Vec3(51, 0.001, 3)}, Vec3(1, -2, 0.5), Axes{1}};
+  scene.instruments.assign(2, low);
+  scene.instruments[1].action = Pull{Box{Vec3(49.9, 20, -1), Vec3(51, 30, 3)}, Vec3(1, 0, 0)};
+  Pair pair(std::move(scene), way());
+  const auto edge = nodes_in(pair.problem().mesh(), {Vec3(49.9, 20, -1), Vec3(51, 30, 3)});
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto crack = crack_sequence(pair.problem(), 20, 10);
+  std::size_t destroyed = 0;
+  for (const std::size_t count : {0, 1, 20}) {
+    pair.destroy({&crack[destroyed], count - destroyed});
+    destroyed = count;
+    int of_a_new_body = 0;
+    for (int i = 0; i < 10; ++i) {
+      Load load =
+          pull(pair.problem(), edge, 10 * Vec3(any(generator), any(generator), any(generator)));
+      std::ranges::fill(load.displacements, 0.1 * any(generator));
+      pair.load(load);
+      const auto found = pair.solve();
+      expect(found, count == 0 ? kIntactTolerance : kCrackTolerance, std::to_string(i));
+      if (i == 0) of_a_new_body = found.report.iterations;
+      if (i >= 4) {
+        EXPECT_LE(found.report.iterations, of_a_new_body / 2) << i;
+      }
+    }
+  }
+}
+
+/// More loads than there is room for.
+TEST_P(ConjugateGradient, ManyDirectionsStayRight) {
+  Pair pair(held_board(), way());
+  const auto edge = nodes_in(pair.problem().mesh(), {Vec3(49.9, 20, -1), Vec3(51, 30, 3)});
+  for (std::size_t i = 0; i < 16; ++i) {
+    pair.load(
+        pull(pair.problem(), {edge[i % edge.size()]}, Vec3(1, static_cast<double>(i % 3), -1)));
+    expect(pair.solve(), kIntactTolerance, std::to_string(i));
+  }
 }
 
 TEST_P(ConjugateGradient, NothingLoadedTakesNoIteration) {
