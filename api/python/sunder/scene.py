@@ -141,7 +141,8 @@ class Scene(Handled):
 
         young [MPa], poisson, yield_stress [MPa] (left out: unbreakable; `yield` by **{"yield": 2}),
         law ("linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"), density [t/mm^3],
-        toughness [MPa sqrt(mm)] or energy [N/mm], volume ("element", "pooled"); preset: a tissue of presets(), which they override.
+        toughness [MPa sqrt(mm)] or energy [N/mm], volume ("element", "pooled"); preset: a tissue of
+        presets(), which they override.
         """
         m = _c.options("sunder_material")
         what = f"material {name!r}"

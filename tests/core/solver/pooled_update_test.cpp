@@ -2,32 +2,20 @@
 // The signed update of pooled volume along fractures, against a fresh factor of the damaged body.
 #include <gtest/gtest.h>
 
-#include "body/assembly.hpp"
-#include "body/damaged_body.hpp"
-#include "body/pieces.hpp"
-#include "body/pools.hpp"
-#include "body/stiffness_factor.hpp"
 #include "solver/deferred.hpp"
 #include "solver/factor_base.hpp"
 #include "solver/inverse_base.hpp"
 #include "support/accuracy.hpp"
+#include "support/pooled_body.hpp"
 #include "support/sequences.hpp"
-#include "support/table1_board.hpp"
 
 namespace sunder::solver {
 namespace {
 
-Scene pooled_board(double nu) {
-  Scene scene = test::pulled_board();
-  test::set_poisson(scene, nu);
-  for (auto& [name, material] : scene.materials) material.volume = MaterialVolume::pooled;
-  return scene;
-}
-
 /// A board pulled at a corner, with the body that keeps its record.
 struct PooledBoard {
   explicit PooledBoard(double nu)
-      : problem(std::make_shared<const Problem>(pooled_board(nu))),
+      : problem(std::make_shared<const Problem>(test::pooled_board(nu))),
         body(problem),
         factor(fem::factor_stiffness(*problem)) {
     for (Index n : problem->instrument_nodes()[0].nodes) {
@@ -45,30 +33,6 @@ struct PooledBoard {
     std::vector<double> all(problem->dofs().size());
     fem::scatter(*problem, {u.data(), static_cast<std::size_t>(u.size())}, all);
     return all;
-  }
-
-  [[nodiscard]] std::vector<Voigt> stress(std::span<const double> u) const {
-    const fem::StressField field(*problem, body.scale(), u);
-    std::vector<Voigt> stress;
-    for (Index e = 0; e < problem->tet_count(); ++e) {
-      stress.push_back(body.scale()[static_cast<std::size_t>(e)] * field.of(e));
-    }
-    return stress;
-  }
-
-  /// By a factor of the body as it is, refined twice.
-  [[nodiscard]] std::vector<double> fresh() const {
-    const linear_algebra::Factor of_body = fem::factor_stiffness(body);
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(problem->dof_count()), u = f, r = f, du;
-    for (std::size_t i = 0; i < dofs.size(); ++i) f[dofs[i]] = values[i];
-    linear_algebra::SolveWork work;
-    for (int pass = 0; pass < 3; ++pass) {
-      body.apply(u, r);
-      r = f - r;
-      of_body.solve(r, du, work);
-      u += du;
-    }
-    return nodal(u);
   }
 
   std::shared_ptr<const Problem> problem;
@@ -101,17 +65,15 @@ void follow_fresh_factors(double nu, bool crack, double tolerance) {
       board.body.destroy(event);
       done += size;
     }
-    const std::vector<double> right = board.fresh();
-    const std::vector<Voigt> right_stress = board.stress(right);
-    std::vector<std::uint8_t> ignored(board.body.destroyed().begin(), board.body.destroyed().end());
-    for (const auto& piece : find_loose_parts(*board.problem, ignored).pieces) {
-      for (Index e : piece) ignored[static_cast<std::size_t>(e)] = 1;
-    }
+    const test::FreshSolution right(board.body, test::pull_at_corner(*board.problem));
+    const std::vector<std::uint8_t> ignored = test::not_attached(board.body);
     for (Deferred* deferred : {&dense, &sparse}) {
       SCOPED_TRACE((deferred == &dense ? "inverse after " : "factor after ") + std::to_string(k));
       const std::vector<double> u = board.nodal(solution(board, *deferred));
-      const double of_u = test::displacement_error(board.problem->mesh(), ignored, u, right);
-      const double of_stress = test::stress_error(ignored, board.stress(u), right_stress);
+      const double of_u =
+          test::displacement_error(board.problem->mesh(), ignored, u, right.displacement);
+      const double of_stress =
+          test::stress_error(ignored, test::pooled_stress(board.body, u), right.stress);
       EXPECT_LE(of_u, tolerance);
       EXPECT_LE(of_stress, tolerance);
     }
@@ -160,9 +122,10 @@ TEST(PooledUpdate, ElementsThatComeBackRestoreTheirPatch) {
     ASSERT_TRUE(deferred.change(back));
     if (event == 1) break;
     board.body.destroy(std::span(sequence).subspan(10));
-    const std::vector<double> right = board.fresh(), u = board.nodal(solution(board, deferred));
+    const test::FreshSolution right(board.body, test::pull_at_corner(*board.problem));
+    const std::vector<double> u = board.nodal(solution(board, deferred));
     std::vector<std::uint8_t> none(board.problem->mesh().tets.size(), 0);
-    EXPECT_LE(test::displacement_error(board.problem->mesh(), none, u, right), 1e-8);
+    EXPECT_LE(test::displacement_error(board.problem->mesh(), none, u, right.displacement), 1e-8);
   }
   const Eigen::VectorXd again = solution(board, deferred);
   EXPECT_LE((again - intact).norm(), 1e-9 * intact.norm());

@@ -5,64 +5,26 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
-#include "body/assembly.hpp"
-#include "body/damaged_body.hpp"
-#include "body/pieces.hpp"
 #include "body/pools.hpp"
-#include "body/stiffness_factor.hpp"
 #include "sunder/error.hpp"
 #include "sunder/simulation.hpp"
 #include "support/accuracy.hpp"
 #include "support/body.hpp"
+#include "support/pooled_body.hpp"
 #include "support/sequences.hpp"
-#include "support/table1_board.hpp"
 
 namespace sunder::test {
 namespace {
 
-Scene pooled_board(Route route, double nu, Update update = Update::automatic) {
-  Scene scene = pulled_board();
-  set_poisson(scene, nu);
+Scene routed_board(Route route, double nu, Update update = Update::automatic) {
+  Scene scene = pooled_board(nu);
   scene.solver.route = route;
   scene.solver.update = update;
   scene.live = true;
-  for (auto& [name, material] : scene.materials) material.volume = MaterialVolume::pooled;
   return scene;
 }
-
-std::vector<double> pull_at_corner(const Problem& problem) {
-  std::vector<double> force(problem.dofs().size(), 0.0);
-  for (Index n : problem.instrument_nodes()[0].nodes) {
-    force[3 * static_cast<std::size_t>(n) + 1] = -30;
-  }
-  return force;
-}
-
-/// By a factor of the body, refined.
-struct FreshSolution {
-  FreshSolution(const fem::DamagedBody& body, std::span<const double> force) {
-    const Problem& problem = body.problem();
-    const linear_algebra::Factor factor = fem::factor_stiffness(body);
-    Eigen::VectorXd f(problem.dof_count()), u = Eigen::VectorXd::Zero(f.size()), r = f, du;
-    fem::gather(problem, force, {f.data(), static_cast<std::size_t>(f.size())});
-    linear_algebra::SolveWork work;
-    for (int pass = 0; pass < 3; ++pass) {
-      body.apply(u, r);
-      r = f - r;
-      factor.solve(r, du, work);
-      u += du;
-    }
-    displacement.resize(problem.dofs().size());
-    fem::scatter(problem, {u.data(), static_cast<std::size_t>(u.size())}, displacement);
-    const fem::StressField field(problem, body.scale(), displacement);
-    for (Index e = 0; e < problem.tet_count(); ++e) {
-      stress.push_back(body.scale()[static_cast<std::size_t>(e)] * field.of(e));
-    }
-  }
-  std::vector<double> displacement;
-  std::vector<Voigt> stress;
-};
 
 struct PooledWay {
   Route route;
@@ -70,7 +32,7 @@ struct PooledWay {
 };
 
 void follow_pooled(PooledWay way, double nu, bool crack, double tolerance, double contrast = 100) {
-  Scene scene = pooled_board(way.route, nu, way.update);
+  Scene scene = routed_board(way.route, nu, way.update);
   set_contrast(scene, contrast);
   const Body body(std::move(scene));
   fem::DamagedBody record(body.problem);
@@ -92,10 +54,7 @@ void follow_pooled(PooledWay way, double nu, bool crack, double tolerance, doubl
     body.load(force);
     body.backend->solve();
     const FreshSolution right(record, force);
-    std::vector<std::uint8_t> ignored(record.destroyed().begin(), record.destroyed().end());
-    for (const auto& piece : find_loose_parts(*body.problem, ignored).pieces) {
-      for (Index e : piece) ignored[static_cast<std::size_t>(e)] = 1;
-    }
+    const std::vector<std::uint8_t> ignored = not_attached(record);
     const double of_u =
         displacement_error(body.problem->mesh(), ignored, body.displacement(), right.displacement);
     const double of_stress = stress_error(ignored, body.stress(), right.stress);
@@ -130,7 +89,7 @@ TEST(Pooled, TissueNextToIncompressibleAgreesToo) {
 /// Routes that are measured by: all at once.
 TEST(Pooled, ConjugateGradientsAndTheEagerUpdateAgree) {
   for (PooledWay way : {PooledWay{Route::cg}, PooledWay{Route::inverse, Update::eager}}) {
-    const Body body(pooled_board(way.route, 0.499, way.update));
+    const Body body(routed_board(way.route, 0.499, way.update));
     fem::DamagedBody record(body.problem);
     const std::vector<Index> crack = crack_sequence(*body.problem, 20, 12);
     for (std::size_t k : {std::size_t{0}, std::size_t{10}}) {
@@ -151,7 +110,7 @@ TEST(Pooled, ConjugateGradientsAndTheEagerUpdateAgree) {
 
 TEST(Pooled, RouteCondensedIsRefusedWithThoseThatCan) {
   try {
-    const Body body(pooled_board(Route::condensed, 0.499));
+    const Body body(routed_board(Route::condensed, 0.499));
     FAIL() << "it was not refused";
   } catch (const DeviceError& error) {
     EXPECT_NE(std::string(error.what()).find("use route factor, inverse or cg"), std::string::npos)
@@ -161,7 +120,7 @@ TEST(Pooled, RouteCondensedIsRefusedWithThoseThatCan) {
 
 /// A run that tears: the supports bear what pulls, and undo goes back to the same bits.
 TEST(Pooled, ATearingRunIsInEquilibriumAndGoesBack) {
-  Scene scene = pooled_board(Route::automatic, 0.499);
+  Scene scene = routed_board(Route::automatic, 0.499);
   std::get<Pull>(scene.instruments[0].action).force = Vec3(0, -300, 0);
   scene.fracture.model = FractureModel::a;
   scene.fracture.max_events = 4;
@@ -179,6 +138,51 @@ TEST(Pooled, ATearingRunIsInEquilibriumAndGoesBack) {
   EXPECT_LE(sum.norm(), 1e-6 * simulation.reactions()[0].norm());
   simulation.undo(2);  // the step that tore and the removal
   EXPECT_EQ(simulation.displacement(), before);
+}
+
+/// Elements that reach over a height y, and how many patches have elements left on both sides.
+struct CutAcross {
+  CutAcross(const Problem& problem, double y) {
+    const auto nodes = [&](Index e, bool above) {
+      const auto& tet = problem.mesh().tets[static_cast<std::size_t>(e)];
+      return std::ranges::any_of(tet, [&](Index n) {
+        return (problem.mesh().nodes[static_cast<std::size_t>(n)].y() >= y) == above;
+      });
+    };
+    for (Index p = 0; p < problem.pools()->count(); ++p) {
+      bool above = false, below = false;
+      for (Index e : problem.pools()->elements(p)) {
+        const bool up = nodes(e, true), down = nodes(e, false);
+        if (up && down) elements.push_back(e);
+        if (up != down) (up ? above : below) = true;
+      }
+      shared += above && below ? 1 : 0;
+    }
+  }
+  std::vector<Index> elements;
+  int shared = 0;
+};
+
+/// A piece that shares patches with what stays is warned about, and no other.
+TEST(Pooled, APieceThatComesOffThroughPatchesIsToldOf) {
+  Scene scene = routed_board(Route::factor, 0.499);
+  scene.steps = 2;
+  const auto problem = std::make_shared<const Problem>(std::move(scene));
+  bool seen[2] = {};
+  for (double y = 10; y < 40 && !(seen[0] && seen[1]); y += 0.37) {
+    const CutAcross cut(*problem, y);
+    if (std::exchange(seen[cut.shared > 0], true)) continue;
+    Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
+    simulation.step();
+    simulation.remove(cut.elements);
+    simulation.step();
+    const auto warnings = simulation.warnings();
+    const auto told = std::ranges::count_if(warnings, [](const std::string& warning) {
+      return warning.find("of pooled volume reach") != std::string::npos;
+    });
+    EXPECT_EQ(told, cut.shared > 0 ? 1 : 0) << y;
+  }
+  EXPECT_TRUE(seen[0] && seen[1]);
 }
 
 }  // namespace
