@@ -120,13 +120,10 @@ void quiet(benchmark::State& state, Index cells, const char* backend, Route rout
     state.SetIterationTime(times.back() / 1e3);
   }
   state.counters["tets"] = static_cast<double>(body.problem->tet_count());
-  for (const auto& [name, values] : {std::pair{"", &times}, {"cpu_", &of_thread}}) {
-    const auto put = [&](const char* what, double q) {
-      state.counters[what + std::string("_") + name + "ms"] = quantile(*values, q);
-    };
-    put("min", 0);
-    put("median", 0.5);
-    put("p99", 0.99);
+  for (const auto& [unit, values] : {std::pair{"_ms", &times}, {"_cpu_ms", &of_thread}}) {
+    for (const auto& [what, q] : {std::pair{"min", 0.0}, {"median", 0.5}, {"p99", 0.99}}) {
+      state.counters[std::string(what) + unit] = quantile(*values, q);
+    }
   }
 }
 
@@ -136,6 +133,22 @@ struct Way {
   int most_cells;
   int frames = 200;
 };
+
+void add(const Way& way, int cells, const std::string& size, Damage damage,
+         const std::string& how) {
+  for (const bool wandering : {false, true}) {
+    const std::string name = std::string("hands/") + way.name + "/" + size + "/" + how +
+                             (wandering ? "/wandering" : "/proportional");
+    const auto run = [=](benchmark::State& state) {
+      quiet(state, cells, way.backend, way.route,
+            wandering ? Hands::wandering : Hands::proportional, damage);
+    };
+    benchmark::RegisterBenchmark(name.c_str(), run)
+        ->Unit(benchmark::kMillisecond)
+        ->UseManualTime()
+        ->Iterations(way.frames);
+  }
+}
 
 const bool kRows = [] {
   std::vector<Way> ways{{"inverse", "cpu", Route::inverse, 33},
@@ -150,20 +163,9 @@ const bool kRows = [] {
   for (const Way& way : ways) {
     for (const auto& [cells, size] : {std::pair{18, "1944"}, {33, "6534"}, {61, "22326"}}) {
       if (cells > way.most_cells) continue;
-      for (const auto& [damage, how] :
-           {std::pair{Damage::none, "whole"}, {Damage::torn, "torn"}, {Damage::loose, "loose"}}) {
-        for (const auto& [hands, doing] :
-             {std::pair{Hands::proportional, "proportional"}, {Hands::wandering, "wandering"}}) {
-          const std::string name =
-              std::string("hands/") + way.name + "/" + size + "/" + how + "/" + doing;
-          benchmark::RegisterBenchmark(
-              name.c_str(),
-              [=](auto& s) { quiet(s, cells, way.backend, way.route, hands, damage); })
-              ->Unit(benchmark::kMillisecond)
-              ->UseManualTime()
-              ->Iterations(way.frames);
-        }
-      }
+      add(way, cells, size, Damage::none, "whole");
+      add(way, cells, size, Damage::torn, "torn");
+      add(way, cells, size, Damage::loose, "loose");
     }
   }
   return true;

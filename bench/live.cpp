@@ -277,55 +277,60 @@ void add(const std::string& name, const std::function<void(benchmark::State&)>& 
   if (by_hand) row->UseManualTime()->Iterations(100);
 }
 
+// Undo, steps, and changes of elements of a board; `of` is the rest of a row's name.
+void add_changes(int cells, Route route, const std::string& of) {
+  for (int events : {1, 10, 100}) {
+    add("undo" + of + "/" + std::to_string(events),
+        [=](auto& s) { undo(s, cells, route, events); });
+  }
+  for (bool history : {false, true}) {
+    add(std::string("step") + of + (history ? "/history" : "/none"),
+        [=](auto& s) { step(s, cells, route, history); });
+  }
+  add("remove" + of, [=](auto& s) { remove(s, cells, route); });
+  add("cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::destroyed); });
+  for (bool warm : {false, true}) {
+    for (int number : {1, 2}) {
+      const std::string name = "first_step" + of + (warm ? "/warm/" : "/cold/");
+      benchmark::RegisterBenchmark((name + std::to_string(number)).c_str(),
+                                   [=](auto& s) { first_step(s, cells, route, warm, number); })
+          ->Unit(benchmark::kMillisecond)
+          ->UseManualTime()
+          ->Iterations(5);
+    }
+  }
+  if (route == Route::condensed) return;  // cracks do not split there
+  add("split_cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::split); });
+}
+
+void add_grips(int cells, Route route, const std::string& of) {
+  const bool all = route != Route::condensed;
+  add("grasp" + of, [=](auto& s) { grasp(s, cells, route, all); });
+  add("pose" + of, [=](auto& s) { pose(s, cells, route, all); });
+  add("new_load" + of, [=](auto& s) { new_load(s, cells, route, all); });
+  add("release" + of, [=](auto& s) { release(s, cells, route, all); });
+}
+
+void add_surfaces(int cells, const std::string& of) {
+  add("surface_of_one_rupture" + of, [=](auto& s) { surface(s, cells, true); });
+  add("surface_of_nothing" + of, [=](auto& s) { surface(s, cells, false); });
+  add(
+      "surface_points" + of, [=](auto& s) { points(s, cells); }, false);
+  add(
+      "skin" + of, [=](auto& s) { skin(s, cells); }, false);
+}
+
 const bool kRows = [] {
-  for (const auto& [cells, size] : {std::pair{18, "1944"}, {36, "7776"}, {71, "30246"}}) {
-    for (const auto& [route, word] : {std::pair{Route::inverse, "inverse"},
-                                      {Route::condensed, "condensed"},
-                                      {Route::factor, "factor"}}) {
-      if (route != Route::factor && cells > 18) continue;
-      const std::string of = std::string("/") + word + "/" + size;
-      for (int events : {1, 10, 100}) {
-        add("undo" + of + "/" + std::to_string(events),
-            [=](auto& s) { undo(s, cells, route, events); });
-      }
-      for (bool history : {false, true}) {
-        add(std::string("step") + of + (history ? "/history" : "/none"),
-            [=](auto& s) { step(s, cells, route, history); });
-      }
-      add("remove" + of, [=](auto& s) { remove(s, cells, route); });
-      add("cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::destroyed); });
-      for (bool warm : {false, true}) {
-        for (int number : {1, 2}) {
-          const std::string name = "first_step" + of + (warm ? "/warm/" : "/cold/");
-          benchmark::RegisterBenchmark((name + std::to_string(number)).c_str(),
-                                       [=](auto& s) { first_step(s, cells, route, warm, number); })
-              ->Unit(benchmark::kMillisecond)
-              ->UseManualTime()
-              ->Iterations(5);
-        }
-      }
-      if (route == Route::condensed) continue;  // cracks do not split there
-      add("split_cut" + of, [=](auto& s) { cut(s, cells, route, CrackWay::split); });
-    }
-    for (const auto& [route, word] : {std::pair{Route::inverse, "inverse"},
-                                      {Route::condensed, "condensed"},
-                                      {Route::factor, "factor"}}) {
+  for (const auto& [cells, size] : {std::pair{18, "/1944"}, {36, "/7776"}, {71, "/30246"}}) {
+    for (const auto& [route, word] : {std::pair{Route::inverse, "/inverse"},
+                                      {Route::condensed, "/condensed"},
+                                      {Route::factor, "/factor"}}) {
+      const std::string of = word + std::string(size);
+      if (route == Route::factor || cells == 18) add_changes(cells, route, of);
       // The dense inverse of 30,246 elements takes 8 GB.
-      if (route == Route::inverse && cells > 36) continue;
-      const bool all = route != Route::condensed;
-      const std::string of = std::string("/") + word + "/" + size;
-      add("grasp" + of, [=](auto& s) { grasp(s, cells, route, all); });
-      add("pose" + of, [=](auto& s) { pose(s, cells, route, all); });
-      add("new_load" + of, [=](auto& s) { new_load(s, cells, route, all); });
-      add("release" + of, [=](auto& s) { release(s, cells, route, all); });
+      if (route != Route::inverse || cells <= 36) add_grips(cells, route, of);
     }
-    const std::string of = std::string("/") + size;
-    add("surface_of_one_rupture" + of, [=](auto& s) { surface(s, cells, true); });
-    add("surface_of_nothing" + of, [=](auto& s) { surface(s, cells, false); });
-    add(
-        "surface_points" + of, [=](auto& s) { points(s, cells); }, false);
-    add(
-        "skin" + of, [=](auto& s) { skin(s, cells); }, false);
+    add_surfaces(cells, size);
   }
   return true;
 }();

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <functional>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "api/c_scene.hpp"
 #include "api/vulkan_host.hpp"
