@@ -72,17 +72,9 @@ Index TangentPattern::place_of(Index one, Index other) const {
 linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
                                                      const Inertia& inertia) const {
-  return tangent(body, u, kind, {}, inertia);
-}
-
-linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& body,
-                                                     std::span<const double> u, Tangent kind,
-                                                     std::span<const double> pressure,
-                                                     const Inertia& inertia) const {
   const PatchVolumes volumes(body, u);
-  const std::span<const double> of_patches = pressure.empty() ? volumes.pressure() : pressure;
   return tangent(
-      body, [&](Index e) { return element_tangent(body, e, u, kind, of_patches); },
+      body, [&](Index e) { return element_tangent(body, e, u, kind, volumes.pressure()); },
       patch_tangents(body, u, volumes.stiffness(), kind), inertia);
 }
 

@@ -40,11 +40,6 @@ class TangentPattern {
   [[nodiscard]] linear_algebra::SparseMatrix tangent(
       const HyperelasticBody& body, const std::function<ElementMatrix(Index)>& of_element,
       std::span<const PatchTangent> patches, const Inertia& inertia = {}) const;
-  /// The same with pressures of patches that are not those of u; empty: they are.
-  [[nodiscard]] linear_algebra::SparseMatrix tangent(const HyperelasticBody& body,
-                                                     std::span<const double> u, Tangent kind,
-                                                     std::span<const double> pressure,
-                                                     const Inertia& inertia) const;
   [[nodiscard]] const std::shared_ptr<const linear_algebra::Supernodes>& supernodes() const {
     return supernodes_;
   }

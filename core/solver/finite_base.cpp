@@ -33,7 +33,7 @@ Index full_vectors(Index columns) { return (columns + 7) / 8 * 8; }
 
 FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
                        const fem::TangentPattern& pattern, const fem::Inertia& inertia,
-                       const linear_algebra::FactorWork& work, std::span<const double> pressure)
+                       const linear_algebra::FactorWork& work)
     : problem_(&body.problem),
       border_(body.problem),
       laws_(body.law_of_volume.begin(), body.law_of_volume.end()),
@@ -41,15 +41,13 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
       u_(std::move(u)),
       kind_(kind),
       patches_(body, u_),
-      pressure_(pressure.begin(), pressure.end()),
       inertia_(inertia.factor),
-      factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, pressure, inertia), work),
+      factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
       columns_(factor_.cholesky().supernodes()),
       column_(static_cast<std::size_t>(problem_->dof_count()), kNone),
       coupled_(column_.size(), 0),
       stamps_{next_stamp(), next_stamp(), next_stamp()} {
   std::ranges::copy(body.destroyed, out_.begin());
-  if (pressure_.empty()) pressure_.assign(patches_.pressure().begin(), patches_.pressure().end());
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (out_[e]) continue;
     for (Index n : problem_->mesh().tets[e]) {
@@ -218,7 +216,7 @@ void FiniteBase::push_group(std::span<const Index> unknowns) {
 /// Adds an element's tangent to D.
 void FiniteBase::lose(Index element) {
   const fem::ElementMatrix k =
-      fem::element_tangent({*problem_, laws_}, element, u_, kind_, pressure_);
+      fem::element_tangent({*problem_, laws_}, element, u_, kind_, patches_.pressure());
   std::array<Index, 12> at;
   for (int i = 0; i < 12; ++i) {
     const Index d = problem_->dof(border_.corners(element)[i / 3], i % 3);

@@ -28,11 +28,10 @@ class FiniteBase {
  public:
   /// Of the tangent at u, as the pattern of the problem says. Throws NumericalError where it is not
   /// positive definite.
-  /// What the body refers to must outlive it, its `destroyed` need not. `pressure`: of patches of
-  /// pooled volume; empty: those of u.
+  /// What the body refers to must outlive it, its `destroyed` need not.
   FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u, fem::Tangent kind,
              const fem::TangentPattern& pattern, const fem::Inertia& inertia = {},
-             const linear_algebra::FactorWork& work = {}, std::span<const double> pressure = {});
+             const linear_algebra::FactorWork& work = {});
 
   /// Takes up what is out since the base was made or has followed last. False: an element is back,
   /// more than `most_rank` unknowns are touched, or the tangent without what left is not positive
@@ -104,9 +103,8 @@ class FiniteBase {
   std::vector<std::uint8_t> out_;  // per element: not in the base
   std::vector<double> u_;          // of the base
   fem::Tangent kind_;
-  fem::PatchVolumes patches_;     // of the base
-  std::vector<double> pressure_;  // of each patch there
-  std::vector<Index> changed_;    // patches of what has left last
+  fem::PatchVolumes patches_;   // at its state
+  std::vector<Index> changed_;  // patches of what has left last
   double inertia_;
   linear_algebra::Factor factor_;
   Eigen::MatrixXd inverse_;            // empty: the factor solves
