@@ -37,6 +37,7 @@ TEST(SceneFiles, AllAreThere) {
                            "scripted-cut",
                            "board-grip",
                            "liver",
+                           "artery",
                            "peel",
                            "brain-notch",
                            "board",
