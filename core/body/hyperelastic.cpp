@@ -6,6 +6,7 @@
 
 #include "body/deformation.hpp"
 #include "body/law_stress.hpp"
+#include "body/pooled_law.hpp"
 #include "material/linear.hpp"
 
 namespace sunder::fem {
@@ -31,6 +32,22 @@ Eigen::Matrix<double, 12, 9> corner_forces(const TetShape& shape, const Matrix9&
   return w;
 }
 
+/// W, or its part of shape where the volume is the patch's.
+double own_energy(const HyperelasticBody& body, Index e, const Mat3& f) {
+  const Law& law = body.law(e);
+  return (pools_volume(body, e) ? law.split->shape_energy : law.energy)(
+      body.problem.small_strain(e), f);
+}
+
+/// P, with its patch's pressure where the volume is that.
+Mat3 whole_stress(const HyperelasticBody& body, Index e, const Mat3& f,
+                  const PatchVolumes& patches) {
+  const SmallStrain& constants = body.problem.small_strain(e);
+  if (!pools_volume(body, e)) return body.law(e).stress(constants, f);
+  const double pressure = patches.pressure()[body.problem.pools()->of(e)];
+  return body.law(e).split->shape_stress(constants, f) + pressure * cofactor(f);
+}
+
 }  // namespace
 
 std::vector<const Law*> laws_of(const Problem& problem) {
@@ -49,49 +66,57 @@ double energy(const HyperelasticBody& body, std::span<const double> u) {
   double sum = 0;
   for (Index e = 0; e < body.problem.tet_count(); ++e) {
     if (!body.live(e)) continue;
-    sum += body.problem.shape(e).volume *
-           body.law(e).energy(body.problem.small_strain(e), deformation_gradient(body, e, u));
+    const Mat3 f = deformation_gradient(body, e, u);
+    sum += body.problem.shape(e).volume * own_energy(body, e, f);
   }
-  return sum;
+  return sum + PatchVolumes(body, u).energy();
 }
 
 double internal_forces(const HyperelasticBody& body, std::span<const double> u,
                        std::span<double> f) {
   const Problem& problem = body.problem;
+  const PatchVolumes patches(body, u);
   std::fill(f.begin(), f.end(), 0.0);
   double sum = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (!body.live(e)) continue;
     const Mat3 gradient = deformation_gradient(body, e, u);
     const TetShape& shape = problem.shape(e);
-    const double w = body.law(e).energy(problem.small_strain(e), gradient);
+    const double w = own_energy(body, e, gradient);
     sum += shape.volume * w;
     if (!std::isfinite(w)) continue;
-    const Mat3 p = body.law(e).stress(problem.small_strain(e), gradient);
+    const Mat3 p = whole_stress(body, e, gradient, patches);
     const Eigen::Matrix<double, 3, 4> force = shape.volume * (p * shape.gradient);
     for (int i = 0; i < 12; ++i)
       f[3 * problem.mesh().tets[e][i / 3] + i % 3] += force(i % 3, i / 3);
   }
-  return sum;
+  return sum + patches.energy();
 }
 
 void element_stresses(const HyperelasticBody& body, std::span<const double> u,
                       StressFunction stress, std::span<Voigt> stresses) {
+  const PatchVolumes patches(body, u);
   std::fill(stresses.begin(), stresses.end(), Voigt::Zero());
   for (Index e = 0; e < body.problem.tet_count(); ++e) {
     if (!body.live(e)) continue;
     const Mat3 f = deformation_gradient(body, e, u);
-    const SmallStrain& constants = body.problem.small_strain(e);
-    if (!std::isfinite(body.law(e).energy(constants, f))) continue;
-    const Mat3 p = body.law(e).stress(constants, f);
+    if (!std::isfinite(own_energy(body, e, f))) continue;
+    const Mat3 p = whole_stress(body, e, f, patches);
     stresses[e] = stress(p, &body.law(e) == &kLinear ? Mat3(Mat3::Identity()) : f);
   }
 }
 
 ElementMatrix element_tangent(const HyperelasticBody& body, Index e, std::span<const double> u,
-                              Tangent kind) {
-  const SpectralTangent tangent =
-      body.law(e).tangent(body.problem.small_strain(e), deformation_gradient(body, e, u));
+                              Tangent kind, std::span<const double> pressure) {
+  const SmallStrain& constants = body.problem.small_strain(e);
+  const Mat3 f = deformation_gradient(body, e, u);
+  const bool pools = pools_volume(body, e);
+  const Index patch = pools ? body.problem.pools()->of(e) : kNone;
+  const double of_patch = !pools             ? 0
+                          : pressure.empty() ? patch_pressure(body, patch, u)
+                                             : pressure[patch];
+  const SpectralTangent tangent = pools ? body.law(e).split->shape_tangent(constants, f, of_patch)
+                                        : body.law(e).tangent(constants, f);
   const TetShape& shape = body.problem.shape(e);
   Vector9 values = shape.volume * tangent.values;
   if (kind != Tangent::exact) {

@@ -47,8 +47,11 @@ void element_stresses(const HyperelasticBody& body, std::span<const double> u,
 /// exact; projected: by F the nearest positive semidefinite one; eased: between the two, nearer to
 /// the exact one.
 enum class Tangent { exact, eased, projected };
-/// 12 x 12.
+/// 12 x 12. Of an element whose volume is pooled the part that its own deformation decides, beside
+/// patch_tangent (pooled_law.hpp), with the pressure of its patch from `pressure`, one a patch;
+/// empty: that of u.
 [[nodiscard]] ElementMatrix element_tangent(const HyperelasticBody& body, Index e,
-                                            std::span<const double> u, Tangent kind);
+                                            std::span<const double> u, Tangent kind,
+                                            std::span<const double> pressure = {});
 
 }  // namespace sunder::fem

@@ -145,19 +145,26 @@ SUNDER_IN_LANES std::size_t rotations(const ElementBlock& b, const Lanes<9>& f, 
   return static_cast<std::size_t>(std::popcount(left));
 }
 
-enum class LaneLaw { linear, corotated, neo_hookean, saint_venant_kirchhoff, other };
+enum class LaneLaw {
+  linear,
+  corotated,
+  neo_hookean,
+  saint_venant_kirchhoff,
+  neo_hookean_shape,  // with the pressure of a patch
+  other
+};
 
-/// W and P.
+/// W and P. `pressure`: as respond_by_law has it.
 template <LaneLaw kLaw>
 SUNDER_IN_LANES void responses(const Problem& problem, const Law& law, const ElementBlock& b,
                                const Lanes<9>& f, const Lanes<9>& r, const double (&trace)[kLanes],
-                               Lanes<9>& p, double (&energy)[kLanes]) {
+                               const double* pressure, Lanes<9>& p, double (&energy)[kLanes]) {
   if constexpr (kLaw == LaneLaw::other) {
     ResponseInLanes scalar;
     for (int i = 0; i < 9; ++i) {
       for (int l = 0; l < kLanes; ++l) scalar.f[i][l] = f[i][l];
     }
-    respond_by_law(problem, law, b, scalar);
+    respond_by_law(problem, law, b, pressure, scalar);
     for (int i = 0; i < 9; ++i) {
       for (int l = 0; l < kLanes; ++l) p[i][l] = scalar.p[i][l];
     }
@@ -172,6 +179,9 @@ SUNDER_IN_LANES void responses(const Problem& problem, const Law& law, const Ele
         of = lanes::corotated(mu, lambda, at, at_lane(r, l), trace[l]);
       }
       if constexpr (kLaw == LaneLaw::neo_hookean) of = lanes::neo_hookean(mu, lambda, at);
+      if constexpr (kLaw == LaneLaw::neo_hookean_shape) {
+        of = lanes::neo_hookean_shape(mu, pressure[l], at);
+      }
       if constexpr (kLaw == LaneLaw::saint_venant_kirchhoff) {
         of = lanes::saint_venant_kirchhoff(mu, lambda, at);
       }
@@ -328,7 +338,8 @@ SUNDER_IN_LANES void run_blocks(const Range& of, const double* u, const LaneOutp
     Lanes<9> r, p;
     double trace[kLanes], w[kLanes];
     if (turned) found.repaired += rotations(b, f, sums, k * kLanes, r, trace);
-    responses<kLaw>(of.problem, of.law, b, f, r, trace, p, w);
+    const double* pressure = to.pressure ? to.pressure + k * kLanes : nullptr;
+    responses<kLaw>(of.problem, of.law, b, f, r, trace, pressure, p, w);
     for (int l = 0; l < kLanes; ++l) energy[l] += b.live[l] != 0 ? b.volume[l] * w[l] : 0.0;
     if (to.forces) corner_forces(b, p, w, to.forces + k * 12 * kLanes);
     if (stressed) stresses<kLaw>(b, f, r, p, w, to, found);
@@ -355,11 +366,28 @@ void run_saint_venant_kirchhoff(const Range& of, const double* u, const LaneOutp
   run_blocks<LaneLaw::saint_venant_kirchhoff>(of, u, to, found);
 }
 SUNDER_VECTORISED
+void run_neo_hookean_shape(const Range& of, const double* u, const LaneOutputs& to,
+                           GroupFound& found) {
+  run_blocks<LaneLaw::neo_hookean_shape>(of, u, to, found);
+}
+SUNDER_VECTORISED
+void run_volumes(const ElementBlock* blocks, std::size_t count, const double* u, double* volumes) {
+  Lanes<9> gradient[ElementGroup::kMost];
+  gradients(blocks, count, u, gradient);
+  for (std::size_t k = 0; k < count; ++k) {
+    for (int l = 0; l < kLanes; ++l) {
+      const Matrix at = at_lane(gradient[k], l);
+      volumes[k * kLanes + l] = lanes::determinant(at, lanes::cofactor(at));
+    }
+  }
+}
+SUNDER_VECTORISED
 void run_other(const Range& of, const double* u, const LaneOutputs& to, GroupFound& found) {
   run_blocks<LaneLaw::other>(of, u, to, found);
 }
 
-auto loop_of(const Law& law) {
+auto loop_of(const Law& law, bool pooled) {
+  if (pooled) return &law == &kNeoHookean ? &run_neo_hookean_shape : &run_other;
   if (&law == &kLinear) return &run_linear;
   if (&law == &kCorotated) return &run_corotated;
   if (&law == &kNeoHookean) return &run_neo_hookean;
@@ -372,7 +400,12 @@ auto loop_of(const Law& law) {
 void run_group(const Problem& problem, const ElementGroup& group, const ElementBlock* blocks,
                const double* u, const LaneOutputs& to, GroupFound& found) {
   found = {};
-  loop_of (*group.law)({problem, *group.law, blocks, group.count}, u, to, found);
+  loop_of(*group.law, group.pooled)({problem, *group.law, blocks, group.count}, u, to, found);
+}
+
+void find_volumes(const ElementGroup& group, const ElementBlock* blocks, const double* u,
+                  double* volumes) {
+  run_volumes(blocks, group.count, u, volumes);
 }
 
 }  // namespace sunder::fem

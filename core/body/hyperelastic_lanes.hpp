@@ -29,6 +29,8 @@ using Lanes = double[kCount][kLanes];
 /// What is stored of each element; null: nothing.
 struct LaneOutputs {
   double* forces = nullptr;  ///< of a block: axis, corner, lane
+  /// Where volumes are pooled, of a block: the pressures of its elements' patches.
+  const double* pressure = nullptr;
   Voigt* stress = nullptr;   ///< of each element, by its id
   bool largest = false;      ///< the largest norm of stress is asked for
   bool deformation = false;  ///< GroupFound's strain, turn and inverted are
@@ -40,6 +42,7 @@ struct ElementGroup {
   static constexpr std::size_t kMost = 8;
   const Law* law;
   std::size_t first, count;  ///< blocks
+  bool pooled = false;       ///< their volume is their patch's
 };
 
 /// Of a group's live elements, those in one lane together.
@@ -57,6 +60,10 @@ struct alignas(64) GroupFound {
 void run_group(const Problem& problem, const ElementGroup& group, const ElementBlock* blocks,
                const double* u, const LaneOutputs& to, GroupFound& found);
 
+/// J of each of a group's elements, block by block.
+void find_volumes(const ElementGroup& group, const ElementBlock* blocks, const double* u,
+                  double* volumes);
+
 // hyperelastic_pass.cpp: for lanes that the loops leave to the scalar laws.
 struct RotationInLanes {
   Lanes<9> f, r;
@@ -67,7 +74,8 @@ struct ResponseInLanes {
   Lanes<9> f, p;
   double energy[kLanes];
 };
+/// `pressure`: of its elements' patches, where their volume is pooled; else null.
 void respond_by_law(const Problem& problem, const Law& law, const ElementBlock& block,
-                    ResponseInLanes& of);
+                    const double* pressure, ResponseInLanes& of);
 
 }  // namespace sunder::fem

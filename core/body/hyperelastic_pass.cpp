@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "body/deformation.hpp"
+#include "body/pooled_law.hpp"
 #include "material/singular_values.hpp"
 
 namespace sunder::fem {
@@ -50,15 +51,18 @@ void rotate_by_singular_values(RotationInLanes& of, unsigned lanes) {
 }
 
 void respond_by_law(const Problem& problem, const Law& law, const ElementBlock& block,
-                    ResponseInLanes& of) {
+                    const double* pressure, ResponseInLanes& of) {
   for (int l = 0; l < kLanes; ++l) {
     Mat3 p = Mat3::Zero();
     of.energy[l] = 0;
     if (block.live[l] != 0) {
       const SmallStrain& constants = problem.small_strain(block.element[l]);
       const Mat3 f = from_lane(of.f, l);
-      of.energy[l] = law.energy(constants, f);
-      if (std::isfinite(of.energy[l])) p = law.stress(constants, f);
+      of.energy[l] = (pressure ? law.split->shape_energy : law.energy)(constants, f);
+      if (std::isfinite(of.energy[l])) {
+        p = pressure ? law.split->shape_stress(constants, f) + pressure[l] * cofactor(f)
+                     : law.stress(constants, f);
+      }
     }
     into_lane(of.p, l, p);
   }
@@ -67,6 +71,7 @@ void respond_by_law(const Problem& problem, const Law& law, const ElementBlock& 
 HyperelasticPass::HyperelasticPass(const HyperelasticBody& body, int threads)
     : body_(body),
       cut_off_(body.problem.mesh().tets.size(), 0),
+      alone_(cut_off_.size(), 0),
       workers_(std::make_unique<Workers>(threads > 0 ? threads
                                                      : pass_threads(body.problem.tet_count()))) {
   arrange();
@@ -81,45 +86,100 @@ void HyperelasticPass::count_in(ElementBlock& b, int lane) const {
 
 /// Elements of one law share blocks, by ascending number.
 void HyperelasticPass::arrange() {
-  const Problem& problem = body_.problem;
   laws_.assign(body_.law_of_volume.begin(), body_.law_of_volume.end());
   blocks_.clear();
   groups_.clear();
-  place_.resize(problem.mesh().tets.size());
-  std::vector<const Law*> each = laws_;
-  each.erase(std::unique(each.begin(), each.end()), each.end());
-  for (std::size_t i = 0; i < each.size(); ++i) {
-    if (std::find(each.begin(), each.begin() + static_cast<std::ptrdiff_t>(i), each[i]) !=
-        each.begin() + static_cast<std::ptrdiff_t>(i)) {
-      continue;
-    }
-    const std::size_t first = blocks_.size();
-    int lane = kLanes;
-    for (Index e = 0; e < problem.tet_count(); ++e) {
-      if (&body_.law(e) != each[i]) continue;
-      if (lane == kLanes) {
-        lane = 0;
-        blocks_.push_back({});
-        std::fill_n(blocks_.back().element, kLanes, kNone);
-      }
-      ElementBlock& b = blocks_.back();
-      const TetShape& shape = problem.shape(e);
-      for (int g = 0; g < 9; ++g) b.gradient[g][lane] = shape.gradient(g % 3, g / 3 + 1);
-      b.mu[lane] = problem.small_strain(e).mu;
-      b.lambda[lane] = problem.small_strain(e).lambda;
-      b.volume[lane] = shape.volume;
-      for (int a = 0; a < 4; ++a) b.corner[a][lane] = 3 * problem.mesh().tets[e][a];
-      b.element[lane] = e;
-      count_in(b, lane);
-      place_[e] = static_cast<Index>((blocks_.size() - 1) * kLanes) + lane;
-      ++lane;
-    }
-    for (std::size_t k = first; k < blocks_.size(); k += ElementGroup::kMost) {
-      groups_.push_back({each[i], k, std::min(ElementGroup::kMost, blocks_.size() - k)});
-    }
+  patches_.clear();
+  place_.resize(body_.problem.mesh().tets.size());
+  std::vector<const Law*> each;
+  for (const Law* law : laws_) {
+    if (std::ranges::find(each, law) == each.end()) each.push_back(law);
+  }
+  for (const Law* law : each) {
+    for (bool pooled : {false, true}) arrange(*law, pooled);
   }
   found_.resize(groups_.size());
   if (!forces_.empty()) place_forces();
+}
+
+/// Those of a law that pool their volume, or that do not.
+void HyperelasticPass::arrange(const Law& law, bool pooled) {
+  const Problem& problem = body_.problem;
+  const std::size_t first = blocks_.size();
+  int lane = kLanes;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (&body_.law(e) != &law || pools_volume(body_, e) != pooled) continue;
+    if (lane == kLanes) {
+      lane = 0;
+      blocks_.push_back({});
+      std::fill_n(blocks_.back().element, kLanes, kNone);
+    }
+    ElementBlock& b = blocks_.back();
+    const TetShape& shape = problem.shape(e);
+    for (int g = 0; g < 9; ++g) b.gradient[g][lane] = shape.gradient(g % 3, g / 3 + 1);
+    b.mu[lane] = problem.small_strain(e).mu;
+    b.lambda[lane] = problem.small_strain(e).lambda;
+    b.volume[lane] = shape.volume;
+    for (int a = 0; a < 4; ++a) b.corner[a][lane] = 3 * problem.mesh().tets[e][a];
+    b.element[lane] = e;
+    count_in(b, lane);
+    place_[e] = static_cast<Index>((blocks_.size() - 1) * kLanes) + lane;
+    ++lane;
+  }
+  for (std::size_t k = first; k < blocks_.size(); k += ElementGroup::kMost) {
+    groups_.push_back({&law, k, std::min(ElementGroup::kMost, blocks_.size() - k), pooled});
+  }
+  if (!pooled || blocks_.size() == first) return;
+  volumes_.resize(blocks_.size() * kLanes);
+  pressure_.assign(volumes_.size(), 0.0);
+  patches_.resize(static_cast<std::size_t>(problem.pools()->count()));
+}
+
+/// First J of all elements whose volume is pooled, then their patches' energies and pressures, each
+/// patch in the order of its elements: the same bits for any number of threads.
+void HyperelasticPass::pool_volumes(std::span<const double> u) {
+  const auto threads = static_cast<std::size_t>(workers_->count());
+  workers_->run([&](int worker) {
+    const auto w = static_cast<std::size_t>(worker);
+    for (std::size_t g = groups_.size() * w / threads; g < groups_.size() * (w + 1) / threads;
+         ++g) {
+      const ElementGroup& group = groups_[g];
+      if (!group.pooled) continue;
+      find_volumes(group, blocks_.data() + group.first, u.data(),
+                   volumes_.data() + group.first * kLanes);
+    }
+  });
+  workers_->run([&](int worker) {
+    const auto w = static_cast<std::size_t>(worker);
+    for (std::size_t p = patches_.size() * w / threads; p < patches_.size() * (w + 1) / threads;
+         ++p) {
+      pool_volume(static_cast<Index>(p));
+    }
+  });
+}
+
+void HyperelasticPass::pool_volume(Index patch) {
+  const auto elements = body_.problem.pools()->elements(patch);
+  patches_[static_cast<std::size_t>(patch)] = 0;
+  if (!pools_volume(body_, elements.front())) return;
+  double volume = 0, now = 0;
+  for (Index e : elements) {
+    const Index place = place_[e];
+    const ElementBlock& b = blocks_[place / kLanes];
+    if (b.live[place % kLanes] == 0 || alone_[e]) continue;
+    volume += b.volume[place % kLanes];
+    now += b.volume[place % kLanes] * volumes_[place];
+  }
+  if (!(volume > 0)) return;
+  const Index first = elements.front();
+  const VolumeSplit::Volume found =
+      body_.law(first).split->volume(body_.problem.small_strain(first), now / volume);
+  patches_[static_cast<std::size_t>(patch)] = volume * found.energy;
+  for (Index e : elements) pressure_[place_[e]] = found.pressure;
+}
+
+void HyperelasticPass::leave_alone(std::span<const std::uint8_t> elements) {
+  std::ranges::copy(elements, alone_.begin());
 }
 
 void HyperelasticPass::place_forces() {
@@ -193,6 +253,7 @@ HyperelasticPass::Found HyperelasticPass::run(std::span<const double> u, const W
       .largest = wanted.measure.has_value(),
       .deformation = wanted.deformation,
       .measure = wanted.measure.value_or(StressMeasure::cauchy)};
+  if (!patches_.empty()) pool_volumes(u);
   const auto threads = static_cast<std::size_t>(workers_->count());
   workers_->run([&](int worker) {
     const auto w = static_cast<std::size_t>(worker);
@@ -201,6 +262,7 @@ HyperelasticPass::Found HyperelasticPass::run(std::span<const double> u, const W
          ++g) {
       const ElementGroup& group = groups_[g];
       if (!wanted.forces.empty()) part.forces = forces_.data() + group.first * kBlockForces;
+      part.pressure = group.pooled ? pressure_.data() + group.first * kLanes : nullptr;
       run_group(body_.problem, group, blocks_.data() + group.first, u.data(), part, found_[g]);
     }
   });
@@ -250,6 +312,7 @@ HyperelasticPass::Found HyperelasticPass::sum_up(const Wanted& wanted, std::span
     all.energy += energy;
     repaired_ += group.repaired;
   }
+  for (double energy : patches_) all.energy += energy;
   all.largest = check == 0 ? std::sqrt(largest) : std::numeric_limits<double>::quiet_NaN();
   if (wanted.deformation) all.deformation = deformation(u);
   return all;
@@ -299,7 +362,8 @@ std::size_t HyperelasticPass::bytes() const {
   return blocks_.size() * sizeof(ElementBlock) + groups_.size() * sizeof(ElementGroup) +
          found_.size() * sizeof(GroupFound) + place_.size() * sizeof(Index) + cut_off_.size() +
          forces_.size() * sizeof(double) + nodes_.size() * sizeof(FourNodes) +
-         at_nodes_.size() * sizeof(at_nodes_[0]);
+         at_nodes_.size() * sizeof(at_nodes_[0]) + alone_.size() +
+         (volumes_.size() + pressure_.size() + patches_.size()) * sizeof(double);
 }
 
 }  // namespace sunder::fem

@@ -59,6 +59,10 @@ class HyperelasticPass {
   /// These no longer count in Found::largest and Found::deformation.
   void cut_off(std::span<const Index> elements);
 
+  /// Per element 1: its volume no longer counts in its patch's, where that is pooled. Its own
+  /// stress and forces mean nothing then.
+  void leave_alone(std::span<const std::uint8_t> elements);
+
   [[nodiscard]] int threads() const { return workers_->count(); }
   /// Elements of the last run that took the scalar way to their rotation.
   [[nodiscard]] std::size_t repaired() const { return repaired_; }
@@ -66,6 +70,9 @@ class HyperelasticPass {
 
  private:
   void arrange();
+  void arrange(const Law& law, bool pooled);
+  void pool_volumes(std::span<const double> u);
+  void pool_volume(Index patch);
   void count_in(ElementBlock& block, int lane) const;
   void place_forces();
   void sum_forces(std::span<double> forces);
@@ -81,6 +88,9 @@ class HyperelasticPass {
   std::vector<GroupFound> found_;      // of each group
   std::vector<Index> place_;           // of each element: block * kLanes + lane
   std::vector<std::uint8_t> cut_off_;  // per element
+  std::vector<std::uint8_t> alone_;    // per element
+  // Where volumes are pooled, per lane of a block: J, and the patch's pressure; per patch V_p U.
+  std::vector<double> volumes_, pressure_, patches_;
   // Forces on the corners of a block's elements: axis, corner, lane; a block of zeros at the end.
   std::vector<double> forces_;
   // Nodes with about as many elements, four at a time: step by step the places in forces_ of what

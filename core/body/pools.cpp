@@ -280,17 +280,6 @@ linear_algebra::SparseMatrix assemble_pressure(const Problem& problem,
   return matrix;
 }
 
-void append_couplings(const Problem& problem, std::vector<std::array<Index, 4>>& groups) {
-  const Pools& pools = *problem.pools();
-  for (Index p = 0; p < pools.count(); ++p) {
-    const std::vector<Index> nodes = pools.nodes(problem, p);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j)
-        groups.push_back({nodes[i], nodes[j], nodes[j], nodes[j]});
-    }
-  }
-}
-
 StressField::StressField(const Problem& problem, std::span<const double> scale,
                          std::span<const double> u)
     : problem_(problem), u_(u) {

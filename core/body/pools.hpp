@@ -66,9 +66,6 @@ void append_pressure(const Problem& problem, Index patch, const ShareOf& share,
 [[nodiscard]] linear_algebra::SparseMatrix assemble_pressure(const Problem& problem,
                                                              std::span<const double> scale);
 
-/// Groups of nodes that patches couple beyond those of elements.
-void append_couplings(const Problem& problem, std::vector<std::array<Index, 4>>& groups);
-
 /// Stress of elements in one displacement: what an element bears by itself, and the pressure
 /// kappa b_p . u / V_p of its patch where it pools.
 class StressField {

@@ -399,6 +399,31 @@ void Problem::build_shapes() {
 /// Past it linear tetrahedra lock: figures in docs/limits.md.
 constexpr double kLocks = 0.49;
 
+namespace {
+
+constexpr const char* kPools =
+    " has volume = \"pooled\", which is there for laws \"linear\" and \"neo-hookean\" in statics "
+    "with model \"none\", \"A\" or \"P\", but ";
+
+/// Why the law of a material cannot pool its volume in a scene; empty: it can.
+std::string why_law_cannot_pool(const Problem& problem, const Material& material) {
+  if (!problem.finite() || material.law == MaterialLaw::neo_hookean) return {};
+  const std::string law =
+      "law " + in_quotes(key_words("material", "law")[static_cast<std::size_t>(material.law)]);
+  const std::string no_volume = ", so that no part of its energy is one of J = det F alone";
+  switch (material.law) {
+    case MaterialLaw::corotated:
+      return law + " measures volume by the trace of its stretch" + no_volume;
+    case MaterialLaw::saint_venant_kirchhoff:
+      return law + " measures volume by the trace of Green's strain" + no_volume;
+    default:
+      return "its " + law + " pools volume only where all materials have it, not beside law " +
+             in_quotes(problem.law());
+  }
+}
+
+}  // namespace
+
 void Problem::make_pools() {
   std::vector<std::uint8_t> used(mesh().volumes.size(), 0);
   for (Index v : mesh().volume_of) used[static_cast<std::size_t>(v)] = 1;
@@ -407,13 +432,21 @@ void Problem::make_pools() {
     const Material& material = *material_of_volume_[v];
     const std::string what = "material " + in_quotes(mesh().volumes[v].name);
     if (material.volume == MaterialVolume::pooled) {
+      const std::string why = why_law_cannot_pool(*this, material);
+      if (!why.empty()) {
+        throw InputError(
+            InputFault::out_of_range,
+            what + kPools + why + "; take volume = \"element\" or law \"neo-hookean\"");
+      }
       check_pooled(what);
     } else if (material.poisson > kLocks) {
       warnings_.push_back(what + " has poisson = " + in_digits(material.poisson) +
                           " with volume = \"element\": linear tetrahedra lock over 0.49, a thick "
                           "cylinder is 4 % too stiff at 0.49, 16 % at 0.499 and 24 % at 0.4999, "
                           "thin layers many times (docs/verification.md)" +
-                          (can_pool() ? "; volume = \"pooled\" does not" : ""));
+                          (can_pool() && why_law_cannot_pool(*this, material).empty()
+                               ? "; volume = \"pooled\" does not"
+                               : ""));
     }
   }
   pools_ = fem::pools_of(*this);
@@ -425,29 +458,19 @@ void Problem::make_pools() {
   }
 }
 
-/// Whether anything of the scene speaks against pooled volume.
-bool Problem::can_pool() const {
-  return !finite() && !moves() && !row_of(scene_.fracture.model).grows_cracks;
-}
+/// Whether anything of the scene but laws speaks against pooled volume.
+bool Problem::can_pool() const { return !moves() && !row_of(scene_.fracture.model).grows_cracks; }
 
 void Problem::check_pooled(const std::string& what) const {
   if (can_pool()) return;
-  const std::string asks = what +
-                           " has volume = \"pooled\", which is there for law \"linear\" in "
-                           "statics with model \"none\", \"A\" or \"P\", but ";
-  if (finite()) {
-    throw InputError(InputFault::out_of_range,
-                     asks + "the scene has law " + in_quotes(law()) +
-                         "; take volume = \"element\" or law \"linear\" for all materials");
-  }
   if (moves()) {
     throw InputError(InputFault::out_of_range,
-                     asks +
+                     what + kPools +
                          "[dynamics] makes the scene move; take volume = \"element\" or leave "
                          "[dynamics] out");
   }
   throw InputError(InputFault::out_of_range,
-                   asks + "model " + in_quotes(row_of(scene_.fracture.model).name) +
+                   what + kPools + "model " + in_quotes(row_of(scene_.fracture.model).name) +
                        " grows cracks; take volume = \"element\" or model \"A\"");
 }
 

@@ -2,9 +2,11 @@
 #include "body/stiffness_factor.hpp"
 
 #include <array>
+#include <vector>
 
 #include "body/assembly.hpp"
 #include "body/pools.hpp"
+#include "linear_algebra/cell_dissection.hpp"
 #include "linear_algebra/nested_dissection.hpp"
 
 namespace sunder::fem {
@@ -17,9 +19,15 @@ std::vector<Index> elimination_order(const Problem& problem) {
   if (!problem.pools()) {
     return linear_algebra::nested_dissection({problem.mesh().nodes, unknowns, problem.mesh().tets});
   }
-  std::vector<std::array<Index, 4>> groups = problem.mesh().tets;
-  append_couplings(problem, groups);
-  return linear_algebra::nested_dissection({problem.mesh().nodes, unknowns, groups});
+  std::vector<std::vector<Index>> cells;
+  for (Index p = 0; p < problem.pools()->count(); ++p) {
+    cells.push_back(problem.pools()->nodes(problem, p));
+  }
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const auto& tet = problem.mesh().tets[static_cast<std::size_t>(e)];
+    if (problem.pools()->of(e) == kNone) cells.emplace_back(tet.begin(), tet.end());
+  }
+  return linear_algebra::cell_dissection({problem.mesh().nodes, unknowns, cells});
 }
 
 linear_algebra::Factor factor_stiffness(const Problem& problem, std::span<const double> scale,

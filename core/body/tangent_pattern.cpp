@@ -20,13 +20,26 @@ void for_pairs(Body&& body) {
   }
 }
 
+/// The same of the unknowns of a patch.
+template <class Body>
+void for_patch_pairs(const Problem& problem, Index patch, Body&& body) {
+  std::vector<Index> dofs;
+  for (Index n : problem.pools()->nodes(problem, patch)) {
+    for (int axis = 0; axis < 3; ++axis) dofs.push_back(problem.dof(n, axis));
+  }
+  for (std::size_t j = 0; j < dofs.size(); ++j) {
+    for (std::size_t i = j; i < dofs.size(); ++i) body(dofs[i], dofs[j]);
+  }
+}
+
 }  // namespace
 
 TangentPattern::TangentPattern(const Problem& problem)
     : problem_(problem), gripped_(static_cast<std::size_t>(problem.dof_count()), 0) {
   for (Index d : problem.gripped_dofs()) gripped_[d] = 1;
-  const linear_algebra::SparseMatrix entries =
+  linear_algebra::SparseMatrix entries =
       assemble_elements(problem, [](Index) -> ElementMatrix { return ElementMatrix::Zero(); });
+  if (problem.pools()) entries += assemble_pressure(problem, {});
   linear_algebra::SparseMatrix ordered;
   supernodes_ = std::make_shared<const linear_algebra::Supernodes>(
       linear_algebra::find_supernodes(entries, elimination_order(problem), ordered));
@@ -37,33 +50,37 @@ TangentPattern::TangentPattern(const Problem& problem)
   for (Index e = 0; e < problem.tet_count(); ++e) {
     std::array<Index, 12> dofs;
     for (int i = 0; i < 12; ++i) dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], i % 3);
-    for_pairs([&](int i, int j) {
-      const bool known =
-          dofs[i] == kNone || dofs[j] == kNone || gripped_[dofs[i]] || gripped_[dofs[j]];
-      if (known) {
-        places_.push_back(kNone);
-        return;
-      }
-      const auto [column, row] =
-          std::minmax(supernodes_->place[dofs[i]], supernodes_->place[dofs[j]]);
-      const Index* rows = zero_.innerIndexPtr();
-      const Index* at = std::lower_bound(rows + zero_.outerIndexPtr()[column],
-                                         rows + zero_.outerIndexPtr()[column + 1], row);
-      places_.push_back(static_cast<Index>(at - rows));
-    });
+    for_pairs([&](int i, int j) { places_.push_back(place_of(dofs[i], dofs[j])); });
   }
+  const Index patches = problem.pools() ? problem.pools()->count() : 0;
+  for (Index p = 0; p < patches; ++p) {
+    for_patch_pairs(problem, p,
+                    [&](Index one, Index other) { patch_places_.push_back(place_of(one, other)); });
+  }
+}
+
+/// Of an entry, among those of zero_; kNone: of a support or grip.
+Index TangentPattern::place_of(Index one, Index other) const {
+  if (one == kNone || other == kNone || gripped_[one] || gripped_[other]) return kNone;
+  const auto [column, row] = std::minmax(supernodes_->place[one], supernodes_->place[other]);
+  const Index* rows = zero_.innerIndexPtr();
+  const Index* at = std::lower_bound(rows + zero_.outerIndexPtr()[column],
+                                     rows + zero_.outerIndexPtr()[column + 1], row);
+  return static_cast<Index>(at - rows);
 }
 
 linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
                                                      const Inertia& inertia) const {
+  const PatchVolumes volumes(body, u);
   return tangent(
-      body, [&](Index e) { return element_tangent(body, e, u, kind); }, inertia);
+      body, [&](Index e) { return element_tangent(body, e, u, kind, volumes.pressure()); },
+      patch_tangents(body, u, volumes.stiffness(), kind), inertia);
 }
 
 linear_algebra::SparseMatrix TangentPattern::tangent(
     const HyperelasticBody& body, const std::function<ElementMatrix(Index)>& of_element,
-    const Inertia& inertia) const {
+    std::span<const PatchTangent> patches, const Inertia& inertia) const {
   linear_algebra::SparseMatrix of = zero_;
   double* values = of.valuePtr();
   for (Index e = 0; e < problem_.tet_count(); ++e) {
@@ -74,6 +91,22 @@ linear_algebra::SparseMatrix TangentPattern::tangent(
       if (*place != kNone) values[*place] += k(i, j);
       ++place;
     });
+  }
+  const Index* place = patch_places_.data();
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const PatchTangent& patch = patches[p];
+    const Eigen::Index count =
+        3 *
+        static_cast<Eigen::Index>(problem_.pools()->nodes(problem_, static_cast<Index>(p)).size());
+    if (patch.b.size() == 0) {
+      place += count * (count + 1) / 2;
+      continue;
+    }
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index i = j; i < count; ++i, ++place) {
+        if (*place != kNone) values[*place] += patch.factor * patch.b[i] * patch.b[j];
+      }
+    }
   }
   const auto diagonal = [&](Index d) -> double& {
     return values[of.outerIndexPtr()[supernodes_->place[d]]];

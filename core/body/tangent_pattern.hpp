@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "body/hyperelastic.hpp"
+#include "body/pooled_law.hpp"
 #include "linear_algebra/supernodes.hpp"
 
 namespace sunder::fem {
@@ -35,10 +35,11 @@ class TangentPattern {
   [[nodiscard]] linear_algebra::SparseMatrix tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
                                                      const Inertia& inertia = {}) const;
-  /// The same of any 12 x 12 of live elements.
+  /// The same of any 12 x 12 of live elements, and of what patches of pooled volume add: one each;
+  /// empty: none.
   [[nodiscard]] linear_algebra::SparseMatrix tangent(
       const HyperelasticBody& body, const std::function<ElementMatrix(Index)>& of_element,
-      const Inertia& inertia = {}) const;
+      std::span<const PatchTangent> patches, const Inertia& inertia = {}) const;
   [[nodiscard]] const std::shared_ptr<const linear_algebra::Supernodes>& supernodes() const {
     return supernodes_;
   }
@@ -46,11 +47,14 @@ class TangentPattern {
   [[nodiscard]] Eigen::VectorXd diagonal(const linear_algebra::SparseMatrix& tangent) const;
 
  private:
+  [[nodiscard]] Index place_of(Index one, Index other) const;
+
   const Problem& problem_;
   std::vector<std::uint8_t> gripped_;  // per unknown
   std::shared_ptr<const linear_algebra::Supernodes> supernodes_;
   linear_algebra::SparseMatrix zero_;  // the diagonal is the first entry of a column
   std::vector<Index> places_;          // of each element's lower triangle; kNone: not among them
+  std::vector<Index> patch_places_;    // the same of each patch, one after the other
 };
 
 /// Found when it is first asked for: a base that follows what parts needs none.

@@ -288,6 +288,7 @@ void LawBackend::publish_instruments() {
 StressSummary LawBackend::do_stress() {
   attempt([&] {
     if (stress_known_) return;  // nothing has moved
+    if (problem().pools()) now_.pass->leave_alone(without_stress());
     if (now_.device) {
       now_.device->stress(u_, stress_);
       return;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "body/hyperelastic.hpp"
 #include "body/law_stress.hpp"
 #include "body/pieces.hpp"
 #include "fracture/criterion.hpp"
@@ -12,6 +13,22 @@
 #include "sunder/simulation.hpp"
 
 namespace sunder {
+namespace {
+
+/// Of the elements that are not out, by laws of finite deformation.
+Vec3 forces_of_supports(const Problem& problem, std::span<const std::uint8_t> out,
+                        std::span<const double> u) {
+  std::vector<double> forces(u.size());
+  const std::vector<const Law*> laws = fem::laws_of(problem);
+  fem::internal_forces({problem, laws, out}, u, forces);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (problem.dofs()[i] == kNone) sum[static_cast<Eigen::Index>(i % 3)] += forces[i];
+  }
+  return sum;
+}
+
+}  // namespace
 
 const std::vector<Crack>& Simulation::cracks() const { return criterion_->cracks(); }
 
@@ -105,6 +122,11 @@ Vec3 Simulation::pooled_reaction(std::span<const Vec3> displacement) const {
   std::vector<double> u;
   u.reserve(3 * displacement.size());
   for (const Vec3& x : displacement) u.insert(u.end(), x.data(), x.data() + 3);
+  if (problem_->finite()) {  // a piece that is cut off shares no patch with the rest
+    std::vector<std::uint8_t> out(backend_->destroyed().begin(), backend_->destroyed().end());
+    for (std::size_t e = 0; e < now_.cut_off.size(); ++e) out[e] |= now_.cut_off[e];
+    return forces_of_supports(*problem_, out, u);
+  }
   std::vector<double> scale;
   scale.reserve(problem_->mesh().tets.size());
   for (std::uint8_t gone : backend_->destroyed()) {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "linear_algebra/nested_dissection.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <span>
 #include <utility>
+
+#include "linear_algebra/minimum_degree.hpp"
 
 namespace sunder::linear_algebra {
 namespace {
@@ -125,20 +124,16 @@ class Dissection {
   void minimum_degree(std::vector<Index>& piece) {
     std::sort(piece.begin(), piece.end());
     const auto size = static_cast<Index>(piece.size());
-    std::vector<Eigen::Triplet<std::int8_t, Index>> edges;
+    std::vector<std::pair<Index, Index>> edges;
     for (Index i = 0; i < size; ++i) {
-      edges.emplace_back(i, i, std::int8_t{1});
+      edges.emplace_back(i, i);
       for (Index m : neighbours_.of(piece[i])) {
         const auto at = std::lower_bound(piece.begin(), piece.end(), m);
         if (at == piece.end() || *at != m) continue;
-        edges.emplace_back(i, static_cast<Index>(at - piece.begin()), std::int8_t{1});
+        edges.emplace_back(i, static_cast<Index>(at - piece.begin()));
       }
     }
-    Eigen::SparseMatrix<std::int8_t, Eigen::ColMajor, Index> graph(size, size);
-    graph.setFromTriplets(edges.begin(), edges.end());
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> order;
-    Eigen::AMDOrdering<Index>()(graph, order);
-    for (Index i = 0; i < size; ++i) order_.push_back(piece[order.indices()[i]]);
+    for (Index i : minimum_degree_order(size, edges)) order_.push_back(piece[i]);
   }
 
   const std::span<const Vec3> points_;

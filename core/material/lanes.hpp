@@ -132,6 +132,33 @@ SUNDER_IN_LANES double log(double x) {
   return (k * kLn2High - ((rest - k * kLn2Low) - f)) + (x - x);
 }
 
+/// Below it a ratio of volumes counts as none.
+inline constexpr double kLeastVolume = std::numeric_limits<double>::min();
+
+/// Cube root of x >= kLeastVolume, to two units in the last place. x = 2^(3 q + r) m with r one of
+/// -1, 0, 1 and m about 1: a parabola for m, and Halley's step twice.
+SUNDER_IN_LANES double cube_root(double x) {
+  constexpr double kTwo52 = 0x1p52, kRound = 0x1.8p52;
+  constexpr std::uint64_t kRootHalf = 0x3fe6a09e667f3bcd, kOne = 0x3ff0000000000000,
+                          kMantissa = 0x000fffffffffffff;
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x) + (kOne - kRootHalf);
+  const double k =
+      std::bit_cast<double>((bits >> 52) | std::bit_cast<std::uint64_t>(kTwo52)) - kTwo52 - 1023;
+  const double m = std::bit_cast<double>((bits & kMantissa) + kRootHalf);
+  const double q = (k * (1.0 / 3) + kRound) - kRound, r = k - 3 * q;
+  const double least = r < 0 ? 0x1.965fea53d6e3dp-1 : 1.0;
+  const double part = r > 0 ? 0x1.428a2f98d728bp+0 : least;  // 2^(r/3)
+  const double power =
+      std::bit_cast<double>(std::bit_cast<std::uint64_t>(q + (kTwo52 + 1023)) << 52);
+  const double f = m - 1;
+  double root = 1 + f * (1.0 / 3 - f * (1.0 / 9));
+  for (int step = 0; step < 2; ++step) {
+    const double cube = root * root * root;
+    root += root * ((m - cube) / (2 * cube + m));
+  }
+  return root * (part * power);
+}
+
 /// The nearest rotation, R of F = R S (singular_values.hpp), from the sum t = tr S of the singular
 /// values with their signs. That is the largest root of
 ///   (t^2 - e)^2 - 8 J t - 4 k = 0,  e = |F|^2, k = |cof F|^2,
@@ -280,6 +307,22 @@ SUNDER_IN_LANES Response neo_hookean(double mu, double lambda, const Matrix& f) 
   const double energy = (0.5 * mu * (inner(f, f) - 3) - mu * dilation) + 0.5 * pressure * dilation;
   Response found;
   found.energy = j > 0 ? energy : std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      found.p.at[i][k] = mu * f.at[i][k] + by * of_cofactors.at[i][k];
+    }
+  }
+  return found;
+}
+
+/// The part of law "neo-hookean" that shape decides, with a pressure that is given.
+SUNDER_IN_LANES Response neo_hookean_shape(double mu, double pressure, const Matrix& f) {
+  const Matrix of_cofactors = cofactor(f);
+  const double j = determinant(f, of_cofactors), side = cube_root(j);
+  const double by = pressure - mu / side;
+  const double energy = 0.5 * mu * (inner(f, f) - 3 * (side * side));
+  Response found;
+  found.energy = j >= kLeastVolume ? energy : std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
       found.p.at[i][k] = mu * f.at[i][k] + by * of_cofactors.at[i][k];

@@ -11,6 +11,21 @@
 
 namespace sunder {
 
+/// A law's energy as one of shape and one of volume, W(F) = W_s(F) + U(J) with J = det F, for
+/// elements that change their volume together (method.md "Pooled volume"). U(J) = W(J^(1/3) I):
+/// W_s is 0 wherever nothing changes its shape.
+struct VolumeSplit {
+  double (*shape_energy)(const SmallStrain&, const Mat3& f);
+  Mat3 (*shape_stress)(const SmallStrain&, const Mat3& f);
+  /// Second derivative of W_s(F) + p J.
+  SpectralTangent (*shape_tangent)(const SmallStrain&, const Mat3& f, double pressure);
+  /// U, p = U' and U''; an infinite energy where the law knows no such volume [MPa].
+  struct Volume {
+    double energy, pressure, stiffness;
+  };
+  Volume (*volume)(const SmallStrain&, double j);
+};
+
 /// F is the deformation gradient dx/dX = I + du/dX. No function of a law allocates.
 struct Law {
   std::string_view name;  ///< as a scene's key `law` will say it
@@ -20,6 +35,8 @@ struct Law {
   Mat3 (*stress)(const SmallStrain&, const Mat3& f);
   /// dP/dF; F must have an energy.
   SpectralTangent (*tangent)(const SmallStrain&, const Mat3& f);
+  /// Null: J alone decides no part of the energy.
+  const VolumeSplit* split = nullptr;
 };
 
 /// "linear", "corotated", "neo-hookean", "saint-venant-kirchhoff".

@@ -298,9 +298,10 @@ std::span<const MemberKey<Material>> material_keys() {
           "\"element\": each changes its volume by itself; \"pooled\": some 8 as one, so that "
           "nearly "
           "incompressible tissue does not lock (method.md \"Pooled volume\")",
-          "\"element\" with `poisson` over 0.49: warning; \"pooled\" with another law, in motion "
-          "or "
-          "with a model that grows cracks: error; with a backend or route that cannot: exit code 4",
+          "\"element\" with `poisson` over 0.49: warning; \"pooled\" with law \"corotated\" or "
+          "\"saint-venant-kirchhoff\", with \"linear\" beside other laws, in motion or with a "
+          "model "
+          "that grows cracks: error; with a backend or route that cannot: exit code 4",
           {.words = {"element", "pooled"}}),
   };
   return keys;

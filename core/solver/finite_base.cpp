@@ -40,6 +40,7 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
       out_(problem_->mesh().tets.size(), 0),
       u_(std::move(u)),
       kind_(kind),
+      patches_(body, u_),
       inertia_(inertia.factor),
       factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
       columns_(factor_.cholesky().supernodes()),
@@ -69,12 +70,15 @@ bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
     if (now.out()[e] == out_[e]) continue;
     if (!now.out()[e]) return false;
     lost.push_back(e);
-    for (Index n : border_.corners(e)) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const Index d = problem_->dof(n, axis);
-        if (d == kNone || !coupled_[d] || column_[d] != kNone) continue;
-        column_[d] = static_cast<Index>(touched_.size() + fresh.size());
-        fresh.push_back(d);
+    for (Index n : border_.corners(e)) touch_node(n, fresh);
+  }
+  changed_.clear();
+  if (const fem::Pools* pools = problem_->pools()) {
+    pools->of(lost, changed_);
+    for (Index patch : changed_) {
+      for (Index e : pools->elements(patch)) {
+        if (out_[e]) continue;
+        for (Index n : problem_->mesh().tets[e]) touch_node(n, fresh);
       }
     }
   }
@@ -88,10 +92,22 @@ bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
       touched_.size() + fresh.size() + static_cast<std::size_t>(border_.size());
   if (rank > static_cast<std::size_t>(most_rank)) return false;
   touch(fresh);
+  lose_pressure(1);
   for (Index e : lost) lose(e);
+  lose_pressure(-1);
   if ((!lost.empty() || gripped_) && !correct(now)) return false;
   gripped_ = false;
   return border_.empty() || follow_border();
+}
+
+/// Its unknowns get columns.
+void FiniteBase::touch_node(Index node, std::vector<Index>& fresh) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Index d = problem_->dof(node, axis);
+    if (d == kNone || !coupled_[d] || column_[d] != kNone) continue;
+    column_[d] = static_cast<Index>(touched_.size() + fresh.size());
+    fresh.push_back(d);
+  }
 }
 
 bool FiniteBase::part(const Problem& now, const fem::Parting& parting,
@@ -199,7 +215,8 @@ void FiniteBase::push_group(std::span<const Index> unknowns) {
 
 /// Adds an element's tangent to D.
 void FiniteBase::lose(Index element) {
-  const fem::ElementMatrix k = fem::element_tangent({*problem_, laws_}, element, u_, kind_);
+  const fem::ElementMatrix k =
+      fem::element_tangent({*problem_, laws_}, element, u_, kind_, patches_.pressure());
   std::array<Index, 12> at;
   for (int i = 0; i < 12; ++i) {
     const Index d = problem_->dof(border_.corners(element)[i / 3], i % 3);
@@ -211,6 +228,30 @@ void FiniteBase::lose(Index element) {
     }
   }
   out_[element] = 1;
+}
+
+/// Adds to D what the changed patches are stiff by with the elements that they have.
+void FiniteBase::lose_pressure(double times) {
+  for (Index patch : changed_) {
+    const fem::PatchTangent k =
+        fem::patch_tangent({*problem_, laws_, out_}, patch, u_, patches_.stiffness()[patch], kind_);
+    if (k.b.size() == 0) continue;
+    const std::vector<Index> nodes = problem_->pools()->nodes(*problem_, patch);
+    std::vector<Index> at;
+    for (Index n : nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem_->dof(n, axis);
+        at.push_back(d == kNone ? kNone : column_[d]);
+      }
+    }
+    for (std::size_t j = 0; j < at.size(); ++j) {
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        if (at[i] == kNone || at[j] == kNone) continue;
+        d_(at[i], at[j]) += times * k.factor * k.b[static_cast<Eigen::Index>(i)] *
+                            k.b[static_cast<Eigen::Index>(j)];
+      }
+    }
+  }
 }
 
 /// M of the head comment, unknowns that are held still first.

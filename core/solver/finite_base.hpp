@@ -7,7 +7,9 @@
 // the base's state, (A - D)^-1 = A^-1 + A^-1 E_T M E_T^T A^-1, where M = D + D R S^-1 R^T D,
 // G = R R^T, S = I - R^T D R: the tangent without them is positive definite where S is. Unknowns Z
 // that nothing reaches any more are held still: G without them is their Schur complement. Nodes
-// that have parted since are a border of all this (finite_border.hpp).
+// that have parted since are a border of all this (finite_border.hpp). A patch of pooled volume
+// with fewer elements is stiff along another vector: D holds the one before less the one after,
+// both at the base's state and pressure, and need not be positive semidefinite.
 #pragma once
 
 #include <Eigen/Core>
@@ -81,6 +83,8 @@ class FiniteBase {
   void touch(std::span<const Index> unknowns);
   void push_group(std::span<const Index> unknowns);
   void lose(Index element);
+  void lose_pressure(double times);
+  void touch_node(Index node, std::vector<Index>& fresh);
   [[nodiscard]] bool correct(const RestingBody& now);
   [[nodiscard]] bool follow_border();
   [[nodiscard]] Index touched_count() const { return static_cast<Index>(touched_.size()); }
@@ -99,6 +103,8 @@ class FiniteBase {
   std::vector<std::uint8_t> out_;  // per element: not in the base
   std::vector<double> u_;          // of the base
   fem::Tangent kind_;
+  fem::PatchVolumes patches_;   // at its state
+  std::vector<Index> changed_;  // patches of what has left last
   double inertia_;
   linear_algebra::Factor factor_;
   Eigen::MatrixXd inverse_;            // empty: the factor solves

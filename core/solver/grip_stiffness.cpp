@@ -27,6 +27,7 @@ struct AtGrips {
 
 AtGrips tangent_at_grips(const RestingBody& now,
                          const std::function<fem::ElementMatrix(Index)>& of_element,
+                         std::span<const fem::PatchTangent> patches,
                          const linear_algebra::Supernodes& order) {
   const Problem& problem = now.body().problem;
   const auto gripped = problem.gripped_dofs();
@@ -34,24 +35,41 @@ AtGrips tangent_at_grips(const RestingBody& now,
   std::vector<Index> column(static_cast<std::size_t>(problem.dof_count()), kNone);
   for (Index g = 0; g < count; ++g) column[gripped[g]] = g;
   AtGrips of{RowMajor::Zero(problem.dof_count(), count), Eigen::MatrixXd::Zero(count, count)};
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (now.out()[e]) continue;
-    std::array<Index, 12> dofs, columns;
-    for (int i = 0; i < 12; ++i) {
-      dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], i % 3);
-      columns[i] = dofs[i] == kNone ? kNone : column[dofs[i]];
-    }
-    if (std::ranges::all_of(columns, [](Index c) { return c == kNone; })) continue;
-    const fem::ElementMatrix k = of_element(e);
-    for (int j = 0; j < 12; ++j) {
-      for (int i = 0; i < 12 && columns[j] != kNone; ++i) {
-        if (columns[i] != kNone) {
-          of.within(columns[i], columns[j]) += k(i, j);
+  const auto column_of = [&](Index d) { return d == kNone ? kNone : column[d]; };
+  const auto add = [&](std::span<const Index> dofs, const auto& k) {
+    for (std::size_t j = 0; j < dofs.size(); ++j) {
+      const Index to = column_of(dofs[j]);
+      for (std::size_t i = 0; i < dofs.size() && to != kNone; ++i) {
+        const Index own = column_of(dofs[i]);
+        if (own != kNone) {
+          of.within(own, to) += k(i, j);
         } else if (dofs[i] != kNone) {
-          of.between(order.place[dofs[i]], columns[j]) += k(i, j);
+          of.between(order.place[dofs[i]], to) += k(i, j);
         }
       }
     }
+  };
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    if (now.out()[e]) continue;
+    std::array<Index, 12> dofs;
+    for (int i = 0; i < 12; ++i) dofs[i] = problem.dof(problem.mesh().tets[e][i / 3], i % 3);
+    if (std::ranges::all_of(dofs, [&](Index d) { return column_of(d) == kNone; })) continue;
+    const fem::ElementMatrix k = of_element(e);
+    add(dofs, [&](std::size_t i, std::size_t j) {
+      return k(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    });
+  }
+  std::vector<Index> dofs;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const Eigen::VectorXd& b = patches[p].b;
+    if (b.size() == 0) continue;
+    dofs.clear();
+    for (Index n : problem.pools()->nodes(problem, static_cast<Index>(p))) {
+      for (int axis = 0; axis < 3; ++axis) dofs.push_back(problem.dof(n, axis));
+    }
+    add(dofs, [&](std::size_t i, std::size_t j) {
+      return patches[p].factor * b[static_cast<Eigen::Index>(i)] * b[static_cast<Eigen::Index>(j)];
+    });
   }
   return of;
 }
@@ -128,12 +146,17 @@ Eigen::MatrixXd grip_stiffness(const RestingBody& now, std::span<const double> u
                                const GripTangent& of) {
   const Problem& problem = now.body().problem;
   const auto& order = *pattern.supernodes();
+  const fem::PatchVolumes volumes(now.body(), u);
+  const std::vector<fem::PatchTangent> patches =
+      fem::patch_tangents(now.body(), u, volumes.stiffness(), fem::Tangent::exact);
   const std::function<fem::ElementMatrix(Index)> of_element = [&](Index e) -> fem::ElementMatrix {
-    const fem::ElementMatrix elastic = fem::element_tangent(now.body(), e, u, fem::Tangent::exact);
+    const fem::ElementMatrix elastic =
+        fem::element_tangent(now.body(), e, u, fem::Tangent::exact, volumes.pressure());
     return of.viscosity ? elastic + of.viscosity->tangent(e, u, of.viscous) : elastic;
   };
-  AtGrips at = tangent_at_grips(now, of_element, order);
-  const linear_algebra::SparseMatrix k = pattern.tangent(now.body(), of_element, of.inertia);
+  AtGrips at = tangent_at_grips(now, of_element, patches, order);
+  const linear_algebra::SparseMatrix k =
+      pattern.tangent(now.body(), of_element, patches, of.inertia);
   for (Index d = 0; d < problem.dof_count(); ++d) {
     if (now.frozen()[d]) at.between.row(order.place[d]).setZero();
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "material/finite_stress.hpp"
@@ -12,8 +13,9 @@
 namespace sunder::test {
 
 struct FiniteTorn {
-  explicit FiniteTorn(const Law& law, solver::FiniteStaticsOptions options = {})
-      : problem(held_board()),
+  explicit FiniteTorn(const Law& law, solver::FiniteStaticsOptions options = {},
+                      Scene scene = held_board())
+      : problem(std::move(scene)),
         laws(fem::one_law(problem, law)),
         destroyed(problem.mesh().tets.size(), 0),
         statics(body, options) {}

@@ -40,6 +40,8 @@ TEST(PooledVolume, IsThatOfThePage) {
               text("%.2f %%", 100 * errors.tresca));
   expect_cell("Cook's membrane, pooled volume", {"32 x 32"}, "pooled [mm]",
               text("%.3f", incompressible_cook(MaterialVolume::pooled, 32)));
+  expect_cell("Cook's membrane, pooled volume, law neo-hookean", {"16 x 16"}, "pooled [mm]",
+              text("%.3f", neo_hookean_cook(MaterialVolume::pooled, 16, 4)));
   expect_cell("Bonded block, pooled volume", {"1536"}, "pooled [N]",
               text("%.2f", bonded_block_force(MaterialVolume::pooled, 8)));
 }

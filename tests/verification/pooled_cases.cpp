@@ -91,21 +91,27 @@ LameErrors lame_errors(MaterialVolume volume, double poisson, Index cells) {
   return errors;
 }
 
-double incompressible_cook(MaterialVolume volume, Index cells) {
+namespace {
+
+/// In steps of the load: vertical displacement at (48, 60).
+double cook(const Material& material, Index cells, int steps) {
   Mesh mesh = structured_board({cells, cells, 1, 48, 44, 1});
   for (Vec3& x : mesh.nodes) {
     const double xi = x.x() / 48, eta = x.y() / 44;
     x.y() = 44 * xi + (44 - 28 * xi) * eta;
   }
-  Scene scene = scene_of(std::move(mesh), nearly_incompressible(240.565, 0.4999, volume));
+  Scene scene = scene_of(std::move(mesh), material);
   scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(kNear, 100, 2)}, Axes{3}});
   scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(100, 100, 2)}, Axes{4}});
   const Body body(std::move(scene));
   const Mesh& made = body.problem->mesh();
-  body.load(traction_force(
-      made, [](const Vec3& x) { return x.x() > 48 - kNear; },
-      [](const Vec3&) { return Vec3(0, 6.25, 0); }));
-  body.backend->solve();
+  for (int step = 1; step <= steps; ++step) {
+    const double part = static_cast<double>(step) / steps;
+    body.load(traction_force(
+        made, [](const Vec3& x) { return x.x() > 48 - kNear; },
+        [&](const Vec3&) { return Vec3(0, 6.25 * part, 0); }));
+    body.backend->solve();
+  }
   const std::vector<double> u = body.displacement();
   for (std::size_t n = 0; n < made.nodes.size(); ++n) {
     if ((made.nodes[n].head<2>() - Vec2(48, 60)).norm() < kNear) return u[3 * n + 1];
@@ -113,12 +119,25 @@ double incompressible_cook(MaterialVolume volume, Index cells) {
   return 0;
 }
 
-double bonded_block_force(MaterialVolume volume, Index n) {
-  Scene scene = scene_of(structured_board({n, n, n / 2, 10, 10, 5}),
-                         nearly_incompressible(1, 0.4999, volume));
+}  // namespace
+
+double incompressible_cook(MaterialVolume volume, Index cells) {
+  return cook(nearly_incompressible(240.565, 0.4999, volume), cells, 1);
+}
+
+double neo_hookean_cook(MaterialVolume volume, Index cells, int steps) {
+  Material material = nearly_incompressible(240.565, 0.4999, volume);
+  material.law = MaterialLaw::neo_hookean;
+  return cook(material, cells, steps);
+}
+
+namespace {
+
+double block_force(const Material& material, Index n, double pressed) {
+  Scene scene = scene_of(structured_board({n, n, n / 2, 10, 10, 5}), material);
   scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(11, 11, kNear)}, Axes{7}});
   Instrument plate;
-  plate.action = Grip{Box{Vec3(-1, -1, 5 - kNear), Vec3(11, 11, 6)}, Vec3(0, 0, -0.1), Axes{7}};
+  plate.action = Grip{Box{Vec3(-1, -1, 5 - kNear), Vec3(11, 11, 6)}, Vec3(0, 0, -pressed), Axes{7}};
   scene.instruments.push_back(plate);
   const Body body(std::move(scene));
   const auto gripped = body.problem->gripped_dofs();
@@ -130,7 +149,7 @@ double bonded_block_force(MaterialVolume volume, Index n) {
     }
   }
   for (std::size_t g = 0; g < gripped.size(); ++g) {
-    if (down[static_cast<std::size_t>(gripped[g])]) displacement[g] = -0.1;
+    if (down[static_cast<std::size_t>(gripped[g])]) displacement[g] = -pressed;
   }
   body.load(std::vector<double>(body.problem->dofs().size(), 0.0), displacement);
   body.backend->solve();
@@ -140,6 +159,18 @@ double bonded_block_force(MaterialVolume volume, Index n) {
     if (down[static_cast<std::size_t>(gripped[g])]) force -= reactions[g];
   }
   return force;
+}
+
+}  // namespace
+
+double bonded_block_force(MaterialVolume volume, Index n) {
+  return block_force(nearly_incompressible(1, 0.4999, volume), n, 0.1);
+}
+
+double neo_hookean_block_force(Index n) {
+  Material material = nearly_incompressible(1, 0.4999, MaterialVolume::pooled);
+  material.law = MaterialLaw::neo_hookean;
+  return 1000 * block_force(material, n, 1e-4);
 }
 
 }  // namespace sunder::test

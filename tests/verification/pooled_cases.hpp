@@ -19,8 +19,14 @@ struct LameErrors {
 /// 400889.8), shear 6.25: vertical displacement at (48, 60) [mm].
 [[nodiscard]] double incompressible_cook(MaterialVolume volume, Index cells);
 
+/// The same by law "neo-hookean", in so many steps of the load. 6.97 by quadratic tetrahedra.
+[[nodiscard]] double neo_hookean_cook(MaterialVolume volume, Index cells, int steps);
+
 /// A block 10 x 10 x 5 mm of n x n x n/2 cells, E 1, nu .4999, bonded below and above to plates of
 /// which the upper comes down by .1 mm: force on it [N]. 3.45 by quadratic tetrahedra.
 [[nodiscard]] double bonded_block_force(MaterialVolume volume, Index n);
+/// The same block by law "neo-hookean", pooled, where the plate comes down by a thousandth of that;
+/// a thousand times its force.
+[[nodiscard]] double neo_hookean_block_force(Index n);
 
 }  // namespace sunder::test

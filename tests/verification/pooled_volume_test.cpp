@@ -44,5 +44,19 @@ TEST(PooledVolume, BondedBlockBearsWhatItShould) {
   EXPECT_GT(bonded_block_force(element, 8), 200);
 }
 
+// 6.97 by quadratic tetrahedra, 6.85 by a prototype, refined: bending of coarse meshes stays stiff.
+TEST(PooledVolume, CooksMembraneAtFiniteDeformation) {
+  const double coarse = neo_hookean_cook(pooled, 16, 4), fine = neo_hookean_cook(pooled, 32, 4);
+  EXPECT_GT(coarse, 0.93 * 6.97);
+  EXPECT_GT(fine, 0.97 * 6.97);
+  EXPECT_LT(fine, 6.97);
+  EXPECT_LT(neo_hookean_cook(element, 16, 4), 0.4 * fine);
+}
+
+TEST(PooledVolume, BondedBlockByTheFiniteLawIsThatOfTheLinearOneAtSmallLoads) {
+  const double linear = bonded_block_force(pooled, 8);
+  EXPECT_NEAR(neo_hookean_block_force(8), linear, 1e-3 * linear);
+}
+
 }  // namespace
 }  // namespace sunder::test

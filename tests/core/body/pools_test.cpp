@@ -219,7 +219,20 @@ std::string refusal(const Scene& scene) {
 TEST(Pools, AreRefusedWhereTheyAreNotComputed) {
   Scene finite = board();
   finite.materials["upper"].law = MaterialLaw::neo_hookean;
-  EXPECT_NE(refusal(finite).find("but the scene has law \"linear, neo-hookean\""),
+  EXPECT_NE(refusal(finite).find("but its law \"linear\" pools volume only where all materials "
+                                 "have it, not beside law \"linear, neo-hookean\""),
+            std::string::npos)
+      << refusal(finite);
+  for (auto& [name, material] : finite.materials) material.law = MaterialLaw::neo_hookean;
+  EXPECT_EQ(refusal(finite), "");
+  for (auto& [name, material] : finite.materials) material.law = MaterialLaw::corotated;
+  EXPECT_NE(refusal(finite).find("law \"corotated\" measures volume by the trace of its stretch"),
+            std::string::npos)
+      << refusal(finite);
+  for (auto& [name, material] : finite.materials) {
+    material.law = MaterialLaw::saint_venant_kirchhoff;
+  }
+  EXPECT_NE(refusal(finite).find("measures volume by the trace of Green's strain"),
             std::string::npos)
       << refusal(finite);
   Scene moves = board();
