@@ -161,13 +161,25 @@ void CgRoute::record_iterations() {
   }
 }
 
+void CgRoute::record_begin() {
+  const Buffer& u = fields_.nodal(Field::displacement);
+  fields_.record_keep(commands_);
+  if (known_count_ == 0) {
+    commands_.copy(u.handle(), u.offset(), known_.handle(), known_.offset(), slot_bytes());
+  }
+  commands_.fill_zero(u, 0, u.bytes());
+  fields_.record_hold(commands_, Field::displacement);
+  fields_.record_state(commands_);
+}
+
 int CgRoute::run(double reduction, bool solution) {
   rigid_.update();
   for (int submits = 0;; ++submits) {
     commands_.begin();
     commands_.pass("solve");
+    if (submits == 0 && solution) record_begin();
     if (submits == 0) record_start(reduction, solution);
-    record_iterations();
+    if (submits > 0 || !solution || !quiet_) record_iterations();
     commands_.end();
     commands_.submit();
     const shaders::CgState state = *state_.mapped<shaders::CgState>();
@@ -184,20 +196,6 @@ int CgRoute::run(double reduction, bool solution) {
                            "only); use route inverse or backend cpu");
     }
   }
-}
-
-void CgRoute::begin_solution() {
-  Buffer& u = fields_.nodal(Field::displacement);
-  commands_.begin();
-  fields_.record_keep(commands_);
-  if (known_count_ == 0) {
-    commands_.copy(u.handle(), u.offset(), known_.handle(), known_.offset(), slot_bytes());
-  }
-  commands_.fill_zero(u, 0, u.bytes());
-  fields_.record_hold(commands_, Field::displacement);
-  fields_.record_state(commands_);
-  commands_.end();
-  commands_.submit();
 }
 
 void CgRoute::finish(bool keep_known) {
@@ -219,8 +217,8 @@ void CgRoute::finish(bool keep_known) {
 }
 
 int CgRoute::solve(const Load&, double, bool) {
-  begin_solution();
   const int iterations = run(kSolution, true);
+  quiet_ = iterations == 0;
   // One that costs no more than to be known is rounding of the others.
   finish(iterations > static_cast<int>(most_known_));
   return iterations;

@@ -24,11 +24,11 @@ class CgRoute final : public DeviceRoute {
   void add_correction() override;
   void destroy(std::span<const Index> elements) override {
     rigid_.destroy(elements);  // Fields' matrix follows by itself
-    known_count_ = 0;
+    forget_known();
   }
   void grip(const fem::Event&) override {
     rigid_.grip(body_.forms().gripped());
-    known_count_ = 0;
+    forget_known();
   }
 
   std::vector<BufferPlan> buffers() const override;
@@ -48,11 +48,14 @@ class CgRoute final : public DeviceRoute {
   /// Bytes of a solution that is known.
   [[nodiscard]] std::size_t slot_bytes() const { return known_.bytes() / most_known_; }
   void record_start(double reduction, bool solution);
-  void record_known();
   void record_iterations();
   /// The displacement where nothing but grips has moved; of bodies of which nothing is known the
   /// last one takes the place of that.
-  void begin_solution();
+  void record_begin();
+  void forget_known() {
+    known_count_ = 0;
+    quiet_ = false;
+  }
   /// displacement += correction, with its state.
   void finish(bool keep_known);
 
@@ -67,6 +70,7 @@ class CgRoute final : public DeviceRoute {
   // apart, so that a load that is a sum of former ones takes a step along each and no iteration.
   vulkan::Buffer known_;
   std::uint32_t most_known_, known_count_ = 0, next_known_ = 0;
+  bool quiet_ = false;  // the last solution took no iteration: nor will the next, most likely
   struct Pass {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::unique_ptr<vulkan::Binding> binding;
