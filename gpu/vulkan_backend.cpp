@@ -126,7 +126,7 @@ class VulkanBackend final : public Backend {
   solver::FrameCost predicted() const { return solver::frame_cost(shape(), for_plan_.rates); }
   DeviceUse device_use() const {
     return {device_->held_bytes(), device_->most_bytes(), device_->queue().submits(),
-            device_->pipelines()};
+            device_->pipelines(), device_->dispatches()};
   }
   std::vector<Index> over_yield() const {
     std::vector<Index> list = body_->fields().over_yield();

@@ -67,6 +67,7 @@ struct DeviceUse {
   std::size_t most_bytes = 0;  ///< at any time so far
   std::size_t submits = 0;     ///< so far
   int pipelines = 0;           ///< created so far
+  std::size_t dispatches = 0;  ///< so far, those of no size too
 };
 [[nodiscard]] DeviceUse device_use(const Backend& backend);
 

@@ -9,7 +9,7 @@
 namespace sunder::gpu {
 namespace {
 
-// Read back node by node up to here, gathered on the device beyond.
+// Read back node by node up to here where the host maps the memory, gathered on the device beyond.
 constexpr std::size_t kFewNodes = 64;
 
 Fields::RouteNeeds route_needs(const DeviceSetup& setup, const Problem& problem) {
@@ -30,7 +30,8 @@ WholeBody::WholeBody(const DeviceSetup& setup, std::future<IntactInverse> starte
     : problem_(setup.body.problem()),
       damaged_(setup.body),
       fields_(setup.kernels, problem_, setup.needs, route_needs(setup, problem_)),
-      force_(fields_.rows(), 0.0) {
+      force_(fields_.rows(), 0.0),
+      mapped_(setup.kernels.device().physical().unified()) {
   const bool cg = setup.plan.route == Route::cg, pristine = setup.needs.pristine;
   IntactInverse intact;
   if (!cg || pristine) {
@@ -80,7 +81,7 @@ void WholeBody::grip(const fem::Event& event, std::span<const Index>) {
 
 void WholeBody::read_displacement(std::span<const Index> nodes,
                                   std::span<Vec3> displacement) const {
-  if (nodes.size() > kFewNodes) {
+  if (nodes.size() > (mapped_ ? kFewNodes : 1)) {
     fields_.read_displacement(nodes, displacement);
     return;
   }

@@ -55,6 +55,7 @@ class WholeBody final : public DeviceBody {
   std::optional<DeviceFrame> frame_;
   std::vector<Index> loaded_;  // unknowns of the last load
   std::vector<double> force_;  // over the padded unknowns
+  bool mapped_;                // the host reads the device's memory itself
 };
 
 }  // namespace sunder::gpu

@@ -7,11 +7,11 @@
 
 #include "gpu/vulkan/check.hpp"
 #include "gpu/vulkan/commands.hpp"
+#include "gpu/vulkan/uploads.hpp"
 
 namespace sunder::vulkan {
 namespace {
 
-constexpr std::size_t kStagingBytes = std::size_t{64} << 20;  // of one copy; larger ones in pieces
 constexpr unsigned char kSentinel = 0xa5;
 
 void copy(Device& device, VkBuffer from, std::size_t from_offset, VkBuffer to,
@@ -31,7 +31,8 @@ Buffer::Buffer(Device& device, std::size_t bytes, Placement placement)
     create();
     allocate(placement);
     write_guards();
-    device_->count_buffer(static_cast<std::ptrdiff_t>(bytes_));
+    counted_ = placement != Placement::staging;
+    if (counted_) device_->count_buffer(static_cast<std::ptrdiff_t>(bytes_));
   } catch (...) {
     release();
     throw;
@@ -59,13 +60,15 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   handle_ = std::exchange(other.handle_, VK_NULL_HANDLE);
   memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
   mapped_ = std::exchange(other.mapped_, nullptr);
+  counted_ = std::exchange(other.counted_, false);
   return *this;
 }
 
 void Buffer::release() noexcept {
   if (!device_) return;
+  if (!mapped_) device_->forget(handle_);
   check_guards();
-  if (memory_) device_->count_buffer(-static_cast<std::ptrdiff_t>(bytes_));
+  if (counted_) device_->count_buffer(-static_cast<std::ptrdiff_t>(bytes_));
   device_->vk().DestroyBuffer(device_->handle(), handle_, nullptr);
   device_->vk().FreeMemory(device_->handle(), memory_, nullptr);
   device_ = nullptr;
@@ -88,12 +91,13 @@ void Buffer::allocate(Placement placement) {
   vk.GetBufferMemoryRequirements(device_->handle(), handle_, &needed);
   constexpr VkMemoryPropertyFlags visible =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const bool map = placement == Placement::host || device_->physical().unified();
+  const bool on_host = placement != Placement::device,
+             map = on_host || device_->physical().unified();
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needed.size;
   info.memoryTypeIndex =
-      placement == Placement::host
+      on_host
           ? device_->memory_type(needed.memoryTypeBits, visible, VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
           : device_->memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
                                  map ? visible : 0);
@@ -146,12 +150,7 @@ void Buffer::write(std::size_t offset, std::span<const std::byte> data) {
     std::memcpy(begin() + offset, data.data(), data.size());
     return;
   }
-  const Buffer staging(*device_, std::min(data.size(), kStagingBytes), Placement::host);
-  for (std::size_t done = 0; done < data.size(); done += kStagingBytes) {
-    const std::size_t part = std::min(data.size() - done, kStagingBytes);
-    std::memcpy(staging.begin(), data.data() + done, part);
-    copy(*device_, staging.handle_, staging.guard_, handle_, guard_ + offset + done, part);
-  }
+  device_->uploads().write(handle_, guard_ + offset, data);
 }
 
 void Buffer::read(std::size_t offset, std::span<std::byte> data) const {
@@ -161,12 +160,7 @@ void Buffer::read(std::size_t offset, std::span<std::byte> data) const {
     std::memcpy(data.data(), begin() + offset, data.size());
     return;
   }
-  const Buffer staging(*device_, std::min(data.size(), kStagingBytes), Placement::host);
-  for (std::size_t done = 0; done < data.size(); done += kStagingBytes) {
-    const std::size_t part = std::min(data.size() - done, kStagingBytes);
-    copy(*device_, handle_, guard_ + offset + done, staging.handle_, staging.guard_, part);
-    std::memcpy(data.data() + done, staging.begin(), part);
-  }
+  device_->uploads().read(handle_, guard_ + offset, data);
 }
 
 void Buffer::fill_zero(std::size_t offset, std::size_t bytes) {
@@ -175,11 +169,7 @@ void Buffer::fill_zero(std::size_t offset, std::size_t bytes) {
     std::memset(begin() + offset, 0, bytes);
     return;
   }
-  Commands commands(*device_);
-  commands.begin();
-  commands.fill_zero(*this, offset, bytes);
-  commands.end();
-  commands.submit();
+  device_->uploads().fill_zero(handle_, guard_ + offset, bytes);
 }
 
 }  // namespace sunder::vulkan

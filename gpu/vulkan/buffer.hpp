@@ -13,8 +13,9 @@ namespace sunder::vulkan {
 
 /// Where a buffer lives. On unified memory both are mapped.
 enum class Placement {
-  device,  ///< device-local; the host goes through staging where memory is not unified
-  host,    ///< mapped, for small things that cross every frame
+  device,   ///< device-local; the host goes through staging where memory is not unified
+  host,     ///< mapped, for small things that cross every frame
+  staging,  ///< mapped, what others are written and read through; not counted among what is held
 };
 
 class Buffer {
@@ -38,6 +39,7 @@ class Buffer {
   [[nodiscard]] std::size_t offset() const { return guard_; }
   [[nodiscard]] std::size_t range() const { return bytes_ + (device_ ? guard_ : 0); }
 
+  /// Where it is not mapped, with the next submit.
   void write(std::size_t offset, std::span<const std::byte> data);
   void read(std::size_t offset, std::span<std::byte> data) const;
   void fill_zero() { fill_zero(0, bytes_); }
@@ -72,6 +74,7 @@ class Buffer {
   VkBuffer handle_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   void* mapped_ = nullptr;
+  bool counted_ = false;
 };
 
 }  // namespace sunder::vulkan

@@ -32,6 +32,7 @@ void Commands::begin() {
   passes_.clear();
   uses_.clear();
   barriers_ = 0;
+  dispatches_ = 0;
   VkCommandBufferBeginInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   check(device_.vk().BeginCommandBuffer(handle_, &info), "vkBeginCommandBuffer");
@@ -44,8 +45,15 @@ void Commands::end() {
   check(device_.vk().EndCommandBuffer(handle_), "vkEndCommandBuffer");
 }
 
+void Commands::end_for_all() {
+  memory_barrier(VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                 VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+  end();
+}
+
 void Commands::submit() {
   device_.submit(handle_);
+  device_.count_dispatches(dispatches_);
   for (const PassTime& time : pass_times()) device_.add_time(time.pass, time.milliseconds);
 }
 
@@ -82,10 +90,12 @@ void Commands::bind(const Binding& binding, const void* push, std::uint32_t byte
 }
 
 void Commands::dispatch(std::uint32_t x, std::uint32_t y) {
+  ++dispatches_;
   device_.vk().CmdDispatch(handle_, x, y, 1);
 }
 
 void Commands::dispatch_indirect(const Buffer& arguments, std::size_t offset) {
+  ++dispatches_;
   device_.vk().CmdDispatchIndirect(handle_, arguments.handle(), arguments.offset() + offset);
 }
 
@@ -129,11 +139,10 @@ void Commands::copy(VkBuffer from, std::size_t from_offset, VkBuffer to, std::si
   device_.vk().CmdCopyBuffer(handle_, from, to, 1, &region);
 }
 
-void Commands::fill_zero(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
-  const std::size_t begin = buffer.offset() + offset;
-  const MemoryUse use{buffer.handle(), begin, begin + bytes, {.writes = true}};
+void Commands::fill_zero(VkBuffer to, std::size_t to_offset, std::size_t bytes) {
+  const MemoryUse use{to, to_offset, to_offset + bytes, {.writes = true}};
   wait_for({&use, 1});
-  device_.vk().CmdFillBuffer(handle_, buffer.handle(), begin, bytes, 0);
+  device_.vk().CmdFillBuffer(handle_, to, to_offset, bytes, 0);
 }
 
 std::vector<PassTime> Commands::pass_times() const {

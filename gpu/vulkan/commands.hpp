@@ -21,6 +21,8 @@ class Commands {
   /// Starts anew; forgets what was recorded.
   void begin();
   void end();
+  /// Likewise; every later command of the queue sees what was written.
+  void end_for_all();
   /// Waits, and adds its pass times to the device's sums.
   void submit();
 
@@ -56,8 +58,12 @@ class Commands {
   void apart() { apart_ = true; }
   void copy(VkBuffer from, std::size_t from_offset, VkBuffer to, std::size_t to_offset,
             std::size_t bytes);
-  void fill_zero(const Buffer& buffer, std::size_t offset, std::size_t bytes);
+  void fill_zero(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
+    fill_zero(buffer.handle(), buffer.offset() + offset, bytes);
+  }
+  void fill_zero(VkBuffer to, std::size_t to_offset, std::size_t bytes);
 
+  [[nodiscard]] VkCommandBuffer handle() const { return handle_; }
   /// Barriers between the commands that were recorded.
   [[nodiscard]] int barriers() const { return barriers_; }
   /// Of the last submit; passes of one name are added up. Empty where the queue has no clock.
@@ -79,6 +85,7 @@ class Commands {
   MemoryUses uses_;  // since the last barrier
   bool apart_ = false;
   int barriers_ = 0;
+  std::size_t dispatches_ = 0;
 };
 
 }  // namespace sunder::vulkan

@@ -2,8 +2,10 @@
 #include "gpu/vulkan/device.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "gpu/vulkan/check.hpp"
+#include "gpu/vulkan/uploads.hpp"
 
 namespace sunder::vulkan {
 namespace {
@@ -95,7 +97,10 @@ Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<M
   check(vk().CreateCommandPool(handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
 }
 
-Device::~Device() { vk().DestroyCommandPool(handle(), pool_, nullptr); }
+Device::~Device() {
+  uploads_.reset();
+  vk().DestroyCommandPool(handle(), pool_, nullptr);
+}
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
                                   VkMemoryPropertyFlags preferred) const {
@@ -124,7 +129,35 @@ void Device::add_time(const char* pass, double milliseconds) {
   times_.push_back({pass, milliseconds});
 }
 
+Uploads& Device::uploads() {
+  if (!uploads_) uploads_ = std::make_unique<Uploads>(*this);
+  return *uploads_;
+}
+
+void Device::forget(VkBuffer buffer) noexcept {
+  if (uploads_) uploads_->forget(buffer);
+}
+
 void Device::submit(VkCommandBuffer commands) {
+  const VkCommandBuffer written = uploads_ ? uploads_->record() : VK_NULL_HANDLE;
+  const std::array<VkCommandBuffer, 2> both{written, commands};
+  submit(std::span(both).subspan(written ? 0 : 1));
+  if (uploads_) uploads_->clear();
+}
+
+void Device::flush() {
+  const VkCommandBuffer written = uploads_ ? uploads_->record() : VK_NULL_HANDLE;
+  if (!written) return;
+  submit({&written, 1});
+  uploads_->clear();
+}
+
+void Device::hand_over(const VkSubmitInfo& info, VkFence done) {
+  flush();
+  queue_.submit(info, done);
+}
+
+void Device::submit(std::span<const VkCommandBuffer> commands) {
   check_messages();
   const bool lost = probe_.submits_until_lost == 0;
   if (lost && !probe_.lost_in_wait) check(VK_ERROR_DEVICE_LOST, "a submit (injected fault)");

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +61,8 @@ struct DeviceProbe {
   std::size_t* allocations = nullptr;
 };
 
+class Uploads;
+
 /// What a device claims to be.
 [[nodiscard]] PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe);
 
@@ -95,11 +98,19 @@ class Device {
   }
 
   [[nodiscard]] const Queue& queue() const { return queue_; }
-  /// Submits and waits. Throws DeviceLost, or DeviceError with the first validation message.
+  /// Submits and waits; what was written by uploads() goes before. Throws DeviceLost, or
+  /// DeviceError with the first validation message.
   void submit(VkCommandBuffer commands);
+  /// Submits what was written, where something waits: before commands that somebody else submits.
+  void flush();
 
   /// Submits without waiting; `done` is signalled at the end.
-  void hand_over(const VkSubmitInfo& info, VkFence done) { queue_.submit(info, done); }
+  void hand_over(const VkSubmitInfo& info, VkFence done);
+
+  /// By which buffers that are not mapped are written and read.
+  [[nodiscard]] Uploads& uploads();
+  /// A buffer goes that may have been written.
+  void forget(VkBuffer buffer) noexcept;
 
   /// Bytes that buffers have handed to the host.
   [[nodiscard]] std::size_t bytes_read() const { return bytes_read_; }
@@ -123,6 +134,9 @@ class Device {
     const auto it = living_.find(name);
     if (it != living_.end()) living_.erase(it);
   }
+  /// Dispatches of all submits so far, those of no size too.
+  [[nodiscard]] std::size_t dispatches() const { return dispatches_; }
+  void count_dispatches(std::size_t more) { dispatches_ += more; }
   void count_allocation() {
     if (probe_.allocations) ++*probe_.allocations;
   }
@@ -134,18 +148,20 @@ class Device {
 
  private:
   void check_messages() const;
+  void submit(std::span<const VkCommandBuffer> commands);
 
   DeviceHandles handles_;
   PhysicalDevice physical_;
   std::shared_ptr<Messages> messages_;
   DeviceProbe probe_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::size_t bytes_read_ = 0, held_bytes_ = 0, most_bytes_ = 0;
+  std::size_t bytes_read_ = 0, held_bytes_ = 0, most_bytes_ = 0, dispatches_ = 0;
   int pipelines_ = 0;
   std::multiset<std::string> living_;
   bool timing_;
   std::vector<PassTime> times_;
   Queue queue_;
+  std::unique_ptr<Uploads> uploads_;  // null: nothing was written yet
 };
 
 /// Creates a device of its own. Throws DeviceError naming the shortcoming of `physical`.

@@ -5,6 +5,7 @@ namespace sunder::vulkan {
 
 HostCommands::HostCommands(Device& device, VkCommandBuffer commands)
     : vk_(device.vk()), commands_(commands) {
+  device.flush();
   barrier(VK_ACCESS_MEMORY_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
 }
 

@@ -35,11 +35,11 @@ Queue::Queue(const DeviceFunctions& vk, VkDevice device, VkQueue queue, QueueLoc
 
 Queue::~Queue() { vk_.DestroyFence(device_, done_, nullptr); }
 
-void Queue::submit(VkCommandBuffer commands) {
+void Queue::submit(std::span<const VkCommandBuffer> commands) {
   VkSubmitInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  info.commandBufferCount = 1;
-  info.pCommandBuffers = &commands;
+  info.commandBufferCount = static_cast<std::uint32_t>(commands.size());
+  info.pCommandBuffers = commands.data();
   check(vk_.ResetFences(device_, 1, &done_), "vkResetFences");
   const Hold hold(lock_);
   check(vk_.QueueSubmit(queue_, 1, &info, done_), "vkQueueSubmit");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "gpu/vulkan/functions.hpp"
 
@@ -22,8 +23,9 @@ class Queue {
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
 
-  /// Hands over `commands` and returns. One submit at a time: wait() before the next.
-  void submit(VkCommandBuffer commands);
+  /// Hands over `commands`, in their order, and returns. One submit at a time: wait() before the
+  /// next.
+  void submit(std::span<const VkCommandBuffer> commands);
   /// Hands over work that signals `done` itself; nobody waits for it here.
   void submit(const VkSubmitInfo& info, VkFence done);
   /// Until the last submit is done and its results are visible to the host.

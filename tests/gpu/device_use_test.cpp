@@ -302,6 +302,87 @@ TEST_F(DeviceUse, AFrameIsOneSubmitAndAQuietOneReadsNoFieldBack) {
   }
 }
 
+// Memory that the host does not map.
+struct Unmapped {
+  explicit Unmapped(Route route) {
+    Way way{gpu::Variant::lvp, Precision::fp64};
+    way.route = route;
+    if (route == Route::cg) way.update = Update::automatic;
+    problem = problem_for(held_board(), way);
+    gpu::VulkanOptions options = watched(way);
+    options.probe.as_gpu = true;
+    options.probe.allocations = &allocations;
+    backend = gpu::create(problem, needs_with(true), options);
+  }
+  SolveReport frame(const Vec3& force) {
+    backend->set_load(pull(*problem, nodes_in(problem->mesh(), lower_right_corner()), force));
+    const SolveReport report = backend->solve();
+    static_cast<void>(backend->stress());
+    return report;
+  }
+  [[nodiscard]] gpu::DeviceUse use() const { return gpu::device_use(*backend); }
+
+  std::shared_ptr<const Problem> problem;
+  std::size_t allocations = 0;
+  std::unique_ptr<Backend> backend;
+};
+
+// From the change to the stress after it: what must cross to the device rides in the frame's own
+// submit. A full check, which reads the residual and sends a correction, takes two more, its
+// addition one. 100 elements at once take two checks where the base is the whole body's, and of the
+// region a refinement.
+TEST_F(DeviceUse, AnEventIsOneSubmitAndNoAllocation) {
+  for (const Route route : {Route::inverse, Route::condensed}) {
+    for (const std::size_t of_an_event : {1, 10, 100}) {
+      SCOPED_TRACE(std::string(route == Route::inverse ? "inverse" : "condensed") + ", elements " +
+                   std::to_string(of_an_event));
+      Unmapped body(route);
+      body.frame(Vec3(0, -10, 0));
+      const auto crack = crack_sequence(*body.problem, 3 * of_an_event, 10);
+      for (std::size_t event = 0; event < 3; ++event) {
+        const std::size_t submits = body.use().submits, allocated = body.allocations;
+        body.backend->destroy({crack.data() + event * of_an_event, of_an_event});
+        body.frame(Vec3(0, -10, 0));
+        const std::size_t expected = of_an_event < 100 ? 1 : route == Route::inverse ? 6 : 2;
+        EXPECT_EQ(body.use().submits - submits, expected) << "event " << event;
+        EXPECT_EQ(body.allocations, allocated) << "event " << event;
+      }
+    }
+  }
+}
+
+// Conjugate gradients of an event: a submit for every 64 iterations, of the solution and of the
+// estimate of its error, and some for what goes before and after.
+TEST_F(DeviceUse, AnEventOfConjugateGradientsTakesFewSubmits) {
+  Unmapped body(Route::cg);
+  body.frame(Vec3(0, -10, 0));
+  const auto crack = crack_sequence(*body.problem, 100, 10);
+  for (const std::size_t of_an_event : {1, 10, 89}) {
+    const std::size_t submits = body.use().submits, allocated = body.allocations;
+    body.backend->destroy({crack.data() + (of_an_event == 1    ? 0
+                                           : of_an_event == 10 ? 1
+                                                               : 11),
+                           of_an_event});
+    const SolveReport report = body.frame(Vec3(0, -10, 0));
+    EXPECT_GT(report.iterations, 64);
+    EXPECT_LE(body.use().submits - submits, static_cast<std::size_t>(report.iterations) / 64 + 8);
+    EXPECT_EQ(body.allocations, allocated);
+  }
+}
+
+// A load that is a multiple of one that is known takes no iteration, and nothing is recorded for
+// one: the dispatches left are those of a step along what is known.
+TEST_F(DeviceUse, AQuietFrameOfConjugateGradientsHasNoEmptyDispatch) {
+  Unmapped body(Route::cg);
+  body.frame(Vec3(0, -10, 0));
+  body.frame(Vec3(0, -20, 0));
+  const gpu::DeviceUse before = body.use();
+  const SolveReport report = body.frame(Vec3(0, -15, 0));
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_LE(body.use().submits - before.submits, 3u);
+  EXPECT_LE(body.use().dispatches - before.dispatches, 17u);
+}
+
 TEST_F(DeviceUse, TheDeviceListsWhatIsOverYield) {
   for (const gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
     for (const Precision precision : {Precision::fp32, Precision::fp64}) {
