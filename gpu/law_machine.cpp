@@ -59,7 +59,9 @@ finite::Machine law_machine(const Problem& problem, const VulkanOptions& options
     const Scene& scene = body.problem.scene();
     const bool viscous = scene.dynamics && scene.dynamics->stiffness_damping > 0;
     const FiniteDevice::Options of_device{route, scene.fracture.stress, pairs, viscous};
-    return std::make_unique<FiniteDevice>(open->kernels, body, of_device, open);
+    auto made = std::make_unique<FiniteDevice>(open->kernels, body, of_device, open);
+    open->device->flush();  // a device that is lost already is known now, not in the first step
+    return made;
   };
   return machine;
 }

@@ -61,6 +61,7 @@ class VulkanBackend final : public Backend {
                                            this->needs().stress, options.display,
                                            options.lent->timeline_semaphore);
     }
+    device_->flush();  // a device that is lost already is known now, not in the first frame
   }
 
   BackendInfo info() const override {

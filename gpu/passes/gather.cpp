@@ -10,19 +10,27 @@ namespace sunder::gpu {
 using vulkan::Buffer;
 using vulkan::Placement;
 
+namespace {
+
+constexpr std::uint32_t kFirstRoom = 3 * 64;  // 64 nodes: no frame makes room for a host's hands
+
+}  // namespace
+
 Gather::Gather(const KernelFactory& kernels, const Buffer& values)
     : device_(kernels.device()),
       single_(kernels.single()),
       values_(values),
       kernel_(kernels.make_fp64("gather")),
-      commands_(kernels.device()) {}
+      commands_(kernels.device()) {
+  make_room(kFirstRoom);
+}
 
 void Gather::make_room(std::uint32_t count) {
   if (count <= room_) return;
   room_ = std::max(round_up(count, shaders::kGroup), 2 * room_);
   binding_.reset();
-  places_ = Buffer(device_, room_ * sizeof(std::uint32_t), Placement::host);
-  picked_ = Buffer(device_, room_ * sizeof(double), Placement::host);
+  places_ = Buffer(device_, room_ * sizeof(std::uint32_t), Placement::staging);
+  picked_ = Buffer(device_, room_ * sizeof(double), Placement::staging);
   const Buffer* buffers[] = {&values_, &places_, &picked_};
   binding_ = std::make_unique<vulkan::Binding>(device_, *kernel_, buffers);
 }

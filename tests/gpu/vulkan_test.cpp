@@ -386,7 +386,7 @@ TEST_F(VulkanWatch, WhatTheHostWritesAndReadsGoesByCopiesWhereMemoryIsNotMapped)
   adder.to.write(std::span<const double>(ones), 100);
   std::vector<double> read(256);
   adder.to.read(std::span<double>(read));
-  EXPECT_EQ(adder.device->queue().submits(), before + 2);
+  EXPECT_EQ(adder.device->queue().submits(), before + 1) << "the write goes before the read";
   for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(read[i], i >= 100 && i < 110 ? 1 : 0) << i;
 }
 
