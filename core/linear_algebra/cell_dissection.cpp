@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "linear_algebra/elimination_order.hpp"
 #include "linear_algebra/minimum_degree.hpp"
 
 namespace sunder::linear_algebra {
@@ -156,18 +157,7 @@ class CellDissection {
 }  // namespace
 
 std::vector<Index> cell_dissection(const CoupledCells& of) {
-  const CellDissection dissection(of);
-  std::vector<Index> unknowns;
-  for (Index point : dissection.order()) {
-    for (Index i : of.unknowns[static_cast<std::size_t>(point)]) {
-      if (i != kNone) unknowns.push_back(i);
-    }
-  }
-  std::vector<Index> place(unknowns.size());
-  for (std::size_t row = 0; row < unknowns.size(); ++row) {
-    place[static_cast<std::size_t>(unknowns[row])] = static_cast<Index>(row);
-  }
-  return place;
+  return places_of_unknowns(CellDissection(of).order(), of.unknowns);
 }
 
 }  // namespace sunder::linear_algebra

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "linear_algebra/elimination_order.hpp"
 #include "linear_algebra/minimum_degree.hpp"
 
 namespace sunder::linear_algebra {
@@ -147,18 +148,7 @@ class Dissection {
 }  // namespace
 
 std::vector<Index> nested_dissection(const CoupledPoints& of) {
-  const Dissection dissection(of);
-  std::vector<Index> unknowns;
-  for (Index point : dissection.order()) {
-    for (Index i : of.unknowns[static_cast<std::size_t>(point)]) {
-      if (i != kNone) unknowns.push_back(i);
-    }
-  }
-  std::vector<Index> place(unknowns.size());
-  for (std::size_t row = 0; row < unknowns.size(); ++row) {
-    place[static_cast<std::size_t>(unknowns[row])] = static_cast<Index>(row);
-  }
-  return place;
+  return places_of_unknowns(Dissection(of).order(), of.unknowns);
 }
 
 }  // namespace sunder::linear_algebra

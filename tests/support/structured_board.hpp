@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <random>
 #include <string>
 
 #include "sunder/mesh.hpp"
@@ -60,6 +61,19 @@ inline Mesh structured_board(
         }
       }
     }
+  }
+  return mesh;
+}
+
+/// 4 x 3 x 2 mm of cells of 1 mm, "stiff" below y = 1 and "soft" above, inner nodes moved.
+inline Mesh shaken_block() {
+  Mesh mesh = structured_board({4, 3, 2, 4, 3, 2},
+                               [](const Vec3& x) { return x.y() < 1 ? "stiff" : "soft"; });
+  std::mt19937 generator(8);
+  std::uniform_real_distribution<double> any(-0.2, 0.2);
+  for (Vec3& x : mesh.nodes) {
+    const bool inside = x.x() > 0 && x.x() < 4 && x.y() > 0 && x.y() < 3 && x.z() > 0 && x.z() < 2;
+    if (inside) x += Vec3(any(generator), any(generator), any(generator));
   }
   return mesh;
 }

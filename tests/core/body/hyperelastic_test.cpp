@@ -29,14 +29,7 @@ using test::BoardShape;
 /// 4 x 3 x 2 mm, two materials, inner nodes moved, held at x = 0.
 Scene block() {
   Scene scene;
-  scene.mesh = test::structured_board({4, 3, 2, 4, 3, 2},
-                                      [](const Vec3& x) { return x.y() < 1 ? "stiff" : "soft"; });
-  std::mt19937 generator(8);
-  std::uniform_real_distribution<double> any(-0.2, 0.2);
-  for (Vec3& x : scene.mesh.nodes) {
-    const bool inside = x.x() > 0 && x.x() < 4 && x.y() > 0 && x.y() < 3 && x.z() > 0 && x.z() < 2;
-    if (inside) x += Vec3(any(generator), any(generator), any(generator));
-  }
+  scene.mesh = test::shaken_block();
   scene.materials["stiff"] = {50, 0.3, 2.0};
   scene.materials["soft"] = {5, 0.45, 2.0};
   scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(1e-6, 9, 9)}, Axes{7}});

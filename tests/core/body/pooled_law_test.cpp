@@ -27,14 +27,7 @@ namespace {
 /// x = 0 or nowhere.
 Scene pooled_block(double nu, bool held = true, bool both = false) {
   Scene scene;
-  scene.mesh = test::structured_board({4, 3, 2, 4, 3, 2},
-                                      [](const Vec3& x) { return x.y() < 1 ? "stiff" : "soft"; });
-  std::mt19937 generator(8);
-  std::uniform_real_distribution<double> any(-0.2, 0.2);
-  for (Vec3& x : scene.mesh.nodes) {
-    const bool inside = x.x() > 0 && x.x() < 4 && x.y() > 0 && x.y() < 3 && x.z() > 0 && x.z() < 2;
-    if (inside) x += Vec3(any(generator), any(generator), any(generator));
-  }
+  scene.mesh = test::shaken_block();
   scene.materials["stiff"] = {50, 0.3, 2.0, MaterialLaw::neo_hookean};
   scene.materials["soft"] = {5, nu, 2.0, MaterialLaw::neo_hookean};
   scene.materials["soft"].volume = MaterialVolume::pooled;
