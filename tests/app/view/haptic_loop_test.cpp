@@ -6,11 +6,13 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <random>
 #include <thread>
 
@@ -110,6 +112,7 @@ TEST(HapticLoop, AHandHoldsTissueAndFeelsIt) {
 }
 
 std::size_t heap() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
+constexpr std::size_t kSlack = std::size_t{4} << 20;  // [bytes]
 
 /// What hands may do, by chance; some of it cannot be done, pauses and is told.
 class RandomHands {
@@ -191,9 +194,10 @@ TEST(HapticLoop, RandomInputNeitherStopsNorLeaks) {
   const auto since = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  // A reset lets go of all that a history holds; from reset to reset the heap is the same.
-  std::vector<std::size_t> heaps;
-  long acts = 0;
+  // A reset lets go of all that a history holds; from reset to reset the heap is the same. What is
+  // given up is freed beside the frames, on a busy machine a while later: a leak never is.
+  std::size_t least = std::numeric_limits<std::size_t>::max();  // [bytes] from the third reset on
+  long acts = 0, resets = 0;
   do {
     for (int i = 0; i < 300; ++i, ++acts) {
       hands.act();
@@ -208,14 +212,16 @@ TEST(HapticLoop, RandomInputNeitherStopsNorLeaks) {
                                   return now.undos == 0 && now.grips.empty() && !now.shown->report;
                                 }))
         << "it has stopped after " << acts << " inputs";
-    heaps.push_back(heap());
-  } while (since() < seconds() || heaps.size() < 4);
-  const std::size_t third = heaps[2], last = heaps.back();
-  EXPECT_LT(last, third + (std::size_t{4} << 20)) << "after " << acts << " inputs";
+    if (++resets < 3) continue;
+    least = std::min(least, heap());
+    ASSERT_TRUE(held.within_own(60s, [&] { return heap() < least + kSlack; }))
+        << acts << " inputs and " << resets << " resets: the heap has " << heap()
+        << " bytes where it had " << least;
+  } while (since() < seconds() || resets < 4);
   RecordProperty("inputs", std::to_string(acts));
   std::cout << acts << " inputs in " << since() << " s, " << held.live->now().body
-            << " changes of the body; heap after the third reset " << third
-            << " bytes, after the last, " << heaps.size() << "., " << last << std::endl;
+            << " changes of the body, " << resets << " resets; heap " << heap()
+            << " bytes, the least " << least << std::endl;
 }
 
 }  // namespace
