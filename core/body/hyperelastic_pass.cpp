@@ -8,6 +8,7 @@
 
 #include "body/deformation.hpp"
 #include "body/pooled_law.hpp"
+#include "material/linear.hpp"
 #include "material/singular_values.hpp"
 
 namespace sunder::fem {
@@ -351,8 +352,10 @@ Deformation HyperelasticPass::deformation(std::span<const double> u) const {
     for (double inverted : group.inverted) found.inverted += static_cast<Index>(inverted);
   }
   const auto gradient = [&](Index e) { return displacement_gradient(body_.problem, e, u); };
-  found.strain =
-      most_by(&GroupFound::strain, [&](Index e) { return principal_stretch(gradient(e)); });
+  found.strain = most_by(&GroupFound::strain, [&](Index e) {
+    return &body_.law(e) == &kLinear ? principal_strain(gradient(e))
+                                     : principal_stretch(gradient(e));
+  });
   found.rotation_deg =
       most_by(&GroupFound::turn, [&](Index e) { return rotation_deg(gradient(e)); });
   return found;

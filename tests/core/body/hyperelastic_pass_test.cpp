@@ -210,6 +210,20 @@ TEST_F(HyperelasticPassOf, DeformationIsThatOfTheLargestElement) {
   }
 }
 
+// Shear by .6 with a stretch by .2: sym grad u is [[0, .3], [.3, .2]], C [[1, .6], [.6, 1.8]].
+TEST_F(HyperelasticPassOf, TheLinearLawsStrainIsOfSmallDisplacements) {
+  Mat3 f = Mat3::Identity();
+  f(0, 1) = 0.6;
+  f(1, 1) = 1.2;
+  const auto u = displaced(problem, std::vector<Mat3>(kCount, f));
+  const auto linear = one_law(problem, kLinear), corotated = one_law(problem, kCorotated);
+  HyperelasticPass by_linear({problem, linear}, 1), by_corotated({problem, corotated}, 1);
+  EXPECT_NEAR(by_linear.run(u, {.deformation = true}).deformation.strain, 0.1 + std::sqrt(0.1),
+              1e-12);
+  EXPECT_NEAR(by_corotated.run(u, {.deformation = true}).deformation.strain,
+              std::sqrt(1.4 + std::sqrt(0.52)) - 1, 1e-12);
+}
+
 // Uniaxial, shear, a ball, a rotation by the half turn: every element is as good as the largest.
 TEST_F(HyperelasticPassOf, DeformationOfUniformFieldsByHand) {
   const auto of = one_law(problem, kNeoHookean);
