@@ -32,13 +32,14 @@ class PlainBackend final : public Backend {
  private:
   void do_set_load(const Load& load) override { load_ = load; }
   SolveReport do_solve() override {
-    if (problem().finite()) return solve_finite();
+    if (by_laws()) return solve_finite();
     solution_ = body_.solve(load_);
     if (!(solution_.error <= problem().scene().solver.tolerance)) {
       throw NumericalError("the yardstick cannot be refined under the tolerance");
     }
     return {.residual = solution_.residual, .error = solution_.error};
   }
+  [[nodiscard]] bool by_laws() const { return problem().finite() || problem().fibrous(); }
   /// From the last solution on.
   SolveReport solve_finite() {
     const FiniteBody body(problem(), destroyed());
@@ -60,7 +61,7 @@ class PlainBackend final : public Backend {
     return summary;
   }
   Deformation do_deformation() override {
-    return problem().finite()
+    return by_laws()
                ? FiniteBody(problem(), destroyed()).deformation(solution_.displacement, cut_off_)
                : body_.deformation(solution_.displacement, cut_off_);
   }
@@ -72,7 +73,7 @@ class PlainBackend final : public Backend {
     for (Index e : elements) excluded_[e] = 1;
   }
   void do_solve_pristine(const Load& load, std::span<double> u) override {
-    if (problem().finite()) {
+    if (by_laws()) {
       pristine_ = FiniteBody(problem()).solve(load, pristine_).displacement;
     } else {
       pristine_ = Body(problem()).solve(load).displacement;

@@ -59,8 +59,9 @@ class Scenes(unittest.TestCase):
         tables, table, selection = {"": []}, "", "a selection of nodes"
         for name, kind in re.findall(r"^\| (.+?) \| (.*?) \|", text, flags=re.M)[1:]:
             if heading := re.match(r"\*\*`\[+([\w.]+?)\]+`\*\*|\*\*(.+)\*\*", name):
-                table = "nodes" if heading[2] else heading[1].removesuffix(".NAME")
-                tables[""] += [] if heading[2] else [table]
+                *above, table = ["nodes"] if heading[2] else heading[1].replace(".NAME", "").split(".")
+                if not heading[2]:
+                    tables[above[-1] if above else ""] += [table]
                 tables[table] = []
             elif name == selection:
                 tables[table] += [selection]
