@@ -100,6 +100,7 @@ Fibres read_fibres(const TomlTable& table, const std::string& file) {
   fibres.young_along = table.number("young_along");
   fibres.poisson_along = table.number("poisson_along");
   fibres.shear_along = table.number("shear_along");
+  fibres.yield_across = table.number("yield_across");
   return fibres;
 }
 

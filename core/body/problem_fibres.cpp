@@ -11,6 +11,7 @@
 #include "sunder/fracture_model.hpp"
 #include "sunder/in_quotes.hpp"
 #include "sunder/problem.hpp"
+#include "sunder/scene_keys.hpp"
 #include "sunder/words.hpp"
 
 namespace sunder {
@@ -125,6 +126,32 @@ void check_direction(const std::string& what, const Fibres& f, const Mesh& mesh)
   }
 }
 
+void check_strength(const std::string& what, const Scene& scene, const Material& m,
+                    const Fibres& f) {
+  if (!f.yield_across) return;
+  const std::string has = what + " has yield_across";
+  if (!(*f.yield_across > 0) || !std::isfinite(*f.yield_across)) {
+    refuse(InputFault::out_of_range,
+           has + " = " + in_digits(*f.yield_across) + "; it must be finite and above 0 MPa");
+  }
+  if (!m.yield) {
+    refuse(InputFault::missing_key, has + ", but its material no yield, which holds along them");
+  }
+  if (m.fibres.size() > 1) {
+    refuse(InputFault::out_of_range, has + " beside another family; take one, or leave it out");
+  }
+  if (m.law != MaterialLaw::linear && scene.fracture.stress == StressMeasure::cauchy) {
+    refuse(InputFault::out_of_range,
+           has + ", which law " +
+               in_quotes(key_words("material", "law")[static_cast<std::size_t>(m.law)]) +
+               " judges in the material's frame; take fracture.stress = \"biot\"");
+  }
+  if (scene.fracture.averaging > 0) {
+    refuse(InputFault::out_of_range,
+           has + ", which is judged by element; leave fracture.averaging out");
+  }
+}
+
 Vec3 centroid(const Mesh& mesh, Index e) {
   Vec3 sum = Vec3::Zero();
   for (Index n : mesh.tets[static_cast<std::size_t>(e)]) {
@@ -199,6 +226,7 @@ void check_families(const std::string& name, const Material& m, const Scene& sce
     } else {
       check_finite_law(what, m.fibres[i]);
     }
+    check_strength(what, scene, m, m.fibres[i]);
   }
 }
 

@@ -211,6 +211,11 @@ std::vector<SceneKey> fibre_rows() {
       row("fibres", "shear_along", number, "",
           "law \"linear\": shear modulus of planes along [MPa], needed there",
           "0 or below, another law: error"),
+      row("fibres", "yield_across", number, "",
+          "strength across [MPa]; `yield` holds along; left out: as along",
+          "0 or below, no `yield`, a second family, `fracture.averaging`, a law but \"linear\" "
+          "with "
+          "`fracture.stress` \"cauchy\": error"),
       row("around", "point", vector, "", "on the axis [mm]", "", kRequired),
       row("around", "axis", vector, "", "its direction", "zero: error", kRequired),
   };

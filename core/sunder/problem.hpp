@@ -96,6 +96,9 @@ class Problem {
   [[nodiscard]] std::string law() const;
   /// Yield stress of element e [MPa]; 0: no stress breaks it.
   [[nodiscard]] double yield(Index e) const { return material(e).yield.value_or(0.0); }
+  /// Of a breakable element: the measure of a stress over its strength, which may be another along
+  /// fibres than across (method.md "Fibres").
+  [[nodiscard]] double yield_ratio(Index e, const Voigt& stress, YieldMeasure measure) const;
   /// By strength.
   [[nodiscard]] bool breakable(Index e) const { return material(e).yield.has_value(); }
   /// By strength, or by a crack that grows where the material has a toughness.

@@ -39,6 +39,8 @@ struct Fibres {
   /// Law "linear": E along [MPa], the contraction across for an extension along, G of shear along
   /// [MPa]. The material's own young and poisson hold across.
   std::optional<double> young_along = {}, poisson_along = {}, shear_along = {};
+  /// Strength across [MPa], > 0, where the material's yield holds along; none: as along.
+  std::optional<double> yield_across = {};
 };
 
 /// Isotropic elasticity but for its fibres; without yield nothing ruptures in it, without yield and

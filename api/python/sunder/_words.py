@@ -10,7 +10,7 @@ KEYS = {
     "material": ("young", "poisson", "yield", "law", "density", "toughness", "energy", "volume",
                  "preset", "fibres"),
     "fibres": ("direction", "around", "field", "k1", "k2", "dispersion", "young_along",
-               "poisson_along", "shear_along"),
+               "poisson_along", "shear_along", "yield_across"),
     "around": ("point", "axis"),
     "fixed": ("axes", "box", "nodes", "near", "radius", "surface"),
     "instrument": ("name", "kind", "force", "displacement", "axes", "rigid", "turn", "ramp", "at",

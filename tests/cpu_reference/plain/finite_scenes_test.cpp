@@ -14,7 +14,8 @@ struct FiniteCase {
   MaterialLaw law;
   StressMeasure stress;
   FractureModel model;
-  int families = 0;  // of fibres
+  int families = 0;   // of fibres
+  double across = 1;  // their strength, of that along
 };
 
 /// As stiff as their matrix, at this slope to the pull.
@@ -45,6 +46,9 @@ Scene finite_board(const FiniteCase& c) {
     for (int i = 0; i < c.families; ++i) {
       const bool linear = c.law == MaterialLaw::linear;
       material.fibres.push_back(slanted(i == 0 ? 0.8 : -0.5, material.young, linear));
+      if (c.across < 1 && material.yield) {
+        material.fibres.back().yield_across = c.across * *material.yield;
+      }
     }
   }
   scene.supports.push_back({top_edge(), Axes{7}});
@@ -76,23 +80,23 @@ TEST_P(FiniteScene, TearsAsByTheYardstick) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, FiniteScene,
-                         ::testing::Values(FiniteCase{"CorotatedCauchy", MaterialLaw::corotated,
-                                                      StressMeasure::cauchy, FractureModel::a},
-                                           FiniteCase{"CorotatedBiotModelB", MaterialLaw::corotated,
-                                                      StressMeasure::biot, FractureModel::b},
-                                           FiniteCase{"NeoHookean", MaterialLaw::neo_hookean,
-                                                      StressMeasure::cauchy, FractureModel::a},
-                                           FiniteCase{"SaintVenantKirchhoff",
-                                                      MaterialLaw::saint_venant_kirchhoff,
-                                                      StressMeasure::cauchy, FractureModel::a},
-                                           FiniteCase{"NeoHookeanFibres", MaterialLaw::neo_hookean,
-                                                      StressMeasure::cauchy, FractureModel::a, 2},
-                                           FiniteCase{"CorotatedBiotFibres", MaterialLaw::corotated,
-                                                      StressMeasure::biot, FractureModel::p, 1},
-                                           FiniteCase{"LinearFibres", MaterialLaw::linear,
-                                                      StressMeasure::cauchy, FractureModel::a, 1}),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Laws, FiniteScene,
+    ::testing::Values(FiniteCase{"CorotatedCauchy", MaterialLaw::corotated, StressMeasure::cauchy,
+                                 FractureModel::a},
+                      FiniteCase{"CorotatedBiotModelB", MaterialLaw::corotated, StressMeasure::biot,
+                                 FractureModel::b},
+                      FiniteCase{"NeoHookean", MaterialLaw::neo_hookean, StressMeasure::cauchy,
+                                 FractureModel::a},
+                      FiniteCase{"SaintVenantKirchhoff", MaterialLaw::saint_venant_kirchhoff,
+                                 StressMeasure::cauchy, FractureModel::a},
+                      FiniteCase{"NeoHookeanFibres", MaterialLaw::neo_hookean,
+                                 StressMeasure::cauchy, FractureModel::a, 2},
+                      FiniteCase{"CorotatedBiotFibres", MaterialLaw::corotated, StressMeasure::biot,
+                                 FractureModel::p, 1, 0.4},
+                      FiniteCase{"LinearFibresWeakAcross", MaterialLaw::linear,
+                                 StressMeasure::cauchy, FractureModel::a, 1, 0.3}),
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace sunder::test
