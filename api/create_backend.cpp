@@ -59,8 +59,9 @@ CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, c
   CreatedBackend created;
   // Laws and motion are the processor's: its factor is quicker than any device's dense inverse so
   // far (bench_motion). So are cracks that split: its border asks for no new buffers.
-  // Pooled volume is there alone.
-  if (problem->finite() || problem->moves() || needs.split || problem->pools()) {
+  // Pooled volume and fibres are there alone.
+  if (problem->finite() || problem->moves() || needs.split || problem->pools() ||
+      problem->fibrous()) {
     created.backend = cpu_reference::create(problem, needs);
     return created;
   }

@@ -379,7 +379,7 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
                       std::to_string(problem->scene().solver.device));
   }
   const std::size_t memory = options.memory > 0 ? options.memory : machine::available_memory();
-  if (problem->moves() || problem->finite()) {
+  if (problem->moves() || problem->finite() || problem->fibrous()) {
     return finite::create(std::move(problem), std::move(needs), {info_of_device(), memory});
   }
   solver::PlanDevice device = plan_device(memory);

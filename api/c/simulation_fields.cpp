@@ -60,7 +60,7 @@ void fill_yield_ratio(SimulationObject& object, std::span<double> values) {
   const auto destroyed = object.simulation().backend().destroyed();
   per_element(object, values, [&](Index e, const Voigt& s) {
     if (!problem.breakable(e) || destroyed[static_cast<std::size_t>(e)]) return 0.0;
-    return sunder::yield_measure(s, measure) / problem.yield(e);
+    return problem.yield_ratio(e, s, measure);
   });
 }
 

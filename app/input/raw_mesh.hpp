@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,7 @@ struct RawMesh {
   std::uint64_t curved = 0;      ///< tetrahedra with more than four nodes in the file
   std::uint64_t other_solids = 0;
   std::string other_name;  ///< of the first of the other solids: "Hexahedron 8", ...
+  std::map<std::string, std::vector<Vec3>> fields;  ///< Mesh::fields; not in the pipe
 };
 
 [[nodiscard]] std::string to_bytes(const RawMesh& mesh);

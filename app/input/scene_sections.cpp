@@ -82,12 +82,40 @@ const TissuePreset* read_preset(const TomlTable& table) {
                  "; allowed: " + quoted_list(preset_names()));
 }
 
-Material read_material(const TomlTable& table) {
+Fibres read_fibres(const TomlTable& table, const std::string& file) {
+  Fibres fibres;
+  const std::string key = require_one(table, {"direction", "around", "field"});
+  if (key == "direction") {
+    fibres.direction = *table.vec3("direction");
+  } else if (key == "field") {
+    fibres.direction = FieldName{*table.text("field")};
+  } else {
+    const TomlTable around(*table.table("around"), file, table.full("around"), key_names("around"));
+    fibres.direction = AroundAxis{around.require("point", around.vec3("point")),
+                                  around.require("axis", around.vec3("axis"))};
+  }
+  fibres.k1 = table.number("k1");
+  fibres.k2 = table.number("k2");
+  fibres.dispersion = table.number("dispersion").value_or(0);
+  fibres.young_along = table.number("young_along");
+  fibres.poisson_along = table.number("poisson_along");
+  fibres.shear_along = table.number("shear_along");
+  fibres.yield_across = table.number("yield_across");
+  return fibres;
+}
+
+Material read_material(const TomlTable& table, const std::string& file) {
   Material material;
   const TissuePreset* preset = read_preset(table);
   if (preset) material = preset->material();
   if (table.has("toughness") || table.has("energy")) material.toughness = material.energy = {};
   read_members(table, material_keys(), material, preset != nullptr);
+  const std::vector<std::string> of_fibres = key_names("fibres");
+  const auto families = table.table_or_tables("fibres");
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    const std::string path = table.full("fibres") + (i > 0 ? "." + std::to_string(i) : "");
+    material.fibres.push_back(read_fibres(TomlTable(*families[i], file, path, of_fibres), file));
+  }
   return material;
 }
 
@@ -156,7 +184,8 @@ std::map<std::string, Material> read_materials(const TomlTable& root, const std:
                                                    " takes a table [material.<volume>], not " +
                                                    describe(node));
     }
-    materials[name] = read_material(TomlTable(*node.as_table(), file, path, key_names("material")));
+    materials[name] =
+        read_material(TomlTable(*node.as_table(), file, path, key_names("material")), file);
   }
   return materials;
 }

@@ -21,6 +21,7 @@ class Converter {
     place_volumes();
     place_tets();
     place_surfaces();
+    mesh_.fields = raw_.fields;
     return std::move(mesh_);
   }
 

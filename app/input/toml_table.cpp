@@ -259,4 +259,10 @@ std::vector<const toml::table*> TomlTable::tables(std::string_view key) const {
   return result;
 }
 
+std::vector<const toml::table*> TomlTable::table_or_tables(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  if (node && node->is_table()) return {node->as_table()};
+  return tables(key);
+}
+
 }  // namespace sunder::app

@@ -42,6 +42,9 @@ class TomlTable {
   /// Array of tables; empty when absent.
   [[nodiscard]] std::vector<const toml::table*> tables(std::string_view key) const;
 
+  /// One table, or an array of them; empty when absent.
+  [[nodiscard]] std::vector<const toml::table*> table_or_tables(std::string_view key) const;
+
   /// The place of the word among `known`; an unknown word is an error that lists them.
   [[nodiscard]] std::optional<int> word(std::string_view key,
                                         const std::vector<std::string>& known) const;

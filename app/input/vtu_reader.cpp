@@ -42,6 +42,7 @@ class VtuReader {
     read_points();
     read_cells();
     read_names();
+    read_fields();
     return std::move(mesh_);
   }
 
@@ -246,6 +247,20 @@ class VtuReader {
       const auto tag = values(vtu_integers, array, std::nullopt);
       if (tag.size() != 1 || tag[0] < 0 || tag[0] > std::numeric_limits<int>::max()) continue;
       mesh_.groups.push_back({3, static_cast<int>(tag[0]), array.name});
+    }
+  }
+
+  /// Vectors of the tetrahedra, which fibres may follow.
+  void read_fields() {
+    for (const VtuArray& array : arrays_) {
+      const bool real = array.type == "Float32" || array.type == "Float64";
+      if (array.section != "CellData" || !real || array.components != "3") continue;
+      const auto all = values(vtu_reals, array, 3 * *cells_);
+      std::vector<Vec3>& field = mesh_.fields[array.name];
+      field.clear();
+      for (const std::uint64_t cell : mesh_.tet_tags) {
+        field.emplace_back(all[3 * cell], all[3 * cell + 1], all[3 * cell + 2]);
+      }
     }
   }
 

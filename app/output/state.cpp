@@ -71,7 +71,7 @@ std::vector<double> yield_ratios(const Problem& problem, const State& state) {
   std::vector<double> ratios(state.stress.size(), 0.0);
   for (Index e = 0; e < static_cast<Index>(ratios.size()); ++e)
     if (problem.breakable(e) && !state.destroyed[e])
-      ratios[e] = yield_measure(state.stress[e], measure) / problem.yield(e);
+      ratios[e] = problem.yield_ratio(e, state.stress[e], measure);
   return ratios;
 }
 

@@ -117,6 +117,13 @@ void write_cell_data(ResultFile& file, const Problem& problem, const State& stat
     write_array(file, "max_shear", max_shears(state));
     write_array(file, "yield_ratio", yield_ratios(problem, state));
   }
+  for (int family = 0; family < problem.fibre_families(); ++family) {
+    std::vector<Vec3> along;
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      along.push_back(problem.fibre_direction(e, family));
+    }
+    write_vectors(file, family == 0 ? "fibres" : "fibres_2", along);
+  }
   write_array(file, "destroyed", state.destroyed);
   write_array(file, "volume", tags);
   file.write("      </CellData>\n");

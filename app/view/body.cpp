@@ -53,7 +53,7 @@ bool same_base(const Body& a, const Body& b) {
   const Problem &one = a.simulation.problem(), &other = b.simulation.problem();
   for (const Body* body : {&a, &b}) {
     const Problem& problem = body->simulation.problem();
-    if (problem.finite() || problem.moves()) return false;
+    if (problem.finite() || problem.moves() || problem.fibrous()) return false;
     if (body->simulation.backend().info().backend != "cpu") return false;
   }
   if (a.simulation.backend().info().route != b.simulation.backend().info().route) return false;

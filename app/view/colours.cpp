@@ -56,10 +56,9 @@ double value_of(const Problem& problem, const State& state, Index e, Field field
     case Field::stress:
       return max_shear(state.stress[at]);
     case Field::yield:
-      return problem.breakable(e)
-                 ? yield_measure(state.stress[at], strength_measure(problem.scene().fracture)) /
-                       problem.yield(e)
-                 : 0.0;
+      return problem.breakable(e) ? problem.yield_ratio(e, state.stress[at],
+                                                        strength_measure(problem.scene().fracture))
+                                  : 0.0;
     case Field::strain:
       return largest_strain(problem, state, e);
     default:

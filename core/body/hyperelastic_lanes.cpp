@@ -151,15 +151,21 @@ enum class LaneLaw {
   neo_hookean,
   saint_venant_kirchhoff,
   neo_hookean_shape,  // with the pressure of a patch
-  other
+  other,
+  other_linear
 };
+
+/// Of small strains, which know but one stress.
+constexpr bool small_strains(LaneLaw law) {
+  return law == LaneLaw::linear || law == LaneLaw::other_linear;
+}
 
 /// W and P. `pressure`: as respond_by_law has it.
 template <LaneLaw kLaw>
 SUNDER_IN_LANES void responses(const Problem& problem, const Law& law, const ElementBlock& b,
                                const Lanes<9>& f, const Lanes<9>& r, const double (&trace)[kLanes],
                                const double* pressure, Lanes<9>& p, double (&energy)[kLanes]) {
-  if constexpr (kLaw == LaneLaw::other) {
+  if constexpr (kLaw == LaneLaw::other || kLaw == LaneLaw::other_linear) {
     ResponseInLanes scalar;
     for (int i = 0; i < 9; ++i) {
       for (int l = 0; l < kLanes; ++l) scalar.f[i][l] = f[i][l];
@@ -239,7 +245,7 @@ SUNDER_IN_LANES void stresses(const ElementBlock& b, const Lanes<9>& f, const La
                               const LaneOutputs& to, GroupFound& found) {
   Lanes<6> s;
   double one_over[kLanes];
-  if constexpr (kLaw == LaneLaw::linear) {
+  if constexpr (small_strains(kLaw)) {
     for (int l = 0; l < kLanes; ++l) {
       store(symmetric_part(at_lane(p, l)), s, l);
       one_over[l] = 1;
@@ -293,7 +299,7 @@ SUNDER_IN_LANES void deformations(const ElementBlock& b, const Lanes<9>& f, cons
       for (int j = 0; j < 3; ++j) apart.at[i][j] = at.at[i][j] - turned.at[i][j];
     }
     lanes::Symmetric of = lanes::symmetric_product(turned, apart);
-    if constexpr (kLaw == LaneLaw::linear) {
+    if constexpr (small_strains(kLaw)) {
       of = symmetric_part(at);
       of.xx -= 1;
       of.yy -= 1;
@@ -385,9 +391,15 @@ SUNDER_VECTORISED
 void run_other(const Range& of, const double* u, const LaneOutputs& to, GroupFound& found) {
   run_blocks<LaneLaw::other>(of, u, to, found);
 }
+SUNDER_VECTORISED
+void run_other_linear(const Range& of, const double* u, const LaneOutputs& to, GroupFound& found) {
+  run_blocks<LaneLaw::other_linear>(of, u, to, found);
+}
 
-auto loop_of(const Law& law, bool pooled) {
-  if (pooled) return &law == &kNeoHookean ? &run_neo_hookean_shape : &run_other;
+auto loop_of(const ElementGroup& group) {
+  const Law& law = *group.law;
+  if (group.fibres) return &law == &kLinear ? &run_other_linear : &run_other;
+  if (group.pooled) return &law == &kNeoHookean ? &run_neo_hookean_shape : &run_other;
   if (&law == &kLinear) return &run_linear;
   if (&law == &kCorotated) return &run_corotated;
   if (&law == &kNeoHookean) return &run_neo_hookean;
@@ -400,7 +412,7 @@ auto loop_of(const Law& law, bool pooled) {
 void run_group(const Problem& problem, const ElementGroup& group, const ElementBlock* blocks,
                const double* u, const LaneOutputs& to, GroupFound& found) {
   found = {};
-  loop_of(*group.law, group.pooled)({problem, *group.law, blocks, group.count}, u, to, found);
+  loop_of(group)({problem, *group.law, blocks, group.count}, u, to, found);
 }
 
 void find_volumes(const ElementGroup& group, const ElementBlock* blocks, const double* u,

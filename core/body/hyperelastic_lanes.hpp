@@ -37,12 +37,13 @@ struct LaneOutputs {
   StressMeasure measure = StressMeasure::cauchy;
 };
 
-/// Blocks of one law, one after the other.
+/// Blocks of one law, all with fibres or all without, one after the other.
 struct ElementGroup {
   static constexpr std::size_t kMost = 8;
   const Law* law;
-  std::size_t first, count;  ///< blocks
-  bool pooled = false;       ///< their volume is their patch's
+  std::size_t first = 0, count = 0;  ///< blocks
+  bool pooled = false;               ///< their volume is their patch's
+  bool fibres = false;               ///< theirs have some
 };
 
 /// Of a group's live elements, those in one lane together.

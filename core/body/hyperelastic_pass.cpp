@@ -8,6 +8,7 @@
 
 #include "body/deformation.hpp"
 #include "body/pooled_law.hpp"
+#include "material/linear.hpp"
 #include "material/singular_values.hpp"
 
 namespace sunder::fem {
@@ -96,19 +97,25 @@ void HyperelasticPass::arrange() {
     if (std::ranges::find(each, law) == each.end()) each.push_back(law);
   }
   for (const Law* law : each) {
-    for (bool pooled : {false, true}) arrange(*law, pooled);
+    for (const bool pooled : {false, true}) {
+      for (const bool fibres : {false, true}) arrange({law, 0, 0, pooled, fibres});
+    }
   }
   found_.resize(groups_.size());
   if (!forces_.empty()) place_forces();
 }
 
-/// Those of a law that pool their volume, or that do not.
-void HyperelasticPass::arrange(const Law& law, bool pooled) {
+/// Blocks of the elements of one kind.
+void HyperelasticPass::arrange(const ElementGroup& kind) {
   const Problem& problem = body_.problem;
   const std::size_t first = blocks_.size();
   int lane = kLanes;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (&body_.law(e) != &law || pools_volume(body_, e) != pooled) continue;
+    const bool fibres = problem.small_strain(e).fibres != nullptr;
+    if (&body_.law(e) != kind.law || pools_volume(body_, e) != kind.pooled ||
+        fibres != kind.fibres) {
+      continue;
+    }
     if (lane == kLanes) {
       lane = 0;
       blocks_.push_back({});
@@ -127,9 +134,12 @@ void HyperelasticPass::arrange(const Law& law, bool pooled) {
     ++lane;
   }
   for (std::size_t k = first; k < blocks_.size(); k += ElementGroup::kMost) {
-    groups_.push_back({&law, k, std::min(ElementGroup::kMost, blocks_.size() - k), pooled});
+    ElementGroup group = kind;
+    group.first = k;
+    group.count = std::min(ElementGroup::kMost, blocks_.size() - k);
+    groups_.push_back(group);
   }
-  if (!pooled || blocks_.size() == first) return;
+  if (!kind.pooled || blocks_.size() == first) return;
   volumes_.resize(blocks_.size() * kLanes);
   pressure_.assign(volumes_.size(), 0.0);
   patches_.resize(static_cast<std::size_t>(problem.pools()->count()));
@@ -351,8 +361,10 @@ Deformation HyperelasticPass::deformation(std::span<const double> u) const {
     for (double inverted : group.inverted) found.inverted += static_cast<Index>(inverted);
   }
   const auto gradient = [&](Index e) { return displacement_gradient(body_.problem, e, u); };
-  found.strain =
-      most_by(&GroupFound::strain, [&](Index e) { return principal_stretch(gradient(e)); });
+  found.strain = most_by(&GroupFound::strain, [&](Index e) {
+    return &body_.law(e) == &kLinear ? principal_strain(gradient(e))
+                                     : principal_stretch(gradient(e));
+  });
   found.rotation_deg =
       most_by(&GroupFound::turn, [&](Index e) { return rotation_deg(gradient(e)); });
   return found;

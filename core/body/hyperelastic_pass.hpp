@@ -70,7 +70,7 @@ class HyperelasticPass {
 
  private:
   void arrange();
-  void arrange(const Law& law, bool pooled);
+  void arrange(const ElementGroup& kind);
   void pool_volumes(std::span<const double> u);
   void pool_volume(Index patch);
   void count_in(ElementBlock& block, int lane) const;

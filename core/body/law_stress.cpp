@@ -16,10 +16,22 @@ Mat3 gradient(const TetShape& shape, const Eigen::Matrix<double, 3, 4>& displace
   return Mat3::Identity() + moved * shape.gradient.transpose();
 }
 
+Voigt linear_stress(const Problem& problem, Index e,
+                    const Eigen::Matrix<double, 3, 4>& displacement) {
+  const SmallStrain& law = problem.small_strain(e);
+  const Voigt s = stress(problem.shape(e), law, displacement);
+  if (!law.fibres) return s;
+  const Mat3 f = gradient(problem.shape(e), displacement);
+  const Mat3 more = fibre_stress<FibreTheory::linear>(*law.fibres, f);
+  Voigt of;
+  of << more(0, 0), more(1, 1), more(2, 2), more(0, 1), more(1, 2), more(2, 0);
+  return s + of;
+}
+
 Voigt stress_by(const Problem& problem, Index e, const Eigen::Matrix<double, 3, 4>& displacement,
                 StressMeasure measure) {
   if (problem.material(e).law == MaterialLaw::linear)  // knows but one
-    return stress(problem.shape(e), problem.small_strain(e), displacement);
+    return linear_stress(problem, e, displacement);
   const Mat3 f = gradient(problem.shape(e), displacement);
   const Law& law = law_of(problem, e);
   if (!std::isfinite(law.energy(problem.small_strain(e), f))) {
@@ -50,8 +62,9 @@ Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e,
   const TetShape& shape = problem.shape(e);
   const auto displacement = corner_displacement(problem.mesh(), e, u);
   if (!problem.finite()) {
-    const double scale = !destroyed ? 1.0 : problem.moves() ? 0.0 : problem.scene().fracture.alpha;
-    const Voigt s = stress(shape, problem.small_strain(e), displacement);
+    const bool nothing = problem.moves() || problem.fibrous();
+    const double scale = !destroyed ? 1.0 : nothing ? 0.0 : problem.scene().fracture.alpha;
+    const Voigt s = linear_stress(problem, e, displacement);
     return scale * shape.volume * (tensor(s) * shape.gradient).eval();
   }
   if (destroyed) return Eigen::Matrix<double, 3, 4>::Zero();

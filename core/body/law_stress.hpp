@@ -22,7 +22,8 @@ namespace sunder::fem {
                                     const Eigen::Matrix<double, 3, 4>& displacement);
 
 /// Forces on the corners [N] that the element resists its deformation with, from the displacement
-/// at all nodes (3 * nodes). Of a destroyed one a share alpha, and none at finite deformation.
+/// at all nodes (3 * nodes). Of a destroyed one a share alpha, and none at finite deformation, in
+/// motion and where there are fibres.
 [[nodiscard]] Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e,
                                                         std::span<const double> u, bool destroyed);
 /// The same of an element whose volume may be pooled, in statics by law "linear"; `field` is that

@@ -88,6 +88,7 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
     check_options();
     resolve_materials();
     build_shapes();
+    lay_fibres();
     make_pools();
     resolve_elements();
     std::vector<std::uint8_t> held = held_axes();
@@ -170,6 +171,7 @@ Problem::Problem(const Problem& whole, const PartOfBody& part)
     : scene_(scene_of_part(whole.scene_, part)) {
   resolve_materials();
   for (Index e : part.elements) shapes_.push_back(whole.shapes_[e]);
+  take_fibres(whole, part.elements);
   dof_.assign(3 * mesh().nodes.size(), kNone);
   std::vector<Index> place(static_cast<std::size_t>(whole.dof_count_), kNone);
   for (std::size_t n = 0; n < part.nodes.size(); ++n) {
@@ -200,6 +202,7 @@ Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners
   resolve_materials();
   Mesh& mesh = scene_.mesh;
   mesh.tets = std::move(corners);
+  take_fibres(whole, {});
   for (const NodeThatParts& node : nodes) {
     mesh.nodes.push_back(Vec3(mesh.nodes[static_cast<std::size_t>(node.parent)]));
     for (int axis = 0; axis < 3; ++axis) {
@@ -224,6 +227,7 @@ Problem::Problem(const Problem& whole, std::span<const Index> gripped)
       gripped_dofs_(gripped.begin(), gripped.end()),
       anchor_stiffness_(whole.anchor_stiffness_) {
   resolve_materials();
+  take_fibres(whole, {});
   std::ranges::sort(gripped_dofs_);
   for (Index d : whole.anchored_dofs_) {
     if (std::ranges::binary_search(gripped_dofs_, d)) anchored_dofs_.push_back(d);
@@ -407,7 +411,11 @@ constexpr const char* kPools =
 
 /// Why the law of a material cannot pool its volume in a scene; empty: it can.
 std::string why_law_cannot_pool(const Problem& problem, const Material& material) {
-  if (!problem.finite() || material.law == MaterialLaw::neo_hookean) return {};
+  if (material.law == MaterialLaw::neo_hookean) return {};
+  if (!problem.finite()) {
+    return problem.fibrous() ? "its law \"linear\" pools volume only where no material has fibres"
+                             : "";
+  }
   const std::string law =
       "law " + in_quotes(key_words("material", "law")[static_cast<std::size_t>(material.law)]);
   const std::string no_volume = ", so that no part of its energy is one of J = det F alone";

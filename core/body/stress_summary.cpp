@@ -2,7 +2,6 @@
 #include "body/stress_summary.hpp"
 
 #include "sunder/fracture_model.hpp"
-#include "sunder/stress_measures.hpp"
 
 namespace sunder::fem {
 
@@ -12,7 +11,7 @@ StressSummary summarize(const Problem& problem, std::span<const std::uint8_t> de
   StressSummary summary;
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (destroyed[e] || !problem.breakable(e)) continue;
-    const double ratio = yield_measure(stress[e], measure) / problem.yield(e);
+    const double ratio = problem.yield_ratio(e, stress[e], measure);
     if (ratio > summary.any.ratio) summary.any = {e, ratio};
     if (ratio >= 1) ++summary.over;
     if (!excluded[e] && ratio > summary.candidate.ratio) summary.candidate = {e, ratio};

@@ -364,7 +364,9 @@ Route LawBackend::chosen_route() const {
 std::size_t LawBackend::check_options() {
   const SolverOptions& solver = problem().scene().solver;
   const bool moves = problem().moves(), on_device = static_cast<bool>(machine_.device);
-  const std::string whom = moves ? "motion" : "law " + in_quotes(problem().law());
+  const std::string whom =
+      moves ? "motion"
+            : "law " + in_quotes(problem().law()) + (problem().fibrous() ? " with fibres" : "");
   const auto refuse = [&](const std::string& what, const std::string& why,
                           const std::string& instead) {
     throw DeviceError(what + " cannot serve " + whom + ": " + why + "; use " + instead);

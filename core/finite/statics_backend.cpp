@@ -51,7 +51,9 @@ class StaticsBackend final : public LawBackend {
 
  private:
   Words words() const override {
-    return {problem().finite() ? "a law of finite deformation" : "cracks that split",
+    return {problem().finite()    ? "a law of finite deformation"
+            : problem().fibrous() ? "law linear with fibres"
+                                  : "cracks that split",
             "a recent tangent", ", once an iteration of L-BFGS"};
   }
   [[nodiscard]] std::unique_ptr<solver::FiniteStatics> statics() const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "material/fibres.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder {
@@ -239,6 +240,14 @@ void add_body(Hash& hash, const Problem& problem) {
       hash.add(v);
     }
     hash.add(static_cast<std::uint8_t>(m.law));
+    for (int i = 0; elasticity.fibres && i < elasticity.fibres->count; ++i) {
+      const FibreFamily& f = elasticity.fibres->family[static_cast<std::size_t>(i)];
+      hash.add(f.direction);
+      hash.add(m.fibres[static_cast<std::size_t>(i)].yield_across.value_or(-1));
+      for (const double v : {f.k1, f.k2, f.dispersion}) hash.add(v);
+      const AlongFibres& linear = elasticity.fibres->linear;
+      for (const double v : {linear.lambda, linear.alpha, linear.beta, linear.mu}) hash.add(v);
+    }
     // By element as in recordings that are older than the word.
     if (m.volume != MaterialVolume::element) hash.add(static_cast<std::uint8_t>(m.volume));
   }

@@ -74,8 +74,8 @@ std::vector<std::string> Simulation::warnings() const {
     }
     return all;
   }
-  const std::string so =
-      problem_->finite() ? " displacement stays as it was" : " displacement has no meaning";
+  const std::string so = problem_->finite() || problem_->fibrous() ? " displacement stays as it was"
+                                                                   : " displacement has no meaning";
   if (now_.loose_nodes > 0) {
     all.push_back(count_of(static_cast<long long>(now_.loose_nodes), "node is", "nodes are") +
                   " held by destroyed elements only (since step " +

@@ -299,7 +299,7 @@ std::span<const Worst> Simulation::over_yield() {
   const YieldMeasure measure = strength_measure(problem_->scene().fracture);
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (backend_->destroyed()[e] || !problem_->breakable(e)) continue;
-    const double ratio = yield_measure(backend_->read_stress(e), measure) / problem_->yield(e);
+    const double ratio = problem_->yield_ratio(e, backend_->read_stress(e), measure);
     if (ratio >= 1) over_.push_back({e, ratio});
   }
   return over_;

@@ -46,6 +46,11 @@ void Simulation::attribute_events(bool wanted) {
                      in_quotes(problem_->law()) +
                      ": it rests on superposition; leave attribution out, or take law \"linear\"");
   }
+  if (wanted && problem_->fibrous()) {
+    throw UsageError(
+        "which instrument broke an element cannot be said of a body with fibres: attribution knows "
+        "isotropic elements alone; leave attribution out");
+  }
   act({Action::Attribute{wanted}}, [&](Action&) { now_.attribute = wanted; });
 }
 

@@ -103,7 +103,7 @@ void Simulation::finish_frame() {
     for (Index e = 0; e < problem_->tet_count(); ++e) {
       const auto at = static_cast<std::size_t>(e);
       if (!problem_->breakable(e) || destroyed[at]) continue;
-      frame.yield_ratio[at] = yield_measure(frame.stress[at], measure) / problem_->yield(e);
+      frame.yield_ratio[at] = problem_->yield_ratio(e, frame.stress[at], measure);
     }
   }
   frames_->hand_over();

@@ -37,6 +37,7 @@ SpectralTangent tangent(const SmallStrain& law, const Mat3& f) {
 
 }  // namespace
 
-constinit const Law kCorotated{"corotated", energy, stress, tangent};
+constinit const Law kCorotated =
+    law_with_fibres<FibreTheory::finite, energy, stress, tangent>("corotated");
 
 }  // namespace sunder

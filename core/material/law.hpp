@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A material law: energy, stress and tangent at any deformation. Every law here is isotropic and
-// hyperelastic and equals "linear" at small strain, so that the same two constants state it.
+// hyperelastic and equals "linear" at small strain, so that the same two constants state it. To all
+// of them the fibres of an element are added (fibres.hpp), where its constants have any.
 #pragma once
 
 #include <span>
 #include <string_view>
 
+#include "material/fibres.hpp"
 #include "material/spectral_tangent.hpp"
 #include "sunder/small_strain.hpp"
 
@@ -38,6 +40,45 @@ struct Law {
   /// Null: J alone decides no part of the energy.
   const VolumeSplit* split = nullptr;
 };
+
+/// A law by what it is without fibres.
+template <FibreTheory kTheory, auto kEnergy, auto kStress, auto kTangent>
+constexpr Law law_with_fibres(std::string_view name, const VolumeSplit* split = nullptr) {
+  return {name,
+          [](const SmallStrain& of, const Mat3& f) {
+            const double w = kEnergy(of, f);
+            return of.fibres ? w + fibre_energy<kTheory>(*of.fibres, f) : w;
+          },
+          [](const SmallStrain& of, const Mat3& f) {
+            const Mat3 p = kStress(of, f);
+            return of.fibres ? Mat3(p + fibre_stress<kTheory>(*of.fibres, f)) : p;
+          },
+          [](const SmallStrain& of, const Mat3& f) {
+            if (!of.fibres) return kTangent(of, f);
+            return with_fibres(kTangent(of, f), fibre_tangent<kTheory>(*of.fibres, f));
+          },
+          split};
+}
+
+/// Its split: fibres are of all of F, each element's own, and never of the volume that a patch
+/// shares.
+template <auto kEnergy, auto kStress, auto kTangent, auto kVolume>
+constexpr VolumeSplit split_with_fibres() {
+  constexpr auto kTheory = FibreTheory::finite;
+  return {[](const SmallStrain& of, const Mat3& f) {
+            const double w = kEnergy(of, f);
+            return of.fibres ? w + fibre_energy<kTheory>(*of.fibres, f) : w;
+          },
+          [](const SmallStrain& of, const Mat3& f) {
+            const Mat3 p = kStress(of, f);
+            return of.fibres ? Mat3(p + fibre_stress<kTheory>(*of.fibres, f)) : p;
+          },
+          [](const SmallStrain& of, const Mat3& f, double pressure) {
+            if (!of.fibres) return kTangent(of, f, pressure);
+            return with_fibres(kTangent(of, f, pressure), fibre_tangent<kTheory>(*of.fibres, f));
+          },
+          kVolume};
+}
 
 /// "linear", "corotated", "neo-hookean", "saint-venant-kirchhoff".
 [[nodiscard]] std::span<const Law* const> laws();

@@ -33,7 +33,8 @@ SpectralTangent law_tangent(const SmallStrain& law, const Mat3&) {
 
 }  // namespace
 
-constinit const Law kLinear{"linear", law_energy, law_stress, law_tangent};
+constinit const Law kLinear =
+    law_with_fibres<FibreTheory::linear, law_energy, law_stress, law_tangent>("linear");
 
 SmallStrain small_strain(const Material& material) {
   const double e = material.young, nu = material.poisson;

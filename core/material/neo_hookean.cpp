@@ -81,10 +81,12 @@ VolumeSplit::Volume volume(const SmallStrain& law, double j) {
           (law.lambda + 2.0 / 3 * face) / (j * j) - pressure / j};
 }
 
-constexpr VolumeSplit kSplit{shape_energy, shape_stress, shape_tangent, volume};
+constexpr VolumeSplit kSplit =
+    split_with_fibres<shape_energy, shape_stress, shape_tangent, volume>();
 
 }  // namespace
 
-constinit const Law kNeoHookean{"neo-hookean", energy, stress, tangent, &kSplit};
+constinit const Law kNeoHookean =
+    law_with_fibres<FibreTheory::finite, energy, stress, tangent>("neo-hookean", &kSplit);
 
 }  // namespace sunder

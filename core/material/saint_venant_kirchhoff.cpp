@@ -37,6 +37,7 @@ SpectralTangent tangent(const SmallStrain& law, const Mat3& f) {
 
 }  // namespace
 
-constinit const Law kSaintVenantKirchhoff{"saint-venant-kirchhoff", energy, stress, tangent};
+constinit const Law kSaintVenantKirchhoff =
+    law_with_fibres<FibreTheory::finite, energy, stress, tangent>("saint-venant-kirchhoff");
 
 }  // namespace sunder

@@ -171,6 +171,56 @@ std::vector<SceneKey> root_rows() {
   };
 }
 
+SceneKey fibres_row() {
+  return row("material", "fibres", KeyType::tables, "",
+             "a family of fibres, a table; or two families, an array of two tables (method.md "
+             "\"Fibres\")",
+             "three; two with law \"linear\"; with a model that grows cracks: error; backend "
+             "\"vulkan\": exit code 4");
+}
+
+std::vector<SceneKey> fibre_rows() {
+  using enum KeyType;
+  return {
+      row("fibres", "direction", vector, "", "where they run, in all of the material",
+          "zero; two of `direction`, `around` and `field`, or none: error"),
+      row("fibres", "around", table, "",
+          "{point = [x, y, z], axis = [x, y, z]}: round that axis [mm]",
+          "axis zero, an element's centroid on it: error"),
+      row("fibres", "field", text, "",
+          "name of an array of vectors, one a cell, in the mesh file (.vtu)",
+          "no such array, a vector zero: error"),
+      row("fibres", "k1", number, "",
+          "laws of finite deformation: stiffness of slack fibres as they tighten [MPa], needed "
+          "there",
+          "0 or below, law \"linear\": error"),
+      row("fibres", "k2", number, "",
+          "laws of finite deformation: how fast they stiffen, needed there",
+          "below 0, law \"linear\": error"),
+      row("fibres", "dispersion", number, "0",
+          "laws of finite deformation: kappa, from 0 (all along) to 1/3 (as many in every "
+          "direction)",
+          "outside, law \"linear\": error"),
+      row("fibres", "young_along", number, "",
+          "law \"linear\": Young's modulus along [MPa], needed there; `young` and `poisson` hold "
+          "across",
+          "0 or below, another law: error"),
+      row("fibres", "poisson_along", number, "",
+          "law \"linear\": contraction across by extension along, needed there",
+          "not positive definite, another law: error"),
+      row("fibres", "shear_along", number, "",
+          "law \"linear\": shear modulus of planes along [MPa], needed there",
+          "0 or below, another law: error"),
+      row("fibres", "yield_across", number, "",
+          "strength across [MPa]; `yield` holds along; left out: as along",
+          "0 or below, no `yield`, a second family, `fracture.averaging`, a law but \"linear\" "
+          "with "
+          "`fracture.stress` \"cauchy\": error"),
+      row("around", "point", vector, "", "on the axis [mm]", "", kRequired),
+      row("around", "axis", vector, "", "its direction", "zero: error", kRequired),
+  };
+}
+
 std::vector<SceneKey> body_rows() {
   using enum KeyType;
   return {
@@ -299,7 +349,8 @@ std::span<const MemberKey<Material>> material_keys() {
           "nearly "
           "incompressible tissue does not lock (method.md \"Pooled volume\")",
           "\"element\" with `poisson` over 0.49: warning; \"pooled\" with law \"corotated\" or "
-          "\"saint-venant-kirchhoff\", with \"linear\" beside other laws, in motion or with a "
+          "\"saint-venant-kirchhoff\", with \"linear\" beside other laws or fibres, in motion or "
+          "with a "
           "model "
           "that grows cracks: error; with a backend or route that cannot: exit code 4",
           {.words = {"element", "pooled"}}),
@@ -439,6 +490,8 @@ const std::vector<SceneKey>& scene_keys() {
     std::vector<SceneKey> all = root_rows();
     append(all, material_keys());
     all.push_back(preset_row());
+    all.push_back(fibres_row());
+    append(all, fibre_rows());
     append(all, body_rows());
     append(all, fracture_keys());
     append(all, solver_keys());

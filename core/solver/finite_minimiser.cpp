@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "material/fibres.hpp"
+
 namespace sunder::solver {
 namespace {
 
@@ -34,9 +36,9 @@ constexpr double kSumRounding = 2e-16;
 FiniteScale finite_scale(const Problem& problem) {
   double stiffest = 0, sum = 0, volume = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    stiffest = std::max(stiffest, problem.small_strain(e).mu);
+    stiffest = std::max(stiffest, shear_scale(problem.small_strain(e)));
     volume += problem.shape(e).volume;
-    sum += problem.small_strain(e).mu * problem.shape(e).volume;
+    sum += shear_scale(problem.small_strain(e)) * problem.shape(e).volume;
   }
   const double face = std::pow(volume / std::max(1, problem.tet_count()), 2.0 / 3);
   return {kNoStress * stiffest * face, kNoStress * stiffest, kStressRounding * stiffest * face,

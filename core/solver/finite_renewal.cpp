@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 
+#include "material/fibres.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
@@ -28,7 +29,7 @@ std::unique_ptr<FiniteBase> base_of(const fem::HyperelasticBody& body, const std
 double stiffness_scale(const Problem& problem) {
   double most = 0, volume = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    most = std::max(most, problem.small_strain(e).mu);
+    most = std::max(most, shear_scale(problem.small_strain(e)));
     volume += problem.shape(e).volume;
   }
   return most * std::cbrt(volume / std::max(1, problem.tet_count()));

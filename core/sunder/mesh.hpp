@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct Mesh {
   std::vector<Index> volume_of;            ///< per tet: index into `volumes`
   std::vector<NamedVolume> volumes;
   std::vector<NamedSurface> surfaces;
+  std::map<std::string, std::vector<Vec3>> fields;  ///< vectors per tet, by name
 
   [[nodiscard]] Index node_count() const { return static_cast<Index>(nodes.size()); }
   [[nodiscard]] Index tet_count() const { return static_cast<Index>(tets.size()); }

@@ -77,8 +77,15 @@ class Problem {
   }
   /// What the law of element e is at small strain.
   [[nodiscard]] const SmallStrain& small_strain(Index e) const {
+    if (fibrous()) return small_strain_of_element_[e];
     return small_strain_of_volume_[mesh().volume_of[e]];
   }
+  /// Whether any of its elements has fibres; small_strain(e) has those of element e.
+  [[nodiscard]] bool fibrous() const { return fibres_ != nullptr; }
+  /// Most families that an element has, 0 to 2.
+  [[nodiscard]] int fibre_families() const;
+  /// Unit vector of a family in the undeformed element; 0 where it has none.
+  [[nodiscard]] Vec3 fibre_direction(Index e, int family) const;
   /// Patches of the elements that pool their volume (body/pools.hpp); null where none does.
   [[nodiscard]] const fem::Pools* pools() const { return pools_.get(); }
   /// Whether a law of its elements is one of finite deformation.
@@ -89,6 +96,9 @@ class Problem {
   [[nodiscard]] std::string law() const;
   /// Yield stress of element e [MPa]; 0: no stress breaks it.
   [[nodiscard]] double yield(Index e) const { return material(e).yield.value_or(0.0); }
+  /// Of a breakable element: the measure of a stress over its strength, which may be another along
+  /// fibres than across (method.md "Fibres").
+  [[nodiscard]] double yield_ratio(Index e, const Voigt& stress, YieldMeasure measure) const;
   /// By strength.
   [[nodiscard]] bool breakable(Index e) const { return material(e).yield.has_value(); }
   /// By strength, or by a crack that grows where the material has a toughness.
@@ -133,6 +143,9 @@ class Problem {
   void resolve_materials();
   void build_shapes();
   void make_pools();
+  void lay_fibres();
+  void note_fibres();
+  void take_fibres(const Problem& whole, std::span<const Index> elements);
   [[nodiscard]] bool can_pool() const;
   void check_pooled(const std::string& what) const;
   [[nodiscard]] std::vector<std::uint8_t> held_axes() const;
@@ -158,6 +171,8 @@ class Problem {
   std::vector<const Material*> material_of_volume_;
   std::vector<SmallStrain> small_strain_of_volume_;
   std::shared_ptr<const fem::Pools> pools_;
+  std::shared_ptr<const std::vector<ElementFibres>> fibres_;  // of elements; null: none has any
+  std::vector<SmallStrain> small_strain_of_element_;          // where fibres_ is there
   bool finite_ = false;
   bool reads_toughness_ = false;  // the fracture model grows cracks
   std::vector<Index> dof_;

@@ -21,8 +21,30 @@ enum class MaterialLaw { linear, corotated, neo_hookean, saint_venant_kirchhoff 
 /// material, so that nearly incompressible tissue does not lock (method.md "Pooled volume").
 enum class MaterialVolume { element, pooled };
 
-/// Isotropic elasticity; without yield nothing ruptures in it, without yield and toughness it is
-/// unbreakable (method.md "Elasticity").
+/// A cell field of the mesh file (Mesh::fields).
+struct FieldName {
+  std::string name;
+};
+/// Round an axis: at right angles to it and to the way from it to the element's centroid.
+struct AroundAxis {
+  Vec3 point, axis;
+};
+
+/// A family of fibres (method.md "Fibres").
+struct Fibres {
+  std::variant<Vec3, AroundAxis, FieldName> direction = Vec3::Zero();
+  /// Laws of finite deformation: k1 [MPa], > 0; k2, >= 0; kappa in [0, 1/3].
+  std::optional<double> k1 = {}, k2 = {};
+  double dispersion = 0;
+  /// Law "linear": E along [MPa], the contraction across for an extension along, G of shear along
+  /// [MPa]. The material's own young and poisson hold across.
+  std::optional<double> young_along = {}, poisson_along = {}, shear_along = {};
+  /// Strength across [MPa], > 0, where the material's yield holds along; none: as along.
+  std::optional<double> yield_across = {};
+};
+
+/// Isotropic elasticity but for its fibres; without yield nothing ruptures in it, without yield and
+/// toughness it is unbreakable (method.md "Elasticity").
 struct Material {
   double young = 0;             ///< E [MPa] at small strain, finite and > 0
   double poisson = 0;           ///< nu in (-1, 0.5), likewise
@@ -34,6 +56,7 @@ struct Material {
   /// [N/mm], finite and > 0, at most one of them; none: Eq. 1's reach, by yield.
   std::optional<double> toughness = {}, energy = {};
   MaterialVolume volume = MaterialVolume::element;
+  std::vector<Fibres> fibres = {};  ///< families, at most two
   [[nodiscard]] bool tough() const { return toughness || energy; }
 };
 

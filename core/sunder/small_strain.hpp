@@ -7,6 +7,8 @@
 
 namespace sunder {
 
+struct ElementFibres;
+
 /// Isotropic linear elasticity. Stress s = 2 mu e + lambda tr(e) I of the strain e.
 struct SmallStrain {
   double young = 0;           ///< E [MPa]
@@ -14,6 +16,8 @@ struct SmallStrain {
   double lambda = 0, mu = 0;  ///< Lame's constants [MPa]
   double triple_bulk = 0;     ///< 3 lambda + 2 mu = E / (1 - 2 nu) [MPa]
   double double_shear = 0;    ///< 2 mu = E / (1 + nu) [MPa]
+  /// Of its element, which the law adds to the above (material/fibres.hpp); null: none.
+  const ElementFibres* fibres = nullptr;
   /// Largest eigenvalue of the elasticity of tensors: |s|^2 <= stiffest() (s : e) [MPa].
   [[nodiscard]] double stiffest() const { return std::max(triple_bulk, double_shear); }
 };

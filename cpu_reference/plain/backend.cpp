@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -9,12 +10,33 @@
 namespace sunder::plain {
 namespace {
 
-Real strength(const Voigt& s, YieldMeasure measure) {
+Real3x3 tensor_of(const Voigt& s) {
   Real3x3 tensor;
   tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
-  const auto p = principal_values(tensor);
+  return tensor;
+}
+
+Real strength(const Voigt& s, YieldMeasure measure) {
+  const auto p = principal_values(tensor_of(s));
   if (measure == YieldMeasure::principal) return p[2];
   return measure == YieldMeasure::tresca ? p[2] - p[0] : (p[2] - p[0]) / 2;
+}
+
+/// Over the yield, which fibres may have another of across: the largest x of det(t - x M) = 0, t
+/// the stress (less s3 I by shear), M = yield a a^T + yield_across (I - a a^T).
+Real yield_ratio(const Problem& problem, Index e, const Voigt& s, YieldMeasure measure) {
+  const Material& m = problem.material(e);
+  if (m.fibres.empty() || !m.fibres.front().yield_across) {
+    return strength(s, measure) / problem.yield(e);
+  }
+  const Eigen::Matrix<Real, 3, 1> a = problem.fibre_direction(e, 0).cast<Real>();
+  const Real3x3 one = Real3x3::Identity(), along = a * a.transpose();
+  Real3x3 t = tensor_of(s);
+  if (measure != YieldMeasure::principal) t -= principal_values(t)[0] * one;
+  const Real3x3 strengths =
+      problem.yield(e) * along + *m.fibres.front().yield_across * (one - along);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Real3x3> of(t, strengths, Eigen::EigenvaluesOnly);
+  return of.eigenvalues()[2] / (measure == YieldMeasure::max_shear ? 2 : 1);
 }
 
 class PlainBackend final : public Backend {
@@ -32,13 +54,14 @@ class PlainBackend final : public Backend {
  private:
   void do_set_load(const Load& load) override { load_ = load; }
   SolveReport do_solve() override {
-    if (problem().finite()) return solve_finite();
+    if (by_laws()) return solve_finite();
     solution_ = body_.solve(load_);
     if (!(solution_.error <= problem().scene().solver.tolerance)) {
       throw NumericalError("the yardstick cannot be refined under the tolerance");
     }
     return {.residual = solution_.residual, .error = solution_.error};
   }
+  [[nodiscard]] bool by_laws() const { return problem().finite() || problem().fibrous(); }
   /// From the last solution on.
   SolveReport solve_finite() {
     const FiniteBody body(problem(), destroyed());
@@ -52,7 +75,7 @@ class PlainBackend final : public Backend {
     StressSummary summary;
     for (Index e = 0; e < problem().tet_count(); ++e) {
       if (destroyed()[e] || !problem().breakable(e)) continue;
-      const auto ratio = static_cast<double>(strength(stress_[e], measure) / problem().yield(e));
+      const auto ratio = static_cast<double>(yield_ratio(problem(), e, stress_[e], measure));
       if (ratio > summary.any.ratio) summary.any = {e, ratio};
       if (ratio > summary.candidate.ratio && !excluded_[e]) summary.candidate = {e, ratio};
       summary.over += ratio >= 1;
@@ -60,7 +83,7 @@ class PlainBackend final : public Backend {
     return summary;
   }
   Deformation do_deformation() override {
-    return problem().finite()
+    return by_laws()
                ? FiniteBody(problem(), destroyed()).deformation(solution_.displacement, cut_off_)
                : body_.deformation(solution_.displacement, cut_off_);
   }
@@ -72,7 +95,7 @@ class PlainBackend final : public Backend {
     for (Index e : elements) excluded_[e] = 1;
   }
   void do_solve_pristine(const Load& load, std::span<double> u) override {
-    if (problem().finite()) {
+    if (by_laws()) {
       pristine_ = FiniteBody(problem()).solve(load, pristine_).displacement;
     } else {
       pristine_ = Body(problem()).solve(load).displacement;

@@ -3,6 +3,7 @@
 // Newton's method with a new factor each time. As plain.hpp it shares nothing with what it judges.
 #pragma once
 
+#include "cpu_reference/plain/fibres.hpp"
 #include "cpu_reference/plain/plain.hpp"
 
 namespace sunder::plain {
@@ -24,7 +25,7 @@ class FiniteBody : public Body {
  public:
   FiniteBody(const Problem& problem, const Law& law, std::span<const std::uint8_t> destroyed = {})
       : Body(problem, destroyed), laws_(elements_.size(), &law) {}
-  /// By the laws of its materials.
+  /// By the laws of its materials, with their fibres.
   explicit FiniteBody(const Problem& problem, std::span<const std::uint8_t> destroyed = {});
   /// From u = 0 or `start` (3 * nodes) to a residual of 1e-10: Newton, with a shift where the
   /// tangent is indefinite, halved until the energy falls. No stress. Throws std::runtime_error.
@@ -38,7 +39,11 @@ class FiniteBody : public Body {
  private:
   Real energy(const std::vector<Real>& u, const Eigen::VectorXd& load, Eigen::VectorXd& r) const;
   Eigen::VectorXd step(const std::vector<Real>& u, const Eigen::VectorXd& r) const;
+  Real energy(std::size_t element, const Real3x3& f) const;
+  Real3x3 stress(std::size_t element, const Real3x3& f) const;
+  Real3x3 change(std::size_t element, const Real3x3& f, const Real3x3& df) const;
   std::vector<const Law*> laws_;  // per element
+  std::vector<Fibres> fibres_;    // per element; empty: none
 };
 
 }  // namespace sunder::plain

@@ -9,6 +9,21 @@
 
 namespace sunder::plain {
 
+Real FiniteBody::energy(std::size_t element, const Real3x3& f) const {
+  const Real w = laws_[element]->energy(elements_[element].d, f);
+  return fibres_.empty() ? w : w + fibres_[element].energy(f);
+}
+Real3x3 FiniteBody::stress(std::size_t element, const Real3x3& f) const {
+  Real3x3 p = laws_[element]->stress(elements_[element].d, f);
+  if (!fibres_.empty()) p += fibres_[element].stress(f);
+  return p;
+}
+Real3x3 FiniteBody::change(std::size_t element, const Real3x3& f, const Real3x3& df) const {
+  Real3x3 dp = laws_[element]->change(elements_[element].d, f, df);
+  if (!fibres_.empty()) dp += fibres_[element].change(f, df);
+  return dp;
+}
+
 /// Less the work of the load; r = internal forces - load, per dof.
 Real FiniteBody::energy(const std::vector<Real>& u, const Eigen::VectorXd& load,
                         Eigen::VectorXd& r) const {
@@ -18,8 +33,8 @@ Real FiniteBody::energy(const std::vector<Real>& u, const Eigen::VectorXd& load,
     const Element& e = elements_[id];
     if (e.share < 1) continue;
     const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
-    sum += e.volume * laws_[id]->energy(e.d, f);
-    const Real3x3 p = laws_[id]->stress(e.d, f);
+    sum += e.volume * energy(id, f);
+    const Real3x3 p = stress(id, f);
     for (Index i = 0; i < 12; ++i)
       forces[e.places[i]] += e.volume * p.row(i % 3).dot(e.slope(i / 3));
   }
@@ -40,7 +55,7 @@ Eigen::VectorXd FiniteBody::step(const std::vector<Real>& u, const Eigen::Vector
       Real3x3 df = Real3x3::Zero();
       df.row(j % 3) = e.slope(j / 3);
       const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
-      const Real3x3 dp = laws_[id]->change(e.d, f, df);
+      const Real3x3 dp = change(id, f, df);
       for (Index i = 0; i < 12; ++i) {
         const Index row = problem_.dofs()[e.places[i]];
         if (column == kNone || row < column || !free_[row] || !free_[column]) continue;
@@ -99,6 +114,7 @@ FiniteBody::FiniteBody(const Problem& problem, std::span<const std::uint8_t> des
                     : law == MaterialLaw::corotated   ? &kCorotated
                     : law == MaterialLaw::neo_hookean ? &kNeoHookean
                                                       : &kSaintVenantKirchhoff);
+    if (problem.fibrous()) fibres_.emplace_back(problem, e, elements_[e]);
   }
 }
 
@@ -108,7 +124,7 @@ std::vector<Voigt> FiniteBody::stress(std::span<const double> u, StressMeasure m
     const Element& e = elements_[id];
     if (e.share < 1) continue;
     const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
-    Real3x3 s = laws_[id]->stress(e.d, f);
+    Real3x3 s = stress(id, f);
     if (laws_[id] != &kLinear && measure == StressMeasure::biot) s = rotation(f).transpose() * s;
     if (laws_[id] != &kLinear && measure == StressMeasure::cauchy)
       s = s * f.transpose() / f.determinant();

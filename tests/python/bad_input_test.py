@@ -103,6 +103,8 @@ class Scenes(unittest.TestCase):
         self.refused("node", {"fixed.0.nodes": [99]})
         self.refused('material "tissue": the mesh has no such volume',
                      {"material.tissue": {"young": 1, "poisson": 0.3}})
+        self.refused("has fibres, which the program alone takes so far",
+                     {"material.volume.fibres": {"direction": [1, 0, 0]}}, sunder.Error)
         self.refused('preset is "stone"; allowed: ', {"material.volume.preset": "stone"}, sunder.Error)
         self.refused("is not held", {"fixed": []})
 

@@ -25,7 +25,7 @@ struct FreshBody {
       held.push_back(u[static_cast<std::size_t>(at)]);
     }
     const auto destroyed = of.backend().destroyed();
-    if (problem.finite()) {
+    if (problem.finite() || problem.fibrous()) {
       solution =
           plain::FiniteBody(problem, destroyed).solve(load_of(problem, force, std::move(held)), u);
     } else {

@@ -3,6 +3,7 @@
 // tetrahedron with one integration point.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -38,9 +39,18 @@ inline void write_mesh(std::ostream& deck, const Problem& problem, std::span<con
     const Vec3& x = mesh.nodes[n];
     deck << n + 1 << ", " << number(x[0]) << ", " << number(x[1]) << ", " << number(x[2]) << "\n";
   }
-  std::map<std::pair<double, double>, std::vector<Index>> by_material;  // E a_e, nu
+  // E a_e, nu; with fibres the same along, shear along, and their direction.
+  std::map<std::vector<double>, std::vector<Index>> by_material;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    by_material[{problem.material(e).young * scale[e], problem.material(e).poisson}].push_back(e);
+    const Material& m = problem.material(e);
+    std::vector<double> of{m.young * scale[e], m.poisson};
+    if (!m.fibres.empty()) {
+      const Vec3 a = problem.fibre_direction(e, 0);
+      const Fibres& f = m.fibres.front();
+      of.insert(of.end(), {*f.young_along * scale[e], *f.poisson_along, *f.shear_along * scale[e],
+                           a.x(), a.y(), a.z()});
+    }
+    by_material[of].push_back(e);
   }
   int set = 0;
   for (const auto& [elastic, elements] : by_material) {
@@ -51,9 +61,28 @@ inline void write_mesh(std::ostream& deck, const Problem& problem, std::span<con
       for (Index n : mesh.tets[e]) deck << ", " << n + 1;
       deck << "\n";
     }
-    deck << "*MATERIAL, NAME=M" << name << "\n*ELASTIC\n"
-         << number(elastic.first) << ", " << number(elastic.second) << "\n*SOLID SECTION, ELSET=E"
-         << name << ", MATERIAL=M" << name << "\n";
+    const auto list = [&](const std::vector<double>& values) {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        deck << (i > 0 ? ", " : "") << number(values[i]);
+      deck << "\n";
+    };
+    const double young = elastic[0], nu = elastic[1];
+    deck << "*MATERIAL, NAME=M" << name << "\n";
+    if (elastic.size() == 2) {
+      deck << "*ELASTIC\n";
+      list({young, nu});
+    } else {  // E1, E2, E3, nu12, nu13, nu23, G12, G13, G23: axis 1 along fibres
+      deck << "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n";
+      const double along = elastic[2], nu_along = elastic[3], shear = elastic[4];
+      list({along, young, young, nu_along, nu_along, nu, shear, shear});
+      list({young / (2 * (1 + nu)), 293});
+      const Vec3 a(elastic[5], elastic[6], elastic[7]), b = a.unitOrthogonal();
+      deck << "*ORIENTATION, NAME=O" << name << ", SYSTEM=RECTANGULAR\n";
+      list({a.x(), a.y(), a.z(), b.x(), b.y(), b.z()});
+    }
+    deck << "*SOLID SECTION, ELSET=E" << name << ", MATERIAL=M" << name;
+    if (elastic.size() > 2) deck << ", ORIENTATION=O" << name;
+    deck << "\n";
   }
   deck << "*ELSET, ELSET=EALL, GENERATE\n1, " << problem.tet_count() << "\n";
 }
@@ -78,7 +107,7 @@ inline void write_step(std::ostream& deck, const Problem& problem, std::span<con
     if (force[i] != 0) deck << i / 3 + 1 << ", " << i % 3 + 1 << ", " << number(force[i]) << "\n";
   }
   const char* last = theory == Theory::linear ? "" : ", FREQUENCY=1000";  // increment alone
-  deck << "*NODE PRINT, NSET=NALL" << last << "\nU\n*EL PRINT, ELSET=EALL" << last
+  deck << "*NODE PRINT, NSET=NALL" << last << "\nU\n*EL PRINT, ELSET=EALL, GLOBAL=YES" << last
        << "\nS\n*END STEP\n";
 }
 

@@ -162,6 +162,9 @@ class Scene(Handled):
                     # In C 0 stands for none.
                     if key not in ("young", "poisson") and not getattr(m, key) > 0:
                         raise InputError(f"{what} {key} is {value}; allowed are numbers above 0")
+            elif key == "fibres":
+                raise InputError(f"{what} has fibres, which the program alone takes so far: sunder "
+                                 "run; leave the key out here")
             else:
                 raise _words.unknown("material", key)
         m.name = _name(name)

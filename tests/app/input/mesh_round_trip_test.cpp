@@ -136,6 +136,44 @@ TEST(MeshRoundTrip, ResultFilesOfSunder) {
   expect_same_mesh(app::import_mesh(folder.file("result.vtu")), problem.mesh());
 }
 
+// Directions of fibres that a run has written are a field for the next.
+TEST(MeshRoundTrip, DirectionsOfFibresComeBack) {
+  Scene scene;
+  scene.mesh = app::structured_board({2, 4, 1}, 2.0);
+  for (const NamedVolume& volume : scene.mesh.volumes) {
+    Material& m = scene.materials[volume.name] = {5, 0.3, {}, MaterialLaw::corotated};
+    Fibres f;
+    f.k1 = f.k2 = 1;
+    f.direction = AroundAxis{Vec3(-9, 3, 0), Vec3(0, 0, 2)};
+    m.fibres.push_back(f);
+    f.direction = Vec3(0, 3, 4);
+    m.fibres.push_back(f);
+  }
+  scene.supports.push_back({Box{Vec3(-1, 49, -1), Vec3(51, 51, 3)}, Axes{7}});
+  const Problem first(scene);
+  app::State state;
+  state.displacement.assign(first.mesh().nodes.size(), Vec3(1, 2, 3));
+  state.destroyed.assign(first.mesh().tets.size(), 0);
+  const TemporaryFolder folder;
+  app::ResultFile file(folder.file("result.vtu"));
+  app::write_vtu(file, first, state);
+  file.commit();
+  scene.mesh = app::import_mesh(folder.file("result.vtu"));
+  ASSERT_TRUE(scene.mesh.fields.contains("fibres"));
+  for (auto& [name, material] : scene.materials) {
+    material.fibres[0].direction = FieldName{"fibres"};
+    material.fibres[1].direction = FieldName{"fibres_2"};
+  }
+  const Problem second(scene);
+  for (Index e = 0; e < first.tet_count(); ++e) {
+    for (const int family : {0, 1}) {
+      EXPECT_LT((second.fibre_direction(e, family) - first.fibre_direction(e, family)).norm(),
+                1e-15);
+    }
+  }
+  EXPECT_EQ(second.fibre_direction(0, 1), Vec3(0, 0.6, 0.8));
+}
+
 // As VTK's own writer does it (vtkXMLUnstructuredGridWriter, appended raw, zlib, UInt32): one
 // tetrahedron of float coordinates, big-endian and little-endian.
 TEST(MeshRoundTrip, CompressedRawAppendedVtu) {

@@ -40,6 +40,7 @@ TEST(SceneFiles, AllAreThere) {
                            "artery",
                            "peel",
                            "brain-notch",
+                           "skin",
                            "board",
                            "board-split",
                            "board-falls",

@@ -14,6 +14,8 @@ namespace {
 std::string heading(const SceneKey& key) {
   const std::string name(key.name);
   if (name == "material") return "[material.NAME]";
+  if (name == "fibres") return "[[material.NAME.fibres]]";
+  if (name == "around") return "[material.NAME.fibres.around]";
   return key.type == KeyType::tables ? "[[" + name + "]]" : "[" + name + "]";
 }
 
@@ -61,19 +63,30 @@ std::string row(const SceneKey& key) {
          '\n';
 }
 
+bool is_table(const SceneKey& key) {
+  return key.type == KeyType::table || key.type == KeyType::tables;
+}
+
+/// Tables of a table come after its rows, each with its own.
 std::string rows_of(std::string_view table) {
-  std::string rows;
+  std::string rows, tables;
   for (const SceneKey& key : scene_keys()) {
-    if (key.table == table) rows += row(key);
+    if (key.table != table) continue;
+    if (!is_table(key) || table.empty()) {
+      rows += row(key);
+      continue;
+    }
+    tables += "| **`" + heading(key) + "`** | | | **" + std::string(key.meaning) + "** |" +
+              cell(key.wrong) + '\n' + rows_of(key.name);
   }
-  return rows;
+  return rows + tables;
 }
 
 std::string key_table() {
   std::string text = "| key | type | default | meaning | wrong, or odd |\n|---|---|---|---|---|\n";
   for (const SceneKey& key : scene_keys()) {
     if (!key.table.empty()) continue;
-    if (key.type != KeyType::table && key.type != KeyType::tables) {
+    if (!is_table(key)) {
       text += row(key);
       continue;
     }
@@ -109,8 +122,8 @@ std::string scene_dictionary() {
     if (key.type == KeyType::nodes) continue;
     if (name == "material" && key.table.empty()) {
       entries.insert("[material.");
-    } else if (key.type == KeyType::table || key.type == KeyType::tables) {
-      entries.insert(heading(key));
+    } else if (is_table(key)) {
+      entries.insert(key.table.empty() ? heading(key) : name + " = {");
     } else {
       entries.insert(name + " = ");
     }

@@ -39,6 +39,11 @@ Lines company(const std::string& table, const std::string& key) {
   };
   if (const auto found = special.find(table + '.' + key); found != special.end())
     return found->second;
+  if (table == "fibres") {
+    if (key == "direction" || key == "around" || key == "field") return {};
+    return {{"direction", "[1, 0, 0]"}};
+  }
+  if (table == "around") return {{"point", "[0, 0, 0]"}, {"axis", "[0, 0, 1]"}};
   if (table == "material") return {{"young", "1"}, {"poisson", "0.3"}};
   if (table == "crack") return {{"elements", "[0]"}, {"mouth", "[0, 0, 0]"}, {"tip", "[1, 0, 0]"}};
   if (table == "destroy") return {{"step", "0"}};
@@ -60,7 +65,11 @@ std::string scene_with(const std::string& table, const std::string& key, const s
       std::any_of(scene_keys().begin(), scene_keys().end(), [&](const SceneKey& row) {
         return row.table.empty() && row.name == table && row.type == KeyType::tables;
       });
-  text += several ? "[[" + table + "]]\n" : "[" + table + (table == "material" ? ".m]\n" : "]\n");
+  if (table == "fibres" || table == "around") {
+    text += "[material.m]\nyoung = 1\npoisson = 0.3\n[material.m.fibres";
+    text += table == "around" ? ".around]\n" : "]\n";
+  } else
+    text += several ? "[[" + table + "]]\n" : "[" + table + (table == "material" ? ".m]\n" : "]\n");
   for (const auto& [name, of_it] : lines) {
     if (name != key) text += name + " = " + of_it + '\n';
   }
@@ -139,7 +148,7 @@ TEST(SceneKeys, TheReaderMissesWhatIsNeeded) {
     expect_input_error([&] { parse(scene_with(table, "", "", lines)); }, InputFault::missing_key,
                        {name, "is missing"});
   }
-  EXPECT_EQ(needed, 5);  // young, poisson, kind, step, time_step
+  EXPECT_EQ(needed, 7);  // young, poisson, point, axis, kind, step, time_step
 }
 
 /// Every word of every option, and every default written out, as the reader takes it.

@@ -4,7 +4,10 @@
 
 #include <cmath>
 
+#include "app/input/scene_toml.hpp"
 #include "app/output/program.hpp"
+#include "sunder/backends.hpp"
+#include "sunder/simulation.hpp"
 #include "support/text.hpp"
 
 namespace sunder::test {
@@ -81,6 +84,30 @@ TEST(FiniteRun, OtherRoutesAreRefusedWithFour) {
   };
   refused({"--backend", "cpu", "--route", "condensed"}, "route condensed");
   refused({"--backend", "cpu", "--route", "cg"}, "route cg");
+}
+
+/// How far the lips of scenes/finite/skin.toml part in the middle of the cut, as they were .5 mm
+/// apart, with fibres along y and x.
+double wound(const std::string& direction) {
+  const auto problem = app::read_problem(SUNDER_SOURCE "/scenes/finite/skin.toml",
+                                         {"material.skin.fibres.direction=" + direction});
+  Simulation run(problem, std::move(create_backend(problem, needs_of(*problem)).backend));
+  while (!run.done()) run.step();
+  const auto& u = run.displacement();
+  double parted = 0;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    const Vec3& x = problem->mesh().nodes[n];
+    if (std::abs(x.x()) > 1e-6 || std::abs(x.z() - 2) > 1e-6) continue;
+    if (std::abs(std::abs(x.y()) - 0.25) < 1e-6) parted += x.y() > 0 ? u[n].y() : -u[n].y();
+  }
+  return parted;
+}
+
+// Langer's lines: a cut across fibres gapes, one along them is held by them.
+TEST(FiniteRun, SkinGapesAcrossItsFibres) {
+  const double across = wound("[0, 1, 0]"), along = wound("[1, 0, 0]");
+  EXPECT_GT(along, 0);
+  EXPECT_GT(across, 2 * along);
 }
 
 }  // namespace

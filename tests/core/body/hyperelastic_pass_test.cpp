@@ -165,6 +165,59 @@ TEST_F(HyperelasticPassOf, EachElementAgreesWithTheScalarLaws) {
   }
 }
 
+// Every second element has fibres, so that blocks of both kinds are there.
+TEST(HyperelasticPassWithFibres, AgreesWithTheScalarLaws) {
+  for (const MaterialLaw law : {MaterialLaw::linear, MaterialLaw::corotated,
+                                MaterialLaw::neo_hookean, MaterialLaw::saint_venant_kirchhoff}) {
+    Scene scene = apart(203);
+    for (auto& [name, material] : scene.materials) material.law = law;
+    Fibres of;
+    of.direction = Vec3(1, -2, 0.5);
+    if (law == MaterialLaw::linear) {
+      of.young_along = 20;
+      of.poisson_along = 0.3;
+      of.shear_along = 6;
+    } else {
+      of.k1 = 3;
+      of.k2 = 0.4;
+      of.dispersion = 0.1;
+    }
+    scene.materials["soft"].fibres = {of};
+    const Problem problem(scene);
+    RandomGradients any(5);
+    std::vector<Mat3> all;
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      all.push_back(gradient_of(Kind::strained, any));
+    }
+    const auto u = displaced(problem, all);
+    const auto by = laws_of(problem);
+    const HyperelasticBody body{problem, by};
+    std::vector<double> expected(u.size()), f(u.size());
+    std::vector<Voigt> stress(all.size()), right(all.size());
+    const double w = internal_forces(body, u, expected);
+    const auto largest = [](const auto& values) {
+      double most = 0;
+      for (const double x : values) most = std::max(most, std::abs(x));
+      return most;
+    };
+    for (const auto& [measure, function] :
+         {std::pair(StressMeasure::cauchy, &cauchy_stress), {StressMeasure::biot, &biot_stress}}) {
+      element_stresses(body, u, function, right);
+      double most = 0;
+      for (const Voigt& s : right) most = std::max(most, s.norm());
+      const auto found =
+          HyperelasticPass(body, 2).run(u, {.forces = f, .stress = stress, .measure = measure});
+      EXPECT_NEAR(found.energy, w, 1e-13 * w);
+      for (std::size_t i = 0; i < f.size(); ++i) {
+        EXPECT_NEAR(f[i], expected[i], 1e-12 * largest(expected));
+      }
+      for (std::size_t e = 0; e < stress.size(); ++e) {
+        EXPECT_LE((stress[e] - right[e]).norm(), 1e-12 * most) << e;
+      }
+    }
+  }
+}
+
 // What takes the scalar way: rotations that are all but undetermined, and little else.
 TEST_F(HyperelasticPassOf, FewElementsTakeTheScalarWay) {
   const auto of = one_law(problem, kCorotated);
@@ -208,6 +261,20 @@ TEST_F(HyperelasticPassOf, DeformationIsThatOfTheLargestElement) {
     EXPECT_NEAR(found.rotation_deg, expected.rotation_deg, 1e-5);
     EXPECT_EQ(found.inverted, expected.inverted) << static_cast<int>(kind);
   }
+}
+
+// Shear by .6 with a stretch by .2: sym grad u is [[0, .3], [.3, .2]], C [[1, .6], [.6, 1.8]].
+TEST_F(HyperelasticPassOf, TheLinearLawsStrainIsOfSmallDisplacements) {
+  Mat3 f = Mat3::Identity();
+  f(0, 1) = 0.6;
+  f(1, 1) = 1.2;
+  const auto u = displaced(problem, std::vector<Mat3>(kCount, f));
+  const auto linear = one_law(problem, kLinear), corotated = one_law(problem, kCorotated);
+  HyperelasticPass by_linear({problem, linear}, 1), by_corotated({problem, corotated}, 1);
+  EXPECT_NEAR(by_linear.run(u, {.deformation = true}).deformation.strain, 0.1 + std::sqrt(0.1),
+              1e-12);
+  EXPECT_NEAR(by_corotated.run(u, {.deformation = true}).deformation.strain,
+              std::sqrt(1.4 + std::sqrt(0.52)) - 1, 1e-12);
 }
 
 // Uniaxial, shear, a ball, a rotation by the half turn: every element is as good as the largest.

@@ -42,6 +42,16 @@ Scene pooled_block(double nu, bool held = true, bool both = false) {
   return scene;
 }
 
+/// Both materials have fibres along x, which some_shear() stretches.
+Scene with_fibres(Scene scene) {
+  Fibres f;
+  f.direction = Vec3(2, 0, 0);
+  f.k1 = 1.5;
+  f.k2 = 0.8;
+  for (auto& [name, material] : scene.materials) material.fibres = {f};
+  return scene;
+}
+
 std::vector<double> moved_by(const Mesh& mesh, const Mat3& f, double size) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> any(-size, size);
@@ -74,7 +84,8 @@ struct SomeBody {
   std::vector<std::uint8_t> destroyed;
 };
 
-/// The energy as it is written down: mu/2 (|F|^2 - 3 J^(2/3)) of each element, U of each patch.
+/// The energy as it is written down: mu/2 (|F|^2 - 3 J^(2/3)) of each element, U of each patch, and
+/// k1/(2 k2) (exp(k2 E^2) - 1) of fibres along x with E = |F x|^2 - 1 > 0.
 double by_definition(const SomeBody& of, std::span<const double> u) {
   const Problem& problem = of.problem;
   const auto live = [&](Index e) {
@@ -93,6 +104,10 @@ double by_definition(const SomeBody& of, std::span<const double> u) {
       sum += v * (mu / 2 * (f.squaredNorm() - 3) - mu * log_j + lambda / 2 * log_j * log_j);
     } else {
       sum += v * mu / 2 * (f.squaredNorm() - 3 * std::pow(j, 2.0 / 3));
+    }
+    const double e_of_x = f.col(0).squaredNorm() - 1;
+    for (const Fibres& of_x : problem.material(e).fibres) {
+      if (e_of_x > 0) sum += v * *of_x.k1 / (2 * *of_x.k2) * std::expm1(*of_x.k2 * e_of_x * e_of_x);
     }
   }
   for (Index p = 0; p < problem.pools()->count(); ++p) {
@@ -131,8 +146,8 @@ Eigen::MatrixXd tangent_of(const SomeBody& of, std::span<const double> u, Tangen
 // Fourth-order central differences of 1e-3 mm: error 1e-12 and rounding 1e-13 of the energy.
 TEST(PooledLaw, ForcesAreTheGradientOfTheEnergyAndTheTangentIsTheirs) {
   constexpr double kStep = 1e-3;
-  for (double nu : {0.3, 0.49}) {
-    SomeBody of(pooled_block(nu));
+  for (const auto& [nu, fibres] : {std::pair(0.3, false), {0.49, false}, {0.49, true}}) {
+    SomeBody of(fibres ? with_fibres(pooled_block(nu)) : pooled_block(nu));
     of.destroy_some();
     const HyperelasticBody body = of.body();
     std::vector<double> u = moved_by(of.problem.mesh(), some_shear(), 0.05);
@@ -177,8 +192,9 @@ TEST(PooledLaw, ForcesAreTheGradientOfTheEnergyAndTheTangentIsTheirs) {
 }
 
 TEST(PooledLaw, ThePassAgreesByAnyNumberOfThreads) {
-  for (bool both : {false, true}) {
-    SomeBody of(pooled_block(0.4999, true, both));
+  for (const auto& [both, fibres] : {std::pair(false, false), {true, false}, {false, true}}) {
+    const Scene scene = pooled_block(0.4999, true, both);
+    SomeBody of(fibres ? with_fibres(scene) : scene);
     of.destroy_some();
     const std::vector<double> u = moved_by(of.problem.mesh(), some_turn() * some_shear(), 0.02);
     std::vector<double> f(u.size()), expected(u.size());

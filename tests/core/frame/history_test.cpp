@@ -38,6 +38,12 @@ Scene with_law(Scene scene, MaterialLaw law) {
   return scene;
 }
 
+Scene with_fibres(Scene scene, MaterialLaw law) {
+  scene = with_law(std::move(scene), law);
+  for (auto& [name, material] : scene.materials) material.fibres = {slanted_fibres(law)};
+  return scene;
+}
+
 /// Under a constant load, some events a step.
 Scene torn(int events_of_a_step = 3, double yield = 0.6, double force = 3) {
   Scene scene = strip(yield, force, 8);
@@ -116,6 +122,9 @@ const std::vector<World>& worlds() {
       {"split_corotated", [] { return with_law(split(), MaterialLaw::corotated); }, false},
       {"corotated", [] { return with_law(torn(3, 0.4, 2), MaterialLaw::corotated); }, false},
       {"motion", [] { return moving(); }, false},
+      {"fibres", [] { return with_fibres(torn(3, 0.4, 2), MaterialLaw::neo_hookean); }, false},
+      {"fibres_linear", [] { return with_fibres(torn(), MaterialLaw::linear); }, false},
+      {"motion_fibres", [] { return with_fibres(moving(), MaterialLaw::corotated); }, false},
   };
   return all;
 }

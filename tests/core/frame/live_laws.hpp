@@ -11,6 +11,7 @@ struct LawWay {
   MaterialLaw law;
   Route route;
   bool moves;
+  bool fibres = false;
 };
 inline void PrintTo(const LawWay& way, std::ostream* out) { *out << way.name; }
 
@@ -21,6 +22,8 @@ inline const std::vector<LawWay> kLaws{
     {"motion_linear", MaterialLaw::linear, Route::factor, true},
     {"motion_corotated", MaterialLaw::corotated, Route::factor, true},
     {"motion_by_inverse", MaterialLaw::neo_hookean, Route::inverse, true},
+    {"fibres", MaterialLaw::neo_hookean, Route::factor, false, true},
+    {"fibres_linear", MaterialLaw::linear, Route::factor, false, true},
 };
 
 inline Scene law_strip(const LawWay& way, double force = 0.3) {
@@ -28,6 +31,7 @@ inline Scene law_strip(const LawWay& way, double force = 0.3) {
   scene.instruments[0].action = Pull{band(-1, 0.1), Vec3(0, -force, 0)};
   scene.materials["board"].law = way.law;
   scene.materials["board"].density = 1e-9;
+  if (way.fibres) scene.materials["board"].fibres = {slanted_fibres(way.law)};
   scene.solver.tolerance = 1e-7;
   if (way.moves) scene.dynamics = Dynamics{.time_step = 2e-4, .mass_damping = 500};
   return scene;

@@ -32,6 +32,21 @@ inline Scene strip(double yield, double force, int steps) {
   return scene;
 }
 
+/// Of a matrix of 5 MPa, at a slope to the strip's axes.
+inline Fibres slanted_fibres(MaterialLaw law) {
+  Fibres f;
+  f.direction = Vec3(1, 2, 0.3);
+  if (law == MaterialLaw::linear) {
+    f.young_along = 15;
+    f.poisson_along = 0.3;
+    f.shear_along = 4;
+  } else {
+    f.k1 = 1;
+    f.k2 = 0.5;
+  }
+  return f;
+}
+
 struct SceneRun {
   explicit SceneRun(Scene scene)
       : problem(std::make_shared<Problem>(std::move(scene))),

@@ -14,7 +14,25 @@ struct FiniteCase {
   MaterialLaw law;
   StressMeasure stress;
   FractureModel model;
+  int families = 0;   // of fibres
+  double across = 1;  // their strength, of that along
 };
+
+/// As stiff as their matrix, at this slope to the pull.
+Fibres slanted(double slope, double young, bool linear) {
+  Fibres f;
+  f.direction = Vec3(slope, 1, 0.1);
+  if (linear) {
+    f.young_along = 4 * young;
+    f.poisson_along = 0.3;
+    f.shear_along = young;
+    return f;
+  }
+  f.k1 = young / 4;
+  f.k2 = 0.5;
+  f.dispersion = 0.05;
+  return f;
+}
 
 /// A board that a grip tears from its right edge: 10 x 8 x 1 cells.
 Scene finite_board(const FiniteCase& c) {
@@ -23,7 +41,16 @@ Scene finite_board(const FiniteCase& c) {
     return x.y() < 7 ? "bottom-frame" : x.y() < 25 ? "lower" : x.y() < 43 ? "upper" : "top-frame";
   });
   scene.materials = table1_materials();
-  for (auto& [name, material] : scene.materials) material.law = c.law;
+  for (auto& [name, material] : scene.materials) {
+    material.law = c.law;
+    for (int i = 0; i < c.families; ++i) {
+      const bool linear = c.law == MaterialLaw::linear;
+      material.fibres.push_back(slanted(i == 0 ? 0.8 : -0.5, material.young, linear));
+      if (c.across < 1 && material.yield) {
+        material.fibres.back().yield_across = c.across * *material.yield;
+      }
+    }
+  }
   scene.supports.push_back({top_edge(), Axes{7}});
   scene.instruments.push_back(tool(Grip{lower_right_corner(), Vec3(0, -30, 0), Axes{2}}));
   scene.fracture.model = c.model;
@@ -53,17 +80,23 @@ TEST_P(FiniteScene, TearsAsByTheYardstick) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, FiniteScene,
-                         ::testing::Values(FiniteCase{"CorotatedCauchy", MaterialLaw::corotated,
-                                                      StressMeasure::cauchy, FractureModel::a},
-                                           FiniteCase{"CorotatedBiotModelB", MaterialLaw::corotated,
-                                                      StressMeasure::biot, FractureModel::b},
-                                           FiniteCase{"NeoHookean", MaterialLaw::neo_hookean,
-                                                      StressMeasure::cauchy, FractureModel::a},
-                                           FiniteCase{"SaintVenantKirchhoff",
-                                                      MaterialLaw::saint_venant_kirchhoff,
-                                                      StressMeasure::cauchy, FractureModel::a}),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Laws, FiniteScene,
+    ::testing::Values(FiniteCase{"CorotatedCauchy", MaterialLaw::corotated, StressMeasure::cauchy,
+                                 FractureModel::a},
+                      FiniteCase{"CorotatedBiotModelB", MaterialLaw::corotated, StressMeasure::biot,
+                                 FractureModel::b},
+                      FiniteCase{"NeoHookean", MaterialLaw::neo_hookean, StressMeasure::cauchy,
+                                 FractureModel::a},
+                      FiniteCase{"SaintVenantKirchhoff", MaterialLaw::saint_venant_kirchhoff,
+                                 StressMeasure::cauchy, FractureModel::a},
+                      FiniteCase{"NeoHookeanFibres", MaterialLaw::neo_hookean,
+                                 StressMeasure::cauchy, FractureModel::a, 2},
+                      FiniteCase{"CorotatedBiotFibres", MaterialLaw::corotated, StressMeasure::biot,
+                                 FractureModel::p, 1, 0.4},
+                      FiniteCase{"LinearFibresWeakAcross", MaterialLaw::linear,
+                                 StressMeasure::cauchy, FractureModel::a, 1, 0.3}),
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace sunder::test

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fibres of a problem: what its materials may have, and where they run in each element.
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "material/fibres.hpp"
+#include "material/linear.hpp"
+#include "sunder/error.hpp"
+#include "sunder/fracture_model.hpp"
+#include "sunder/in_quotes.hpp"
+#include "sunder/problem.hpp"
+#include "sunder/scene_keys.hpp"
+#include "sunder/words.hpp"
+
+namespace sunder {
+namespace {
+
+// Of an element's size and place: a centroid that lies on an axis but for rounding.
+constexpr double kOnAxis = 1e-9;
+constexpr std::size_t kMostFamilies = 2;
+
+[[noreturn]] void refuse(InputFault fault, const std::string& text) {
+  throw InputError(fault, text);
+}
+
+/// "material "x", fibres 1"
+std::string name_of(const std::string& material, std::size_t family) {
+  return "material " + in_quotes(material) + ", fibres " + std::to_string(family);
+}
+
+std::string in_brackets(const Vec3& v) {
+  return "[" + in_digits(v.x()) + ", " + in_digits(v.y()) + ", " + in_digits(v.z()) + "]";
+}
+
+bool is_direction(const Vec3& v) { return v.allFinite() && !v.isZero(0); }
+
+void check_finite_law(const std::string& what, const Fibres& f) {
+  for (const auto& [key, value] :
+       {std::pair("young_along", &f.young_along), std::pair("poisson_along", &f.poisson_along),
+        std::pair("shear_along", &f.shear_along)}) {
+    if (*value) {
+      refuse(InputFault::out_of_range,
+             what + " has " + key + ", which is for law \"linear\"; take k1, k2 and dispersion");
+    }
+  }
+  for (const auto& [key, value] : {std::pair("k1", &f.k1), std::pair("k2", &f.k2)}) {
+    if (!*value) {
+      refuse(InputFault::missing_key,
+             what + " lacks " + key + ", which laws of finite deformation need");
+    }
+  }
+  if (!(*f.k1 > 0) || !std::isfinite(*f.k1)) {
+    refuse(InputFault::out_of_range,
+           what + " has k1 = " + in_digits(*f.k1) + "; it must be finite and above 0 MPa");
+  }
+  if (!(*f.k2 >= 0) || !std::isfinite(*f.k2)) {
+    refuse(InputFault::out_of_range,
+           what + " has k2 = " + in_digits(*f.k2) + "; it must be finite and at least 0");
+  }
+  if (!(f.dispersion >= 0 && f.dispersion <= 1.0 / 3)) {
+    refuse(InputFault::out_of_range, what + " has dispersion = " + in_digits(f.dispersion) +
+                                         "; it must lie between 0 (all along) and 1/3 (as many in "
+                                         "every direction)");
+  }
+}
+
+void check_linear_law(const std::string& what, const Material& m, const Fibres& f) {
+  if (f.k1 || f.k2 || f.dispersion != 0) {
+    refuse(InputFault::out_of_range,
+           what +
+               " has k1, k2 or dispersion, which are for laws of finite deformation; take "
+               "young_along, poisson_along and shear_along, or law \"neo-hookean\"");
+  }
+  for (const auto& [key, value] :
+       {std::pair("young_along", &f.young_along), std::pair("shear_along", &f.shear_along)}) {
+    if (!*value) {
+      refuse(InputFault::missing_key, what + " lacks " + key + ", which law \"linear\" needs");
+    }
+    if (!(**value > 0) || !std::isfinite(**value)) {
+      refuse(InputFault::out_of_range, what + " has " + key + " = " + in_digits(**value) +
+                                           "; it must be finite and above 0 MPa");
+    }
+  }
+  if (!f.poisson_along) {
+    refuse(InputFault::missing_key, what + " lacks poisson_along, which law \"linear\" needs");
+  }
+  const double nu = *f.poisson_along;
+  const double left = 1 - m.poisson - 2 * nu * nu * m.young / *f.young_along;
+  if (!(left > 0)) {
+    refuse(
+        InputFault::out_of_range,
+        what + " has poisson_along = " + in_digits(nu) +
+            ", with which some deformation would set energy free: 1 - poisson - 2 poisson_along^2 "
+            "young / young_along is " +
+            in_digits(left) + " and must be above 0");
+  }
+}
+
+void check_direction(const std::string& what, const Fibres& f, const Mesh& mesh) {
+  if (const auto* direction = std::get_if<Vec3>(&f.direction)) {
+    if (!is_direction(*direction)) {
+      refuse(InputFault::out_of_range, what + " has direction = " + in_brackets(*direction) +
+                                           "; it must be finite and not zero");
+    }
+  } else if (const auto* round = std::get_if<AroundAxis>(&f.direction)) {
+    if (!round->point.allFinite() || !is_direction(round->axis)) {
+      refuse(InputFault::out_of_range, what + " runs around axis = " + in_brackets(round->axis) +
+                                           " through " + in_brackets(round->point) +
+                                           "; both must be finite and the axis not zero");
+    }
+  } else {
+    const std::string& name = std::get<FieldName>(f.direction).name;
+    if (const auto found = mesh.fields.find(name); found != mesh.fields.end()) {
+      if (found->second.size() == mesh.tets.size()) return;
+      refuse(InputFault::out_of_range, what + " has field = " + in_quotes(name) + ", which has " +
+                                           std::to_string(found->second.size()) + " vectors for " +
+                                           std::to_string(mesh.tets.size()) + " elements");
+    }
+    std::vector<std::string> names;
+    for (const auto& field : mesh.fields) names.push_back(field.first);
+    refuse(InputFault::unknown_name,
+           what + " has field = " + in_quotes(name) + ", which is no vector of the mesh's cells; " +
+               (names.empty() ? "its file has none" : "it has " + name_list(names)));
+  }
+}
+
+void check_strength(const std::string& what, const Scene& scene, const Material& m,
+                    const Fibres& f) {
+  if (!f.yield_across) return;
+  const std::string has = what + " has yield_across";
+  if (!(*f.yield_across > 0) || !std::isfinite(*f.yield_across)) {
+    refuse(InputFault::out_of_range,
+           has + " = " + in_digits(*f.yield_across) + "; it must be finite and above 0 MPa");
+  }
+  if (!m.yield) {
+    refuse(InputFault::missing_key, has + ", but its material no yield, which holds along them");
+  }
+  if (m.fibres.size() > 1) {
+    refuse(InputFault::out_of_range, has + " beside another family; take one, or leave it out");
+  }
+  if (m.law != MaterialLaw::linear && scene.fracture.stress == StressMeasure::cauchy) {
+    refuse(InputFault::out_of_range,
+           has + ", which law " +
+               in_quotes(key_words("material", "law")[static_cast<std::size_t>(m.law)]) +
+               " judges in the material's frame; take fracture.stress = \"biot\"");
+  }
+  if (scene.fracture.averaging > 0) {
+    refuse(InputFault::out_of_range,
+           has + ", which is judged by element; leave fracture.averaging out");
+  }
+}
+
+Vec3 centroid(const Mesh& mesh, Index e) {
+  Vec3 sum = Vec3::Zero();
+  for (Index n : mesh.tets[static_cast<std::size_t>(e)]) {
+    sum += mesh.nodes[static_cast<std::size_t>(n)];
+  }
+  return sum / 4;
+}
+
+/// Unit vector in element e of `material`.
+Vec3 direction_in(const Mesh& mesh, Index e, double volume, const Fibres& f,
+                  const std::string& what) {
+  if (const auto* direction = std::get_if<Vec3>(&f.direction)) return direction->stableNormalized();
+  if (const auto* round = std::get_if<AroundAxis>(&f.direction)) {
+    const Vec3 way = centroid(mesh, e) - round->point;
+    const Vec3 along = round->axis.stableNormalized().cross(way);
+    if (!(along.norm() > kOnAxis * (way.norm() + std::cbrt(volume)))) {
+      refuse(InputFault::out_of_range, what + " has the centroid of element " + std::to_string(e) +
+                                           " on the axis, where fibres around it have no "
+                                           "direction; move the axis, or give a direction");
+    }
+    return along.normalized();
+  }
+  const std::string& name = std::get<FieldName>(f.direction).name;
+  const Vec3& v = mesh.fields.at(name)[static_cast<std::size_t>(e)];
+  if (!is_direction(v)) {
+    refuse(InputFault::out_of_range, what + " has " + in_brackets(v) + " in field " +
+                                         in_quotes(name) + " at element " + std::to_string(e) +
+                                         "; a direction must be finite and not zero");
+  }
+  return v.stableNormalized();
+}
+
+/// Spencer's constants by the elasticity in the fibre's frame, whose first axis is along.
+AlongFibres along_fibres(const Material& m, const Fibres& f) {
+  const double along = *f.young_along, nu = *f.poisson_along;
+  Mat3 compliance;
+  compliance << 1 / along, -nu / along, -nu / along,   //
+      -nu / along, 1 / m.young, -m.poisson / m.young,  //
+      -nu / along, -m.poisson / m.young, 1 / m.young;
+  const Mat3 c = compliance.inverse();
+  const SmallStrain across = small_strain(m);
+  AlongFibres of;
+  of.alpha = c(0, 1) - c(1, 2);
+  of.beta = c(0, 0) - c(1, 2) - 2 * of.alpha - 4 * *f.shear_along + 2 * across.mu;
+  of.lambda = c(1, 2) - across.lambda;
+  of.mu = *f.shear_along - across.mu;
+  return of;
+}
+
+/// Of one material.
+void check_families(const std::string& name, const Material& m, const Scene& scene,
+                    const Mesh& mesh) {
+  const std::string of = "material " + in_quotes(name) + " has fibres";
+  const bool linear = m.law == MaterialLaw::linear;
+  if (m.fibres.size() > (linear ? 1 : kMostFamilies)) {
+    refuse(InputFault::out_of_range,
+           of + " of " + std::to_string(m.fibres.size()) + " families" +
+               (linear ? "; law \"linear\" takes one" : "; a material has at most 2"));
+  }
+  const FractureModelRow& model = row_of(scene.fracture.model);
+  if (model.grows_cracks) {
+    refuse(InputFault::out_of_range,
+           of + ", of which model " + in_quotes(model.name) +
+               " knows nothing: its stress intensity is that of isotropic bodies; take model "
+               "\"A\" or \"P\"");
+  }
+  for (std::size_t i = 0; i < m.fibres.size(); ++i) {
+    const std::string what = name_of(name, i);
+    check_direction(what, m.fibres[i], mesh);
+    if (linear) {
+      check_linear_law(what, m, m.fibres[i]);
+    } else {
+      check_finite_law(what, m.fibres[i]);
+    }
+    check_strength(what, scene, m, m.fibres[i]);
+  }
+}
+
+/// Of element e, by its material.
+ElementFibres fibres_in(const Problem& problem, Index e) {
+  const Mesh& mesh = problem.mesh();
+  const Material& m = problem.material(e);
+  ElementFibres of;
+  for (const Fibres& f : m.fibres) {
+    const auto place = static_cast<std::size_t>(of.count);
+    FibreFamily& family = of.family[place];
+    family.direction = direction_in(mesh, e, problem.shape(e).volume, f,
+                                    name_of(mesh.volumes[mesh.volume_of[e]].name, place));
+    if (m.law == MaterialLaw::linear) {
+      of.linear = along_fibres(m, f);
+    } else {
+      family.k1 = *f.k1;
+      family.k2 = *f.k2;
+      family.dispersion = f.dispersion;
+    }
+    ++of.count;
+  }
+  return of;
+}
+
+}  // namespace
+
+void Problem::lay_fibres() {
+  for (const auto& [name, material] : scene_.materials) {
+    if (!material.fibres.empty()) check_families(name, material, scene_, mesh());
+  }
+  bool any = false;
+  for (const Index v : mesh().volume_of) any = any || !material_of_volume_[v]->fibres.empty();
+  if (!any) return;
+  std::vector<ElementFibres> all;
+  for (Index e = 0; e < tet_count(); ++e) all.push_back(fibres_in(*this, e));
+  fibres_ = std::make_shared<const std::vector<ElementFibres>>(std::move(all));
+  note_fibres();
+}
+
+void Problem::note_fibres() {
+  small_strain_of_element_.clear();
+  for (Index e = 0; fibres_ && e < tet_count(); ++e) {
+    SmallStrain of = small_strain_of_volume_[mesh().volume_of[e]];
+    const ElementFibres& fibres = (*fibres_)[static_cast<std::size_t>(e)];
+    if (fibres.count > 0) of.fibres = &fibres;
+    small_strain_of_element_.push_back(of);
+  }
+}
+
+int Problem::fibre_families() const {
+  int most = 0;
+  for (Index e = 0; fibrous() && e < tet_count(); ++e) {
+    most = std::max(most, (*fibres_)[static_cast<std::size_t>(e)].count);
+  }
+  return most;
+}
+
+Vec3 Problem::fibre_direction(Index e, int family) const {
+  if (!fibrous()) return Vec3::Zero();
+  return (*fibres_)[static_cast<std::size_t>(e)].family[static_cast<std::size_t>(family)].direction;
+}
+
+void Problem::take_fibres(const Problem& whole, std::span<const Index> elements) {
+  fibres_ = whole.fibres_;
+  if (fibres_ && !elements.empty()) {
+    std::vector<ElementFibres> some;
+    for (Index e : elements) some.push_back((*fibres_)[static_cast<std::size_t>(e)]);
+    fibres_ = std::make_shared<const std::vector<ElementFibres>>(std::move(some));
+  }
+  note_fibres();
+}
+
+}  // namespace sunder
