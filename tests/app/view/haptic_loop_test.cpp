@@ -112,7 +112,7 @@ TEST(HapticLoop, AHandHoldsTissueAndFeelsIt) {
 }
 
 std::size_t heap() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
-/// [bytes] What one body may hold more than another: its bases, room for the updates of its inverse.
+/// [bytes] What one body may hold more than another: its bases, room for updates of its inverse.
 constexpr std::size_t kSlack = std::size_t{16} << 20;
 
 /// What hands may do, by chance; some of it cannot be done, pauses and is told.
