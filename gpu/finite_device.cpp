@@ -62,8 +62,9 @@ std::size_t FiniteDevice::route_bytes(const KernelFactory& kernels, Route route,
 
 std::size_t FiniteDevice::largest_buffer(const KernelFactory& kernels) {
   const vulkan::PhysicalDevice& device = kernels.device().physical();
-  return std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
-                                std::size_t{device.largest_texel_buffer} * 16});
+  return std::min<std::size_t>({device.limits.buffer_bytes.value,
+                                device.limits.allocation_bytes.value,
+                                device.limits.texels.value * 16});
 }
 
 FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,

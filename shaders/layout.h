@@ -140,7 +140,6 @@ struct LowRankPush {
   uint blocks;
   uint first_column;  // of this panel
   uint tiles;         // rows of tiles from this panel's first on
-  uint first_group;   // of this dispatch
   float sign;         // 1 or -1
 };
 

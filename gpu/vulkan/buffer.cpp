@@ -89,10 +89,11 @@ void Buffer::allocate(Placement placement) {
   const DeviceFunctions& vk = device_->vk();
   VkMemoryRequirements needed{};
   vk.GetBufferMemoryRequirements(device_->handle(), handle_, &needed);
+  const PhysicalDevice& physical = device_->physical();
+  physical.require(needed.size, physical.limits.allocation_bytes, "a buffer of this scene");
   constexpr VkMemoryPropertyFlags visible =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const bool on_host = placement != Placement::device,
-             map = on_host || device_->physical().unified();
+  const bool on_host = placement != Placement::device, map = on_host || physical.unified();
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needed.size;

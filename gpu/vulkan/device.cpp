@@ -56,7 +56,7 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
 
 PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe) {
   if (probe.memory > 0) device.memory = probe.memory;
-  if (probe.buffer > 0) device.largest_buffer = std::min(device.largest_buffer, probe.buffer);
+  lower(device.limits, probe.limits);
   if (probe.no_float64) device.float64 = false;
   if (probe.no_compute) device.compute_family = -1;
   if (probe.as_gpu && device.is_cpu()) device.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;

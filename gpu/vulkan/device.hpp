@@ -48,8 +48,8 @@ struct DeviceProbe {
   std::size_t guard_bytes = 0;
   /// The device claims to have no more memory than this. 0: what it has.
   VkDeviceSize memory = 0;
-  /// The device claims to bind no larger storage buffer than this. 0: what it binds.
-  VkDeviceSize buffer = 0;
+  /// The device claims these limits.
+  LimitsProbe limits;
   /// The device claims to lack shaderFloat64, and does not get it.
   bool no_float64 = false;
   /// The device claims to have no compute queue.

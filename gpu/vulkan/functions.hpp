@@ -55,6 +55,7 @@ namespace sunder::vulkan {
   X(CmdBindDescriptorSets)            \
   X(CmdPushConstants)                 \
   X(CmdDispatch)                      \
+  X(CmdDispatchBase)                  \
   X(CmdDispatchIndirect)              \
   X(CmdPipelineBarrier)               \
   X(CmdCopyBuffer)                    \

@@ -59,9 +59,8 @@ void read_properties(const InstanceFunctions& vk, PhysicalDevice& device) {
   device.type = p.deviceType;
   device.api_version = p.apiVersion;
   device.timestamp_period = static_cast<double>(p.limits.timestampPeriod);
-  device.largest_buffer = p.limits.maxStorageBufferRange;
-  device.largest_texel_buffer = p.limits.maxTexelBufferElements;
-  device.largest_allocation = maintenance.maxMemoryAllocationSize;
+  read_limits(p.limits, device.limits);
+  device.limits.allocation_bytes.value = maintenance.maxMemoryAllocationSize;
   device.subgroup = subgroup.subgroupSize;
   constexpr VkSubgroupFeatureFlags needed =
       VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/vulkan/instance.hpp"
+#include "gpu/vulkan/limits.hpp"
 
 namespace sunder::vulkan {
 
@@ -17,15 +18,13 @@ struct PhysicalDevice {
   VkDriverId driver_id = VK_DRIVER_ID_MAX_ENUM;
   std::uint32_t api_version = 0;
   bool float64 = false, int64 = false;
-  int compute_family = -1;                 ///< queue family, -1: none
-  std::uint32_t timestamp_bits = 0;        ///< of that family
-  double timestamp_period = 0;             ///< [ns]
-  VkDeviceSize memory = 0;                 ///< largest device-local heap [bytes]
-  VkDeviceSize largest_buffer = 0;         ///< storage buffer range [bytes]
-  VkDeviceSize largest_allocation = 0;     ///< [bytes]
-  std::uint32_t largest_texel_buffer = 0;  ///< [texels]
-  std::uint32_t subgroup = 0;              ///< invocations of a subgroup
-  bool subgroup_arithmetic = true;         ///< sums and extrema over one, in compute kernels
+  int compute_family = -1;           ///< queue family, -1: none
+  std::uint32_t timestamp_bits = 0;  ///< of that family
+  double timestamp_period = 0;       ///< [ns]
+  VkDeviceSize memory = 0;           ///< largest device-local heap [bytes]
+  Limits limits;
+  std::uint32_t subgroup = 0;       ///< invocations of a subgroup
+  bool subgroup_arithmetic = true;  ///< sums and extrema over one, in compute kernels
   /// A compute kernel may ask for subgroups of this size (VK_EXT_subgroup_size_control).
   bool subgroup_on_request = false;
   bool subgroup_varies = true;  ///< a driver may choose another size for a kernel that does not ask
@@ -40,6 +39,10 @@ struct PhysicalDevice {
   }
   /// Why the kernels cannot run there; empty: they can.
   [[nodiscard]] std::string shortcoming() const;
+  /// Throws DeviceError where `who` needs more than `limit`, which is one of `limits`.
+  void require(std::uint64_t needed, const Limit& limit, const std::string& who) const {
+    vulkan::require(needed, limit, name, who);
+  }
 };
 
 [[nodiscard]] PhysicalDevice describe_device(const InstanceFunctions& vk, VkPhysicalDevice handle);
