@@ -44,6 +44,9 @@ struct DeviceProbe {
   int submits_until_lost = -1;
   /// Such a submit is taken and done, and the wait for it reports the loss.
   bool lost_in_wait = false;
+  /// Such a submit is taken and done, and nobody hears of it; the wait for it ends after a
+  /// millisecond.
+  bool silent = false;
   /// Sentinel bytes before and after every buffer, a multiple of 256; a changed one is a message.
   std::size_t guard_bytes = 0;
   /// The device claims to have no more memory than this. 0: what it has.
@@ -106,6 +109,8 @@ class Device {
 
   /// Submits without waiting; `done` is signalled at the end.
   void hand_over(const VkSubmitInfo& info, VkFence done);
+  /// For what was handed over. Throws DeviceLost.
+  void wait(VkFence done);
 
   /// By which buffers that are not mapped are written and read.
   [[nodiscard]] Uploads& uploads();
@@ -148,6 +153,8 @@ class Device {
 
  private:
   void check_messages() const;
+  template <class Wait>
+  void wait_by(Wait&& wait);
   void submit(std::span<const VkCommandBuffer> commands);
 
   DeviceHandles handles_;
