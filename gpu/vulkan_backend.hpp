@@ -26,6 +26,7 @@ struct VulkanOptions {
   std::optional<bool> invert_on_device;    ///< none: on a GPU, for larger scenes
   std::optional<vulkan::LentDevice> lent;  ///< a host's device; none: one of our own
   DisplayTargets display;                  ///< on a host's device: where to put what it draws
+  std::shared_ptr<PipelineCache> cache;    ///< of the host's; null: nobody keeps it
 };
 
 /// Options from the environment: SUNDER_VULKAN_VALIDATION=1 turns the validation layers on and

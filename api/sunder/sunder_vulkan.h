@@ -120,6 +120,21 @@ typedef struct sunder_vulkan_signals {
 SUNDER_API sunder_status sunder_vulkan_submit(sunder_simulation simulation,
                                               const sunder_vulkan_signals* signals);
 
+/* ---- What the driver makes of the kernels ---------------------------------------------------- */
+
+/// Simulations made of the scene from now on begin with these bytes, which
+/// sunder_vulkan_pipeline_cache gave in an earlier run: on some drivers they start sooner. They are
+/// copied. Bytes of another device or driver, cut or changed ones are ignored, with a warning of
+/// the simulation. `bytes` may be null with size 0: none.
+SUNDER_API sunder_status sunder_vulkan_set_pipeline_cache(sunder_scene scene, const uint8_t* bytes,
+                                                          size_t size);
+/// The bytes to keep, of a simulation on any Vulkan device, the host's or another; without one,
+/// what was handed in. Kernels come with a simulation and with its first events, so it is best
+/// asked at the end. `length` is how many there are; they are written where `capacity` is enough,
+/// else SUNDER_ERROR_SIZE. `bytes` may be null with capacity 0: then `length` alone is asked for.
+SUNDER_API sunder_status sunder_vulkan_pipeline_cache(sunder_simulation simulation, uint8_t* bytes,
+                                                      size_t capacity, size_t* length);
+
 /* ---- The surface, in buffers of the host's --------------------------------------------------- */
 
 /// Items of one kind in a VkBuffer of the host's. This struct has no version: it never changes.

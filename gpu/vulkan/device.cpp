@@ -5,6 +5,7 @@
 #include <array>
 
 #include "gpu/vulkan/check.hpp"
+#include "gpu/vulkan/kernel_cache.hpp"
 #include "gpu/vulkan/uploads.hpp"
 
 namespace sunder::vulkan {
@@ -41,7 +42,7 @@ void keep_forever(DeviceHandles& handles) {
   silence(vk.DestroyBuffer, vk.FreeMemory, vk.DestroyBufferView, vk.DestroyPipeline,
           vk.DestroyPipelineLayout, vk.DestroyDescriptorSetLayout, vk.DestroyDescriptorPool,
           vk.DestroyShaderModule, vk.DestroyCommandPool, vk.FreeCommandBuffers, vk.DestroyQueryPool,
-          vk.DestroyFence);
+          vk.DestroyFence, vk.DestroyPipelineCache);
   if (handles.owner) new std::shared_ptr<void>(std::move(handles.owner));
 }
 
@@ -86,7 +87,8 @@ PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe) {
 }
 
 std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
-                                      const PhysicalDevice& unprobed, DeviceProbe probe) {
+                                      const PhysicalDevice& unprobed, DeviceProbe probe,
+                                      std::shared_ptr<PipelineCache> cache) {
   const PhysicalDevice physical = probed(unprobed, probe);
   const std::string shortcoming = physical.shortcoming();
   if (!shortcoming.empty()) {
@@ -101,26 +103,35 @@ std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
   handles.int64 = physical.int64;
   handles.vk.GetDeviceQueue(handles.device, handles.family, 0, &handles.queue);
   instance->vk().GetPhysicalDeviceMemoryProperties(physical.handle, &handles.memory);
-  return std::make_unique<Device>(std::move(handles), physical, instance->messages(), probe);
+  return std::make_unique<Device>(std::move(handles), physical, instance->messages(), probe,
+                                  std::move(cache));
 }
 
 Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<Messages> messages,
-               DeviceProbe probe)
+               DeviceProbe probe, std::shared_ptr<PipelineCache> cache)
     : handles_(std::move(handles)),
       physical_(std::move(physical)),
       messages_(std::move(messages)),
       probe_(probe),
       timing_(physical_.timestamp_bits > 0),
       queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock,
-             physical_.is_cpu() ? kPatienceWithAProcessor : kPatience) {
+             physical_.is_cpu() ? kPatienceWithAProcessor : kPatience),
+      kept_(std::move(cache)) {
   VkCommandPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool.queueFamilyIndex = handles_.family;
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   check(vk().CreateCommandPool(handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
+  if (!kept_) return;
+  cache_ = std::make_unique<KernelCache>(vk(), handle(), physical_, kept_->bytes());
+  kept_->follow(this, cache_->ignored(), [this] { return cache_->bytes(); });
 }
 
+VkPipelineCache Device::pipeline_cache() const { return cache_ ? cache_->handle() : nullptr; }
+
 Device::~Device() {
+  if (kept_) kept_->leave(this);
+  cache_.reset();
   uploads_.reset();
   vk().DestroyCommandPool(handle(), pool_, nullptr);
 }

@@ -15,6 +15,7 @@
 
 #include "gpu/vulkan/physical_device.hpp"
 #include "gpu/vulkan/queue.hpp"
+#include "sunder/pipeline_cache.hpp"
 
 namespace sunder::vulkan {
 
@@ -64,6 +65,7 @@ struct DeviceProbe {
   std::size_t* allocations = nullptr;
 };
 
+class KernelCache;
 class Uploads;
 
 /// What a device claims to be.
@@ -72,7 +74,7 @@ class Uploads;
 class Device {
  public:
   Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<Messages> messages,
-         DeviceProbe probe = {});
+         DeviceProbe probe = {}, std::shared_ptr<PipelineCache> cache = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -92,6 +94,8 @@ class Device {
   /// Sums over all submits since the last call.
   [[nodiscard]] std::vector<PassTime> take_times() { return std::exchange(times_, {}); }
   [[nodiscard]] VkCommandPool command_pool() const { return pool_; }
+  /// Null: nobody keeps what the driver makes of kernels.
+  [[nodiscard]] VkPipelineCache pipeline_cache() const;
 
   /// Memory type with all of `required`, preferring those with `preferred`. Throws DeviceError.
   [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
@@ -169,11 +173,14 @@ class Device {
   std::vector<PassTime> times_;
   Queue queue_;
   std::unique_ptr<Uploads> uploads_;  // null: nothing was written yet
+  std::shared_ptr<PipelineCache> kept_;
+  std::unique_ptr<KernelCache> cache_;  // null: nobody keeps it
 };
 
 /// Creates a device of its own. Throws DeviceError naming the shortcoming of `physical`.
 [[nodiscard]] std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
                                                     const PhysicalDevice& physical,
-                                                    DeviceProbe probe = {});
+                                                    DeviceProbe probe = {},
+                                                    std::shared_ptr<PipelineCache> cache = {});
 
 }  // namespace sunder::vulkan

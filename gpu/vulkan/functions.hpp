@@ -40,6 +40,9 @@ namespace sunder::vulkan {
   X(CreatePipelineLayout)             \
   X(DestroyPipelineLayout)            \
   X(CreateComputePipelines)           \
+  X(CreatePipelineCache)              \
+  X(DestroyPipelineCache)             \
+  X(GetPipelineCacheData)             \
   X(DestroyPipeline)                  \
   X(CreateDescriptorPool)             \
   X(DestroyDescriptorPool)            \

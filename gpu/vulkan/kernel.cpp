@@ -110,8 +110,8 @@ void Kernel::create_pipeline(const KernelCode& code) {
   size.requiredSubgroupSize = code.subgroup;
   if (code.subgroup > 0 && device_.physical().subgroup_on_request) info.stage.pNext = &size;
   info.layout = layout_;
-  const VkResult result = device_.vk().CreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1,
-                                                              &info, nullptr, &pipeline_);
+  const VkResult result = device_.vk().CreateComputePipelines(
+      device_.handle(), device_.pipeline_cache(), 1, &info, nullptr, &pipeline_);
   device_.vk().DestroyShaderModule(device_.handle(), shader, nullptr);
   check(result, "vkCreateComputePipelines");
   device_.count_pipeline(name_);

@@ -58,6 +58,9 @@ void read_properties(const InstanceFunctions& vk, PhysicalDevice& device) {
   device.driver_id = driver.driverID;
   device.type = p.deviceType;
   device.api_version = p.apiVersion;
+  device.vendor = p.vendorID;
+  device.device = p.deviceID;
+  std::ranges::copy(p.pipelineCacheUUID, device.cache_uuid.begin());
   device.timestamp_period = static_cast<double>(p.limits.timestampPeriod);
   read_limits(p.limits, device.limits);
   device.limits.allocation_bytes.value = maintenance.maxMemoryAllocationSize;

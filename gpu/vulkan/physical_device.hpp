@@ -2,6 +2,7 @@
 // What a machine's Vulkan devices offer, and which of them can run the kernels.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct PhysicalDevice {
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   VkDriverId driver_id = VK_DRIVER_ID_MAX_ENUM;
   std::uint32_t api_version = 0;
+  std::uint32_t vendor = 0, device = 0;                 ///< Vulkan's numbers of them
+  std::array<std::uint8_t, VK_UUID_SIZE> cache_uuid{};  ///< of what the driver makes of kernels
   bool float64 = false, int64 = false;
   int compute_family = -1;           ///< queue family, -1: none
   std::uint32_t timestamp_bits = 0;  ///< of that family
