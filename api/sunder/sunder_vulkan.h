@@ -58,7 +58,9 @@ typedef struct sunder_vulkan_host {
   void* lock_user;
   /// Buffers of the host's to write to, with usage STORAGE_BUFFER, offset a multiple of 256, at
   /// least the sizes that sunder_vulkan_display states; 0: the library makes its own, with usage
-  /// VERTEX_BUFFER | STORAGE_BUFFER | TRANSFER_SRC.
+  /// VERTEX_BUFFER | STORAGE_BUFFER | TRANSFER_SRC, for queues of `queue_family` alone. Who draws
+  /// on a queue of another family lends buffers that both families share
+  /// (VK_SHARING_MODE_CONCURRENT), or transfers their ownership itself.
   sunder_vulkan_buffer displacement, stress, live;
 } sunder_vulkan_host;
 

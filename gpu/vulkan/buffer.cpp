@@ -97,11 +97,14 @@ void Buffer::allocate(Placement placement) {
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needed.size;
-  info.memoryTypeIndex =
-      on_host
-          ? device_->memory_type(needed.memoryTypeBits, visible, VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
-          : device_->memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
-                                 map ? visible : 0);
+  // What the host reads is quick to read where it is cached.
+  constexpr VkMemoryPropertyFlags local = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                                  read = visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+  const std::uint32_t allowed = needed.memoryTypeBits;
+  info.memoryTypeIndex = on_host ? device_->memory_type(allowed, {read, visible})
+                         : map
+                             ? device_->memory_type(allowed, {local | read, local | visible, local})
+                             : device_->memory_type(allowed, {local});
   device_->count_allocation();
   const std::string purpose = "allocating " + std::to_string(bytes_) + " bytes";
   check(vk.AllocateMemory(device_->handle(), &info, nullptr, &memory_), purpose.c_str());

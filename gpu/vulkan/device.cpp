@@ -59,14 +59,16 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
   VkPhysicalDeviceSubgroupSizeControlFeatures control{};
   control.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES;
   control.subgroupSizeControl = VK_TRUE;
-  const char* extension = VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME;
+  std::vector<const char*> extensions;
+  if (physical.portable_subset) extensions.push_back(kPortabilitySubset);
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   if (physical.subgroup_on_request) {
     info.pNext = &control;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &extension;
+    extensions.push_back(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME);
   }
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &features;
@@ -136,13 +138,21 @@ Device::~Device() {
   vk().DestroyCommandPool(handle(), pool_, nullptr);
 }
 
-std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
-                                  VkMemoryPropertyFlags preferred) const {
-  for (const VkMemoryPropertyFlags wanted : {required | preferred, required}) {
-    for (std::uint32_t t = 0; t < handles_.memory.memoryTypeCount; ++t) {
-      if ((allowed >> t & 1) && (memory_flags(t) & wanted) == wanted) return t;
+std::optional<std::uint32_t> choose_memory_type(
+    const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+    std::initializer_list<VkMemoryPropertyFlags> wishes) {
+  for (const VkMemoryPropertyFlags wanted : wishes) {
+    for (std::uint32_t t = 0; t < memory.memoryTypeCount; ++t) {
+      const VkMemoryPropertyFlags has = memory.memoryTypes[t].propertyFlags;
+      if ((allowed >> t & 1) && (has & wanted) == wanted) return t;
     }
   }
+  return {};
+}
+
+std::uint32_t Device::memory_type(std::uint32_t allowed,
+                                  std::initializer_list<VkMemoryPropertyFlags> wishes) const {
+  if (const auto type = choose_memory_type(handles_.memory, allowed, wishes)) return *type;
   throw DeviceError("the Vulkan device \"" + physical_.name + "\" has no memory of the kind asked");
 }
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -68,6 +70,12 @@ struct DeviceProbe {
 class KernelCache;
 class Uploads;
 
+/// The first memory type among those allowed (by their bits) that has all of the first wish, else
+/// of the next one.
+[[nodiscard]] std::optional<std::uint32_t> choose_memory_type(
+    const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+    std::initializer_list<VkMemoryPropertyFlags> wishes);
+
 /// What a device claims to be.
 [[nodiscard]] PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe);
 
@@ -97,9 +105,9 @@ class Device {
   /// Null: nobody keeps what the driver makes of kernels.
   [[nodiscard]] VkPipelineCache pipeline_cache() const;
 
-  /// Memory type with all of `required`, preferring those with `preferred`. Throws DeviceError.
-  [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
-                                          VkMemoryPropertyFlags preferred) const;
+  /// As choose_memory_type(). Throws DeviceError where there is none.
+  [[nodiscard]] std::uint32_t memory_type(
+      std::uint32_t allowed, std::initializer_list<VkMemoryPropertyFlags> wishes) const;
   [[nodiscard]] VkMemoryPropertyFlags memory_flags(std::uint32_t type) const {
     return handles_.memory.memoryTypes[type].propertyFlags;
   }

@@ -77,6 +77,7 @@ void read_features(const InstanceFunctions& vk, PhysicalDevice& device) {
   vk.GetPhysicalDeviceFeatures2(device.handle, &features);
   device.float64 = features.features.shaderFloat64;
   device.int64 = features.features.shaderInt64;
+  device.portable_subset = offers(vk, device.handle, kPortabilitySubset);
 }
 
 void read_memory(const InstanceFunctions& vk, PhysicalDevice& device) {

@@ -12,6 +12,9 @@
 
 namespace sunder::vulkan {
 
+/// Vulkan's header has it among what is not final yet.
+inline constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
+
 struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
   std::string name, driver;
@@ -30,6 +33,7 @@ struct PhysicalDevice {
   bool subgroup_arithmetic = true;  ///< sums and extrema over one, in compute kernels
   /// A compute kernel may ask for subgroups of this size (VK_EXT_subgroup_size_control).
   bool subgroup_on_request = false;
+  bool portable_subset = false;  ///< of Vulkan (VK_KHR_portability_subset): it must be told so
   bool subgroup_varies = true;  ///< a driver may choose another size for a kernel that does not ask
 
   /// A processor that emulates a GPU (lavapipe, say).
