@@ -2,7 +2,9 @@
 #include "gpu/finite_device.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "material/corotated.hpp"
 #include "material/linear.hpp"
@@ -17,8 +19,11 @@ using shaders::FinitePush;
 using vulkan::Buffer;
 using vulkan::Placement;
 
-// Invocations of the passes over all unknowns that leave one sum, on a device.
-constexpr std::uint32_t kOneGroup = 256;
+/// Invocations of the passes over all unknowns that leave one sum, on a device.
+std::uint32_t one_group(const vulkan::PhysicalDevice& device) {
+  constexpr std::uint64_t kMost = 256;
+  return static_cast<std::uint32_t>(std::min(kMost, device.limits.group.value));
+}
 // Least room for the unknowns that what has left touches.
 constexpr std::uint32_t kFirstRank = 64;
 
@@ -38,6 +43,11 @@ Buffer filled(vulkan::Device& device, const std::vector<T>& values) {
   Buffer buffer(device, std::max<std::size_t>(values.size(), 1) * sizeof(T), Placement::device);
   if (!values.empty()) buffer.write(std::span<const T>(values));
   return buffer;
+}
+
+std::span<double> numbers_of(std::span<Voigt> stress) {
+  if (stress.empty()) return {};
+  return {stress.front().data(), 6 * stress.size()};
 }
 
 }  // namespace
@@ -178,6 +188,20 @@ void FiniteDevice::create_inverse() {
   make(fold_, "finite_fold", false, {&partial_, &x_}, {&partial_, &x_});
   make(end_, "finite_end", false, {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_},
        {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_});
+  make_rank_room(kFirstRank);  // so that a first event allocates nothing
+}
+
+/// For the base's change by what has left.
+void FiniteDevice::make_rank_room(std::uint32_t rank) {
+  if (rank <= rank_room_) return;
+  rank_room_ = std::max({rank, 2 * rank_room_, kFirstRank});
+  small_pass_.binding = {};
+  columns_.binding = {};
+  const std::size_t room = rank_room_;
+  touched_ = Buffer(device_, room * sizeof(std::uint32_t), Placement::device);
+  small_ = Buffer(device_, room * room * sizeof(double), Placement::device);
+  coefficients_ = Buffer(device_, room * sizeof(double), Placement::device);
+  bind_base();
 }
 
 void FiniteDevice::create_cg(const fem::HyperelasticBody& body) {
@@ -201,7 +225,7 @@ void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers fi
   const KernelFactory factory = real ? kernels_ : kernels_.in_fp64();
   const std::uint32_t group = !one                  ? shaders::kGroup
                               : kernels_.emulated() ? kernels_.summing_group()
-                                                    : kOneGroup;
+                                                    : one_group(device_.physical());
   if (!pass.kernel) pass.kernel = factory.make(name, group);
   pass.binding[0] =
       std::make_unique<vulkan::Binding>(device_, *pass.kernel, std::vector<const Buffer*>(first));
@@ -325,16 +349,7 @@ void FiniteDevice::set_base(const solver::FiniteBase& base) {
   if (now.inverse != stamps_.inverse) set_inverse(base.inverse());
   if (now.small != stamps_.small || now.inverse != stamps_.inverse) {
     rank_ = static_cast<std::uint32_t>(base.rank());
-    if (rank_ > rank_room_) {
-      rank_room_ = std::max({rank_, 2 * rank_room_, kFirstRank});
-      small_pass_.binding = {};
-      columns_.binding = {};
-      const std::size_t room = rank_room_;
-      touched_ = Buffer(device_, room * sizeof(std::uint32_t), Placement::device);
-      small_ = Buffer(device_, room * room * sizeof(double), Placement::device);
-      coefficients_ = Buffer(device_, room * sizeof(double), Placement::device);
-      bind_base();
-    }
+    make_rank_room(rank_);
     if (rank_ > 0) {
       const std::vector<std::uint32_t> touched(base.touched().begin(), base.touched().end());
       touched_.write(std::span<const std::uint32_t>(touched));
@@ -433,22 +448,19 @@ void FiniteDevice::set_state(std::span<const double> u) {
   known_.assign(u.begin(), u.end());
 }
 
-void FiniteDevice::read_vector(const Buffer& from, std::size_t first, std::span<double> to) {
-  if (!to.empty()) from.read(to, first);
-}
-
-/// All of the first state but its displacement and what the last sums say.
-void FiniteDevice::read(solver::FiniteState& state, bool with_stress) {
+/// All of the first state but what the last sums say.
+void FiniteDevice::read(solver::FiniteState& state, bool with_displacement, bool with_stress) {
   state.f.resize(entries_);
-  read_vector(f_[first_state_], 0, state.f);
   state.viscous.resize(viscous_ > 0 ? entries_ : 0);
-  read_vector(f_[first_state_], entries_, state.viscous);
   state.r.resize(unknowns_);
-  read_vector(r_[first_state_], 0, {state.r.data(), unknowns_});
   state.stress.resize(with_stress ? elements_ : 0);
-  if (with_stress) {
-    read_vector(stress_[first_state_], 0, {state.stress.front().data(), 6 * state.stress.size()});
-  }
+  std::array<Buffer::Part, 5> parts{
+      Buffer::Part{f_[first_state_], 0, state.f},
+      Buffer::Part{f_[first_state_], entries_, state.viscous},
+      Buffer::Part{r_[first_state_], 0, {state.r.data(), unknowns_}},
+      Buffer::Part{stress_[first_state_], 0, numbers_of(state.stress)},
+      Buffer::Part{u_[first_state_], 0, state.u}};
+  Buffer::read_all(std::span(parts).first(with_displacement ? 5 : 4));
 }
 
 void FiniteDevice::evaluate(const solver::FiniteTarget& target, bool with_stress,
@@ -460,13 +472,13 @@ void FiniteDevice::evaluate(const solver::FiniteTarget& target, bool with_stress
   state.energy = sums_.mapped<shaders::FiniteSums>()->energy;
   state.potential = at.potential;
   state.acting = at.acting;
-  read(state, with_stress);
+  read(state, false, with_stress);
 }
 
 void FiniteDevice::stress(std::span<const double> u, std::span<Voigt> stress) {
   if (stress.empty()) return;
   set_state(u);
-  read_vector(stress_[first_state_], 0, {stress.front().data(), 6 * stress.size()});
+  stress_[first_state_].read(numbers_of(stress));
 }
 
 solver::FinitePoint FiniteDevice::begin(const solver::FiniteTarget& target,
@@ -527,9 +539,8 @@ void FiniteDevice::take() {
 void FiniteDevice::end() {
   solver::FiniteState& state = *state_;
   if (known_.empty()) {
-    read_vector(u_[first_state_], 0, state.u);
+    read(state, true, true);
     known_ = state.u;
-    read(state, true);
   }
 }
 

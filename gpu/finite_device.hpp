@@ -72,6 +72,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   void create_inverse();
   void create_cg(const fem::HyperelasticBody& body);
   void bind_base();
+  void make_rank_room(std::uint32_t rank);
   void set_target(const solver::FiniteTarget& target);
   void set_base(const solver::FiniteBase& base);
   void set_inverse(const Eigen::MatrixXd& inverse);
@@ -83,8 +84,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   [[nodiscard]] shaders::FinitePush push() const;
   [[nodiscard]] solver::FinitePoint point() const;
   [[nodiscard]] solver::FiniteTrial trial(double part, bool direction);
-  void read(solver::FiniteState& state, bool with_stress);
-  void read_vector(const vulkan::Buffer& from, std::size_t first, std::span<double> to);
+  void read(solver::FiniteState& state, bool with_displacement, bool with_stress);
 
   std::shared_ptr<void> keeps_;  // first: it goes last
   const KernelFactory& kernels_;

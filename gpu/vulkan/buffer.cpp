@@ -158,13 +158,30 @@ void Buffer::write(std::size_t offset, std::span<const std::byte> data) {
 }
 
 void Buffer::read(std::size_t offset, std::span<std::byte> data) const {
-  if (data.empty()) return;
-  device_->count_read(data.size());
-  if (mapped_) {
-    std::memcpy(data.data(), begin() + offset, data.size());
-    return;
+  Part all;
+  all.from = this;
+  all.offset = offset;
+  all.to = data;
+  read_all({&all, 1});
+}
+
+void Buffer::read_all(std::span<const Part> parts) {
+  for (const Part& part : parts) {
+    if (part.to.empty()) continue;
+    const Buffer& from = *part.from;
+    from.device_->count_read(part.to.size());
+    if (from.mapped_) {
+      std::memcpy(part.to.data(), from.begin() + part.offset, part.to.size());
+    } else {
+      from.device_->uploads().want(from.handle_, from.guard_ + part.offset, part.to);
+    }
   }
-  device_->uploads().read(handle_, guard_ + offset, data);
+  for (const Part& part : parts) {
+    if (!part.to.empty() && !part.from->mapped_) {
+      part.from->device_->uploads().read();
+      return;
+    }
+  }
 }
 
 void Buffer::fill_zero(std::size_t offset, std::size_t bytes) {

@@ -264,6 +264,71 @@ TEST_P(FiniteKernels, NewtonByConjugateGradientsInASubmitEach) {
   }
 }
 
+/// What an event and the rest after it take of a device.
+struct Taken {
+  std::size_t submits = 0, allocations = 0;
+  solver::FiniteMinimiser::Result result;
+  std::vector<double> u;
+};
+
+/// Three elements leave a body at rest, which finds another rest.
+Taken taken_by_an_event(const Numbers& numbers, bool unmapped) {
+  std::size_t allocations = 0;
+  vulkan::InstanceOptions options;
+  options.validation = validated();
+  vulkan::DeviceProbe probe;
+  probe.as_gpu = unmapped;
+  probe.allocations = &allocations;
+  const auto opened = watched_device(std::make_shared<vulkan::Instance>(options), probe);
+  const gpu::KernelFactory factory(*opened, numbers.variant, numbers.fp64);
+  Torn torn(kNeoHookean);
+  solver::RestingBody resting(torn.body);
+  gpu::FiniteDevice device(factory, torn.body, {});
+  solver::FinitePotential by(resting, StressMeasure::cauchy, &device);
+  const fem::TangentPattern pattern(torn.problem);
+  solver::FiniteState state;
+  state.u.assign(torn.problem.dofs().size(), 0.0);
+  int factors = 0;
+  const auto base = solver::projected_base(torn.body, state.u, pattern, factors);
+  base->keep_inverse();
+  solver::FiniteTarget target = torn.target(by);
+  target.grips.assign(target.grips.size(), 0.2);
+  solver::FiniteMinimiser minimiser(by, 5);
+  minimiser.set_scale(solver::finite_scale(torn.problem));
+  by.put_grips(target, state.u);
+  by.evaluate(target, false, state);
+  minimiser.minimise(target, base.get(), {1e-10, 1e-9}, 60, state);
+
+  for (Index e : {100, 101, 130}) torn.out[static_cast<std::size_t>(e)] = 1;
+  const std::size_t submits = opened->queue().submits(), allocated = allocations;
+  resting.look();
+  by.body_changed();
+  EXPECT_TRUE(base->follow(resting, 300));
+  by.evaluate(target, false, state);
+  Taken taken;
+  taken.result = minimiser.minimise(target, base.get(), {1e-10, 1e-9}, 60, state);
+  taken.submits = opened->queue().submits() - submits;
+  taken.allocations = allocations - allocated;
+  taken.u = state.u;
+  EXPECT_TRUE(taken.result.at_rest);
+  EXPECT_GT(taken.result.back_solves, 3);
+  for (const std::string& m : options.messages->texts) ADD_FAILURE() << m;
+  return taken;
+}
+
+// Of memory that is not mapped the host reads a state in one submit, twice: of the body as the
+// event leaves it, and at its rest. What it writes goes with the iterations.
+TEST_P(FiniteKernels, AnEventAllocatesNothingAndReadsInOneSubmit) {
+  const Taken mapped = taken_by_an_event(GetParam(), false),
+              unmapped = taken_by_an_event(GetParam(), true);
+  EXPECT_EQ(mapped.allocations, 0u);
+  EXPECT_EQ(unmapped.allocations, 0u);
+  EXPECT_EQ(unmapped.u, mapped.u);
+  EXPECT_EQ(unmapped.submits, mapped.submits + 2);
+  // An iteration each; the first state; shorter steps of the line search.
+  EXPECT_LE(mapped.submits, static_cast<std::size_t>(mapped.result.back_solves) + 6);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, FiniteKernels,
                          ::testing::Values(Numbers{gpu::Variant::gpu, false},
                                            Numbers{gpu::Variant::gpu, true},
