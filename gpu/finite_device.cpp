@@ -24,6 +24,14 @@ std::uint32_t one_group(const vulkan::PhysicalDevice& device) {
   constexpr std::uint64_t kMost = 256;
   return static_cast<std::uint32_t>(std::min(kMost, device.limits.group.value));
 }
+/// Into how many shares the sums of an iteration are cut, each for a workgroup: none where one is
+/// as quick as another dispatch would begin.
+std::uint32_t shares_for(std::uint32_t elements, std::uint32_t unknowns) {
+  constexpr std::uint32_t kMostOfOne = 16384, kOfAShare = 4096, kMostShares = 256;
+  const std::uint32_t most = std::max(elements / 16, unknowns);
+  return most <= kMostOfOne ? 1 : std::min(round_up(most, kOfAShare) / kOfAShare, kMostShares);
+}
+
 // Least room for the unknowns that what has left touches.
 constexpr std::uint32_t kFirstRank = 64;
 
@@ -92,6 +100,7 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
       pairs_(options.route == Route::inverse
                  ? std::min(u32(static_cast<std::size_t>(options.pairs)), shaders::kFinitePairs)
                  : 0),
+      shares_(options.shares > 0 ? options.shares : shares_for(elements_, unknowns_)),
       commands_(kernels.device()) {
   const std::size_t route = route_bytes(kernels, options.route, problem_);
   if (route > largest_buffer(kernels)) {
@@ -160,6 +169,9 @@ void FiniteDevice::create_buffers(bool viscous) {
   element_partials_ = doubles(parts(elements_) * 4);
   entry_partials_ = doubles(parts(entries_) * 4);
   sums_ = Buffer(device_, sizeof(shaders::FiniteSums), Placement::host);
+  if (shares_ > 1) {
+    shares_of_sums_ = Buffer(device_, shares_ * sizeof(shaders::FiniteSums), Placement::device);
+  }
   du_ = doubles(rows_);
   for (Buffer* pairs : {&s_, &y_}) *pairs = doubles((pairs_ + 1) * std::size_t{unknowns_});
   products_ = Buffer(device_, 16 * sizeof(double), Placement::host);
@@ -221,7 +233,8 @@ void FiniteDevice::create_cg(const fem::HyperelasticBody& body) {
 
 void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers first,
                         Buffers second) {
-  const bool one = name == "finite_sums" || name == "finite_begin" || name == "finite_end";
+  const bool one = name == "finite_sums" || name == "finite_sums_join" || name == "finite_begin" ||
+                   name == "finite_end";
   const KernelFactory factory = real ? kernels_ : kernels_.in_fp64();
   const std::uint32_t group = !one                  ? shaders::kGroup
                               : kernels_.emulated() ? kernels_.summing_group()
@@ -247,9 +260,13 @@ void FiniteDevice::create_passes() {
         &r_[0], &entry_partials_},
        {&corners_, &viscous_corners_, &first_, &around_, &entries_of_, &target_, &u_[1], &f_[1],
         &r_[1], &entry_partials_});
+  const Buffer& to = shares_ > 1 ? shares_of_sums_ : sums_;
   make(sum_, "finite_sums", false,
-       {&element_partials_, &entry_partials_, &r_[1], &r_[0], &du_, &s_, &y_, &sums_},
-       {&element_partials_, &entry_partials_, &r_[0], &r_[1], &du_, &s_, &y_, &sums_});
+       {&element_partials_, &entry_partials_, &r_[1], &r_[0], &du_, &s_, &y_, &to},
+       {&element_partials_, &entry_partials_, &r_[0], &r_[1], &du_, &s_, &y_, &to});
+  if (shares_ > 1) {
+    make(join_, "finite_sums_join", false, {&shares_of_sums_, &sums_}, {&shares_of_sums_, &sums_});
+  }
 }
 
 void FiniteDevice::attach(const solver::RestingBody& body) {
@@ -388,6 +405,7 @@ FinitePush FiniteDevice::push() const {
   for (std::size_t k = 0; k < order_.size(); ++k) of.order |= order_[k] << (4 * k);
   of.rank = rank_;
   of.turned = turned_count_;
+  of.shares = shares_;
   return of;
 }
 
@@ -427,7 +445,8 @@ void FiniteDevice::record_evaluation(const FinitePush& push, bool next) {
   commands_.pass("internal forces");
   dispatch(law_, elements_);
   dispatch(gather_, entries_);
-  dispatch(sum_, 1);
+  dispatch(sum_, shares_ * shaders::kGroup);
+  if (shares_ > 1) dispatch(join_, 1);
 }
 
 solver::FinitePoint FiniteDevice::point() const {

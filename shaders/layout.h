@@ -205,6 +205,7 @@ struct FinitePush {
   uint slot;   // of the step and the change of the gradient that are written
   uint order;  // slots of the pairs, four bits each, the oldest lowest
   uint rank, turned, back;
+  uint shares;  // of the sums: a workgroup each
 };
 
 struct FiniteCgPush {
@@ -284,7 +285,7 @@ static_assert(sizeof(Summary) == 80);
 static_assert(sizeof(CgPush) == 40);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);
-static_assert(sizeof(FinitePush) == 64);
+static_assert(sizeof(FinitePush) == 72);
 static_assert(sizeof(FiniteSums) == 96);
 #undef SUNDER_CONST
 #undef SUNDER_WIDE_STRUCT

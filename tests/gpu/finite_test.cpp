@@ -99,7 +99,10 @@ TEST_P(FiniteKernels, StatesAreTheHosts) {
         const Torn torn(*law);
         const solver::RestingBody resting(torn.body, moves ? solver::RestingBody::Loose::moving
                                                            : solver::RestingBody::Loose::frozen);
-        gpu::FiniteDevice device(*factory_, torn.body, {.stress = measure, .viscous = moves});
+        // The sums of an iteration by one workgroup, and by several.
+        gpu::FiniteDevice device(
+            *factory_, torn.body,
+            {.stress = measure, .viscous = moves, .shares = law == &kNeoHookean ? 5u : 0u});
         const solver::FinitePotential host(resting, measure), there(resting, measure, &device);
         solver::FiniteTarget target = torn.target(host);
         std::vector<double> mass(static_cast<std::size_t>(torn.problem.dof_count()), 2e-9), ahead;
@@ -160,7 +163,7 @@ TEST_P(FiniteKernels, IterationsAreTheHostsInASubmitEach) {
   for (const Law* law : all_laws()) {
     Torn torn(*law);
     solver::RestingBody resting(torn.body);
-    gpu::FiniteDevice device(*factory_, torn.body, {});
+    gpu::FiniteDevice device(*factory_, torn.body, {.shares = law == &kNeoHookean ? 5u : 0u});
     solver::FinitePotential host(resting, StressMeasure::cauchy),
         there(resting, StressMeasure::cauchy, &device);
     const fem::TangentPattern pattern(torn.problem);
@@ -327,6 +330,43 @@ TEST_P(FiniteKernels, AnEventAllocatesNothingAndReadsInOneSubmit) {
   EXPECT_EQ(unmapped.submits, mapped.submits + 2);
   // An iteration each; the first state; shorter steps of the line search.
   EXPECT_LE(mapped.submits, static_cast<std::size_t>(mapped.result.back_solves) + 6);
+}
+
+// 16,536 unknowns, of which one workgroup would sum too long: five do.
+TEST_P(FiniteKernels, SumsOfALargeBodyAreTheHosts) {
+  if (!GetParam().fp64) GTEST_SKIP() << "states are in fp64 whatever the inverse is in";
+  Scene scene = Torn::scene();
+  scene.mesh = structured_board({52, 52, 1, 6, 4, 2});
+  const Problem problem(scene);
+  ASSERT_GT(problem.dof_count(), 16384);
+  const std::vector<std::uint8_t> out(problem.mesh().tets.size(), 0);
+  const std::vector<const Law*> laws = fem::one_law(problem, kCorotated);
+  const fem::HyperelasticBody body{problem, laws, out};
+  const solver::RestingBody resting(body);
+  gpu::FiniteDevice device(*factory_, body, {.route = Route::factor});
+  const solver::FinitePotential host(resting, StressMeasure::cauchy),
+      there(resting, StressMeasure::cauchy, &device);
+  EXPECT_TRUE(std::ranges::any_of(device.kernels(), [](const KernelPlan& kernel) {
+    return kernel.name.find("finite_sums_join") == 0;
+  }));
+  Load load;
+  load.displacements.assign(problem.gripped_dofs().size(), 0.5);
+  const solver::FiniteTarget target = host.target(load);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> of(-1e-3, 1e-3);
+  solver::FiniteState expected;
+  for (const Index d : problem.dofs()) expected.u.push_back(d == kNone ? 0 : of(random));
+  solver::FiniteState found, again;
+  found.u = again.u = expected.u;
+  host.evaluate(target, true, expected);
+  there.evaluate(target, true, found);
+  EXPECT_NEAR(found.energy, expected.energy, 1e-12 * expected.energy);
+  EXPECT_NEAR(found.potential, expected.potential, 1e-12 * expected.energy);
+  EXPECT_NEAR(found.acting, expected.acting, 1e-11 * expected.acting);
+  EXPECT_LE(apart(span_of(found.r), span_of(expected.r)), 1e-12);
+  there.evaluate(target, true, again);
+  EXPECT_EQ(again.energy, found.energy);
+  EXPECT_EQ(again.acting, found.acting);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FiniteKernels,
