@@ -38,6 +38,7 @@ Commands::~Commands() {
 }
 
 void Commands::begin() {
+  device_.queue().check_answers();
   passes_.clear();
   uses_.clear();
   barriers_ = 0;

@@ -45,8 +45,12 @@ Queue::Queue(const DeviceFunctions& vk, VkDevice device, VkQueue queue, QueueLoc
 
 Queue::~Queue() { vk_.DestroyFence(device_, done_, nullptr); }
 
-void Queue::submit(std::span<const VkCommandBuffer> commands, bool answer) {
+void Queue::check_answers() const {
   if (silent_) throw_silent(patience_);
+}
+
+void Queue::submit(std::span<const VkCommandBuffer> commands, bool answer) {
+  check_answers();
   VkSubmitInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
   info.commandBufferCount = static_cast<std::uint32_t>(commands.size());
@@ -57,7 +61,7 @@ void Queue::submit(std::span<const VkCommandBuffer> commands, bool answer) {
 }
 
 void Queue::submit(const VkSubmitInfo& info, VkFence done) {
-  if (silent_) throw_silent(patience_);
+  check_answers();
   const Hold hold(lock_);
   check(vk_.QueueSubmit(queue_, 1, &info, done), "vkQueueSubmit");
 }
@@ -71,7 +75,7 @@ void Queue::wait(VkFence done) {
   const auto nanoseconds = static_cast<std::uint64_t>(patience_.count());
   const VkResult result = vk_.WaitForFences(device_, 1, &done, VK_TRUE, nanoseconds);
   silent_ = silent_ || result == VK_TIMEOUT;
-  if (silent_) throw_silent(patience_);
+  check_answers();
   check(result, "vkWaitForFences");
 }
 

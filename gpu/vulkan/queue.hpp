@@ -43,6 +43,8 @@ class Queue {
   void set_patience(std::chrono::nanoseconds patience) { patience_ = patience; }
   /// It has not answered in time: what it was given may still be at work.
   [[nodiscard]] bool silent() const { return silent_; }
+  /// Throws DeviceLost where it is silent: nothing that it may have at work can be used again.
+  void check_answers() const;
   /// Waited-for submits so far.
   [[nodiscard]] std::size_t submits() const { return submits_; }
 

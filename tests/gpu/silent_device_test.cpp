@@ -42,6 +42,7 @@ TEST_F(SilentDevice, IsLostAtOnceFromThenOn) {
   commands.begin();
   commands.end();
   for (int i = 0; i < 2; ++i) EXPECT_EQ(lost_as([&] { commands.submit(); }), kSays);
+  EXPECT_EQ(lost_as([&] { commands.begin(); }), kSays) << "it may be at work";
   EXPECT_TRUE(device->queue().silent());
   EXPECT_EQ(device->queue().submits(), 0u);
   EXPECT_TRUE(options.messages->texts.empty());
