@@ -271,7 +271,7 @@ TEST_P(FiniteKernels, NewtonByConjugateGradientsInASubmitEach) {
 struct Taken {
   std::size_t submits = 0, allocations = 0;
   solver::FiniteMinimiser::Result result;
-  std::vector<double> u;
+  solver::FiniteState rest;
 };
 
 /// Three elements leave a body at rest, which finds another rest.
@@ -312,7 +312,7 @@ Taken taken_by_an_event(const Numbers& numbers, bool unmapped) {
   taken.result = minimiser.minimise(target, base.get(), {1e-10, 1e-9}, 60, state);
   taken.submits = opened->queue().submits() - submits;
   taken.allocations = allocations - allocated;
-  taken.u = state.u;
+  taken.rest = state;
   EXPECT_TRUE(taken.result.at_rest);
   EXPECT_GT(taken.result.back_solves, 3);
   for (const std::string& m : options.messages->texts) ADD_FAILURE() << m;
@@ -326,7 +326,10 @@ TEST_P(FiniteKernels, AnEventAllocatesNothingAndReadsInOneSubmit) {
               unmapped = taken_by_an_event(GetParam(), true);
   EXPECT_EQ(mapped.allocations, 0u);
   EXPECT_EQ(unmapped.allocations, 0u);
-  EXPECT_EQ(unmapped.u, mapped.u);
+  EXPECT_EQ(unmapped.rest.u, mapped.rest.u);
+  EXPECT_EQ(unmapped.rest.f, mapped.rest.f);
+  EXPECT_EQ(unmapped.rest.r, mapped.rest.r);
+  EXPECT_EQ(unmapped.rest.stress, mapped.rest.stress);
   EXPECT_EQ(unmapped.submits, mapped.submits + 2);
   // An iteration each; the first state; shorter steps of the line search.
   EXPECT_LE(mapped.submits, static_cast<std::size_t>(mapped.result.back_solves) + 6);
