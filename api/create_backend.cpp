@@ -35,12 +35,25 @@ std::unique_ptr<Backend> create_replacement(const Problem& problem, const Needs&
 }
 #endif
 
+#ifdef SUNDER_GPU
+std::vector<std::string> warnings_of(const Backend& backend, const PipelineCache* cache) {
+  std::vector<std::string> warnings = gpu::warnings(backend);
+  if (cache && !cache->ignored().empty()) {
+    warnings.push_back("the pipeline cache that was handed in is ignored: " + cache->ignored());
+  }
+  return warnings;
+}
+#endif
+
 /// `warnings`: what the scene asked for and will cost more than it seems.
 std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, Needs needs,
+                                       const std::shared_ptr<PipelineCache>& cache,
                                        std::vector<std::string>& warnings) {
 #ifdef SUNDER_GPU
-  auto primary = gpu::create(problem, needs);
-  warnings = gpu::warnings(*primary);
+  gpu::VulkanOptions options = gpu::options_from_environment();
+  options.cache = cache;
+  auto primary = gpu::create(problem, needs, options);
+  warnings = warnings_of(*primary, cache.get());
   // Bodies by their laws, and those that part, go on by the host themselves, which has their state.
   if (problem->finite() || problem->moves() || needs.split) return primary;
   return with_failover(problem, std::move(primary),
@@ -48,6 +61,7 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 #else
   static_cast<void>(problem);
   static_cast<void>(needs);
+  static_cast<void>(cache);
   static_cast<void>(warnings);
   throw DeviceError("this build leaves out the backend vulkan (SUNDER_GPU=OFF); it has cpu");
 #endif
@@ -55,7 +69,8 @@ std::unique_ptr<Backend> create_vulkan(std::shared_ptr<const Problem> problem, N
 
 /// The machine's GPU when there is one and it can do the scene, else the CPU. A GPU that is missed
 /// is a warning: a build without the backend and a processor that emulates one miss none.
-CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, const Needs& needs) {
+CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, const Needs& needs,
+                                [[maybe_unused]] const std::shared_ptr<PipelineCache>& cache) {
   CreatedBackend created;
   // Laws and motion are the processor's: its factor is quicker than any device's dense inverse so
   // far (bench_motion). So are cracks that split: its border asks for no new buffers.
@@ -69,7 +84,7 @@ CreatedBackend create_automatic(const std::shared_ptr<const Problem>& problem, c
   const std::optional<std::string> missing = gpu::missing_gpu();
   if (!missing) {
     try {
-      created.backend = create_vulkan(problem, needs, created.warnings);
+      created.backend = create_vulkan(problem, needs, cache, created.warnings);
       return created;
     } catch (const DeviceError& error) {
       created.warnings.push_back(std::string("backend vulkan failed, cpu is used instead: ") +
@@ -105,23 +120,25 @@ std::vector<DeviceInfo> devices() {
   return list;
 }
 
-CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs needs) {
+CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs needs,
+                              std::shared_ptr<PipelineCache> cache) {
   if (!problem) throw UsageError("a backend needs a problem");
   const std::string& name = problem->scene().solver.backend;
   if (name == "cpu") return {cpu_reference::create(std::move(problem), std::move(needs)), {}};
   if (name == "vulkan") {
     CreatedBackend created;
-    created.backend = create_vulkan(std::move(problem), std::move(needs), created.warnings);
+    created.backend = create_vulkan(std::move(problem), std::move(needs), cache, created.warnings);
     return created;
   }
-  if (name == "auto") return create_automatic(problem, needs);
+  if (name == "auto") return create_automatic(problem, needs, cache);
   std::string names;
   for (const std::string& n : backend_names()) names += (names.empty() ? "" : ", ") + n;
   throw DeviceError("there is no backend \"" + name + "\"; this build has " + names);
 }
 
 CreatedBackend create_backend_on(std::shared_ptr<const Problem> problem, Needs needs,
-                                 const sunder_vulkan_host& host) {
+                                 const sunder_vulkan_host& host,
+                                 std::shared_ptr<PipelineCache> cache) {
   if (!problem) throw UsageError("a backend needs a problem");
 #ifdef SUNDER_GPU
   if (problem->scene().solver.backend == "cpu") {
@@ -129,13 +146,15 @@ CreatedBackend create_backend_on(std::shared_ptr<const Problem> problem, Needs n
   }
   gpu::VulkanOptions options;
   options.lent = to_lent(host);
+  options.cache = cache;
   CreatedBackend created;
   created.backend = gpu::create(std::move(problem), std::move(needs), options);
-  created.warnings = gpu::warnings(*created.backend);
+  created.warnings = warnings_of(*created.backend, cache.get());
   return created;
 #else
   static_cast<void>(needs);
   static_cast<void>(host);
+  static_cast<void>(cache);
   throw DeviceError("this build leaves out the backend vulkan (SUNDER_GPU=OFF); it has cpu");
 #endif
 }

@@ -36,7 +36,7 @@ std::uint32_t most_known(const KernelFactory& kernels, const Problem& problem) {
   const std::size_t wanted =
       scene.live ? kMost : std::clamp<std::size_t>(kOfAHand * scene.instruments.size(), 1, kMost);
   const std::size_t held =
-      kernels.device().physical().largest_buffer / known_slot(nodes_of(problem));
+      kernels.device().physical().limits.buffer_bytes.value / known_slot(nodes_of(problem));
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(held, 1, wanted));
 }
 
@@ -51,6 +51,8 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
       add_(kernels, fields),
       most_known_(most_known(kernels, body.problem())),
       commands_(kernels.device()) {
+  const vulkan::PhysicalDevice& device = kernels.device().physical();
+  device.require(matrix_.groups(), device.limits.groups, "route cg");
   const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;
   for (Buffer* vector : {&r_, &p_, &q_, &z_}) {
     *vector = Buffer(kernels.device(), nodes * 4 * sizeof(double), Placement::device);

@@ -43,8 +43,9 @@ DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen)
   const std::string shortcoming = device.shortcoming();
   info.precisions = !shortcoming.empty() ? "none" : device.float64 ? "fp32 fp64" : "fp32";
   info.limits =
-      megabytes(device.memory) + " memory, buffers up to " + megabytes(device.largest_buffer) +
-      ", subgroups of " + std::to_string(device.subgroup) +
+      megabytes(device.memory) + " memory, buffers up to " +
+      megabytes(device.limits.buffer_bytes.value) + ", subgroups of " +
+      std::to_string(device.subgroup) +
       (device.float64 ? ", routes inverse, condensed, cg" : ", routes inverse, condensed");
   info.chosen = index == chosen;
   if (!shortcoming.empty()) {

@@ -42,6 +42,8 @@ FiniteCg::FiniteCg(const KernelFactory& kernels, const Problem& problem,
       rigid_(kernels, problem, out_, 0, true) {
   std::ranges::copy(destroyed, out_.begin());
   vulkan::Device& device = kernels.device();
+  device.physical().require(std::max(element_groups_, node_groups_),
+                            device.physical().limits.groups, "route cg");
   const auto make = [&](std::size_t bytes) {
     Buffer buffer(device, std::max<std::size_t>(bytes, 64), Placement::device);
     buffer.fill_zero();

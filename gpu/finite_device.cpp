@@ -2,7 +2,9 @@
 #include "gpu/finite_device.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "material/corotated.hpp"
 #include "material/linear.hpp"
@@ -17,8 +19,19 @@ using shaders::FinitePush;
 using vulkan::Buffer;
 using vulkan::Placement;
 
-// Invocations of the passes over all unknowns that leave one sum, on a device.
-constexpr std::uint32_t kOneGroup = 256;
+/// Invocations of the passes over all unknowns that leave one sum, on a device.
+std::uint32_t one_group(const vulkan::PhysicalDevice& device) {
+  constexpr std::uint64_t kMost = 256;
+  return static_cast<std::uint32_t>(std::min(kMost, device.limits.group.value));
+}
+/// Into how many shares the sums of an iteration are cut, each for a workgroup: none where one is
+/// as quick as another dispatch would begin.
+std::uint32_t shares_for(std::uint32_t elements, std::uint32_t unknowns) {
+  constexpr std::uint32_t kMostOfOne = 16384, kOfAShare = 4096, kMostShares = 256;
+  const std::uint32_t most = std::max(elements / 16, unknowns);
+  return most <= kMostOfOne ? 1 : std::min(round_up(most, kOfAShare) / kOfAShare, kMostShares);
+}
+
 // Least room for the unknowns that what has left touches.
 constexpr std::uint32_t kFirstRank = 64;
 
@@ -38,6 +51,11 @@ Buffer filled(vulkan::Device& device, const std::vector<T>& values) {
   Buffer buffer(device, std::max<std::size_t>(values.size(), 1) * sizeof(T), Placement::device);
   if (!values.empty()) buffer.write(std::span<const T>(values));
   return buffer;
+}
+
+std::span<double> numbers_of(std::span<Voigt> stress) {
+  if (stress.empty()) return {};
+  return {stress.front().data(), 6 * stress.size()};
 }
 
 }  // namespace
@@ -62,8 +80,9 @@ std::size_t FiniteDevice::route_bytes(const KernelFactory& kernels, Route route,
 
 std::size_t FiniteDevice::largest_buffer(const KernelFactory& kernels) {
   const vulkan::PhysicalDevice& device = kernels.device().physical();
-  return std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
-                                std::size_t{device.largest_texel_buffer} * 16});
+  return std::min<std::size_t>({device.limits.buffer_bytes.value,
+                                device.limits.allocation_bytes.value,
+                                device.limits.texels.value * 16});
 }
 
 FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::HyperelasticBody& body,
@@ -81,6 +100,7 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
       pairs_(options.route == Route::inverse
                  ? std::min(u32(static_cast<std::size_t>(options.pairs)), shaders::kFinitePairs)
                  : 0),
+      shares_(options.shares > 0 ? options.shares : shares_for(elements_, unknowns_)),
       commands_(kernels.device()) {
   const std::size_t route = route_bytes(kernels, options.route, problem_);
   if (route > largest_buffer(kernels)) {
@@ -149,6 +169,9 @@ void FiniteDevice::create_buffers(bool viscous) {
   element_partials_ = doubles(parts(elements_) * 4);
   entry_partials_ = doubles(parts(entries_) * 4);
   sums_ = Buffer(device_, sizeof(shaders::FiniteSums), Placement::host);
+  if (shares_ > 1) {
+    shares_of_sums_ = Buffer(device_, shares_ * sizeof(shaders::FiniteSums), Placement::device);
+  }
   du_ = doubles(rows_);
   for (Buffer* pairs : {&s_, &y_}) *pairs = doubles((pairs_ + 1) * std::size_t{unknowns_});
   products_ = Buffer(device_, 16 * sizeof(double), Placement::host);
@@ -177,6 +200,20 @@ void FiniteDevice::create_inverse() {
   make(fold_, "finite_fold", false, {&partial_, &x_}, {&partial_, &x_});
   make(end_, "finite_end", false, {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_},
        {&x_, &s_, &y_, &products_, &lengths_, &held_, &du_});
+  make_rank_room(kFirstRank);  // so that a first event allocates nothing
+}
+
+/// For the base's change by what has left.
+void FiniteDevice::make_rank_room(std::uint32_t rank) {
+  if (rank <= rank_room_) return;
+  rank_room_ = std::max({rank, 2 * rank_room_, kFirstRank});
+  small_pass_.binding = {};
+  columns_.binding = {};
+  const std::size_t room = rank_room_;
+  touched_ = Buffer(device_, room * sizeof(std::uint32_t), Placement::device);
+  small_ = Buffer(device_, room * room * sizeof(double), Placement::device);
+  coefficients_ = Buffer(device_, room * sizeof(double), Placement::device);
+  bind_base();
 }
 
 void FiniteDevice::create_cg(const fem::HyperelasticBody& body) {
@@ -196,11 +233,12 @@ void FiniteDevice::create_cg(const fem::HyperelasticBody& body) {
 
 void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers first,
                         Buffers second) {
-  const bool one = name == "finite_sums" || name == "finite_begin" || name == "finite_end";
+  const bool one = name == "finite_sums" || name == "finite_sums_join" || name == "finite_begin" ||
+                   name == "finite_end";
   const KernelFactory factory = real ? kernels_ : kernels_.in_fp64();
   const std::uint32_t group = !one                  ? shaders::kGroup
                               : kernels_.emulated() ? kernels_.summing_group()
-                                                    : kOneGroup;
+                                                    : one_group(device_.physical());
   if (!pass.kernel) pass.kernel = factory.make(name, group);
   pass.binding[0] =
       std::make_unique<vulkan::Binding>(device_, *pass.kernel, std::vector<const Buffer*>(first));
@@ -222,9 +260,13 @@ void FiniteDevice::create_passes() {
         &r_[0], &entry_partials_},
        {&corners_, &viscous_corners_, &first_, &around_, &entries_of_, &target_, &u_[1], &f_[1],
         &r_[1], &entry_partials_});
+  const Buffer& to = shares_ > 1 ? shares_of_sums_ : sums_;
   make(sum_, "finite_sums", false,
-       {&element_partials_, &entry_partials_, &r_[1], &r_[0], &du_, &s_, &y_, &sums_},
-       {&element_partials_, &entry_partials_, &r_[0], &r_[1], &du_, &s_, &y_, &sums_});
+       {&element_partials_, &entry_partials_, &r_[1], &r_[0], &du_, &s_, &y_, &to},
+       {&element_partials_, &entry_partials_, &r_[0], &r_[1], &du_, &s_, &y_, &to});
+  if (shares_ > 1) {
+    make(join_, "finite_sums_join", false, {&shares_of_sums_, &sums_}, {&shares_of_sums_, &sums_});
+  }
 }
 
 void FiniteDevice::attach(const solver::RestingBody& body) {
@@ -324,16 +366,7 @@ void FiniteDevice::set_base(const solver::FiniteBase& base) {
   if (now.inverse != stamps_.inverse) set_inverse(base.inverse());
   if (now.small != stamps_.small || now.inverse != stamps_.inverse) {
     rank_ = static_cast<std::uint32_t>(base.rank());
-    if (rank_ > rank_room_) {
-      rank_room_ = std::max({rank_, 2 * rank_room_, kFirstRank});
-      small_pass_.binding = {};
-      columns_.binding = {};
-      const std::size_t room = rank_room_;
-      touched_ = Buffer(device_, room * sizeof(std::uint32_t), Placement::device);
-      small_ = Buffer(device_, room * room * sizeof(double), Placement::device);
-      coefficients_ = Buffer(device_, room * sizeof(double), Placement::device);
-      bind_base();
-    }
+    make_rank_room(rank_);
     if (rank_ > 0) {
       const std::vector<std::uint32_t> touched(base.touched().begin(), base.touched().end());
       touched_.write(std::span<const std::uint32_t>(touched));
@@ -372,6 +405,7 @@ FinitePush FiniteDevice::push() const {
   for (std::size_t k = 0; k < order_.size(); ++k) of.order |= order_[k] << (4 * k);
   of.rank = rank_;
   of.turned = turned_count_;
+  of.shares = shares_;
   return of;
 }
 
@@ -411,7 +445,8 @@ void FiniteDevice::record_evaluation(const FinitePush& push, bool next) {
   commands_.pass("internal forces");
   dispatch(law_, elements_);
   dispatch(gather_, entries_);
-  dispatch(sum_, 1);
+  dispatch(sum_, shares_ * shaders::kGroup);
+  if (shares_ > 1) dispatch(join_, 1);
 }
 
 solver::FinitePoint FiniteDevice::point() const {
@@ -432,22 +467,19 @@ void FiniteDevice::set_state(std::span<const double> u) {
   known_.assign(u.begin(), u.end());
 }
 
-void FiniteDevice::read_vector(const Buffer& from, std::size_t first, std::span<double> to) {
-  if (!to.empty()) from.read(to, first);
-}
-
-/// All of the first state but its displacement and what the last sums say.
-void FiniteDevice::read(solver::FiniteState& state, bool with_stress) {
+/// All of the first state but what the last sums say.
+void FiniteDevice::read(solver::FiniteState& state, bool with_displacement, bool with_stress) {
   state.f.resize(entries_);
-  read_vector(f_[first_state_], 0, state.f);
   state.viscous.resize(viscous_ > 0 ? entries_ : 0);
-  read_vector(f_[first_state_], entries_, state.viscous);
   state.r.resize(unknowns_);
-  read_vector(r_[first_state_], 0, {state.r.data(), unknowns_});
   state.stress.resize(with_stress ? elements_ : 0);
-  if (with_stress) {
-    read_vector(stress_[first_state_], 0, {state.stress.front().data(), 6 * state.stress.size()});
-  }
+  std::array<Buffer::Part, 5> parts{
+      Buffer::Part{f_[first_state_], 0, state.f},
+      Buffer::Part{f_[first_state_], entries_, state.viscous},
+      Buffer::Part{r_[first_state_], 0, {state.r.data(), unknowns_}},
+      Buffer::Part{stress_[first_state_], 0, numbers_of(state.stress)},
+      Buffer::Part{u_[first_state_], 0, state.u}};
+  Buffer::read_all(std::span(parts).first(with_displacement ? 5 : 4));
 }
 
 void FiniteDevice::evaluate(const solver::FiniteTarget& target, bool with_stress,
@@ -459,13 +491,13 @@ void FiniteDevice::evaluate(const solver::FiniteTarget& target, bool with_stress
   state.energy = sums_.mapped<shaders::FiniteSums>()->energy;
   state.potential = at.potential;
   state.acting = at.acting;
-  read(state, with_stress);
+  read(state, false, with_stress);
 }
 
 void FiniteDevice::stress(std::span<const double> u, std::span<Voigt> stress) {
   if (stress.empty()) return;
   set_state(u);
-  read_vector(stress_[first_state_], 0, {stress.front().data(), 6 * stress.size()});
+  stress_[first_state_].read(numbers_of(stress));
 }
 
 solver::FinitePoint FiniteDevice::begin(const solver::FiniteTarget& target,
@@ -526,9 +558,8 @@ void FiniteDevice::take() {
 void FiniteDevice::end() {
   solver::FiniteState& state = *state_;
   if (known_.empty()) {
-    read_vector(u_[first_state_], 0, state.u);
+    read(state, true, true);
     known_ = state.u;
-    read(state, true);
   }
 }
 

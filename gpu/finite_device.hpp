@@ -24,6 +24,7 @@ class FiniteDevice final : public solver::FiniteDevice {
     StressMeasure stress = StressMeasure::cauchy;
     int pairs = 5;  ///< of L-BFGS
     bool viscous = false;
+    std::uint32_t shares = 0;  ///< of the sums, summed by a workgroup each; 0: by the body's size
   };
   /// `body` names problem and laws, which must outlive it, as must the kernels and their device;
   /// `keeps`: what owns these, kept until the end. Throws DeviceError where the device's memory or
@@ -72,6 +73,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   void create_inverse();
   void create_cg(const fem::HyperelasticBody& body);
   void bind_base();
+  void make_rank_room(std::uint32_t rank);
   void set_target(const solver::FiniteTarget& target);
   void set_base(const solver::FiniteBase& base);
   void set_inverse(const Eigen::MatrixXd& inverse);
@@ -83,25 +85,25 @@ class FiniteDevice final : public solver::FiniteDevice {
   [[nodiscard]] shaders::FinitePush push() const;
   [[nodiscard]] solver::FinitePoint point() const;
   [[nodiscard]] solver::FiniteTrial trial(double part, bool direction);
-  void read(solver::FiniteState& state, bool with_stress);
-  void read_vector(const vulkan::Buffer& from, std::size_t first, std::span<double> to);
+  void read(solver::FiniteState& state, bool with_displacement, bool with_stress);
 
   std::shared_ptr<void> keeps_;  // first: it goes last
   const KernelFactory& kernels_;
   vulkan::Device& device_;
   const Problem& problem_;
   Options options_;
-  std::uint32_t elements_, nodes_, entries_, unknowns_, rows_, pairs_;
+  std::uint32_t elements_, nodes_, entries_, unknowns_, rows_, pairs_, shares_;
   const solver::RestingBody* resting_ = nullptr;
 
   // Of both states: displacement, residual, forces, stress.
   std::array<vulkan::Buffer, 2> u_, r_, f_, stress_;
   vulkan::Buffer nodes_of_, shape_, facts_, first_, around_, entries_of_, held_, from_, target_;
-  vulkan::Buffer corners_, viscous_corners_, element_partials_, entry_partials_, sums_;
+  vulkan::Buffer corners_, viscous_corners_, element_partials_, entry_partials_, sums_,
+      shares_of_sums_;  // the latter where there are several
   vulkan::Buffer du_, q_, x_, partial_, s_, y_, products_, lengths_;
   vulkan::Buffer inverse_, touched_, small_, coefficients_, turned_, rotations_;
-  Pass move_, law_, gather_, sum_, begin_, turn_q_, turn_x_, product_, fold_, small_pass_, columns_,
-      end_;
+  Pass move_, law_, gather_, sum_, join_, begin_, turn_q_, turn_x_, product_, fold_, small_pass_,
+      columns_, end_;
   std::unique_ptr<FiniteCg> cg_;  // route cg
   std::size_t inner_iterations_ = 0;
   vulkan::Commands commands_;

@@ -24,7 +24,7 @@ struct OpenDevice {
   static std::unique_ptr<vulkan::Device> open(const VulkanOptions& options, int asked) {
     const auto instance = std::make_shared<vulkan::Instance>(options.instance);
     return vulkan::create_device(instance, choose_device(*instance, asked, options.probe),
-                                 options.probe);
+                                 options.probe, options.cache);
   }
   std::unique_ptr<vulkan::Device> device;
   KernelFactory kernels;

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "gpu/vulkan_backend.hpp"
 #include "sunder/error.hpp"
@@ -22,6 +23,27 @@ bool reads(std::string_view text, Number& number) {
   return error == std::errc() && at == end;
 }
 
+/// Of a limit by its name in vulkan::LimitsProbe; else null.
+std::uint64_t* limit(std::string_view word, vulkan::LimitsProbe& probe) {
+  const std::pair<std::string_view, std::uint64_t*> all[] = {
+      {"groups", &probe.groups},
+      {"rows_of_groups", &probe.rows_of_groups},
+      {"group", &probe.group},
+      {"shared_bytes", &probe.shared_bytes},
+      {"push_bytes", &probe.push_bytes},
+      {"storage_buffers", &probe.storage_buffers},
+      {"texel_buffers", &probe.texel_buffers},
+      {"buffers", &probe.buffers},
+      {"buffer_bytes", &probe.buffer_bytes},
+      {"texels", &probe.texels},
+      {"allocation_bytes", &probe.allocation_bytes},
+      {"alignment", &probe.alignment}};
+  for (const auto& named : all) {
+    if (named.first == word) return named.second;
+  }
+  return nullptr;
+}
+
 /// "word" or "word=number".
 bool set(std::string_view asked, vulkan::DeviceProbe& probe) {
   const std::size_t sign = asked.find('=');
@@ -34,7 +56,8 @@ bool set(std::string_view asked, vulkan::DeviceProbe& probe) {
   const std::string_view number = asked.substr(sign + 1);
   if (word == "memory") return reads(number, probe.memory);
   if (word == "lost") return reads(number, probe.submits_until_lost);
-  return false;
+  std::uint64_t* of = limit(word, probe.limits);
+  return of && reads(number, *of);
 }
 
 void set_all(std::string_view list, vulkan::DeviceProbe& probe) {
@@ -43,7 +66,8 @@ void set_all(std::string_view list, vulkan::DeviceProbe& probe) {
     const std::string_view asked = list.substr(0, comma);
     if (!set(asked, probe)) {
       throw UsageError("SUNDER_VULKAN_PROBE has \"" + std::string(asked) +
-                       "\"; it may have as_gpu, no_compute, memory=BYTES and lost=SUBMITS");
+                       "\"; it may have as_gpu, no_compute, memory=BYTES, lost=SUBMITS and limits "
+                       "(LimitsProbe in gpu/vulkan/limits.hpp), groups=3 say");
     }
     list = comma == std::string_view::npos ? "" : list.substr(comma + 1);
   }

@@ -21,10 +21,10 @@ namespace sunder::gpu {
 namespace {
 
 std::unique_ptr<vulkan::Device> open_device(const VulkanOptions& options, int asked) {
-  if (options.lent) return vulkan::borrow_device(*options.lent, options.probe);
+  if (options.lent) return vulkan::borrow_device(*options.lent, options.probe, options.cache);
   const auto instance = std::make_shared<vulkan::Instance>(options.instance);
   return vulkan::create_device(instance, choose_device(*instance, asked, options.probe),
-                               options.probe);
+                               options.probe, options.cache);
 }
 
 /// On a thread of its own, while loader, device and pipelines are made ready.

@@ -26,13 +26,14 @@ struct VulkanOptions {
   std::optional<bool> invert_on_device;    ///< none: on a GPU, for larger scenes
   std::optional<vulkan::LentDevice> lent;  ///< a host's device; none: one of our own
   DisplayTargets display;                  ///< on a host's device: where to put what it draws
+  std::shared_ptr<PipelineCache> cache;    ///< of the host's; null: nobody keeps it
 };
 
 /// Options from the environment: SUNDER_VULKAN_VALIDATION=1 turns the validation layers on and
 /// their messages into errors. For tests: SUNDER_VULKAN_NO_FLOAT64=1 takes shaderFloat64 away, and
 /// SUNDER_VULKAN_PROBE lists what else the device pretends, separated by commas: as_gpu,
-/// no_compute, memory=BYTES, lost=SUBMITS (vulkan::DeviceProbe). Throws UsageError for another
-/// word.
+/// no_compute, memory=BYTES, lost=SUBMITS (vulkan::DeviceProbe), and limits by their names in
+/// vulkan::LimitsProbe. Throws UsageError for another word.
 [[nodiscard]] VulkanOptions options_from_environment();
 
 /// All Vulkan devices of the machine; empty without loader or driver. The one that `auto` would

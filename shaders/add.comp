@@ -15,7 +15,7 @@ INOUT(1, Nodal, dvec4, u)
 layout(push_constant) uniform Push { uint packs; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
 #ifdef SUNDER_SINGLE
   if (i < packs) {
     const Two3 sum = plus(two3(u.data[2u * i], u.data[2u * i + 1u]),

@@ -12,7 +12,7 @@ layout(push_constant) uniform Push { ApplyPush p; };
 #include "lower.glsl"
 
 void main() {
-  const uint pack = gl_GlobalInvocationID.x;
+  const uint pack = invocation();
   const uint first = p.first + gl_WorkGroupID.y * kChunk;
   const uint last = min(first + kChunk, p.last);
   const uint to = (p.partial + gl_WorkGroupID.y) * p.packs + pack;

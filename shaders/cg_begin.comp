@@ -14,7 +14,7 @@ OUT(5, Partial, double, partial)
 layout(push_constant) uniform Push { CgPush p; };
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   const uvec4 dof = UVEC4(dofs, n);
   dvec3 gap = dvec3(0);
   [[unroll]] for (int axis = 0; axis < 3; ++axis) {

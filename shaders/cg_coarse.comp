@@ -13,7 +13,7 @@ layout(push_constant) uniform Push { CgPush p; };
 const uint kPacks = 6u * kRigidGroups / 4u;  // of a row
 
 void main() {
-  const uint first = 4u * gl_WorkGroupID.x;
+  const uint first = 4u * workgroup();
   dvec4 sum = dvec4(0);
   for (uint j = gl_LocalInvocationID.x; j < p.rigid_solves; j += gl_WorkGroupSize.x) {
     const dvec4 yj = DVEC4(y, j);
@@ -28,6 +28,6 @@ void main() {
       const uint row = first + i, k = row % 6u;
       w.data[8u * (row / 6u) + k + (k < 3u ? 0u : 1u)] = wi[i];
     }
-    terms.data[gl_WorkGroupID.x] = dot(wi, DVEC4(y, gl_WorkGroupID.x));
+    terms.data[workgroup()] = dot(wi, DVEC4(y, workgroup()));
   }
 }

@@ -14,7 +14,7 @@ OUT(5, P, dvec4, direction)
 layout(push_constant) uniform Push { CgPush p; };
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   const uvec4 mode = UVEC4(modes, n);
   const bool loose = mode.w == kHeld;
   const uint group = loose ? 0u : mode.w / (kNodeAxes + 1u);

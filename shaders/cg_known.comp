@@ -12,7 +12,7 @@ OUT(4, Partial, double, partial)
 layout(push_constant) uniform Push { CgPush p; };
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   const dvec3 solution = known.data[p.known * p.groups * kGroup + n].xyz;
   const dvec3 along = mix(solution, dvec3(0), held_axes(UVEC4(dofs, n)));
   direction.data[n] = dvec4(along, 0);

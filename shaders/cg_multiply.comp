@@ -13,7 +13,7 @@ OUT(4, Q, dvec4, q)
 OUT(5, Partial, double, partial)
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x, slice = gl_WorkGroupID.x;
+  const uint n = invocation(), slice = workgroup();
   const dvec3 own = DVEC4(direction, n).xyz;
   dvec3 sum = dvec3(0);
   const uint last = slices.data[slice + 1u];

@@ -10,7 +10,7 @@ IN_DVEC4(2, R, r)
 OUT(3, Y, double, y)
 
 void main() {
-  const uint group = gl_WorkGroupID.x;
+  const uint group = workgroup();
   dvec3 force = dvec3(0), moment = dvec3(0);
   const uint last = first.data[group + 1u];
   for (uint i = first.data[group] + gl_LocalInvocationID.x; i < last; i += gl_WorkGroupSize.x) {

@@ -16,7 +16,7 @@ OUT(8, Z, dvec4, z_)
 OUT(9, RzPartial, double, rz_partial)
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   const double a = state.data[0].length_;
   x.data[n] = dvec4(DVEC4(x_before, n).xyz + a * DVEC4(direction, n).xyz, 0);
   const dvec3 rn = DVEC4(r_before, n).xyz - a * DVEC4(q, n).xyz;

@@ -68,3 +68,9 @@ dvec4 fetch_dvec4(usamplerBuffer buffer_, uint i) {
   layout(std430, set = 0, binding = b) buffer Block { type data[]; } name;
 
 layout(local_size_x_id = 0, local_size_y = 1, local_size_z = 1) in;
+
+// A dispatch of more workgroups along x than a device takes is folded along z, in rows of so many
+// (gpu/vulkan/folded_groups.hpp).
+layout(constant_id = 3) const uint kRowOfGroups = 65535u;
+uint workgroup() { return gl_WorkGroupID.x + gl_WorkGroupID.z * kRowOfGroups; }
+uint invocation() { return workgroup() * gl_WorkGroupSize.x + gl_LocalInvocationID.x; }

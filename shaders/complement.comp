@@ -10,7 +10,7 @@ OUT(1, Matrix, REAL4, matrix)
 layout(push_constant) uniform Push { ComplementPush p; };
 
 void main() {
-  const uint pack = gl_GlobalInvocationID.x, column = p.to + gl_WorkGroupID.y;
+  const uint pack = invocation(), column = p.to + gl_WorkGroupID.y;
   const bool direct = 4u * pack / kTile >= column / kTile;
   const uint within = (direct ? column : 4u * pack) - p.first_column;
   if (within < p.columns) {

@@ -60,7 +60,7 @@ REAL4 lower(uint pack) {
 }
 
 void main() {
-  const uint pack = gl_GlobalInvocationID.x;
+  const uint pack = invocation();
 #ifndef SUNDER_LVP
   const uint lane = gl_LocalInvocationID.x;
   if (lane < kChunk / 4u) {

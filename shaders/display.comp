@@ -14,7 +14,7 @@ OUT(5, Live, uint, live)
 layout(push_constant) uniform Push { DisplayPush p; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   if (i < p.nodes) {
 #ifdef SUNDER_SINGLE
     const Two3 x = two3(VEC4(u, 2u * i), VEC4(u, 2u * i + 1u));

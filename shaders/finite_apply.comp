@@ -9,7 +9,7 @@ IN_DVEC4(3, P, direction)
 OUT(4, Corners, double, corners)
 
 void main() {
-  const uint e = gl_GlobalInvocationID.x;
+  const uint e = invocation();
   if (e >= p.elements) return;
   const uvec4 n = nodes.data[e];
   const dvec3 first = DVEC4(direction, n.x).xyz;

@@ -12,7 +12,7 @@ IN_DOUBLES(5, Target, target)  // as finite_gather
 OUT(6, Inverses, dvec4, inverses)  // three rows a node
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   if (n >= p.nodes) return;
   const uint last = first.data[n + 1u];
   dmat3 block = dmat3(0.0LF);

@@ -11,7 +11,7 @@ layout(std430, set = 0, binding = 3) buffer Made { double data[]; } x;
 layout(push_constant) uniform Push { FinitePush p; };
 
 void main() {
-  const uint d = gl_GlobalInvocationID.x;
+  const uint d = invocation();
   if (d >= p.unknowns) return;
   const uint rows = (p.unknowns + kChunk - 1u) / kChunk * kChunk;
   double sum = x.data[d];

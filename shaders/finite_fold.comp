@@ -9,7 +9,7 @@ OUT(1, Made, double, x)
 layout(push_constant) uniform Push { FinitePush p; };
 
 void main() {
-  const uint d = gl_GlobalInvocationID.x;
+  const uint d = invocation();
   if (d >= p.unknowns) return;
   const uint rows = (p.unknowns + kChunk - 1u) / kChunk * kChunk;
   double sum = 0;

@@ -13,7 +13,7 @@ layout(std430, set = 0, binding = 4) writeonly buffer Direction { double data[];
 layout(push_constant) uniform Push { FiniteCgPush p; };
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   if (n >= p.nodes) return;
   const bool downhill = state.data[0].broken != 0u && state.data[0].iterations <= 1u;
   const dvec3 way = downhill ? DVEC4(direction, n).xyz : DVEC4(x, n).xyz;

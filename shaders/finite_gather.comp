@@ -18,7 +18,7 @@ OUT(9, Partials, FiniteEntryPartial, partials)
 layout(push_constant) uniform Push { FinitePush p; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   double residual = 0, held = 0, inertia = 0, springs = 0;
   if (i < p.entries) {
     const uint node = i / 3u, axis = i % 3u;

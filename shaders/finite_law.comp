@@ -86,7 +86,7 @@ double resist(uint e, uint law, dmat3 h, double volume, double mu, double lambda
 }
 
 void main() {
-  const uint e = gl_GlobalInvocationID.x;
+  const uint e = invocation();
   double energy = 0, viscous = 0, stress_squared = 0, change_squared = 0;
   const uint fact = e < p.elements ? facts.data[e] : kFiniteOut;
   if (e < p.elements && (fact & kFiniteOut) != 0u) {

@@ -11,7 +11,7 @@ OUT(3, To, double, to)
 layout(push_constant) uniform Push { FinitePush p; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   if (i >= p.entries) return;
   const uint d = entries.data[i].x;
   to.data[i] = d == kHeld ? from.data[i] : from.data[i] + p.part * du.data[d];

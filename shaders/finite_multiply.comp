@@ -15,7 +15,7 @@ OUT(7, Partial, double, partial)
 layout(push_constant) uniform Push { FiniteCgPush p; };
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   dvec3 sum = dvec3(0);
   const dvec3 own = DVEC4(direction, n).xyz;
   if (n < p.nodes) {

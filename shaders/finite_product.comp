@@ -12,7 +12,7 @@ layout(push_constant) uniform Push { FinitePush p; };
 
 void main() {
   const uint packs = (p.unknowns + kChunk - 1u) / kChunk * (kChunk / 4u);
-  const uint pack = gl_GlobalInvocationID.x, chunk = gl_WorkGroupID.y;
+  const uint pack = invocation(), chunk = gl_WorkGroupID.y;
   const bool here = pack < packs;
   uint at = here ? chunk * kChunk * packs + pack : 0u;
   REAL4 sum = REAL4(0);

@@ -11,7 +11,7 @@ OUT(3, Coefficients, double, c)
 layout(push_constant) uniform Push { FinitePush p; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   if (i >= p.rank) return;
   double sum = 0;
   for (uint j = 0u; j < p.rank; ++j) sum += m.data[j * p.rank + i] * x.data[touched.data[j]];

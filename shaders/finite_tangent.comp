@@ -45,7 +45,7 @@ dmat3 change_of_viscous(At at, dmat3 d) {
 }
 
 void main() {
-  const uint e = gl_GlobalInvocationID.x;
+  const uint e = invocation();
   if (e >= p.elements) return;
   const uint fact = facts.data[e];
   if ((fact & kFiniteOut) != 0u) {

@@ -10,7 +10,7 @@ layout(std430, set = 0, binding = 2) buffer Values { double data[]; } values;
 layout(push_constant) uniform Push { FinitePush p; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   if (i >= p.turned) return;
   const uvec4 at = places.data[i];
   dmat3 q;

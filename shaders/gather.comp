@@ -10,6 +10,6 @@ OUT(2, Picked, uvec2, picked)
 layout(push_constant) uniform Push { GatherPush p; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   if (i < p.count) picked.data[i] = values.data[places.data[i]];
 }

@@ -11,6 +11,6 @@ INOUT(2, Nodal, NODAL, u)
 layout(push_constant) uniform Push { HoldPush p; };
 
 void main() {
-  const uint g = gl_GlobalInvocationID.x;
+  const uint g = invocation();
   if (g < p.count) u.data[held.data[g]] = p.to_zero != 0u ? NODAL(0) : prescribed.data[g];
 }

@@ -22,6 +22,7 @@ SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
 SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
 SUNDER_CONST kRigidGroups = 64u;   // groups of nodes in the second level of CG, at most
+SUNDER_CONST kPartsAtOnce = 256u;  // partial results that one of many workgroups joins
 SUNDER_CONST kHeld = 0xffffffffu;  // dof of an axis that a support holds
 
 // State of an element, bit by bit.
@@ -140,7 +141,6 @@ struct LowRankPush {
   uint blocks;
   uint first_column;  // of this panel
   uint tiles;         // rows of tiles from this panel's first on
-  uint first_group;   // of this dispatch
   float sign;         // 1 or -1
 };
 
@@ -205,6 +205,7 @@ struct FinitePush {
   uint slot;   // of the step and the change of the gradient that are written
   uint order;  // slots of the pairs, four bits each, the oldest lowest
   uint rank, turned, back;
+  uint shares;  // of the sums: a workgroup each
 };
 
 struct FiniteCgPush {
@@ -284,7 +285,7 @@ static_assert(sizeof(Summary) == 80);
 static_assert(sizeof(CgPush) == 40);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);
-static_assert(sizeof(FinitePush) == 64);
+static_assert(sizeof(FinitePush) == 72);
 static_assert(sizeof(FiniteSums) == 96);
 #undef SUNDER_CONST
 #undef SUNDER_WIDE_STRUCT

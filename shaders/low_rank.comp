@@ -133,7 +133,7 @@ uint tiles_before(uint j) { return j * p.tiles - j * (j - 1u) / 2u; }
 void main() {
   // Down the tiles of some columns, then on to the next columns: memory is passed through in order.
   const uint parts = kTile / kGroupColumns;
-  const uint group = p.first_group + gl_WorkGroupID.x;
+  const uint group = workgroup();
   const float h = float(2u * p.tiles + 1u);
   uint j = uint(max(0.0, (h - sqrt(h * h - 8.0 * float(group / parts))) * 0.5));
   j = parts * tiles_before(j) > group ? j - 1u : j;

@@ -9,6 +9,6 @@ IN_DVEC4(0, Vector, vector)
 OUT(1, Narrow, vec4, narrow)
 
 void main() {
-  const uint pack = gl_GlobalInvocationID.x;
+  const uint pack = invocation();
   narrow.data[pack] = vec4(DVEC4(vector, pack));
 }

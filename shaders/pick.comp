@@ -10,7 +10,7 @@ OUT(2, Block, double, block)
 layout(push_constant) uniform Push { PickPush p; };
 
 void main() {
-  const uint r = gl_GlobalInvocationID.x, c = gl_GlobalInvocationID.y;
+  const uint r = invocation(), c = gl_GlobalInvocationID.y;
   if (r < p.rows) {
     const uint a = dofs.data[r], b = dofs.data[p.rows + c];
     const uint column = min(a, b) - p.first_column;

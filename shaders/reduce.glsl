@@ -10,11 +10,11 @@
 layout(constant_id = 1) const uint kSubgroup = 8u;  // invocations of a subgroup
 const uint kParts = kGroup / kSubgroup;
 // Where this invocation's group of invocations leaves its result, and which of them does so.
-uint part() { return gl_WorkGroupID.x * kParts + gl_SubgroupID; }
+uint part() { return workgroup() * kParts + gl_SubgroupID; }
 bool leads_part() { return subgroupElect(); }
 #else
 const uint kParts = 1u;
-uint part() { return gl_WorkGroupID.x; }
+uint part() { return workgroup(); }
 bool leads_part() { return gl_LocalInvocationID.x == 0u; }
 #endif
 

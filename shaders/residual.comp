@@ -34,7 +34,7 @@ void leave(dvec3 sums) {
 }
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x, slice = gl_WorkGroupID.x;
+  const uint n = invocation(), slice = workgroup();
   const dvec3 own = DVEC4(u, n).xyz;
   dvec3 k_u = dvec3(0);
   const uint last = slices.data[slice + 1u];

@@ -12,7 +12,7 @@ OUT(3, Nodal, double, u)
 layout(push_constant) uniform Push { SolvePush p; };
 
 void main() {
-  const uint pack = gl_GlobalInvocationID.x;
+  const uint pack = invocation();
   dvec4 sum = dvec4(0);
   uint at = pack;
   for (uint j = 0u; j < p.columns; j += 4u) {

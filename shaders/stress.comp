@@ -263,7 +263,7 @@ Deformation deformation(uint e, uvec4 n) {
 #endif
 
 void main() {
-  const uint e = gl_GlobalInvocationID.x;
+  const uint e = invocation();
   const Deformation d = deformation(e, UVEC4(nodes, e));
   const REAL3 strain = d.strain, twice_shear = d.twice_shear;
   const REAL mu = d.mu, pressure = d.lambda * (strain.x + strain.y + strain.z);

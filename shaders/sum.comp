@@ -11,7 +11,7 @@ layout(push_constant) uniform Push { SumPush p; };
 
 #ifdef SUNDER_SINGLE
 void main() {
-  const uint pack = gl_GlobalInvocationID.x;
+  const uint pack = invocation();
   const uvec4 at = UVEC4(position, pack);
   vec4 sum = vec4(0), low = vec4(0);
   if (p.add != 0u) {
@@ -34,7 +34,7 @@ void main() {
 }
 #else
 void main() {
-  const uint pack = gl_GlobalInvocationID.x;
+  const uint pack = invocation();
   dvec4 sum = dvec4(0);
   for (uint c = 0u; c < p.chunks; ++c) sum += DVEC4(partial, c * p.packs + pack);
   const uvec4 at = UVEC4(position, pack);

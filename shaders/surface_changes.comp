@@ -14,7 +14,7 @@ OUT(5, Facts, uint, facts)
 layout(push_constant) uniform Push { SurfaceChangesPush p; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x;
+  const uint i = invocation();
   if (i < p.triangles) {
     const uint from = kTriangleWords * i;
     const uint place = changes.data[from];

@@ -24,7 +24,7 @@ EDGE area(uvec4 c, uint opposite) {
 }
 
 void main() {
-  const uint n = gl_GlobalInvocationID.x;
+  const uint n = invocation();
   if (n >= p.count) return;
   if (p.places_stride != 0u) {
     const vec3 at = rounded(place_of(n));

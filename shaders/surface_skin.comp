@@ -28,7 +28,7 @@ dvec3 carried(uint v, uvec4 c) {
 #endif
 
 void main() {
-  const uint v = gl_GlobalInvocationID.x;
+  const uint v = invocation();
   if (v >= p.count) return;
   const uint e = carriers.data[v];
   if (p.places_stride != 0u) {

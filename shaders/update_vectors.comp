@@ -12,7 +12,7 @@ layout(push_constant) uniform Push { VectorsPush p; };
 #include "lower.glsl"
 
 void main() {
-  const uint pack = gl_GlobalInvocationID.x, block = gl_WorkGroupID.y;
+  const uint pack = invocation(), block = gl_WorkGroupID.y;
   dvec4 sum[kRankBlock];
   [[unroll]] for (uint k = 0u; k < kRankBlock; ++k) sum[k] = dvec4(0);
   for (uint t = p.first; t < p.last; ++t) {

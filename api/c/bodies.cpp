@@ -41,7 +41,8 @@ sunder_status sunder_simulation_create_of(sunder_scene scene, sunder_bodies bodi
     const auto shared = find<BodiesObject>(bodies, BodiesObject::kName)->prepared;
     create_simulation(
         object, callbacks,
-        [shared](std::shared_ptr<const sunder::Problem> problem, sunder::Needs needs) {
+        [shared](std::shared_ptr<const sunder::Problem> problem, sunder::Needs needs,
+                 const std::shared_ptr<sunder::PipelineCache>&) {
           return sunder::create_prepared_backend(std::move(problem), std::move(needs), shared);
         },
         true, simulation);

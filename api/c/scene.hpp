@@ -14,6 +14,7 @@ class SceneObject final : public Object {
   Scene scene;  ///< its mesh has one volume per material
   std::vector<Material> materials;
   bool attribution = false;
+  std::vector<std::byte> pipeline_cache;  ///< that the host has kept
 
   /// Checks everything. Throws InputError.
   [[nodiscard]] std::shared_ptr<const Problem> problem() const;

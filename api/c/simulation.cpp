@@ -104,7 +104,13 @@ extern "C" {
 sunder_status sunder_simulation_create(sunder_scene scene, const sunder_callbacks* callbacks,
                                        sunder_simulation* simulation) {
   return call<SceneObject>(scene, [&](SceneObject& object) {
-    create_simulation(object, callbacks, sunder::create_backend, true, simulation);
+    create_simulation(
+        object, callbacks,
+        [](std::shared_ptr<const sunder::Problem> problem, sunder::Needs needs,
+           std::shared_ptr<sunder::PipelineCache> cache) {
+          return sunder::create_backend(std::move(problem), std::move(needs), std::move(cache));
+        },
+        true, simulation);
   });
 }
 

@@ -25,7 +25,8 @@ class SimulationObject final : public Object {
   static constexpr const char* kName = "simulation";
 
   /// Makes the backend of a problem.
-  using Create = std::function<CreatedBackend(std::shared_ptr<const Problem>, Needs)>;
+  using Create = std::function<CreatedBackend(std::shared_ptr<const Problem>, Needs,
+                                              std::shared_ptr<PipelineCache>)>;
 
   /// `again`: `create` can be called later on as well, for a history that needs another backend.
   SimulationObject(const SceneObject& scene, const sunder_callbacks& callbacks,
@@ -52,6 +53,8 @@ class SimulationObject final : public Object {
   [[nodiscard]] const Problem& problem() const { return simulation_->problem(); }
   [[nodiscard]] bool solved() const { return simulation_->steps_done() > 0; }
   [[nodiscard]] std::vector<std::string> warnings() const;
+
+  const std::shared_ptr<PipelineCache> pipeline_cache;
 
   std::vector<TipState> tips;  ///< as last measured
   std::map<std::int32_t, Mark> marks;

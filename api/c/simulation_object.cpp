@@ -11,11 +11,14 @@ namespace sunder::c {
 
 SimulationObject::SimulationObject(const SceneObject& scene, const sunder_callbacks& callbacks,
                                    const Create& create, bool again)
-    : callbacks_(callbacks), create_(again ? create : Create()), steps_(scene.scene.steps) {
+    : pipeline_cache(std::make_shared<PipelineCache>(scene.pipeline_cache)),
+      callbacks_(callbacks),
+      create_(again ? create : Create()),
+      steps_(scene.scene.steps) {
   enter(SUNDER_PHASE_CHECK);
   const auto problem = scene.problem();
   enter(SUNDER_PHASE_PREPARE);
-  CreatedBackend created = create(problem, needs_of(*problem));
+  CreatedBackend created = create(problem, needs_of(*problem), pipeline_cache);
   creation_warnings_ = std::move(created.warnings);
   simulation_ = std::make_unique<Simulation>(problem, std::move(created.backend));
   simulation_->attribute_events(scene.attribution);
@@ -41,7 +44,8 @@ void SimulationObject::keep_history(int quick) {
   Simulation::MakeBackend make;
   if (create_) {
     make = [create = create_, problem = simulation_->shared_problem(),
-            needs = simulation_->backend().needs()] { return create(problem, needs).backend; };
+            needs = simulation_->backend().needs(),
+            cache = pipeline_cache] { return create(problem, needs, cache).backend; };
   }
   simulation_->keep_history(std::move(make), quick);
 }

@@ -2,6 +2,10 @@
 // A host's own Vulkan device.
 #include "sunder/sunder_vulkan.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
 #include "c/simulation_create.hpp"
 #include "c/vulkan_host.hpp"
 
@@ -64,10 +68,18 @@ sunder_status sunder_vulkan_create(sunder_scene scene, const sunder_vulkan_host*
     check_host(given);
     create_simulation(
         object, callbacks,
-        [&](std::shared_ptr<const sunder::Problem> problem, sunder::Needs needs) {
+        [&](std::shared_ptr<const sunder::Problem> problem, sunder::Needs needs,
+            std::shared_ptr<sunder::PipelineCache> cache) {
           check_buffers(given, *problem);
-          return sunder::CreatedBackend{
-              sunder::gpu::create(std::move(problem), std::move(needs), to_options(given)), {}};
+          auto options = to_options(given);
+          options.cache = cache;
+          sunder::CreatedBackend created;
+          created.backend = sunder::gpu::create(std::move(problem), std::move(needs), options);
+          if (!cache->ignored().empty()) {
+            created.warnings.push_back("the pipeline cache that was handed in is ignored: " +
+                                       cache->ignored());
+          }
+          return created;
         },
         false,  // the buffers that it shares are there once
         simulation);
@@ -110,6 +122,32 @@ sunder_status sunder_vulkan_record(sunder_simulation simulation, void* command_b
 #else
     without_vulkan();
 #endif
+  });
+}
+
+sunder_status sunder_vulkan_set_pipeline_cache(sunder_scene scene, const uint8_t* bytes,
+                                               size_t size) {
+  return call<SceneObject>(scene, [&](SceneObject& object) {
+    if (size > 0) require(bytes, "bytes");
+    const auto given = std::as_bytes(std::span(bytes, size));
+    object.pipeline_cache.assign(given.begin(), given.end());
+  });
+}
+
+sunder_status sunder_vulkan_pipeline_cache(sunder_simulation simulation, uint8_t* bytes,
+                                           size_t capacity, size_t* length) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    require(length, "length");
+    if (capacity > 0) require(bytes, "bytes");
+    const std::vector<std::byte> all = object.pipeline_cache->bytes();
+    *length = all.size();
+    if (capacity == 0) return;
+    if (capacity < all.size()) {
+      throw Failure(SUNDER_ERROR_SIZE, "capacity is " + std::to_string(capacity) + " bytes; " +
+                                           std::to_string(all.size()) + " are needed");
+    }
+    std::ranges::copy(std::as_bytes(std::span(all)),
+                      std::as_writable_bytes(std::span(bytes, all.size())).begin());
   });
 }
 

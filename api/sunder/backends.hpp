@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sunder/backend.hpp"
+#include "sunder/pipeline_cache.hpp"
 
 struct sunder_vulkan_host;
 
@@ -32,12 +33,16 @@ class PreparedBodies;
 
 /// Creates the backend that the problem's solver options ask for. Throws DeviceError when there is
 /// no such backend or device, or when it offers no such route or precision.
-[[nodiscard]] CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs needs);
+/// `cache`: where the host keeps what a device's driver makes of the kernels; one that does not fit
+/// the device is ignored, with a warning.
+[[nodiscard]] CreatedBackend create_backend(std::shared_ptr<const Problem> problem, Needs needs,
+                                            std::shared_ptr<PipelineCache> cache = {});
 /// The backend vulkan on a host's own device, which must outlive it (sunder_vulkan.h has the rules;
 /// the buffers of `host` are not written to). Throws DeviceError for what is missing there, and
 /// where the scene asks for "cpu".
 [[nodiscard]] CreatedBackend create_backend_on(std::shared_ptr<const Problem> problem, Needs needs,
-                                               const sunder_vulkan_host& host);
+                                               const sunder_vulkan_host& host,
+                                               std::shared_ptr<PipelineCache> cache = {});
 /// As create_backend() by the backend cpu, and no result other by a bit. Problems of one intact
 /// stiffness share what is made of it: its order, its factor and the dense inverse (a law of finite
 /// deformation and motion: nothing). By any number of threads at once. Throws DeviceError where the

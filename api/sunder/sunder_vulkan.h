@@ -58,7 +58,9 @@ typedef struct sunder_vulkan_host {
   void* lock_user;
   /// Buffers of the host's to write to, with usage STORAGE_BUFFER, offset a multiple of 256, at
   /// least the sizes that sunder_vulkan_display states; 0: the library makes its own, with usage
-  /// VERTEX_BUFFER | STORAGE_BUFFER | TRANSFER_SRC.
+  /// VERTEX_BUFFER | STORAGE_BUFFER | TRANSFER_SRC, for queues of `queue_family` alone. Who draws
+  /// on a queue of another family lends buffers that both families share
+  /// (VK_SHARING_MODE_CONCURRENT), or transfers their ownership itself.
   sunder_vulkan_buffer displacement, stress, live;
 } sunder_vulkan_host;
 
@@ -119,6 +121,21 @@ typedef struct sunder_vulkan_signals {
 /// next step waits for it, so what it waits for must be under way.
 SUNDER_API sunder_status sunder_vulkan_submit(sunder_simulation simulation,
                                               const sunder_vulkan_signals* signals);
+
+/* ---- What the driver makes of the kernels ---------------------------------------------------- */
+
+/// Simulations made of the scene from now on begin with these bytes, which
+/// sunder_vulkan_pipeline_cache gave in an earlier run: on some drivers they start sooner. They are
+/// copied. Bytes of another device or driver, cut or changed ones are ignored, with a warning of
+/// the simulation. `bytes` may be null with size 0: none.
+SUNDER_API sunder_status sunder_vulkan_set_pipeline_cache(sunder_scene scene, const uint8_t* bytes,
+                                                          size_t size);
+/// The bytes to keep, of a simulation on any Vulkan device, the host's or another; without one,
+/// what was handed in. Kernels come with a simulation and with its first events, so it is best
+/// asked at the end. `length` is how many there are; they are written where `capacity` is enough,
+/// else SUNDER_ERROR_SIZE. `bytes` may be null with capacity 0: then `length` alone is asked for.
+SUNDER_API sunder_status sunder_vulkan_pipeline_cache(sunder_simulation simulation, uint8_t* bytes,
+                                                      size_t capacity, size_t* length);
 
 /* ---- The surface, in buffers of the host's --------------------------------------------------- */
 

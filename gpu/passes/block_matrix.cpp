@@ -44,9 +44,9 @@ void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wante
   const std::size_t bytes = block_count() * kBlockDoubles * sizeof(double);
   // `lvp` reads blocks as texels alone, which lavapipe allows 16 times the range of storage
   // buffers.
-  const std::size_t range = kernels.emulated() ? std::size_t{device.largest_texel_buffer} * 16
-                                               : std::size_t{device.largest_buffer};
-  const auto limit = std::min<std::size_t>(range, device.largest_allocation);
+  const std::size_t range =
+      kernels.emulated() ? device.limits.texels.value * 16 : device.limits.buffer_bytes.value;
+  const auto limit = std::min<std::size_t>(range, device.limits.allocation_bytes.value);
   if (bytes > limit) {
     throw DeviceError("the stiffness needs a buffer of " + std::to_string(bytes) +
                       " bytes, but the device \"" + device.name + "\" takes buffers of " +

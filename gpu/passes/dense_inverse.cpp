@@ -23,7 +23,6 @@ std::unique_ptr<Binding> bind_buffers(const KernelFactory& kernels, const vulkan
 }
 
 constexpr std::size_t kFirstEntries = 64;
-constexpr std::uint32_t kMostGroups = 65535;  // of a dispatch, that every device takes
 
 /// The dense product's vector comes in fp64 and is read in fp32.
 bool narrows(const KernelFactory& kernels) { return !kernels.fp64() && !kernels.single(); }
@@ -33,9 +32,9 @@ std::uint32_t panel_columns(const KernelFactory& kernels, std::uint32_t rows,
                             std::size_t panel_bytes) {
   const vulkan::PhysicalDevice& device = kernels.device().physical();
   const std::size_t column_bytes = rows * kernels.real_bytes();
-  const std::size_t limit = std::min<std::size_t>({device.largest_buffer, device.largest_allocation,
-                                                   std::size_t{device.largest_texel_buffer} * 16,
-                                                   panel_bytes > 0 ? panel_bytes : SIZE_MAX});
+  const std::size_t limit = std::min<std::size_t>(
+      {device.limits.buffer_bytes.value, device.limits.allocation_bytes.value,
+       device.limits.texels.value * 16, panel_bytes > 0 ? panel_bytes : SIZE_MAX});
   const std::size_t most = limit / column_bytes / shaders::kColumnPad * shaders::kColumnPad;
   if (most == 0) {
     throw DeviceError("the device \"" + device.name + "\" takes buffers of " +
@@ -377,11 +376,8 @@ void DenseInverse::record_low_rank(vulkan::Commands& commands, const Panel& pane
   const std::uint32_t columns = panel.columns / shaders::kTile;
   const std::uint32_t groups = (columns * rows - columns * (columns - 1) / 2) *
                                (shaders::kTile / kernels_.low_rank_columns(blocks == 1));
-  for (std::uint32_t first = 0; first < groups; first += kMostGroups) {
-    commands.dispatch(blocks == 1 ? *panel.rank_6 : *panel.low_rank,
-                      shaders::LowRankPush{rows_ / 4, blocks, panel.first, rows, first, sign},
-                      std::min(groups - first, kMostGroups));
-  }
+  commands.dispatch(blocks == 1 ? *panel.rank_6 : *panel.low_rank,
+                    shaders::LowRankPush{rows_ / 4, blocks, panel.first, rows, sign}, groups);
 }
 
 void DenseInverse::take_complement(const DenseInverse& other, double scale) {

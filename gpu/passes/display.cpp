@@ -37,7 +37,10 @@ Display::Display(const KernelFactory& kernels, const Problem& problem, const Fie
 
 Display::~Display() {
   const auto& vk = device_.vk();
-  if (pending_) vk.WaitForFences(device_.handle(), 1, &done_, VK_TRUE, UINT64_MAX);
+  try {
+    finish();
+  } catch (const DeviceError&) {  // nobody is left to be told
+  }
   vk.DestroyFence(device_.handle(), done_, nullptr);
   if (own_) vk.FreeCommandBuffers(device_.handle(), device_.command_pool(), 1, &own_);
 }
@@ -118,9 +121,8 @@ void Display::submit(const DisplaySignals& signals) {
 
 void Display::finish() {
   if (!pending_) return;
-  vulkan::check(device_.vk().WaitForFences(device_.handle(), 1, &done_, VK_TRUE, UINT64_MAX),
-                "vkWaitForFences");
   pending_ = false;
+  device_.wait(done_);
 }
 
 }  // namespace sunder::gpu

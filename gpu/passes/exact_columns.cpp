@@ -23,7 +23,8 @@ constexpr std::size_t kRoom = 512;
 constexpr std::size_t kRoomBytes = std::size_t{64} << 20;
 
 std::uint32_t most_columns(const vulkan::PhysicalDevice& device, std::uint32_t rows) {
-  const std::size_t limit = std::min<std::size_t>(device.largest_buffer, device.largest_allocation);
+  const std::size_t limit =
+      std::min<std::size_t>(device.limits.buffer_bytes.value, device.limits.allocation_bytes.value);
   const std::size_t most = limit / (rows * sizeof(double)) / shaders::kChunk * shaders::kChunk;
   return static_cast<std::uint32_t>(std::min<std::size_t>(most, 1u << 20));
 }

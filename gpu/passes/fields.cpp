@@ -83,6 +83,7 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
         rows_ * sizeof(std::uint32_t)}) {                 // positions
     sum += Buffer::padded(bytes);
   }
+  sum += SummaryPass::planned_bytes(kernels_, most_parts());
   if (norms_) {  // nodes and shapes of elements
     sum += Buffer::padded(4 * elements * sizeof(std::uint32_t)) +
            Buffer::padded(12 * elements * sizeof(double));
@@ -188,9 +189,8 @@ void Fields::create_kernels() {
                                                      &stress_, &stress_partials_, &over_});
   }
   if (has_residual_ && !host_balance_) create_residual_pass();
-  summary_pass_.kernel = kernels_.make_fp64("summary");
-  summary_pass_.binding =
-      bind(*summary_pass_.kernel, {&stress_partials_, &node_partials_, &summaries_, &over_});
+  summary_pass_ = std::make_unique<SummaryPass>(
+      kernels_, most_parts(), SummaryBuffers{stress_partials_, node_partials_, summaries_, over_});
   displacement_gather_ = std::make_unique<Gather>(kernels_, displacement_);
 }
 
@@ -406,9 +406,7 @@ void Fields::record_state(vulkan::Commands& commands, bool balance) const {
     commands.dispatch(*residual_pass_.binding, node_groups);
   }
   commands.pass(norms_ ? "stress" : "residual");
-  commands.dispatch(*summary_pass_.binding,
-                    shaders::SummaryPush{norms_ ? element_parts_ : 0, balance ? node_parts_ : 0, 0},
-                    1);
+  summary_pass_->record(commands, {norms_ ? element_parts_ : 0, balance ? node_parts_ : 0}, 0);
 }
 
 void Fields::record_correction(vulkan::Commands& commands) const {
@@ -416,7 +414,7 @@ void Fields::record_correction(vulkan::Commands& commands) const {
   const std::uint32_t element_groups = elements_ / shaders::kGroup;
   commands.pass("estimate");
   commands.dispatch(*correction_stress_, element_push(0), element_groups);
-  commands.dispatch(*summary_pass_.binding, shaders::SummaryPush{element_parts_, 0, 1}, 1);
+  summary_pass_->record(commands, {element_parts_, 0}, 1);
 }
 
 void Fields::write_displacement(std::span<const double> nodal) {
@@ -527,7 +525,7 @@ std::vector<BufferPlan> Fields::buffers() const {
       {"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},
       {"element stress (device)", stress_.bytes()},
       {"partial results and summary (device)",
-       sum({&stress_partials_, &node_partials_, &summaries_, &over_})}};
+       sum({&stress_partials_, &node_partials_, &summaries_, &over_}) + summary_pass_->bytes()}};
 }
 
 }  // namespace sunder::gpu

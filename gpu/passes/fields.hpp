@@ -12,6 +12,7 @@
 #include "gpu/passes/block_matrix.hpp"
 #include "gpu/passes/gather.hpp"
 #include "gpu/passes/host_balance.hpp"
+#include "gpu/passes/summary.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "shaders/layout.h"
 #include "sunder/backend.hpp"
@@ -142,6 +143,9 @@ class Fields {
   void upload_dofs();
   [[nodiscard]] shaders::ElementPush element_push(std::uint32_t keep) const;
   [[nodiscard]] shaders::Summary summary(std::size_t slot) const;
+  [[nodiscard]] SummaryParts most_parts() const {
+    return {norms_ ? element_parts_ : 1, node_parts_};
+  }
   void read_wide(const vulkan::Buffer& buffer, std::span<double> values,
                  std::size_t first = 0) const;
 
@@ -167,7 +171,8 @@ class Fields {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::unique_ptr<vulkan::Binding> binding;
   };
-  Pass stress_pass_, residual_pass_, summary_pass_, hold_pass_;
+  Pass stress_pass_, residual_pass_, hold_pass_;
+  std::unique_ptr<SummaryPass> summary_pass_;
   vulkan::Buffer held_, prescribed_;  // gripped dofs
   std::unique_ptr<vulkan::Binding> correction_hold_;
   std::unique_ptr<vulkan::Binding> correction_stress_;

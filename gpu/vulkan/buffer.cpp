@@ -89,18 +89,22 @@ void Buffer::allocate(Placement placement) {
   const DeviceFunctions& vk = device_->vk();
   VkMemoryRequirements needed{};
   vk.GetBufferMemoryRequirements(device_->handle(), handle_, &needed);
+  const PhysicalDevice& physical = device_->physical();
+  physical.require(needed.size, physical.limits.allocation_bytes, "a buffer of this scene");
   constexpr VkMemoryPropertyFlags visible =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const bool on_host = placement != Placement::device,
-             map = on_host || device_->physical().unified();
+  const bool on_host = placement != Placement::device, map = on_host || physical.unified();
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needed.size;
-  info.memoryTypeIndex =
-      on_host
-          ? device_->memory_type(needed.memoryTypeBits, visible, VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
-          : device_->memory_type(needed.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
-                                 map ? visible : 0);
+  // What the host reads is quick to read where it is cached.
+  constexpr VkMemoryPropertyFlags local = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                                  read = visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+  const std::uint32_t allowed = needed.memoryTypeBits;
+  info.memoryTypeIndex = on_host ? device_->memory_type(allowed, {read, visible})
+                         : map
+                             ? device_->memory_type(allowed, {local | read, local | visible, local})
+                             : device_->memory_type(allowed, {local});
   device_->count_allocation();
   const std::string purpose = "allocating " + std::to_string(bytes_) + " bytes";
   check(vk.AllocateMemory(device_->handle(), &info, nullptr, &memory_), purpose.c_str());
@@ -154,13 +158,30 @@ void Buffer::write(std::size_t offset, std::span<const std::byte> data) {
 }
 
 void Buffer::read(std::size_t offset, std::span<std::byte> data) const {
-  if (data.empty()) return;
-  device_->count_read(data.size());
-  if (mapped_) {
-    std::memcpy(data.data(), begin() + offset, data.size());
-    return;
+  Part all;
+  all.from = this;
+  all.offset = offset;
+  all.to = data;
+  read_all({&all, 1});
+}
+
+void Buffer::read_all(std::span<const Part> parts) {
+  for (const Part& part : parts) {
+    if (part.to.empty()) continue;
+    const Buffer& from = *part.from;
+    from.device_->count_read(part.to.size());
+    if (from.mapped_) {
+      std::memcpy(part.to.data(), from.begin() + part.offset, part.to.size());
+    } else {
+      from.device_->uploads().want(from.handle_, from.guard_ + part.offset, part.to);
+    }
   }
-  device_->uploads().read(handle_, guard_ + offset, data);
+  for (const Part& part : parts) {
+    if (!part.to.empty() && !part.from->mapped_) {
+      part.from->device_->uploads().read();
+      return;
+    }
+  }
 }
 
 void Buffer::fill_zero(std::size_t offset, std::size_t bytes) {

@@ -42,6 +42,17 @@ class Buffer {
   /// Where it is not mapped, with the next submit.
   void write(std::size_t offset, std::span<const std::byte> data);
   void read(std::size_t offset, std::span<std::byte> data) const;
+  /// Of a buffer from an offset on, and where it goes.
+  struct Part {
+    Part() = default;
+    Part(const Buffer& buffer, std::size_t first, std::span<double> values)
+        : from(&buffer), offset(first * sizeof(double)), to(std::as_writable_bytes(values)) {}
+    const Buffer* from = nullptr;
+    std::size_t offset = 0;
+    std::span<std::byte> to;
+  };
+  /// Parts of buffers of one device, in one submit where they are not mapped.
+  static void read_all(std::span<const Part> parts);
   void fill_zero() { fill_zero(0, bytes_); }
   /// Offset and bytes: multiples of 4.
   void fill_zero(std::size_t offset, std::size_t bytes);

@@ -5,11 +5,20 @@
 #include <utility>
 
 #include "gpu/vulkan/check.hpp"
+#include "gpu/vulkan/folded_groups.hpp"
 
 namespace sunder::vulkan {
 namespace {
 
 constexpr std::uint32_t kMaxTimes = 64;  // time stamps of one command buffer
+
+// Of what comes next in a command buffer.
+constexpr VkPipelineStageFlags kComputeStages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
+                                                VK_PIPELINE_STAGE_TRANSFER_BIT |
+                                                VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
+constexpr VkAccessFlags kComputeAccess =
+    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT |
+    VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
 
 }  // namespace
 
@@ -29,6 +38,7 @@ Commands::~Commands() {
 }
 
 void Commands::begin() {
+  device_.queue().check_answers();
   passes_.clear();
   uses_.clear();
   barriers_ = 0;
@@ -89,9 +99,14 @@ void Commands::bind(const Binding& binding, const void* push, std::uint32_t byte
   }
 }
 
-void Commands::dispatch(std::uint32_t x, std::uint32_t y) {
+void Commands::dispatch(const Kernel& kernel, std::uint32_t x, std::uint32_t y) {
+  const FoldedGroups groups(device_.physical(), kernel, x, y);
   ++dispatches_;
-  device_.vk().CmdDispatch(handle_, x, y, 1);
+  groups.dispatch_rows(device_.vk(), handle_);
+  if (groups.rest == 0) return;
+  // Other bytes than the rows': the barrier is for those who watch.
+  memory_barrier(kComputeStages, kComputeAccess);
+  groups.dispatch_rest(device_.vk(), handle_);
 }
 
 void Commands::dispatch_indirect(const Buffer& arguments, std::size_t offset) {
@@ -108,11 +123,7 @@ void Commands::wait_for(const Binding& binding, const Buffer& arguments, std::si
 
 void Commands::wait_for(std::span<const MemoryUse> uses, std::span<const MemoryUse> size) {
   if (uses_.conflict(uses, std::exchange(apart_, false)) || uses_.conflict(size)) {
-    memory_barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT |
-                       VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
-                       VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
-                       VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+    memory_barrier(kComputeStages, kComputeAccess);
     uses_.clear();
     ++barriers_;
   }

@@ -29,16 +29,17 @@ class Commands {
   /// Names what follows, for pass_times(); `name` must live on. Only while the device times passes:
   /// lavapipe waits for all work at every time stamp (15 us).
   void pass(const char* name);
+  /// More workgroups along x than the device takes are folded along z (vulkan/folded_groups.hpp).
   template <class Push>
   void dispatch(const Binding& binding, const Push& push, std::uint32_t x, std::uint32_t y = 1) {
     wait_for(binding.uses());
     bind(binding, &push, sizeof(Push));
-    dispatch(x, y);
+    dispatch(binding.kernel(), x, y);
   }
   void dispatch(const Binding& binding, std::uint32_t x) {
     wait_for(binding.uses());
     bind(binding, nullptr, 0);
-    dispatch(x, 1u);
+    dispatch(binding.kernel(), x, 1);
   }
   /// The size comes from three words of `arguments` at `offset`, which a kernel may have written.
   template <class Push>
@@ -74,7 +75,7 @@ class Commands {
   void wait_for(const Binding& binding, const Buffer& arguments, std::size_t offset);
   void memory_barrier(VkPipelineStageFlags to_stages, VkAccessFlags to);
   void bind(const Binding& binding, const void* push, std::uint32_t bytes);
-  void dispatch(std::uint32_t x, std::uint32_t y);
+  void dispatch(const Kernel& kernel, std::uint32_t x, std::uint32_t y);
   void dispatch_indirect(const Buffer& arguments, std::size_t offset);
   void write_time();
 

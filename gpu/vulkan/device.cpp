@@ -5,6 +5,7 @@
 #include <array>
 
 #include "gpu/vulkan/check.hpp"
+#include "gpu/vulkan/kernel_cache.hpp"
 #include "gpu/vulkan/uploads.hpp"
 
 namespace sunder::vulkan {
@@ -23,6 +24,28 @@ struct OwnDevice {
   PFN_vkDestroyDevice destroy;
 };
 
+/// A function of Vulkan that returns nothing, and does nothing.
+template <class Function>
+struct Nothing;
+template <class... Arguments>
+struct Nothing<void(VKAPI_PTR*)(Arguments...)> {
+  static VKAPI_ATTR void VKAPI_CALL call(Arguments...) {}
+};
+template <class... Functions>
+void silence(Functions&... functions) {
+  ((functions = Nothing<Functions>::call), ...);
+}
+
+/// What a device that does not answer still has at work must not be destroyed, ever.
+void keep_forever(DeviceHandles& handles) {
+  DeviceFunctions& vk = handles.vk;
+  silence(vk.DestroyBuffer, vk.FreeMemory, vk.DestroyBufferView, vk.DestroyPipeline,
+          vk.DestroyPipelineLayout, vk.DestroyDescriptorSetLayout, vk.DestroyDescriptorPool,
+          vk.DestroyShaderModule, vk.DestroyCommandPool, vk.FreeCommandBuffers, vk.DestroyQueryPool,
+          vk.DestroyFence, vk.DestroyPipelineCache);
+  if (handles.owner) new std::shared_ptr<void>(std::move(handles.owner));
+}
+
 VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical) {
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{};
@@ -36,14 +59,16 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
   VkPhysicalDeviceSubgroupSizeControlFeatures control{};
   control.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES;
   control.subgroupSizeControl = VK_TRUE;
-  const char* extension = VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME;
+  std::vector<const char*> extensions;
+  if (physical.portable_subset) extensions.push_back(kPortabilitySubset);
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   if (physical.subgroup_on_request) {
     info.pNext = &control;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &extension;
+    extensions.push_back(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME);
   }
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &features;
@@ -56,7 +81,7 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
 
 PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe) {
   if (probe.memory > 0) device.memory = probe.memory;
-  if (probe.buffer > 0) device.largest_buffer = std::min(device.largest_buffer, probe.buffer);
+  lower(device.limits, probe.limits);
   if (probe.no_float64) device.float64 = false;
   if (probe.no_compute) device.compute_family = -1;
   if (probe.as_gpu && device.is_cpu()) device.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
@@ -64,7 +89,8 @@ PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe) {
 }
 
 std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
-                                      const PhysicalDevice& unprobed, DeviceProbe probe) {
+                                      const PhysicalDevice& unprobed, DeviceProbe probe,
+                                      std::shared_ptr<PipelineCache> cache) {
   const PhysicalDevice physical = probed(unprobed, probe);
   const std::string shortcoming = physical.shortcoming();
   if (!shortcoming.empty()) {
@@ -79,36 +105,54 @@ std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
   handles.int64 = physical.int64;
   handles.vk.GetDeviceQueue(handles.device, handles.family, 0, &handles.queue);
   instance->vk().GetPhysicalDeviceMemoryProperties(physical.handle, &handles.memory);
-  return std::make_unique<Device>(std::move(handles), physical, instance->messages(), probe);
+  return std::make_unique<Device>(std::move(handles), physical, instance->messages(), probe,
+                                  std::move(cache));
 }
 
 Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<Messages> messages,
-               DeviceProbe probe)
+               DeviceProbe probe, std::shared_ptr<PipelineCache> cache)
     : handles_(std::move(handles)),
       physical_(std::move(physical)),
       messages_(std::move(messages)),
       probe_(probe),
       timing_(physical_.timestamp_bits > 0),
-      queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock) {
+      queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock,
+             physical_.is_cpu() ? kPatienceWithAProcessor : kPatience),
+      kept_(std::move(cache)) {
   VkCommandPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
   pool.queueFamilyIndex = handles_.family;
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   check(vk().CreateCommandPool(handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
+  if (!kept_) return;
+  cache_ = std::make_unique<KernelCache>(vk(), handle(), physical_, kept_->bytes());
+  kept_->follow(this, cache_->ignored(), [this] { return cache_->bytes(); });
 }
 
+VkPipelineCache Device::pipeline_cache() const { return cache_ ? cache_->handle() : nullptr; }
+
 Device::~Device() {
+  if (kept_) kept_->leave(this);
+  cache_.reset();
   uploads_.reset();
   vk().DestroyCommandPool(handle(), pool_, nullptr);
 }
 
-std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
-                                  VkMemoryPropertyFlags preferred) const {
-  for (const VkMemoryPropertyFlags wanted : {required | preferred, required}) {
-    for (std::uint32_t t = 0; t < handles_.memory.memoryTypeCount; ++t) {
-      if ((allowed >> t & 1) && (memory_flags(t) & wanted) == wanted) return t;
+std::optional<std::uint32_t> choose_memory_type(
+    const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+    std::initializer_list<VkMemoryPropertyFlags> wishes) {
+  for (const VkMemoryPropertyFlags wanted : wishes) {
+    for (std::uint32_t t = 0; t < memory.memoryTypeCount; ++t) {
+      const VkMemoryPropertyFlags has = memory.memoryTypes[t].propertyFlags;
+      if ((allowed >> t & 1) && (has & wanted) == wanted) return t;
     }
   }
+  return {};
+}
+
+std::uint32_t Device::memory_type(std::uint32_t allowed,
+                                  std::initializer_list<VkMemoryPropertyFlags> wishes) const {
+  if (const auto type = choose_memory_type(handles_.memory, allowed, wishes)) return *type;
   throw DeviceError("the Vulkan device \"" + physical_.name + "\" has no memory of the kind asked");
 }
 
@@ -157,15 +201,32 @@ void Device::hand_over(const VkSubmitInfo& info, VkFence done) {
   queue_.submit(info, done);
 }
 
+template <class Wait>
+void Device::wait_by(Wait&& wait) {
+  try {
+    wait();
+  } catch (const DeviceLost&) {
+    if (queue_.silent()) keep_forever(handles_);
+    throw;
+  }
+}
+
 void Device::submit(std::span<const VkCommandBuffer> commands) {
   check_messages();
   const bool lost = probe_.submits_until_lost == 0;
-  if (lost && !probe_.lost_in_wait) check(VK_ERROR_DEVICE_LOST, "a submit (injected fault)");
+  if (lost && !probe_.lost_in_wait && !probe_.silent)
+    check(VK_ERROR_DEVICE_LOST, "a submit (injected fault)");
   if (probe_.submits_until_lost > 0) --probe_.submits_until_lost;
-  queue_.submit(commands);
-  queue_.wait();
+  const bool silent = lost && probe_.silent;
+  if (silent) queue_.set_patience(std::chrono::milliseconds(1));
+  queue_.submit(commands, !silent);
+  wait_by([&] { queue_.wait(); });
   if (lost) check(VK_ERROR_DEVICE_LOST, "a wait (injected fault)");
   check_messages();
+}
+
+void Device::wait(VkFence done) {
+  wait_by([&] { queue_.wait(done); });
 }
 
 void Device::check_messages() const {

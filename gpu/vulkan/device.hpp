@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -15,6 +17,7 @@
 
 #include "gpu/vulkan/physical_device.hpp"
 #include "gpu/vulkan/queue.hpp"
+#include "sunder/pipeline_cache.hpp"
 
 namespace sunder::vulkan {
 
@@ -44,12 +47,15 @@ struct DeviceProbe {
   int submits_until_lost = -1;
   /// Such a submit is taken and done, and the wait for it reports the loss.
   bool lost_in_wait = false;
+  /// Such a submit is taken and done, and nobody hears of it; the wait for it ends after a
+  /// millisecond.
+  bool silent = false;
   /// Sentinel bytes before and after every buffer, a multiple of 256; a changed one is a message.
   std::size_t guard_bytes = 0;
   /// The device claims to have no more memory than this. 0: what it has.
   VkDeviceSize memory = 0;
-  /// The device claims to bind no larger storage buffer than this. 0: what it binds.
-  VkDeviceSize buffer = 0;
+  /// The device claims these limits.
+  LimitsProbe limits;
   /// The device claims to lack shaderFloat64, and does not get it.
   bool no_float64 = false;
   /// The device claims to have no compute queue.
@@ -61,7 +67,14 @@ struct DeviceProbe {
   std::size_t* allocations = nullptr;
 };
 
+class KernelCache;
 class Uploads;
+
+/// The first memory type among those allowed (by their bits) that has all of the first wish, else
+/// of the next one.
+[[nodiscard]] std::optional<std::uint32_t> choose_memory_type(
+    const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+    std::initializer_list<VkMemoryPropertyFlags> wishes);
 
 /// What a device claims to be.
 [[nodiscard]] PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe);
@@ -69,7 +82,7 @@ class Uploads;
 class Device {
  public:
   Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<Messages> messages,
-         DeviceProbe probe = {});
+         DeviceProbe probe = {}, std::shared_ptr<PipelineCache> cache = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -89,10 +102,12 @@ class Device {
   /// Sums over all submits since the last call.
   [[nodiscard]] std::vector<PassTime> take_times() { return std::exchange(times_, {}); }
   [[nodiscard]] VkCommandPool command_pool() const { return pool_; }
+  /// Null: nobody keeps what the driver makes of kernels.
+  [[nodiscard]] VkPipelineCache pipeline_cache() const;
 
-  /// Memory type with all of `required`, preferring those with `preferred`. Throws DeviceError.
-  [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
-                                          VkMemoryPropertyFlags preferred) const;
+  /// As choose_memory_type(). Throws DeviceError where there is none.
+  [[nodiscard]] std::uint32_t memory_type(
+      std::uint32_t allowed, std::initializer_list<VkMemoryPropertyFlags> wishes) const;
   [[nodiscard]] VkMemoryPropertyFlags memory_flags(std::uint32_t type) const {
     return handles_.memory.memoryTypes[type].propertyFlags;
   }
@@ -106,6 +121,8 @@ class Device {
 
   /// Submits without waiting; `done` is signalled at the end.
   void hand_over(const VkSubmitInfo& info, VkFence done);
+  /// For what was handed over. Throws DeviceLost.
+  void wait(VkFence done);
 
   /// By which buffers that are not mapped are written and read.
   [[nodiscard]] Uploads& uploads();
@@ -148,6 +165,8 @@ class Device {
 
  private:
   void check_messages() const;
+  template <class Wait>
+  void wait_by(Wait&& wait);
   void submit(std::span<const VkCommandBuffer> commands);
 
   DeviceHandles handles_;
@@ -162,11 +181,14 @@ class Device {
   std::vector<PassTime> times_;
   Queue queue_;
   std::unique_ptr<Uploads> uploads_;  // null: nothing was written yet
+  std::shared_ptr<PipelineCache> kept_;
+  std::unique_ptr<KernelCache> cache_;  // null: nobody keeps it
 };
 
 /// Creates a device of its own. Throws DeviceError naming the shortcoming of `physical`.
 [[nodiscard]] std::unique_ptr<Device> create_device(std::shared_ptr<const Instance> instance,
                                                     const PhysicalDevice& physical,
-                                                    DeviceProbe probe = {});
+                                                    DeviceProbe probe = {},
+                                                    std::shared_ptr<PipelineCache> cache = {});
 
 }  // namespace sunder::vulkan

@@ -40,6 +40,9 @@ namespace sunder::vulkan {
   X(CreatePipelineLayout)             \
   X(DestroyPipelineLayout)            \
   X(CreateComputePipelines)           \
+  X(CreatePipelineCache)              \
+  X(DestroyPipelineCache)             \
+  X(GetPipelineCacheData)             \
   X(DestroyPipeline)                  \
   X(CreateDescriptorPool)             \
   X(DestroyDescriptorPool)            \
@@ -55,6 +58,7 @@ namespace sunder::vulkan {
   X(CmdBindDescriptorSets)            \
   X(CmdPushConstants)                 \
   X(CmdDispatch)                      \
+  X(CmdDispatchBase)                  \
   X(CmdDispatchIndirect)              \
   X(CmdPipelineBarrier)               \
   X(CmdCopyBuffer)                    \

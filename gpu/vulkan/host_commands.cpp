@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/vulkan/host_commands.hpp"
 
+#include "gpu/vulkan/folded_groups.hpp"
+
 namespace sunder::vulkan {
 
 HostCommands::HostCommands(Device& device, VkCommandBuffer commands)
-    : vk_(device.vk()), commands_(commands) {
+    : vk_(device.vk()), device_(device.physical()), commands_(commands) {
   device.flush();
   barrier(VK_ACCESS_MEMORY_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
 }
@@ -33,7 +35,11 @@ void HostCommands::dispatch(const Binding& binding, const void* push, std::uint3
   vk_.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &set,
                             0, nullptr);
   vk_.CmdPushConstants(commands_, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes, push);
-  vk_.CmdDispatch(commands_, groups, 1, 1);
+  const FoldedGroups folded(device_, kernel, groups, 1);
+  folded.dispatch_rows(vk_, commands_);
+  if (folded.rest == 0) return;
+  barrier();
+  folded.dispatch_rest(vk_, commands_);
 }
 
 }  // namespace sunder::vulkan

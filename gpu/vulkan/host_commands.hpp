@@ -28,6 +28,7 @@ class HostCommands {
                 std::uint32_t groups);
 
   const DeviceFunctions& vk_;
+  const PhysicalDevice& device_;
   VkCommandBuffer commands_;
 };
 

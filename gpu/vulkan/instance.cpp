@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/vulkan/instance.hpp"
 
+#include <algorithm>
+#include <string_view>
 #include <type_traits>
 
 #include "gpu/vulkan/check.hpp"
@@ -72,7 +74,7 @@ void Instance::create(bool validation) {
   features.pEnabledValidationFeatures = enables;
   const auto messenger = messenger_info(messages_.get());
   features.pNext = &messenger;
-  const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  std::vector<const char*> extensions;
   VkInstanceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
@@ -80,12 +82,29 @@ void Instance::create(bool validation) {
     info.pNext = &features;
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &kValidationLayer;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &extension;
+    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
+  if (offers(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
+    extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    info.flags = VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;
+  }
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   const auto create_instance =
       reinterpret_cast<PFN_vkCreateInstance>(get_(nullptr, "vkCreateInstance"));
   check(create_instance(&info, nullptr, &handle_), "vkCreateInstance");
+}
+
+bool Instance::offers(const char* extension) const {
+  const auto enumerate = reinterpret_cast<PFN_vkEnumerateInstanceExtensionProperties>(
+      get_(nullptr, "vkEnumerateInstanceExtensionProperties"));
+  std::uint32_t count = 0;
+  if (!enumerate || enumerate(nullptr, &count, nullptr) != VK_SUCCESS) return false;
+  std::vector<VkExtensionProperties> list(count);
+  if (enumerate(nullptr, &count, list.data()) != VK_SUCCESS) return false;
+  return std::ranges::any_of(list, [&](const VkExtensionProperties& offered) {
+    return std::string_view(extension) == offered.extensionName;
+  });
 }
 
 std::vector<VkPhysicalDevice> Instance::physical_devices() const {

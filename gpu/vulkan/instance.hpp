@@ -22,6 +22,8 @@ struct InstanceOptions {
   std::shared_ptr<Messages> messages = std::make_shared<Messages>();
 #if defined(_WIN32)
   const char* loader = "vulkan-1.dll";
+#elif defined(__APPLE__)
+  const char* loader = "libvulkan.1.dylib";
 #else
   const char* loader = "libvulkan.so.1";
 #endif
@@ -29,6 +31,7 @@ struct InstanceOptions {
 
 class Instance {
  public:
+  /// Devices that lack what Vulkan asks for but not what is asked here (MoltenVK's) are there too.
   /// Throws DeviceError when there is no loader or no driver.
   explicit Instance(const InstanceOptions& options);
   ~Instance();
@@ -43,6 +46,7 @@ class Instance {
  private:
   void open_loader(const char* name);
   void create(bool validation);
+  [[nodiscard]] bool offers(const char* extension) const;
 
   machine::SharedLibrary library_;
   PFN_vkGetInstanceProcAddr get_ = nullptr;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/vulkan/kernel.hpp"
 
+#include <algorithm>
+
 #include "gpu/vulkan/check.hpp"
+#include "gpu/vulkan/shader_memory.hpp"
 
 namespace sunder::vulkan {
 namespace {
@@ -20,6 +23,7 @@ Kernel::Kernel(Device& device, const KernelCode& code)
       uses_(shader_uses(code.spirv)),
       push_bytes_(code.push_bytes) {
   uses_.resize(bindings_.size());
+  check_limits(code);
   try {
     create_layouts();
     create_pipeline(code);
@@ -36,6 +40,19 @@ void Kernel::release() noexcept {
   device_.vk().DestroyPipeline(device_.handle(), pipeline_, nullptr);
   device_.vk().DestroyPipelineLayout(device_.handle(), layout_, nullptr);
   device_.vk().DestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);
+}
+
+void Kernel::check_limits(const KernelCode& code) const {
+  const PhysicalDevice& device = device_.physical();
+  const Limits& limits = device.limits;
+  const std::string who = "kernel " + name_;
+  const auto storage = static_cast<std::uint64_t>(std::ranges::count(bindings_, Access::storage));
+  device.require(storage, limits.storage_buffers, who);
+  device.require(bindings_.size() - storage, limits.texel_buffers, who);
+  device.require(bindings_.size(), limits.buffers, who);
+  device.require(push_bytes_, limits.push_bytes, who);
+  device.require(shared_bytes(code.spirv), limits.shared_bytes, who);
+  if (!code.constants.empty()) device.require(code.constants.front(), limits.group, who);
 }
 
 void Kernel::create_layouts() {
@@ -71,15 +88,18 @@ void Kernel::create_pipeline(const KernelCode& code) {
   VkShaderModule shader = VK_NULL_HANDLE;
   check(device_.vk().CreateShaderModule(device_.handle(), &module, nullptr, &shader),
         "vkCreateShaderModule");
-  std::vector<VkSpecializationMapEntry> entries(code.constants.size());
-  for (std::uint32_t c = 0; c < entries.size(); ++c) {
-    entries[c] = {c, c * static_cast<std::uint32_t>(sizeof(std::uint32_t)), sizeof(std::uint32_t)};
-  }
+  std::vector<std::uint32_t> constants(code.constants.begin(), code.constants.end());
+  constants.push_back(static_cast<std::uint32_t>(device_.physical().limits.groups.value));
+  constexpr std::uint32_t word = sizeof(std::uint32_t);
+  std::vector<VkSpecializationMapEntry> entries(constants.size());
+  for (std::uint32_t c = 0; c < entries.size(); ++c) entries[c] = {c, c * word, word};
+  entries.back().constantID = kRowConstant;
   const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()),
-                                            entries.data(), code.constants.size_bytes(),
-                                            code.constants.data()};
+                                            entries.data(), constants.size() * word,
+                                            constants.data()};
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT;  // the last row of a folded dispatch
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
   info.stage.module = shader;
@@ -90,8 +110,8 @@ void Kernel::create_pipeline(const KernelCode& code) {
   size.requiredSubgroupSize = code.subgroup;
   if (code.subgroup > 0 && device_.physical().subgroup_on_request) info.stage.pNext = &size;
   info.layout = layout_;
-  const VkResult result = device_.vk().CreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1,
-                                                              &info, nullptr, &pipeline_);
+  const VkResult result = device_.vk().CreateComputePipelines(
+      device_.handle(), device_.pipeline_cache(), 1, &info, nullptr, &pipeline_);
   device_.vk().DestroyShaderModule(device_.handle(), shader, nullptr);
   check(result, "vkCreateComputePipelines");
   device_.count_pipeline(name_);
@@ -140,7 +160,25 @@ void Binding::allocate() {
         "vkAllocateDescriptorSets");
 }
 
+void Binding::check_limits(Access access, const Buffer& buffer) const {
+  const PhysicalDevice& device = device_.physical();
+  const Limits& limits = device.limits;
+  const std::string who = "kernel " + kernel_.name();
+  constexpr std::size_t texel = 16;
+  if (access == Access::storage) {
+    device.require(buffer.bytes(), limits.buffer_bytes, who);
+  } else {
+    device.require(buffer.bytes() / texel, limits.texels, who);
+  }
+  if (buffer.offset() % limits.alignment == 0) return;
+  throw DeviceError(who + " is to see a buffer from byte " + std::to_string(buffer.offset()) +
+                    " on, but the Vulkan device \"" + device.name + "\" binds at multiples of " +
+                    std::to_string(limits.alignment) +
+                    " (minStorageBufferOffsetAlignment, minTexelBufferOffsetAlignment)");
+}
+
 void Binding::write(std::uint32_t binding, Access access, const Buffer& buffer) {
+  check_limits(access, buffer);
   VkWriteDescriptorSet write{};
   write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
   write.dstSet = set_;

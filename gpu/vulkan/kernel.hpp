@@ -13,6 +13,10 @@
 
 namespace sunder::vulkan {
 
+/// Specialization constant that every kernel gets beside its own: the workgroups of a row, where a
+/// dispatch is folded (shaders/common.glsl).
+inline constexpr std::uint32_t kRowConstant = 3;
+
 /// How a kernel sees a buffer.
 enum class Access : std::uint8_t {
   storage,       ///< a storage buffer
@@ -24,7 +28,9 @@ struct KernelCode {
   std::span<const std::uint32_t> spirv;
   std::span<const Access> bindings;  ///< in order of binding
   std::uint32_t push_bytes = 0;
-  std::span<const std::uint32_t> constants;  ///< specialization constants, in order of id
+  /// Specialization constants, in order of id: fewer than kRowConstant, the first one the
+  /// invocations of a workgroup.
+  std::span<const std::uint32_t> constants;
   std::string name = {};
   std::uint32_t subgroup = 0;  ///< invocations that it counts on, 0: any number
 };
@@ -36,6 +42,7 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
+  [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] VkPipeline pipeline() const { return pipeline_; }
   [[nodiscard]] VkPipelineLayout layout() const { return layout_; }
   [[nodiscard]] VkDescriptorSetLayout set_layout() const { return set_layout_; }
@@ -45,6 +52,7 @@ class Kernel {
   [[nodiscard]] const std::vector<Use>& uses() const { return uses_; }
 
  private:
+  void check_limits(const KernelCode& code) const;
   void create_layouts();
   void create_pipeline(const KernelCode& code);
   void release() noexcept;
@@ -74,6 +82,7 @@ class Binding {
 
  private:
   void allocate();
+  void check_limits(Access access, const Buffer& buffer) const;
   void write(std::uint32_t binding, Access access, const Buffer& buffer);
   void release() noexcept;
 

@@ -67,7 +67,8 @@ void check_device(const LentDevice& lent) {
   static_cast<void>(load_functions(vk.GetDeviceProcAddr, lent.device));
 }
 
-std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe) {
+std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe,
+                                      std::shared_ptr<PipelineCache> cache) {
   check_handles(lent);
   const InstanceFunctions vk = load_functions(lent.get, lent.instance);
   PhysicalDevice physical = checked(vk, lent);
@@ -85,7 +86,7 @@ std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe)
   vk.GetPhysicalDeviceMemoryProperties(lent.physical, &handles.memory);
   // Validation is the host's; its messages go to the host.
   return std::make_unique<Device>(std::move(handles), std::move(physical),
-                                  std::make_shared<Messages>(), probe);
+                                  std::make_shared<Messages>(), probe, std::move(cache));
 }
 
 }  // namespace sunder::vulkan

@@ -28,6 +28,7 @@ struct LentDevice {
 void check_device(const LentDevice& lent);
 
 /// Throws what check_device throws. What the host did not enable the device counts as lacking.
-[[nodiscard]] std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe = {});
+[[nodiscard]] std::unique_ptr<Device> borrow_device(const LentDevice& lent, DeviceProbe probe = {},
+                                                    std::shared_ptr<PipelineCache> cache = {});
 
 }  // namespace sunder::vulkan

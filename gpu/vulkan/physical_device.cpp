@@ -58,10 +58,12 @@ void read_properties(const InstanceFunctions& vk, PhysicalDevice& device) {
   device.driver_id = driver.driverID;
   device.type = p.deviceType;
   device.api_version = p.apiVersion;
+  device.vendor = p.vendorID;
+  device.device = p.deviceID;
+  std::ranges::copy(p.pipelineCacheUUID, device.cache_uuid.begin());
   device.timestamp_period = static_cast<double>(p.limits.timestampPeriod);
-  device.largest_buffer = p.limits.maxStorageBufferRange;
-  device.largest_texel_buffer = p.limits.maxTexelBufferElements;
-  device.largest_allocation = maintenance.maxMemoryAllocationSize;
+  read_limits(p.limits, device.limits);
+  device.limits.allocation_bytes.value = maintenance.maxMemoryAllocationSize;
   device.subgroup = subgroup.subgroupSize;
   constexpr VkSubgroupFeatureFlags needed =
       VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
@@ -75,6 +77,7 @@ void read_features(const InstanceFunctions& vk, PhysicalDevice& device) {
   vk.GetPhysicalDeviceFeatures2(device.handle, &features);
   device.float64 = features.features.shaderFloat64;
   device.int64 = features.features.shaderInt64;
+  device.portable_subset = offers(vk, device.handle, kPortabilitySubset);
 }
 
 void read_memory(const InstanceFunctions& vk, PhysicalDevice& device) {

@@ -2,13 +2,18 @@
 // What a machine's Vulkan devices offer, and which of them can run the kernels.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "gpu/vulkan/instance.hpp"
+#include "gpu/vulkan/limits.hpp"
 
 namespace sunder::vulkan {
+
+/// Vulkan's header has it among what is not final yet.
+inline constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
 
 struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
@@ -16,18 +21,19 @@ struct PhysicalDevice {
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   VkDriverId driver_id = VK_DRIVER_ID_MAX_ENUM;
   std::uint32_t api_version = 0;
+  std::uint32_t vendor = 0, device = 0;                 ///< Vulkan's numbers of them
+  std::array<std::uint8_t, VK_UUID_SIZE> cache_uuid{};  ///< of what the driver makes of kernels
   bool float64 = false, int64 = false;
-  int compute_family = -1;                 ///< queue family, -1: none
-  std::uint32_t timestamp_bits = 0;        ///< of that family
-  double timestamp_period = 0;             ///< [ns]
-  VkDeviceSize memory = 0;                 ///< largest device-local heap [bytes]
-  VkDeviceSize largest_buffer = 0;         ///< storage buffer range [bytes]
-  VkDeviceSize largest_allocation = 0;     ///< [bytes]
-  std::uint32_t largest_texel_buffer = 0;  ///< [texels]
-  std::uint32_t subgroup = 0;              ///< invocations of a subgroup
-  bool subgroup_arithmetic = true;         ///< sums and extrema over one, in compute kernels
+  int compute_family = -1;           ///< queue family, -1: none
+  std::uint32_t timestamp_bits = 0;  ///< of that family
+  double timestamp_period = 0;       ///< [ns]
+  VkDeviceSize memory = 0;           ///< largest device-local heap [bytes]
+  Limits limits;
+  std::uint32_t subgroup = 0;       ///< invocations of a subgroup
+  bool subgroup_arithmetic = true;  ///< sums and extrema over one, in compute kernels
   /// A compute kernel may ask for subgroups of this size (VK_EXT_subgroup_size_control).
   bool subgroup_on_request = false;
+  bool portable_subset = false;  ///< of Vulkan (VK_KHR_portability_subset): it must be told so
   bool subgroup_varies = true;  ///< a driver may choose another size for a kernel that does not ask
 
   /// A processor that emulates a GPU (lavapipe, say).
@@ -40,6 +46,10 @@ struct PhysicalDevice {
   }
   /// Why the kernels cannot run there; empty: they can.
   [[nodiscard]] std::string shortcoming() const;
+  /// Throws DeviceError where `who` needs more than `limit`, which is one of `limits`.
+  void require(std::uint64_t needed, const Limit& limit, const std::string& who) const {
+    vulkan::require(needed, limit, name, who);
+  }
 };
 
 [[nodiscard]] PhysicalDevice describe_device(const InstanceFunctions& vk, VkPhysicalDevice handle);

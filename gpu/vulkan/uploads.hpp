@@ -22,8 +22,10 @@ class Uploads {
   void write(VkBuffer to, std::size_t offset, std::span<const std::byte> data);
   /// Likewise, zeros.
   void fill_zero(VkBuffer to, std::size_t offset, std::size_t bytes);
-  /// By a submit of its own.
-  void read(VkBuffer from, std::size_t offset, std::span<std::byte> data);
+  /// The next read() brings these bytes.
+  void want(VkBuffer from, std::size_t offset, std::span<std::byte> data);
+  /// All that is wanted, by a submit of its own; by one for each roomful.
+  void read();
   /// The buffer goes: what waits for it need not be copied.
   void forget(VkBuffer buffer) noexcept;
 
@@ -37,12 +39,19 @@ class Uploads {
     VkBuffer to;
     std::size_t offset, at, bytes;  // at: in the room; kZeros: zeros
   };
+  struct Read {
+    VkBuffer from;
+    std::size_t offset;
+    std::span<std::byte> to;
+    std::size_t at;  // in the room
+  };
   [[nodiscard]] std::size_t left() const;
 
   Device& device_;
   Buffer room_;
   std::size_t used_ = 0;
   std::vector<Copy> waiting_;
+  std::vector<Read> wanted_;
   Commands copies_, reads_;
 };
 

@@ -38,7 +38,8 @@ class LosingBoard {
     solver.route = route;
     solver.update = SUNDER_UPDATE_DEFERRED;
     EXPECT_OK(sunder_scene_set_solver(scene, &solver));
-    const auto create = [rest](std::shared_ptr<const Problem> problem, Needs needs) {
+    const auto create = [rest](std::shared_ptr<const Problem> problem, Needs needs,
+                               const std::shared_ptr<PipelineCache>&) {
       return CreatedBackend{
           cpu_reference::create(std::move(problem), std::move(needs), {.rest = rest}), {}};
     };

@@ -143,6 +143,7 @@ std::vector<EveryCall> calls_of_simulations() {
       SUNDER_CALL(simulation, sunder_vulkan_get_display, &r.display),
       SUNDER_CALL(simulation, sunder_vulkan_record, r.bytes),
       SUNDER_CALL(simulation, sunder_vulkan_submit, &r.signals),
+      SUNDER_CALL(simulation, sunder_vulkan_pipeline_cache, r.bytes, 16, &r.size),
       SUNDER_CALL(simulation, sunder_vulkan_lend_surface, &r.host, &r.buffers),
       SUNDER_CALL(simulation, sunder_vulkan_record_surface, r.bytes, &r.surface),
   };
@@ -168,6 +169,7 @@ std::vector<EveryCall> calls_of_scenes() {
       SUNDER_CALL(scene, sunder_simulation_create, nullptr, &r.made),
       SUNDER_CALL(scene, sunder_simulation_create_of, r.bodies, nullptr, &r.made),
       SUNDER_CALL(scene, sunder_vulkan_create, &r.host, nullptr, &r.made),
+      SUNDER_CALL(scene, sunder_vulkan_set_pipeline_cache, r.bytes, 16),
   };
 }
 

@@ -99,7 +99,10 @@ TEST_P(FiniteKernels, StatesAreTheHosts) {
         const Torn torn(*law);
         const solver::RestingBody resting(torn.body, moves ? solver::RestingBody::Loose::moving
                                                            : solver::RestingBody::Loose::frozen);
-        gpu::FiniteDevice device(*factory_, torn.body, {.stress = measure, .viscous = moves});
+        // The sums of an iteration by one workgroup, and by several.
+        gpu::FiniteDevice device(
+            *factory_, torn.body,
+            {.stress = measure, .viscous = moves, .shares = law == &kNeoHookean ? 5u : 0u});
         const solver::FinitePotential host(resting, measure), there(resting, measure, &device);
         solver::FiniteTarget target = torn.target(host);
         std::vector<double> mass(static_cast<std::size_t>(torn.problem.dof_count()), 2e-9), ahead;
@@ -160,7 +163,7 @@ TEST_P(FiniteKernels, IterationsAreTheHostsInASubmitEach) {
   for (const Law* law : all_laws()) {
     Torn torn(*law);
     solver::RestingBody resting(torn.body);
-    gpu::FiniteDevice device(*factory_, torn.body, {});
+    gpu::FiniteDevice device(*factory_, torn.body, {.shares = law == &kNeoHookean ? 5u : 0u});
     solver::FinitePotential host(resting, StressMeasure::cauchy),
         there(resting, StressMeasure::cauchy, &device);
     const fem::TangentPattern pattern(torn.problem);
@@ -262,6 +265,111 @@ TEST_P(FiniteKernels, NewtonByConjugateGradientsInASubmitEach) {
       EXPECT_LE(apart(states[1].f, states[0].f), kIntactTolerance) << law->name;
     }
   }
+}
+
+/// What an event and the rest after it take of a device.
+struct Taken {
+  std::size_t submits = 0, allocations = 0;
+  solver::FiniteMinimiser::Result result;
+  solver::FiniteState rest;
+};
+
+/// Three elements leave a body at rest, which finds another rest.
+Taken taken_by_an_event(const Numbers& numbers, bool unmapped) {
+  std::size_t allocations = 0;
+  vulkan::InstanceOptions options;
+  options.validation = validated();
+  vulkan::DeviceProbe probe;
+  probe.as_gpu = unmapped;
+  probe.allocations = &allocations;
+  const auto opened = watched_device(std::make_shared<vulkan::Instance>(options), probe);
+  const gpu::KernelFactory factory(*opened, numbers.variant, numbers.fp64);
+  Torn torn(kNeoHookean);
+  solver::RestingBody resting(torn.body);
+  gpu::FiniteDevice device(factory, torn.body, {});
+  solver::FinitePotential by(resting, StressMeasure::cauchy, &device);
+  const fem::TangentPattern pattern(torn.problem);
+  solver::FiniteState state;
+  state.u.assign(torn.problem.dofs().size(), 0.0);
+  int factors = 0;
+  const auto base = solver::projected_base(torn.body, state.u, pattern, factors);
+  base->keep_inverse();
+  solver::FiniteTarget target = torn.target(by);
+  target.grips.assign(target.grips.size(), 0.2);
+  solver::FiniteMinimiser minimiser(by, 5);
+  minimiser.set_scale(solver::finite_scale(torn.problem));
+  by.put_grips(target, state.u);
+  by.evaluate(target, false, state);
+  minimiser.minimise(target, base.get(), {1e-10, 1e-9}, 60, state);
+
+  for (Index e : {100, 101, 130}) torn.out[static_cast<std::size_t>(e)] = 1;
+  const std::size_t submits = opened->queue().submits(), allocated = allocations;
+  resting.look();
+  by.body_changed();
+  EXPECT_TRUE(base->follow(resting, 300));
+  by.evaluate(target, false, state);
+  Taken taken;
+  taken.result = minimiser.minimise(target, base.get(), {1e-10, 1e-9}, 60, state);
+  taken.submits = opened->queue().submits() - submits;
+  taken.allocations = allocations - allocated;
+  taken.rest = state;
+  EXPECT_TRUE(taken.result.at_rest);
+  EXPECT_GT(taken.result.back_solves, 3);
+  for (const std::string& m : options.messages->texts) ADD_FAILURE() << m;
+  return taken;
+}
+
+// Of memory that is not mapped the host reads a state in one submit, twice: of the body as the
+// event leaves it, and at its rest. What it writes goes with the iterations.
+TEST_P(FiniteKernels, AnEventAllocatesNothingAndReadsInOneSubmit) {
+  const Taken mapped = taken_by_an_event(GetParam(), false),
+              unmapped = taken_by_an_event(GetParam(), true);
+  EXPECT_EQ(mapped.allocations, 0u);
+  EXPECT_EQ(unmapped.allocations, 0u);
+  EXPECT_EQ(unmapped.rest.u, mapped.rest.u);
+  EXPECT_EQ(unmapped.rest.f, mapped.rest.f);
+  EXPECT_EQ(unmapped.rest.r, mapped.rest.r);
+  EXPECT_EQ(unmapped.rest.stress, mapped.rest.stress);
+  EXPECT_EQ(unmapped.submits, mapped.submits + 2);
+  // An iteration each; the first state; shorter steps of the line search.
+  EXPECT_LE(mapped.submits, static_cast<std::size_t>(mapped.result.back_solves) + 6);
+}
+
+// 16,536 unknowns, of which one workgroup would sum too long: five do.
+TEST_P(FiniteKernels, SumsOfALargeBodyAreTheHosts) {
+  if (!GetParam().fp64) GTEST_SKIP() << "states are in fp64 whatever the inverse is in";
+  Scene scene = Torn::scene();
+  scene.mesh = structured_board({52, 52, 1, 6, 4, 2});
+  const Problem problem(scene);
+  ASSERT_GT(problem.dof_count(), 16384);
+  const std::vector<std::uint8_t> out(problem.mesh().tets.size(), 0);
+  const std::vector<const Law*> laws = fem::one_law(problem, kCorotated);
+  const fem::HyperelasticBody body{problem, laws, out};
+  const solver::RestingBody resting(body);
+  gpu::FiniteDevice device(*factory_, body, {.route = Route::factor});
+  const solver::FinitePotential host(resting, StressMeasure::cauchy),
+      there(resting, StressMeasure::cauchy, &device);
+  EXPECT_TRUE(std::ranges::any_of(device.kernels(), [](const KernelPlan& kernel) {
+    return kernel.name.find("finite_sums_join") == 0;
+  }));
+  Load load;
+  load.displacements.assign(problem.gripped_dofs().size(), 0.5);
+  const solver::FiniteTarget target = host.target(load);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> of(-1e-3, 1e-3);
+  solver::FiniteState expected;
+  for (const Index d : problem.dofs()) expected.u.push_back(d == kNone ? 0 : of(random));
+  solver::FiniteState found, again;
+  found.u = again.u = expected.u;
+  host.evaluate(target, true, expected);
+  there.evaluate(target, true, found);
+  EXPECT_NEAR(found.energy, expected.energy, 1e-12 * expected.energy);
+  EXPECT_NEAR(found.potential, expected.potential, 1e-12 * expected.energy);
+  EXPECT_NEAR(found.acting, expected.acting, 1e-11 * expected.acting);
+  EXPECT_LE(apart(span_of(found.r), span_of(expected.r)), 1e-12);
+  there.evaluate(target, true, again);
+  EXPECT_EQ(again.energy, found.energy);
+  EXPECT_EQ(again.acting, found.acting);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FiniteKernels,

@@ -360,7 +360,7 @@ TEST_P(SingleKernels, LowRankUpdateLeavesUpperTilesAlone) {
           const auto tiles = static_cast<std::uint32_t>((kColumns - first) / kTile);
           const auto wide = static_cast<std::uint32_t>(count / kTile);
           const shaders::LowRankPush push{kRows1 / 4, blocks, static_cast<std::uint32_t>(first),
-                                          tiles,      0,      sign};
+                                          tiles, sign};
           run(*kernel, {&of_x, &of_z, &of_x}, push,
               (wide * tiles - wide * (wide - 1) / 2) *
                   (shaders::kTile / factory_->low_rank_columns(one == 1)));

@@ -186,7 +186,7 @@ TEST_P(SplitOutgrows, TheInverseOfTheDeviceAndGoesOnByTheFactor) {
   constexpr VkDeviceSize kRows = 64;
   const auto unknowns = static_cast<VkDeviceSize>(watched.problem->dof_count());
   const VkDeviceSize rows = (unknowns + kRows - 1) / kRows * kRows;
-  watched.options.probe.buffer = rows * rows * sizeof(double);
+  watched.options.probe.limits.buffer_bytes = rows * rows * sizeof(double);
   const Course found = run(watched.problem, watched.create(), kMany);
   EXPECT_EQ(found.info.route, "factor") << found.info.why;
   EXPECT_NE(found.info.why.find("of the parted body is larger than a buffer of the device"),
