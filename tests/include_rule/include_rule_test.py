@@ -96,8 +96,8 @@ class IncludeRule(unittest.TestCase):
         lines = [line for file in files for line in file.read_text("utf-8").splitlines()]
         self.assertGreater(len(files), 4)
         # The linear law, three further ones, Newton's method, and what whole scenes ask of them:
-        # stress, strain and rotation.
-        self.assertLessEqual(len(lines), 400 + 3 * 50 + 50 + 80)
+        # stress, strain and rotation; fibres, by two theories and their strength.
+        self.assertLessEqual(len(lines), 400 + 3 * 50 + 50 + 80 + 200)
         judged = r"small_strain|problem.*\.shape\(|stress_measures|yield_measure\(|max_shear\(|anchor"
         self.assertEqual([line for line in lines if re.search(judged, line)], [])
 
@@ -107,10 +107,13 @@ class IncludeRule(unittest.TestCase):
                    for top in ("core", "cpu_reference", "gpu")
                    for file in (SOURCE / top).rglob("*.?pp")
                    if read.search(file.read_text("utf-8"))}
-        # The law; what checks it and scales springs by it; the yardstick, which judges the law; and
-        # the mean of several laws at a tip, a material by name alone.
+        # The law; what checks it and scales springs by it; transversely isotropic elasticity, of which
+        # they are the constants across; the yardstick, which judges both; and the mean of several
+        # laws at a tip, a material by name alone.
         self.assertEqual(readers, {"core/material/linear.cpp", "core/body/problem.cpp",
+                                   "core/body/problem_fibres.cpp",
                                    "core/body/problem_supports.cpp", "cpu_reference/plain/element.cpp",
+                                   "cpu_reference/plain/fibres.cpp",
                                    "core/fracture/field_sif/auxiliary_field.cpp",
                                    "core/fracture/field_sif/field_intensity.cpp"})
 
