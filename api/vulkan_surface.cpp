@@ -14,18 +14,18 @@ namespace sunder {
 #ifdef SUNDER_GPU
 namespace {
 
-gpu::LentItems lent(const sunder_vulkan_items& items) {
-  constexpr std::uint32_t kPoint = 12;  // bytes
+constexpr std::uint32_t kPoint = 12, kValues = 16;  // bytes
+
+gpu::LentItems lent(const sunder_vulkan_items& items, std::uint32_t bytes) {
   return {reinterpret_cast<VkBuffer>(items.buffer), items.offset, items.size,
-          items.stride == 0 ? kPoint : items.stride};
+          items.stride == 0 ? bytes : items.stride};
 }
 
 class OnDevice final : public VulkanSurface {
  public:
   OnDevice(const Simulation& simulation, const gpu::LentField& field,
            const gpu::SurfaceTargets& targets)
-      : simulation_(simulation),
-        writer_(*field.kernels, simulation, field.displacement, nullptr, targets) {}
+      : simulation_(simulation), writer_(field, simulation, nullptr, targets) {}
 
   void record(void* command_buffer, const Surface& surface) override {
     if (simulation_.steps_done() == 0) throw UsageError("there are no fields before a step");
@@ -47,13 +47,15 @@ class OnDevice final : public VulkanSurface {
 
 std::unique_ptr<VulkanSurface> VulkanSurface::on(
     [[maybe_unused]] Simulation& simulation, [[maybe_unused]] const sunder_vulkan_items& places,
-    [[maybe_unused]] const sunder_vulkan_items& normals) {
+    [[maybe_unused]] const sunder_vulkan_items& normals,
+    [[maybe_unused]] const sunder_vulkan_items& values) {
 #ifdef SUNDER_GPU
-  const gpu::LentField field = gpu::lent_displacement(simulation.backend());
+  const gpu::LentField field = gpu::lent_field(simulation.backend());
   if (!field.displacement) return nullptr;
   gpu::SurfaceTargets targets;
-  targets.places = lent(places);
-  targets.normals = lent(normals);
+  targets.places = lent(places, kPoint);
+  targets.normals = lent(normals, kPoint);
+  targets.values = lent(values, kValues);
   return std::make_unique<OnDevice>(simulation, field, targets);
 #else
   return nullptr;

@@ -42,6 +42,7 @@ class KernelFactory {
 
   /// The same kernels with fp64 as storage precision.
   [[nodiscard]] KernelFactory in_fp64() const { return {device_, variant_, true}; }
+  [[nodiscard]] KernelFactory in_fp32() const { return {device_, variant_, false}; }
   [[nodiscard]] vulkan::Device& device() const { return device_; }
   [[nodiscard]] bool fp64() const { return fp64_; }
   /// Kernels for a processor that emulates a device.

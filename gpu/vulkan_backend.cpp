@@ -137,9 +137,11 @@ class VulkanBackend final : public Backend {
   std::size_t bytes_read() const { return device_->bytes_read(); }
   const std::vector<std::string>& plan_warnings() const { return plan_.warnings; }
   Display* display() { return display_.get(); }
-  LentField lent_displacement() {
+  LentField lent_field() {
     if (!display_) return {};
-    return {&kernels_, &body_->fields().nodal(Field::displacement)};
+    const Fields& fields = body_->fields();
+    return {&kernels_, &fields.nodal(Field::displacement),
+            needs().stress ? &fields.stress() : nullptr};
   }
 
  private:
@@ -341,9 +343,9 @@ Display* display_of(Backend& backend) {
   return of_vulkan ? of_vulkan->display() : nullptr;
 }
 
-LentField lent_displacement(Backend& backend) {
+LentField lent_field(Backend& backend) {
   auto* of_vulkan = dynamic_cast<VulkanBackend*>(&backend);
-  return of_vulkan ? of_vulkan->lent_displacement() : LentField{};
+  return of_vulkan ? of_vulkan->lent_field() : LentField{};
 }
 
 DeviceUse device_use(const Backend& backend) {

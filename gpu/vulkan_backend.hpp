@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gpu/kernels.hpp"
+#include "gpu/lent_field.hpp"
 #include "gpu/passes/display.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "gpu/vulkan/lent_device.hpp"
@@ -54,13 +55,8 @@ struct VulkanOptions {
 /// What a host draws, of a backend on a lent device; else null.
 [[nodiscard]] Display* display_of(Backend& backend);
 
-/// Displacement at all nodes (Fields::nodal) of a backend on a lent device, for passes there that
-/// must go before it; else nulls.
-struct LentField {
-  const KernelFactory* kernels = nullptr;
-  const vulkan::Buffer* displacement = nullptr;
-};
-[[nodiscard]] LentField lent_displacement(Backend& backend);
+/// Of a backend on a lent device, for passes there that must go before it; else nulls.
+[[nodiscard]] LentField lent_field(Backend& backend);
 
 /// What a backend that create() returned holds and has held on its device; else nothing.
 struct DeviceUse {

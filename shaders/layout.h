@@ -100,6 +100,7 @@ struct SurfaceChangesPush {
   uint triangles, elements, nodes;  // how many have changed; in that order in the list
   uint triangles_at, triangles_stride;
   uint facts_at, facts_stride;
+  uint values;  // 1: the elements of triangles are kept, for surface_values
 };
 
 // Of nodes: places and normals; of a fine mesh: places and lives.
@@ -107,6 +108,20 @@ struct SurfacePointsPush {
   uint count;
   uint places_at, places_stride;
   uint others_at, others_stride;
+};
+
+// Where stress of an element is from: none, the stress pass, or the host.
+SUNDER_CONST kNoStress = 0u;
+SUNDER_CONST kOfDevice = 1u;
+SUNDER_CONST kOfHost = 2u;
+
+// Of triangles: four numbers each.
+struct SurfaceValuesPush {
+  uint count;
+  uint values_at, values_stride;
+  uint stress;
+  uint measure;  // as in ElementPush
+  uint finite;   // 1: strain is that of U - I
 };
 
 struct SummaryPush {

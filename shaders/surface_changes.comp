@@ -11,6 +11,7 @@ OUT(2, Shows, uint, shows)
 OUT(3, Parents, uint, parents)
 OUT(4, Triangles, uint, triangles)
 OUT(5, Facts, uint, facts)
+OUT(6, Elements, uint, elements)  // of triangles
 layout(push_constant) uniform Push { SurfaceChangesPush p; };
 
 void main() {
@@ -18,6 +19,7 @@ void main() {
   if (i < p.triangles) {
     const uint from = kTriangleWords * i;
     const uint place = changes.data[from];
+    if (p.values != 0u) elements.data[place] = changes.data[from + 4u];
     for (uint k = 0u; k < 3u; ++k) {
       if (p.triangles_stride != 0u) {
         triangles.data[p.triangles_at + place * p.triangles_stride + k] = changes.data[from + 1u + k];

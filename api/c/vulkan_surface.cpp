@@ -9,6 +9,10 @@
 
 namespace sunder::c {
 
+template <>
+inline constexpr std::size_t kFirstSize<sunder_vulkan_surface> = offsetof(sunder_vulkan_surface,
+                                                                          values);
+
 #ifdef SUNDER_GPU
 /// What writes it, with what it needs of a device that is not the simulation's.
 class VulkanSurface {
@@ -16,15 +20,15 @@ class VulkanSurface {
   VulkanSurface(SimulationObject& object, const sunder_vulkan_host* host,
                 const gpu::SurfaceTargets& targets, const Skin* skin)
       : skins_(object.skins), wants_skin_(skin != nullptr) {
-    gpu::LentField field = gpu::lent_displacement(object.simulation().backend());
+    gpu::LentField field = gpu::lent_field(object.simulation().backend());
     if (host) {
       const gpu::VulkanOptions options = to_options(*host);
       device_ = vulkan::borrow_device(*options.lent, options.probe);
       kernels_.emplace(*device_, gpu::choose_variant(device_->physical()), false);
-      field = {&*kernels_, nullptr};
+      field = {.kernels = &*kernels_};
     }
     shared_ = field.displacement != nullptr;
-    writer_.emplace(*field.kernels, object.simulation(), field.displacement, skin, targets);
+    writer_.emplace(field, object.simulation(), skin, targets);
   }
   /// Its displacement is read where the simulation has it.
   [[nodiscard]] bool shared() const { return shared_; }
@@ -50,7 +54,7 @@ namespace {
 using namespace sunder::c;
 
 #ifdef SUNDER_GPU
-constexpr std::uint32_t kPoint = 12, kWord = 4;  // bytes
+constexpr std::uint32_t kPoint = 12, kWord = 4, kValues = 16;  // bytes
 
 std::string bytes_of(const char* what, const char* member, std::uint64_t value) {
   return std::string("surface: ") + what + " has " + member + " = " + std::to_string(value);
@@ -84,7 +88,8 @@ sunder::gpu::SurfaceTargets to_targets(const sunder_vulkan_surface& surface) {
           to_items(surface.triangles, kPoint, "triangles"),
           to_items(surface.facts, kPoint, "facts"),
           to_items(surface.skin, kPoint, "skin"),
-          to_items(surface.skin_lives, kWord, "skin_lives")};
+          to_items(surface.skin_lives, kWord, "skin_lives"),
+          to_items(surface.values, kValues, "values")};
 }
 
 /// The skin that these buffers are for; null: none is wanted.
@@ -105,7 +110,7 @@ void require_fits(sunder::gpu::SurfaceWriter& writer, const sunder::Surface& sur
 
 void lend(SimulationObject& object, const sunder_vulkan_host* host,
           const sunder_vulkan_surface& surface) {
-  const bool on_host = sunder::gpu::lent_displacement(object.simulation().backend()).displacement;
+  const bool on_host = sunder::gpu::lent_field(object.simulation().backend()).displacement;
   if (on_host && host) {
     throw Failure(SUNDER_ERROR_ORDER,
                   "the simulation is on a host's device: the surface goes there, and host is null");

@@ -162,13 +162,17 @@ typedef struct sunder_vulkan_surface {
   sunder_vulkan_items facts;       ///< per triangle: int32 element, piece, opened
   sunder_vulkan_items skin;        ///< per vertex of the skin: float x, y, z [mm]
   sunder_vulkan_items skin_lives;  ///< per vertex: uint32, 0 where what carries it is destroyed
+  /// Per triangle, of its element: float maximum shear stress [MPa], ratio to yield (0: it cannot
+  /// break), largest principal strain by magnitude (of sym grad u by law linear, else of U - I) and
+  /// largest displacement [mm]. The first two are 0 where the simulation leaves stress out.
+  sunder_vulkan_items values;
 } sunder_vulkan_surface;
 
 #define SUNDER_VULKAN_SURFACE_INIT                                                        \
   {                                                                                       \
     sizeof(sunder_vulkan_surface), 0, SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_ITEMS_INIT, \
         SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_ITEMS_INIT,     \
-        SUNDER_VULKAN_ITEMS_INIT                                                          \
+        SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_ITEMS_INIT                                \
   }
 
 /// Lends buffers for the surface, in place of those before; null: takes them back, which the host
@@ -176,7 +180,8 @@ typedef struct sunder_vulkan_surface {
 /// (sunder_vulkan_create): its displacement is read there, and nothing crosses. For any other
 /// simulation, as one with cracks that split or on backend cpu, it names the device of the buffers,
 /// as sunder_vulkan_create is told (its own three buffers are not read): then the displacement is
-/// written to mapped memory, once a recording, and the rest is done on the device all the same. The
+/// written to mapped memory, once a recording, with maximum shear and ratio to yield where `values`
+/// are wanted, and the rest is done on the device all the same. The
 /// skin is the one that the simulation has by now. SUNDER_ERROR_ORDER, and nothing changes: `host`
 /// is null and the simulation is not on a host's device, or the other way round; a skin is wanted
 /// and there is none. SUNDER_ERROR_VALUE: an offset, a stride or a usage that cannot be.
@@ -184,8 +189,8 @@ SUNDER_API sunder_status sunder_vulkan_lend_surface(sunder_simulation simulation
                                                     const sunder_vulkan_host* host,
                                                     const sunder_vulkan_surface* buffers);
 /// Follows what has happened, as sunder_simulation_surface, whose result `surface` gets (may be
-/// null), and records what brings it to the buffers: all places, normals and the skin, and of
-/// triangles and facts those that have changed since the recording before. Places in the index
+/// null), and records what brings it to the buffers: all places, normals, values and the skin, and
+/// of triangles and facts those that have changed since the recording before. Places in the index
 /// buffer that have become free name node 0 three times. As sunder_vulkan_record, but the command
 /// buffer is executed once, in the order of recording, and completed before the next recording and
 /// the next step; one that is dropped is made good by lending the buffers again. SUNDER_ERROR_SIZE,

@@ -11,7 +11,6 @@
 namespace sunder::app {
 namespace {
 
-constexpr Color kFrame{176, 180, 184}, kPlain{246, 216, 205};
 constexpr double kShade = 0.8;
 
 /// ColorBrewer "Reds", nine classes: even steps of lightness.
@@ -71,6 +70,8 @@ std::optional<StressScale> stress_scale(const Problem& problem, const State& sta
   scale.maximum = maximum_of(problem, scale.value, state.destroyed);
   return scale;
 }
+
+std::span<const Color> reds() { return kReds; }
 
 Color red(double share) {
   const double at = (share > 0 ? std::min(share, 1.0) : 0.0) * (kReds.size() - 1);

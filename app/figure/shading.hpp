@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct StressScale {
 /// A round number that all values but the highest half percent stay below.
 [[nodiscard]] double round_maximum(std::vector<double> values);
 
+/// What cannot break where something else can; what nothing is known of yet.
+inline constexpr Color kFrame{176, 180, 184}, kPlain{246, 216, 205};
+
+/// The scale's shades of red, evenly from 0 to 1; between two lies a straight mix of them.
+[[nodiscard]] std::span<const Color> reds();
 /// Shade of red for a share of the scale (clamped to 0 to 1).
 [[nodiscard]] Color red(double share);
 

@@ -11,8 +11,6 @@
 namespace sunder::app {
 namespace {
 
-constexpr Color kUnbreakable{176, 180, 184}, kUnknown{246, 216, 205};
-
 Mat3 edges(const std::vector<Vec3>& of, const std::array<Index, 4>& corners) {
   Mat3 m;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -86,31 +84,34 @@ double largest_strain(const Problem& problem, const State& state, Index element)
   return largest;
 }
 
+std::vector<std::uint8_t> unbreakable(const Problem& problem) {
+  if (!shows_frame(problem)) return {};
+  std::vector<std::uint8_t> grey(problem.mesh().tets.size());
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    grey[static_cast<std::size_t>(e)] = problem.destructible(e) ? 0 : 1;
+  }
+  return grey;
+}
+
 Paint paint(const Problem& problem, const State& state, std::span<const SurfaceTriangle> triangles,
-            const input::Colour& colour) {
+            const input::Colour& colour, Values values) {
   Paint paint;
   const bool of_stress = colour.field == Field::stress || colour.field == Field::yield;
-  if (of_stress && state.stress.empty()) {
-    paint.triangles.assign(triangles.size(), kUnknown);
-    return paint;
-  }
+  if (of_stress && state.stress.empty()) return paint;
   paint.label = label_of(problem, colour.field);
+  const bool found = !colour.maximum && colour.field != Field::yield;
+  if (!found) paint.maximum = colour.maximum.value_or(1.0);
+  if (values == Values::on_device && !found) return paint;
   const bool frame = shows_frame(problem);
-  const auto grey = [&](Index e) { return frame && !problem.destructible(e); };
-  std::vector<double> values, counted;
-  values.reserve(triangles.size());
+  std::vector<double> counted;
   for (const SurfaceTriangle& t : triangles) {
-    values.push_back(value_of(problem, state, t.element, colour.field));
-    if (!grey(t.element)) counted.push_back(values.back());
+    const bool counts = found && !(frame && !problem.destructible(t.element));
+    if (values == Values::on_device && !counts) continue;
+    const double value = value_of(problem, state, t.element, colour.field);
+    if (counts) counted.push_back(value);
+    if (values == Values::here) paint.values.push_back(static_cast<float>(value));
   }
-  paint.maximum = colour.maximum                 ? *colour.maximum
-                  : colour.field == Field::yield ? 1.0
-                                                 : round_maximum(std::move(counted));
-  paint.triangles.reserve(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    paint.triangles.push_back(grey(triangles[i].element) ? kUnbreakable
-                                                         : red(values[i] / paint.maximum));
-  }
+  if (found) paint.maximum = round_maximum(std::move(counted));
   return paint;
 }
 

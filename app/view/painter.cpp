@@ -25,7 +25,8 @@ void Painter::draw(std::shared_ptr<const Shown> shown, const Look& look, const C
         all.resize(shown->triangles.size());
         std::iota(all.begin(), all.end(), 0U);
       }
-      renderer_.set_triangles(shown->triangles, all.empty() ? shown->changed : all);
+      if (other) grey_ = unbreakable(problem);
+      renderer_.set_triangles(shown->triangles, all.empty() ? shown->changed : all, grey_);
       renderer_.set_lips(shown->lips);
       version_ = shown->version;
     }
@@ -39,9 +40,12 @@ void Painter::draw(std::shared_ptr<const Shown> shown, const Look& look, const C
     shown_ = std::move(shown);
   }
   const input::Colour colour = look.colour.value_or(input::Colour{standard_field(problem), {}});
-  const Paint paint = app::paint(problem, shown_->state, shown_->triangles, colour);
-  renderer_.set_colours(paint.triangles);
-  renderer_.draw(camera, look);
+  const bool shared = renderer_.points() != nullptr;
+  const Paint paint = app::paint(problem, shown_->state, shown_->triangles, colour,
+                                 shared ? Values::on_device : Values::here);
+  if (!shared) renderer_.set_values(paint.values);
+  renderer_.draw(camera, look,
+                 {!paint.label.empty(), paint.maximum, static_cast<std::uint32_t>(colour.field)});
   over_ = overlay(problem, *shown_, paint, look, camera);
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/view/overlay.hpp"
 #include "app/view/shown.hpp"
@@ -33,6 +34,7 @@ class Painter {
   view::Renderer renderer_;
   std::uint64_t version_ = 0;
   std::shared_ptr<const Shown> shown_;  // that the device has
+  std::vector<std::uint8_t> grey_;      // of its body, by element
   Overlay over_;
 };
 

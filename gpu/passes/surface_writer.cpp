@@ -7,6 +7,8 @@
 #include "gpu/passes/display.hpp"
 #include "gpu/passes/two_floats.hpp"
 #include "gpu/vulkan/host_commands.hpp"
+#include "sunder/fracture_model.hpp"
+#include "sunder/stress_measures.hpp"
 
 namespace sunder::gpu {
 namespace {
@@ -15,7 +17,7 @@ using vulkan::Buffer;
 using vulkan::Placement;
 
 constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint32_t kItemBytes = 12;  // of three words: the largest that a target has
+constexpr std::uint32_t kItemBytes = 12, kValuesBytes = 16;  // of three words; of four
 
 std::uint32_t groups_for(std::uint32_t count) {
   return round_up(std::max(count, 1u), shaders::kGroup) / shaders::kGroup;
@@ -52,13 +54,13 @@ Buffer filled(vulkan::Device& device, const std::vector<T>& values) {
 
 }  // namespace
 
-SurfaceWriter::SurfaceWriter(const KernelFactory& kernels, const Simulation& simulation,
-                             const Buffer* displacement, const Skin* skin,
+SurfaceWriter::SurfaceWriter(const LentField& field, const Simulation& simulation, const Skin* skin,
                              const SurfaceTargets& targets)
-    : device_(kernels.device()),
-      kernels_(kernels),
+    : device_(field.kernels->device()),
+      kernels_(*field.kernels),
       simulation_(simulation),
-      displacement_(displacement),
+      displacement_(field.displacement),
+      stress_(field.stress),
       given_(targets),
       elements_(static_cast<std::uint32_t>(simulation.problem().tet_count())),
       shows_(elements_, 0),
@@ -71,9 +73,19 @@ SurfaceWriter::SurfaceWriter(const KernelFactory& kernels, const Simulation& sim
       facts_(bound(targets.facts)),
       skin_(bound(targets.skin)),
       skin_lives_(bound(targets.skin_lives)),
-      changes_kernel_(kernels.make_fp64("surface_changes")),
-      points_kernel_(kernels.make_fp64("surface_points")) {
+      values_(bound(targets.values)),
+      changes_kernel_(kernels_.make_fp64("surface_changes")),
+      points_kernel_(kernels_.make_fp64("surface_points")) {
   upload_mesh();
+  if (values_.stride > 0) {
+    // Four faces an element at most.
+    on_device_elements_ = Buffer(device_, std::size_t{16} * elements_, Placement::device);
+    // Stress that the host writes is in fp32.
+    values_kernel_ = (displacement_ ? kernels_ : kernels_.in_fp32()).make("surface_values");
+    if (!displacement_) {
+      own_stress_ = Buffer(device_, std::size_t{16} * elements_, Placement::host);
+    }
+  }
   if (skin) upload_skin(*skin);
   make_room(static_cast<std::size_t>(simulation.backend().node_count()));
 }
@@ -126,6 +138,7 @@ void SurfaceWriter::make_room(std::size_t nodes) {
   drawn_ = 0;  // all is written anew
   points_binding_.reset();
   skin_binding_.reset();
+  values_binding_.reset();
   changes_binding_.reset();
   on_device_parents_ = Buffer(device_, 4 * room_, Placement::device);
   if (!displacement_) {
@@ -149,6 +162,13 @@ void SurfaceWriter::bind() {
                             of(places_),
                             of(normals_)};
   points_binding_ = std::make_unique<vulkan::Binding>(device_, *points_kernel_, points);
+  if (values_kernel_) {
+    const Buffer* stress = stress_ ? stress_ : displacement_ ? &nothing_ : &own_stress_;
+    const Buffer* values[] = {
+        u,      &rest_,         &on_device_parents_, &on_device_corners_, &on_device_elements_,
+        stress, &values_.buffer};
+    values_binding_ = std::make_unique<vulkan::Binding>(device_, *values_kernel_, values);
+  }
   if (!skin_kernel_) return;
   const Buffer* skin[] = {
       u,        &rest_,     &on_device_parents_, &on_device_corners_, &on_device_shows_,
@@ -162,7 +182,8 @@ void SurfaceWriter::bind_changes() {
                              &on_device_shows_,
                              &on_device_parents_,
                              triangles_.stride > 0 ? &triangles_.buffer : &nothing_,
-                             facts_.stride > 0 ? &facts_.buffer : &nothing_};
+                             facts_.stride > 0 ? &facts_.buffer : &nothing_,
+                             values_.stride > 0 ? &on_device_elements_ : &nothing_};
   changes_binding_ = std::make_unique<vulkan::Binding>(device_, *changes_kernel_, changes);
 }
 
@@ -177,7 +198,8 @@ std::optional<TargetTooSmall> SurfaceWriter::too_small(const Surface& surface) c
              {given_.triangles, "triangles", triangles, kItemBytes},
              {given_.facts, "facts", triangles, kItemBytes},
              {given_.skin, "skin", vertices_, kItemBytes},
-             {given_.skin_lives, "skin_lives", vertices_, 4}};
+             {given_.skin_lives, "skin_lives", vertices_, 4},
+             {given_.values, "values", triangles, kValuesBytes}};
   for (const auto& target : all) {
     if (!target.items.buffer || target.count == 0) continue;
     const std::uint64_t needed = (target.count - 1) * target.items.stride + target.bytes;
@@ -285,6 +307,7 @@ shaders::SurfaceChangesPush SurfaceWriter::collect(const Surface& surface) {
   push.triangles_stride = triangles_.stride;
   push.facts_at = facts_.at;
   push.facts_stride = facts_.stride;
+  push.values = values_.stride > 0 ? 1 : 0;
   for (Index e : touched_) {
     const auto at = static_cast<std::size_t>(e);
     is_touched_[at] = 0;
@@ -306,10 +329,43 @@ void SurfaceWriter::write_displacement(std::size_t nodes) {
   write_wide(kernels_, own_displacement_, wide_);
 }
 
+/// Of a simulation elsewhere: maximum shear and ratio to yield of all elements, zeros before a
+/// step.
+void SurfaceWriter::write_stress() {
+  if (!values_kernel_ || displacement_) return;
+  const Problem& problem = simulation_.problem();
+  const YieldMeasure measure = strength_measure(problem.scene().fracture);
+  stresses_.assign(elements_, {});
+  const std::vector<Voigt> stress =
+      simulation_.backend().needs().stress ? simulation_.stress() : std::vector<Voigt>{};
+  for (std::size_t e = 0; e < stress.size(); ++e) {
+    const auto element = static_cast<Index>(e);
+    stresses_[e][2] = static_cast<float>(max_shear(stress[e]));
+    if (!problem.breakable(element)) continue;
+    stresses_[e][3] = static_cast<float>(problem.yield_ratio(element, stress[e], measure));
+  }
+  own_stress_.write(std::span<const std::array<float, 4>>(stresses_));
+}
+
+shaders::SurfaceValuesPush SurfaceWriter::values_push(const Surface& surface) const {
+  const Problem& problem = simulation_.problem();
+  shaders::SurfaceValuesPush push{};
+  push.count = static_cast<std::uint32_t>(surface.triangles().size());
+  push.values_at = values_.at;
+  push.values_stride = values_.stride;
+  push.stress = stress_         ? shaders::kOfDevice
+                : displacement_ ? shaders::kNoStress
+                                : shaders::kOfHost;
+  push.measure = static_cast<std::uint32_t>(strength_measure(problem.scene().fracture));
+  push.finite = problem.finite() ? 1 : 0;
+  return push;
+}
+
 void SurfaceWriter::record(VkCommandBuffer commands, const Surface& surface) {
   const auto nodes = static_cast<std::uint32_t>(surface.node_count());
   make_room(nodes);
   write_displacement(nodes);
+  write_stress();
   const shaders::SurfaceChangesPush changes = collect(surface);
   if (!list_.empty() && list_.size() > changes_room_) {
     changes_binding_.reset();
@@ -335,6 +391,10 @@ void SurfaceWriter::record(VkCommandBuffer commands, const Surface& surface) {
                  shaders::SurfacePointsPush{vertices_, skin_.at, skin_.stride, skin_lives_.at,
                                             skin_lives_.stride},
                  groups_for(vertices_));
+  }
+  if (values_binding_) {
+    const shaders::SurfaceValuesPush values = values_push(surface);
+    out.dispatch(*values_binding_, values, groups_for(values.count));
   }
   out.end();
   drawn_ = surface.version();

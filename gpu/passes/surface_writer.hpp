@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A body's surface for a host's renderer, into buffers of the host's own by kernels in its command
-// buffer: places and normals of all nodes, those triangles that have changed, and a fine mesh that
-// the body carries. Where the simulation is on the same device its displacement is read there;
-// else it is written to mapped memory.
+// buffer: places and normals of all nodes, those triangles that have changed, what all of them are
+// coloured by, and a fine mesh that the body carries. Where the simulation is on the same device
+// its displacement and stress are read there; else they are written to mapped memory.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gpu/kernels.hpp"
+#include "gpu/lent_field.hpp"
 #include "sunder/skin.hpp"
 #include "sunder/surface.hpp"
 
@@ -30,6 +31,7 @@ struct SurfaceTargets {
   LentItems triangles;         ///< three nodes, uint32
   LentItems facts;             ///< of triangles: element, piece, opened, int32
   LentItems skin, skin_lives;  ///< of vertices: x, y, z in fp32; uint32
+  LentItems values;            ///< of triangles: sunder_vulkan_surface::values, four fp32
 };
 
 /// A target that cannot hold what there is.
@@ -40,10 +42,9 @@ struct TargetTooSmall {
 
 class SurfaceWriter {
  public:
-  /// `displacement`: of a simulation on the kernels' device, else null. `skin`: null where none is
-  /// wanted. All of these must outlive it, as must the targets' buffers.
-  SurfaceWriter(const KernelFactory& kernels, const Simulation& simulation,
-                const vulkan::Buffer* displacement, const Skin* skin,
+  /// `field`: of a simulation on a host's device; of any other the kernels alone. `skin`: null
+  /// where none is wanted. All of these must outlive it, as must the targets' buffers.
+  SurfaceWriter(const LentField& field, const Simulation& simulation, const Skin* skin,
                 const SurfaceTargets& targets);
 
   /// What does not fit, of the surface as it was last updated.
@@ -66,6 +67,8 @@ class SurfaceWriter {
   void bind();
   void bind_changes();
   void write_displacement(std::size_t nodes);
+  void write_stress();
+  [[nodiscard]] shaders::SurfaceValuesPush values_push(const Surface& surface) const;
   [[nodiscard]] shaders::SurfaceChangesPush collect(const Surface& surface);
   void follow_triangles(const Surface& surface);
   void follow_elements();
@@ -77,6 +80,7 @@ class SurfaceWriter {
   const KernelFactory kernels_;
   const Simulation& simulation_;
   const vulkan::Buffer* displacement_;  // null: own_displacement_
+  const vulkan::Buffer* stress_;        // null: own_stress_, or none where displacement_ is there
   SurfaceTargets given_;
   std::uint32_t elements_, vertices_ = 0;
 
@@ -90,14 +94,17 @@ class SurfaceWriter {
   std::vector<std::uint8_t> is_touched_;
   std::vector<std::uint32_t> list_, of_elements_, of_nodes_;  // changes, likewise
   std::vector<double> wide_;                                  // displacement, as it is written
+  std::vector<std::array<float, 4>> stresses_;                // likewise
 
   std::size_t room_ = 0, changes_room_ = 0;
   vulkan::Buffer rest_, first_, around_, on_device_corners_, on_device_shows_;
-  vulkan::Buffer own_displacement_, on_device_parents_, changes_;
+  vulkan::Buffer own_displacement_, own_stress_, on_device_parents_, changes_;
+  vulkan::Buffer on_device_elements_;  // of triangles, for their values
   vulkan::Buffer shares_, carriers_, nothing_;
-  Target places_, normals_, triangles_, facts_, skin_, skin_lives_;
-  std::unique_ptr<vulkan::Kernel> changes_kernel_, points_kernel_, skin_kernel_;
-  std::unique_ptr<vulkan::Binding> changes_binding_, points_binding_, skin_binding_;
+  Target places_, normals_, triangles_, facts_, skin_, skin_lives_, values_;
+  std::unique_ptr<vulkan::Kernel> changes_kernel_, points_kernel_, skin_kernel_, values_kernel_;
+  std::unique_ptr<vulkan::Binding> changes_binding_, points_binding_, skin_binding_,
+      values_binding_;
 };
 
 }  // namespace sunder::gpu

@@ -71,7 +71,7 @@ inline sunder_solver_options on(sunder_backend backend) {
 
 /// A scene that tears within its 4 steps, unless `force` says otherwise.
 inline sunder_scene board_scene(sunder_backend backend = SUNDER_BACKEND_CPU, Index cells = 4,
-                                double force = -40) {
+                                double force = -40, std::int32_t law = SUNDER_LAW_LINEAR) {
   sunder_scene scene = nullptr;
   EXPECT_OK(sunder_scene_create(&scene));
   const Arrays a = board_arrays(cells);
@@ -82,6 +82,7 @@ inline sunder_scene board_scene(sunder_backend backend = SUNDER_BACKEND_CPU, Ind
   tissue.young = 5;
   tissue.poisson = 0.4;
   tissue.yield = 2;
+  tissue.law = law;
   tissue.name = "tissue";
   EXPECT_OK(sunder_scene_add_material(scene, &tissue, nullptr));
   const sunder_support support = top_support();

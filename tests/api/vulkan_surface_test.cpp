@@ -2,8 +2,11 @@
 // The surface in buffers of a host's own: what sunder_simulation_surface and its like tell, written
 // by the device, after all that changes a body; nothing beside it, nothing that has not changed,
 // and refusals by name.
+#include <Eigen/Dense>
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <functional>
 #include <optional>
@@ -20,6 +23,7 @@ constexpr double kRounding = 0x1p-23;  // of one number in fp32, and one more fo
 
 // Of 8 steps the fourth tears the intact board.
 constexpr double kPull = -12;  // N
+constexpr double kYield = 2;   // MPa, board_scene()'s
 
 struct Environment {
   explicit Environment(const char* probe) { setenv("SUNDER_VULKAN_PROBE", probe, 1); }
@@ -31,6 +35,7 @@ class Buffers {
  public:
   static constexpr std::uint32_t kVertex = 32;  // bytes: place, a gap, normal, a gap
   static constexpr std::uint64_t kNormalAt = 16;
+  static constexpr std::uint32_t kValues = 20;  // bytes: four numbers, a gap
   Buffers(const VulkanHost& host, std::uint64_t nodes, std::uint64_t triangles,
           std::uint64_t vertices)
       : host_(host),
@@ -38,18 +43,23 @@ class Buffers {
         triangles_(host.allocate(kBefore + 12 * triangles + kAfter, kUsage)),
         facts_(host.allocate(kBefore + 12 * triangles + kAfter, kUsage)),
         skin_(host.allocate(kBefore + 12 * vertices + kAfter, kUsage)),
-        lives_(host.allocate(kBefore + 4 * vertices + kAfter, kUsage)) {
+        lives_(host.allocate(kBefore + 4 * vertices + kAfter, kUsage)),
+        values_(host.allocate(kBefore + kValues * triangles + kAfter, kUsage)) {
     surface.places = items(vertices_, 0, kVertex * nodes);
     surface.normals = items(vertices_, kNormalAt, kVertex * nodes - kNormalAt);
     surface.places.stride = surface.normals.stride = kVertex;
     surface.triangles = items(triangles_, 0, 12 * triangles);
     surface.facts = items(facts_, 0, 12 * triangles);
+    surface.values = items(values_, 0, kValues * triangles);
+    surface.values.stride = kValues;
     if (vertices == 0) return;
     surface.skin = items(skin_, 0, 12 * vertices);
     surface.skin_lives = items(lives_, 0, 4 * vertices);
   }
   ~Buffers() {
-    for (const auto& memory : {vertices_, triangles_, facts_, skin_, lives_}) host_.free(memory);
+    for (const auto& memory : {vertices_, triangles_, facts_, skin_, lives_, values_}) {
+      host_.free(memory);
+    }
   }
   Buffers(const Buffers&) = delete;
   Buffers& operator=(const Buffers&) = delete;
@@ -79,6 +89,9 @@ class Buffers {
   [[nodiscard]] std::vector<std::int32_t> facts(std::size_t n) const {
     return read<std::int32_t>(surface.facts, facts_, n, 3);
   }
+  [[nodiscard]] std::vector<float> values(std::size_t n) const {
+    return read<float>(surface.values, values_, n, 4);
+  }
   [[nodiscard]] std::vector<float> skin(std::size_t n) const {
     return read<float>(surface.skin, skin_, n, 3);
   }
@@ -99,17 +112,20 @@ class Buffers {
     std::memset(facts_.mapped, 0xa5, facts_.size);
   }
   void expect_nothing_beside() const {
-    for (const auto& memory : {vertices_, triangles_, facts_, skin_, lives_}) {
+    const auto untouched = [](std::byte b) { return b == std::byte{0xa5}; };
+    for (const auto& memory : {vertices_, triangles_, facts_, skin_, lives_, values_}) {
       const auto* bytes = static_cast<const std::byte*>(memory.mapped);
-      const auto untouched = [](std::byte b) { return b == std::byte{0xa5}; };
       EXPECT_TRUE(std::all_of(bytes, bytes + kBefore, untouched));
       EXPECT_TRUE(std::all_of(bytes + memory.size - kAfter, bytes + memory.size, untouched));
+    }
+    const auto* between = static_cast<const std::byte*>(values_.mapped) + kBefore;
+    for (std::uint64_t at = 16; at < surface.values.size; at += kValues) {
+      EXPECT_TRUE(std::all_of(between + at, between + at + 4, untouched));
     }
     const auto* first = static_cast<const std::byte*>(vertices_.mapped) + kBefore;
     for (std::uint64_t at = 0; at + kVertex <= vertices_.size - kBefore - kAfter; at += kVertex) {
       for (std::uint64_t gap : {at + 12, at + kNormalAt + 12}) {
-        EXPECT_TRUE(std::all_of(first + gap, first + gap + 4,
-                                [](std::byte b) { return b == std::byte{0xa5}; }));
+        EXPECT_TRUE(std::all_of(first + gap, first + gap + 4, untouched));
       }
     }
   }
@@ -126,7 +142,7 @@ class Buffers {
     return {reinterpret_cast<std::uint64_t>(memory.buffer), kBefore + at, size, kUsage, 0};
   }
   const VulkanHost& host_;
-  VulkanHost::Memory vertices_, triangles_, facts_, skin_, lives_;
+  VulkanHost::Memory vertices_, triangles_, facts_, skin_, lives_, values_;
 };
 
 /// Vertices inside the board, on its faces and beyond them.
@@ -155,9 +171,10 @@ class CVulkanSurface : public testing::TestWithParam<const char*> {
     EXPECT_EQ(VulkanHost::calls.device_waits, 0);
   }
   /// On the host's device, or on the CPU with the host's device for drawing alone.
-  void create(bool shared, const std::function<void(sunder_scene)>& change = {}) {
+  void create(bool shared, const std::function<void(sunder_scene)>& change = {},
+              std::int32_t law = SUNDER_LAW_LINEAR) {
     const sunder_scene scene =
-        board_scene(shared ? SUNDER_BACKEND_VULKAN : SUNDER_BACKEND_CPU, 4, kPull);
+        board_scene(shared ? SUNDER_BACKEND_VULKAN : SUNDER_BACKEND_CPU, 4, kPull, law);
     EXPECT_OK(sunder_scene_set_steps(scene, 8));
     if (change) change(scene);
     on_device = shared;
@@ -212,6 +229,73 @@ class CVulkanSurface : public testing::TestWithParam<const char*> {
     return products;
   }
 
+  struct Deformed {
+    double strain = 0, displacement = 0;  // largest principal value by magnitude; largest
+    double gradient = 0;                  // of displacement, Frobenius: what a rounding is of
+  };
+  /// Of every element, from what is told of the body.
+  [[nodiscard]] std::vector<Deformed> deformations() const {
+    sunder_body body = SUNDER_BODY_INIT;
+    EXPECT_OK(sunder_simulation_body(simulation, &body));
+    const auto nodes = static_cast<std::size_t>(body.node_count);
+    const auto tets = static_cast<std::size_t>(body.tet_count);
+    std::vector<std::int32_t> corners(4 * tets), parents(nodes);
+    std::vector<double> u(3 * nodes);
+    EXPECT_OK(sunder_simulation_body_corners(simulation, corners.data(), corners.size()));
+    EXPECT_OK(sunder_simulation_body_parents(simulation, parents.data(), parents.size()));
+    EXPECT_OK(sunder_simulation_body_displacement(simulation, u.data(), u.size()));
+    const std::vector<double> rest = board_arrays().nodes;
+    std::vector<Deformed> all(tets);
+    for (std::size_t e = 0; e < tets; ++e) {
+      Mat3 x, moved;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const auto node = static_cast<std::size_t>(corners[4 * e + i]);
+        const auto parent = static_cast<std::size_t>(parents[node]);
+        const Vec3 at(rest.data() + 3 * parent), by(u.data() + 3 * node);
+        all[e].displacement = std::max(all[e].displacement, by.norm());
+        if (i == 0) {
+          x.colwise() = -at;
+          moved.colwise() = -by;
+        } else {
+          x.col(static_cast<Eigen::Index>(i) - 1) += at;
+          moved.col(static_cast<Eigen::Index>(i) - 1) += by;
+        }
+      }
+      const Mat3 gradient = moved * x.inverse(), f = gradient + Mat3::Identity();
+      const Vec3 strain =
+          finite ? Vec3(Eigen::JacobiSVD<Mat3>(f).singularValues().array() - 1)
+                 : Vec3(Eigen::SelfAdjointEigenSolver<Mat3>((gradient + gradient.transpose()) / 2)
+                            .eigenvalues());
+      all[e].strain = strain.cwiseAbs().maxCoeff();
+      all[e].gradient = gradient.norm();
+    }
+    return all;
+  }
+  /// What triangles are coloured by is what is told of their elements, within a rounding of the
+  /// largest stress, or of a number where it is computed from displacement and place.
+  void expect_values(std::size_t count, std::span<const std::int32_t> facts, double unit,
+                     double ulps) const {
+    const auto found = buffers->values(count);
+    const auto shape = deformations();
+    std::vector<double> shear(shape.size()), ratio(shape.size()), stress(6 * shape.size());
+    EXPECT_OK(sunder_simulation_max_shear(simulation, shear.data(), shear.size()));
+    EXPECT_OK(sunder_simulation_yield_ratio(simulation, ratio.data(), ratio.size()));
+    EXPECT_OK(sunder_simulation_stress(simulation, stress.data(), stress.size()));
+    for (std::size_t t = 0; t < count; ++t) {
+      const auto e = static_cast<std::size_t>(facts[3 * t]);
+      const double most =
+          Eigen::Map<const Eigen::Matrix<double, 6, 1>>(stress.data() + 6 * e).norm();
+      EXPECT_NEAR(found[4 * t], shear[e], 8 * kRounding * most) << t;
+      EXPECT_NEAR(found[4 * t + 1], ratio[e], 8 * kRounding * most / kYield) << t;
+      // Strain is rounded to fp32 once and the gradient in `unit`, whose squares are in U - I.
+      const Deformed& d = shape[e];
+      const double strain = 16 * kRounding * d.strain + 16 * unit * d.gradient +
+                            (finite ? 8 * kRounding * (1 + d.gradient * d.gradient) : 0);
+      EXPECT_NEAR(found[4 * t + 2], d.strain, strain) << t;
+      EXPECT_NEAR(found[4 * t + 3], d.displacement, 2 * ulps * kRounding * d.displacement) << t;
+    }
+  }
+
   /// All of the buffers is what the functions that hand it out on the host say: places as they are
   /// rounded, normals within what roundings of `unit` cost them.
   void expect_shown(double unit = 0x1p-52, double ulps = 1) {
@@ -239,6 +323,7 @@ class CVulkanSurface : public testing::TestWithParam<const char*> {
         EXPECT_EQ(facts[3 * t + i], told[i]) << t;
       }
     }
+    expect_values(count, facts, unit, ulps);
     std::vector<std::uint8_t> lives(vertices);
     EXPECT_OK(sunder_simulation_skin(simulation, skin.data(), skin.size(), lives.data()));
     const auto carried = buffers->skin(vertices);
@@ -283,7 +368,7 @@ class CVulkanSurface : public testing::TestWithParam<const char*> {
   std::optional<VulkanHost> host;
   std::unique_ptr<Buffers> buffers;
   sunder_simulation simulation = nullptr;
-  bool on_device = false;
+  bool on_device = false, finite = false;
   std::size_t vertices = 0;
 };
 
@@ -354,6 +439,23 @@ TEST_P(CVulkanSurface, FollowsCracksThatSplitAndTheirUndo) {
   expect_shown();
 }
 
+TEST_P(CVulkanSurface, ColoursALawOfFiniteDeformation) {
+  create(
+      false,
+      [](sunder_scene scene) {
+        const auto fracture = model(SUNDER_FRACTURE_A);
+        EXPECT_OK(sunder_scene_set_fracture(scene, &fracture));
+      },
+      SUNDER_LAW_NEO_HOOKEAN);
+  finite = true;
+  lend();
+  expect_shown();
+  for (int i = 0; i < 3; ++i) {
+    step();
+    expect_shown();
+  }
+}
+
 // Numbers of two floats each: some 48 bits go into a sum, and its parts are rounded in fp32.
 TEST_P(CVulkanSurface, DoesWithoutFloat64) {
   host.reset();
@@ -408,7 +510,23 @@ TEST_P(CVulkanSurface, AddsNoSubmitCopyOrReadToTheFrame) {
   record();
   EXPECT_EQ(VulkanHost::calls.submits, before.submits);
   EXPECT_EQ(VulkanHost::calls.copies, before.copies);
-  EXPECT_LE(VulkanHost::calls.dispatches, before.dispatches + 3);
+  EXPECT_LE(VulkanHost::calls.dispatches, before.dispatches + 4);
+}
+
+// A host of the version before has no values at the end of its struct.
+TEST_P(CVulkanSurface, TakesTheStructOfTheVersionBefore) {
+  create(true);
+  lend();
+  step();
+  sunder_vulkan_surface before = buffers->surface;
+  before.struct_size = offsetof(sunder_vulkan_surface, values);
+  ASSERT_OK(sunder_vulkan_lend_surface(simulation, nullptr, &before));
+  const sunder_surface surface = record();
+  const auto count = static_cast<std::size_t>(surface.triangle_count);
+  EXPECT_EQ(buffers->written().size(), count);
+  for (const float value : buffers->values(count)) {
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(value), 0xa5a5a5a5U);
+  }
 }
 
 TEST_P(CVulkanSurface, SaysWhatHasBecomeTooSmallAndTakesLargerOnes) {
@@ -460,6 +578,8 @@ TEST_P(CVulkanSurface, RefusesByName) {
           lend_changed([](auto& s) { s.triangles.stride = 8; }));
   refused(SUNDER_ERROR_VALUE, "facts has stride = 14",
           lend_changed([](auto& s) { s.facts.stride = 14; }));
+  refused(SUNDER_ERROR_VALUE, "values has stride = 12; it must be a multiple of 4, and 16 or more",
+          lend_changed([](auto& s) { s.values.stride = 12; }));
   refused(SUNDER_ERROR_STRUCT_SIZE, "surface", lend_changed([](auto& s) { s.struct_size = 3; }));
   refused(SUNDER_ERROR_ORDER, "the simulation is on a host's device",
           sunder_vulkan_lend_surface(simulation, &device, &some.surface));

@@ -6,7 +6,7 @@
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 corner;
-layout(location = 3) flat in uint colour;
+layout(location = 3) flat in vec3 colour;
 layout(location = 4) flat in uint flags;
 layout(location = 0) out vec4 shown;
 
@@ -24,7 +24,7 @@ void main() {
   if ((flags & kOpened) != 0) shade *= kOpenShade;
   const float lit = kAmbient + kFromEye * max(dot(n, push.eye.xyz), 0) +
                     kFromKey * max(dot(n, push.key.xyz), 0);
-  vec3 c = unpackUnorm4x8(colour).rgb * min(lit, 1) * shade;
+  vec3 c = colour * min(lit, 1) * shade;
   if (push.key.w > 0) {
     const vec3 pixels = corner / max(across, vec3(1e-6));
     const float nearest = min(pixels.x, min(pixels.y, pixels.z));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "app/figure/shading.hpp"
 #include "app/view/overlay.hpp"
 #include "app/view/shaders/embedded.hpp"
 
@@ -21,10 +22,12 @@ struct Push {
   std::array<float, 16> to_clip{};
   std::array<float, 4> key{}, eye{}, plane{};
   std::array<float, 2> half_width{};
+  std::uint32_t value_of = 0;
+  float per_value = 0;
 };
-static_assert(sizeof(Push) == 120);
+static_assert(sizeof(Push) == 128);  // what every device has room for
 
-constexpr std::uint32_t kOpened = 1;
+constexpr std::uint32_t kOpened = 1, kGrey = 2, kItemBits = 4;
 
 std::array<float, 4> four(const Vec3& v, double w) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
@@ -53,6 +56,19 @@ Renderer::Renderer(Device& device, const PictureSize& size)
   body_ = make_pipeline(shaders::body_vert(), shaders::body_frag());
   lips_ = make_pipeline(shaders::lips_vert(), shaders::lips_frag());
   for (std::size_t b = 0; b < kBindings; ++b) reserve(static_cast<Binding>(b), kLeastBytes);
+  upload_shades();
+}
+
+/// The scale's shades, then grey, then what nothing is known of.
+void Renderer::upload_shades() {
+  std::vector<Color> shades(reds().begin(), reds().end());
+  shades.insert(shades.end(), {kFrame, kPlain});
+  reserve(kShades, shades.size() * sizeof(std::uint32_t));
+  auto* row = buffers_[kShades].as<std::uint32_t>();
+  for (const Color c : shades) {
+    *row++ = 0xff000000U | static_cast<std::uint32_t>(c.b) << 16U |
+             static_cast<std::uint32_t>(c.g) << 8U | c.r;
+  }
 }
 
 void Renderer::make_pass() {
@@ -255,7 +271,8 @@ void Renderer::reserve(Binding binding, std::size_t bytes) {
     std::memcpy(larger.as<std::uint8_t>(), buffer.as<std::uint8_t>(), buffer.size());
   }
   buffer = std::move(larger);
-  if (!points_ || binding > kNormals) bind(binding, buffer);
+  const bool shared = binding == kPlaces || binding == kNormals || binding == kValues;
+  if (!points_ || !shared) bind(binding, buffer);
 }
 
 void Renderer::bind(Binding binding, const HostBuffer& buffer) {
@@ -271,15 +288,18 @@ void Renderer::bind(Binding binding, const HostBuffer& buffer) {
 }
 
 void Renderer::set_triangles(std::span<const SurfaceTriangle> triangles,
-                             std::span<const std::uint32_t> changed) {
+                             std::span<const std::uint32_t> changed,
+                             std::span<const std::uint8_t> grey) {
   using Row = std::array<std::uint32_t, 4>;
   reserve(kTriangles, triangles.size() * sizeof(Row));
   Row* const rows = buffers_[kTriangles].as<Row>();
   for (const std::uint32_t place : changed) {
     if (place >= triangles.size()) continue;
     const SurfaceTriangle& t = triangles[place];
+    const bool is_grey = !grey.empty() && grey[static_cast<std::size_t>(t.element)] != 0;
     rows[place] = {static_cast<std::uint32_t>(t.nodes[0]), static_cast<std::uint32_t>(t.nodes[1]),
-                   static_cast<std::uint32_t>(t.nodes[2]), t.opened ? kOpened : 0};
+                   static_cast<std::uint32_t>(t.nodes[2]),
+                   (t.opened ? kOpened : 0) | (is_grey ? kGrey : 0)};
     uploaded_ += sizeof(Row);
   }
   triangle_count_ = static_cast<std::uint32_t>(triangles.size());
@@ -291,6 +311,7 @@ void Renderer::set_points(std::span<const Vec3> places, std::span<const Vec3> no
     points_.reset();
     bind(kPlaces, buffers_[kPlaces]);
     bind(kNormals, buffers_[kNormals]);
+    bind(kValues, buffers_[kValues]);
   }
   const auto put = [&](Binding binding, std::span<const Vec3> points) {
     reserve(binding, points.size() * sizeof(Row));
@@ -305,21 +326,19 @@ void Renderer::set_points(std::span<const Vec3> places, std::span<const Vec3> no
 void Renderer::set_points(std::shared_ptr<const Points> points) {
   bind(kPlaces, points->places);
   bind(kNormals, points->normals);
+  bind(kValues, points->values);
   points_ = std::move(points);
 }
 
-void Renderer::set_colours(std::span<const Color> colours) {
-  reserve(kColours, colours.size() * sizeof(std::uint32_t));
-  auto* const rows = buffers_[kColours].as<std::uint32_t>();
-  const std::size_t known = std::min(colours_.size(), colours.size());
-  colours_.resize(colours.size());
-  for (std::size_t i = 0; i < colours.size(); ++i) {
-    const Color c = colours[i];
-    const std::uint32_t word = 0xff000000U | static_cast<std::uint32_t>(c.b) << 16U |
-                               static_cast<std::uint32_t>(c.g) << 8U | c.r;
-    if (i < known && colours_[i] == word) continue;
-    rows[i] = colours_[i] = word;
-    uploaded_ += sizeof word;
+void Renderer::set_values(std::span<const float> values) {
+  reserve(kValues, values.size_bytes());
+  auto* const rows = buffers_[kValues].as<float>();
+  const std::size_t known = std::min(values_.size(), values.size());
+  values_.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i < known && values_[i] == values[i]) continue;
+    rows[i] = values_[i] = values[i];
+    uploaded_ += sizeof(float);
   }
 }
 
@@ -334,7 +353,7 @@ void Renderer::set_lips(std::span<const std::array<Index, 2>> lips) {
   lip_count_ = static_cast<std::uint32_t>(lips.size());
 }
 
-void Renderer::record(const Camera& camera, const Look& look) {
+void Renderer::record(const Camera& camera, const Look& look, const Scale& scale) {
   const DeviceFunctions& vk = device_.vk();
   const VkCommandBuffer commands = commands_.begin();
   constexpr float kFull = 255;
@@ -363,6 +382,8 @@ void Renderer::record(const Camera& camera, const Look& look) {
       look.clip.normal ? four(*look.clip.normal, look.clip.offset) : std::array<float, 4>{};
   push.half_width = {static_cast<float>(kLipWidth / size_.width),
                      static_cast<float>(kLipWidth / size_.height)};
+  push.value_of = points_ ? Points::kNumbers | scale.item << kItemBits : 1;
+  push.per_value = scale.known ? static_cast<float>(1 / scale.maximum) : -1;
   vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0,
                            nullptr);
   vk.CmdPushConstants(commands, layout_.get(),
@@ -390,8 +411,8 @@ void Renderer::record(const Camera& camera, const Look& look) {
                         &to_host, 0, nullptr, 0, nullptr);
 }
 
-void Renderer::draw(const Camera& camera, const Look& look) {
-  record(camera, look);
+void Renderer::draw(const Camera& camera, const Look& look, const Scale& scale) {
+  record(camera, look, scale);
   commands_.run();
 }
 

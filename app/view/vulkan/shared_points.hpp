@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places and normals that a simulation on the device that draws leaves there for its pictures: its
-// kernels write them, and no byte of them goes through the host. Each frame has buffers of its own
-// until nobody draws it any more, so that drawing never waits for the step that follows.
+// Places, normals and what triangles are coloured by, that a simulation on the device that draws
+// leaves there for its pictures: its kernels write them, and no byte of them goes through the host.
+// Each frame has buffers of its own until nobody draws it any more, so that drawing never waits for
+// the step that follows.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,11 +15,15 @@
 
 namespace sunder::app::view {
 
-/// Of all nodes of one frame; four floats each, of which the last one means nothing.
+/// Of one frame: places and normals of all nodes, four floats each, of which the last one means
+/// nothing; four of every triangle.
 struct Points {
-  Points(const Device& on, std::size_t nodes);
+  Points(const Device& on, std::size_t nodes, std::size_t most_triangles);
   const Device& device;
-  HostBuffer places, normals;  // no host reads or writes them
+  HostBuffer places, normals, values;  // no host reads or writes them
+
+  /// Numbers of a triangle, in the order of Field.
+  static constexpr std::uint32_t kNumbers = 4;
 };
 
 /// All but write() by whoever makes a backend: on the simulation's thread, as write() is.
@@ -38,7 +44,7 @@ class SharedPoints {
     std::shared_ptr<Points> points;
     std::unique_ptr<VulkanSurface> surface;
   };
-  [[nodiscard]] Frame* free_frame(Simulation& simulation, std::size_t nodes);
+  [[nodiscard]] Frame* free_frame(Simulation& simulation, const Surface& surface);
 
   Device* device_ = nullptr;  // null: nothing is shared
   std::optional<Commands> commands_;

@@ -65,13 +65,30 @@ TEST(Colours, FollowTheScale) {
   const auto triangles = triangles_of({4, 5, 6});
   const Paint ratio = paint(problem, state, triangles, {Field::yield, {}});
   EXPECT_EQ(ratio.maximum, 1);
-  EXPECT_EQ(ratio.triangles[0], red(0));
-  EXPECT_EQ(ratio.triangles[1], red(0.25));
-  EXPECT_EQ(ratio.triangles[2], red(1));
+  EXPECT_EQ(ratio.values, (std::vector<float>{0, 0.25F, 15}));
   const Paint fixed = paint(problem, state, triangles, {Field::stress, 0.3});
   EXPECT_EQ(fixed.maximum, 0.3);
-  EXPECT_EQ(fixed.triangles[1], red(0.5));
+  EXPECT_EQ(fixed.values[1], 0.15F);
   EXPECT_NE(fixed.label.find("MPa"), std::string::npos);
+}
+
+TEST(Colours, OfADeviceTakeTheScaleAlone) {
+  const Problem problem(by_law(MaterialLaw::linear));
+  State state = undeformed(problem);
+  state.stress.assign(problem.mesh().tets.size(), Voigt::Zero());
+  state.stress[5][3] = 0.15;
+  const auto triangles = triangles_of({4, 5, 6});
+  for (const input::Colour& colour : {input::Colour{Field::yield, {}},
+                                      {Field::stress, 0.3},
+                                      {Field::stress, {}},
+                                      {Field::strain, {}}}) {
+    const Paint here = paint(problem, state, triangles, colour);
+    const Paint there = paint(problem, state, triangles, colour, Values::on_device);
+    EXPECT_EQ(there.maximum, here.maximum);
+    EXPECT_EQ(there.label, here.label);
+    EXPECT_EQ(here.values.size(), triangles.size());
+    EXPECT_TRUE(there.values.empty());
+  }
 }
 
 TEST(Colours, WhatCannotBreakIsGreyAndWithoutStressNothingIsSaid) {
@@ -86,11 +103,17 @@ TEST(Colours, WhatCannotBreakIsGreyAndWithoutStressNothingIsSaid) {
   const auto triangles = triangles_of({0, last});
   const Paint none = paint(problem, state, triangles, {Field::yield, {}});
   EXPECT_TRUE(none.label.empty());
-  EXPECT_EQ(none.triangles[0], none.triangles[1]);
+  EXPECT_TRUE(none.values.empty());
   state.stress.assign(problem.mesh().tets.size(), Voigt::Zero());
-  const Paint known = paint(problem, state, triangles, {Field::yield, {}});
-  EXPECT_EQ(known.triangles[0], red(0));
-  EXPECT_EQ(known.triangles[1], (Color{176, 180, 184}));
+  state.stress[static_cast<std::size_t>(last)][3] = 9;
+  const Paint known = paint(problem, state, triangles, {Field::stress, {}});
+  EXPECT_EQ(known.values[0], 0);
+  EXPECT_EQ(known.maximum, 1) << "the frame's stress is not on the scale";
+  const auto grey = unbreakable(problem);
+  EXPECT_EQ(grey.front(), 0);
+  EXPECT_EQ(grey.back(), 1);
+  scene.materials["board"].yield.reset();
+  EXPECT_TRUE(unbreakable(Problem(scene)).empty()) << "nothing can break";
 }
 
 /// The undeformed strip, without a simulation.

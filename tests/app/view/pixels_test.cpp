@@ -106,7 +106,7 @@ TEST(Pixels, AFaceThatLooksAtTheEyeHasTheColourOfItsElement) {
       lowest = std::min(lowest, seen.problem->mesh().nodes[static_cast<std::size_t>(n)].z());
     }
     if (lowest < 0.99) continue;
-    const Color seen_there = seen.at(middle), meant = paint.triangles[t];
+    const Color seen_there = seen.at(middle), meant = red(paint.values[t] / paint.maximum);
     EXPECT_NEAR(seen_there.r, meant.r, 4);  // the front is curved by some thousandths
     EXPECT_NEAR(seen_there.g, meant.g, 4);
     EXPECT_NEAR(seen_there.b, meant.b, 4);

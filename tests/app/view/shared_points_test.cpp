@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a simulation on the device that draws, by places and normals that it leaves there:
-// the host writes none of them, and the pictures are those of places that it writes.
+// Pictures of a simulation on the device that draws, by places, normals and colours that it leaves
+// there: the host writes none of them, and the pictures are those of what it writes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
+#include "app/view/colours.hpp"
 #include "app/view/painter.hpp"
 #include "app/view/session.hpp"
 #include "core/frame/strip.hpp"
@@ -25,8 +27,7 @@ struct Shares {
     session.emplace(
         problem, [this] { return make(); }, true, kPicture, points);
     session->look().camera = {30, 20, 1};
-    // One colour for all: a scale that ends far beyond what there is.
-    session->look().colour = input::Colour{Field::stress, 1e9};
+    session->look().colour = input::Colour{Field::yield, std::nullopt};
     on_device.emplace(device, kPicture);
     by_host.emplace(device, kPicture);
   }
@@ -81,8 +82,40 @@ TEST(SharedPoints, PicturesAreThoseOfPlacesFromTheHost) {
   shares.expect_picture_of_host();
   shares.session->hand().redo(1);
   shares.expect_picture_of_host();
-  shares.session->look().colour = input::Colour{Field::strain, std::nullopt};
-  shares.expect_picture_of_host();
+}
+
+// By each measure of strength, on which the device's stress depends.
+TEST(SharedPoints, ColoursAreThoseOfValuesFromTheHost) {
+  for (const YieldMeasure measure :
+       {YieldMeasure::max_shear, YieldMeasure::tresca, YieldMeasure::principal}) {
+    Scene scene = strip(1e3, 3, 40);
+    scene.fracture.yield_measure = measure;
+    if (measure == YieldMeasure::principal) scene.fracture.model = FractureModel::p;
+    Shares shares(std::move(scene));
+    shares.session->step();
+    for (const Field field : {Field::stress, Field::yield, Field::strain, Field::displacement}) {
+      // The scale's end in the middle of what there is, so that every shade is there.
+      const Paint all = paint(*shares.problem, shares.show()->state, shares.show()->triangles,
+                              {field, std::nullopt});
+      std::vector<float> values = all.values;
+      std::ranges::sort(values);
+      ASSERT_GT(values[values.size() / 2], 0);
+      shares.session->look().colour = input::Colour{field, values[values.size() / 2]};
+      SCOPED_TRACE(static_cast<int>(field));
+      shares.expect_picture_of_host();
+    }
+  }
+}
+
+TEST(SharedPoints, AnotherFieldCostsNoByteOfTheHost) {
+  Shares shares;
+  shares.session->step();
+  const auto shown = shares.show();
+  const auto ratios = shares.draw(*shares.on_device, shown);
+  const std::uint64_t at = shares.on_device->renderer().uploaded();
+  shares.session->look().colour = input::Colour{Field::displacement, std::nullopt};
+  EXPECT_NE(shares.draw(*shares.on_device, shown), ratios);
+  EXPECT_EQ(shares.on_device->renderer().uploaded(), at);
 }
 
 TEST(SharedPoints, TheHostWritesNothingOfAFrameThatOnlyMoves) {
@@ -100,7 +133,9 @@ TEST(SharedPoints, TheHostWritesNothingOfAFrameThatOnlyMoves) {
     EXPECT_NE(shares.draw(*shares.on_device, moved), before);
     EXPECT_EQ(shares.on_device->renderer().uploaded(), at);
     static_cast<void>(shares.draw(*shares.by_host, shares.from_host(*moved)));
-    EXPECT_EQ(shares.by_host->renderer().uploaded(), host_at + 32 * moved->places.size());
+    const std::uint64_t by_host = shares.by_host->renderer().uploaded() - host_at;
+    EXPECT_GT(by_host, 32 * moved->places.size());  // and values
+    EXPECT_LE(by_host, 32 * moved->places.size() + 4 * moved->triangles.size());
   }
 }
 
