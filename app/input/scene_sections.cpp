@@ -101,6 +101,8 @@ Fibres read_fibres(const TomlTable& table, const std::string& file) {
   fibres.poisson_along = table.number("poisson_along");
   fibres.shear_along = table.number("shear_along");
   fibres.yield_across = table.number("yield_across");
+  fibres.toughness_across = table.number("toughness_across");
+  fibres.energy_across = table.number("energy_across");
   return fibres;
 }
 

@@ -201,26 +201,67 @@ AlongFibres along_fibres(const Material& m, const Fibres& f) {
   return of;
 }
 
+void check_toughness(const std::string& what, const Scene& scene, const Material& m,
+                     const Fibres& f) {
+  const struct {
+    const char *key, *unit, *along;
+    const std::optional<double>&across, &held;
+  } all[] = {{"toughness_across", "MPa sqrt(mm)", "toughness", f.toughness_across, m.toughness},
+             {"energy_across", "N/mm", "energy", f.energy_across, m.energy}};
+  for (const auto& row : all) {
+    if (!row.across) continue;
+    const std::string has = what + " has " + row.key;
+    if (!(*row.across > 0) || !std::isfinite(*row.across)) {
+      refuse(InputFault::out_of_range, has + " = " + in_digits(*row.across) +
+                                           "; it must be finite and above 0 " + row.unit);
+    }
+    if (!row.held) {
+      refuse(InputFault::missing_key,
+             has + ", but its material no " + row.along + ", which holds along them");
+    }
+    if (f.k1 || f.k2 || f.dispersion != 0 || f.young_along || f.poisson_along || f.shear_along ||
+        f.yield_across) {
+      refuse(InputFault::out_of_range,
+             has + " beside a stiffness or a strength by direction, with which the stress "
+                   "intensity is not known; leave one of them out");
+    }
+    const FractureModelRow& model = row_of(scene.fracture.model);
+    if (!model.grows_cracks) {
+      refuse(InputFault::out_of_range, has + ", which model " + in_quotes(model.name) +
+                                           " does not read; take model \"B\"");
+    }
+    if (scene.fracture.sif != SifSource::field) {
+      refuse(InputFault::out_of_range,
+             has + ", which takes K_I and K_II of the field; take fracture.sif = \"field\"");
+    }
+  }
+}
+
 /// Of one material.
 void check_families(const std::string& name, const Material& m, const Scene& scene,
                     const Mesh& mesh) {
   const std::string of = "material " + in_quotes(name) + " has fibres";
   const bool linear = m.law == MaterialLaw::linear;
-  if (m.fibres.size() > (linear ? 1 : kMostFamilies)) {
+  const bool guide = std::ranges::any_of(m.fibres, &Fibres::guide_cracks);
+  if (m.fibres.size() > (linear || guide ? 1 : kMostFamilies)) {
     refuse(InputFault::out_of_range,
            of + " of " + std::to_string(m.fibres.size()) + " families" +
-               (linear ? "; law \"linear\" takes one" : "; a material has at most 2"));
+               (guide    ? "; where they guide cracks it has one"
+                : linear ? "; law \"linear\" takes one"
+                         : "; a material has at most 2"));
   }
   const FractureModelRow& model = row_of(scene.fracture.model);
-  if (model.grows_cracks) {
+  if (model.grows_cracks && !guide) {
     refuse(InputFault::out_of_range,
-           of + ", of which model " + in_quotes(model.name) +
+           of + ", of whose stiffness model " + in_quotes(model.name) +
                " knows nothing: its stress intensity is that of isotropic bodies; take model "
-               "\"A\" or \"P\"");
+               "\"A\" or \"P\", or fibres that have a toughness_across alone");
   }
   for (std::size_t i = 0; i < m.fibres.size(); ++i) {
     const std::string what = name_of(name, i);
     check_direction(what, m.fibres[i], mesh);
+    check_toughness(what, scene, m, m.fibres[i]);
+    if (guide) continue;
     if (linear) {
       check_linear_law(what, m, m.fibres[i]);
     } else {
@@ -236,6 +277,7 @@ ElementFibres fibres_in(const Problem& problem, Index e) {
   const Material& m = problem.material(e);
   ElementFibres of;
   for (const Fibres& f : m.fibres) {
+    if (f.guide_cracks()) break;
     const auto place = static_cast<std::size_t>(of.count);
     FibreFamily& family = of.family[place];
     family.direction = direction_in(mesh, e, problem.shape(e).volume, f,
@@ -258,13 +300,31 @@ void Problem::lay_fibres() {
   for (const auto& [name, material] : scene_.materials) {
     if (!material.fibres.empty()) check_families(name, material, scene_, mesh());
   }
-  bool any = false;
-  for (const Index v : mesh().volume_of) any = any || !material_of_volume_[v]->fibres.empty();
+  bool any = false, guide = false;
+  for (const Index v : mesh().volume_of) {
+    for (const Fibres& f : material_of_volume_[v]->fibres) {
+      (f.guide_cracks() ? guide : any) = true;
+    }
+  }
+  if (guide) lay_guides();
   if (!any) return;
   std::vector<ElementFibres> all;
   for (Index e = 0; e < tet_count(); ++e) all.push_back(fibres_in(*this, e));
   fibres_ = std::make_shared<const std::vector<ElementFibres>>(std::move(all));
   note_fibres();
+}
+
+/// Fibres that guide cracks; 0 where there are none.
+void Problem::lay_guides() {
+  std::vector<Vec3> all(static_cast<std::size_t>(tet_count()), Vec3::Zero());
+  for (Index e = 0; e < tet_count(); ++e) {
+    const Material& m = material(e);
+    if (m.fibres.empty() || !m.fibres.front().guide_cracks()) continue;
+    all[static_cast<std::size_t>(e)] =
+        direction_in(mesh(), e, shape(e).volume, m.fibres.front(),
+                     name_of(mesh().volumes[mesh().volume_of[e]].name, 0));
+  }
+  guides_ = std::make_shared<const std::vector<Vec3>>(std::move(all));
 }
 
 void Problem::note_fibres() {
@@ -278,7 +338,7 @@ void Problem::note_fibres() {
 }
 
 int Problem::fibre_families() const {
-  int most = 0;
+  int most = guides_cracks() ? 1 : 0;
   for (Index e = 0; fibrous() && e < tet_count(); ++e) {
     most = std::max(most, (*fibres_)[static_cast<std::size_t>(e)].count);
   }
@@ -286,12 +346,14 @@ int Problem::fibre_families() const {
 }
 
 Vec3 Problem::fibre_direction(Index e, int family) const {
+  if (guides_cracks() && family == 0) return (*guides_)[static_cast<std::size_t>(e)];
   if (!fibrous()) return Vec3::Zero();
   return (*fibres_)[static_cast<std::size_t>(e)].family[static_cast<std::size_t>(family)].direction;
 }
 
 void Problem::take_fibres(const Problem& whole, std::span<const Index> elements) {
   fibres_ = whole.fibres_;
+  guides_ = elements.empty() ? whole.guides_ : nullptr;  // nothing of a part alone breaks
   if (fibres_ && !elements.empty()) {
     std::vector<ElementFibres> some;
     for (Index e : elements) some.push_back((*fibres_)[static_cast<std::size_t>(e)]);

@@ -85,7 +85,7 @@ Combined::Combined(const Problem& problem)
       board_(problem.mesh(), problem.scene().fracture.plane_normal),
       meter_(problem, board_),
       yields_(yields_of(problem)),
-      toughness_(problem),
+      toughness_(problem, board_),
       lists_(room_for_cracks(problem)),
       excluded_(problem.mesh().tets.size(), 0),
       pristine_(problem, board_, {}),
@@ -202,13 +202,13 @@ void Combined::drive_tips(const FractureState& state, std::vector<Finding>& find
   if (!any_tip_left(cracks_)) return;
   // The remote field of the intact body costs a solve; the field's K does without it.
   const RemoteField* remote = by_field() ? nullptr : &remote_field(state);
-  const FieldView view = by_field() ? field_view(state) : FieldView{};
+  FieldView view = by_field() ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
     face_pressure(board_, crack, state, findings, faces_);
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
       if (!by_field() && !formula_holds(crack, findings)) continue;
-      const auto growth = by_field() ? field_growth(meter_, crack, tip, view, findings)
+      const auto growth = by_field() ? field_growth(meter_, crack, tip, at_tip(view, crack, tip, state), findings)
                                      : tip_growth(board_, *remote, crack, tip, faces_, state);
       if (growth) driven_.push_back({crack.id, *growth});
     }
@@ -231,13 +231,13 @@ void Combined::tips(const FractureState& state, std::vector<TipState>& tips,
                     std::vector<Finding>& findings) {
   const bool formula = !by_field() && anything_destructible_ && any_tip_left(cracks_);
   const RemoteField* remote = formula ? &remote_field(state) : nullptr;
-  const FieldView view = by_field() ? field_view(state) : FieldView{};
+  FieldView view = by_field() ? field_view(state) : FieldView{};
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       tips.push_back(tip_state(board_, crack, tip));
       if (crack.tips[tip].ended) continue;
       if (by_field())
-        add_field_state(meter_, crack, tip, view, tips.back(), findings);
+        add_field_state(meter_, crack, tip, at_tip(view, crack, tip, state), tips.back(), findings);
       else if (remote)
         add_formula_state(*remote, crack, state, tips.back(), findings);
       add_toughness(crack, state, tips.back());
@@ -245,12 +245,18 @@ void Combined::tips(const FractureState& state, std::vector<TipState>& tips,
   }
 }
 
-/// E' is that of field K, whichever K drives the tip.
-ToughnessView Combined::toughness_at(const Crack& crack, std::size_t tip,
-                                     const FractureState& state) {
-  if (!toughness_.by_energy()) return toughness_.view(0);
-  return toughness_.view(
-      meter_.material_at(crack, tip, {state.destroyed, {}, {}}).effective_young());
+double Combined::young_at(const Crack& crack, std::size_t tip, const FractureState& state) {
+  if (!toughness_.by_energy()) return 0;
+  return meter_.material_at(crack, tip, {state.destroyed, {}, {}}).effective_young();
+}
+
+const FieldView& Combined::at_tip(FieldView& view, const Crack& crack, std::size_t tip,
+                                  const FractureState& state) {
+  if (toughness_.by_direction()) {
+    view.resistance = toughness_.around(crack.tips[tip].position, young_at(crack, tip, state),
+                                        state.destroyed);
+  }
+  return view;
 }
 
 /// Of the element that is judged first when the tip grows.
@@ -262,7 +268,7 @@ void Combined::add_toughness(const Crack& crack, const FractureState& state, Tip
   const Ray ray{end.position, turned(end.direction, theta), &crack, orientation(crack, at)};
   ElementView view{state.destroyed, yields_};
   const TipMaterial material = meter_.material_at(crack, at, {state.destroyed, {}, {}});
-  view.toughness = toughness_.view(material.effective_young());
+  view.toughness = toughness_.view(material.effective_young(), ray.direction);
   const Band& band = bands_.find(ray, view);
   if (band.elements.empty()) return;
   const double k_c = view.toughness.of(band.elements.front().element);
@@ -320,7 +326,8 @@ void Combined::grow(const DrivenTip& driven, const FractureState& state, Decisio
   CrackTip& tip = crack.tips[growth.terms.tip];
   const int sense = orientation(crack, growth.terms.tip);
   const Ray ray{tip.position, growth.direction, &crack, sense};
-  const auto toughness = toughness_at(crack, static_cast<std::size_t>(growth.terms.tip), state);
+  const double young = young_at(crack, static_cast<std::size_t>(growth.terms.tip), state);
+  const ToughnessView toughness = toughness_.view(young, growth.direction);
   const ElementView view{state.destroyed, yields_, taken_, false, toughness};
   const Band& band = bands_.find(ray, view);
   if (band.elements.empty()) {

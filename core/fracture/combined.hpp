@@ -53,9 +53,11 @@ class Combined final : public FractureCriterion {
   void reserve(Decision& decision) const;
   /// Fills driven_: K and direction of all tips that have not ended, from one state.
   void drive_tips(const FractureState& state, std::vector<Finding>& findings);
-  /// K_c of what lies ahead of a tip.
-  [[nodiscard]] ToughnessView toughness_at(const Crack& crack, std::size_t tip,
-                                           const FractureState& state);
+  /// E' that field K takes at a tip, where a toughness asks for it; else 0.
+  [[nodiscard]] double young_at(const Crack& crack, std::size_t tip, const FractureState& state);
+  /// `view` as it is at a tip.
+  [[nodiscard]] const FieldView& at_tip(FieldView& view, const Crack& crack, std::size_t tip,
+                                        const FractureState& state);
   void add_toughness(const Crack& crack, const FractureState& state, TipState& tip);
   [[nodiscard]] bool by_field() const { return problem_.scene().fracture.sif == SifSource::field; }
   /// Whether the formula has a remote stress for the crack; says why not, and where it is poor.

@@ -248,6 +248,11 @@ void add_body(Hash& hash, const Problem& problem) {
       const AlongFibres& linear = elasticity.fibres->linear;
       for (const double v : {linear.lambda, linear.alpha, linear.beta, linear.mu}) hash.add(v);
     }
+    if (problem.guides_cracks() && !m.fibres.empty()) {
+      hash.add(problem.fibre_direction(e, 0));
+      hash.add(m.fibres.front().toughness_across.value_or(-1));
+      hash.add(m.fibres.front().energy_across.value_or(-1));
+    }
     // By element as in recordings that are older than the word.
     if (m.volume != MaterialVolume::element) hash.add(static_cast<std::uint8_t>(m.volume));
   }

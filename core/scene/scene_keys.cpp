@@ -175,8 +175,8 @@ SceneKey fibres_row() {
   return row("material", "fibres", KeyType::tables, "",
              "a family of fibres, a table; or two families, an array of two tables (method.md "
              "\"Fibres\")",
-             "three; two with law \"linear\"; with a model that grows cracks: error; backend "
-             "\"vulkan\": exit code 4");
+             "three; two with law \"linear\"; with a model that grows cracks, but for "
+             "`toughness_across`: error; with a stiffness on backend \"vulkan\": exit code 4");
 }
 
 std::vector<SceneKey> fibre_rows() {
@@ -216,6 +216,13 @@ std::vector<SceneKey> fibre_rows() {
           "0 or below, no `yield`, a second family, `fracture.averaging`, a law but \"linear\" "
           "with "
           "`fracture.stress` \"cauchy\": error"),
+      row("fibres", "toughness_across", number, "",
+          "K_c of cracks across [MPa sqrt(mm)]; `toughness` holds along (method.md \"Toughness by "
+          "direction\"); such fibres have no stiffness",
+          "0 or below, no `toughness`, beside a stiffness, `yield_across` or a second family, a "
+          "model but \"B\", `fracture.sif` \"formula\": error"),
+      row("fibres", "energy_across", number, "",
+          "G_c of cracks across [N/mm], where `energy` holds along", "as `toughness_across`"),
       row("around", "point", vector, "", "on the axis [mm]", "", kRequired),
       row("around", "axis", vector, "", "its direction", "zero: error", kRequired),
   };

@@ -80,10 +80,12 @@ class Problem {
     if (fibrous()) return small_strain_of_element_[e];
     return small_strain_of_volume_[mesh().volume_of[e]];
   }
-  /// Whether any of its elements has fibres; small_strain(e) has those of element e.
+  /// Whether any of its elements has fibres with a stiffness; small_strain(e) has those of e.
   [[nodiscard]] bool fibrous() const { return fibres_ != nullptr; }
   /// Most families that an element has, 0 to 2.
   [[nodiscard]] int fibre_families() const;
+  /// Whether any has fibres without one, which guide cracks.
+  [[nodiscard]] bool guides_cracks() const { return guides_ != nullptr; }
   /// Unit vector of a family in the undeformed element; 0 where it has none.
   [[nodiscard]] Vec3 fibre_direction(Index e, int family) const;
   /// Patches of the elements that pool their volume (body/pools.hpp); null where none does.
@@ -144,6 +146,7 @@ class Problem {
   void build_shapes();
   void make_pools();
   void lay_fibres();
+  void lay_guides();
   void note_fibres();
   void take_fibres(const Problem& whole, std::span<const Index> elements);
   [[nodiscard]] bool can_pool() const;
@@ -173,6 +176,7 @@ class Problem {
   std::shared_ptr<const fem::Pools> pools_;
   std::shared_ptr<const std::vector<ElementFibres>> fibres_;  // of elements; null: none has any
   std::vector<SmallStrain> small_strain_of_element_;          // where fibres_ is there
+  std::shared_ptr<const std::vector<Vec3>> guides_;           // likewise; null: none
   bool finite_ = false;
   bool reads_toughness_ = false;  // the fracture model grows cracks
   std::vector<Index> dof_;

@@ -41,6 +41,11 @@ struct Fibres {
   std::optional<double> young_along = {}, poisson_along = {}, shear_along = {};
   /// Strength across [MPa], > 0, where the material's yield holds along; none: as along.
   std::optional<double> yield_across = {};
+  /// In place of all of the above but the direction: fibres without a stiffness of their own, which
+  /// guide cracks (method.md "Toughness by direction"). K_c [MPa sqrt(mm)] or G_c [N/mm] of cracks
+  /// across them, > 0, where the material's toughness or energy holds along.
+  std::optional<double> toughness_across = {}, energy_across = {};
+  [[nodiscard]] bool guide_cracks() const { return toughness_across || energy_across; }
 };
 
 /// Isotropic elasticity but for its fibres; without yield nothing ruptures in it, without yield and

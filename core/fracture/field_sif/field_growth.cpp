@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fracture/field_sif/field_growth.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "fracture/field_sif/tangential_stress.hpp"
+#include "fracture/kinked_crack.hpp"
 #include "fracture/stress_intensity.hpp"
 
 namespace sunder::fracture {
@@ -22,6 +24,16 @@ void add_findings(const Disturbances& disturbed, const Crack& crack, std::size_t
   add(disturbed.notch, Finding::Kind::field_notch);
   add(disturbed.coarse && disturbed.left_out, Finding::Kind::field_coarse);
   add(disturbed.coarse && !disturbed.left_out, Finding::Kind::field_split);
+}
+
+/// By the largest tangential stress, or, where tissue resists by direction, by the energy.
+Turn turn_of(const FieldIntensity& measured, const FieldView& view) {
+  const auto [k_1, k_2, k_3] = measured.factors;
+  if (view.resistance) {
+    return easiest_turn(k_1, k_2, measured.frame.direction, *view.resistance).value_or(Turn{});
+  }
+  const double theta = tangential_angle(k_1, k_2);
+  return {theta, tangential_intensity(k_1, k_2, theta)};
 }
 
 }  // namespace
@@ -45,15 +57,16 @@ std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& c
     terms.k_2 = k_2;
     terms.k_3 = k_3;
   }
-  const double from_frame = tangential_angle(k_1, k_2);
-  double k = tangential_intensity(k_1, k_2, from_frame);
-  if (!(k > 0)) return std::nullopt;
+  const Turn turn = turn_of(measured, view);
+  if (!(turn.intensity > 0)) return std::nullopt;
+  double k = turn.intensity;
   if (measured.disturbed.strain) {  // K of small strain has no meaning, the energy has
     if (!terms.j || !(*terms.j > 0)) return std::nullopt;
     k = std::sqrt(*terms.j * measured.material.effective_young());
+    if (view.resistance) k *= turn.intensity / std::hypot(std::max(k_1, 0.0), k_2);
   }
   const Vec2& d = crack.tips[tip].direction;
-  const double theta = growth_angle(d, turned(measured.frame.direction, from_frame));
+  const double theta = growth_angle(d, turned(measured.frame.direction, turn.theta));
   terms.k_field = k;
   terms.theta_field = theta * 180 / std::numbers::pi;
   return theta;

@@ -14,6 +14,7 @@
 #include "fracture/field_sif/interaction_integral.hpp"
 #include "fracture/field_sif/notch.hpp"
 #include "fracture/field_sif/tip_shift.hpp"
+#include "fracture/tip_resistance.hpp"
 #include "sunder/crack.hpp"
 
 namespace sunder::fracture {
@@ -34,6 +35,8 @@ struct FieldView {
   /// 0 they overlap), or pressed on each other (K_I is 0).
   enum class Lips : std::uint8_t { unknown, free, pressed };
   Lips lips = Lips::unknown;
+  /// By the direction in which the tip would grow; none: the same in all.
+  std::optional<TipResistance> resistance = {};
 };
 
 /// What disturbs the field around a tip.

@@ -39,7 +39,7 @@ SplitCracks::SplitCracks(const Problem& problem)
     : problem_(problem),
       board_(problem.mesh(), problem.scene().fracture.plane_normal),
       meter_(problem, board_),
-      toughness_(problem),
+      toughness_(problem, board_),
       body_(problem),
       front_(board_, problem, body_),
       lips_(problem, board_),
@@ -127,8 +127,8 @@ void SplitCracks::tips(const FractureState& state, std::vector<TipState>& tips,
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       tips.push_back(tip_state(board_, crack, tip));
       if (crack.tips[tip].ended) continue;
-      field.lips = lips_at(crack, tip);
-      add_field_state(meter_, measured(crack, tip), tip, field, tips.back(), findings);
+      add_field_state(meter_, measured(crack, tip), tip, at_tip(field, crack, tip), tips.back(),
+                      findings);
       add_toughness(crack, tip, field, tips.back());
     }
   }
@@ -139,8 +139,8 @@ void SplitCracks::add_toughness(const Crack& crack, std::size_t tip, const Field
   if (!toughness_.any()) return;
   const double theta = state.theta.value_or(0.0) * std::numbers::pi / 180;
   const Vec2 direction = turned(crack.tips[tip].direction, theta);
-  const double k_c =
-      toughness_at(crack, tip, field).of(ahead(crack, tip, direction, field.destroyed));
+  const double k_c = toughness_.view(young_at(crack, tip, field), direction)
+                         .of(ahead(crack, tip, direction, field.destroyed));
   if (!(k_c > 0)) return;
   state.toughness = k_c;
   const TipMaterial material = meter_.material_at(measured(crack, tip), tip, field);
@@ -155,8 +155,8 @@ void SplitCracks::decide(const FractureState& state, Decision& decision) {
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
-      field.lips = lips_at(crack, tip);
-      const auto growth = field_growth(meter_, measured(crack, tip), tip, field, decision.findings);
+      const auto growth = field_growth(meter_, measured(crack, tip), tip,
+                                       at_tip(field, crack, tip), decision.findings);
       if (growth) driven_.push_back({crack.id, *growth});
     }
   }
@@ -200,7 +200,8 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   Crack& crack = cracks_[static_cast<std::size_t>(driven.crack)];
   SplitCrack& split = splits_[static_cast<std::size_t>(driven.crack)];
   const double k = growth.terms.k, length = board_.h();
-  const ToughnessView toughness = toughness_at(crack, tip, view(state));
+  const ToughnessView toughness =
+      toughness_.view(young_at(crack, tip, view(state)), growth.direction);
   const auto lets_pass = [&](Index e) {
     if (const double k_c = toughness.of(e); k_c > 0) return k >= k_c;
     const double yield = problem_.yield(e);
@@ -237,11 +238,18 @@ void SplitCracks::grow(const Driven& driven, const FractureState& state, Decisio
   exclude(split, decision);
 }
 
-/// With the E' that field K takes at the tip.
-ToughnessView SplitCracks::toughness_at(const Crack& crack, std::size_t tip,
-                                        const FieldView& field) {
-  if (!toughness_.by_energy()) return toughness_.view(0);
-  return toughness_.view(meter_.material_at(measured(crack, tip), tip, field).effective_young());
+double SplitCracks::young_at(const Crack& crack, std::size_t tip, const FieldView& field) {
+  if (!toughness_.by_energy()) return 0;
+  return meter_.material_at(measured(crack, tip), tip, field).effective_young();
+}
+
+const FieldView& SplitCracks::at_tip(FieldView& field, const Crack& crack, std::size_t tip) {
+  field.lips = lips_at(crack, tip);
+  if (toughness_.by_direction()) {
+    field.resistance = toughness_.around(crack.tips[tip].position, young_at(crack, tip, field),
+                                         field.destroyed);
+  }
+  return field;
 }
 
 /// The live element half an edge length ahead of a tip.

@@ -73,8 +73,10 @@ class SplitCracks final : public FractureCriterion {
   void follow(const SplitStep& step, Decision& decision) const;
   void exclude(const SplitCrack& split, Decision& decision);
   [[nodiscard]] bool full() const;
-  [[nodiscard]] ToughnessView toughness_at(const Crack& crack, std::size_t tip,
-                                           const FieldView& field);
+  /// E' that field K takes at a tip, where a toughness asks for it; else 0.
+  [[nodiscard]] double young_at(const Crack& crack, std::size_t tip, const FieldView& field);
+  /// `field` as it is at a tip.
+  [[nodiscard]] const FieldView& at_tip(FieldView& field, const Crack& crack, std::size_t tip);
   [[nodiscard]] Index ahead(const Crack& crack, std::size_t tip, const Vec2& direction,
                             std::span<const std::uint8_t> destroyed) const;
   void add_toughness(const Crack& crack, std::size_t tip, const FieldView& field, TipState& state);

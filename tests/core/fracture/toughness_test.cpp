@@ -21,8 +21,7 @@ using test::tension;
 struct ToughElements {
   std::vector<std::uint8_t> dead = std::vector<std::uint8_t>(5, 0);
   std::vector<double> yields = std::vector<double>(5, 0.0);
-  std::vector<double> intensity = std::vector<double>(5, 1.0);
-  std::vector<double> energy = std::vector<double>(5, 0.0);
+  std::vector<GivenToughness> given = std::vector<GivenToughness>(5, {1, 0});
   double young = 0;
   [[nodiscard]] Walk walk(std::initializer_list<double> rhos, double k, double size = 1) const {
     Band band;
@@ -30,7 +29,7 @@ struct ToughElements {
     for (const double rho : rhos)
       band.elements.push_back({static_cast<Index>(band.elements.size()), rho});
     Walk walk;
-    walk_band(band, 1, k, 0, {dead, yields, {}, false, {intensity, energy, young}}, walk);
+    walk_band(band, 1, k, 0, {dead, yields, {}, false, {given, {}, {}, young}}, walk);
     return walk;
   }
 };
@@ -79,7 +78,7 @@ TEST(ToughWalk, TakesTheFirstElementHoweverFar) {
 
 TEST(ToughWalk, StopsBeforeATougherElement) {
   ToughElements some;
-  some.intensity[1] = 1.5;
+  some.given[1].intensity = 1.5;
   const Walk walk = some.walk({0.2, 0.55, 0.7}, 1.2);
   ASSERT_EQ(walk.passed.size(), 1U) << "weaker ones behind it live";
   EXPECT_EQ(walk.advance, 0.55) << "at most the survivor's rho";
@@ -89,14 +88,14 @@ TEST(ToughWalk, StopsBeforeATougherElement) {
 
 TEST(ToughWalk, StopsBeforeTheUnbreakable) {
   ToughElements some;
-  some.intensity[1] = 0;
+  some.given[1].intensity = 0;
   EXPECT_EQ(some.walk({0.2, 0.55, 0.7}, 9).passed.size(), 1U);
 }
 
 // A material without toughness beside one with: Eq. 1 decides in it, r_e = K^2/(2 pi yield^2).
 TEST(ToughWalk, LeavesElementsWithYieldAloneToEq1) {
   ToughElements some;
-  some.intensity[1] = 0;
+  some.given[1].intensity = 0;
   some.yields[1] = 1;
   const double k = std::sqrt(2 * pi * 0.58);  // reach .58, past .55 and short of .6
   const Walk walk = some.walk({0.2, 0.55}, k);
@@ -109,8 +108,7 @@ TEST(ToughWalk, LeavesElementsWithYieldAloneToEq1) {
 
 TEST(ToughWalk, MakesKcOfAnEnergyByTheYoungOfTheTip) {
   ToughElements some;
-  some.intensity.assign(5, 0.0);
-  some.energy.assign(5, 0.5);
+  some.given.assign(5, {0, 0.5});
   some.young = 8;  // K_c = sqrt(.5 * 8) = 2
   EXPECT_TRUE(some.walk({0.2}, 1.999).passed.empty());
   EXPECT_EQ(some.walk({0.2}, 2).passed.size(), 1U);
@@ -222,15 +220,16 @@ TEST(Toughness, IsThatOfTheElementsMaterial) {
   scene.materials["board"].toughness = 2;
   scene.materials["strong"].energy = 0.25;
   const Problem problem(std::move(scene));
-  const Toughness toughness(problem);
+  const Board board(problem.mesh(), {});
+  const Toughness toughness(problem, board);
   EXPECT_TRUE(toughness.any());
   EXPECT_TRUE(toughness.by_energy());
-  const ToughnessView view = toughness.view(100);
+  const ToughnessView view = toughness.view(100, Vec2::UnitX());
   for (Index e = 0; e < problem.tet_count(); ++e)
     EXPECT_EQ(view.of(e), problem.material(e).toughness ? 2 : 5);
   const Problem plain(test::edge_slit(3));
-  EXPECT_FALSE(Toughness(plain).any());
-  EXPECT_EQ(Toughness(plain).view(100).of(0), 0);
+  EXPECT_FALSE(Toughness(plain, board).any());
+  EXPECT_EQ(Toughness(plain, board).view(100, Vec2::UnitX()).of(0), 0);
 }
 
 }  // namespace

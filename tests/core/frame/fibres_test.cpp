@@ -458,7 +458,7 @@ TEST(Fibres, BadInputIsRefused) {
   expect_refused(odd([](S&, M& m, F&) { m.volume = MaterialVolume::pooled; }, true),
                  "its law \"linear\" pools volume only where no material has fibres");
   expect_refused(odd([](S& s, M&, F&) { s.fracture.model = FractureModel::b; }),
-                 "of which model \"B\" knows nothing");
+                 "of whose stiffness model \"B\" knows nothing");
   expect_refused(odd([](S&, M& m, F& f) { m.fibres.push_back(f); }, true),
                  "law \"linear\" takes one");
   expect_refused(odd([](S&, M&, F& f) { f.k1 = 1; }, true),
@@ -501,6 +501,58 @@ TEST(Fibres, BadStrengthIsRefused) {
                      },
                      true),
                  "leave fracture.averaging out");
+}
+
+TEST(Fibres, BadToughnessIsRefused) {
+  // Of model B, whose fibres have no stiffness.
+  const auto guided = [](const std::function<void(Scene&, Material&, Fibres&)>& change) {
+    return odd(
+        [&](Scene& s, Material& m, Fibres& f) {
+          s.fracture.model = FractureModel::b;
+          s.fracture.sif = SifSource::field;
+          s.fracture.plane_normal = Vec3(0, 0, 1);
+          m.toughness = 1;
+          f = Fibres{};
+          f.direction = Vec3(1, 0, 0);
+          f.toughness_across = 2;
+          change(s, m, f);
+        },
+        true);
+  };
+  const Problem good(guided([](Scene&, Material&, Fibres&) {}));
+  EXPECT_TRUE(good.guides_cracks());
+  EXPECT_FALSE(good.fibrous());
+  EXPECT_EQ(good.fibre_families(), 1);
+  EXPECT_EQ(good.fibre_direction(3, 0), Vec3(1, 0, 0));
+  using S = Scene;
+  using M = Material;
+  using F = Fibres;
+  for (const double value : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    expect_refused(guided([&](S&, M&, F& f) { f.toughness_across = value; }),
+                   "it must be finite and above 0 MPa sqrt(mm)");
+  }
+  expect_refused(guided([](S&, M& m, F&) {
+                   m.toughness = {};
+                   m.energy = 1;
+                 }),
+                 "has toughness_across, but its material no toughness, which holds along them");
+  expect_refused(guided([](S&, M&, F& f) { f.energy_across = 1; }),
+                 "has energy_across, but its material no energy");
+  expect_refused(guided([](S&, M&, F& f) { f.young_along = 15; }),
+                 "has toughness_across beside a stiffness or a strength by direction");
+  expect_refused(guided([](S&, M& m, F& f) {
+                   m.yield = 1;
+                   f.yield_across = 1;
+                 }),
+                 "beside a stiffness or a strength");
+  expect_refused(guided([](S&, M& m, F& f) { m.fibres.push_back(f); }),
+                 "where they guide cracks it has one");
+  expect_refused(guided([](S& s, M&, F&) { s.fracture.model = FractureModel::a; }),
+                 "which model \"A\" does not read; take model \"B\"");
+  expect_refused(guided([](S& s, M&, F&) { s.fracture.sif = SifSource::formula; }),
+                 "take fracture.sif = \"field\"");
+  expect_refused(guided([](S&, M&, F& f) { f.direction = Vec3::Zero(); }),
+                 "it must be finite and not zero");
 }
 
 /// Of stress in every element of a cube whose fibres run along x.
