@@ -212,8 +212,8 @@ void check_toughness(const std::string& what, const Scene& scene, const Material
     if (!row.across) continue;
     const std::string has = what + " has " + row.key;
     if (!(*row.across > 0) || !std::isfinite(*row.across)) {
-      refuse(InputFault::out_of_range, has + " = " + in_digits(*row.across) +
-                                           "; it must be finite and above 0 " + row.unit);
+      refuse(InputFault::out_of_range,
+             has + " = " + in_digits(*row.across) + "; it must be finite and above 0 " + row.unit);
     }
     if (!row.held) {
       refuse(InputFault::missing_key,
@@ -222,13 +222,14 @@ void check_toughness(const std::string& what, const Scene& scene, const Material
     if (f.k1 || f.k2 || f.dispersion != 0 || f.young_along || f.poisson_along || f.shear_along ||
         f.yield_across) {
       refuse(InputFault::out_of_range,
-             has + " beside a stiffness or a strength by direction, with which the stress "
-                   "intensity is not known; leave one of them out");
+             has +
+                 " beside a stiffness or a strength by direction, with which the stress "
+                 "intensity is not known; leave one of them out");
     }
     const FractureModelRow& model = row_of(scene.fracture.model);
     if (!model.grows_cracks) {
-      refuse(InputFault::out_of_range, has + ", which model " + in_quotes(model.name) +
-                                           " does not read; take model \"B\"");
+      refuse(InputFault::out_of_range,
+             has + ", which model " + in_quotes(model.name) + " does not read; take model \"B\"");
     }
     if (scene.fracture.sif != SifSource::field) {
       refuse(InputFault::out_of_range,
@@ -244,11 +245,10 @@ void check_families(const std::string& name, const Material& m, const Scene& sce
   const bool linear = m.law == MaterialLaw::linear;
   const bool guide = std::ranges::any_of(m.fibres, &Fibres::guide_cracks);
   if (m.fibres.size() > (linear || guide ? 1 : kMostFamilies)) {
-    refuse(InputFault::out_of_range,
-           of + " of " + std::to_string(m.fibres.size()) + " families" +
-               (guide    ? "; where they guide cracks it has one"
-                : linear ? "; law \"linear\" takes one"
-                         : "; a material has at most 2"));
+    refuse(InputFault::out_of_range, of + " of " + std::to_string(m.fibres.size()) + " families" +
+                                         (guide    ? "; where they guide cracks it has one"
+                                          : linear ? "; law \"linear\" takes one"
+                                                   : "; a material has at most 2"));
   }
   const FractureModelRow& model = row_of(scene.fracture.model);
   if (model.grows_cracks && !guide) {

@@ -208,8 +208,9 @@ void Combined::drive_tips(const FractureState& state, std::vector<Finding>& find
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
       if (!by_field() && !formula_holds(crack, findings)) continue;
-      const auto growth = by_field() ? field_growth(meter_, crack, tip, at_tip(view, crack, tip, state), findings)
-                                     : tip_growth(board_, *remote, crack, tip, faces_, state);
+      const auto growth =
+          by_field() ? field_growth(meter_, crack, tip, at_tip(view, crack, tip, state), findings)
+                     : tip_growth(board_, *remote, crack, tip, faces_, state);
       if (growth) driven_.push_back({crack.id, *growth});
     }
   }
@@ -253,8 +254,8 @@ double Combined::young_at(const Crack& crack, std::size_t tip, const FractureSta
 const FieldView& Combined::at_tip(FieldView& view, const Crack& crack, std::size_t tip,
                                   const FractureState& state) {
   if (toughness_.by_direction()) {
-    view.resistance = toughness_.around(crack.tips[tip].position, young_at(crack, tip, state),
-                                        state.destroyed);
+    view.resistance =
+        toughness_.around(crack.tips[tip].position, young_at(crack, tip, state), state.destroyed);
   }
   return view;
 }

@@ -8,7 +8,7 @@
 namespace sunder::fracture {
 
 struct TipResistance {
-  double along = 0;           ///< mean K_c^2 of cracks along the fibres [MPa^2 mm]
+  double along = 0;            ///< mean K_c^2 of cracks along the fibres [MPa^2 mm]
   Mat3 across = Mat3::Zero();  ///< n . across n: what growth with the normal n takes beyond that
   const BoardPlane* plane = nullptr;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a body's materials oppose to cracks that grow (method.md "Toughness"): K_c as given, or by
-// G_c = K_c^2/E' with the E' that field K takes at the tip; of a tissue with fibres by the direction
-// of growth (method.md "Toughness by direction").
+// G_c = K_c^2/E' with the E' that field K takes at the tip; of a tissue with fibres by the
+// direction of growth (method.md "Toughness by direction").
 #pragma once
 
 #include <optional>
@@ -50,8 +50,8 @@ class Toughness {
   [[nodiscard]] ToughnessView view(double young, const Vec2& direction) const;
   /// Mean by volume over live elements within 1.5 h of a place; none: no fibres guide cracks there.
   /// Allocates nothing.
-  [[nodiscard]] std::optional<TipResistance> around(
-      const Vec2& place, double young, std::span<const std::uint8_t> destroyed) const;
+  [[nodiscard]] std::optional<TipResistance> around(const Vec2& place, double young,
+                                                    std::span<const std::uint8_t> destroyed) const;
 
  private:
   const Problem& problem_;

@@ -11,8 +11,8 @@
 namespace sunder::fracture {
 
 /// Measures one tip and writes what the field says into `terms` (K_I to K_III, and K and theta by
-/// the largest tangential stress, or by energy where tissue resists by direction), beside what drives the tip. Returns theta [rad] from the tip's
-/// direction; none when nothing opens the crack.
+/// the largest tangential stress, or by energy where tissue resists by direction), beside what
+/// drives the tip. Returns theta [rad] from the tip's direction; none when nothing opens the crack.
 std::optional<double> add_field_terms(FieldIntensityMeter& meter, const Crack& crack,
                                       std::size_t tip, const FieldView& view, SifTerms& terms,
                                       std::vector<Finding>& findings);

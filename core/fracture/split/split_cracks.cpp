@@ -155,8 +155,8 @@ void SplitCracks::decide(const FractureState& state, Decision& decision) {
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       if (crack.tips[tip].ended) continue;
-      const auto growth = field_growth(meter_, measured(crack, tip), tip,
-                                       at_tip(field, crack, tip), decision.findings);
+      const auto growth = field_growth(meter_, measured(crack, tip), tip, at_tip(field, crack, tip),
+                                       decision.findings);
       if (growth) driven_.push_back({crack.id, *growth});
     }
   }
@@ -246,8 +246,8 @@ double SplitCracks::young_at(const Crack& crack, std::size_t tip, const FieldVie
 const FieldView& SplitCracks::at_tip(FieldView& field, const Crack& crack, std::size_t tip) {
   field.lips = lips_at(crack, tip);
   if (toughness_.by_direction()) {
-    field.resistance = toughness_.around(crack.tips[tip].position, young_at(crack, tip, field),
-                                         field.destroyed);
+    field.resistance =
+        toughness_.around(crack.tips[tip].position, young_at(crack, tip, field), field.destroyed);
   }
   return field;
 }

@@ -37,9 +37,10 @@ struct PlateOf {
     tissue.fibres = {family};
     scene.materials["board"] = tissue;
     scene.supports.push_back({Box{{-1, -0.1, -1}, {99, 0.1, 2}}, Axes{7}});
-    Instrument grip{
-        "grip", Grip{Box{{-1, kPlateHeight - 0.1, -1}, {99, kPlateHeight + 0.1, 2}}, Vec3(0, 2, 0), Axes{7}},
-        {}};
+    Instrument grip{"grip",
+                    Grip{Box{{-1, kPlateHeight - 0.1, -1}, {99, kPlateHeight + 0.1, 2}},
+                         Vec3(0, 2, 0), Axes{7}},
+                    {}};
     grip.ramp = Ramp{0, 1};
     scene.instruments = {grip};
     PresetCrack notch;
@@ -86,8 +87,7 @@ double by_energy(double k_1, double k_2, double fibres, double ratio) {
     const double opening = half * (k_1 * (1 + c) - 3 * k_2 * s);
     const double sliding = half * (k_1 * s + k_2 * (3 * c - 1));
     const double across = std::sin((degrees - fibres) * kOneDegree);
-    const double g =
-        (opening * opening + sliding * sliding) / (1 + (ratio - 1) * across * across);
+    const double g = (opening * opening + sliding * sliding) / (1 + (ratio - 1) * across * across);
     if (opening > 0 && g > best) {
       best = g;
       at = degrees;
