@@ -31,6 +31,7 @@ Ball to_ball(const sunder_selection& s, const char* what) {
 
 std::shared_ptr<const Problem> SceneObject::problem() const {
   Scene complete = scene;
+  complete.mesh.fields = fields;
   for (std::size_t m = 0; m < materials.size(); ++m) {
     complete.materials[scene.mesh.volumes[m].name] = materials[m];
   }

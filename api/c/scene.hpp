@@ -2,6 +2,11 @@
 // A scene under construction.
 #pragma once
 
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "c/handles.hpp"
 #include "sunder/problem.hpp"
 
@@ -13,6 +18,7 @@ class SceneObject final : public Object {
 
   Scene scene;  ///< its mesh has one volume per material
   std::vector<Material> materials;
+  std::map<std::string, std::vector<Vec3>> fields;  ///< of the mesh that will be there, by name
   bool attribution = false;
   std::vector<std::byte> pipeline_cache;  ///< that the host has kept
 

@@ -172,6 +172,40 @@ SUNDER_API sunder_status sunder_material_preset(const char* preset, sunder_mater
 SUNDER_API sunder_status sunder_scene_add_material(sunder_scene scene,
                                                    const sunder_material* material, int32_t* index);
 
+enum {
+  SUNDER_FIBRES_STRAIGHT = 0,  ///< along `direction` everywhere
+  SUNDER_FIBRES_AROUND = 1,    ///< round the axis `direction` through `point`
+  SUNDER_FIBRES_FIELD = 2      ///< as `field` says for each element
+};
+
+/// A family of fibres (docs/method.md "Fibres" and "Toughness by direction"). What is 0 is not
+/// given, but k2 and poisson_along, which come with k1 and young_along.
+typedef struct sunder_fibres {
+  uint32_t struct_size;
+  int32_t run;                ///< SUNDER_FIBRES_*
+  double direction[3];        ///< of any length but 0
+  double point[3];            ///< [mm]
+  const double* field;        ///< (tets x 3), of any length but 0 where the material is
+  size_t field_size;          ///< 3 * tets
+  double k1, k2, dispersion;  ///< laws of finite deformation: k1 [MPa], dispersion 0 to 1/3
+  double young_along, poisson_along, shear_along;  ///< law linear: the moduli [MPa]
+  double yield_across;      ///< strength across [MPa]; the material's yield holds along
+  double toughness_across;  ///< K_c of cracks across [MPa sqrt(mm)], the material's holds along
+  double energy_across;     ///< G_c likewise [N/mm]
+} sunder_fibres;
+
+#define SUNDER_FIBRES_INIT                                                                       \
+  {                                                                                              \
+    sizeof(sunder_fibres), SUNDER_FIBRES_STRAIGHT, {0, 0, 0}, {0, 0, 0}, NULL, 0, 0, 0, 0, 0, 0, \
+        0, 0, 0, 0                                                                               \
+  }
+
+SUNDER_API void sunder_fibres_init(sunder_fibres* fibres);
+/// A family of a material that has been added, by its index; a second call adds a second one. A
+/// field goes with the mesh that is there when the simulation is made.
+SUNDER_API sunder_status sunder_scene_add_fibres(sunder_scene scene, int32_t material,
+                                                 const sunder_fibres* fibres);
+
 typedef int32_t sunder_selection_kind;
 enum {
   SUNDER_SELECT_IDS = 0,  ///< ids, id_count

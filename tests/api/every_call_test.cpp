@@ -49,6 +49,7 @@ struct CallRoom {
   sunder_support support;
   sunder_instrument instrument;
   sunder_preset_crack preset;
+  sunder_fibres fibres;
   sunder_selection selection;
   sunder_fracture_options fracture;
   sunder_solver_options solver;
@@ -158,6 +159,7 @@ std::vector<EveryCall> calls_of_scenes() {
       SUNDER_CALL(scene, sunder_scene_add_instrument, &r.instrument, r.ids),
       SUNDER_CALL(scene, sunder_scene_add_crack, &r.preset),
       SUNDER_CALL(scene, sunder_scene_add_removal, 0, &r.selection),
+      SUNDER_CALL(scene, sunder_scene_add_fibres, 0, &r.fibres),
       SUNDER_CALL(scene, sunder_scene_set_fracture, &r.fracture),
       SUNDER_CALL(scene, sunder_scene_set_solver, &r.solver),
       SUNDER_CALL(scene, sunder_scene_set_steps, 1),

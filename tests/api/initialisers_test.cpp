@@ -49,6 +49,7 @@ TEST(CInitialisers, SetTheDefaultsOfTheFunctions) {
   expect_defaults(all.support, sunder_support_init);
   expect_defaults(all.instrument, sunder_instrument_init);
   expect_defaults(all.crack, sunder_preset_crack_init);
+  expect_defaults(all.fibres, sunder_fibres_init);
   expect_defaults(all.fracture, sunder_fracture_options_init);
   expect_defaults(all.solver, sunder_solver_options_init);
 }

@@ -78,6 +78,8 @@ std::vector<Misuse> null_pointers() {
        [](World& w) { return sunder_scene_add_instrument(w.scene, nullptr, nullptr); }},
       {"crack_null", SUNDER_ERROR_NULL, "crack",
        [](World& w) { return sunder_scene_add_crack(w.scene, nullptr); }},
+      {"fibres_null", SUNDER_ERROR_NULL, "fibres",
+       [](World& w) { return sunder_scene_add_fibres(w.scene, 0, nullptr); }},
       {"removal_null", SUNDER_ERROR_NULL, "elements",
        [](World& w) { return sunder_scene_add_removal(w.scene, 0, nullptr); }},
       {"fracture_null", SUNDER_ERROR_NULL, "fracture",

@@ -184,6 +184,7 @@ sunder_material soft() {
   return m;
 }
 
+sunder_fibres even() { return SUNDER_FIBRES_INIT; }
 sunder_preset_crack notch() { return SUNDER_PRESET_CRACK_INIT; }
 sunder_fracture_options tearing() { return model(SUNDER_FRACTURE_B); }
 sunder_solver_options on_cpu() { return on(SUNDER_BACKEND_CPU); }
@@ -211,6 +212,11 @@ std::vector<Struct> options() {
                                   [](World& w, const sunder_preset_crack* c) {
                                     return sunder_scene_add_crack(w.scene, c);
                                   })},
+      {"fibres", sizeof(sunder_fibres), 144,
+       given<sunder_fibres>(even,
+                            [](World& w, const sunder_fibres* f) {
+                              return sunder_scene_add_fibres(w.scene, 0, f);
+                            })},
       {"fracture_options", sizeof(sunder_fracture_options), 72,
        given<sunder_fracture_options>(tearing,
                                       [](World& w, const sunder_fracture_options* f) {

@@ -95,6 +95,7 @@ TEST_F(CStructs, HaveDefaultsOfTheirOwn) {
   sunder_support_init(nullptr);
   sunder_instrument_init(nullptr);
   sunder_preset_crack_init(nullptr);
+  sunder_fibres_init(nullptr);
   sunder_version(nullptr, nullptr, nullptr);
 }
 

@@ -103,8 +103,20 @@ class Scenes(unittest.TestCase):
         self.refused("node", {"fixed.0.nodes": [99]})
         self.refused('material "tissue": the mesh has no such volume',
                      {"material.tissue": {"young": 1, "poisson": 0.3}})
-        self.refused("has fibres, which the program alone takes so far",
-                     {"material.volume.fibres": {"direction": [1, 0, 0]}}, sunder.Error)
+        fibres = "material.volume.fibres"
+        self.refused("lacks young_along", {fibres: {"direction": [1, 0, 0]}})
+        self.refused("is not a dict, or a list of them", {fibres: 3})
+        self.refused("has direction and field; allowed is one of them",
+                     {fibres: {"direction": [1, 0, 0], "field": np.ones((2, 3))}})
+        self.refused("has no direction, around or field", {fibres: {"k1": 1}})
+        self.refused("takes point and axis", {fibres: {"around": {"axis": [0, 0, 1]}}})
+        self.refused("which the program alone looks up", {fibres: {"field": "helix"}})
+        self.refused("allowed is (any, 3)", {fibres: {"field": np.ones((2, 2))}})
+        self.refused("which has 5 vectors for 2 elements",
+                     {fibres: {"field": np.ones((5, 3)), "young_along": 9, "shear_along": 3,
+                               "poisson_along": 0.3}})
+        self.refused("k1 of fibres 0", {fibres: {"direction": [1, 0, 0], "k1": 0}})
+        self.refused("k_1", {fibres: {"direction": [1, 0, 0], "k_1": 1}})
         self.refused('preset is "stone"; allowed: ', {"material.volume.preset": "stone"}, sunder.Error)
         self.refused("is not held", {"fixed": []})
 

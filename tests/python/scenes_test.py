@@ -24,10 +24,6 @@ class Scenes(unittest.TestCase):
                 changed = {"time.steps": STEPS, "solver.backend": "cpu"}
                 options = ["--backend", "cpu"]
                 tree = tomllib.loads(path.read_text(encoding="utf-8"))
-                if any("fibres" in material for material in tree["material"].values()):
-                    with self.assertRaisesRegex(sunder.InputError, "has fibres"):
-                        sunder.Scene(path)
-                    continue
                 cuts = tree.get("destroy", [])
                 last = max((cut["step"] for cut in cuts), default=0)
                 if last < 5:

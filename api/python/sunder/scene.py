@@ -82,6 +82,15 @@ def _axes(text, what):
     return sum(_AXES[a] for a in text)
 
 
+def _families(given, what):
+    if given is None:
+        return []
+    families = [given] if isinstance(given, Mapping) else given
+    if not isinstance(families, (list, tuple)) or not all(isinstance(f, Mapping) for f in families):
+        raise InputError(f"fibres of {what} is not a dict, or a list of them")
+    return families
+
+
 def _name(text):
     return None if text is None else str(text).encode()
 
@@ -142,7 +151,9 @@ class Scene(Handled):
         young [MPa], poisson, yield_stress [MPa] (left out: unbreakable; `yield` by **{"yield": 2}),
         law ("linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"), density [t/mm^3],
         toughness [MPa sqrt(mm)] or energy [N/mm], volume ("element", "pooled"); preset: a tissue of
-        presets(), which they override.
+        presets(), which they override. fibres: a family, or a list of two: a dict of one of
+        direction (3,), around {"point": (3,), "axis": (3,)} [mm] and field (tets, 3), with the
+        numbers of docs/interface.md (k1, young_along, toughness_across, ...).
         """
         m = _c.options("sunder_material")
         what = f"material {name!r}"
@@ -162,16 +173,52 @@ class Scene(Handled):
                     # In C 0 stands for none.
                     if key not in ("young", "poisson") and not getattr(m, key) > 0:
                         raise InputError(f"{what} {key} is {value}; allowed are numbers above 0")
-            elif key == "fibres":
-                raise InputError(f"{what} has fibres, which the program alone takes so far: sunder "
-                                 "run; leave the key out here")
-            else:
+            elif key != "fibres":
                 raise _words.unknown("material", key)
         m.name = _name(name)
         index = c.c_int32()
         check(_lib.sunder_scene_add_material(self.handle, c.byref(m), c.byref(index)))
         self.materials.append(str(index.value) if name is None else str(name))
+        for number, family in enumerate(_families(given.get("fibres"), what)):
+            self._add_fibres(index.value, family, f"fibres {number} of {what}")
         return index.value
+
+    def _add_fibres(self, material, family, what):
+        for key in family:
+            if key not in _words.KEYS["fibres"]:
+                raise _words.unknown("fibres", key)
+        f = _c.options("sunder_fibres")
+        ways = [key for key in ("direction", "around", "field") if family.get(key) is not None]
+        if len(ways) != 1:
+            raise InputError(f"{what} has {' and '.join(ways) or 'no direction, around or field'}; "
+                             "allowed is one of them")
+        field = None
+        if ways == ["direction"]:
+            f.run = _c.constants["SUNDER_FIBRES_STRAIGHT"]
+            f.direction[:] = _arrays.reals(family["direction"], f"direction of {what}", (3,))
+        elif ways == ["around"]:
+            f.run = _c.constants["SUNDER_FIBRES_AROUND"]
+            around = family["around"]
+            if not isinstance(around, Mapping) or set(around) != {"point", "axis"}:
+                raise InputError(f"around of {what} takes point and axis")
+            f.point[:] = _arrays.reals(around["point"], f"point of {what}", (3,))
+            f.direction[:] = _arrays.reals(around["axis"], f"axis of {what}", (3,))
+        else:
+            if isinstance(family["field"], str):
+                raise InputError(f"field of {what} is a name, which the program alone looks up: sunder "
+                                 "run; allowed is an array (tets, 3)")
+            f.run = _c.constants["SUNDER_FIBRES_FIELD"]
+            field = _arrays.reals(family["field"], f"field of {what}", (None, 3))
+            f.field, f.field_size = field.ctypes.data, field.size
+        for key in _words.KEYS["fibres"]:
+            if key in ("direction", "around", "field") or family.get(key) is None:
+                continue
+            value = _number(family[key], f"{key} of {what}")
+            # In C 0 stands for none.
+            if value == 0 and key not in ("k2", "dispersion", "poisson_along"):
+                raise InputError(f"{key} of {what} is 0; allowed are numbers above 0")
+            setattr(f, key, value)
+        check(_lib.sunder_scene_add_fibres(self.handle, material, c.byref(f)))
 
     def add_support(self, *, axes: str = "xyz", **nodes: Any) -> None:
         """Holds nodes (Selection) along `axes`."""
