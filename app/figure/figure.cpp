@@ -3,12 +3,14 @@
 
 #include "app/figure/annotations.hpp"
 #include "app/figure/canvas.hpp"
+#include "app/figure/fibre_strokes.hpp"
 #include "app/figure/inset.hpp"
 #include "app/figure/painting.hpp"
 #include "app/figure/pose.hpp"
 #include "app/figure/raster.hpp"
 #include "app/figure/shading.hpp"
 #include "app/figure/surface.hpp"
+#include "app/figure/svg.hpp"
 #include "app/figure/tip_vectors.hpp"
 #include "app/figure/visible.hpp"
 
@@ -29,6 +31,30 @@ std::string surface(const std::vector<VisibleFace>& visible, const std::vector<C
          v.outlined});
   }
   return painted(triangles, canvas, canvas.length(edge_length));
+}
+
+std::string fibres(const Problem& problem, const BoardPlane& plane, const Pose& pose,
+                   const State& state, const std::vector<VisibleFace>& visible,
+                   const Canvas& canvas) {
+  std::vector<DrawnTriangle> drawn;
+  for (std::size_t i = 0; i < visible.size(); ++i) {  // the last ones lie in front
+    const auto order = static_cast<double>(i);
+    const auto& [a, b, c] = visible[i].corners;
+    drawn.push_back({{canvas.map(a), canvas.map(b), canvas.map(c)},
+                     {order, order, order},
+                     visible[i].face.tet});
+  }
+  const auto flat = [&](const Vec3& direction) -> Vec2 {
+    return canvas.map(plane.project(direction)) - canvas.map(Vec2::Zero());
+  };
+  std::string out;
+  for (const FibreStroke& stroke :
+       fibre_strokes(problem, state, pose.position, pose.scale, drawn, canvas.length(1), flat)) {
+    out += svg::line(stroke.from, stroke.to,
+                     "stroke=\"" + hex(kFibres[static_cast<std::size_t>(stroke.family)]) +
+                         "\" stroke-width=\"1\" stroke-opacity=\"0.6\"");
+  }
+  return out;
 }
 
 }  // namespace
@@ -73,6 +99,7 @@ std::string FigurePainter::draw_body(const State& state, const Scenery& scene,
   std::string out = undeformed_outline(plane_, canvas);
   out += surface(scene.visible, element_colors(problem_, state, scene.scale), canvas,
                  plane_.edge_length);
+  out += fibres(problem_, plane_, scene.pose, state, scene.visible, canvas);
   out += held_edges(problem_, plane_, scene.pose, state, scene.faces, canvas);
   out += crack_paths(problem_, plane_, scene.pose, state, canvas);
   out += draw(scene.arrows, canvas);

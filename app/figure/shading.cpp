@@ -57,9 +57,16 @@ bool shows_frame(const Problem& problem) {
   return false;
 }
 
+bool breaks_by_strength(const Problem& problem) {
+  if (!row_of(problem.scene().fracture.model).breaks) return false;
+  for (Index e = 0; e < problem.tet_count(); ++e)
+    if (problem.breakable(e)) return true;
+  return false;
+}
+
 std::optional<StressScale> stress_scale(const Problem& problem, const State& state) {
   if (state.stress.empty()) return std::nullopt;
-  if (row_of(problem.scene().fracture.model).breaks && shows_frame(problem)) {
+  if (breaks_by_strength(problem)) {
     constexpr std::array kOverYield{"max. shear / yield", "Tresca stress / yield",
                                     "principal stress / yield"};  // by YieldMeasure
     const YieldMeasure measure = strength_measure(problem.scene().fracture);

@@ -2,6 +2,7 @@
 // What a picture colours elements by: stress in shades of red, frame grey.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,9 @@ struct StressScale {
 /// What cannot break where something else can; what nothing is known of yet.
 inline constexpr Color kFrame{176, 180, 184}, kPlain{246, 216, 205};
 
+/// Of strokes along fibres, by family.
+inline constexpr std::array<Color, 2> kFibres{{{40, 60, 110}, {30, 105, 70}}};
+
 /// The scale's shades of red, evenly from 0 to 1; between two lies a straight mix of them.
 [[nodiscard]] std::span<const Color> reds();
 /// Shade of red for a share of the scale (clamped to 0 to 1).
@@ -36,6 +40,9 @@ inline constexpr Color kFrame{176, 180, 184}, kPlain{246, 216, 205};
 
 /// Unbreakable elements are grey, unless the whole body is.
 [[nodiscard]] bool shows_frame(const Problem& problem);
+
+/// Whether strength can break something: a ratio to yield has a meaning.
+[[nodiscard]] bool breaks_by_strength(const Problem& problem);
 
 /// Colour of each live element.
 [[nodiscard]] std::vector<Color> element_colors(const Problem& problem, const State& state,

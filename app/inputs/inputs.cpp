@@ -192,6 +192,7 @@ constexpr std::array kVerbs{
     Verb{"wireframe", [](Words& w) { return read_show(w, What::wireframe); }},
     Verb{"arrows", [](Words& w) { return read_show(w, What::arrows); }},
     Verb{"tips", [](Words& w) { return read_show(w, What::tips); }},
+    Verb{"fibres", [](Words& w) { return read_show(w, What::fibres); }},
     Verb{"text", [](Words& w) { return read_show(w, What::text); }},
     Verb{"record", [](Words& w) { return read_show(w, What::pictures); }},
 };

@@ -100,7 +100,7 @@ struct Clip {
   double offset = 0;
 };
 struct Show {
-  enum class What { wireframe, arrows, tips, text, pictures } what = What::wireframe;
+  enum class What { wireframe, arrows, tips, fibres, text, pictures } what = What::wireframe;
   bool on = true;
 };
 // The body itself.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/view/look.hpp"
 
-#include "sunder/fracture_model.hpp"
+#include "app/figure/shading.hpp"
 #include "sunder/simulation.hpp"
 
 namespace sunder::app {
@@ -20,6 +20,7 @@ bool set(Look& look, const Input& input) {
     bool& which = show->what == What::wireframe ? look.wireframe
                   : show->what == What::arrows  ? look.arrows
                   : show->what == What::tips    ? look.tips
+                  : show->what == What::fibres  ? look.fibres
                   : show->what == What::text    ? look.text
                                                 : look.pictures;
     which = show->on;
@@ -31,11 +32,7 @@ bool set(Look& look, const Input& input) {
 
 Field standard_field(const Problem& problem) {
   if (!needs_of(problem).stress) return Field::strain;
-  if (!row_of(problem.scene().fracture.model).breaks) return Field::stress;
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (problem.breakable(e)) return Field::yield;
-  }
-  return Field::stress;
+  return breaks_by_strength(problem) ? Field::yield : Field::stress;
 }
 
 }  // namespace sunder::app

@@ -13,7 +13,7 @@ struct Look {
   std::optional<Vec3> at;
   std::optional<input::Colour> colour;  ///< none: by what the scene computes (standard_field)
   input::Clip clip;
-  bool wireframe = false, arrows = true, tips = true, text = true, pictures = true;
+  bool wireframe = false, arrows = true, tips = true, fibres = true, text = true, pictures = true;
 };
 
 /// True: the input was about that.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "app/figure/fibre_strokes.hpp"
 #include "app/figure/svg.hpp"
 #include "app/output/text.hpp"
 
@@ -77,6 +78,34 @@ void add_forces(Overlay& out, const Problem& problem, const Shown& shown, const 
                          12,
                          leftwards ? Anchor::right : Anchor::left,
                          false});
+  }
+}
+
+/// Of the triangles that look at the eye; what a clip cuts away has none.
+void add_fibres(Overlay& out, const Problem& problem, const Shown& shown, const Look& look,
+                const Camera& camera) {
+  if (problem.fibre_families() == 0) return;
+  std::vector<DrawnTriangle> drawn;
+  for (const SurfaceTriangle& t : shown.triangles) {
+    DrawnTriangle triangle;
+    triangle.element = t.element;
+    bool clipped = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& at = shown.places[static_cast<std::size_t>(t.nodes[i])];
+      triangle.corners[i] = camera.project(at);
+      triangle.nearness[i] = camera.eye().dot(at);
+      clipped = clipped || (look.clip.normal && look.clip.normal->dot(at) > look.clip.offset);
+    }
+    const Vec2 a = triangle.corners[1] - triangle.corners[0];
+    const Vec2 b = triangle.corners[2] - triangle.corners[0];
+    // y runs downwards on a picture: what looks at the eye turns clockwise.
+    if (!clipped && a.x() * b.y() - a.y() * b.x() < 0) drawn.push_back(triangle);
+  }
+  const auto flat = [&](const Vec3& direction) -> Vec2 { return camera.turn(direction).head<2>(); };
+  for (const FibreStroke& stroke :
+       fibre_strokes(problem, shown.state, shown.places, 1, drawn, camera.pixels_per_mm(), flat)) {
+    out.lines.push_back(
+        {stroke.from, stroke.to, 1.5, kFibrePens[static_cast<std::size_t>(stroke.family)]});
   }
 }
 
@@ -168,6 +197,7 @@ std::string fill(Color color) { return "fill=\"" + hex(color) + "\""; }
 Overlay overlay(const Problem& problem, const Shown& shown, const Paint& paint, const Look& look,
                 const Camera& camera) {
   Overlay out;
+  if (look.fibres) add_fibres(out, problem, shown, look, camera);
   if (look.arrows) add_forces(out, problem, shown, camera);
   if (look.tips) add_tips(out, problem, shown, camera);
   if (!look.text) return out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands over a picture of a body: words, scales, force arrows, tips. Plain shapes on the
-// picture [px, y down], which a file gets as SVG and a window by its own pen.
+// What stands over a picture of a body: words, scales, force arrows, tips, fibres. Plain shapes on
+// the picture [px, y down], which a file gets as SVG and a window by its own pen.
 #pragma once
 
 #include <array>
@@ -40,6 +40,8 @@ struct Overlay {
 
 constexpr Color kBackground{38, 44, 54}, kInk{236, 238, 241}, kForce{255, 205, 60},
     kTip{90, 220, 255};
+/// Strokes along fibres, by family.
+constexpr std::array<Color, 2> kFibrePens{{{70, 150, 255}, {60, 200, 120}}};
 
 [[nodiscard]] Overlay overlay(const Problem& problem, const Shown& shown, const Paint& paint,
                               const Look& look, const Camera& camera);

@@ -118,6 +118,8 @@ void Window::colours() {
   ImGui::SameLine();
   ImGui::Checkbox("tips", &look_.tips);
   ImGui::SameLine();
+  ImGui::Checkbox("fibres", &look_.fibres);
+  ImGui::SameLine();
   bool clipped = look_.clip.normal.has_value();
   if (ImGui::Checkbox("clip (C)", &clipped)) toggle_clip();
   if (look_.clip.normal) {

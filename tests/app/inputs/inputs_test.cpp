@@ -62,6 +62,7 @@ TEST(Inputs, OfTheViewAreRead) {
   EXPECT_FALSE(only<input::Clip>("clip off").normal);
   EXPECT_TRUE(only<input::Show>("wireframe on").on);
   EXPECT_FALSE(only<input::Show>("record off").on);
+  EXPECT_EQ(only<input::Show>("fibres off").what, input::Show::What::fibres);
   EXPECT_TRUE(only<input::Pause>("pause").on);
   EXPECT_FALSE(only<input::Pause>("go").on);
   EXPECT_EQ(only<input::Stroke>("stroke 0 .5 1 .5").line.size(), 2U);
