@@ -35,19 +35,6 @@ sunder::FieldName keep_field(SceneObject& object, std::int32_t material,
 
 sunder::Fibres to_fibres(SceneObject& object, std::int32_t material, const sunder_fibres& given) {
   sunder::Fibres fibres;
-  switch (choice<int>(given.run, 3, "run of fibres")) {
-    case SUNDER_FIBRES_STRAIGHT:
-      require_finite(given.direction, 3, "direction");
-      fibres.direction = Vec3(given.direction);
-      break;
-    case SUNDER_FIBRES_AROUND:
-      require_finite(given.direction, 3, "direction");
-      require_finite(given.point, 3, "point");
-      fibres.direction = sunder::AroundAxis{Vec3(given.point), Vec3(given.direction)};
-      break;
-    default:
-      fibres.direction = keep_field(object, material, given);
-  }
   fibres.k1 = given_number(given.k1, "k1");
   fibres.k2 = given_number(given.k2, "k2");
   if (fibres.k1 && !fibres.k2) fibres.k2 = 0.0;
@@ -60,6 +47,19 @@ sunder::Fibres to_fibres(SceneObject& object, std::int32_t material, const sunde
   fibres.yield_across = given_number(given.yield_across, "yield_across");
   fibres.toughness_across = given_number(given.toughness_across, "toughness_across");
   fibres.energy_across = given_number(given.energy_across, "energy_across");
+  switch (choice<int>(given.run, 3, "run of fibres")) {
+    case SUNDER_FIBRES_STRAIGHT:
+      require_finite(given.direction, 3, "direction");
+      fibres.direction = Vec3(given.direction);
+      break;
+    case SUNDER_FIBRES_AROUND:
+      require_finite(given.direction, 3, "direction");
+      require_finite(given.point, 3, "point");
+      fibres.direction = sunder::AroundAxis{Vec3(given.point), Vec3(given.direction)};
+      break;
+    default:
+      fibres.direction = keep_field(object, material, given);  // nothing is refused after it
+  }
   return fibres;
 }
 

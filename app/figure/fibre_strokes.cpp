@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/figure/fibre_strokes.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -57,26 +56,14 @@ std::map<Cell, Nearest> seen(std::span<const DrawnTriangle> drawn) {
   return grid;
 }
 
-/// Edges of an element from its first corner.
-Mat3 edges(std::span<const Vec3> of, const std::array<Index, 4>& corners) {
-  Mat3 m;
-  for (std::size_t i = 1; i < 4; ++i) {
-    m.col(static_cast<Eigen::Index>(i) - 1) =
-        of[static_cast<std::size_t>(corners[i])] - of[static_cast<std::size_t>(corners[0])];
-  }
-  return m;
-}
-
 /// F of an element as it is drawn, by its displacement; where that is beyond what tissue does, as
 /// of a piece that nothing holds by law linear, by its places, which are moved near its own there.
-Mat3 gradient(const Mesh& mesh, const State& state, std::span<const Vec3> places, double scale,
-              Index element) {
+Mat3 drawn_gradient(const Mesh& mesh, const State& state, std::span<const Vec3> places,
+                    double scale, Index element) {
   constexpr double kOfTissue = 2;
-  const auto& corners = mesh.tets[static_cast<std::size_t>(element)];
-  const Mat3 inverse = edges(mesh.nodes, corners).inverse();
-  const Mat3 gradient = scale * edges(state.displacement, corners) * inverse;
+  const Mat3 gradient = scale * nodal_gradient(mesh, element, state.displacement);
   if (gradient.norm() < kOfTissue) return Mat3::Identity() + gradient;
-  return edges(places, corners) * inverse;
+  return nodal_gradient(mesh, element, places);
 }
 
 }  // namespace
@@ -90,7 +77,7 @@ std::vector<FibreStroke> fibre_strokes(const Problem& problem, const State& stat
   if (families == 0) return strokes;
   const Mesh& mesh = mesh_of(problem, state);
   for (const auto& [cell, nearest] : seen(drawn)) {
-    const Mat3 f = gradient(mesh, state, places, scale, nearest.element);
+    const Mat3 f = drawn_gradient(mesh, state, places, scale, nearest.element);
     for (int family = 0; family < families; ++family) {
       const Vec3 along = f * problem.fibre_direction(nearest.element, family);
       const double length = along.norm();

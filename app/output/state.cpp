@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/output/state.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "sunder/fracture_model.hpp"
@@ -49,6 +50,19 @@ State capture(const Simulation& simulation, int step) {
                                  std::holds_alternative<Press>(scene.instruments[i].action)});
   state.support_reaction = simulation.support_reaction();
   return state;
+}
+
+Mat3 nodal_gradient(const Mesh& mesh, Index element, std::span<const Vec3> field) {
+  const auto& corners = mesh.tets[static_cast<std::size_t>(element)];
+  const auto edges = [&](std::span<const Vec3> of) {
+    Mat3 m;
+    for (std::size_t i = 0; i < 3; ++i) {
+      m.col(static_cast<Eigen::Index>(i)) =
+          of[static_cast<std::size_t>(corners[i + 1])] - of[static_cast<std::size_t>(corners[0])];
+    }
+    return m;
+  };
+  return edges(field) * edges(mesh.nodes).inverse();
 }
 
 State undeformed(const Problem& problem) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,9 @@ struct State {
 
 /// The body that a state's fields belong to, undeformed.
 [[nodiscard]] const Mesh& mesh_of(const Problem& problem, const State& state);
+
+/// Gradient in an element of a field of the nodes, linear between them.
+[[nodiscard]] Mat3 nodal_gradient(const Mesh& mesh, Index element, std::span<const Vec3> field);
 
 /// What `--snapshots` counts: destroyed elements and rows of cracks that have split.
 [[nodiscard]] inline int broken(const State& state) {

@@ -11,15 +11,6 @@
 namespace sunder::app {
 namespace {
 
-Mat3 edges(const std::vector<Vec3>& of, const std::array<Index, 4>& corners) {
-  Mat3 m;
-  for (std::size_t i = 0; i < 3; ++i) {
-    m.col(static_cast<Eigen::Index>(i)) =
-        of[static_cast<std::size_t>(corners[i + 1])] - of[static_cast<std::size_t>(corners[0])];
-  }
-  return m;
-}
-
 double largest_displacement(const Problem& problem, const State& state, Index element) {
   double largest = 0;
   for (const Index n : mesh_of(problem, state).tets[static_cast<std::size_t>(element)]) {
@@ -68,8 +59,7 @@ double value_of(const Problem& problem, const State& state, Index e, Field field
 
 double largest_strain(const Problem& problem, const State& state, Index element) {
   const Mesh& mesh = mesh_of(problem, state);
-  const auto& corners = mesh.tets[static_cast<std::size_t>(element)];
-  const Mat3 gradient = edges(state.displacement, corners) * edges(mesh.nodes, corners).inverse();
+  const Mat3 gradient = nodal_gradient(mesh, element, state.displacement);
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
   if (problem.material(element).law == MaterialLaw::linear) {
     solver.computeDirect((gradient + gradient.transpose()) / 2, Eigen::EigenvaluesOnly);

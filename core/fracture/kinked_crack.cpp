@@ -11,7 +11,8 @@
 namespace sunder::fracture {
 namespace {
 
-constexpr double kPi = std::numbers::pi, kPi2 = kPi * kPi, kPi4 = kPi2 * kPi2, kPi6 = kPi2 * kPi4;
+constexpr double kPi = std::numbers::pi, kPi2 = kPi * kPi, kPi3 = kPi * kPi2, kPi4 = kPi2 * kPi2;
+constexpr double kPi5 = kPi * kPi4, kPi6 = kPi2 * kPi4;
 
 /// sum of c_i x^i
 template <std::size_t N>
@@ -34,8 +35,8 @@ constexpr std::array<double, 11> kF11{1,
                                       1.63,
                                       4.1};
 constexpr std::array<double, 10> kF12{-3 * kPi / 2,
-                                      10 * kPi / 3 + kPi* kPi2 / 16,
-                                      -2 * kPi - 133 * kPi* kPi2 / 180 + 59 * kPi* kPi4 / 1280,
+                                      10 * kPi / 3 + kPi3 / 16,
+                                      -2 * kPi - 133 * kPi3 / 180 + 59 * kPi5 / 1280,
                                       12.313906,
                                       -7.32433,
                                       1.5793,
@@ -44,8 +45,8 @@ constexpr std::array<double, 10> kF12{-3 * kPi / 2,
                                       4.21,
                                       4.56};
 constexpr std::array<double, 10> kF21{kPi / 2,
-                                      -4 * kPi / 3 - kPi* kPi2 / 48,
-                                      -2 * kPi / 3 + 13 * kPi* kPi2 / 30 - 59 * kPi* kPi4 / 3840,
+                                      -4 * kPi / 3 - kPi3 / 48,
+                                      -2 * kPi / 3 + 13 * kPi3 / 30 - 59 * kPi5 / 3840,
                                       -6.176023,
                                       4.44112,
                                       -1.5340,

@@ -3,6 +3,7 @@
 // tissue with fibres prefers (method.md "Toughness by direction").
 #pragma once
 
+#include <numbers>
 #include <optional>
 
 #include "fracture/tip_resistance.hpp"
@@ -10,7 +11,7 @@
 namespace sunder::fracture {
 
 /// The largest turn that is looked at [rad]: as far as the series holds.
-inline constexpr double kLargestKink = 80 * 0.017453292519943295;
+inline constexpr double kLargestKink = 80 * std::numbers::pi / 180;
 
 struct KinkIntensity {
   double k_1 = 0, k_2 = 0;  ///< at the kink's end [MPa sqrt(mm)]

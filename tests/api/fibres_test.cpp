@@ -89,6 +89,15 @@ sunder_fibres straight() {
   return f;
 }
 
+/// A vector for each element; they are the caller's.
+sunder_fibres along(const std::vector<double>& vectors) {
+  sunder_fibres f = SUNDER_FIBRES_INIT;
+  f.run = SUNDER_FIBRES_FIELD;
+  f.field = vectors.data();
+  f.field_size = vectors.size();
+  return f;
+}
+
 TEST_F(CFibres, OfLawLinearAreThoseOfCpp) {
   begin(SUNDER_LAW_LINEAR);
   sunder_fibres f = straight();
@@ -121,13 +130,10 @@ TEST_F(CFibres, TwoFamiliesRoundAnAxisAndAlongAFieldAreThoseOfCpp) {
     field.emplace_back(1, 0.01 * static_cast<double>(e), 0.5);
     vectors.insert(vectors.end(), field.back().data(), field.back().data() + 3);
   }
-  sunder_fibres along = SUNDER_FIBRES_INIT;
-  along.run = SUNDER_FIBRES_FIELD;
-  along.field = vectors.data();
-  along.field_size = vectors.size();
-  along.k1 = 1;
-  along.k2 = 3;
-  EXPECT_OK(sunder_scene_add_fibres(scene, 0, &along));
+  sunder_fibres helix = along(vectors);
+  helix.k1 = 1;
+  helix.k2 = 3;
+  EXPECT_OK(sunder_scene_add_fibres(scene, 0, &helix));
   vectors.assign(vectors.size(), NAN);  // copied before the call returned
   Scene same = in_cpp(MaterialLaw::neo_hookean);
   Fibres first;
@@ -159,10 +165,7 @@ TEST_F(CFibres, ThatGuideCracksAreRead) {
 TEST_F(CFibres, OfAFieldForAnotherMeshAreRefused) {
   begin(SUNDER_LAW_LINEAR);
   const std::vector<double> vectors(9, 1.0);
-  sunder_fibres f = SUNDER_FIBRES_INIT;
-  f.run = SUNDER_FIBRES_FIELD;
-  f.field = vectors.data();
-  f.field_size = vectors.size();
+  sunder_fibres f = along(vectors);
   f.young_along = 15;
   f.shear_along = 4;
   EXPECT_OK(sunder_scene_add_fibres(scene, 0, &f));
@@ -183,12 +186,7 @@ TEST_F(CFibres, WhatCannotBeIsRefusedAtOnce) {
   EXPECT_EQ(add([](auto& f) { f.k1 = INFINITY; }), SUNDER_ERROR_VALUE);
   EXPECT_EQ(add([](auto& f) { f.run = SUNDER_FIBRES_FIELD; }), SUNDER_ERROR_NULL);
   const std::vector<double> vectors(8, 1.0);
-  EXPECT_EQ(add([&](auto& f) {
-              f.run = SUNDER_FIBRES_FIELD;
-              f.field = vectors.data();
-              f.field_size = vectors.size();
-            }),
-            SUNDER_ERROR_SIZE);
+  EXPECT_EQ(add([&](auto& f) { f = along(vectors); }), SUNDER_ERROR_SIZE);
   EXPECT_NE(std::string(sunder_last_error()).find("3 numbers for each element"), std::string::npos);
   // Nothing of it has come into the scene.
   EXPECT_EQ(moved(), moved_in_cpp(in_cpp(MaterialLaw::linear)));

@@ -1,71 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes with fibres: blocks against closed forms of an incompressible matrix, transversely
-// isotropic elasticity by the tests that define its constants, what is refused.
+// isotropic elasticity by the tests that define its constants.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "cpu_reference/cpu_reference.hpp"
+#include "fibre_cubes.hpp"
 #include "sunder/error.hpp"
 #include "sunder/simulation.hpp"
-#include "sunder/stress_measures.hpp"
-#include "support/structured_board.hpp"
 #include "support/text.hpp"
 
 namespace sunder::test {
 namespace {
 
-constexpr double kMu = 0.03, kK1 = 0.02, kK2 = 1.5;  // [MPa]
-constexpr double kNearlyOne = 0.4999;                // twice Poisson's ratio
-constexpr double kInReach = 0.01;                    // of the incompressible limit
-
-/// A cube of 4 mm whose matrix is neo-Hookean.
-Scene cube(MaterialLaw law = MaterialLaw::neo_hookean) {
-  Scene scene;
-  scene.mesh = structured_board({2, 2, 2, 4, 4, 4});
-  Material m;
-  m.young = 2 * kMu * (1 + kNearlyOne);
-  m.poisson = kNearlyOne;
-  m.law = law;
-  scene.materials["board"] = m;
-  scene.solver.tolerance = 1e-6;
-  return scene;
-}
-
-/// In the plane of x and y, at this angle to x [deg].
-Fibres at_angle(double degrees, double dispersion = 0) {
-  Fibres f;
-  const double angle = degrees * std::numbers::pi / 180;
-  f.direction = Vec3(3 * std::cos(angle), 3 * std::sin(angle), 0);
-  f.k1 = kK1;
-  f.k2 = kK2;
-  f.dispersion = dispersion;
-  return f;
-}
-
-Box face(int axis, double at) {
-  Box box{Vec3::Constant(-1), Vec3::Constant(9)};
-  box.min[axis] = at - 1e-6;
-  box.max[axis] = at + 1e-6;
-  return box;
-}
-
-Axes only(int axis) { return Axes{static_cast<std::uint8_t>(1 << axis)}; }
-
-void pull(Scene& scene, int axis, double stretch) {
-  Instrument tool;
-  tool.name = std::string(1, static_cast<char>('x' + axis));
-  tool.action = Grip{face(axis, 4), 4 * (stretch - 1) * Vec3::Unit(axis), only(axis)};
-  scene.instruments.push_back(tool);
-}
-
-/// Ends that slide in their planes.
-void hold(Scene& scene) {
-  for (int axis = 0; axis < 3; ++axis) scene.supports.push_back({face(axis, 0), only(axis)});
-}
+constexpr double kInReach = 0.01;  // of the incompressible limit
 
 std::vector<Voigt> stress_of(Scene scene) {
   const auto problem = std::make_shared<const Problem>(std::move(scene));
@@ -281,21 +232,6 @@ TEST(Fibres, BiaxialTensionAgainstTheClosedForm) {
   }
 }
 
-Scene linear_cube() {
-  Scene scene = cube(MaterialLaw::linear);
-  Material& m = scene.materials["board"];
-  m.young = 2;
-  m.poisson = 0.35;
-  Fibres f;
-  f.direction = Vec3(5, 0, 0);
-  f.young_along = 20;
-  f.poisson_along = 0.28;
-  f.shear_along = 3;
-  m.fibres.push_back(f);
-  hold(scene);
-  return scene;
-}
-
 // E and nu along and across as they are measured.
 TEST(LinearFibres, UniaxialTensionGivesTheModuli) {
   for (const int fibres_along : {0, 1, 2}) {
@@ -393,235 +329,6 @@ TEST(Fibres, RunAsAFieldSays) {
   }
   const Problem problem(scene);
   EXPECT_LT((problem.fibre_direction(3, 0) - Vec3(0, 2, 3) / std::sqrt(13.0)).norm(), 1e-15);
-}
-
-void expect_refused(const Scene& scene, const std::string& text) {
-  try {
-    const Problem problem(scene);
-    ADD_FAILURE() << "took it: " << text;
-  } catch (const InputError& error) {
-    EXPECT_TRUE(mentions(error.what(), text)) << error.what();
-  }
-}
-
-Scene odd(const std::function<void(Scene&, Material&, Fibres&)>& change, bool linear = false) {
-  Scene scene = linear ? linear_cube() : with({{0}});
-  Material& m = scene.materials["board"];
-  change(scene, m, m.fibres[0]);
-  return scene;
-}
-
-TEST(Fibres, BadInputIsRefused) {
-  using S = Scene;
-  using M = Material;
-  using F = Fibres;
-  expect_refused(odd([](S&, M&, F& f) { f.direction = Vec3(0, 0, 0); }),
-                 "fibres 0 has direction = [0, 0, 0]; it must be finite and not zero");
-  expect_refused(odd([](S&, M&, F& f) {
-                   f.direction = AroundAxis{Vec3::Zero(), Vec3::Zero()};
-                 }),
-                 "the axis not zero");
-  expect_refused(odd([](S& s, M&, F& f) {
-                   Vec3 centroid = Vec3::Zero();
-                   for (const Index n : s.mesh.tets[5]) centroid += s.mesh.nodes[n] / 4;
-                   f.direction = AroundAxis{centroid - Vec3(0, 0, 3), Vec3(0, 0, 1)};
-                 }),
-                 "has the centroid of element");
-  expect_refused(odd([](S&, M&, F& f) { f.direction = FieldName{"helix"}; }),
-                 "field = \"helix\", which is no vector of the mesh's cells; its file has none");
-  expect_refused(odd([](S& s, M&, F& f) {
-                   f.direction = FieldName{"helix"};
-                   s.mesh.fields["other"].assign(s.mesh.tets.size(), Vec3(1, 0, 0));
-                 }),
-                 "it has \"other\"");
-  expect_refused(odd([](S& s, M&, F& f) {
-                   f.direction = FieldName{"helix"};
-                   s.mesh.fields["helix"].assign(3, Vec3(1, 0, 0));
-                 }),
-                 "has 3 vectors for 48 elements");
-  expect_refused(odd([](S& s, M&, F& f) {
-                   f.direction = FieldName{"helix"};
-                   s.mesh.fields["helix"].assign(s.mesh.tets.size(), Vec3(1, 0, 0));
-                   s.mesh.fields["helix"][4].setZero();
-                 }),
-                 "in field \"helix\" at element 4");
-  expect_refused(odd([](S&, M&, F& f) { f.k1 = {}; }), "lacks k1");
-  expect_refused(odd([](S&, M&, F& f) { f.k1 = 0; }), "k1 = 0; it must be finite and above 0 MPa");
-  expect_refused(odd([](S&, M&, F& f) { f.k2 = {}; }), "lacks k2");
-  expect_refused(odd([](S&, M&, F& f) { f.k2 = -1; }), "k2 = -1; it must be finite and at least 0");
-  for (const double kappa : {-0.01, 0.34, std::nan("")}) {
-    expect_refused(odd([&](S&, M&, F& f) { f.dispersion = kappa; }),
-                   "it must lie between 0 (all along) and 1/3");
-  }
-  expect_refused(odd([](S&, M&, F& f) { f.young_along = 3; }), "which is for law \"linear\"");
-  expect_refused(odd([](S&, M& m, F&) { m.fibres.resize(3, m.fibres[0]); }), "at most 2");
-  expect_refused(odd([](S&, M& m, F&) { m.volume = MaterialVolume::pooled; }, true),
-                 "its law \"linear\" pools volume only where no material has fibres");
-  expect_refused(odd([](S& s, M&, F&) { s.fracture.model = FractureModel::b; }),
-                 "of whose stiffness model \"B\" knows nothing");
-  expect_refused(odd([](S&, M& m, F& f) { m.fibres.push_back(f); }, true),
-                 "law \"linear\" takes one");
-  expect_refused(odd([](S&, M&, F& f) { f.k1 = 1; }, true),
-                 "k1, k2 or dispersion, which are for laws of finite deformation");
-  expect_refused(odd([](S&, M&, F& f) { f.young_along = {}; }, true), "lacks young_along");
-  expect_refused(odd([](S&, M&, F& f) { f.poisson_along = {}; }, true), "lacks poisson_along");
-  expect_refused(odd([](S&, M&, F& f) { f.shear_along = {}; }, true), "lacks shear_along");
-  expect_refused(odd([](S&, M&, F& f) { f.young_along = -1; }, true), "young_along = -1");
-  expect_refused(odd([](S&, M&, F& f) { f.shear_along = 0; }, true), "shear_along = 0");
-  expect_refused(odd([](S&, M&, F& f) { f.poisson_along = 1.9; }, true),
-                 "some deformation would set energy free");
-}
-
-TEST(Fibres, BadStrengthIsRefused) {
-  const auto weak = [](Material& m, Fibres& f) {
-    m.yield = 2;
-    f.yield_across = 1;
-  };
-  expect_refused(odd(
-                     [&](Scene&, Material& m, Fibres& f) {
-                       weak(m, f);
-                       f.yield_across = 0;
-                     },
-                     true),
-                 "yield_across = 0; it must be finite and above 0 MPa");
-  expect_refused(odd([](Scene&, Material&, Fibres& f) { f.yield_across = 1; }, true),
-                 "but its material no yield");
-  expect_refused(odd([&](Scene&, Material& m, Fibres& f) {
-                   weak(m, f);
-                   m.fibres.push_back(m.fibres[0]);
-                 }),
-                 "beside another family");
-  expect_refused(
-      odd([&](Scene&, Material& m, Fibres& f) { weak(m, f); }),
-      "law \"neo-hookean\" judges in the material's frame; take fracture.stress = \"biot\"");
-  expect_refused(odd(
-                     [&](Scene& s, Material& m, Fibres& f) {
-                       weak(m, f);
-                       s.fracture.averaging = 1;
-                     },
-                     true),
-                 "leave fracture.averaging out");
-}
-
-TEST(Fibres, BadToughnessIsRefused) {
-  // Of model B, whose fibres have no stiffness.
-  const auto guided = [](const std::function<void(Scene&, Material&, Fibres&)>& change) {
-    return odd(
-        [&](Scene& s, Material& m, Fibres& f) {
-          s.fracture.model = FractureModel::b;
-          s.fracture.sif = SifSource::field;
-          s.fracture.plane_normal = Vec3(0, 0, 1);
-          m.toughness = 1;
-          f = Fibres{};
-          f.direction = Vec3(1, 0, 0);
-          f.toughness_across = 2;
-          change(s, m, f);
-        },
-        true);
-  };
-  const Problem good(guided([](Scene&, Material&, Fibres&) {}));
-  EXPECT_TRUE(good.guides_cracks());
-  EXPECT_FALSE(good.fibrous());
-  EXPECT_EQ(good.fibre_families(), 1);
-  EXPECT_EQ(good.fibre_direction(3, 0), Vec3(1, 0, 0));
-  using S = Scene;
-  using M = Material;
-  using F = Fibres;
-  for (const double value : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-    expect_refused(guided([&](S&, M&, F& f) { f.toughness_across = value; }),
-                   "it must be finite and above 0 MPa sqrt(mm)");
-  }
-  expect_refused(guided([](S&, M& m, F&) {
-                   m.toughness = {};
-                   m.energy = 1;
-                 }),
-                 "has toughness_across, but its material no toughness, which holds along them");
-  expect_refused(guided([](S&, M&, F& f) { f.energy_across = 1; }),
-                 "has energy_across, but its material no energy");
-  expect_refused(guided([](S&, M&, F& f) { f.young_along = 15; }),
-                 "has toughness_across beside a stiffness or a strength by direction");
-  expect_refused(guided([](S&, M& m, F& f) {
-                   m.yield = 1;
-                   f.yield_across = 1;
-                 }),
-                 "beside a stiffness or a strength");
-  expect_refused(guided([](S&, M& m, F& f) { m.fibres.push_back(f); }),
-                 "where they guide cracks it has one");
-  expect_refused(guided([](S& s, M&, F&) { s.fracture.model = FractureModel::a; }),
-                 "which model \"A\" does not read; take model \"B\"");
-  expect_refused(guided([](S& s, M&, F&) { s.fracture.sif = SifSource::formula; }),
-                 "take fracture.sif = \"field\"");
-  expect_refused(guided([](S&, M&, F& f) { f.direction = Vec3::Zero(); }),
-                 "it must be finite and not zero");
-}
-
-/// Of stress in every element of a cube whose fibres run along x.
-Problem weak_across(double along, double across) {
-  Scene scene = linear_cube();
-  Material& m = scene.materials["board"];
-  m.yield = along;
-  m.fibres[0].yield_across = across;
-  return Problem(std::move(scene));
-}
-
-Voigt along(const Vec3& n, double value) {
-  Voigt s;
-  s << n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), n.x() * n.y(), n.y() * n.z(), n.z() * n.x();
-  return value * s;
-}
-
-TEST(StrengthAcross, TensionAtAnAngleBreaksByTheClosedForm) {
-  const double strong = 3, weak = 0.5;
-  const Problem problem = weak_across(strong, weak);
-  for (const double degrees : {0.0, 20.0, 45.0, 70.0, 90.0}) {
-    const double t = degrees * std::numbers::pi / 180, c = std::cos(t), s = std::sin(t);
-    const Vec3 n(c, s * 0.6, s * 0.8);
-    const double strength = 1 / (c * c / strong + s * s / weak);
-    for (const YieldMeasure measure : {YieldMeasure::tresca, YieldMeasure::principal}) {
-      EXPECT_NEAR(problem.yield_ratio(7, along(n, strength), measure), 1, 1e-14) << degrees;
-    }
-    EXPECT_NEAR(problem.yield_ratio(7, along(n, strength), YieldMeasure::max_shear), 0.5, 1e-14);
-  }
-}
-
-// Pressed along, it splits along the fibres, by their strength across; pressed across, as well,
-// for it is drawn out across in the other direction.
-TEST(StrengthAcross, PressureAloneBreaksNothingAndPressureAlongSplits) {
-  const Problem problem = weak_across(3, 0.5);
-  const Voigt pressure =
-      along(Vec3(1, 0, 0), -7) + along(Vec3(0, 1, 0), -7) + along(Vec3(0, 0, 1), -7);
-  EXPECT_NEAR(problem.yield_ratio(0, pressure, YieldMeasure::tresca), 0, 1e-14);
-  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
-    EXPECT_NEAR(problem.yield_ratio(0, along(n, -2), YieldMeasure::tresca), 2 / 0.5, 1e-14);
-  }
-}
-
-// Of equal strengths it is the isotropic criterion.
-TEST(StrengthAcross, EqualStrengthsKnowNoDirection) {
-  const Problem problem = weak_across(2, 2);
-  Voigt s;
-  s << 1, -2, 0.5, 0.7, -0.3, 0.9;
-  for (const YieldMeasure measure :
-       {YieldMeasure::max_shear, YieldMeasure::tresca, YieldMeasure::principal}) {
-    EXPECT_NEAR(problem.yield_ratio(3, s, measure), yield_measure(s, measure) / 2, 1e-14);
-  }
-}
-
-// Along the pull nothing breaks at a stress that breaks every element across.
-TEST(StrengthAcross, DecidesWhatBreaks) {
-  for (const int axis : {0, 1}) {
-    Scene scene = linear_cube();
-    Material& m = scene.materials["board"];
-    m.yield = 3;
-    m.fibres[0].yield_across = 0.01;
-    scene.fracture.model = FractureModel::p;
-    scene.fracture.max_events = 1;
-    pull(scene, axis, axis == 0 ? 1.1 : 1.01);  // 2 MPa along, .02 across
-    const auto problem = std::make_shared<const Problem>(std::move(scene));
-    Simulation run(problem, cpu_reference::create(problem, needs_of(*problem)));
-    const StepReport report = run.step();
-    EXPECT_EQ(report.events > 0, axis == 1);
-  }
 }
 
 }  // namespace
