@@ -80,7 +80,7 @@ void FiniteCg::create_passes(const FiniteCgBody& body) {
   const std::uint32_t one = kernels_.summing_group();
   for (std::size_t i : {0, 1}) {
     make(tangent_[i], "finite_tangent", true, all,
-         {body.u[i], &body.nodes, &body.shape, &body.facts, &body.from, &tangents_});
+         {body.u[i], &body.nodes, &body.shape, &body.facts, &body.from, &tangents_, &body.fibres});
     make(begin_[i], "cg_begin", false, all, {body.r[i], &dofs_, &x_, &r_, &p_, &rz_});
   }
   make(blocks_, "finite_blocks", true, all,

@@ -18,7 +18,7 @@ namespace sunder::gpu {
 
 /// Buffers of a body's states that conjugate gradients read and write (gpu/finite_device.hpp).
 struct FiniteCgBody {
-  const vulkan::Buffer &nodes, &shape, &facts, &from, &first, &around, &target;
+  const vulkan::Buffer &nodes, &shape, &fibres, &facts, &from, &first, &around, &target;
   const vulkan::Buffer& corners;      ///< written
   const vulkan::Buffer& du;           ///< written: the direction, per unknown
   const vulkan::Buffer *u[2], *r[2];  ///< of both states

@@ -53,6 +53,25 @@ Buffer filled(vulkan::Device& device, const std::vector<T>& values) {
   return buffer;
 }
 
+/// kFiniteFibres numbers an element; none where no element has any.
+std::vector<double> fibres_of(const Problem& problem) {
+  std::vector<double> all;
+  if (!problem.fibrous()) return all;
+  const std::size_t size = std::size_t{shaders::kFiniteFibres} * problem.mesh().tets.size();
+  all.reserve(size);
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const ElementFibres* of = problem.small_strain(e).fibres;
+    const ElementFibres fibres = of ? *of : ElementFibres{};
+    for (const FibreFamily& f : fibres.family) {
+      all.insert(all.end(),
+                 {f.direction.x(), f.direction.y(), f.direction.z(), f.k1, f.k2, f.dispersion});
+    }
+    const AlongFibres& linear = fibres.linear;
+    all.insert(all.end(), {linear.lambda, linear.alpha, linear.beta, linear.mu});
+  }
+  return all;
+}
+
 std::span<double> numbers_of(std::span<Voigt> stress) {
   if (stress.empty()) return {};
   return {stress.front().data(), 6 * stress.size()};
@@ -112,9 +131,9 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
                       (inverse && problem_.moves() ? "route cg, " : "") +
                       "a coarser mesh or backend cpu");
   }
-  // Besides: states and vectors, some 60 numbers a node, mesh and forces, 55 an element.
+  // Besides: states and vectors, some 60 numbers a node, mesh, fibres and forces, 71 an element.
   device_.require_memory(
-      route + (60 * std::size_t{nodes_} + 55 * std::size_t{elements_}) * sizeof(double),
+      route + (60 * std::size_t{nodes_} + 71 * std::size_t{elements_}) * sizeof(double),
       "a body with tangents of its own", "a smaller mesh or backend cpu");
   create_buffers(options.viscous);
   create_passes();
@@ -147,6 +166,7 @@ void FiniteDevice::create_buffers(bool viscous) {
   }
   nodes_of_ = filled(device_, corners);
   shape_ = filled(device_, shape);
+  fibres_ = filled(device_, fibres_of(problem_));
   facts_ = filled(device_, std::vector<std::uint32_t>(elements_, shaders::kFiniteOut));
   std::vector<std::vector<std::uint32_t>> around(nodes_);
   for (std::uint32_t i = 0; i < corners.size(); ++i) around[corners[i]].push_back(i);
@@ -220,6 +240,7 @@ void FiniteDevice::create_cg(const fem::HyperelasticBody& body) {
   cg_ = std::make_unique<FiniteCg>(kernels_, problem_, body.destroyed,
                                    FiniteCgBody{nodes_of_,
                                                 shape_,
+                                                fibres_,
                                                 facts_,
                                                 from_,
                                                 first_,
@@ -252,9 +273,9 @@ void FiniteDevice::create_passes() {
   // binding[i] evaluates state i against the other one.
   make(law_, "finite_law", false,
        {&u_[0], &nodes_of_, &shape_, &facts_, &from_, &stress_[1], &corners_, &viscous_corners_,
-        &stress_[0], &element_partials_},
+        &stress_[0], &element_partials_, &fibres_},
        {&u_[1], &nodes_of_, &shape_, &facts_, &from_, &stress_[0], &corners_, &viscous_corners_,
-        &stress_[1], &element_partials_});
+        &stress_[1], &element_partials_, &fibres_});
   make(gather_, "finite_gather", false,
        {&corners_, &viscous_corners_, &first_, &around_, &entries_of_, &target_, &u_[0], &f_[0],
         &r_[0], &entry_partials_},
@@ -278,6 +299,8 @@ void FiniteDevice::attach(const solver::RestingBody& body) {
   for (std::uint32_t e = 0; e < elements_; ++e) {
     const auto element = static_cast<Index>(e);
     facts[e] = (body.out()[e] ? shaders::kFiniteOut : 0) |
+               (problem_.in_interface(element) ? shaders::kFiniteLayer : 0) |
+               (problem_.small_strain(element).fibres ? shaders::kFiniteFibrous : 0) |
                shaders::kFiniteLaw * number_of(body.body().law(element));
   }
   for (Index d : problem_.gripped_dofs())
@@ -568,9 +591,10 @@ std::vector<BufferPlan> FiniteDevice::buffers() const {
       2 * (u_[0].bytes() + r_[0].bytes() + f_[0].bytes() + stress_[0].bytes());
   const std::size_t vectors =
       du_.bytes() + q_.bytes() + x_.bytes() + partial_.bytes() + s_.bytes() + y_.bytes();
-  const std::size_t body = nodes_of_.bytes() + shape_.bytes() + facts_.bytes() + first_.bytes() +
-                           around_.bytes() + entries_of_.bytes() + held_.bytes() + from_.bytes() +
-                           target_.bytes() + corners_.bytes() + viscous_corners_.bytes();
+  const std::size_t body = nodes_of_.bytes() + shape_.bytes() + fibres_.bytes() + facts_.bytes() +
+                           first_.bytes() + around_.bytes() + entries_of_.bytes() + held_.bytes() +
+                           from_.bytes() + target_.bytes() + corners_.bytes() +
+                           viscous_corners_.bytes();
   std::vector<BufferPlan> list;
   if (inverse_.bytes() > 0) {
     list.push_back({"dense inverse of a recent tangent (device)", inverse_.bytes()});

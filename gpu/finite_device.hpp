@@ -97,7 +97,8 @@ class FiniteDevice final : public solver::FiniteDevice {
 
   // Of both states: displacement, residual, forces, stress.
   std::array<vulkan::Buffer, 2> u_, r_, f_, stress_;
-  vulkan::Buffer nodes_of_, shape_, facts_, first_, around_, entries_of_, held_, from_, target_;
+  vulkan::Buffer nodes_of_, shape_, fibres_, facts_, first_, around_, entries_of_, held_, from_,
+      target_;
   vulkan::Buffer corners_, viscous_corners_, element_partials_, entry_partials_, sums_,
       shares_of_sums_;  // the latter where there are several
   vulkan::Buffer du_, q_, x_, partial_, s_, y_, products_, lengths_;

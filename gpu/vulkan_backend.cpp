@@ -326,12 +326,8 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
     throw DeviceError(
         "backend vulkan does not compute pooled volume (volume = \"pooled\"); use backend cpu");
   }
-  if (problem->fibrous()) {
-    throw DeviceError(
-        "backend vulkan does not compute fibres (material.NAME.fibres); use backend cpu");
-  }
   // New nodes and unknowns come with tangents of the body as it is, whatever its law.
-  if (problem->moves() || problem->finite() || needs.split) {
+  if (problem->moves() || problem->finite() || problem->fibrous() || needs.split) {
     finite::Machine machine = law_machine(*problem, options);
     return finite::create(std::move(problem), std::move(needs), std::move(machine));
   }

@@ -4,6 +4,8 @@
 // far its stress is from that of another state.
 #extension GL_GOOGLE_include_directive : require
 #include "finite_laws.glsl"
+#define FIBRES_AT 10
+#include "finite_fibres.glsl"
 
 IN_DOUBLES(5, Before, before)  // stress of the other state, six an element
 OUT(6, Corners, double, corners)
@@ -75,6 +77,26 @@ Response respond(uint law, double mu, double lambda, dmat3 f, dmat3 c, double vo
   return found;
 }
 
+// What fibres add. Past this exponent no tissue bears the stress: no state of the law.
+void add_fibres(uint e, uint law, dmat3 h, dmat3 f, inout Response to) {
+  if (law == 0u) {
+    const dmat3 strain = symmetric(h), p_ = linear_fibres(e, strain);
+    to.p += p_;
+    to.energy += 0.5LF * inner(p_, strain);
+    return;
+  }
+  for (uint i = 0u; i < 2u; ++i) {
+    const Family of = family_of(e, i);
+    const double along = stretched(of, h), exponent = of.k2 * along * along;
+    if (!(exponent <= 100.0LF)) {
+      to.energy = infinity();
+      return;
+    }
+    to.energy += 0.5LF * of.k1 * along * along * growth_(exponent);
+    if (along > 0.0LF) to.p += (2.0LF * of.k1 * exp_(exponent) * along) * (f * structure(of));
+  }
+}
+
 // Potential of the viscous stress, whose forces are left at the corners.
 double resist(uint e, uint law, dmat3 h, double volume, double mu, double lambda) {
   const dmat3 way = viscous_way(e, law, h);
@@ -100,17 +122,19 @@ void main() {
     const dmat3 h = gradient(e);
     const dmat3 f = dmat3(1.0LF) + h, c = cofactor(f);
     const double j = dot(f[0], c[0]);
+    const bool layer = (fact & kFiniteLayer) != 0u, biot = layer || p.biot != 0u;
     Polar of;
-    if (law == 1u || p.biot != 0u) of = polar(f, c, j);
-    const Response found = respond(law, mu, lambda, f, c, j, of);
+    if (law == 1u || biot) of = polar(f, c, j);
+    Response found = respond(law, mu, lambda, f, c, j, of);
+    if ((fact & kFiniteFibrous) != 0u) add_fibres(e, law, h, f, found);
     const bool acts = !isinf(found.energy) && !isnan(found.energy);
     energy = volume * found.energy;
     put(e, acts ? volume * found.p : dmat3(0.0LF), false);
     // The linear law (0) knows one measure alone.
     dmat3 s = found.p;
     if (law != 0u) {
-      s = p.biot != 0u ? symmetric(transpose(of.r) * found.p)
-                       : symmetric(found.p * transpose(f)) * (1.0LF / j);
+      s = biot ? symmetric(transpose(of.r) * found.p)
+               : symmetric(found.p * transpose(f)) * (1.0LF / j);
     }
     const double none = found.energy - found.energy;
     const dvec3 normal = dvec3(s[0][0], s[1][1], s[2][2]) + none,
@@ -125,7 +149,8 @@ void main() {
     }
     stress_squared = bounded(squared(normal_before, shear_before));
     change_squared = bounded(squared(normal - normal_before, shear - shear_before));
-    if (p.viscous > 0.0LF) viscous = resist(e, law, h, volume, mu, lambda);
+    if (p.viscous > 0.0LF && layer) put(e, dmat3(0.0LF), true);
+    else if (p.viscous > 0.0LF) viscous = resist(e, law, h, volume, mu, lambda);
   }
   leave(energy, viscous, stress_squared, change_squared);
 }

@@ -4,6 +4,8 @@
 // columns, in packs of four (finite_cg.glsl).
 #extension GL_GOOGLE_include_directive : require
 #include "finite_laws.glsl"
+#define FIBRES_AT 6
+#include "finite_fibres.glsl"
 
 OUT(5, Tangents, REAL, tangents)
 layout(push_constant) uniform Push { FinitePush p; };
@@ -44,6 +46,26 @@ dmat3 change_of_viscous(At at, dmat3 d) {
          p.viscous * (at.f * hooke(symmetric(transpose(at.f) * d), at.mu, at.lambda));
 }
 
+// Of one family: d(2 W' F A) = W'' (2 F A)(2 F A : dF) + 2 W' dF A.
+struct FamilyAt {
+  dmat3 structure, slope;  // A, 2 F A
+  double first, second;    // W', W''
+};
+FamilyAt family_at(uint e, uint i, dmat3 f, dmat3 h) {
+  const Family of = family_of(e, i);
+  const double along = stretched(of, h), exponent = of.k2 * along * along;
+  FamilyAt at;
+  at.structure = structure(of);
+  at.slope = 2.0LF * (f * at.structure);
+  const double growth = along > 0.0LF && exponent <= 100.0LF ? of.k1 * exp_(exponent) : 0.0LF;
+  at.first = growth * along;
+  at.second = growth * (1.0LF + 2.0LF * exponent);
+  return at;
+}
+dmat3 change_of_fibres(FamilyAt at, dmat3 d) {
+  return at.second * inner(at.slope, d) * at.slope + 2.0LF * at.first * (d * at.structure);
+}
+
 void main() {
   const uint e = invocation();
   if (e >= p.elements) return;
@@ -78,8 +100,14 @@ void main() {
   } else if (at.law == 3u) {
     at.stress = hooke(green(at.f), at.mu, at.lambda);
   }
-  if (p.viscous > 0.0LF && at.law != 0u) {
+  const bool viscous = p.viscous > 0.0LF && (fact & kFiniteLayer) == 0u;
+  if (viscous && at.law != 0u) {
     at.viscous = p.viscous * hooke(viscous_way(e, at.law, h), at.mu, at.lambda);
+  }
+  const bool fibrous = (fact & kFiniteFibrous) != 0u;
+  FamilyAt families[2];
+  if (fibrous && at.law != 0u) {
+    [[unroll]] for (uint i = 0u; i < 2u; ++i) families[i] = family_at(e, i, at.f, h);
   }
   uint t = 0u;
   for (uint b = 0u; b < 9u; ++b) {
@@ -88,7 +116,11 @@ void main() {
       [[unroll]] for (uint i = 0u; i < 3u; ++i) d[k][i] = b == 3u * k + i ? 1.0LF : 0.0LF;
     }
     dmat3 found = change(at, d);
-    if (p.viscous > 0.0LF) found += change_of_viscous(at, d);
+    if (viscous) found += change_of_viscous(at, d);
+    if (fibrous && at.law == 0u) found += linear_fibres(e, symmetric(d));
+    if (fibrous && at.law != 0u) {
+      [[unroll]] for (uint i = 0u; i < 2u; ++i) found += change_of_fibres(families[i], d);
+    }
     [[unroll]] for (uint a = 0u; a < 9u; ++a) {
       if (a > b) continue;
       tangents.data[4u * (t / 4u * p.elements + e) + t % 4u] = REAL(volume * found[a / 3u][a % 3u]);

@@ -197,14 +197,19 @@ struct CgState {
 
 // Bodies at finite deformation and in motion (gpu/finite_device.cpp).
 
-SUNDER_CONST kFinitePairs = 8u;     // of L-BFGS, at most
-SUNDER_CONST kFiniteShape = 12u;    // doubles of an element: grad N_1, N_2, N_3, V, mu, lambda
+SUNDER_CONST kFinitePairs = 8u;   // of L-BFGS, at most
+SUNDER_CONST kFiniteShape = 12u;  // doubles of an element: grad N_1, N_2, N_3, V, mu, lambda
+// Of an element's fibres: of two families direction, k1, k2, dispersion; lambda, alpha, beta and mu
+// of law linear.
+SUNDER_CONST kFiniteFibres = 16u;
 SUNDER_CONST kFiniteTangent = 12u;  // packs of four: the upper triangle of 9 x 9
 
 // Of an element: bits of what it is, and above them its law.
 SUNDER_CONST kFiniteOut = 1u;
+SUNDER_CONST kFiniteLayer = 2u;  // of an interface: its stress is Biot's, without viscous forces
+SUNDER_CONST kFiniteFibrous = 4u;
 SUNDER_CONST kFiniteLaw =
-    2u;  // times the law: linear, corotated, neo-Hookean, Saint Venant-Kirchhoff
+    8u;  // times the law: linear, corotated, neo-Hookean, Saint Venant-Kirchhoff
 
 // Of an unknown.
 SUNDER_CONST kFiniteGripped = 1u;

@@ -70,8 +70,9 @@ std::optional<StressScale> stress_scale(const Problem& problem, const State& sta
     constexpr std::array kOverYield{"max. shear / yield", "Tresca stress / yield",
                                     "principal stress / yield"};  // by YieldMeasure
     const YieldMeasure measure = strength_measure(problem.scene().fracture);
-    return StressScale{yield_ratios(problem, state), 1.0,
-                       kOverYield[static_cast<std::size_t>(measure)]};
+    std::string label = kOverYield[static_cast<std::size_t>(measure)];
+    if (problem.interfaces()) label += ", traction / strength";
+    return StressScale{yield_ratios(problem, state), 1.0, std::move(label)};
   }
   StressScale scale{max_shears(state), 1.0, "max. shear [MPa]"};
   scale.maximum = maximum_of(problem, scale.value, state.destroyed);

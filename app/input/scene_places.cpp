@@ -20,7 +20,7 @@ class Collector {
       for (const auto& [name, node] : *materials)
         add("material " + in_quotes(name.str()), node.source());
     }
-    for (const char* key : {"fixed", "crack", "destroy"}) add_array(key);
+    for (const char* key : {"fixed", "crack", "interface", "destroy"}) add_array(key);
     add_instruments();
     for (const char* section : {"fracture", "solver", "time", "load", "dynamics"})
       add_options(section);

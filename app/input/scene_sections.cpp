@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/input/scene_sections.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "app/input/nearest.hpp"
@@ -8,6 +9,7 @@
 #include "sunder/in_quotes.hpp"
 #include "sunder/scene_keys.hpp"
 #include "sunder/tissue_presets.hpp"
+#include "sunder/words.hpp"
 
 namespace sunder::app {
 namespace {
@@ -82,11 +84,28 @@ const TissuePreset* read_preset(const TomlTable& table) {
                  "; allowed: " + quoted_list(preset_names()));
 }
 
+void forbid(const TomlTable& table, const std::vector<std::string>& keys, const std::string& why) {
+  for (const std::string& key : keys) {
+    if (table.has(key)) table.fail(InputFault::unknown_key, key, why);
+  }
+}
+
 Fibres read_fibres(const TomlTable& table, const std::string& file) {
   Fibres fibres;
-  const std::string key = require_one(table, {"direction", "around", "field"});
+  const std::string key = require_one(table, {"direction", "around", "curve", "field"});
+  if (key != "direction") {
+    forbid(table, {"surface"}, "goes with \"direction\" only, which is laid along it");
+  }
   if (key == "direction") {
-    fibres.direction = *table.vec3("direction");
+    const auto surface = table.text("surface");
+    const Vec3 direction = *table.vec3("direction");
+    if (surface) {
+      fibres.direction = AlongSurface{*surface, direction};
+    } else {
+      fibres.direction = direction;
+    }
+  } else if (key == "curve") {
+    fibres.direction = AlongCurve{*table.curve("curve")};
   } else if (key == "field") {
     fibres.direction = FieldName{*table.text("field")};
   } else {
@@ -119,12 +138,6 @@ Material read_material(const TomlTable& table, const std::string& file) {
     material.fibres.push_back(read_fibres(TomlTable(*families[i], file, path, of_fibres), file));
   }
   return material;
-}
-
-void forbid(const TomlTable& table, const std::vector<std::string>& keys, const std::string& why) {
-  for (const std::string& key : keys) {
-    if (table.has(key)) table.fail(InputFault::unknown_key, key, why);
-  }
 }
 
 Press read_press(const TomlTable& table) {
@@ -223,6 +236,25 @@ std::vector<PresetCrack> read_cracks(const TomlTable& root, const std::string& f
     cracks.push_back(std::move(crack));
   });
   return cracks;
+}
+
+std::vector<Interface> read_interfaces(const TomlTable& root, const std::string& file) {
+  std::vector<Interface> interfaces;
+  for_each_table(root, file, "interface", [&](const TomlTable& table) {
+    Interface interface;
+    const auto between = table.require("between", table.texts("between"));
+    if (between.size() != 2) {
+      table.fail(InputFault::wrong_type, "between",
+                 "has " + count_of(static_cast<long long>(between.size()), "name") +
+                     "; allowed: the names of two volumes");
+    }
+    std::ranges::copy(between, interface.between.begin());
+    interface.strength = table.require("strength", table.number("strength"));
+    interface.energy = table.require("energy", table.number("energy"));
+    interface.shear_ratio = table.number("shear_ratio").value_or(interface.shear_ratio);
+    interfaces.push_back(std::move(interface));
+  });
+  return interfaces;
 }
 
 std::vector<ScriptedRemoval> read_removals(const TomlTable& root, const std::string& file) {

@@ -14,6 +14,8 @@ namespace sunder::app {
 [[nodiscard]] std::vector<Instrument> read_instruments(const TomlTable& root,
                                                        const std::string& file);
 [[nodiscard]] std::vector<PresetCrack> read_cracks(const TomlTable& root, const std::string& file);
+[[nodiscard]] std::vector<Interface> read_interfaces(const TomlTable& root,
+                                                     const std::string& file);
 [[nodiscard]] std::vector<ScriptedRemoval> read_removals(const TomlTable& root,
                                                          const std::string& file);
 [[nodiscard]] FractureOptions read_fracture(const TomlTable& root, const std::string& file);

@@ -66,6 +66,7 @@ ParsedScene parse_scene(std::string_view text, const std::string& source,
   scene.supports = read_supports(root, source);
   scene.instruments = read_instruments(root, source);
   scene.cracks = read_cracks(root, source);
+  scene.interfaces = read_interfaces(root, source);
   scene.removals = read_removals(root, source);
   scene.fracture = read_fracture(root, source);
   scene.solver = read_solver(root, source);

@@ -201,6 +201,16 @@ std::optional<std::vector<Vec3>> TomlTable::points(std::string_view key, std::si
   return result;
 }
 
+std::optional<std::vector<Vec3>> TomlTable::curve(std::string_view key) const {
+  const std::string expected = "2 or more points [[x, y, z], [x, y, z], ...]";
+  const toml::array* values = array(key, expected);
+  if (!values) return std::nullopt;
+  if (values->size() < 2) fail_type(key, *values, expected);
+  std::vector<Vec3> result;
+  for (const toml::node& value : *values) result.push_back(point(value, key, expected));
+  return result;
+}
+
 std::optional<std::vector<double>> TomlTable::numbers(std::string_view key,
                                                       std::size_t count) const {
   const std::string expected = "an array of " + std::to_string(count) + " numbers";

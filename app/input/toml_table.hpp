@@ -32,6 +32,8 @@ class TomlTable {
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;
   [[nodiscard]] std::optional<Vec3> vec3(std::string_view key) const;
   /// An array of exactly `count` points [x, y, z].
+  /// Two or more.
+  [[nodiscard]] std::optional<std::vector<Vec3>> curve(std::string_view key) const;
   [[nodiscard]] std::optional<std::vector<Vec3>> points(std::string_view key,
                                                         std::size_t count) const;
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key,

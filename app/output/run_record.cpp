@@ -34,7 +34,8 @@ std::optional<Deformation> RunRecord::largest() const {
 double RunRecord::volume_lost() const {
   double sum = 0;
   for (const DestroyedElement& d : destroyed) {
-    if (!d.lives && d.cause != Cause::preset) sum += problem.shape(d.element).volume;
+    if (d.lives || d.cause == Cause::preset || problem.in_interface(d.element)) continue;
+    sum += problem.shape(d.element).volume;
   }
   return sum;
 }

@@ -7,6 +7,7 @@
 
 #include "app/output/text.hpp"
 #include "sunder/board_plane.hpp"
+#include "sunder/parted_interfaces.hpp"
 #include "sunder/scene_keys.hpp"
 
 namespace sunder::app {
@@ -136,6 +137,29 @@ Json timings(const RunRecord& run) {
   return out;
 }
 
+/// What has parted of each, and the energy that it took.
+Json interfaces(const RunRecord& run) {
+  Json out = Json::array();
+  const Interfaces* all = run.problem.interfaces();
+  if (!all) return out;
+  const std::vector<PartedInterface> parted = parted_interfaces(*all, run.destroyed);
+  for (std::size_t i = 0; i < parted.size(); ++i) {
+    const Interface& of = run.problem.scene().interfaces[i];
+    const InterfaceLayer& layer = all->layers()[i];
+    out.push_back({{"between", {of.between[0], of.between[1]}},
+                   {"strength", of.strength},
+                   {"energy", of.energy},
+                   {"shear_ratio", of.shear_ratio},
+                   {"stiffness", layer.mu / layer.thickness},
+                   {"opening", layer.opening},
+                   {"thickness", layer.thickness},
+                   {"area", layer.area},
+                   {"parted", parted[i].area},
+                   {"spent", parted[i].energy}});
+  }
+  return out;
+}
+
 /// What cracks of this run leave, and how much of it.
 void add_split(const RunRecord& run, Json& out) {
   const Scene& scene = run.problem.scene();
@@ -194,6 +218,7 @@ Json tree(const RunRecord& run) {
   out["motion"] = motion(last.motion);
   out["toughness"] = toughness(run);
   add_split(run, out);
+  out["interfaces"] = interfaces(run);
   return out;
 }
 

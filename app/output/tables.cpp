@@ -34,7 +34,7 @@ std::string gpu_time(const StepReport& report, const std::string& pass) {
 std::string events_header() {
   return "step,event,element,criterion,crack,ratio,load_factor,"
          "tip,K,K_a,K_b,K_c,theta_deg,r,sigma0,beta_deg,a,b,K_I,K_II,"
-         "K_III,K_formula,theta_formula_deg,K_field,theta_field_deg,field_note,advance\n";
+         "K_III,K_formula,theta_formula_deg,K_field,theta_field_deg,field_note,advance,energy\n";
 }
 
 std::string events_row(const DestroyedElement& record) {
@@ -66,7 +66,8 @@ std::string events_row(const DestroyedElement& record) {
               known(k.k_field),
               known(k.theta_field),
               std::string(k.field_note),
-              sif(k.advance)});
+              sif(k.advance),
+              known(record.energy)});
 }
 
 namespace {

@@ -37,13 +37,14 @@ struct LaneOutputs {
   StressMeasure measure = StressMeasure::cauchy;
 };
 
-/// Blocks of one law, all with fibres or all without, one after the other.
+/// Blocks of one law and one kind, one after the other.
 struct ElementGroup {
   static constexpr std::size_t kMost = 8;
   const Law* law;
   std::size_t first = 0, count = 0;  ///< blocks
   bool pooled = false;               ///< their volume is their patch's
   bool fibres = false;               ///< theirs have some
+  bool layer = false;  ///< of interfaces: their stress is Biot's, their deformation does not count
 };
 
 /// Of a group's live elements, those in one lane together.

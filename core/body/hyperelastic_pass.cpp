@@ -100,6 +100,7 @@ void HyperelasticPass::arrange() {
     for (const bool pooled : {false, true}) {
       for (const bool fibres : {false, true}) arrange({law, 0, 0, pooled, fibres});
     }
+    if (body_.problem.interfaces()) arrange({law, 0, 0, false, false, true});
   }
   found_.resize(groups_.size());
   if (!forces_.empty()) place_forces();
@@ -113,7 +114,7 @@ void HyperelasticPass::arrange(const ElementGroup& kind) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
     const bool fibres = problem.small_strain(e).fibres != nullptr;
     if (&body_.law(e) != kind.law || pools_volume(body_, e) != kind.pooled ||
-        fibres != kind.fibres) {
+        fibres != kind.fibres || problem.in_interface(e) != kind.layer) {
       continue;
     }
     if (lane == kLanes) {
@@ -273,6 +274,8 @@ HyperelasticPass::Found HyperelasticPass::run(std::span<const double> u, const W
       const ElementGroup& group = groups_[g];
       if (!wanted.forces.empty()) part.forces = forces_.data() + group.first * kBlockForces;
       part.pressure = group.pooled ? pressure_.data() + group.first * kLanes : nullptr;
+      part.measure = group.layer ? StressMeasure::biot : to.measure;
+      part.deformation = to.deformation && !group.layer;
       run_group(body_.problem, group, blocks_.data() + group.first, u.data(), part, found_[g]);
     }
   });

@@ -49,7 +49,8 @@ const Law& law_of(const Problem& problem, Index e) {
 
 Voigt named_stress(const Problem& problem, Index e,
                    const Eigen::Matrix<double, 3, 4>& displacement) {
-  return stress_by(problem, e, displacement, problem.scene().fracture.stress);
+  return stress_by(problem, e, displacement,
+                   problem.in_interface(e) ? StressMeasure::biot : problem.scene().fracture.stress);
 }
 
 Voigt material_stress(const Problem& problem, Index e,

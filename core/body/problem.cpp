@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "body/board_check.hpp"
 #include "body/element.hpp"
 #include "body/instrument_name.hpp"
+#include "body/lay_interfaces.hpp"
 #include "body/pools.hpp"
 #include "body/selection.hpp"
 #include "body/supports.hpp"
@@ -14,6 +16,7 @@
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/in_quotes.hpp"
+#include "sunder/interfaces.hpp"
 #include "sunder/scene_keys.hpp"
 #include "sunder/words.hpp"
 
@@ -86,8 +89,12 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
   if (turned.count > 0) warnings_.push_back(sentence(turned));
   try {
     check_options();
+    std::optional<Mesh> as_it_came;
+    if (!scene_.interfaces.empty()) as_it_came = scene_.mesh;
+    fem::lay_interfaces(scene_);
     resolve_materials();
     build_shapes();
+    interfaces_ = interfaces_of(scene_, shapes_);
     lay_fibres();
     make_pools();
     resolve_elements();
@@ -101,13 +108,18 @@ Problem::Problem(Scene scene) : scene_(std::move(scene)) {
     resolve_pulls();
     resolve_presses();
     check_held_bodies(bodies);
+    // Layers of interfaces are thinner than what lies close to each other by mistake.
+    if (as_it_came) std::swap(scene_.mesh, *as_it_came);
     note_odd_mesh();
+    if (as_it_came) std::swap(scene_.mesh, *as_it_came);
     note_no_board();
     note_toughness();
   } catch (const InputError& error) {
     throw InputError(error.fault(), where + ": " + error.what());
   }
 }
+
+bool Problem::in_interface(Index e) const { return interfaces_ && interfaces_->has(e); }
 
 void Problem::note_no_board() {
   if (!row_of(scene_.fracture.model).grows_cracks) return;
@@ -194,6 +206,7 @@ Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners
                  std::span<const NodeThatParts> nodes)
     : scene_(whole.scene_),
       shapes_(whole.shapes_),
+      interfaces_(whole.interfaces_),
       dof_(whole.dof_),
       dof_count_(whole.dof_count_),
       gripped_dofs_(whole.gripped_dofs_),
@@ -222,6 +235,7 @@ Problem::Problem(const Problem& whole, std::span<const Index> gripped)
     : scene_(whole.scene_),
       shapes_(whole.shapes_),
       pools_(whole.pools_),
+      interfaces_(whole.interfaces_),
       dof_(whole.dof_),
       dof_count_(whole.dof_count_),
       gripped_dofs_(gripped.begin(), gripped.end()),
@@ -406,13 +420,15 @@ constexpr double kLocks = 0.49;
 namespace {
 
 constexpr const char* kPools =
-    " has volume = \"pooled\", which is there for laws \"linear\" and \"neo-hookean\" in statics "
+    " has volume = \"pooled\", which is there for laws \"linear\" (in statics) and \"neo-hookean\" "
     "with model \"none\", \"A\" or \"P\", but ";
 
 /// Why the law of a material cannot pool its volume in a scene; empty: it can.
 std::string why_law_cannot_pool(const Problem& problem, const Material& material) {
   if (material.law == MaterialLaw::neo_hookean) return {};
   if (!problem.finite()) {
+    if (problem.moves())
+      return "[dynamics] makes the scene move, and law \"linear\" pools in statics";
     return problem.fibrous() ? "its law \"linear\" pools volume only where no material has fibres"
                              : "";
   }
@@ -467,16 +483,10 @@ void Problem::make_pools() {
 }
 
 /// Whether anything of the scene but laws speaks against pooled volume.
-bool Problem::can_pool() const { return !moves() && !row_of(scene_.fracture.model).grows_cracks; }
+bool Problem::can_pool() const { return !row_of(scene_.fracture.model).grows_cracks; }
 
 void Problem::check_pooled(const std::string& what) const {
   if (can_pool()) return;
-  if (moves()) {
-    throw InputError(InputFault::out_of_range,
-                     what + kPools +
-                         "[dynamics] makes the scene move; take volume = \"element\" or leave "
-                         "[dynamics] out");
-  }
   throw InputError(InputFault::out_of_range,
                    what + kPools + "model " + in_quotes(row_of(scene_.fracture.model).name) +
                        " grows cracks; take volume = \"element\" or model \"A\"");

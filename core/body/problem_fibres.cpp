@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fibres of a problem: what its materials may have, and where they run in each element.
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "body/fibre_directions.hpp"
 #include "material/fibres.hpp"
 #include "material/linear.hpp"
 #include "sunder/error.hpp"
@@ -17,8 +17,6 @@
 namespace sunder {
 namespace {
 
-// Of an element's size and place: a centroid that lies on an axis but for rounding.
-constexpr double kOnAxis = 1e-9;
 constexpr std::size_t kMostFamilies = 2;
 
 [[noreturn]] void refuse(InputFault fault, const std::string& text) {
@@ -29,12 +27,6 @@ constexpr std::size_t kMostFamilies = 2;
 std::string name_of(const std::string& material, std::size_t family) {
   return "material " + in_quotes(material) + ", fibres " + std::to_string(family);
 }
-
-std::string in_brackets(const Vec3& v) {
-  return "[" + in_digits(v.x()) + ", " + in_digits(v.y()) + ", " + in_digits(v.z()) + "]";
-}
-
-bool is_direction(const Vec3& v) { return v.allFinite() && !v.isZero(0); }
 
 void check_finite_law(const std::string& what, const Fibres& f) {
   for (const auto& [key, value] :
@@ -98,34 +90,6 @@ void check_linear_law(const std::string& what, const Material& m, const Fibres& 
   }
 }
 
-void check_direction(const std::string& what, const Fibres& f, const Mesh& mesh) {
-  if (const auto* direction = std::get_if<Vec3>(&f.direction)) {
-    if (!is_direction(*direction)) {
-      refuse(InputFault::out_of_range, what + " has direction = " + in_brackets(*direction) +
-                                           "; it must be finite and not zero");
-    }
-  } else if (const auto* round = std::get_if<AroundAxis>(&f.direction)) {
-    if (!round->point.allFinite() || !is_direction(round->axis)) {
-      refuse(InputFault::out_of_range, what + " runs around axis = " + in_brackets(round->axis) +
-                                           " through " + in_brackets(round->point) +
-                                           "; both must be finite and the axis not zero");
-    }
-  } else {
-    const std::string& name = std::get<FieldName>(f.direction).name;
-    if (const auto found = mesh.fields.find(name); found != mesh.fields.end()) {
-      if (found->second.size() == mesh.tets.size()) return;
-      refuse(InputFault::out_of_range, what + " has field = " + in_quotes(name) + ", which has " +
-                                           std::to_string(found->second.size()) + " vectors for " +
-                                           std::to_string(mesh.tets.size()) + " elements");
-    }
-    std::vector<std::string> names;
-    for (const auto& field : mesh.fields) names.push_back(field.first);
-    refuse(InputFault::unknown_name,
-           what + " has field = " + in_quotes(name) + ", which is no vector of the mesh's cells; " +
-               (names.empty() ? "its file has none" : "it has " + name_list(names)));
-  }
-}
-
 void check_strength(const std::string& what, const Scene& scene, const Material& m,
                     const Fibres& f) {
   if (!f.yield_across) return;
@@ -150,38 +114,6 @@ void check_strength(const std::string& what, const Scene& scene, const Material&
     refuse(InputFault::out_of_range,
            has + ", which is judged by element; leave fracture.averaging out");
   }
-}
-
-Vec3 centroid(const Mesh& mesh, Index e) {
-  Vec3 sum = Vec3::Zero();
-  for (Index n : mesh.tets[static_cast<std::size_t>(e)]) {
-    sum += mesh.nodes[static_cast<std::size_t>(n)];
-  }
-  return sum / 4;
-}
-
-/// Unit vector in element e of `material`.
-Vec3 direction_in(const Mesh& mesh, Index e, double volume, const Fibres& f,
-                  const std::string& what) {
-  if (const auto* direction = std::get_if<Vec3>(&f.direction)) return direction->stableNormalized();
-  if (const auto* round = std::get_if<AroundAxis>(&f.direction)) {
-    const Vec3 way = centroid(mesh, e) - round->point;
-    const Vec3 along = round->axis.stableNormalized().cross(way);
-    if (!(along.norm() > kOnAxis * (way.norm() + std::cbrt(volume)))) {
-      refuse(InputFault::out_of_range, what + " has the centroid of element " + std::to_string(e) +
-                                           " on the axis, where fibres around it have no "
-                                           "direction; move the axis, or give a direction");
-    }
-    return along.normalized();
-  }
-  const std::string& name = std::get<FieldName>(f.direction).name;
-  const Vec3& v = mesh.fields.at(name)[static_cast<std::size_t>(e)];
-  if (!is_direction(v)) {
-    refuse(InputFault::out_of_range, what + " has " + in_brackets(v) + " in field " +
-                                         in_quotes(name) + " at element " + std::to_string(e) +
-                                         "; a direction must be finite and not zero");
-  }
-  return v.stableNormalized();
 }
 
 /// Spencer's constants by the elasticity in the fibre's frame, whose first axis is along.
@@ -259,7 +191,7 @@ void check_families(const std::string& name, const Material& m, const Scene& sce
   }
   for (std::size_t i = 0; i < m.fibres.size(); ++i) {
     const std::string what = name_of(name, i);
-    check_direction(what, m.fibres[i], mesh);
+    static_cast<void>(fem::directions_of(m.fibres[i], mesh, what));
     check_toughness(what, scene, m, m.fibres[i]);
     if (guide) continue;
     if (linear) {
@@ -271,17 +203,31 @@ void check_families(const std::string& name, const Material& m, const Scene& sce
   }
 }
 
-/// Of element e, by its material.
-ElementFibres fibres_in(const Problem& problem, Index e) {
+/// Of every volume's families, by the names of their materials.
+std::vector<std::vector<std::unique_ptr<fem::FibreDirections>>> all_directions(
+    const Problem& problem) {
   const Mesh& mesh = problem.mesh();
+  std::vector<std::vector<std::unique_ptr<fem::FibreDirections>>> all(mesh.volumes.size());
+  for (std::size_t v = 0; v < all.size(); ++v) {
+    const auto material = problem.scene().materials.find(mesh.volumes[v].name);
+    if (material == problem.scene().materials.end()) continue;
+    for (const Fibres& f : material->second.fibres) {
+      all[v].push_back(fem::directions_of(f, mesh, name_of(material->first, all[v].size())));
+    }
+  }
+  return all;
+}
+
+/// Of element e, by its material.
+ElementFibres fibres_in(const Problem& problem, Index e,
+                        std::span<const std::unique_ptr<fem::FibreDirections>> directions) {
   const Material& m = problem.material(e);
   ElementFibres of;
   for (const Fibres& f : m.fibres) {
     if (f.guide_cracks()) break;
     const auto place = static_cast<std::size_t>(of.count);
     FibreFamily& family = of.family[place];
-    family.direction = direction_in(mesh, e, problem.shape(e).volume, f,
-                                    name_of(mesh.volumes[mesh.volume_of[e]].name, place));
+    family.direction = directions[place]->in(e, problem.shape(e).volume);
     if (m.law == MaterialLaw::linear) {
       of.linear = along_fibres(m, f);
     } else {
@@ -309,7 +255,10 @@ void Problem::lay_fibres() {
   if (guide) lay_guides();
   if (!any) return;
   std::vector<ElementFibres> all;
-  for (Index e = 0; e < tet_count(); ++e) all.push_back(fibres_in(*this, e));
+  const auto directions = all_directions(*this);
+  for (Index e = 0; e < tet_count(); ++e) {
+    all.push_back(fibres_in(*this, e, directions[static_cast<std::size_t>(mesh().volume_of[e])]));
+  }
   fibres_ = std::make_shared<const std::vector<ElementFibres>>(std::move(all));
   note_fibres();
 }
@@ -317,12 +266,12 @@ void Problem::lay_fibres() {
 /// Fibres that guide cracks; 0 where there are none.
 void Problem::lay_guides() {
   std::vector<Vec3> all(static_cast<std::size_t>(tet_count()), Vec3::Zero());
+  const auto directions = all_directions(*this);
   for (Index e = 0; e < tet_count(); ++e) {
     const Material& m = material(e);
     if (m.fibres.empty() || !m.fibres.front().guide_cracks()) continue;
-    all[static_cast<std::size_t>(e)] =
-        direction_in(mesh(), e, shape(e).volume, m.fibres.front(),
-                     name_of(mesh().volumes[mesh().volume_of[e]].name, 0));
+    const auto& of = directions[static_cast<std::size_t>(mesh().volume_of[e])];
+    all[static_cast<std::size_t>(e)] = of.front()->in(e, shape(e).volume);
   }
   guides_ = std::make_shared<const std::vector<Vec3>>(std::move(all));
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "sunder/interfaces.hpp"
 #include "sunder/problem.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -18,6 +19,7 @@ Mat3 root_of_inverse_strengths(const Vec3& a, double yield, double across) {
 }  // namespace
 
 double Problem::yield_ratio(Index e, const Voigt& stress, YieldMeasure measure) const {
+  if (in_interface(e)) return interfaces_->ratio(e, stress);
   const Material& m = material(e);
   if (m.fibres.empty() || !m.fibres.front().yield_across) {
     return yield_measure(stress, measure) / yield(e);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "body/deformation.hpp"
+#include "body/pooled_law.hpp"
 #include "material/linear.hpp"
 
 namespace sunder::fem {
@@ -16,11 +17,15 @@ Mat3 Viscosity::strain(const Mat3& h, Index e) const {
   return (&body_.law(e) == &kLinear ? twice : Mat3(twice + h.transpose() * h)) / 2;
 }
 
-/// Times the volume.
+/// Times the volume. Layers of interfaces have none: their strain is an opening over a thickness
+/// that is nominal. Where volume is pooled that of shape alone: the element's own change of volume
+/// is free, and to slow it would lock the element.
 Mat3 Viscosity::stress(const Mat3& strain, double factor, Index e) const {
+  if (body_.problem.in_interface(e)) return Mat3::Zero();
   const SmallStrain& law = body_.problem.small_strain(e);
+  const double lambda = pools_volume(body_, e) ? -2 * law.mu / 3 : law.lambda;
   Mat3 of = 2 * law.mu * strain;
-  of.diagonal().array() += law.lambda * strain.trace();
+  of.diagonal().array() += lambda * strain.trace();
   return factor * body_.problem.shape(e).volume * of;
 }
 

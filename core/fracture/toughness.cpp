@@ -8,7 +8,7 @@
 namespace sunder::fracture {
 namespace {
 
-constexpr double kNear = 1.5;  // h: as far as a tip goes at once
+constexpr double kNearTip = 1.5;  // h: as far as a tip goes at once
 
 GivenToughness given(const std::optional<double>& intensity, const std::optional<double>& energy) {
   return {intensity.value_or(0.0), energy.value_or(0.0)};
@@ -32,7 +32,7 @@ Toughness::Toughness(const Problem& problem, const Board& board)
   if (guided) {
     across_.resize(along_.size());
     fibres_.resize(along_.size());
-    near_.reserve(board.most_within(kNear * board.h()));
+    near_.reserve(board.most_within(kNearTip * board.h()));
   }
   for (Index e = 0; e < problem.tet_count(); ++e) {
     const Material& material = problem.material(e);
@@ -54,7 +54,7 @@ ToughnessView Toughness::view(double young, const Vec2& direction) const {
 std::optional<TipResistance> Toughness::around(const Vec2& place, double young,
                                                std::span<const std::uint8_t> destroyed) const {
   if (!by_direction()) return std::nullopt;
-  board_.elements_within(place, kNear * board_.h(), near_);
+  board_.elements_within(place, kNearTip * board_.h(), near_);
   TipResistance mean;
   mean.plane = &board_.plane();
   double volume = 0;

@@ -256,6 +256,9 @@ void add_body(Hash& hash, const Problem& problem) {
     // By element as in recordings that are older than the word.
     if (m.volume != MaterialVolume::element) hash.add(static_cast<std::uint8_t>(m.volume));
   }
+  for (const Interface& i : problem.scene().interfaces) {
+    for (const double v : {i.strength, i.energy, i.shear_ratio}) hash.add(v);
+  }
 }
 
 void add_instruments(Hash& hash, const Problem& problem) {

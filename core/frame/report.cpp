@@ -15,6 +15,8 @@ const char* to_string(Cause cause) {
       return "script";
     case Cause::principal:
       return "principal";
+    case Cause::parting:
+      return "interface";
   }
   return "";
 }

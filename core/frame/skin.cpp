@@ -45,6 +45,7 @@ class Cells {
     }
     lists_.resize(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]));
     for (Index e = 0; e < mesh.tet_count(); ++e) {
+      if (problem.in_interface(e)) continue;  // a vertex belongs to the tissue of a side
       Vec3 low = mesh.nodes[mesh.tets[e][0]], high = low;
       for (Index n : mesh.tets[e]) {
         low = low.cwiseMin(mesh.nodes[n]);

@@ -157,6 +157,11 @@ std::vector<SceneKey> root_rows() {
       row("", "fixed", tables, "", "supports", "a body that can move as one: error"),
       row("", "instrument", tables, "", "what pulls, grips and presses; any number", ""),
       row("", "crack", tables, "", "preset cracks", ""),
+      row("", "interface", tables, "",
+          "surfaces between two volumes that part by a law of their own (method.md "
+          "\"Interfaces\"); "
+          "they make the scene one of finite deformation",
+          "model \"B\", `fracture.averaging`: error"),
       row("", "destroy", tables, "", "elements removed by script", ""),
       row("", "fracture", table, "", "what breaks, and how", ""),
       row("", "solver", table, "", "how it is computed", ""),
@@ -176,17 +181,24 @@ SceneKey fibres_row() {
              "a family of fibres, a table; or two families, an array of two tables (method.md "
              "\"Fibres\")",
              "three; two with law \"linear\"; with a model that grows cracks, but for "
-             "`toughness_across`: error; with a stiffness on backend \"vulkan\": exit code 4");
+             "`toughness_across`: error");
 }
 
 std::vector<SceneKey> fibre_rows() {
   using enum KeyType;
   return {
       row("fibres", "direction", vector, "", "where they run, in all of the material",
-          "zero; two of `direction`, `around` and `field`, or none: error"),
+          "zero; two of `direction`, `around`, `curve` and `field`, or none: error"),
+      row("fibres", "surface", text, "",
+          "name of a surface: `direction` is laid along it, in each element as at its nearest "
+          "triangle",
+          "without `direction`, no such surface, `direction` across it somewhere: error"),
       row("fibres", "around", table, "",
           "{point = [x, y, z], axis = [x, y, z]}: round that axis [mm]",
           "axis zero, an element's centroid on it: error"),
+      row("fibres", "curve", curve, "",
+          "points of a polyline, to whose nearest piece they are parallel [mm]",
+          "fewer than two, one twice in a row: error"),
       row("fibres", "field", text, "",
           "name of an array of vectors, one a cell, in the mesh file (.vtu)",
           "no such array, a vector zero: error"),
@@ -278,6 +290,15 @@ std::vector<SceneKey> body_rows() {
       row("crack", "mouth", vector, "", "where an edge crack begins [mm]", "beside `tips`: error"),
       row("crack", "tip", vector, "", "where an edge crack ends [mm]", "length 0: error"),
       row("crack", "tips", points, "", "both ends of an internal crack [mm]", "length 0: error"),
+      row("interface", "between", texts, "", "names of the two volumes",
+          "not two, no such volume, the same twice, volumes that share no face: error", kRequired),
+      row("interface", "strength", number, "", "largest traction in tension [MPa]",
+          "0 or below: error", kRequired),
+      row("interface", "energy", number, "", "that parting takes in tension [N/mm]",
+          "0 or below: error", kRequired),
+      row("interface", "shear_ratio", number, "1",
+          "of the strength in shear to that in tension; shear takes its square times the energy",
+          "0 or below: error"),
       row("destroy", "step", integer, "", "step before which they go, from 0",
           "beyond the last: error", kRequired),
       row("destroy", "volume", text, "", "a named volume", "two of these three, or none: error"),
@@ -356,7 +377,7 @@ std::span<const MemberKey<Material>> material_keys() {
           "nearly "
           "incompressible tissue does not lock (method.md \"Pooled volume\")",
           "\"element\" with `poisson` over 0.49: warning; \"pooled\" with law \"corotated\" or "
-          "\"saint-venant-kirchhoff\", with \"linear\" beside other laws or fibres, in motion or "
+          "\"saint-venant-kirchhoff\", with \"linear\" in motion, beside other laws or fibres, or "
           "with a "
           "model "
           "that grows cracks: error; with a backend or route that cannot: exit code 4",

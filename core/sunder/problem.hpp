@@ -15,6 +15,7 @@
 
 namespace sunder {
 
+class Interfaces;
 struct FractureModelRow;
 
 namespace fem {
@@ -90,6 +91,10 @@ class Problem {
   [[nodiscard]] Vec3 fibre_direction(Index e, int family) const;
   /// Patches of the elements that pool their volume (body/pools.hpp); null where none does.
   [[nodiscard]] const fem::Pools* pools() const { return pools_.get(); }
+  /// Layers of the scene's interfaces (interfaces.hpp); null where it has none.
+  [[nodiscard]] const Interfaces* interfaces() const { return interfaces_.get(); }
+  /// Whether an element is one of them.
+  [[nodiscard]] bool in_interface(Index e) const;
   /// Whether a law of its elements is one of finite deformation.
   [[nodiscard]] bool finite() const { return finite_; }
   /// Whether its steps are steps of time.
@@ -174,6 +179,7 @@ class Problem {
   std::vector<const Material*> material_of_volume_;
   std::vector<SmallStrain> small_strain_of_volume_;
   std::shared_ptr<const fem::Pools> pools_;
+  std::shared_ptr<const Interfaces> interfaces_;
   std::shared_ptr<const std::vector<ElementFibres>> fibres_;  // of elements; null: none has any
   std::vector<SmallStrain> small_strain_of_element_;          // where fibres_ is there
   std::shared_ptr<const std::vector<Vec3>> guides_;           // likewise; null: none

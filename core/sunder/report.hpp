@@ -12,7 +12,8 @@
 
 namespace sunder {
 
-enum class Cause { mss, sif, preset, script, principal };
+/// parting: by an interface's law, "interface" in results; as a name that is a macro of Windows.
+enum class Cause { mss, sif, preset, script, principal, parting };
 [[nodiscard]] const char* to_string(Cause cause);
 
 /// One destroyed element, or what a split crack did (a row of events.csv).
@@ -25,10 +26,12 @@ struct DestroyedElement {
   bool lives = false;
   Cause cause = Cause::mss;
   int crack = kNone;  ///< for sif, preset, and the mss that starts a crack
-  std::optional<double>
-      ratio;               ///< mss, principal: measure/yield; sif: r_e / max(rho, h/2) or K / K_c
+  /// mss, principal: measure/yield; sif: r_e / max(rho, h/2) or K / K_c; parting:
+  /// traction/strength, in statics times the root of the release that its neighbours showed.
+  std::optional<double> ratio;
   double load_factor = 0;  ///< scene time t
   std::optional<SifTerms> sif;
+  std::optional<double> energy;  ///< parting: that its law asks for, in this mode [N mm]
   /// The instrument with the largest share of the maximum shear stress of the event's first
   /// element, and that share of the whole (Simulation::attribute_events); kNone: not asked for.
   int instrument = kNone;

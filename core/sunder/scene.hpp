@@ -3,6 +3,7 @@
 // Plain data; `Problem` (problem.hpp) checks it and turns it into numbers. Units: mm, N, MPa.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,9 +31,20 @@ struct AroundAxis {
   Vec3 point, axis;
 };
 
+/// Along the piece of a polyline that is nearest to the element's centroid.
+struct AlongCurve {
+  std::vector<Vec3> points;  ///< at least two [mm]
+};
+/// Along a named surface: a direction less its part across the triangle whose middle is nearest to
+/// the element's centroid.
+struct AlongSurface {
+  std::string surface;
+  Vec3 direction;
+};
+
 /// A family of fibres (method.md "Fibres").
 struct Fibres {
-  std::variant<Vec3, AroundAxis, FieldName> direction = Vec3::Zero();
+  std::variant<Vec3, AroundAxis, FieldName, AlongCurve, AlongSurface> direction = Vec3::Zero();
   /// Laws of finite deformation: k1 [MPa], > 0; k2, >= 0; kappa in [0, 1/3].
   std::optional<double> k1 = {}, k2 = {};
   double dispersion = 0;
@@ -134,6 +146,15 @@ struct PresetCrack {
   std::vector<Vec3> tips;
 };
 
+/// A surface between two volumes that parts by a law of its own (method.md "Interfaces"): traction
+/// grows with the opening up to the strength, and the area under it is the energy.
+struct Interface {
+  std::array<std::string, 2> between;  ///< names of volumes, which must share faces
+  double strength = 0;                 ///< in tension [MPa], finite and > 0
+  double energy = 0;                   ///< in tension [N/mm], finite and > 0
+  double shear_ratio = 1;              ///< of the strength in shear to it, finite and > 0
+};
+
 /// Elements removed before the first solve of a step (a cautery, a cut).
 struct ScriptedRemoval {
   int step = 0;
@@ -213,6 +234,7 @@ struct Scene {
   std::vector<Support> supports;
   std::vector<Instrument> instruments;
   std::vector<PresetCrack> cracks;
+  std::vector<Interface> interfaces;
   std::vector<ScriptedRemoval> removals;
   FractureOptions fracture;
   SolverOptions solver;

@@ -24,6 +24,7 @@ enum class KeyType {
   word,    ///< one of the key's words
   vector,  ///< [x, y, z]
   points,  ///< two of them
+  curve,   ///< two or more
   range,   ///< two numbers
   ids,     ///< of nodes or elements
   texts,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "cpu_reference/plain/finite.hpp"
@@ -72,10 +73,14 @@ class PlainBackend final : public Backend {
   StressSummary do_stress() override {
     stress_ = solution_.stress;
     const YieldMeasure measure = strength_measure(problem().scene().fracture);
+    std::optional<FiniteBody> layers;
+    if (problem().interfaces()) layers.emplace(problem(), destroyed());
     StressSummary summary;
     for (Index e = 0; e < problem().tet_count(); ++e) {
       if (destroyed()[e] || !problem().breakable(e)) continue;
-      const auto ratio = static_cast<double>(yield_ratio(problem(), e, stress_[e], measure));
+      const auto ratio = static_cast<double>(problem().in_interface(e)
+                                                 ? layers->parting_ratio(e, solution_.displacement)
+                                                 : yield_ratio(problem(), e, stress_[e], measure));
       if (ratio > summary.any.ratio) summary.any = {e, ratio};
       if (ratio > summary.candidate.ratio && !excluded_[e]) summary.candidate = {e, ratio};
       summary.over += ratio >= 1;

@@ -32,6 +32,8 @@ class FiniteBody : public Body {
   [[nodiscard]] Solution solve(const Load& load, std::span<const double> start = {}) const;
   /// Of live elements, in Voigt order; P itself where the law is linear.
   [[nodiscard]] std::vector<Voigt> stress(std::span<const double> u, StressMeasure measure) const;
+  /// Of an element of an interface: traction P N over the strength, sqrt(<t_n>^2 + (t_s/ratio)^2).
+  [[nodiscard]] Real parting_ratio(Index element, std::span<const double> u) const;
   /// Strain U - I, of the linear law sym grad u; over live elements that are not left out.
   [[nodiscard]] Deformation deformation(std::span<const double> u,
                                         std::span<const std::uint8_t> left_out) const;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "cpu_reference/plain/finite.hpp"
+#include "sunder/interfaces.hpp"
 
 namespace sunder::plain {
 
@@ -91,17 +93,24 @@ Solution FiniteBody::solve(const Load& load, std::span<const double> start) cons
     const Eigen::VectorXd all = r;
     for (Index d : gripped) s.reactions.push_back(std::exchange(r[d], 0));
     s.displacement.assign(u.begin(), u.end());
-    s.residual = r.norm() / std::hypot(acting.norm(), (all - r).norm());
+    const double norm = r.norm();
+    s.residual = norm / std::hypot(acting.norm(), (all - r).norm());
     if (s.residual <= 1e-10 || r.norm() == 0) return s;
     const Eigen::VectorXd du = step(u, r);
     const Real slope = r.dot(du), before = w;
+    // Close to rest the energy changes by less than its last digit: there the residual falls.
+    const auto falls = [&](double part) {
+      Eigen::VectorXd left = r;
+      for (Index d : gripped) left[d] = 0;
+      return part == 1 && s.residual < 1e-6 && left.norm() < 0.5 * norm;
+    };
     double part = 2;
     do {
       if (!((part /= 2) > 1e-12)) throw std::runtime_error("the yardstick's energy does not fall");
       for (Index d = 0; d < du.size(); ++d)
         u[places_[d]] = s.displacement[places_[d]] + part * du[d];
       w = energy(u, acting, r);
-    } while (!(w <= before + 1e-4 * part * slope + 1e-16 * std::abs(before)));
+    } while (!(falls(part) || w <= before + 1e-4 * part * slope + 1e-16 * std::abs(before)));
   }
   throw std::runtime_error("the yardstick does not come to rest");
 }
@@ -125,9 +134,10 @@ std::vector<Voigt> FiniteBody::stress(std::span<const double> u, StressMeasure m
     if (e.share < 1) continue;
     const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
     Real3x3 s = stress(id, f);
-    if (laws_[id] != &kLinear && measure == StressMeasure::biot) s = rotation(f).transpose() * s;
-    if (laws_[id] != &kLinear && measure == StressMeasure::cauchy)
-      s = s * f.transpose() / f.determinant();
+    const bool biot =
+        measure == StressMeasure::biot || problem_.in_interface(static_cast<Index>(id));
+    if (laws_[id] != &kLinear && biot) s = rotation(f).transpose() * s;
+    if (laws_[id] != &kLinear && !biot) s = s * f.transpose() / f.determinant();
     s = (s + s.transpose()).eval() / 2;
     const Real6 voigt{s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
     all[id] = voigt.cast<double>();
@@ -135,12 +145,41 @@ std::vector<Voigt> FiniteBody::stress(std::span<const double> u, StressMeasure m
   return all;
 }
 
+Real FiniteBody::parting_ratio(Index id, std::span<const double> u) const {
+  const auto i = static_cast<std::size_t>(id);
+  const Element& e = elements_[i];
+  const Mesh& mesh = problem_.mesh();
+  const InterfaceLayer& layer = problem_.interfaces()->layer(id);
+  const auto& interface =
+      problem_.scene()
+          .interfaces[static_cast<std::size_t>(&layer - problem_.interfaces()->layers().data())];
+  // Gradient of what is 0 on the nodes that the first volume has, 1 on the others.
+  std::array<bool, 4> upper{true, true, true, true};
+  for (std::size_t other = 0; other < mesh.tets.size(); ++other) {
+    const auto& tet = mesh.tets[other];
+    const auto volume = static_cast<std::size_t>(mesh.volume_of[other]);
+    if (mesh.volumes[volume].name != interface.between[0]) continue;
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (std::ranges::find(tet, mesh.tets[i][a]) != tet.end()) upper[a] = false;
+    }
+  }
+  Eigen::Matrix<Real, 3, 1> normal = Eigen::Matrix<Real, 3, 1>::Zero();
+  for (Index a = 0; a < 4; ++a) {
+    if (upper[static_cast<std::size_t>(a)]) normal += e.slope(a).transpose();
+  }
+  const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
+  const Eigen::Matrix<Real, 3, 1> turned = (f.inverse().transpose() * normal).normalized(),
+                                  traction = stress(i, f) * normal.normalized();
+  const Real along = traction.dot(turned), across = (traction - along * turned).norm();
+  return std::hypot(std::max<Real>(along, 0), across / interface.shear_ratio) / interface.strength;
+}
+
 Deformation FiniteBody::deformation(std::span<const double> u,
                                     std::span<const std::uint8_t> left_out) const {
   Deformation most;
   for (std::size_t id = 0; id < elements_.size(); ++id) {
     const Element& e = elements_[id];
-    if (e.share < 1 || left_out[id]) continue;
+    if (e.share < 1 || left_out[id] || problem_.in_interface(static_cast<Index>(id))) continue;
     const Real3x3 f = Real3x3::Identity() + e.gradient(e.corners(u));
     const Real3x3 stretch_of =
         laws_[id] == &kLinear ? Real3x3((f + f.transpose()) / 2) : rotation(f).transpose() * f;

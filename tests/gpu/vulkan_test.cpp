@@ -59,7 +59,7 @@ TEST(VulkanPooled, PooledVolumeIsRefusedAndAutoTakesTheCpu) {
   EXPECT_TRUE(created.warnings.empty());
 }
 
-TEST(VulkanFibres, AreRefusedAndAutoTakesTheCpu) {
+TEST(VulkanFibres, AutoTakesTheCpu) {
   Scene scene = small_scene();
   Fibres f;
   f.direction = Vec3(1, 0, 0);
@@ -67,10 +67,6 @@ TEST(VulkanFibres, AreRefusedAndAutoTakesTheCpu) {
   f.poisson_along = 0.3;
   f.shear_along = 3;
   scene.materials["board"].fibres = {f};
-  scene.solver.backend = "vulkan";
-  const auto problem = std::make_shared<const Problem>(scene);
-  EXPECT_EQ(message_of([&] { static_cast<void>(create_backend(problem, all_needs())); }),
-            "backend vulkan does not compute fibres (material.NAME.fibres); use backend cpu");
   scene.solver.backend = "auto";
   const auto created = create_backend(std::make_shared<const Problem>(scene), all_needs());
   EXPECT_EQ(created.backend->info().backend, "cpu");

@@ -23,7 +23,7 @@ constexpr double kSevenDigits = 1e-6;
 constexpr double kNextToNothing = 1e-9;
 
 /// 6 x 4 x 2 mm, clamped at x = 0, inner nodes moved at random; the upper half is isotropic.
-Scene fibred_block(const std::variant<Vec3, AroundAxis, FieldName>& direction) {
+Scene fibred_block(const decltype(Fibres::direction)& direction) {
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> any(-1, 1);
   Scene scene;

@@ -44,7 +44,11 @@ TEST(SceneFiles, AllAreThere) {
                            "board",
                            "board-split",
                            "board-falls",
-                           "sheet"})
+                           "sheet",
+                           "strip-90",
+                           "strip-180",
+                           "artery-motion",
+                           "membrane"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 

@@ -38,6 +38,8 @@ std::string kind(const SceneKey& key) {
       return "[x, y, z]";
     case KeyType::points:
       return "two [x, y, z]";
+    case KeyType::curve:
+      return "two or more [x, y, z]";
     case KeyType::range:
       return "two numbers";
     case KeyType::ids:

@@ -40,12 +40,15 @@ Lines company(const std::string& table, const std::string& key) {
   if (const auto found = special.find(table + '.' + key); found != special.end())
     return found->second;
   if (table == "fibres") {
-    if (key == "direction" || key == "around" || key == "field") return {};
+    if (key == "direction" || key == "around" || key == "curve" || key == "field") return {};
     return {{"direction", "[1, 0, 0]"}};
   }
   if (table == "around") return {{"point", "[0, 0, 0]"}, {"axis", "[0, 0, 1]"}};
   if (table == "material") return {{"young", "1"}, {"poisson", "0.3"}};
   if (table == "crack") return {{"elements", "[0]"}, {"mouth", "[0, 0, 0]"}, {"tip", "[1, 0, 0]"}};
+  if (table == "interface") {
+    return {{"between", "[\"a\", \"b\"]"}, {"strength", "1"}, {"energy", "1"}};
+  }
   if (table == "destroy") return {{"step", "0"}};
   if (table == "dynamics" && key != "time_step") return {{"time_step", "0.005"}};
   if (table != "instrument") return {};
@@ -88,6 +91,8 @@ std::string refusal(KeyType type) {
       return "takes 3 numbers [x, y, z], not the boolean true";
     case KeyType::points:
       return "takes 2 points [[x, y, z], [x, y, z]], not the boolean true";
+    case KeyType::curve:
+      return "takes 2 or more points [[x, y, z], [x, y, z], ...], not the boolean true";
     case KeyType::range:
       return "takes an array of 2 numbers, not the boolean true";
     case KeyType::ids:
@@ -148,7 +153,8 @@ TEST(SceneKeys, TheReaderMissesWhatIsNeeded) {
     expect_input_error([&] { parse(scene_with(table, "", "", lines)); }, InputFault::missing_key,
                        {name, "is missing"});
   }
-  EXPECT_EQ(needed, 7);  // young, poisson, point, axis, kind, step, time_step
+  // young, poisson, point, axis, kind, between, strength, energy, step, time_step
+  EXPECT_EQ(needed, 10);
 }
 
 /// Every word of every option, and every default written out, as the reader takes it.

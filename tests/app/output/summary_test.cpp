@@ -66,9 +66,9 @@ TEST(Summary, DescribesTheBoard) {
 
 TEST(Summary, SaysHowFarTheBodyIsDeformed) {
   const Keys keys = keys_of(summary());
-  EXPECT_EQ(Keys(keys.end() - 10, keys.end()),
+  EXPECT_EQ(Keys(keys.end() - 11, keys.end()),
             (Keys{"largest", "volume_lost", "law", "stress_measure", "motion", "toughness", "crack",
-                  "crack_area", "lip_overlap", "new_nodes"}));
+                  "crack_area", "lip_overlap", "new_nodes", "interfaces"}));
   EXPECT_EQ(summary()["crack"], "destroyed");
   EXPECT_TRUE(summary()["crack_area"].is_null());
   EXPECT_TRUE(summary()["lip_overlap"].is_null());

@@ -46,6 +46,21 @@ TEST(Fibres, BadInputIsRefused) {
                    f.direction = AroundAxis{centroid - Vec3(0, 0, 3), Vec3(0, 0, 1)};
                  }),
                  "has the centroid of element");
+  expect_refused(odd([](S&, M&, F& f) { f.direction = AlongCurve{{Vec3(1, 2, 3)}}; }),
+                 "has a curve of 1 point; it needs two or more");
+  expect_refused(odd([](S&, M&, F& f) {
+                   f.direction = AlongCurve{{Vec3(1, 2, 3), Vec3(2, 2, 3), Vec3(2, 2, 3)}};
+                 }),
+                 "has a curve whose point 2, [2, 2, 3], is not finite or the one before once more");
+  expect_refused(odd([](S&, M&, F& f) {
+                   f.direction = AlongSurface{"skin", Vec3(1, 0, 0)};
+                 }),
+                 "has surface = \"skin\", which the mesh has not; it has none");
+  expect_refused(odd([](S& s, M&, F& f) {
+                   s.mesh.surfaces.push_back({"skin", 1, {{0, 1, 3}}});
+                   f.direction = AlongSurface{"skin", Vec3(0, 0, 2)};
+                 }),
+                 "has direction = [0, 0, 2], which is across surface \"skin\" at element 0");
   expect_refused(odd([](S&, M&, F& f) { f.direction = FieldName{"helix"}; }),
                  "field = \"helix\", which is no vector of the mesh's cells; its file has none");
   expect_refused(odd([](S& s, M&, F& f) {

@@ -320,6 +320,58 @@ TEST(Fibres, RunRoundAnAxis) {
   }
 }
 
+// A right angle: each element takes the leg that it is nearer to.
+TEST(Fibres, RunAlongACurve) {
+  Scene scene = with({{0}});
+  scene.materials["board"].fibres[0].direction =
+      AlongCurve{{Vec3(-1, -0.5, 1), Vec3(1, -0.5, 1), Vec3(3, -0.5, 1), Vec3(3, 7, 8)}};
+  hold(scene);
+  const Problem problem(scene);
+  int turned = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    Vec3 x = Vec3::Zero();
+    for (const Index n : problem.mesh().tets[e]) x += problem.mesh().nodes[n] / 4;
+    const double first = std::hypot(std::max(x.x() - 3, 0.0), x.y() + 0.5, x.z() - 1);
+    const double at = std::clamp((x - Vec3(3, -0.5, 1)).dot(Vec3(0, 7.5, 7)) / 105.25, 0.0, 1.0);
+    const double last = (x - Vec3(3, -0.5, 1) - at * Vec3(0, 7.5, 7)).norm();
+    const Vec3 expected = first <= last ? Vec3(1, 0, 0) : Vec3(0, 7.5, 7).normalized();
+    turned += first <= last ? 0 : 1;
+    EXPECT_LT((problem.fibre_direction(e, 0) - expected).norm(), 1e-14) << e;
+  }
+  EXPECT_GT(turned, 0);
+  EXPECT_LT(turned, problem.tet_count());
+}
+
+// Along a tilted plane and a level one: less the part across the nearer triangle.
+TEST(Fibres, RunAlongASurface) {
+  Scene scene = with({{0}});
+  const auto at = [&](const Vec3& x) {
+    scene.mesh.nodes.push_back(x);
+    return scene.mesh.node_count() - 1;
+  };
+  NamedSurface surface{"skin", 7, {}};
+  const Vec3 tilted = Vec3(0, -1, 1).normalized();
+  surface.triangles.push_back({at(Vec3(0, -1, 3)), at(Vec3(4, -1, 3)), at(Vec3(2, 1, 5))});
+  surface.triangles.push_back({at(Vec3(0, 2, -1)), at(Vec3(4, 2, -1)), at(Vec3(2, 4, -1))});
+  scene.mesh.surfaces.push_back(surface);
+  const Vec3 along(1, 2, -0.5);
+  scene.materials["board"].fibres[0].direction = AlongSurface{"skin", along};
+  hold(scene);
+  const Problem problem(scene);
+  int of_first = 0;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    Vec3 x = Vec3::Zero();
+    for (const Index n : problem.mesh().tets[e]) x += problem.mesh().nodes[n] / 4;
+    const bool first = (x - Vec3(2, -1.0 / 3, 11.0 / 3)).norm() < (x - Vec3(2, 8.0 / 3, -1)).norm();
+    const Vec3 normal = first ? tilted : Vec3(0, 0, 1);
+    of_first += first ? 1 : 0;
+    const Vec3 expected = (along - normal.dot(along) * normal).normalized();
+    EXPECT_LT((problem.fibre_direction(e, 0) - expected).norm(), 1e-14) << e;
+  }
+  EXPECT_GT(of_first, 0);
+  EXPECT_LT(of_first, problem.tet_count());
+}
+
 TEST(Fibres, RunAsAFieldSays) {
   Scene scene = with({{0}});
   scene.materials["board"].fibres[0].direction = FieldName{"fibres"};

@@ -91,6 +91,19 @@ Scene averaged() {
   return scene;
 }
 
+/// Its lower half is bonded to the upper one.
+Scene bonded() {
+  Scene scene = gripped();
+  scene.mesh = structured_board({4, 8, 1, 4, 8, 1},
+                                [](const Vec3& x) { return x.y() < 4 ? "board" : "other"; });
+  scene.materials["board"].yield.reset();
+  scene.materials["other"] = scene.materials["board"];
+  scene.interfaces.push_back({{"board", "other"}, 0.15, 0.05, 1});
+  scene.fracture.max_events = 3;
+  scene.steps = 8;
+  return scene;
+}
+
 const std::vector<World>& worlds() {
   static const std::vector<World> all{
       {"inverse", [] { return by_route(torn(), Route::inverse); }, true},
@@ -124,6 +137,7 @@ const std::vector<World>& worlds() {
       {"motion", [] { return moving(); }, false},
       {"fibres", [] { return with_fibres(torn(3, 0.4, 2), MaterialLaw::neo_hookean); }, false},
       {"fibres_linear", [] { return with_fibres(torn(), MaterialLaw::linear); }, false},
+      {"interface", [] { return bonded(); }, false},
       {"motion_fibres", [] { return with_fibres(moving(), MaterialLaw::corotated); }, false},
   };
   return all;
