@@ -16,28 +16,30 @@ sunder::Axes to_axes(std::uint32_t axes) {
   return {static_cast<std::uint8_t>(axes)};
 }
 
-sunder::Instrument to_instrument(const sunder_instrument& given) {
+sunder::Instrument to_instrument(SceneObject& object, const sunder_instrument& given) {
   sunder::Instrument tool;
   require_finite(given.value, 3, "value");
   const Vec3 value(given.value);
+  if (given.has_ramp) {
+    require_finite(given.ramp, 2, "ramp");
+    tool.ramp = sunder::Ramp{given.ramp[0], given.ramp[1]};
+  }
   switch (choice<int>(given.kind, 3, "instrument kind")) {
     case SUNDER_FORCE:
-      tool.action = sunder::Pull{to_nodes(given.nodes, "instrument"), value};
+      tool.action = sunder::Pull{to_nodes(object, given.nodes, "instrument"), value};
       break;
-    case SUNDER_DISPLACEMENT:
+    case SUNDER_DISPLACEMENT: {
       require_finite(given.turn, 3, "turn");
-      tool.action = sunder::Grip{to_nodes(given.nodes, "instrument"), value, to_axes(given.axes),
+      const sunder::Axes axes = to_axes(given.axes);
+      tool.action = sunder::Grip{to_nodes(object, given.nodes, "instrument"), value, axes,
                                  given.rigid != 0, Vec3(given.turn)};
       break;
+    }
     default:
       require_finite(given.at, 3, "at");
       tool.action =
           sunder::Press{Vec3(given.at), choice<sunder::CrackSide>(given.side, 2, "instrument side"),
                         given.crack, value};
-  }
-  if (given.has_ramp) {
-    require_finite(given.ramp, 2, "ramp");
-    tool.ramp = sunder::Ramp{given.ramp[0], given.ramp[1]};
   }
   return tool;
 }
@@ -55,7 +57,8 @@ void sunder_support_init(sunder_support* support) {
 sunder_status sunder_scene_add_support(sunder_scene scene, const sunder_support* support) {
   return call<SceneObject>(scene, [&](SceneObject& object) {
     const auto given = read_struct(support, sized<sunder_support>(), "support");
-    object.scene.supports.push_back({to_nodes(given.nodes, "support"), to_axes(given.axes)});
+    const sunder::Axes axes = to_axes(given.axes);
+    object.scene.supports.push_back({to_nodes(object, given.nodes, "support"), axes});
   });
 }
 
@@ -70,7 +73,7 @@ sunder_status sunder_scene_add_instrument(sunder_scene scene, const sunder_instr
   return call<SceneObject>(scene, [&](SceneObject& object) {
     const auto given = read_struct(instrument, sized<sunder_instrument>(), "instrument");
     auto& all = object.scene.instruments;
-    sunder::Instrument tool = to_instrument(given);
+    sunder::Instrument tool = to_instrument(object, given);
     tool.name = given.name ? given.name : std::to_string(all.size());
     all.push_back(std::move(tool));
     if (index) *index = static_cast<int32_t>(all.size()) - 1;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body as split cracks leave it, whose nodes become more.
+// The body as interfaces make it and as split cracks leave it, with more nodes than the mesh.
 #include <algorithm>
 
 #include "c/simulation.hpp"
 #include "c/structs.hpp"
+#include "sunder/interfaces.hpp"
 
 namespace {
 
@@ -27,6 +28,18 @@ sunder_body to_body(const sunder::Simulation& simulation) {
   return body;
 }
 
+/// Copies of a node are pairs of an interface; that of the mesh comes before all of them.
+void find_parents(const sunder::Interfaces& all, std::int32_t* parents) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t p = 0; p < all.pair_count(); ++p) {
+      const auto& [a, b] = all.nodes(all.elements(p).front());
+      changed |= parents[a] != parents[b];
+      parents[a] = parents[b] = std::min(parents[a], parents[b]);
+    }
+  }
+}
+
 /// Checks a caller's array of `wanted` values.
 template <class T>
 void require_array(const T* values, std::size_t given, std::size_t wanted) {
@@ -41,6 +54,15 @@ extern "C" {
 sunder_status sunder_simulation_body(sunder_simulation simulation, sunder_body* body) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
     write_struct(body, to_body(object.simulation()), "body");
+  });
+}
+
+sunder_status sunder_simulation_body_nodes(sunder_simulation simulation, double* values,
+                                           size_t size) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    const Mesh body = object.simulation().mesh();
+    require_array(values, size, 3 * body.nodes.size());
+    for (const Vec3& x : body.nodes) values = std::copy_n(x.data(), 3, values);
   });
 }
 
@@ -61,9 +83,10 @@ sunder_status sunder_simulation_body_parents(sunder_simulation simulation, int32
     const Index nodes = object.simulation().backend().node_count();
     require_array(values, size, static_cast<std::size_t>(nodes));
     for (Index n = 0; n < nodes; ++n) values[n] = n;
+    if (const auto* all = object.problem().interfaces()) find_parents(*all, values);
     const Mesh body = object.simulation().mesh();
     for (std::size_t e = 0; e < file.tets.size(); ++e) {
-      for (std::size_t a = 0; a < 4; ++a) values[body.tets[e][a]] = file.tets[e][a];
+      for (std::size_t a = 0; a < 4; ++a) values[body.tets[e][a]] = values[file.tets[e][a]];
     }
   });
 }

@@ -26,6 +26,7 @@ sunder_event to_event(const sunder::DestroyedElement& d, std::int32_t order) {
   event.instrument_share = d.instrument_share;
   event.load_factor = d.load_factor;
   event.ratio = d.ratio.value_or(0.0);
+  event.energy = d.energy.value_or(0.0);
   if (!d.sif) return event;
   const sunder::SifTerms& s = *d.sif;
   event.has_sif = 1;

@@ -85,7 +85,23 @@ public struct Rupture {
   public int order, step, group, element, cause, crack, instrument;
   public double instrumentShare, loadFactor, ratio;
   public int hasSif, tip;
-  public double k, kA, kB, kC, theta, reach, sigma0, beta, a, b, k1, k2;
+  public double k, kA, kB, kC, theta, reach, sigma0, beta, a, b, k1, k2, toughness, advance;
+  public int lives, reserved;
+  public double energy;
+}
+
+/// <summary>An interface and how far it has parted; see sunder_interface in sunder.h.</summary>
+[StructLayout(LayoutKind.Sequential)]
+public struct Interface {
+  internal uint structSize;
+  public int firstMaterial, secondMaterial, firstElement, elementCount, reserved;
+  public double strength, energy, shearRatio, stiffness, opening, thickness, area, parted, spent;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal struct NativeBody {
+  public uint structSize;
+  public int version, nodeCount, tetCount, crackFaceCount, reserved;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -155,6 +171,10 @@ internal static class Native {
   public static extern int sunder_scene_add_instrument(IntPtr scene, ref NativeInstrument instrument,
                                                        out int index);
   [DllImport(Library)]
+  public static extern int sunder_scene_add_interface(IntPtr scene, int firstMaterial,
+                                                      int secondMaterial, double strength,
+                                                      double energy, double shearRatio);
+  [DllImport(Library)]
   public static extern int sunder_scene_set_fracture(IntPtr scene, ref NativeFracture options);
   [DllImport(Library)]
   public static extern int sunder_scene_set_solver(IntPtr scene, ref NativeSolver options);
@@ -182,6 +202,22 @@ internal static class Native {
   [DllImport(Library)]
   public static extern int sunder_simulation_event_at(IntPtr simulation, int index,
                                                       ref Rupture rupture);
+  [DllImport(Library)]
+  public static extern int sunder_simulation_interface_count(IntPtr simulation, out int count);
+  [DllImport(Library)]
+  public static extern int sunder_simulation_interface_at(IntPtr simulation, int index,
+                                                          ref Interface state);
+  [DllImport(Library)]
+  public static extern int sunder_simulation_body(IntPtr simulation, ref NativeBody body);
+  [DllImport(Library)]
+  public static extern int sunder_simulation_body_nodes(IntPtr simulation, double[] values,
+                                                        UIntPtr size);
+  [DllImport(Library)]
+  public static extern int sunder_simulation_body_corners(IntPtr simulation, int[] values,
+                                                          UIntPtr size);
+  [DllImport(Library)]
+  public static extern int sunder_simulation_body_parents(IntPtr simulation, int[] values,
+                                                          UIntPtr size);
 
   [DllImport(Library)]
   public static extern int sunder_simulation_step_within(IntPtr simulation, double maxMs,

@@ -45,7 +45,7 @@ public abstract class Handle : IDisposable {
   }
 }
 
-/// <summary>Nodes: by ids, in a box or in a ball.</summary>
+/// <summary>Nodes: by ids, in a box or in a ball, or of faces, three ids each.</summary>
 public struct Nodes {
   internal int kind;
   internal int[] ids;
@@ -59,6 +59,7 @@ public struct Nodes {
   public static Nodes Ball(double[] centre, double radius) {
     return new Nodes { kind = 2, min = centre, radius = radius };
   }
+  public static Nodes Faces(params int[] ids) { return new Nodes { kind = 3, ids = ids }; }
 
   /// <summary>What the library reads until `pinned` is freed.</summary>
   internal NativeSelection Pin(out GCHandle pinned) {
@@ -73,6 +74,8 @@ public struct Nodes {
 
 public enum Law { Linear = 0, Corotated = 1, NeoHookean = 2, SaintVenantKirchhoff = 3 }
 public enum Model { None = 0, A = 1, B = 2, P = 3 }
+/// <summary>Of a Rupture: (Cause)rupture.cause.</summary>
+public enum Cause { Mss = 0, Sif = 1, Preset = 2, Script = 3, Principal = 4, Interface = 5 }
 public enum Backend { Auto = 0, Cpu = 1, Vulkan = 2 }
 
 /// <summary>The model and what acts on it.</summary>
@@ -112,6 +115,14 @@ public sealed class Scene : Handle {
     var material = Material();
     Error.Check(Native.sunder_material_preset(preset, ref material));
     return Add(material);
+  }
+
+  /// <summary>Faces that elements of two materials share part by a law: strength [MPa] and energy
+  /// [N/mm] in tension, shearRatio of that strength in shear. Adds nodes and elements.</summary>
+  public void AddInterface(int firstMaterial, int secondMaterial, double strength, double energy,
+                           double shearRatio = 1) {
+    Error.Check(Native.sunder_scene_add_interface(handle, firstMaterial, secondMaterial, strength,
+                                                  energy, shearRatio));
   }
 
   /// <summary>Held nodes; axes: 1 x, 2 y, 4 z.</summary>
@@ -172,11 +183,22 @@ public sealed class Scene : Handle {
 public sealed class Simulation : Handle {
   readonly int nodes, tets;
 
-  /// <summary>nodes, tets: how many the scene's mesh has.</summary>
+  /// <summary>nodes, tets: how many the scene's mesh has. Interfaces add to them.</summary>
   public Simulation(Scene scene, int nodes, int tets) {
+    Error.Check(Native.sunder_simulation_create(scene.handle, IntPtr.Zero, out handle));
     this.nodes = nodes;
     this.tets = tets;
-    Error.Check(Native.sunder_simulation_create(scene.handle, IntPtr.Zero, out handle));
+    int interfaces;
+    Error.Check(Native.sunder_simulation_interface_count(handle, out interfaces));
+    if (interfaces == 0) return;
+    NativeBody body = Body();
+    this.nodes = body.nodeCount;
+    this.tets = body.tetCount;
+  }
+  NativeBody Body() {
+    var body = new NativeBody { structSize = (uint)Marshal.SizeOf(typeof(NativeBody)) };
+    Error.Check(Native.sunder_simulation_body(handle, ref body));
+    return body;
   }
   internal override int Close(IntPtr of) { return Native.sunder_simulation_destroy(of); }
 
@@ -220,6 +242,38 @@ public sealed class Simulation : Handle {
       Error.Check(Native.sunder_simulation_event_at(handle, i, ref all[i]));
     }
     return all;
+  }
+  /// <summary>In the order in which they were added.</summary>
+  public Interface[] Interfaces() {
+    int count;
+    Error.Check(Native.sunder_simulation_interface_count(handle, out count));
+    var all = new Interface[count];
+    for (int i = 0; i < count; ++i) {
+      all[i].structSize = (uint)Marshal.SizeOf(typeof(Interface));
+      Error.Check(Native.sunder_simulation_interface_at(handle, i, ref all[i]));
+    }
+    return all;
+  }
+
+  // ---- the body as interfaces make it, or as split cracks leave it
+
+  /// <summary>(nodes x 3) undeformed [mm]</summary>
+  public double[] BodyNodes() {
+    var values = new double[3 * Body().nodeCount];
+    Error.Check(Native.sunder_simulation_body_nodes(handle, values, Size(values)));
+    return values;
+  }
+  /// <summary>(tets x 4)</summary>
+  public int[] BodyCorners() {
+    var values = new int[4 * Body().tetCount];
+    Error.Check(Native.sunder_simulation_body_corners(handle, values, Size(values)));
+    return values;
+  }
+  /// <summary>(nodes): which of the mesh's nodes each was made of.</summary>
+  public int[] BodyParents() {
+    var values = new int[Body().nodeCount];
+    Error.Check(Native.sunder_simulation_body_parents(handle, values, Size(values)));
+    return values;
   }
 
   // ---- grips, pushes, elements

@@ -205,12 +205,29 @@ SUNDER_API void sunder_fibres_init(sunder_fibres* fibres);
 /// field goes with the mesh that is there when the simulation is made.
 SUNDER_API sunder_status sunder_scene_add_fibres(sunder_scene scene, int32_t material,
                                                  const sunder_fibres* fibres);
+/// Where elements of two materials share faces they part by a law of their own (docs/method.md
+/// "Interfaces"): traction grows with the opening up to `strength` [MPa] in tension, and parting
+/// takes `energy` [N/mm]; in shear they bear `shear_ratio` of that strength (1: as much) and take
+/// its square times the energy. All three are above 0. Numbered in the order of calls. By it the
+/// scene is one of finite deformation; its fracture model is none, A or P.
+///
+/// The simulation's body has more nodes and elements than the mesh, behind the host's, whose ids
+/// stay: one side of the faces keeps the nodes that are there, the other gets copies a little away,
+/// and between them lie thin elements. All arrays by node or element have that body's size, which
+/// sunder_engine (of a plan too) and sunder_simulation_body tell; sunder_simulation_body_nodes,
+/// _corners and _parents tell what has come. Nodes where faces of an interface lie are best
+/// selected by SUNDER_SELECT_FACES (those of the element that has the face), boxes and balls (all
+/// copies that lie there); an id is that of one of the copies.
+SUNDER_API sunder_status sunder_scene_add_interface(sunder_scene scene, int32_t first_material,
+                                                    int32_t second_material, double strength,
+                                                    double energy, double shear_ratio);
 
 typedef int32_t sunder_selection_kind;
 enum {
-  SUNDER_SELECT_IDS = 0,  ///< ids, id_count
-  SUNDER_SELECT_BOX = 1,  ///< min <= x <= max of nodes, or of the centroids of elements
-  SUNDER_SELECT_BALL = 2  ///< |x - min| <= radius; nodes only
+  SUNDER_SELECT_IDS = 0,   ///< ids, id_count
+  SUNDER_SELECT_BOX = 1,   ///< min <= x <= max of nodes, or of the centroids of elements
+  SUNDER_SELECT_BALL = 2,  ///< |x - min| <= radius; nodes only
+  SUNDER_SELECT_FACES = 3  ///< those of faces of elements, ids: three nodes each; nodes only
 };
 /// Nodes or elements. This struct has no version: it never changes.
 typedef struct sunder_selection {
@@ -419,7 +436,7 @@ typedef struct sunder_plan_handle* sunder_plan;
 typedef struct sunder_engine {
   uint32_t struct_size;
   sunder_backend backend;
-  int64_t nodes, tets;
+  int64_t nodes, tets;    ///< of the body: the mesh's, and what its interfaces add
   int64_t unknowns;       ///< degrees of freedom that no support holds
   uint64_t memory_bytes;  ///< that the solver holds
   char device[256];
@@ -553,7 +570,8 @@ SUNDER_API sunder_status sunder_simulation_drive(sunder_simulation simulation, i
 SUNDER_API sunder_status sunder_simulation_turn(sunder_simulation simulation, int32_t instrument,
                                                 const double turn[3]);
 
-/* Fields of the last solve. Zero before the first step. */
+/* Fields of the last solve. Zero before the first step. `nodes` and `tets` are those of the mesh,
+   and with interfaces of the body that they make of it (sunder_scene_add_interface). */
 
 /// (nodes x 3), size 3 * nodes [mm].
 SUNDER_API sunder_status sunder_simulation_displacement(sunder_simulation simulation,
@@ -604,16 +622,17 @@ SUNDER_API sunder_status sunder_grips_destroy(sunder_grips grips);
 SUNDER_API sunder_status sunder_grips_forces(sunder_grips grips, const double* displacements,
                                              double* forces, size_t size);
 
-/* The body as split cracks leave it (SUNDER_CRACK_SPLIT). Nodes and elements keep their ids for
-   ever; nodes that come have ids after the mesh's own, and elements get other corners. All arrays
-   above have the size that the mesh had at creation: displacements are those of the mesh's own
-   nodes. Without split cracks what follows says what the mesh says. */
+/* The body as interfaces make it at creation (sunder_scene_add_interface), or as split cracks leave
+   it (SUNDER_CRACK_SPLIT). Nodes and elements keep their ids for ever; nodes that come have ids
+   after the mesh's own, and elements get other corners. All arrays above have the size that the
+   body had at creation: with split cracks displacements are those of the mesh's own nodes. Without
+   either what follows says what the mesh says. */
 
 typedef struct sunder_body {
   uint32_t struct_size;
   int32_t version;           ///< another one whenever what follows, or a corner, has changed
   int32_t node_count;        ///< of the mesh, and those that have come
-  int32_t tet_count;         ///< as at creation
+  int32_t tet_count;         ///< as at creation: of the mesh, and those of its interfaces
   int32_t crack_face_count;  ///< open faces
   int32_t reserved;
 } sunder_body;
@@ -622,10 +641,14 @@ typedef struct sunder_body {
   { sizeof(sunder_body), 0, 0, 0, 0, 0 }
 
 SUNDER_API sunder_status sunder_simulation_body(sunder_simulation simulation, sunder_body* body);
+/// (node_count x 3), size 3 * node_count: where each node lies undeformed [mm].
+SUNDER_API sunder_status sunder_simulation_body_nodes(sunder_simulation simulation, double* values,
+                                                      size_t size);
 /// (tets x 4): nodes of each element now, in the order of its corners in the mesh. Size 4 * tets.
 SUNDER_API sunder_status sunder_simulation_body_corners(sunder_simulation simulation,
                                                         int32_t* values, size_t size);
-/// (node_count): the mesh's node that lies where each node lies; its own id for the mesh's own.
+/// (node_count): the mesh's node that lies where each node lies, of an interface's copy the one
+/// that it was made of; its own id for the mesh's own.
 SUNDER_API sunder_status sunder_simulation_body_parents(sunder_simulation simulation,
                                                         int32_t* values, size_t size);
 /// (node_count x 3), size 3 * node_count [mm]. Zero before the first step.
@@ -644,7 +667,8 @@ enum {
   SUNDER_CAUSE_SIF = 1,
   SUNDER_CAUSE_PRESET = 2,
   SUNDER_CAUSE_SCRIPT = 3,
-  SUNDER_CAUSE_PRINCIPAL = 4
+  SUNDER_CAUSE_PRINCIPAL = 4,
+  SUNDER_CAUSE_INTERFACE = 5  ///< the law of an interface, by which its faces part
 };
 
 /// One destroyed element, or one growth or birth of a split crack. `order` counts them over the
@@ -661,7 +685,8 @@ typedef struct sunder_event {
                             ///< grip or a push; -1: not known
   double instrument_share;  ///< that share of the whole; 0: not known
   double load_factor;
-  double ratio;  ///< mss, principal: measure / yield; sif: r_e / max(rho, h/2) or K / K_c; else 0
+  double ratio;  ///< mss, principal: measure / yield; sif: r_e / max(rho, h/2) or K / K_c;
+                 ///< interface: traction / strength (docs/method.md "Interfaces"); else 0
   int32_t has_sif;
   int32_t tip;                ///< with has_sif: which tip of the crack
   double k, k_a, k_b, k_c;    ///< Eq. 2 to 4 [MPa sqrt(mm)]
@@ -673,12 +698,13 @@ typedef struct sunder_event {
   double advance;             ///< of the tip in this event [mm]
   int32_t lives;              ///< 1: a crack has split, nothing was destroyed
   int32_t reserved;
+  double energy;  ///< interface: that parting has taken [N mm]; else 0
 } sunder_event;
 
 #define SUNDER_EVENT_INIT                                                                         \
   {                                                                                               \
     sizeof(sunder_event), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0                                                                                \
+        0, 0, 0, 0, 0                                                                             \
   }
 
 SUNDER_API sunder_status sunder_simulation_event_count(sunder_simulation simulation,
@@ -755,6 +781,31 @@ SUNDER_API sunder_status sunder_simulation_measure_tips(sunder_simulation simula
 /// One of those last measured.
 SUNDER_API sunder_status sunder_simulation_tip_at(sunder_simulation simulation, int32_t index,
                                                   sunder_tip* tip);
+
+/// An interface and how far it has parted.
+typedef struct sunder_interface {
+  uint32_t struct_size;
+  int32_t materials[2];   ///< between whose elements it lies
+  int32_t first_element;  ///< of its own
+  int32_t element_count;
+  int32_t reserved;
+  double strength, energy, shear_ratio;  ///< as it was added
+  double stiffness;                      ///< traction per opening [N/mm^3]
+  double opening;                        ///< at which it parts in tension [mm]
+  double thickness;                      ///< of its elements [mm]
+  double area;                           ///< [mm^2]
+  double parted;                         ///< of that, by its law or as its elements were taken out
+  double spent;                          ///< energy that parting by its law has taken [N mm]
+} sunder_interface;
+
+#define SUNDER_INTERFACE_INIT \
+  { sizeof(sunder_interface), {0, 0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+SUNDER_API sunder_status sunder_simulation_interface_count(sunder_simulation simulation,
+                                                           int32_t* count);
+/// In the order in which they were added.
+SUNDER_API sunder_status sunder_simulation_interface_at(sunder_simulation simulation, int32_t index,
+                                                        sunder_interface* state);
 
 SUNDER_API sunder_status sunder_simulation_warning_count(sunder_simulation simulation,
                                                          int32_t* count);

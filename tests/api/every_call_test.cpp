@@ -40,6 +40,7 @@ struct CallRoom {
   sunder_event event;
   sunder_crack crack;
   sunder_tip tip;
+  sunder_interface state;
   sunder_surface surface;
   sunder_triangle triangle;
   sunder_hand hand;
@@ -99,6 +100,7 @@ std::vector<EveryCall> calls_of_simulations() {
       SUNDER_CALL(simulation, sunder_simulation_lend, SUNDER_FIELD_STRESS, &r.lent, &r.size),
       SUNDER_CALL(simulation, sunder_simulation_lend_destroyed, &r.lent_bytes, &r.size),
       SUNDER_CALL(simulation, sunder_simulation_body, &r.body),
+      SUNDER_CALL(simulation, sunder_simulation_body_nodes, r.numbers, 3),
       SUNDER_CALL(simulation, sunder_simulation_body_corners, r.ids, 4),
       SUNDER_CALL(simulation, sunder_simulation_body_parents, r.ids, 1),
       SUNDER_CALL(simulation, sunder_simulation_body_displacement, r.numbers, 3),
@@ -111,6 +113,8 @@ std::vector<EveryCall> calls_of_simulations() {
       SUNDER_CALL(simulation, sunder_simulation_crack_elements, 0, r.ids, 1),
       SUNDER_CALL(simulation, sunder_simulation_measure_tips, r.ids),
       SUNDER_CALL(simulation, sunder_simulation_tip_at, 0, &r.tip),
+      SUNDER_CALL(simulation, sunder_simulation_interface_count, r.ids),
+      SUNDER_CALL(simulation, sunder_simulation_interface_at, 0, &r.state),
       SUNDER_CALL(simulation, sunder_simulation_warning_count, r.ids),
       SUNDER_CALL(simulation, sunder_simulation_warning_at, 0, r.text, 16, &r.size),
       SUNDER_CALL(simulation, sunder_simulation_remove, r.ids, 1),
@@ -160,6 +164,7 @@ std::vector<EveryCall> calls_of_scenes() {
       SUNDER_CALL(scene, sunder_scene_add_crack, &r.preset),
       SUNDER_CALL(scene, sunder_scene_add_removal, 0, &r.selection),
       SUNDER_CALL(scene, sunder_scene_add_fibres, 0, &r.fibres),
+      SUNDER_CALL(scene, sunder_scene_add_interface, 0, 0, 1, 1, 1),
       SUNDER_CALL(scene, sunder_scene_set_fracture, &r.fracture),
       SUNDER_CALL(scene, sunder_scene_set_solver, &r.solver),
       SUNDER_CALL(scene, sunder_scene_set_steps, 1),

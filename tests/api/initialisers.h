@@ -22,6 +22,7 @@ struct initialised {
   sunder_event event;
   sunder_crack grown;
   sunder_tip tip;
+  sunder_interface interface_state;
   sunder_surface surface;
   sunder_hand hand;
   sunder_felt felt;
@@ -34,16 +35,16 @@ struct initialised {
   sunder_vulkan_surface drawn;
 };
 
-#define INITIALISED                                                                              \
-  {                                                                                              \
-    SUNDER_DEVICE_INIT, SUNDER_MATERIAL_INIT, SUNDER_SELECTION_INIT, SUNDER_SUPPORT_INIT,        \
-        SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FIBRES_INIT,                    \
-        SUNDER_FRACTURE_OPTIONS_INIT, SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT,            \
-        SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT, SUNDER_BODY_INIT, SUNDER_EVENT_INIT,            \
-        SUNDER_CRACK_INIT, SUNDER_TIP_INIT, SUNDER_SURFACE_INIT, SUNDER_HAND_INIT,               \
-        SUNDER_FELT_INIT, SUNDER_FRAME_INIT, SUNDER_VULKAN_BUFFER_INIT, SUNDER_VULKAN_HOST_INIT, \
-        SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT, SUNDER_VULKAN_ITEMS_INIT,        \
-        SUNDER_VULKAN_SURFACE_INIT                                                               \
+#define INITIALISED                                                                       \
+  {                                                                                       \
+    SUNDER_DEVICE_INIT, SUNDER_MATERIAL_INIT, SUNDER_SELECTION_INIT, SUNDER_SUPPORT_INIT, \
+        SUNDER_INSTRUMENT_INIT, SUNDER_PRESET_CRACK_INIT, SUNDER_FIBRES_INIT,             \
+        SUNDER_FRACTURE_OPTIONS_INIT, SUNDER_SOLVER_OPTIONS_INIT, SUNDER_ENGINE_INIT,     \
+        SUNDER_CALLBACKS_INIT, SUNDER_STEP_INIT, SUNDER_BODY_INIT, SUNDER_EVENT_INIT,     \
+        SUNDER_CRACK_INIT, SUNDER_TIP_INIT, SUNDER_INTERFACE_INIT, SUNDER_SURFACE_INIT,   \
+        SUNDER_HAND_INIT, SUNDER_FELT_INIT, SUNDER_FRAME_INIT, SUNDER_VULKAN_BUFFER_INIT, \
+        SUNDER_VULKAN_HOST_INIT, SUNDER_VULKAN_DISPLAY_INIT, SUNDER_VULKAN_SIGNALS_INIT,  \
+        SUNDER_VULKAN_ITEMS_INIT, SUNDER_VULKAN_SURFACE_INIT                              \
   }
 
 #endif

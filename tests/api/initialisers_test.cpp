@@ -26,6 +26,7 @@ TEST(CInitialisers, StateTheSizeAndNothingElseOfResults) {
   expect_only_size(all.event);
   expect_only_size(all.grown);
   expect_only_size(all.tip);
+  expect_only_size(all.interface_state);
   expect_only_size(all.felt);
   expect_only_size(all.frame);
   expect_only_size(all.host);

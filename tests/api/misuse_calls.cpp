@@ -80,6 +80,8 @@ std::vector<Misuse> null_pointers() {
        [](World& w) { return sunder_scene_add_crack(w.scene, nullptr); }},
       {"fibres_null", SUNDER_ERROR_NULL, "fibres",
        [](World& w) { return sunder_scene_add_fibres(w.scene, 0, nullptr); }},
+      {"interface_count_null", SUNDER_ERROR_NULL, "count",
+       [](World& w) { return sunder_simulation_interface_count(w.simulation, nullptr); }},
       {"removal_null", SUNDER_ERROR_NULL, "elements",
        [](World& w) { return sunder_scene_add_removal(w.scene, 0, nullptr); }},
       {"fracture_null", SUNDER_ERROR_NULL, "fracture",
@@ -110,6 +112,8 @@ std::vector<Misuse> null_pointers() {
        [](World& w) { return sunder_simulation_event_count(w.simulation, nullptr); }},
       {"body_null", SUNDER_ERROR_NULL, "body",
        [](World& w) { return sunder_simulation_body(w.simulation, nullptr); }},
+      {"body_nodes_null", SUNDER_ERROR_NULL, "values",
+       [](World& w) { return sunder_simulation_body_nodes(w.simulation, nullptr, 150); }},
       {"body_corners_null", SUNDER_ERROR_NULL, "values",
        [](World& w) { return sunder_simulation_body_corners(w.simulation, nullptr, 384); }},
       {"body_displacement_null", SUNDER_ERROR_NULL, "values",
@@ -231,6 +235,12 @@ std::vector<Misuse> sizes() {
            s.nodes.id_count = std::size_t{1} << 40;
          });
        }},
+      {"faces_not_triples", SUNDER_ERROR_SIZE, "id_count = 4; it must be 3 for each face",
+       [](World& w) {
+         const std::int32_t ids[] = {0, 1, 5, 6};
+         return w.add_support(
+             [&](sunder_support& s) { s.nodes = {SUNDER_SELECT_FACES, 0, ids, 4, {}, {}, 0}; });
+       }},
       {"displacement_too_short", SUNDER_ERROR_SIZE, "must have 150",
        [](World& w) { return sunder_simulation_displacement(w.simulation, w.values, 3); }},
       {"stress_too_short", SUNDER_ERROR_SIZE, "must have 576",
@@ -271,6 +281,8 @@ std::vector<Misuse> sizes() {
        [](World& w) { return sunder_simulation_reactions(w.simulation, w.values, 2); }},
       {"support_reaction_too_long", SUNDER_ERROR_SIZE, "must have 3",
        [](World& w) { return sunder_simulation_support_reaction(w.simulation, w.values, 8); }},
+      {"body_nodes_too_short", SUNDER_ERROR_SIZE, "must have 150",
+       [](World& w) { return sunder_simulation_body_nodes(w.simulation, w.values, 3); }},
       {"body_corners_too_short", SUNDER_ERROR_SIZE, "must have 384",
        [](World& w) {
          std::int32_t id = 0;

@@ -11,12 +11,26 @@ std::vector<Misuse> values() {
       {"axes_unknown", SUNDER_ERROR_VALUE, "axes = 8",
        [](World& w) { return w.add_support([](sunder_support& s) { s.axes = 8; }); }},
       {"selection_unknown", SUNDER_ERROR_VALUE, "selection kind",
-       [](World& w) { return w.add_support([](sunder_support& s) { s.nodes.kind = 3; }); }},
+       [](World& w) { return w.add_support([](sunder_support& s) { s.nodes.kind = 4; }); }},
       {"ball_of_elements", SUNDER_ERROR_VALUE, "selection kind",
        [](World& w) {
          sunder_selection s{};
          s.kind = SUNDER_SELECT_BALL;
          return sunder_scene_add_removal(w.scene, 0, &s);
+       }},
+      {"faces_of_elements", SUNDER_ERROR_VALUE, "selection kind",
+       [](World& w) {
+         sunder_selection s{};
+         s.kind = SUNDER_SELECT_FACES;
+         return sunder_scene_add_removal(w.scene, 0, &s);
+       }},
+      {"faces_that_name_no_node", SUNDER_ERROR_INPUT, "names node 5000",
+       [](World& w) {
+         static constexpr std::int32_t kIds[] = {0, 1, 5000};
+         return w.create_with([&] {
+           return w.add_support(
+               [](sunder_support& s) { s.nodes = {SUNDER_SELECT_FACES, 0, kIds, 3, {}, {}, 0}; });
+         });
        }},
       {"instrument_kind_unknown", SUNDER_ERROR_VALUE, "instrument kind = 3",
        [](World& w) { return w.add_instrument([](sunder_instrument& i) { i.kind = 3; }); }},
@@ -49,6 +63,13 @@ std::vector<Misuse> values() {
        }},
       {"crack_index", SUNDER_ERROR_VALUE, "crack -1",
        [](World& w) { return sunder_simulation_crack_path(w.simulation, -1, w.values, 8); }},
+      {"interface_index", SUNDER_ERROR_VALUE, "interface 0 does not exist",
+       [](World& w) {
+         sunder_interface state = SUNDER_INTERFACE_INIT;
+         return sunder_simulation_interface_at(w.simulation, 0, &state);
+       }},
+      {"interface_of_no_material", SUNDER_ERROR_VALUE, "material 1 does not exist",
+       [](World& w) { return sunder_scene_add_interface(w.scene, 0, 1, 1, 1, 1); }},
       {"warning_index", SUNDER_ERROR_VALUE, "warning 99",
        [](World& w) {
          return sunder_simulation_warning_at(w.simulation, 99, nullptr, 0, nullptr);

@@ -12,7 +12,7 @@
 namespace sunder::test {
 namespace {
 
-constexpr std::size_t kNodes = 50, kTets = 96;
+constexpr std::size_t kBoardNodes = 50, kBoardTets = 96;
 
 sunder_simulation split_board() {
   const sunder_scene scene = board_scene();
@@ -46,7 +46,7 @@ class CSplit : public testing::Test {
   /// Until something has split.
   void tear() {
     for (int i = 0; i < 4; ++i) ASSERT_OK(sunder_simulation_step(simulation, nullptr));
-    ASSERT_GT(body_of(simulation).node_count, static_cast<int>(kNodes));
+    ASSERT_GT(body_of(simulation).node_count, static_cast<int>(kBoardNodes));
   }
   sunder_simulation simulation = split_board();
 };
@@ -54,16 +54,16 @@ class CSplit : public testing::Test {
 TEST_F(CSplit, IsTheMeshBeforeItTears) {
   const sunder_body body = body_of(simulation);
   EXPECT_EQ(body.version, 0);
-  EXPECT_EQ(body.node_count, static_cast<int>(kNodes));
-  EXPECT_EQ(body.tet_count, static_cast<int>(kTets));
+  EXPECT_EQ(body.node_count, static_cast<int>(kBoardNodes));
+  EXPECT_EQ(body.tet_count, static_cast<int>(kBoardTets));
   EXPECT_EQ(body.crack_face_count, 0);
-  EXPECT_EQ(array_of<std::int32_t>(simulation, 4 * kTets, sunder_simulation_body_corners),
+  EXPECT_EQ(array_of<std::int32_t>(simulation, 4 * kBoardTets, sunder_simulation_body_corners),
             board_arrays().tets);
-  std::vector<std::int32_t> own(kNodes);
+  std::vector<std::int32_t> own(kBoardNodes);
   std::iota(own.begin(), own.end(), 0);
-  EXPECT_EQ(array_of<std::int32_t>(simulation, kNodes, sunder_simulation_body_parents), own);
-  EXPECT_EQ(array_of<double>(simulation, 3 * kNodes, sunder_simulation_body_displacement),
-            std::vector<double>(3 * kNodes, 0.0));
+  EXPECT_EQ(array_of<std::int32_t>(simulation, kBoardNodes, sunder_simulation_body_parents), own);
+  EXPECT_EQ(array_of<double>(simulation, 3 * kBoardNodes, sunder_simulation_body_displacement),
+            std::vector<double>(3 * kBoardNodes, 0.0));
   EXPECT_OK(sunder_simulation_crack_faces(simulation, nullptr, 0));
 }
 
@@ -74,12 +74,12 @@ TEST_F(CSplit, NodesComeAfterTheMeshsOwn) {
   const auto nodes = static_cast<std::size_t>(body.node_count);
   const auto parents = array_of<std::int32_t>(simulation, nodes, sunder_simulation_body_parents);
   for (std::size_t n = 0; n < nodes; ++n) {
-    EXPECT_EQ(n < kNodes, parents[n] == static_cast<int>(n)) << n;
+    EXPECT_EQ(n < kBoardNodes, parents[n] == static_cast<int>(n)) << n;
     ASSERT_GE(parents[n], 0);
-    ASSERT_LT(parents[n], static_cast<int>(kNodes));
+    ASSERT_LT(parents[n], static_cast<int>(kBoardNodes));
   }
   const auto corners =
-      array_of<std::int32_t>(simulation, 4 * kTets, sunder_simulation_body_corners);
+      array_of<std::int32_t>(simulation, 4 * kBoardTets, sunder_simulation_body_corners);
   const auto tets = board_arrays().tets;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     EXPECT_EQ(parents[static_cast<std::size_t>(corners[i])], tets[i]) << "corners stay in place";
@@ -90,17 +90,17 @@ TEST_F(CSplit, NodesComeAfterTheMeshsOwn) {
 // A host's array that was right at creation is filled as it was, and not a byte beyond.
 TEST_F(CSplit, ArraysOfTheMeshsSizeStayAsTheyWere) {
   tear();
-  GuardedBytes guarded(3 * kNodes * sizeof(double), 0);
+  GuardedBytes guarded(3 * kBoardNodes * sizeof(double), 0);
   auto* u = reinterpret_cast<double*>(guarded.data());
-  EXPECT_OK(sunder_simulation_displacement(simulation, u, 3 * kNodes));
+  EXPECT_OK(sunder_simulation_displacement(simulation, u, 3 * kBoardNodes));
   const auto nodes = static_cast<std::size_t>(body_of(simulation).node_count);
   const auto all = array_of<double>(simulation, 3 * nodes, sunder_simulation_body_displacement);
-  EXPECT_TRUE(std::equal(u, u + 3 * kNodes, all.begin()));
+  EXPECT_TRUE(std::equal(u, u + 3 * kBoardNodes, all.begin()));
   EXPECT_EQ(sunder_simulation_displacement(simulation, u, 3 * nodes), SUNDER_ERROR_SIZE);
-  EXPECT_EQ(sunder_simulation_body_displacement(simulation, u, 3 * kNodes), SUNDER_ERROR_SIZE);
-  std::vector<double> stress(6 * kTets);
+  EXPECT_EQ(sunder_simulation_body_displacement(simulation, u, 3 * kBoardNodes), SUNDER_ERROR_SIZE);
+  std::vector<double> stress(6 * kBoardTets);
   EXPECT_OK(sunder_simulation_stress(simulation, stress.data(), stress.size()));
-  std::vector<std::uint8_t> destroyed(kTets, 1);
+  std::vector<std::uint8_t> destroyed(kBoardTets, 1);
   EXPECT_OK(sunder_simulation_destroyed(simulation, destroyed.data(), destroyed.size()));
   EXPECT_EQ(std::ranges::count(destroyed, 1), 0);
 }
@@ -159,8 +159,8 @@ TEST_F(CSplit, ABladeOpensFacesAndAGripHoldsALip) {
   EXPECT_GT(opened, 3);
   const sunder_body cut = body_of(simulation);
   EXPECT_EQ(cut.crack_face_count, torn + opened);
-  EXPECT_GT(cut.node_count, static_cast<int>(kNodes));
-  std::vector<std::uint8_t> destroyed(kTets, 1);
+  EXPECT_GT(cut.node_count, static_cast<int>(kBoardNodes));
+  std::vector<std::uint8_t> destroyed(kBoardTets, 1);
   EXPECT_OK(sunder_simulation_destroyed(simulation, destroyed.data(), destroyed.size()));
   EXPECT_EQ(std::ranges::count(destroyed, 1), 0);
   sunder_event event = SUNDER_EVENT_INIT;

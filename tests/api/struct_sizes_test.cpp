@@ -3,7 +3,7 @@
 // this one, of a later one, and never set.
 #include <functional>
 
-#include "api/c_scene.hpp"
+#include "api/c_interface.hpp"
 #include "api/guarded_bytes.hpp"
 #include "c/structs.hpp"
 
@@ -105,6 +105,13 @@ std::vector<Struct> results() {
          EXPECT_OK(sunder_simulation_measure_tips(w.torn, &count));
          EXPECT_GT(count, 0);
          return sunder_simulation_tip_at(w.torn, 0, as<sunder_tip>(to));
+       }},
+      {"interface", sizeof(sunder_interface), 96,
+       [](World&, void* to) {
+         const sunder_simulation joined = joined_cubes();
+         const auto status = sunder_simulation_interface_at(joined, 0, as<sunder_interface>(to));
+         EXPECT_OK(sunder_simulation_destroy(joined));
+         return status;
        }},
   };
 }

@@ -108,8 +108,12 @@ class Scenes(unittest.TestCase):
         self.refused("is not a dict, or a list of them", {fibres: 3})
         self.refused("has direction and field; allowed is one of them",
                      {fibres: {"direction": [1, 0, 0], "field": np.ones((2, 3))}})
-        self.refused("has no direction, around or field", {fibres: {"k1": 1}})
+        self.refused("has no direction, around, curve or field", {fibres: {"k1": 1}})
         self.refused("takes point and axis", {fibres: {"around": {"axis": [0, 0, 1]}}})
+        self.refused("needs two points or more", {fibres: {"curve": [[1, 2, 3]]}})
+        self.refused("has a point twice in a row", {fibres: {"curve": [[1, 2, 3], [1, 2, 3]]}})
+        self.refused("which the mesh has not", {fibres: {"direction": [1, 0, 0], "surface": "no"}})
+        self.refused("goes with direction only", {fibres: {"curve": [[0, 0, 0], [1, 0, 0]], "surface": "no"}})
         self.refused("which the program alone looks up", {fibres: {"field": "helix"}})
         self.refused("allowed is (any, 3)", {fibres: {"field": np.ones((2, 2))}})
         self.refused("which has 5 vectors for 2 elements",

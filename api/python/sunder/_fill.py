@@ -128,6 +128,11 @@ def _fill(scene, tree, folder, name):
         _fill_instrument(scene, dict(keys))
     for keys in _table(tree, "crack", list):
         scene.add_crack(**keys)
+    for keys in _table(tree, "interface", list):
+        needed = [k for k in ("between", "strength", "energy") if k not in keys]
+        if needed:
+            raise InputError(f"interface has no {needed[0]}")
+        scene.add_interface(**keys)
     for keys in _table(tree, "destroy", list):
         if "step" not in keys:
             raise InputError("destroy has no step")

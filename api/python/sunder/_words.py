@@ -6,10 +6,10 @@ from .errors import InputError
 
 KEYS = {
     "": ("title", "mesh", "inputs", "recording", "material", "fixed", "instrument", "crack",
-         "destroy", "fracture", "solver", "time", "output", "load", "dynamics"),
+         "interface", "destroy", "fracture", "solver", "time", "output", "load", "dynamics"),
     "material": ("young", "poisson", "yield", "law", "density", "toughness", "energy", "volume",
                  "preset", "fibres"),
-    "fibres": ("direction", "around", "field", "k1", "k2", "dispersion", "young_along",
+    "fibres": ("direction", "surface", "around", "curve", "field", "k1", "k2", "dispersion", "young_along",
                "poisson_along", "shear_along", "yield_across", "toughness_across",
                "energy_across"),
     "around": ("point", "axis"),
@@ -17,6 +17,7 @@ KEYS = {
     "instrument": ("name", "kind", "force", "displacement", "axes", "rigid", "turn", "ramp", "at",
                    "side", "crack", "box", "nodes", "near", "radius", "surface"),
     "crack": ("volume", "elements", "mouth", "tip", "tips"),
+    "interface": ("between", "strength", "energy", "shear_ratio"),
     "destroy": ("step", "volume", "elements", "box"),
     "fracture": ("model", "alpha", "yield_measure", "sigma0", "crack_length", "sif", "crack",
                  "max_events", "plane_normal", "birth", "max_new_nodes", "averaging", "stress", "contact"),

@@ -8,7 +8,7 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
-from . import _arrays, _c, _words
+from . import _arrays, _c, _fibres, _words
 from ._handle import Handled
 from .errors import AllowedError, InputError, check
 from .mesh import Mesh
@@ -56,7 +56,10 @@ class Selection:
         self.struct.radius = _number(given["radius"], f"radius of {what}")
 
     def _surface(self, mesh, what, given):
-        self._take(_mesh_of(mesh, what).surface_nodes(given["surface"]))
+        mesh = _mesh_of(mesh, what)
+        mesh.surface_nodes(given["surface"])
+        self.struct.kind = _c.constants["SUNDER_SELECT_FACES"]
+        self._take(mesh.surfaces[given["surface"]].ravel())
 
     def _volume(self, mesh, what, given):
         mesh = _mesh_of(mesh, what)
@@ -152,7 +155,8 @@ class Scene(Handled):
         law ("linear", "corotated", "neo-hookean", "saint-venant-kirchhoff"), density [t/mm^3],
         toughness [MPa sqrt(mm)] or energy [N/mm], volume ("element", "pooled"); preset: a tissue of
         presets(), which they override. fibres: a family, or a list of two: a dict of one of
-        direction (3,), around {"point": (3,), "axis": (3,)} [mm] and field (tets, 3), with the
+        direction (3,), which `surface`, a name, lays along itself, around {"point": (3,), "axis":
+        (3,)} [mm], curve (any, 3) [mm] and field (tets, 3), with the
         numbers of docs/interface.md (k1, young_along, toughness_across, ...).
         """
         m = _c.options("sunder_material")
@@ -188,12 +192,19 @@ class Scene(Handled):
             if key not in _words.KEYS["fibres"]:
                 raise _words.unknown("fibres", key)
         f = _c.options("sunder_fibres")
-        ways = [key for key in ("direction", "around", "field") if family.get(key) is not None]
+        ways = [key for key in ("direction", "around", "curve", "field")
+                if family.get(key) is not None]
         if len(ways) != 1:
-            raise InputError(f"{what} has {' and '.join(ways) or 'no direction, around or field'}; "
+            raise InputError(f"{what} has {' and '.join(ways) or 'no direction, around, curve or field'}; "
                              "allowed is one of them")
+        if family.get("surface") is not None and ways != ["direction"]:
+            raise InputError(f"{what} has surface, which goes with direction only")
         field = None
-        if ways == ["direction"]:
+        if ways == ["curve"] or family.get("surface") is not None:
+            f.run = _c.constants["SUNDER_FIBRES_FIELD"]
+            field = _fibres.directions(self.mesh, family, what)
+            f.field, f.field_size = field.ctypes.data, field.size
+        elif ways == ["direction"]:
             f.run = _c.constants["SUNDER_FIBRES_STRAIGHT"]
             f.direction[:] = _arrays.reals(family["direction"], f"direction of {what}", (3,))
         elif ways == ["around"]:
@@ -211,7 +222,7 @@ class Scene(Handled):
             field = _arrays.reals(family["field"], f"field of {what}", (None, 3))
             f.field, f.field_size = field.ctypes.data, field.size
         for key in _words.KEYS["fibres"]:
-            if key in ("direction", "around", "field") or family.get(key) is None:
+            if key in ("direction", "surface", "around", "curve", "field") or family.get(key) is None:
                 continue
             value = _number(family[key], f"{key} of {what}")
             # In C 0 stands for none.
@@ -297,6 +308,32 @@ class Scene(Handled):
             for j in range(2):
                 k.tips[j][:] = both[j]
         check(_lib.sunder_scene_add_crack(self.handle, c.byref(k)))
+
+    def add_interface(self, between: Sequence[str], *, strength: float, energy: float,
+                      shear_ratio: float = 1.0) -> None:
+        """Where two volumes of the mesh share faces they part by a law of their own: `between`, their
+        names, whose materials are there already; strength [MPa] in tension, energy [N/mm] that
+        parting takes, shear_ratio, of the strength in shear to that in tension, no unit."""
+        names = () if isinstance(between, str) else tuple(between)
+        if len(names) != 2:
+            raise InputError(f"between of an interface is {between!r}; allowed are the names of two volumes")
+        what = f"the interface between {names[0]!r} and {names[1]!r}"
+        numbers = [_number(value, f"{key} of {what}") for key, value in
+                   (("strength", strength), ("energy", energy), ("shear_ratio", shear_ratio))]
+        check(_lib.sunder_scene_add_interface(self.handle, *(self._material_of(n, what) for n in names),
+                                              *numbers))
+
+    def _material_of(self, volume, what):
+        """Its index, as _give_materials() will have it."""
+        if volume in self.materials:
+            return self.materials.index(volume)
+        volumes = () if self.mesh is None else self.mesh.volumes
+        if volume not in volumes:
+            raise InputError(f"{what} names volume {volume!r}; there are "
+                             f"{list(volumes) or self.materials}")
+        if volumes.index(volume) >= len(self.materials) or set(self.materials) & set(volumes):
+            raise InputError(f"{what}: volume {volume!r} has no material yet; add that first")
+        return volumes.index(volume)
 
     def add_removal(self, step: int, **elements: Any) -> None:
         """Elements (Selection) taken out before the first solve of a step, from 0: a cut."""

@@ -12,10 +12,11 @@ from ._handle import Handled, Lent, Owner
 from ._live import Live
 from ._threads import Frames, Grips
 from .errors import InputError, check
+from .mesh import Mesh
 from .scene import Scene, as_dict, text_of
 
 _lib = _c.library
-_CAUSES = {0: "mss", 1: "sif", 2: "preset", 3: "script", 4: "principal"}
+_CAUSES = {0: "mss", 1: "sif", 2: "preset", 3: "script", 4: "principal", 5: "interface"}
 
 
 class Step(_c.structs["sunder_step"]):
@@ -63,6 +64,7 @@ _VIEWS = {
 EVENT = _dtype("sunder_event")
 CRACK = _dtype("sunder_crack")
 TIP = _dtype("sunder_tip")
+INTERFACE = _dtype("sunder_interface")
 
 
 class Bodies(Handled):
@@ -92,7 +94,8 @@ class Simulation(Handled, Live):
     progress: called with a dict (phase, step, steps, events, destroyed) before each phase of the
         set-up and after each event of a step; a true result cancels (Cancelled).
 
-    Shapes are by the mesh at creation, n nodes and m tetrahedra. Each field takes `out`, an array of
+    Shapes are by `mesh`, the mesh at creation, n nodes and m tetrahedra; with interfaces that is the
+    scene's with copies of nodes and thin tetrahedra behind its own, in volumes "interface-0" ... Each field takes `out`, an array of
     its shape and type, into which the library writes; without it is a new one. view() shows a field
     in the library's own memory.
     """
@@ -128,6 +131,22 @@ class Simulation(Handled, Live):
         self._check(status)
         self._handle = handle.value
         self._owner = Owner(self._handle, _lib.sunder_simulation_destroy)
+        if len(self.interfaces()):
+            self.mesh = self._with_layers(scene.mesh)
+
+    def _with_layers(self, mesh):
+        """The scene's mesh and what its interfaces add."""
+        body, layers = self.body, self.interfaces()
+        nodes = self._field(_lib.sunder_simulation_body_nodes, "nodes", (body["node_count"], 3), None)
+        tets = self._field(_lib.sunder_simulation_body_corners, "tets", (body["tet_count"], 4), None,
+                           np.int32)
+        volume_of = np.empty(len(tets), np.int32)
+        volume_of[:len(mesh.tets)] = mesh.volume_of
+        for i, layer in enumerate(layers):
+            first = layer["first_element"]
+            volume_of[first:first + layer["element_count"]] = len(mesh.volumes) + i
+        names = tuple(f"interface-{i}" for i in range(len(layers)))
+        return Mesh(nodes, tets, volume_of, mesh.volumes + names, mesh.surfaces)
 
     def _make_callbacks(self, log, progress):
         callbacks = _c.structs["sunder_callbacks"]()
@@ -397,6 +416,12 @@ class Simulation(Handled, Live):
         return self._records(_lib.sunder_simulation_measure_tips, _lib.sunder_simulation_tip_at, TIP,
                              _c.structs["sunder_tip"])
 
+    def interfaces(self) -> np.ndarray:
+        """(k,) records, one per interface: materials, first_element, element_count, strength [MPa],
+        stiffness [N/mm^3], opening [mm], area and `parted` of it [mm^2], `spent` energy [N mm] ..."""
+        return self._records(_lib.sunder_simulation_interface_count, _lib.sunder_simulation_interface_at,
+                             INTERFACE, _c.structs["sunder_interface"])
+
     @property
     def warnings(self) -> list[str]:
         """A sentence each."""
@@ -411,7 +436,7 @@ class Simulation(Handled, Live):
 
 
 def cause_name(cause: int) -> str:
-    """Of an event: "mss", "sif", "preset", "script" or "principal"."""
+    """Of an event: "mss", "sif", "preset", "script", "principal" or "interface"."""
     return _CAUSES[int(cause)]
 
 

@@ -132,6 +132,35 @@ static class Live {
     }
   }
 
+  /// The upper cube parts from the two below it: 1 mm^2, strength .2 MPa, energy .05 N/mm.
+  static void Parting() {
+    using (var scene = new Scene()) {
+      scene.SetMesh(Nodes(), Tets(false), Enumerable.Range(0, 18).Select(t => t / 12).ToArray());
+      scene.AddMaterial(8, 0, law: Law.NeoHookean);
+      scene.AddMaterial(8, 0, law: Law.NeoHookean);
+      scene.AddSupport(Sunder.Nodes.Ids(0, 1, 2, 3));
+      scene.AddGrip(Sunder.Nodes.Faces(12, 13, 15, 12, 15, 14), new[] { 0, 0, 0.8 });
+      scene.AddInterface(0, 1, 0.2, 0.05);
+      scene.SetFracture(Model.A);
+      scene.SetSolver(Backend.Cpu);
+      Fails(10, () => scene.AddInterface(0, 2, 0.2, 0.05));
+      using (var s = new Simulation(scene, 16, 18)) {
+        Expect(s.BodyNodes().Length == 3 * 20 && s.BodyCorners().Length == 4 * 24, "body");
+        Expect(s.BodyParents().Skip(16).All(n => n >= 8 && n < 12), "parents");
+        Expect(s.Interfaces().Single().parted == 0, "whole");
+        s.Step();
+        Interface state = s.Interfaces().Single();
+        Near(state.parted, state.area, "parted area");
+        Expect(Math.Abs(state.area - 1) < 1e-4, "area " + state.area);
+        Expect(Math.Abs(state.spent - 0.05) < 0.001, "energy " + state.spent);
+        Expect(s.Ruptures().Length == 6 && s.Ruptures().All(r => (Cause)r.cause == Cause.Interface),
+               "cause");
+        Near(s.Ruptures().Sum(r => r.energy), state.spent, "energy of the rows");
+        Expect(s.Destroyed().Count(d => d) == 6 && s.Displacement().Length == 60, "arrays");
+      }
+    }
+  }
+
   static void Component() {
     var body = new SunderBody {
       nodes = Enumerable.Range(0, 16).Select(n => new Vector3(
@@ -180,13 +209,17 @@ static class Live {
         Type type = typeof(Scene).Assembly.GetType("Sunder.Native" + of, true);
         Console.WriteLine(of + " " + Marshal.SizeOf(type));
       }
-      foreach (var type in new[] { typeof(Triangle), typeof(Hand), typeof(Felt) }) {
+      foreach (var type in new[] { typeof(Triangle), typeof(Hand), typeof(Felt), typeof(Rupture),
+                                   typeof(Interface) }) {
         Console.WriteLine(type.Name + " " + Marshal.SizeOf(type));
       }
+      Type body = typeof(Scene).Assembly.GetType("Sunder.NativeBody", true);
+      Console.WriteLine("Body " + Marshal.SizeOf(body));
       return;
     }
     Grip(false);
     Grip(true);
+    Parting();
     Component();
     Console.WriteLine("c#: a live body, and Unity's component against stubs");
   }
