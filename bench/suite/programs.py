@@ -74,6 +74,8 @@ PROGRAMS = [
             Share(3, "/1944/", 1), Share(200, repetitions=3)),
     Program("bench_pooled", "what pooled volume costs beside volume by element",
             Share(0), Share(20, repetitions=3)),
+    Program("bench_peeling", "forces and energies of peeling beside theory",
+            Share(0.5, "90 deg/0[.]3 mm/4 steps", 1), Share(140, repetitions=1)),
     Program("bench_scaling", "sizes against frames and memory",
             Share(10, "cpu.*/(486|1944)/|vulkan.*/486/", 1),
             Share(190, "/(486|1944|7776)/|cpu.*/(30246|119286)/", 3)),

@@ -9,6 +9,7 @@
 
 #include "core/field_sif/published.hpp"
 #include "verification/engine_cases.hpp"
+#include "verification/peeling_cases.hpp"
 #include "verification/pooled_cases.hpp"
 #ifdef SUNDER_GMSH
 #include "verification/first_growth.hpp"
@@ -44,6 +45,13 @@ TEST(PooledVolume, IsThatOfThePage) {
               text("%.3f", neo_hookean_cook(MaterialVolume::pooled, 16, 4)));
   expect_cell("Bonded block, pooled volume", {"1536"}, "pooled [N]",
               text("%.2f", bonded_block_force(MaterialVolume::pooled, 8)));
+}
+
+TEST(Peeling, IsThatOfThePage) {
+  const PeelFigures of = peel(Peel::at_90, 1);
+  const std::vector<std::string> key{name_of(Peel::at_90), text("%g", coarse_cell(Peel::at_90))};
+  expect_cell("Peeling", key, "mean", text("%.3f", of.mean));
+  expect_cell("Peeling", key, "work", text("%.3f", of.work));
 }
 
 class Strips : public ::testing::TestWithParam<Notch> {

@@ -12,6 +12,7 @@ void write_patch(std::ostream& out);
 void write_cantilever(std::ostream& out);
 void write_cook(std::ostream& out);
 void write_pooled(std::ostream& out);
+void write_peeling(std::ostream& out);
 void write_calculix(std::ostream& out);
 
 void write_strips(std::ostream& out, Notch notch);

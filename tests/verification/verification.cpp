@@ -25,6 +25,7 @@ void write(std::ostream& out) {
   write_cantilever(out);
   write_cook(out);
   write_pooled(out);
+  write_peeling(out);
   write_calculix(out);
   write_strips(out, Notch::edge);
   write_strips(out, Notch::centre);
