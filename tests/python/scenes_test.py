@@ -32,6 +32,13 @@ class Scenes(unittest.TestCase):
                     changed["destroy"] = []
                     options += ["--set", "destroy=[]"]
                 options += ["--steps", str(changed["time.steps"])]
+                # A strip is not peeled in two steps.
+                for i, tool in enumerate(tree.get("instrument", []) if "interface" in tree else []):
+                    for key in ("displacement", "turn"):
+                        if key in tool:
+                            less = [0.05 * x for x in tool[key]]
+                            changed[f"instrument.{i}.{key}"] = less
+                            options += ["--set", f"instrument.{i}.{key}={less}"]
                 _, frames, events = program_run(path, pathlib.Path(folder), *options)
                 with sunder.Scene(path, set=changed) as scene, sunder.Simulation(scene) as simulation:
                     steps = simulation.run()
