@@ -17,23 +17,47 @@ void Workers::start(Call call, void* body) {
   body_ = body;
   working_.store(static_cast<std::uint32_t>(threads_.size()), std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
-  round_.notify_all();
+  notify(round_);
 }
 
 void Workers::finish() {
-  for (auto left = working_.load(std::memory_order_acquire); left != 0;
-       left = working_.load(std::memory_order_acquire)) {
-    working_.wait(left, std::memory_order_acquire);
-  }
+  auto left = working_.load(std::memory_order_acquire);
+  while (left != 0) left = wait(working_, left);
 }
 
 void Workers::work(int worker) {
   for (std::uint32_t seen = 0;; ++seen) {
-    round_.wait(seen, std::memory_order_acquire);
+    wait(round_, seen);
     if (!call_) return;
     call_(body_, worker);
-    if (working_.fetch_sub(1, std::memory_order_acq_rel) == 1) working_.notify_one();
+    if (working_.fetch_sub(1, std::memory_order_acq_rel) == 1) notify(working_);
   }
 }
+
+#ifdef _WIN32
+
+// Without a futex libstdc++ 12 loses wake-ups of std::atomic::wait: threads that wait for ever.
+
+std::uint32_t Workers::wait(std::atomic<std::uint32_t>& value, std::uint32_t seen) {
+  std::unique_lock lock(changing_);
+  changed_.wait(lock, [&] { return value.load(std::memory_order_acquire) != seen; });
+  return value.load(std::memory_order_acquire);
+}
+
+void Workers::notify(std::atomic<std::uint32_t>& /*value*/) {
+  { const std::lock_guard lock(changing_); }  // not between a look and the sleep that follows it
+  changed_.notify_all();
+}
+
+#else
+
+std::uint32_t Workers::wait(std::atomic<std::uint32_t>& value, std::uint32_t seen) {
+  value.wait(seen, std::memory_order_acquire);
+  return value.load(std::memory_order_acquire);
+}
+
+void Workers::notify(std::atomic<std::uint32_t>& value) { value.notify_all(); }
+
+#endif
 
 }  // namespace sunder

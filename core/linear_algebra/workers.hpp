@@ -3,7 +3,9 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -40,8 +42,16 @@ class Workers {
   void finish();
   void work(int worker);
 
+  /// Until `value` is no longer `seen`; what it is then.
+  std::uint32_t wait(std::atomic<std::uint32_t>& value, std::uint32_t seen);
+  void notify(std::atomic<std::uint32_t>& value);
+
   std::vector<std::thread> threads_;
   std::atomic<std::uint32_t> round_{0}, working_{0};
+#ifdef _WIN32
+  std::mutex changing_;
+  std::condition_variable changed_;
+#endif
   Call call_ = nullptr;  // nullptr: the end
   void* body_ = nullptr;
 };
