@@ -6,10 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "material/corotated.hpp"
-#include "material/linear.hpp"
-#include "material/neo_hookean.hpp"
-#include "material/saint_venant_kirchhoff.hpp"
+#include "gpu/finite_tables.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -37,39 +34,11 @@ constexpr std::uint32_t kFirstRank = 64;
 
 std::uint32_t u32(std::size_t value) { return static_cast<std::uint32_t>(value); }
 
-std::uint32_t number_of(const Law& law) {
-  const Law* const known[] = {&kLinear, &kCorotated, &kNeoHookean, &kSaintVenantKirchhoff};
-  const auto* at = std::ranges::find(known, &law);
-  if (at == std::end(known)) {
-    throw DeviceError("shaders/finite_law.comp does not know this law; use backend cpu");
-  }
-  return static_cast<std::uint32_t>(at - known);
-}
-
 template <class T>
 Buffer filled(vulkan::Device& device, const std::vector<T>& values) {
   Buffer buffer(device, std::max<std::size_t>(values.size(), 1) * sizeof(T), Placement::device);
   if (!values.empty()) buffer.write(std::span<const T>(values));
   return buffer;
-}
-
-/// kFiniteFibres numbers an element; none where no element has any.
-std::vector<double> fibres_of(const Problem& problem) {
-  std::vector<double> all;
-  if (!problem.fibrous()) return all;
-  const std::size_t size = std::size_t{shaders::kFiniteFibres} * problem.mesh().tets.size();
-  all.reserve(size);
-  for (Index e = 0; e < problem.tet_count(); ++e) {
-    const ElementFibres* of = problem.small_strain(e).fibres;
-    const ElementFibres fibres = of ? *of : ElementFibres{};
-    for (const FibreFamily& f : fibres.family) {
-      all.insert(all.end(),
-                 {f.direction.x(), f.direction.y(), f.direction.z(), f.k1, f.k2, f.dispersion});
-    }
-    const AlongFibres& linear = fibres.linear;
-    all.insert(all.end(), {linear.lambda, linear.alpha, linear.beta, linear.mu});
-  }
-  return all;
 }
 
 std::span<double> numbers_of(std::span<Voigt> stress) {
@@ -153,19 +122,9 @@ void FiniteDevice::create_buffers(bool viscous) {
     f_[i] = doubles(2 * std::size_t{entries_});
     stress_[i] = doubles(6 * std::size_t{elements_});
   }
-  std::vector<std::uint32_t> corners;
-  std::vector<double> shape;
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
-    for (Index n : problem_.mesh().tets[e]) corners.push_back(static_cast<std::uint32_t>(n));
-    const TetShape& of = problem_.shape(e);
-    for (int corner = 1; corner < 4; ++corner) {
-      for (int axis = 0; axis < 3; ++axis) shape.push_back(of.gradient(axis, corner));
-    }
-    const SmallStrain& constants = problem_.small_strain(e);
-    shape.insert(shape.end(), {of.volume, constants.mu, constants.lambda});
-  }
+  const std::vector<std::uint32_t> corners = corners_of(problem_);
   nodes_of_ = filled(device_, corners);
-  shape_ = filled(device_, shape);
+  shape_ = filled(device_, shapes_of(problem_));
   fibres_ = filled(device_, fibres_of(problem_));
   facts_ = filled(device_, std::vector<std::uint32_t>(elements_, shaders::kFiniteOut));
   std::vector<std::vector<std::uint32_t>> around(nodes_);
@@ -294,15 +253,7 @@ void FiniteDevice::attach(const solver::RestingBody& body) {
   resting_ = &body;
   known_.clear();
   shown_target_.clear();
-  std::vector<std::uint32_t> facts(elements_), entries(2 * std::size_t{entries_}),
-      held(unknowns_, 0);
-  for (std::uint32_t e = 0; e < elements_; ++e) {
-    const auto element = static_cast<Index>(e);
-    facts[e] = (body.out()[e] ? shaders::kFiniteOut : 0) |
-               (problem_.in_interface(element) ? shaders::kFiniteLayer : 0) |
-               (problem_.small_strain(element).fibres ? shaders::kFiniteFibrous : 0) |
-               shaders::kFiniteLaw * number_of(body.body().law(element));
-  }
+  std::vector<std::uint32_t> entries(2 * std::size_t{entries_}), held(unknowns_, 0);
   for (Index d : problem_.gripped_dofs())
     held[static_cast<std::size_t>(d)] = shaders::kFiniteGripped;
   for (std::uint32_t d = 0; d < unknowns_; ++d) {
@@ -313,7 +264,7 @@ void FiniteDevice::attach(const solver::RestingBody& body) {
     entries[2 * i] = d == kNone ? shaders::kHeld : static_cast<std::uint32_t>(d);
     entries[2 * i + 1] = d == kNone ? 0 : held[static_cast<std::size_t>(d)];
   }
-  facts_.write(std::span<const std::uint32_t>(facts));
+  facts_.write(std::span<const std::uint32_t>(facts_of(body)));
   entries_of_.write(std::span<const std::uint32_t>(entries));
   if (unknowns_ > 0) held_.write(std::span<const std::uint32_t>(held));
   if (cg_) cg_->attach(body);

@@ -143,8 +143,7 @@ void Interfaces::find_neighbours(const Mesh& mesh) {
   }
 }
 
-/// F = R U and P = R T. The deformed layer's normal is that of F^-T N = R U^-1 N, and |P N| = |T
-/// N|.
+/// F = R U and P = R T: the deformed normal is that of F^-T N = R U^-1 N, the traction R T N.
 Traction Interfaces::traction(Index element, const Voigt& biot) const {
   const Mat3 t = tensor(biot);
   if (!t.allFinite()) return {};

@@ -25,7 +25,7 @@ khronos_validation.enables = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDA
 """
 
 
-def projected(point):
+def projected(point, grips=((50, -28),)):
     """Where the standard camera of a window sees a point of the board (app/view/camera.cpp)."""
     a, e = math.radians(25), math.radians(18)
     eye = (math.sin(a) * math.cos(e), math.sin(e), math.cos(a) * math.cos(e))
@@ -34,7 +34,7 @@ def projected(point):
           eye[0] * right[1] - eye[1] * right[0])
     flat = lambda p: tuple(sum(x * y for x, y in zip(p, axis)) for axis in (right, up))
     shown = [flat((x, y, z)) for x in (0, 50) for y in (0, 50) for z in (0, 2.5)]
-    shown += [flat((50, -28, z)) for z in (0, 2.5)]  # where the grip will be
+    shown += [flat((x, y, z)) for x, y in grips for z in (0, 2.5)]  # where grips will be
     low, high = ([f(c) for c in zip(*shown)] for f in (min, max))
     above, below, left, aside = 90, 84, 56, 150
     room = (WIDTH - left - aside, HEIGHT - above - below)
@@ -198,7 +198,7 @@ def drop_files(display, view, recorded, scene, environment):
     display.screenshot(OUT / "window-bad-file.png")
     expect(view.poll() is None, "the window went away with a bad file")
     expect(recorded("").startswith(before.rsplit("step", 1)[0]), "what was done is lost")
-    other = SCENES / "two-instruments.toml"
+    other = SCENES / "pressure-upper.toml"
     title = re.search(r'title = "(.*)"', other.read_text())[1]
     dropped(other)
     until("another title", lambda: subprocess.run(["xdotool", "search", "--name", title], capture_output=True,
@@ -206,6 +206,12 @@ def drop_files(display, view, recorded, scene, environment):
     display.do("key", "s")
     until("its recording", lambda: recorded("step") and title in scene.read_text())
     display.screenshot(OUT / "window-another.png")
+    # Its spatula presses on the notch's upper face, as hard as the mouse pulls it.
+    x, y = projected((48, 25.5, 1.25), ())
+    display.drag(1, [(x, y - 3 * i) for i in range(20)])
+    pressed = until("a press", lambda: recorded(r'drive "upper spatula" .*\n[^#]*step'))
+    expect(float(re.findall(r'drive "upper spatula" \S+ (\S+)', pressed)[-1]) > 0, pressed)
+    display.screenshot(OUT / "window-pressed.png")
 
 
 def main():
