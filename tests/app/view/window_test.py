@@ -207,7 +207,7 @@ def drop_files(display, view, recorded, scene, environment):
     until("its recording", lambda: recorded("step") and title in scene.read_text())
     display.screenshot(OUT / "window-another.png")
     # Its spatula presses on the notch's upper face, as hard as the mouse pulls it.
-    x, y = projected((48, 25.5, 1.25), ())
+    x, y = projected((44.5, 25.5, 1.25), ())  # within reach of it, beside the panel
     display.drag(1, [(x, y - 3 * i) for i in range(20)])
     pressed = until("a press", lambda: recorded(r'drive "upper spatula" .*\n[^#]*step'))
     expect(float(re.findall(r'drive "upper spatula" \S+ (\S+)', pressed)[-1]) > 0, pressed)
