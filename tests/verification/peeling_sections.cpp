@@ -43,7 +43,10 @@ void write_peeling(std::ostream& out) {
   }
   out << "\nOn the finest meshes, largest error of the mean " << verdict(force, 0.05)
       << ", of the work " << verdict(work, 0.02)
-      << ".\n\nWork is more than G_c asks for because a row of nodes parts at the end of a step, "
+      << ".\n\nA row's energy is that of the law, so `parted` tells that areas and modes add up, "
+         "and "
+         "`work` what was spent. Work is more than G_c asks for because a row of nodes parts at "
+         "the end of a step, "
          "beyond the force at which it would, and then all at once; it falls with the cell and "
          "with "
          "the step (`bench_peeling`). Arms four cells high are too stiff in bending by a fifth, "

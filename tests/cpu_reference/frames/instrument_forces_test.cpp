@@ -195,8 +195,9 @@ TEST_P(WhileFramesTear, NoAnswerWaitsForAFrame) {
     torn = true;
     while (!leave) body_.backend->solve();
   });
-  while (instruments->frames() == 0) std::this_thread::yield();
   std::vector<double> forces(held_.size());
+  // Until the first frame is handed over, which is a little after it has been counted.
+  while (!instruments->forces(held_, forces)) std::this_thread::yield();
   constexpr long kHolds = 20;  // a quick machine may tear the body in fewer
   long answers = 0, bad = 0, holds = 0;
   for (; !torn || holds < kHolds; ++holds) {
