@@ -45,7 +45,8 @@ Mat3 whole_stress(const HyperelasticBody& body, Index e, const Mat3& f,
   const SmallStrain& constants = body.problem.small_strain(e);
   if (!pools_volume(body, e)) return body.law(e).stress(constants, f);
   const double pressure = patches.pressure()[body.problem.pools()->of(e)];
-  return body.law(e).split->shape_stress(constants, f) + pressure * cofactor(f);
+  const VolumeSplit& split = *body.law(e).split;
+  return split.shape_stress(constants, f) + pressure * split.ratio_slope(f);
 }
 
 }  // namespace

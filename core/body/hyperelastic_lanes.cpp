@@ -150,14 +150,26 @@ enum class LaneLaw {
   corotated,
   neo_hookean,
   saint_venant_kirchhoff,
-  neo_hookean_shape,  // with the pressure of a patch
+  linear_shape,  // and these with the pressure of a patch
+  corotated_shape,
+  neo_hookean_shape,
+  saint_venant_kirchhoff_shape,
   other,
   other_linear
 };
 
 /// Of small strains, which know but one stress.
 constexpr bool small_strains(LaneLaw law) {
-  return law == LaneLaw::linear || law == LaneLaw::other_linear;
+  return law == LaneLaw::linear || law == LaneLaw::linear_shape || law == LaneLaw::other_linear;
+}
+
+/// lambda without a resistance to a change of volume.
+SUNDER_IN_LANES double of_shape(double mu) { return mu * (-2.0 / 3); }
+
+SUNDER_IN_LANES void add_pressure(double pressure, const Matrix& slope, Matrix& p) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) p.at[i][j] += pressure * slope.at[i][j];
+  }
 }
 
 /// W and P. `pressure`: as respond_by_law has it.
@@ -185,8 +197,21 @@ SUNDER_IN_LANES void responses(const Problem& problem, const Law& law, const Ele
         of = lanes::corotated(mu, lambda, at, at_lane(r, l), trace[l]);
       }
       if constexpr (kLaw == LaneLaw::neo_hookean) of = lanes::neo_hookean(mu, lambda, at);
+      if constexpr (kLaw == LaneLaw::linear_shape) {
+        of = lanes::linear(mu, of_shape(mu), at);
+        for (int i = 0; i < 3; ++i) of.p.at[i][i] += pressure[l];
+      }
+      if constexpr (kLaw == LaneLaw::corotated_shape) {
+        const Matrix turned = at_lane(r, l);
+        of = lanes::corotated(mu, of_shape(mu), at, turned, trace[l]);
+        add_pressure(pressure[l], turned, of.p);
+      }
       if constexpr (kLaw == LaneLaw::neo_hookean_shape) {
         of = lanes::neo_hookean_shape(mu, pressure[l], at);
+      }
+      if constexpr (kLaw == LaneLaw::saint_venant_kirchhoff_shape) {
+        of = lanes::saint_venant_kirchhoff(mu, of_shape(mu), at);
+        add_pressure(pressure[l], at, of.p);
       }
       if constexpr (kLaw == LaneLaw::saint_venant_kirchhoff) {
         of = lanes::saint_venant_kirchhoff(mu, lambda, at);
@@ -331,8 +356,8 @@ template <LaneLaw kLaw>
 SUNDER_IN_LANES void run_blocks(const Range& of, const double* u, const LaneOutputs& to,
                                 GroupFound& found) {
   const bool stressed = to.stress || to.largest;
-  const bool turned = kLaw == LaneLaw::corotated || to.deformation ||
-                      (stressed && to.measure == StressMeasure::biot);
+  const bool turned = kLaw == LaneLaw::corotated || kLaw == LaneLaw::corotated_shape ||
+                      to.deformation || (stressed && to.measure == StressMeasure::biot);
   double energy[kLanes] = {};
   Lanes<9> gradient[ElementGroup::kMost];
   gradients(of.blocks, of.count, u, gradient);
@@ -372,20 +397,75 @@ void run_saint_venant_kirchhoff(const Range& of, const double* u, const LaneOutp
   run_blocks<LaneLaw::saint_venant_kirchhoff>(of, u, to, found);
 }
 SUNDER_VECTORISED
+void run_linear_shape(const Range& of, const double* u, const LaneOutputs& to, GroupFound& found) {
+  run_blocks<LaneLaw::linear_shape>(of, u, to, found);
+}
+SUNDER_VECTORISED
+void run_corotated_shape(const Range& of, const double* u, const LaneOutputs& to,
+                         GroupFound& found) {
+  run_blocks<LaneLaw::corotated_shape>(of, u, to, found);
+}
+SUNDER_VECTORISED
 void run_neo_hookean_shape(const Range& of, const double* u, const LaneOutputs& to,
                            GroupFound& found) {
   run_blocks<LaneLaw::neo_hookean_shape>(of, u, to, found);
 }
 SUNDER_VECTORISED
-void run_volumes(const ElementBlock* blocks, std::size_t count, const double* u, double* volumes) {
+void run_saint_venant_kirchhoff_shape(const Range& of, const double* u, const LaneOutputs& to,
+                                      GroupFound& found) {
+  run_blocks<LaneLaw::saint_venant_kirchhoff_shape>(of, u, to, found);
+}
+
+/// J of each element, as VolumeSplit::ratio has it.
+template <LaneLaw kLaw>
+SUNDER_IN_LANES void volumes_of_blocks(const ElementBlock* blocks, std::size_t count,
+                                       const double* u, double* volumes) {
   Lanes<9> gradient[ElementGroup::kMost];
   gradients(blocks, count, u, gradient);
+  Sums sums;
+  if constexpr (kLaw == LaneLaw::corotated_shape) sums_of_singular_values(gradient, count, sums);
   for (std::size_t k = 0; k < count; ++k) {
+    double trace[kLanes];
+    if constexpr (kLaw == LaneLaw::corotated_shape) {
+      Lanes<9> r;
+      rotations(blocks[k], gradient[k], sums, k * kLanes, r, trace);
+    }
     for (int l = 0; l < kLanes; ++l) {
       const Matrix at = at_lane(gradient[k], l);
-      volumes[k * kLanes + l] = lanes::determinant(at, lanes::cofactor(at));
+      double j = 0;
+      if constexpr (kLaw == LaneLaw::linear_shape) {
+        j = 1 + ((at.at[0][0] - 1) + (at.at[1][1] - 1) + (at.at[2][2] - 1));
+      }
+      if constexpr (kLaw == LaneLaw::corotated_shape) j = trace[l] - 2;
+      if constexpr (kLaw == LaneLaw::neo_hookean_shape) {
+        j = lanes::determinant(at, lanes::cofactor(at));
+      }
+      if constexpr (kLaw == LaneLaw::saint_venant_kirchhoff_shape) {
+        j = 1 + 0.5 * (lanes::inner(at, at) - 3);
+      }
+      volumes[k * kLanes + l] = j;
     }
   }
+}
+SUNDER_VECTORISED
+void linear_volumes(const ElementBlock* blocks, std::size_t count, const double* u,
+                    double* volumes) {
+  volumes_of_blocks<LaneLaw::linear_shape>(blocks, count, u, volumes);
+}
+SUNDER_VECTORISED
+void corotated_volumes(const ElementBlock* blocks, std::size_t count, const double* u,
+                       double* volumes) {
+  volumes_of_blocks<LaneLaw::corotated_shape>(blocks, count, u, volumes);
+}
+SUNDER_VECTORISED
+void neo_hookean_volumes(const ElementBlock* blocks, std::size_t count, const double* u,
+                         double* volumes) {
+  volumes_of_blocks<LaneLaw::neo_hookean_shape>(blocks, count, u, volumes);
+}
+SUNDER_VECTORISED
+void saint_venant_kirchhoff_volumes(const ElementBlock* blocks, std::size_t count, const double* u,
+                                    double* volumes) {
+  volumes_of_blocks<LaneLaw::saint_venant_kirchhoff_shape>(blocks, count, u, volumes);
 }
 SUNDER_VECTORISED
 void run_other(const Range& of, const double* u, const LaneOutputs& to, GroupFound& found) {
@@ -399,7 +479,13 @@ void run_other_linear(const Range& of, const double* u, const LaneOutputs& to, G
 auto loop_of(const ElementGroup& group) {
   const Law& law = *group.law;
   if (group.fibres) return &law == &kLinear ? &run_other_linear : &run_other;
-  if (group.pooled) return &law == &kNeoHookean ? &run_neo_hookean_shape : &run_other;
+  if (group.pooled) {
+    if (&law == &kLinear) return &run_linear_shape;
+    if (&law == &kCorotated) return &run_corotated_shape;
+    if (&law == &kNeoHookean) return &run_neo_hookean_shape;
+    if (&law == &kSaintVenantKirchhoff) return &run_saint_venant_kirchhoff_shape;
+    return &run_other;
+  }
   if (&law == &kLinear) return &run_linear;
   if (&law == &kCorotated) return &run_corotated;
   if (&law == &kNeoHookean) return &run_neo_hookean;
@@ -417,7 +503,18 @@ void run_group(const Problem& problem, const ElementGroup& group, const ElementB
 
 void find_volumes(const ElementGroup& group, const ElementBlock* blocks, const double* u,
                   double* volumes) {
-  run_volumes(blocks, group.count, u, volumes);
+  const Law& law = *group.law;
+  if (&law == &kLinear) return linear_volumes(blocks, group.count, u, volumes);
+  if (&law == &kCorotated) return corotated_volumes(blocks, group.count, u, volumes);
+  if (&law == &kNeoHookean) return neo_hookean_volumes(blocks, group.count, u, volumes);
+  if (&law == &kSaintVenantKirchhoff) {
+    return saint_venant_kirchhoff_volumes(blocks, group.count, u, volumes);
+  }
+  Lanes<9> gradient[ElementGroup::kMost];
+  gradients(blocks, group.count, u, gradient);
+  for (std::size_t k = 0; k < group.count; ++k) {
+    ratios_by_law(law, blocks[k], gradient[k], volumes + k * kLanes);
+  }
 }
 
 }  // namespace sunder::fem

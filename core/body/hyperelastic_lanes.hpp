@@ -62,7 +62,7 @@ struct alignas(64) GroupFound {
 void run_group(const Problem& problem, const ElementGroup& group, const ElementBlock* blocks,
                const double* u, const LaneOutputs& to, GroupFound& found);
 
-/// J of each of a group's elements, block by block.
+/// J of each of a group's elements as its law measures it, block by block.
 void find_volumes(const ElementGroup& group, const ElementBlock* blocks, const double* u,
                   double* volumes);
 
@@ -79,5 +79,7 @@ struct ResponseInLanes {
 /// `pressure`: of its elements' patches, where their volume is pooled; else null.
 void respond_by_law(const Problem& problem, const Law& law, const ElementBlock& block,
                     const double* pressure, ResponseInLanes& of);
+/// J of a block's live elements at F; of the others 0.
+void ratios_by_law(const Law& law, const ElementBlock& block, const Lanes<9>& f, double* volumes);
 
 }  // namespace sunder::fem

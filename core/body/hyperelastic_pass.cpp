@@ -61,11 +61,18 @@ void respond_by_law(const Problem& problem, const Law& law, const ElementBlock& 
       const Mat3 f = from_lane(of.f, l);
       of.energy[l] = (pressure ? law.split->shape_energy : law.energy)(constants, f);
       if (std::isfinite(of.energy[l])) {
-        p = pressure ? law.split->shape_stress(constants, f) + pressure[l] * cofactor(f)
-                     : law.stress(constants, f);
+        p = pressure
+                ? law.split->shape_stress(constants, f) + pressure[l] * law.split->ratio_slope(f)
+                : law.stress(constants, f);
       }
     }
     into_lane(of.p, l, p);
+  }
+}
+
+void ratios_by_law(const Law& law, const ElementBlock& block, const Lanes<9>& f, double* volumes) {
+  for (int l = 0; l < kLanes; ++l) {
+    volumes[l] = block.live[l] != 0 ? law.split->ratio(from_lane(f, l)) : 0;
   }
 }
 

@@ -23,7 +23,7 @@ PatchVolume volume_of(const HyperelasticBody& body, Index patch, std::span<const
     const double volume = body.problem.shape(e).volume;
     const Mat3 f = Mat3::Identity() + displacement_gradient(body.problem, e, u);
     of.volume += volume;
-    now += volume * f.determinant();
+    now += volume * body.law(e).split->ratio(f);
   }
   if (!(of.volume > 0)) return of;
   const Index first = elements.front();
@@ -32,12 +32,6 @@ PatchVolume volume_of(const HyperelasticBody& body, Index patch, std::span<const
 }
 
 }  // namespace
-
-Mat3 cofactor(const Mat3& f) {
-  Mat3 of;
-  of << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
-  return of;
-}
 
 bool pools_volume(const HyperelasticBody& body, Index element) {
   const Pools* pools = body.problem.pools();
@@ -75,7 +69,8 @@ PatchTangent patch_tangent(const HyperelasticBody& body, Index patch, std::span<
     volume += shape.volume;
     const Eigen::Matrix<double, 3, 4> at =
         shape.volume *
-        (cofactor(Mat3::Identity() + displacement_gradient(problem, e, u)) * shape.gradient);
+        (body.law(e).split->ratio_slope(Mat3::Identity() + displacement_gradient(problem, e, u)) *
+         shape.gradient);
     const auto& tet = problem.mesh().tets[static_cast<std::size_t>(e)];
     for (int a = 0; a < 4; ++a) {
       const auto place = std::ranges::lower_bound(nodes, tet[static_cast<std::size_t>(a)]);

@@ -2,7 +2,7 @@
 // Pooled volume by laws of finite deformation (method.md "Pooled volume"): patches of elements that
 // share the volume part U of their law's energy (VolumeSplit),
 //   sum V_e W_s(F_e) + sum V_p U(J_p), V_p = sum V_e, J_p = sum V_e J_e / V_p over live elements,
-// so that P_e = P_s(F_e) + U'(J_p) cof F_e.
+// so that P_e = P_s(F_e) + U'(J_p) dJ/dF_e.
 #pragma once
 
 #include <span>
@@ -31,9 +31,6 @@ class PatchVolumes {
   std::vector<double> energy_, pressure_, stiffness_;
 };
 
-/// J F^-T.
-[[nodiscard]] Mat3 cofactor(const Mat3& f);
-
 /// Whether an element's volume is its patch's, by a law that has a volume part.
 [[nodiscard]] bool pools_volume(const HyperelasticBody& body, Index element);
 
@@ -41,7 +38,7 @@ class PatchVolumes {
 [[nodiscard]] double patch_pressure(const HyperelasticBody& body, Index patch,
                                     std::span<const double> u);
 
-/// What a patch adds to the tangent: factor b b^T, b = sum V_e cof(F_e) grad N over its live
+/// What a patch adds to the tangent: factor b b^T, b = sum V_e dJ/dF_e grad N over its live
 /// elements at u, factor = U''/V_p.
 struct PatchTangent {
   double factor = 0;

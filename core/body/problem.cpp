@@ -420,31 +420,7 @@ constexpr double kLocks = 0.49;
 namespace {
 
 constexpr const char* kPools =
-    " has volume = \"pooled\", which is there for laws \"linear\" (in statics) and \"neo-hookean\" "
-    "with model \"none\", \"A\" or \"P\", but ";
-
-/// Why the law of a material cannot pool its volume in a scene; empty: it can.
-std::string why_law_cannot_pool(const Problem& problem, const Material& material) {
-  if (material.law == MaterialLaw::neo_hookean) return {};
-  if (!problem.finite()) {
-    if (problem.moves())
-      return "[dynamics] makes the scene move, and law \"linear\" pools in statics";
-    return problem.fibrous() ? "its law \"linear\" pools volume only where no material has fibres"
-                             : "";
-  }
-  const std::string law =
-      "law " + in_quotes(key_words("material", "law")[static_cast<std::size_t>(material.law)]);
-  const std::string no_volume = ", so that no part of its energy is one of J = det F alone";
-  switch (material.law) {
-    case MaterialLaw::corotated:
-      return law + " measures volume by the trace of its stretch" + no_volume;
-    case MaterialLaw::saint_venant_kirchhoff:
-      return law + " measures volume by the trace of Green's strain" + no_volume;
-    default:
-      return "its " + law + " pools volume only where all materials have it, not beside law " +
-             in_quotes(problem.law());
-  }
-}
+    " has volume = \"pooled\", which is there with model \"none\", \"A\" or \"P\", but ";
 
 }  // namespace
 
@@ -456,21 +432,13 @@ void Problem::make_pools() {
     const Material& material = *material_of_volume_[v];
     const std::string what = "material " + in_quotes(mesh().volumes[v].name);
     if (material.volume == MaterialVolume::pooled) {
-      const std::string why = why_law_cannot_pool(*this, material);
-      if (!why.empty()) {
-        throw InputError(
-            InputFault::out_of_range,
-            what + kPools + why + "; take volume = \"element\" or law \"neo-hookean\"");
-      }
       check_pooled(what);
     } else if (material.poisson > kLocks) {
       warnings_.push_back(what + " has poisson = " + in_digits(material.poisson) +
                           " with volume = \"element\": linear tetrahedra lock over 0.49, a thick "
                           "cylinder is 4 % too stiff at 0.49, 16 % at 0.499 and 24 % at 0.4999, "
                           "thin layers many times (docs/verification.md)" +
-                          (can_pool() && why_law_cannot_pool(*this, material).empty()
-                               ? "; volume = \"pooled\" does not"
-                               : ""));
+                          (can_pool() ? "; volume = \"pooled\" does not" : ""));
     }
   }
   pools_ = fem::pools_of(*this);

@@ -94,10 +94,14 @@ std::vector<std::string> Simulation::warnings() const {
   return all;
 }
 
-/// By law "linear" a patch of pooled volume is not split with its piece (docs/limits.md).
+/// In statics by law "linear" a patch of pooled volume is not split with its piece
+/// (docs/limits.md).
 void Simulation::add_shared_pressure(std::vector<std::string>& all) const {
   const fem::Pools* const pools = problem_->pools();
-  if (!pools || problem_->finite() || now_.cut_off.empty()) return;
+  if (!pools || problem_->finite() || problem_->moves() || problem_->fibrous() ||
+      now_.cut_off.empty()) {
+    return;
+  }
   long long shared = 0;
   for (Index p = 0; p < pools->count(); ++p) {
     bool held = false, loose = false;

@@ -122,7 +122,9 @@ Vec3 Simulation::pooled_reaction(std::span<const Vec3> displacement) const {
   std::vector<double> u;
   u.reserve(3 * displacement.size());
   for (const Vec3& x : displacement) u.insert(u.end(), x.data(), x.data() + 3);
-  if (problem_->finite()) {  // a piece that is cut off shares no patch with the rest
+  // By a law of its own each element counts whole or not at all, and a piece that is cut off shares
+  // no patch with the rest.
+  if (problem_->finite() || problem_->moves() || problem_->fibrous()) {
     std::vector<std::uint8_t> out(backend_->destroyed().begin(), backend_->destroyed().end());
     for (std::size_t e = 0; e < now_.cut_off.size(); ++e) out[e] |= now_.cut_off[e];
     return forces_of_supports(*problem_, out, u);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "material/linear.hpp"
+#include "material/trace_volume.hpp"
+
 namespace sunder {
 namespace {
 
@@ -15,29 +18,54 @@ double energy(const SmallStrain& law, const Mat3& f) {
   return law.mu * stretch.squaredNorm() + law.lambda / 2 * trace * trace;
 }
 
-Mat3 stress(const SmallStrain& law, const Mat3& f) {
+Mat3 law_stress(const SmallStrain& law, const Mat3& f) {
   const SingularValues of = singular_values(f);
   const Mat3 r = of.u * of.v.transpose();
   return 2 * law.mu * (f - r) + law.lambda * (of.s.sum() - 3) * r;
 }
 
-/// A twist has (W_i + W_j)/(s_i + s_j) = 2 mu + 2 (lambda tr(S - I) - 2 mu)/(s_i + s_j).
-SpectralTangent tangent(const SmallStrain& law, const Mat3& f) {
+/// Of W + p tr S: a twist has (W_i + W_j)/(s_i + s_j) = 2 mu + 2 (lambda tr(S - I) + p - 2 mu) over
+/// s_i + s_j.
+SpectralTangent tangent_at(const SmallStrain& law, const Mat3& f, double pressure) {
   const SingularValues of = singular_values(f);
   PrincipalTangent at;
   at.stretch = Mat3::Constant(law.lambda);
   at.stretch.diagonal().array() += 2 * law.mu;
   at.flip.setConstant(2 * law.mu);
-  const double turning = 2 * (law.lambda * (of.s.sum() - 3) - 2 * law.mu);
+  const double turning = 2 * (law.lambda * (of.s.sum() - 3) + pressure - 2 * law.mu);
   for (int i = 0; i < 3; ++i) {
     at.twist[i] = 2 * law.mu + turning / std::max(of.s[i] + of.s[(i + 1) % 3], kLeastSum);
   }
   return spectral_tangent(of, at);
 }
 
+SpectralTangent tangent(const SmallStrain& law, const Mat3& f) { return tangent_at(law, f, 0); }
+
+double shape_energy(const SmallStrain& law, const Mat3& f) {
+  return energy(without_pressure(law), f);
+}
+
+Mat3 shape_stress(const SmallStrain& law, const Mat3& f) {
+  return law_stress(without_pressure(law), f);
+}
+
+SpectralTangent shape_tangent(const SmallStrain& law, const Mat3& f, double pressure) {
+  return tangent_at(without_pressure(law), f, pressure);
+}
+
+double ratio(const Mat3& f) { return singular_values(f).s.sum() - 2; }
+
+Mat3 ratio_slope(const Mat3& f) {
+  const SingularValues of = singular_values(f);
+  return of.u * of.v.transpose();
+}
+
+constexpr VolumeSplit kSplit = split_with_fibres<FibreTheory::finite, shape_energy, shape_stress,
+                                                 shape_tangent, ratio, ratio_slope, trace_volume>();
+
 }  // namespace
 
 constinit const Law kCorotated =
-    law_with_fibres<FibreTheory::finite, energy, stress, tangent>("corotated");
+    law_with_fibres<FibreTheory::finite, energy, law_stress, tangent>("corotated", &kSplit);
 
 }  // namespace sunder

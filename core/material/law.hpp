@@ -13,14 +13,16 @@
 
 namespace sunder {
 
-/// A law's energy as one of shape and one of volume, W(F) = W_s(F) + U(J) with J = det F, for
-/// elements that change their volume together (method.md "Pooled volume"). U(J) = W(J^(1/3) I):
-/// W_s is 0 wherever nothing changes its shape.
+/// A law's energy as one of shape and one of volume, W(F) = W_s(F) + U(J), for elements that change
+/// their volume together (method.md "Pooled volume"). J is the ratio of volumes as the law measures
+/// it: det F, or 1 and the trace of its strain. W_s is 0 wherever nothing changes its shape.
 struct VolumeSplit {
   double (*shape_energy)(const SmallStrain&, const Mat3& f);
   Mat3 (*shape_stress)(const SmallStrain&, const Mat3& f);
-  /// Second derivative of W_s(F) + p J.
+  /// Second derivative of W_s(F) + p J(F).
   SpectralTangent (*shape_tangent)(const SmallStrain&, const Mat3& f, double pressure);
+  double (*ratio)(const Mat3& f);      ///< J
+  Mat3 (*ratio_slope)(const Mat3& f);  ///< dJ/dF
   /// U, p = U' and U''; an infinite energy where the law knows no such volume [MPa].
   struct Volume {
     double energy, pressure, stiffness;
@@ -37,7 +39,7 @@ struct Law {
   Mat3 (*stress)(const SmallStrain&, const Mat3& f);
   /// dP/dF; F must have an energy.
   SpectralTangent (*tangent)(const SmallStrain&, const Mat3& f);
-  /// Null: J alone decides no part of the energy.
+  /// Null: no part of the energy is one of volume alone.
   const VolumeSplit* split = nullptr;
 };
 
@@ -62,9 +64,9 @@ constexpr Law law_with_fibres(std::string_view name, const VolumeSplit* split = 
 
 /// Its split: fibres are of all of F, each element's own, and never of the volume that a patch
 /// shares.
-template <auto kEnergy, auto kStress, auto kTangent, auto kVolume>
+template <FibreTheory kTheory, auto kEnergy, auto kStress, auto kTangent, auto kRatio,
+          auto kRatioSlope, auto kVolume>
 constexpr VolumeSplit split_with_fibres() {
-  constexpr auto kTheory = FibreTheory::finite;
   return {[](const SmallStrain& of, const Mat3& f) {
             const double w = kEnergy(of, f);
             return of.fibres ? w + fibre_energy<kTheory>(*of.fibres, f) : w;
@@ -77,6 +79,8 @@ constexpr VolumeSplit split_with_fibres() {
             if (!of.fibres) return kTangent(of, f, pressure);
             return with_fibres(kTangent(of, f, pressure), fibre_tangent<kTheory>(*of.fibres, f));
           },
+          kRatio,
+          kRatioSlope,
           kVolume};
 }
 

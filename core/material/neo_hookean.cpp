@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/neo_hookean.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
-
 #include "material/lanes.hpp"
 
 namespace sunder {
@@ -72,6 +72,14 @@ SpectralTangent shape_tangent(const SmallStrain& law, const Mat3& f, double pres
   return spectral_tangent(of, at);
 }
 
+double determinant(const Mat3& f) { return f.determinant(); }
+
+Mat3 cofactor(const Mat3& f) {
+  Mat3 of;
+  of << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));
+  return of;
+}
+
 /// U' = (lambda ln J + mu (J^(2/3) - 1))/J.
 VolumeSplit::Volume volume(const SmallStrain& law, double j) {
   if (!(j >= lanes::kLeastVolume)) return {std::numeric_limits<double>::infinity(), 0, 0};
@@ -81,8 +89,8 @@ VolumeSplit::Volume volume(const SmallStrain& law, double j) {
           (law.lambda + 2.0 / 3 * face) / (j * j) - pressure / j};
 }
 
-constexpr VolumeSplit kSplit =
-    split_with_fibres<shape_energy, shape_stress, shape_tangent, volume>();
+constexpr VolumeSplit kSplit = split_with_fibres<FibreTheory::finite, shape_energy, shape_stress,
+                                                 shape_tangent, determinant, cofactor, volume>();
 
 }  // namespace
 

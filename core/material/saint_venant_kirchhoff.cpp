@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/saint_venant_kirchhoff.hpp"
 
+#include "material/linear.hpp"
+#include "material/trace_volume.hpp"
+
 namespace sunder {
 namespace {
 
@@ -12,17 +15,17 @@ double energy(const SmallStrain& law, const Mat3& f) {
   return law.mu * strain.squaredNorm() + law.lambda / 2 * trace * trace;
 }
 
-Mat3 stress(const SmallStrain& law, const Mat3& f) {
+Mat3 law_stress(const SmallStrain& law, const Mat3& f) {
   const Mat3 strain = green_lagrange(f);
   return f * (2 * law.mu * strain + law.lambda * strain.trace() * Mat3::Identity());
 }
 
-/// W_i = s_i (mu (s_i^2 - 1) + lambda t), t = tr E: flips mu (s_i^2 + s_i s_j + s_j^2 - 1) +
-/// lambda t, twists with - s_i s_j.
-SpectralTangent tangent(const SmallStrain& law, const Mat3& f) {
+/// Of W + p tr E: W_i = s_i (mu (s_i^2 - 1) + lambda t + p), t = tr E: flips
+/// mu (s_i^2 + s_i s_j + s_j^2 - 1) + lambda t + p, twists with - s_i s_j.
+SpectralTangent tangent_at(const SmallStrain& law, const Mat3& f, double pressure) {
   const SingularValues of = singular_values(f);
   const Eigen::Array3d square = of.s.array().square();
-  const double even = law.lambda * (square.sum() - 3) / 2 - law.mu;
+  const double even = law.lambda * (square.sum() - 3) / 2 + pressure - law.mu;
   PrincipalTangent at;
   at.stretch = law.lambda * of.s * of.s.transpose();
   at.stretch.diagonal().array() += even + 3 * law.mu * square;
@@ -35,9 +38,30 @@ SpectralTangent tangent(const SmallStrain& law, const Mat3& f) {
   return spectral_tangent(of, at);
 }
 
+SpectralTangent tangent(const SmallStrain& law, const Mat3& f) { return tangent_at(law, f, 0); }
+
+double shape_energy(const SmallStrain& law, const Mat3& f) {
+  return energy(without_pressure(law), f);
+}
+
+Mat3 shape_stress(const SmallStrain& law, const Mat3& f) {
+  return law_stress(without_pressure(law), f);
+}
+
+SpectralTangent shape_tangent(const SmallStrain& law, const Mat3& f, double pressure) {
+  return tangent_at(without_pressure(law), f, pressure);
+}
+
+double ratio(const Mat3& f) { return green_lagrange(f).trace() + 1; }
+Mat3 ratio_slope(const Mat3& f) { return f; }
+
+constexpr VolumeSplit kSplit = split_with_fibres<FibreTheory::finite, shape_energy, shape_stress,
+                                                 shape_tangent, ratio, ratio_slope, trace_volume>();
+
 }  // namespace
 
 constinit const Law kSaintVenantKirchhoff =
-    law_with_fibres<FibreTheory::finite, energy, stress, tangent>("saint-venant-kirchhoff");
+    law_with_fibres<FibreTheory::finite, energy, law_stress, tangent>("saint-venant-kirchhoff",
+                                                                      &kSplit);
 
 }  // namespace sunder

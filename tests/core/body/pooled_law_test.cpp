@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -17,7 +18,6 @@
 #include "body/law_stress.hpp"
 #include "body/tangent_pattern.hpp"
 #include "material/finite_stress.hpp"
-#include "material/neo_hookean.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder::fem {
@@ -25,11 +25,12 @@ namespace {
 
 /// 4 x 3 x 2 mm, "stiff" below of unpooled volume, "soft" above pooled, inner nodes moved, held at
 /// x = 0 or nowhere.
-Scene pooled_block(double nu, bool held = true, bool both = false) {
+Scene pooled_block(double nu, bool held = true, bool both = false,
+                   MaterialLaw law = MaterialLaw::neo_hookean) {
   Scene scene;
   scene.mesh = test::shaken_block();
-  scene.materials["stiff"] = {50, 0.3, 2.0, MaterialLaw::neo_hookean};
-  scene.materials["soft"] = {5, nu, 2.0, MaterialLaw::neo_hookean};
+  scene.materials["stiff"] = {50, 0.3, 2.0, law};
+  scene.materials["soft"] = {5, nu, 2.0, law};
   scene.materials["soft"].volume = MaterialVolume::pooled;
   if (both) scene.materials["stiff"].volume = MaterialVolume::pooled;
   if (held) {
@@ -41,6 +42,9 @@ Scene pooled_block(double nu, bool held = true, bool both = false) {
   }
   return scene;
 }
+
+constexpr MaterialLaw kLaws[] = {MaterialLaw::linear, MaterialLaw::corotated,
+                                 MaterialLaw::neo_hookean, MaterialLaw::saint_venant_kirchhoff};
 
 /// Both materials have fibres along x, which some_shear() stretches.
 Scene with_fibres(Scene scene) {
@@ -84,7 +88,54 @@ struct SomeBody {
   std::vector<std::uint8_t> destroyed;
 };
 
-/// The energy as it is written down: mu/2 (|F|^2 - 3 J^(2/3)) of each element, U of each patch, and
+/// mu |E|^2 by the strain E of a law, and tr E.
+struct Strained {
+  double squared, trace;
+};
+Strained strained(MaterialLaw law, const Mat3& f) {
+  if (law == MaterialLaw::corotated) {
+    Vec3 s = Eigen::JacobiSVD<Mat3>(f).singularValues() - Vec3::Ones();
+    return {s.squaredNorm(), s.sum()};
+  }
+  const Mat3 e = law == MaterialLaw::linear ? Mat3((f + f.transpose()) / 2 - Mat3::Identity())
+                                            : Mat3((f.transpose() * f - Mat3::Identity()) / 2);
+  return {e.squaredNorm(), e.trace()};
+}
+
+/// J as a law measures it.
+double ratio_of(MaterialLaw law, const Mat3& f) {
+  return law == MaterialLaw::neo_hookean ? f.determinant() : 1 + strained(law, f).trace;
+}
+
+/// W of an element whose volume is its own.
+double whole_energy(MaterialLaw law, double mu, double lambda, const Mat3& f) {
+  if (law == MaterialLaw::neo_hookean) {
+    const double log_j = std::log(f.determinant());
+    return mu / 2 * (f.squaredNorm() - 3) - mu * log_j + lambda / 2 * log_j * log_j;
+  }
+  const Strained of = strained(law, f);
+  return mu * of.squared + lambda / 2 * of.trace * of.trace;
+}
+
+/// Of shape: mu/2 (|F|^2 - 3 J^(2/3)), or mu times the square of the strain's deviator.
+double shape_energy(MaterialLaw law, double mu, const Mat3& f) {
+  if (law == MaterialLaw::neo_hookean) {
+    return mu / 2 * (f.squaredNorm() - 3 * std::pow(f.determinant(), 2.0 / 3));
+  }
+  const Strained of = strained(law, f);
+  return mu * (of.squared - of.trace * of.trace / 3);
+}
+
+/// Of volume.
+double volume_energy(MaterialLaw law, double mu, double lambda, double j) {
+  if (law == MaterialLaw::neo_hookean) {
+    return 1.5 * mu * (std::pow(j, 2.0 / 3) - 1) - mu * std::log(j) +
+           lambda / 2 * std::log(j) * std::log(j);
+  }
+  return (lambda + 2 * mu / 3) / 2 * (j - 1) * (j - 1);
+}
+
+/// The energy as it is written down: that of shape of each element, U of each patch, and
 /// k1/(2 k2) (exp(k2 E^2) - 1) of fibres along x with E = |F x|^2 - 1 > 0.
 double by_definition(const SomeBody& of, std::span<const double> u) {
   const Problem& problem = of.problem;
@@ -98,31 +149,28 @@ double by_definition(const SomeBody& of, std::span<const double> u) {
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (!live(e)) continue;
     const Mat3 f = gradient(e);
+    const MaterialLaw law = problem.material(e).law;
     const double mu = problem.small_strain(e).mu, lambda = problem.small_strain(e).lambda,
-                 j = f.determinant(), log_j = std::log(j), v = problem.shape(e).volume;
-    if (problem.pools()->of(e) == kNone) {
-      sum += v * (mu / 2 * (f.squaredNorm() - 3) - mu * log_j + lambda / 2 * log_j * log_j);
-    } else {
-      sum += v * mu / 2 * (f.squaredNorm() - 3 * std::pow(j, 2.0 / 3));
-    }
+                 v = problem.shape(e).volume;
+    sum += v * (problem.pools()->of(e) == kNone ? whole_energy(law, mu, lambda, f)
+                                                : shape_energy(law, mu, f));
     const double e_of_x = f.col(0).squaredNorm() - 1;
     for (const Fibres& of_x : problem.material(e).fibres) {
       if (e_of_x > 0) sum += v * *of_x.k1 / (2 * *of_x.k2) * std::expm1(*of_x.k2 * e_of_x * e_of_x);
     }
   }
   for (Index p = 0; p < problem.pools()->count(); ++p) {
+    const Index first = problem.pools()->elements(p).front();
+    const MaterialLaw law = problem.material(first).law;
     double v = 0, now = 0;
     for (Index e : problem.pools()->elements(p)) {
       if (!live(e)) continue;
       v += problem.shape(e).volume;
-      now += problem.shape(e).volume * gradient(e).determinant();
+      now += problem.shape(e).volume * ratio_of(law, gradient(e));
     }
     if (v == 0) continue;
-    const Index first = problem.pools()->elements(p).front();
-    const double mu = problem.small_strain(first).mu, lambda = problem.small_strain(first).lambda,
-                 j = now / v;
-    sum += v * (1.5 * mu * (std::pow(j, 2.0 / 3) - 1) - mu * std::log(j) +
-                lambda / 2 * std::log(j) * std::log(j));
+    sum += v * volume_energy(law, problem.small_strain(first).mu,
+                             problem.small_strain(first).lambda, now / v);
   }
   return sum;
 }
@@ -146,8 +194,18 @@ Eigen::MatrixXd tangent_of(const SomeBody& of, std::span<const double> u, Tangen
 // Fourth-order central differences of 1e-3 mm: error 1e-12 and rounding 1e-13 of the energy.
 TEST(PooledLaw, ForcesAreTheGradientOfTheEnergyAndTheTangentIsTheirs) {
   constexpr double kStep = 1e-3;
-  for (const auto& [nu, fibres] : {std::pair(0.3, false), {0.49, false}, {0.49, true}}) {
-    SomeBody of(fibres ? with_fibres(pooled_block(nu)) : pooled_block(nu));
+  struct Case {
+    double nu;
+    bool fibres;
+    MaterialLaw law;
+  };
+  std::vector<Case> cases{{0.3, false, MaterialLaw::neo_hookean},
+                          {0.49, true, MaterialLaw::neo_hookean},
+                          {0.49, true, MaterialLaw::corotated}};
+  for (MaterialLaw law : kLaws) cases.push_back({0.49, false, law});
+  for (const auto& [nu, fibres, law] : cases) {
+    const Scene scene = pooled_block(nu, true, false, law);
+    SomeBody of(fibres ? with_fibres(scene) : scene);
     of.destroy_some();
     const HyperelasticBody body = of.body();
     std::vector<double> u = moved_by(of.problem.mesh(), some_shear(), 0.05);
@@ -192,8 +250,16 @@ TEST(PooledLaw, ForcesAreTheGradientOfTheEnergyAndTheTangentIsTheirs) {
 }
 
 TEST(PooledLaw, ThePassAgreesByAnyNumberOfThreads) {
-  for (const auto& [both, fibres] : {std::pair(false, false), {true, false}, {false, true}}) {
-    const Scene scene = pooled_block(0.4999, true, both);
+  struct Case {
+    bool both, fibres;
+    MaterialLaw law;
+  };
+  std::vector<Case> cases{{true, false, MaterialLaw::neo_hookean},
+                          {false, true, MaterialLaw::neo_hookean},
+                          {false, true, MaterialLaw::saint_venant_kirchhoff}};
+  for (MaterialLaw law : kLaws) cases.push_back({false, false, law});
+  for (const auto& [both, fibres, law] : cases) {
+    const Scene scene = pooled_block(0.4999, true, both, law);
     SomeBody of(fibres ? with_fibres(scene) : scene);
     of.destroy_some();
     const std::vector<double> u = moved_by(of.problem.mesh(), some_turn() * some_shear(), 0.02);
@@ -222,91 +288,101 @@ TEST(PooledLaw, ThePassAgreesByAnyNumberOfThreads) {
 
 // The law itself, whatever the patches are: its split is one of the same energy.
 TEST(PooledLaw, EvenDeformationIsThatOfTheLaw) {
-  const SomeBody of(pooled_block(0.4999));
-  Mat3 f = some_shear();
-  f /= std::cbrt(f.determinant() / 1.001);
-  const std::vector<double> u = moved_by(of.problem.mesh(), f, 0);
-  std::vector<Voigt> stress(of.problem.mesh().tets.size());
-  element_stresses(of.body(), u, cauchy_stress, stress);
-  double w = 0;
-  for (Index e = 0; e < of.problem.tet_count(); ++e) {
-    const SmallStrain& constants = of.problem.small_strain(e);
-    const Voigt right = cauchy_stress(kNeoHookean.stress(constants, f), f);
-    // ln J = .001 of rounding 1e-16.
-    EXPECT_LE((stress[static_cast<std::size_t>(e)] - right).norm(), 1e-11 * right.norm());
-    w += of.problem.shape(e).volume * kNeoHookean.energy(constants, f);
+  for (MaterialLaw named : kLaws) {
+    const SomeBody of(pooled_block(0.4999, true, false, named));
+    const Law& law = *laws()[static_cast<std::size_t>(named)];
+    Mat3 f = some_shear();
+    f /= std::cbrt(f.determinant() / 1.001);
+    const std::vector<double> u = moved_by(of.problem.mesh(), f, 0);
+    std::vector<Voigt> stress(of.problem.mesh().tets.size());
+    element_stresses(of.body(), u, cauchy_stress, stress);
+    double w = 0;
+    for (Index e = 0; e < of.problem.tet_count(); ++e) {
+      const SmallStrain& constants = of.problem.small_strain(e);
+      const Mat3 by = named == MaterialLaw::linear ? Mat3(Mat3::Identity()) : f;
+      const Voigt right = cauchy_stress(law.stress(constants, f), by);
+      // ln J = .001 of rounding 1e-16.
+      EXPECT_LE((stress[static_cast<std::size_t>(e)] - right).norm(), 1e-11 * right.norm())
+          << law.name;
+      w += of.problem.shape(e).volume * law.energy(constants, f);
+    }
+    EXPECT_NEAR(energy(of.body(), u), w, 1e-11 * w) << law.name;
   }
-  EXPECT_NEAR(energy(of.body(), u), w, 1e-11 * w);
 }
 
 TEST(PooledLaw, ATurnedBodyHasTheSameEnergyAndTurnedForces) {
-  const SomeBody of(pooled_block(0.4999, false));
-  const Mat3 q = some_turn();
-  const std::vector<double> u = moved_by(of.problem.mesh(), some_shear(), 0.02);
-  std::vector<double> turned, f(u.size()), g(u.size());
-  for (Index n = 0; n < of.problem.node_count(); ++n) {
-    const Vec3 x = of.problem.mesh().nodes[static_cast<std::size_t>(n)];
-    const Vec3 there = q * (x + Vec3(&u[static_cast<std::size_t>(3 * n)])) + Vec3(1, 2, 3) - x;
-    turned.insert(turned.end(), there.data(), there.data() + 3);
+  for (MaterialLaw law :
+       {MaterialLaw::corotated, MaterialLaw::neo_hookean, MaterialLaw::saint_venant_kirchhoff}) {
+    const SomeBody of(pooled_block(0.4999, false, false, law));
+    const Mat3 q = some_turn();
+    const std::vector<double> u = moved_by(of.problem.mesh(), some_shear(), 0.02);
+    std::vector<double> turned, f(u.size()), g(u.size());
+    for (Index n = 0; n < of.problem.node_count(); ++n) {
+      const Vec3 x = of.problem.mesh().nodes[static_cast<std::size_t>(n)];
+      const Vec3 there = q * (x + Vec3(&u[static_cast<std::size_t>(3 * n)])) + Vec3(1, 2, 3) - x;
+      turned.insert(turned.end(), there.data(), there.data() + 3);
+    }
+    const double w = internal_forces(of.body(), u, f), same = internal_forces(of.body(), turned, g);
+    EXPECT_NEAR(w, same, 1e-11 * w);
+    double most = 0;
+    for (double x : f) most = std::max(most, std::abs(x));
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t n = 0; n < f.size(); n += 3) {
+      EXPECT_LE((Vec3(&g[n]) - q * Vec3(&f[n])).norm(), 1e-10 * most);
+      sum += Vec3(&g[n]);
+    }
+    EXPECT_LE(sum.norm(), 1e-10 * most);
   }
-  const double w = internal_forces(of.body(), u, f), same = internal_forces(of.body(), turned, g);
-  EXPECT_NEAR(w, same, 1e-11 * w);
-  double most = 0;
-  for (double x : f) most = std::max(most, std::abs(x));
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t n = 0; n < f.size(); n += 3) {
-    EXPECT_LE((Vec3(&g[n]) - q * Vec3(&f[n])).norm(), 1e-10 * most);
-    sum += Vec3(&g[n]);
-  }
-  EXPECT_LE(sum.norm(), 1e-10 * most);
 }
 
 // At rest: six modes without energy, and the pooled linear law's stiffness.
 TEST(PooledLaw, AtRestIsThePooledLinearLaw) {
-  Scene scene = pooled_block(0.4999, false, true);
-  const SomeBody of(scene);
-  for (auto& [name, material] : scene.materials) material.law = MaterialLaw::linear;
-  const Problem linear(scene);
-  const std::vector<double> none(of.problem.dofs().size(), 0.0);
-  std::vector<double> u = none, y = none;
-  const auto n = static_cast<Index>(u.size());
-  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n), right(n, n);
-  const HyperelasticBody body = of.body();
-  const auto add = [&](Index i, Index j, double value) { k(i, j) += value; };
-  for (Index e = 0; e < of.problem.tet_count(); ++e) {
-    const ElementMatrix own = element_tangent(body, e, none, Tangent::exact);
-    const auto& tet = of.problem.mesh().tets[static_cast<std::size_t>(e)];
-    for (int i = 0; i < 12; ++i) {
-      for (int j = 0; j < 12; ++j) {
-        add(3 * tet[static_cast<std::size_t>(i / 3)] + i % 3,
-            3 * tet[static_cast<std::size_t>(j / 3)] + j % 3, own(i, j));
+  for (MaterialLaw law : kLaws) {
+    Scene scene = pooled_block(0.4999, false, true, law);
+    const SomeBody of(scene);
+    for (auto& [name, material] : scene.materials) material.law = MaterialLaw::linear;
+    const Problem linear(scene);
+    const std::vector<double> none(of.problem.dofs().size(), 0.0);
+    std::vector<double> u = none, y = none;
+    const auto n = static_cast<Index>(u.size());
+    Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n), right(n, n);
+    const HyperelasticBody body = of.body();
+    const auto add = [&](Index i, Index j, double value) { k(i, j) += value; };
+    for (Index e = 0; e < of.problem.tet_count(); ++e) {
+      const ElementMatrix own = element_tangent(body, e, none, Tangent::exact);
+      const auto& tet = of.problem.mesh().tets[static_cast<std::size_t>(e)];
+      for (int i = 0; i < 12; ++i) {
+        for (int j = 0; j < 12; ++j) {
+          add(3 * tet[static_cast<std::size_t>(i / 3)] + i % 3,
+              3 * tet[static_cast<std::size_t>(j / 3)] + j % 3, own(i, j));
+        }
       }
     }
-  }
-  const PatchVolumes volumes(body, none);
-  for (Index p = 0; p < of.problem.pools()->count(); ++p) {
-    const PatchTangent patch = patch_tangent(
-        body, p, none, volumes.stiffness()[static_cast<std::size_t>(p)], Tangent::exact);
-    const auto nodes = of.problem.pools()->nodes(of.problem, p);
-    for (Eigen::Index i = 0; i < patch.b.size(); ++i) {
-      for (Eigen::Index j = 0; j < patch.b.size(); ++j) {
-        add(3 * nodes[static_cast<std::size_t>(i / 3)] + static_cast<Index>(i % 3),
-            3 * nodes[static_cast<std::size_t>(j / 3)] + static_cast<Index>(j % 3),
-            patch.factor * patch.b[i] * patch.b[j]);
+    const PatchVolumes volumes(body, none);
+    for (Index p = 0; p < of.problem.pools()->count(); ++p) {
+      const PatchTangent patch = patch_tangent(
+          body, p, none, volumes.stiffness()[static_cast<std::size_t>(p)], Tangent::exact);
+      const auto nodes = of.problem.pools()->nodes(of.problem, p);
+      for (Eigen::Index i = 0; i < patch.b.size(); ++i) {
+        for (Eigen::Index j = 0; j < patch.b.size(); ++j) {
+          add(3 * nodes[static_cast<std::size_t>(i / 3)] + static_cast<Index>(i % 3),
+              3 * nodes[static_cast<std::size_t>(j / 3)] + static_cast<Index>(j % 3),
+              patch.factor * patch.b[i] * patch.b[j]);
+        }
       }
     }
+    for (Index j = 0; j < n; ++j) {
+      u[static_cast<std::size_t>(j)] = 1;
+      apply_stiffness(linear, {}, u, y);
+      u[static_cast<std::size_t>(j)] = 0;
+      right.col(j) = Eigen::Map<const Eigen::VectorXd>(y.data(), n);
+    }
+    EXPECT_LE((k - right).cwiseAbs().maxCoeff(), 1e-12 * right.cwiseAbs().maxCoeff());
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues();
+    EXPECT_LE(values.head(6).cwiseAbs().maxCoeff(), 1e-13 * values[n - 1]);
+    EXPECT_GE(values[6], 1e-3);  // mu 1.67, 4 mm long
   }
-  for (Index j = 0; j < n; ++j) {
-    u[static_cast<std::size_t>(j)] = 1;
-    apply_stiffness(linear, {}, u, y);
-    u[static_cast<std::size_t>(j)] = 0;
-    right.col(j) = Eigen::Map<const Eigen::VectorXd>(y.data(), n);
-  }
-  EXPECT_LE((k - right).cwiseAbs().maxCoeff(), 1e-12 * right.cwiseAbs().maxCoeff());
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues();
-  EXPECT_LE(values.head(6).cwiseAbs().maxCoeff(), 1e-13 * values[n - 1]);
-  EXPECT_GE(values[6], 1e-3);  // mu 1.67, 4 mm long
 }
 
 TEST(PooledLaw, KnowsNoVolumeBelowNone) {
