@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "body/pools.hpp"
 #include "gpu/finite_tables.hpp"
 #include "sunder/error.hpp"
 
@@ -84,6 +85,7 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
       nodes_(u32(problem_.mesh().nodes.size())),
       entries_(3 * nodes_),
       unknowns_(u32(static_cast<std::size_t>(problem_.dof_count()))),
+      patches_(problem_.pools() ? u32(static_cast<std::size_t>(problem_.pools()->count())) : 0),
       rows_(round_up(std::max(unknowns_, 1U), shaders::kChunk)),
       pairs_(options.route == Route::inverse
                  ? std::min(u32(static_cast<std::size_t>(options.pairs)), shaders::kFinitePairs)
@@ -125,6 +127,12 @@ void FiniteDevice::create_buffers(bool viscous) {
   const std::vector<std::uint32_t> corners = corners_of(problem_);
   nodes_of_ = filled(device_, corners);
   shape_ = filled(device_, shapes_of(problem_));
+  if (patches_ > 0) {
+    const Patches patches = patches_of(problem_);
+    patch_first_ = filled(device_, patches.first);
+    patch_elements_ = filled(device_, patches.elements);
+    pressures_ = doubles(std::size_t{patches_} * sizeof(shaders::FinitePatch) / sizeof(double));
+  }
   fibres_ = filled(device_, fibres_of(problem_));
   facts_ = filled(device_, std::vector<std::uint32_t>(elements_, shaders::kFiniteOut));
   std::vector<std::vector<std::uint32_t>> around(nodes_);
@@ -211,8 +219,8 @@ void FiniteDevice::create_cg(const fem::HyperelasticBody& body) {
                                                 {&r_[0], &r_[1]}});
 }
 
-void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers first,
-                        Buffers second) {
+void FiniteDevice::make(Pass& pass, std::string_view name, bool real, const Buffers& first,
+                        const Buffers& second) {
   const bool one = name == "finite_sums" || name == "finite_sums_join" || name == "finite_begin" ||
                    name == "finite_end";
   const KernelFactory factory = real ? kernels_ : kernels_.in_fp64();
@@ -220,21 +228,14 @@ void FiniteDevice::make(Pass& pass, std::string_view name, bool real, Buffers fi
                               : kernels_.emulated() ? kernels_.summing_group()
                                                     : one_group(device_.physical());
   if (!pass.kernel) pass.kernel = factory.make(name, group);
-  pass.binding[0] =
-      std::make_unique<vulkan::Binding>(device_, *pass.kernel, std::vector<const Buffer*>(first));
-  pass.binding[1] =
-      std::make_unique<vulkan::Binding>(device_, *pass.kernel, std::vector<const Buffer*>(second));
+  pass.binding[0] = std::make_unique<vulkan::Binding>(device_, *pass.kernel, first);
+  pass.binding[1] = std::make_unique<vulkan::Binding>(device_, *pass.kernel, second);
 }
 
 void FiniteDevice::create_passes() {
   make(move_, "finite_move", false, {&entries_of_, &u_[0], &du_, &u_[1]},
        {&entries_of_, &u_[1], &du_, &u_[0]});
-  // binding[i] evaluates state i against the other one.
-  make(law_, "finite_law", false,
-       {&u_[0], &nodes_of_, &shape_, &facts_, &from_, &stress_[1], &corners_, &viscous_corners_,
-        &stress_[0], &element_partials_, &fibres_},
-       {&u_[1], &nodes_of_, &shape_, &facts_, &from_, &stress_[0], &corners_, &viscous_corners_,
-        &stress_[1], &element_partials_, &fibres_});
+  create_law();
   make(gather_, "finite_gather", false,
        {&corners_, &viscous_corners_, &first_, &around_, &entries_of_, &target_, &u_[0], &f_[0],
         &r_[0], &entry_partials_},
@@ -247,6 +248,23 @@ void FiniteDevice::create_passes() {
   if (shares_ > 1) {
     make(join_, "finite_sums_join", false, {&shares_of_sums_, &sums_}, {&shares_of_sums_, &sums_});
   }
+}
+
+/// binding[i] evaluates state i against the other one.
+void FiniteDevice::create_law() {
+  std::array<std::vector<const Buffer*>, 2> law;
+  for (std::size_t i : {0, 1}) {
+    law[i] = {&u_[i],      &nodes_of_,         &shape_,   &facts_,
+              &from_,      &stress_[1 - i],    &corners_, &viscous_corners_,
+              &stress_[i], &element_partials_, &fibres_};
+    if (patches_ > 0) law[i].push_back(&pressures_);
+  }
+  make(law_, patches_ > 0 ? "finite_law_pooled" : "finite_law", false, law[0], law[1]);
+  if (patches_ == 0) return;
+  make(
+      pools_, "finite_pools", false,
+      {&u_[0], &nodes_of_, &shape_, &facts_, &from_, &patch_first_, &patch_elements_, &pressures_},
+      {&u_[1], &nodes_of_, &shape_, &facts_, &from_, &patch_first_, &patch_elements_, &pressures_});
 }
 
 void FiniteDevice::attach(const solver::RestingBody& body) {
@@ -380,6 +398,7 @@ FinitePush FiniteDevice::push() const {
   of.rank = rank_;
   of.turned = turned_count_;
   of.shares = shares_;
+  of.patches = patches_;
   return of;
 }
 
@@ -417,6 +436,7 @@ void FiniteDevice::record_evaluation(const FinitePush& push, bool next) {
                        round_up(count, shaders::kGroup) / shaders::kGroup);
   };
   commands_.pass("internal forces");
+  if (patches_ > 0) dispatch(pools_, patches_);
   dispatch(law_, elements_);
   dispatch(gather_, entries_);
   dispatch(sum_, shares_ * shaders::kGroup);
@@ -545,7 +565,8 @@ std::vector<BufferPlan> FiniteDevice::buffers() const {
   const std::size_t body = nodes_of_.bytes() + shape_.bytes() + fibres_.bytes() + facts_.bytes() +
                            first_.bytes() + around_.bytes() + entries_of_.bytes() + held_.bytes() +
                            from_.bytes() + target_.bytes() + corners_.bytes() +
-                           viscous_corners_.bytes();
+                           viscous_corners_.bytes() + patch_first_.bytes() +
+                           patch_elements_.bytes() + pressures_.bytes();
   std::vector<BufferPlan> list;
   if (inverse_.bytes() > 0) {
     list.push_back({"dense inverse of a recent tangent (device)", inverse_.bytes()});

@@ -66,10 +66,12 @@ class FiniteDevice final : public solver::FiniteDevice {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::array<std::unique_ptr<vulkan::Binding>, 2> binding;  // by which state is the first
   };
-  using Buffers = std::initializer_list<const vulkan::Buffer*>;
-  void make(Pass& pass, std::string_view name, bool real, Buffers first, Buffers second);
+  using Buffers = std::vector<const vulkan::Buffer*>;
+  void make(Pass& pass, std::string_view name, bool real, const Buffers& first,
+            const Buffers& second);
   void create_buffers(bool viscous);
   void create_passes();
+  void create_law();
   void create_inverse();
   void create_cg(const fem::HyperelasticBody& body);
   void bind_base();
@@ -92,19 +94,20 @@ class FiniteDevice final : public solver::FiniteDevice {
   vulkan::Device& device_;
   const Problem& problem_;
   Options options_;
-  std::uint32_t elements_, nodes_, entries_, unknowns_, rows_, pairs_, shares_;
+  std::uint32_t elements_, nodes_, entries_, unknowns_, patches_, rows_, pairs_, shares_;
   const solver::RestingBody* resting_ = nullptr;
 
   // Of both states: displacement, residual, forces, stress.
   std::array<vulkan::Buffer, 2> u_, r_, f_, stress_;
   vulkan::Buffer nodes_of_, shape_, fibres_, facts_, first_, around_, entries_of_, held_, from_,
       target_;
+  vulkan::Buffer patch_first_, patch_elements_, pressures_;  // where volume is pooled
   vulkan::Buffer corners_, viscous_corners_, element_partials_, entry_partials_, sums_,
       shares_of_sums_;  // the latter where there are several
   vulkan::Buffer du_, q_, x_, partial_, s_, y_, products_, lengths_;
   vulkan::Buffer inverse_, touched_, small_, coefficients_, turned_, rotations_;
-  Pass move_, law_, gather_, sum_, join_, begin_, turn_q_, turn_x_, product_, fold_, small_pass_,
-      columns_, end_;
+  Pass move_, pools_, law_, gather_, sum_, join_, begin_, turn_q_, turn_x_, product_, fold_,
+      small_pass_, columns_, end_;
   std::unique_ptr<FiniteCg> cg_;  // route cg
   std::size_t inner_iterations_ = 0;
   vulkan::Commands commands_;

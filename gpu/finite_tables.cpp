@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "body/pooled_law.hpp"
 #include "material/corotated.hpp"
 #include "material/linear.hpp"
 #include "material/neo_hookean.hpp"
@@ -22,7 +23,23 @@ std::uint32_t number_of(const Law& law) {
   return static_cast<std::uint32_t>(at - known);
 }
 
+std::uint32_t patch_of(const fem::HyperelasticBody& body, Index e) {
+  if (!fem::pools_volume(body, e)) return 0;
+  return shaders::kFinitePooled |
+         shaders::kFinitePatch * static_cast<std::uint32_t>(body.problem.pools()->of(e));
+}
+
 }  // namespace
+
+Patches patches_of(const Problem& problem) {
+  Patches all;
+  const fem::Pools* pools = problem.pools();
+  for (Index p = 0; pools && p < pools->count(); ++p) {
+    for (Index e : pools->elements(p)) all.elements.push_back(static_cast<std::uint32_t>(e));
+    all.first.push_back(static_cast<std::uint32_t>(all.elements.size()));
+  }
+  return all;
+}
 
 std::vector<std::uint32_t> corners_of(const Problem& problem) {
   std::vector<std::uint32_t> all;
@@ -73,7 +90,7 @@ std::vector<std::uint32_t> facts_of(const solver::RestingBody& body) {
     all.push_back((body.out()[static_cast<std::size_t>(e)] ? shaders::kFiniteOut : 0) |
                   (problem.in_interface(e) ? shaders::kFiniteLayer : 0) |
                   (problem.small_strain(e).fibres ? shaders::kFiniteFibrous : 0) |
-                  shaders::kFiniteLaw * number_of(body.body().law(e)));
+                  patch_of(body.body(), e) | shaders::kFiniteLaw * number_of(body.body().law(e)));
   }
   return all;
 }

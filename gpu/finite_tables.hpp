@@ -16,7 +16,12 @@ namespace sunder::gpu {
 [[nodiscard]] std::vector<double> shapes_of(const Problem& problem);
 /// kFiniteFibres numbers an element; none where no element has any.
 [[nodiscard]] std::vector<double> fibres_of(const Problem& problem);
-/// Bits and law of each element. Throws DeviceError for a law that the kernels do not know.
+/// Elements of each patch of pooled volume, and where those of each begin.
+struct Patches {
+  std::vector<std::uint32_t> first{0}, elements;
+};
+[[nodiscard]] Patches patches_of(const Problem& problem);
+/// Bits, law and patch of each element. Throws DeviceError for a law that the kernels do not know.
 [[nodiscard]] std::vector<std::uint32_t> facts_of(const solver::RestingBody& body);
 
 }  // namespace sunder::gpu

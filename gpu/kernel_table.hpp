@@ -22,7 +22,7 @@ enum class Reads : std::uint8_t {
 
 class KernelBindings {
  public:
-  static constexpr std::size_t kMost = 11;
+  static constexpr std::size_t kMost = 12;
   constexpr KernelBindings(std::initializer_list<Reads> list) {
     for (Reads reads : list) of_[count_++] = reads;
   }

@@ -322,10 +322,6 @@ std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs ne
 std::unique_ptr<Backend> create(std::shared_ptr<const Problem> problem, Needs needs,
                                 const VulkanOptions& options) {
   if (!problem) throw UsageError("a backend needs a problem");
-  if (problem->pools()) {
-    throw DeviceError(
-        "backend vulkan does not compute pooled volume (volume = \"pooled\"); use backend cpu");
-  }
   // New nodes and unknowns come with tangents of the body as it is, whatever its law.
   if (problem->moves() || problem->finite() || problem->fibrous() || needs.split) {
     finite::Machine machine = law_machine(*problem, options);

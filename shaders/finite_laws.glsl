@@ -9,6 +9,31 @@ IN_DOUBLES(2, Shape, shape)
 IN_WORDS(3, Facts, facts)
 IN_DOUBLES(4, From, from)  // of the viscous strain: (xx, yy, zz, xy, yz, zx)
 
+uint law_of(uint fact) { return fact / kFiniteLaw % kFiniteLaws; }
+
+// Cube root of x > 0, as lanes::cube_root: x = 2^(3 q + r) m, Halley's step twice.
+double cube_root_(double x) {
+  const uvec2 bits = unpackDouble2x32(x);
+  int k = int(bits.y >> 20u) - 1023;
+  double m = packDouble2x32(uvec2(bits.x, (bits.y & 0x000fffffu) | 0x3ff00000u));
+  if (m > 1.4142135623730951LF) {
+    m *= 0.5LF;
+    k += 1;
+  }
+  const int q = (k + (k > 0 ? 1 : -1)) / 3, r = k - 3 * q;
+  const double f = m - 1.0LF;
+  double root = 1.0LF + f * (1.0LF / 3.0LF - f * (1.0LF / 9.0LF));
+  [[unroll]] for (int step = 0; step < 2; ++step) {
+    const double cube = root * root * root;
+    root += root * ((m - cube) / (2.0LF * cube + m));
+  }
+  const double part = r > 0 ? 1.2599210498948732LF : r < 0 ? 0.79370052598409974LF : 1.0LF;
+  return root * (part * packDouble2x32(uvec2(0u, uint(q + 1023) << 20u)));
+}
+
+// Below it a ratio of volumes counts as none.
+const double kLeastVolume = 2.2250738585072014e-308LF;
+
 // Natural logarithm of x > 0, as lanes::log.
 double log_(double x) {
   const uvec2 bits = unpackDouble2x32(x);

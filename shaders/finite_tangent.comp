@@ -79,7 +79,7 @@ void main() {
   const uint shape_at = kFiniteShape * e;
   const double volume = shape.data[shape_at + 9u];
   At at;
-  at.law = fact / kFiniteLaw;
+  at.law = law_of(fact);
   at.mu = shape.data[shape_at + 10u];
   at.lambda = shape.data[shape_at + 11u];
   const dmat3 h = gradient(e);

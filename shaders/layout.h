@@ -40,7 +40,7 @@ SUNDER_CONST kShown = 4u;       // none: displacement and stress are shown in fp
 // What an element is and does, beside its shape.
 struct ElementFacts {
   uint state;
-  uint unused;
+  uint patch_number;           // of pooled volume, from 1; 0: its volume is its own
   uint yield_low, yield_high;  // [MPa], fp64, in two words; 0: unbreakable
 };
 
@@ -74,6 +74,12 @@ struct HoldPush {
 
 struct GatherPush {
   uint count;
+};
+
+// Of a patch of pooled volume.
+struct PatchPressure {
+  double pressure;  // kappa times its change of volume [MPa]
+  double rounding;  // what that may be off by, times 2^24
 };
 
 struct ElementPush {
@@ -208,8 +214,11 @@ SUNDER_CONST kFiniteTangent = 12u;  // packs of four: the upper triangle of 9 x 
 SUNDER_CONST kFiniteOut = 1u;
 SUNDER_CONST kFiniteLayer = 2u;  // of an interface: its stress is Biot's, without viscous forces
 SUNDER_CONST kFiniteFibrous = 4u;
-SUNDER_CONST kFiniteLaw =
-    8u;  // times the law: linear, corotated, neo-Hookean, Saint Venant-Kirchhoff
+SUNDER_CONST kFinitePooled = 8u;  // its volume is its patch's
+// Times the law: linear, corotated, neo-Hookean, Saint Venant-Kirchhoff.
+SUNDER_CONST kFiniteLaw = 16u;
+SUNDER_CONST kFiniteLaws = 4u;
+SUNDER_CONST kFinitePatch = 64u;  // times the patch
 
 // Of an unknown.
 SUNDER_CONST kFiniteGripped = 1u;
@@ -225,7 +234,16 @@ struct FinitePush {
   uint slot;   // of the step and the change of the gradient that are written
   uint order;  // slots of the pairs, four bits each, the oldest lowest
   uint rank, turned, back;
-  uint shares;  // of the sums: a workgroup each
+  uint shares;   // of the sums: a workgroup each
+  uint patches;  // of pooled volume
+  uint unused;
+};
+
+// Of a patch of pooled volume with its live elements.
+struct FinitePatch {
+  double pressure;  // U'(J) [MPa]
+  double energy;    // V U(J) [N mm], which its first live element adds to its own
+  uint first, unused;
 };
 
 struct FiniteCgPush {
@@ -298,6 +316,7 @@ using Summary = SummaryOf<double>;
 static_assert(sizeof(SummaryOf<float>) == 52);
 static_assert(sizeof(Entry) == 16);
 static_assert(sizeof(ElementPush) == 16);
+static_assert(sizeof(PatchPressure) == 16);
 static_assert(sizeof(StressPartial) == 48);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
@@ -305,7 +324,8 @@ static_assert(sizeof(Summary) == 80);
 static_assert(sizeof(CgPush) == 40);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);
-static_assert(sizeof(FinitePush) == 72);
+static_assert(sizeof(FinitePush) == 80);
+static_assert(sizeof(FinitePatch) == 24);
 static_assert(sizeof(FiniteSums) == 96);
 #undef SUNDER_CONST
 #undef SUNDER_WIDE_STRUCT

@@ -357,7 +357,7 @@ Route LawBackend::chosen_route() const {
   if (asked != Route::automatic) return asked;
   if (!machine_.device) return Route::factor;
   if (problem().dof_count() <= machine_.most_dense) return Route::inverse;
-  return problem().moves() ? Route::cg : Route::factor;
+  return problem().moves() && !problem().pools() ? Route::cg : Route::factor;
 }
 
 /// Returns the entries of a factor, where there is one; the host's cost is known then.
@@ -385,6 +385,10 @@ std::size_t LawBackend::check_options() {
   }
   if (solver.route == Route::cg && !moves) {
     refuse("route cg", "whether a rest is stable is judged by a factor of its tangent",
+           "route inverse, factor or auto");
+  }
+  if (solver.route == Route::cg && problem().pools()) {
+    refuse("route cg", "it knows the tangents of elements, not those of patches of pooled volume",
            "route inverse, factor or auto");
   }
   if (solver.route == Route::condensed) {

@@ -91,6 +91,16 @@ void check_split(const Needs& needs, const SolverOptions& solver) {
   }
 }
 
+/// What patches of pooled volume ask of a device.
+void check_pools(const Problem& problem, const PlanDevice& device) {
+  if (!problem.pools() || device.backend != "vulkan") return;
+  if (problem.scene().solver.update == Update::eager) {
+    throw DeviceError(
+        "update eager on backend vulkan writes over an inverse element by element and does not "
+        "compute pooled volume (volume = \"pooled\"); use update deferred or auto, or backend cpu");
+  }
+}
+
 [[noreturn]] void refuse(const std::string& what, std::size_t needed, const Question& q,
                          const std::string& instead) {
   const std::string needs =
@@ -209,6 +219,7 @@ Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& dev
   const SolverOptions& solver = problem.scene().solver;
   check_options(solver, device);
   check_split(needs, solver);
+  check_pools(problem, device);
   Plan plan;
   plan.eager = solver.update == Update::eager;
   const std::string precision = device.fp32 ? choose_precision(problem, device, plan) : "";

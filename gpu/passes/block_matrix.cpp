@@ -7,6 +7,7 @@
 #include <set>
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -85,6 +86,16 @@ void BlockMatrix::build_pattern() {
       all[n].insert(problem_.mesh().tets[e].begin(), problem_.mesh().tets[e].end());
     }
   }
+  if (const fem::Pools* pools = problem_.pools()) {
+    patches_of_.resize(neighbours_.size());
+    for (Index p = 0; p < pools->count(); ++p) {
+      const std::vector<Index> nodes = pools->nodes(problem_, p);
+      for (Index n : nodes) {
+        all[n].insert(nodes.begin(), nodes.end());
+        patches_of_[n].push_back(p);
+      }
+    }
+  }
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     all[n].erase(static_cast<Index>(n));
     neighbours_[n].assign(all[n].begin(), all[n].end());
@@ -109,13 +120,56 @@ Mat3 BlockMatrix::block(Index row, Index column, std::span<const double> scale) 
     const Index j = corner_of(tet, column);
     if (j == 4) continue;
     const TetShape& shape = problem_.shape(e);
-    const double mu = problem_.small_strain(e).mu, lambda = problem_.small_strain(e).lambda;
+    const SmallStrain law = fem::own_law(problem_, e);
+    const double mu = law.mu, lambda = law.lambda;
     const Vec3 gi = shape.gradient.col(corner_of(tet, row)), gj = shape.gradient.col(j);
     sum += (scale.empty() ? 1.0 : scale[e]) * shape.volume *
            (lambda * gi * gj.transpose() + mu * gj * gi.transpose() +
             mu * gi.dot(gj) * Mat3::Identity());
   }
+  return patches_of_.empty() ? sum : Mat3(sum + pressure_block(row, column, scale));
+}
+
+/// Sum of kappa/V_p b_i b_j^T over the patches of both nodes.
+Mat3 BlockMatrix::pressure_block(Index row, Index column, std::span<const double> scale) const {
+  Mat3 sum = Mat3::Zero();
+  const auto& others = patches_of_[column];
+  for (Index patch : patches_of_[row]) {
+    if (!std::ranges::binary_search(others, patch)) continue;
+    double volume = 0;
+    for (Index e : problem_.pools()->elements(patch)) {
+      volume += (scale.empty() ? 1.0 : scale[e]) * problem_.shape(e).volume;
+    }
+    sum += problem_.pools()->bulk(patch) / volume * patch_vector(patch, row, scale) *
+           patch_vector(patch, column, scale).transpose();
+  }
   return sum;
+}
+
+/// b_p of a node: sum of a_e V_e grad N over the patch's elements there.
+Vec3 BlockMatrix::patch_vector(Index patch, Index node, std::span<const double> scale) const {
+  Vec3 sum = Vec3::Zero();
+  for (Index e : elements_of_[node]) {
+    if (problem_.pools()->of(e) != patch) continue;
+    const TetShape& shape = problem_.shape(e);
+    sum += (scale.empty() ? 1.0 : scale[e]) * shape.volume *
+           shape.gradient.col(corner_of(problem_.mesh().tets[e], node));
+  }
+  return sum;
+}
+
+/// The blocks between all nodes of these elements' patches.
+void BlockMatrix::touch_patches(std::span<const Index> elements,
+                                std::set<std::pair<Index, Index>>& touched) const {
+  if (patches_of_.empty()) return;
+  std::vector<Index> patches;
+  problem_.pools()->of(elements, patches);
+  for (Index patch : patches) {
+    const std::vector<Index> nodes = problem_.pools()->nodes(problem_, patch);
+    for (Index i : nodes) {
+      for (Index j : nodes) touched.insert({i, j});
+    }
+  }
 }
 
 void BlockMatrix::pack(const Mat3& block, Index column, double* to) const {
@@ -155,6 +209,7 @@ void BlockMatrix::destroy(std::span<const Index> elements, std::span<const doubl
       for (Index j : problem_.mesh().tets[e]) touched.insert({i, j});
     }
   }
+  touch_patches(elements, touched);
   std::array<double, kBlockDoubles> packed{};
   for (const auto& [i, j] : touched) {
     const auto n = static_cast<std::size_t>(i);

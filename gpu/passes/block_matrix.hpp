@@ -3,7 +3,8 @@
 // block-Jacobi preconditioner. Rows sum to zero and K u is summed from differences, so that no
 // block is kept on the diagonal; each carries the number of its column. A destroyed element's 16
 // blocks are summed anew, element by element: no cancellation between its remaining stiffness and
-// what was taken out.
+// what was taken out. A patch of pooled volume couples all its nodes: those blocks too are summed
+// anew.
 #pragma once
 
 #include <array>
@@ -46,6 +47,10 @@ class BlockMatrix {
   void build_pattern();
   /// `scale` empty: intact.
   [[nodiscard]] Mat3 block(Index row, Index column, std::span<const double> scale = {}) const;
+  [[nodiscard]] Mat3 pressure_block(Index row, Index column, std::span<const double> scale) const;
+  [[nodiscard]] Vec3 patch_vector(Index patch, Index node, std::span<const double> scale) const;
+  void touch_patches(std::span<const Index> elements,
+                     std::set<std::pair<Index, Index>>& touched) const;
   void pack(const Mat3& block, Index column, double* to) const;
   /// Of a row's k-th block, in blocks.
   [[nodiscard]] std::size_t place(std::size_t row, std::size_t k) const;
@@ -59,6 +64,7 @@ class BlockMatrix {
   std::uint32_t groups_;
   std::vector<std::vector<Index>> elements_of_;  // per node, ascending
   std::vector<std::vector<Index>> neighbours_;   // per node, ascending
+  std::vector<std::vector<Index>> patches_of_;   // per node, ascending; empty: nothing pools
   std::vector<std::uint32_t> first_;             // of each slice, in rows of 64 blocks
   vulkan::Buffer blocks_, slices_, preconditioner_;
 };

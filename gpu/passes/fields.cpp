@@ -9,7 +9,9 @@
 #include <numbers>
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "gpu/passes/two_floats.hpp"
+#include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -32,11 +34,20 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
       elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
       nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
+      patches_(
+          !norms_ || !problem.pools()
+              ? 0
+              : round_up(static_cast<std::uint32_t>(problem.pools()->count()), shaders::kGroup)),
       element_parts_(elements_ / shaders::kGroup * kernels.parts()),
       node_parts_(nodes_ / shaders::kGroup * kernels.parts()),
       gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
       matrix_(problem) {
   vulkan::Device& device = kernels.device();
+  if (problem.pools() && kernels.single()) {
+    throw DeviceError("the device \"" + device.physical().name +
+                      "\" lacks shaderFloat64, which pooled volume (volume = \"pooled\") needs; "
+                      "use another device or backend cpu");
+  }
   device.require_memory(planned_bytes(route.preconditioner) + route.bytes, "this scene");
   if (has_residual_ && kernels.single()) {
     host_balance_ = std::make_unique<HostBalance>(problem);
@@ -62,6 +73,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
   upload_mesh();
   if (norms_) upload_shapes();
+  if (patches_ > 0) upload_patches();
   create_kernels();
   create_hold();
 }
@@ -88,6 +100,12 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
     sum += Buffer::padded(4 * elements * sizeof(std::uint32_t)) +
            Buffer::padded(12 * elements * sizeof(double));
   }
+  if (patches_ > 0) {  // their elements; first, bulk, pressure
+    sum += Buffer::padded(elements * sizeof(std::uint32_t)) +
+           Buffer::padded((patches_ + 1) * sizeof(std::uint32_t)) +
+           Buffer::padded(patches_ * sizeof(double)) +
+           Buffer::padded(patches_ * sizeof(shaders::PatchPressure));
+  }
   if (grips > 0) {
     sum += Buffer::padded(grips * sizeof(std::uint32_t)) + Buffer::padded(grips * sizeof(double));
   }
@@ -106,9 +124,11 @@ void Fields::upload_mesh() {
     const auto yield = kernels_.single()
                            ? std::bit_cast<std::uint32_t>(static_cast<float>(of_element))
                            : std::bit_cast<std::uint64_t>(of_element);
-    facts_host_[static_cast<std::size_t>(e)] = {problem_.breakable(e) ? shaders::kBreakable : 0, 0,
-                                                static_cast<std::uint32_t>(yield),
-                                                static_cast<std::uint32_t>(yield >> 32)};
+    const Index patch = problem_.pools() ? problem_.pools()->of(e) : kNone;
+    facts_host_[static_cast<std::size_t>(e)] = {
+        problem_.breakable(e) ? shaders::kBreakable : 0,
+        patch == kNone ? 0 : static_cast<std::uint32_t>(patch) + 1,
+        static_cast<std::uint32_t>(yield), static_cast<std::uint32_t>(yield >> 32)};
   }
   // Padding rows write behind the nodes, where nothing reads.
   std::vector<std::uint32_t> positions(rows_);
@@ -164,7 +184,7 @@ void Fields::upload_shapes() {
   std::vector<double> shape(std::size_t{12} * elements_, 0.0);
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     const TetShape& s = problem_.shape(e);
-    const SmallStrain& m = problem_.small_strain(e);
+    const SmallStrain m = fem::own_law(problem_, e);
     const std::array<double, 3> last = {m.lambda, m.mu, s.volume};
     for (int corner = 1; corner < 4; ++corner) {
       double* to = &shape[12 * static_cast<std::size_t>(e) + 4 * (corner - 1)];
@@ -176,17 +196,52 @@ void Fields::upload_shapes() {
   write_wide(kernels_, shape_, shape);
 }
 
+void Fields::upload_patches() {
+  const fem::Pools& pools = *problem_.pools();
+  std::vector<std::uint32_t> first{0}, elements;
+  std::vector<double> bulk(patches_, 0.0);
+  for (Index p = 0; p < pools.count(); ++p) {
+    for (Index e : pools.elements(p)) elements.push_back(static_cast<std::uint32_t>(e));
+    first.push_back(static_cast<std::uint32_t>(elements.size()));
+    bulk[static_cast<std::size_t>(p)] = pools.bulk(p);
+  }
+  first.resize(patches_ + 1, first.back());
+  const auto upload = [&](Buffer& buffer, const auto& values) {
+    buffer = Buffer(kernels_.device(), values.size() * sizeof(values[0]), Placement::device);
+    buffer.write(std::span(values));
+  };
+  upload(patch_first_, first);
+  upload(patch_elements_, elements);
+  upload(bulk_, bulk);
+  pressures_ =
+      Buffer(kernels_.device(), patches_ * sizeof(shaders::PatchPressure), Placement::device);
+}
+
 void Fields::create_kernels() {
   vulkan::Device& device = kernels_.device();
-  const auto bind = [&](const vulkan::Kernel& kernel, std::initializer_list<const Buffer*> list) {
-    return std::make_unique<vulkan::Binding>(device, kernel, std::vector<const Buffer*>(list));
+  const auto bind = [&](const vulkan::Kernel& kernel, const std::vector<const Buffer*>& list) {
+    return std::make_unique<vulkan::Binding>(device, kernel, list);
+  };
+  const bool pooled = patches_ > 0;
+  const auto stress_of = [&](const Buffer& u) {
+    std::vector<const Buffer*> list{&u,       &nodes_of_,        &shape_, &facts_,
+                                    &stress_, &stress_partials_, &over_};
+    if (pooled) list.push_back(&pressures_);
+    return bind(*stress_pass_.kernel, list);
+  };
+  const auto pools_of = [&](const Buffer& u) {
+    return bind(*pools_pass_.kernel, {&u, &nodes_of_, &shape_, &facts_, &patch_first_,
+                                      &patch_elements_, &bulk_, &pressures_});
   };
   if (norms_) {
-    stress_pass_.kernel = kernels_.make("stress");
-    stress_pass_.binding = bind(*stress_pass_.kernel, {&displacement_, &nodes_of_, &shape_, &facts_,
-                                                       &stress_, &stress_partials_, &over_});
-    correction_stress_ = bind(*stress_pass_.kernel, {&correction_, &nodes_of_, &shape_, &facts_,
-                                                     &stress_, &stress_partials_, &over_});
+    stress_pass_.kernel = kernels_.make(pooled ? "stress_pooled" : "stress");
+    stress_pass_.binding = stress_of(displacement_);
+    correction_stress_ = stress_of(correction_);
+  }
+  if (pooled) {
+    pools_pass_.kernel = kernels_.make_fp64("pools");
+    pools_pass_.binding = pools_of(displacement_);
+    correction_pools_ = pools_of(correction_);
   }
   if (has_residual_ && !host_balance_) create_residual_pass();
   summary_pass_ = std::make_unique<SummaryPass>(
@@ -271,10 +326,9 @@ double Fields::largest_stress(Field field) const {
   std::vector<double> u(3 * problem_.mesh().nodes.size());
   read(field, u);
   double largest = 0;
+  const fem::StressField stress(problem_, {}, u);  // nothing breaks where norms are left out
   for (Index e = 0; e < problem_.tet_count(); ++e) {
-    const Voigt stress = fem::stress(problem_.shape(e), problem_.small_strain(e),
-                                     fem::corner_displacement(problem_.mesh(), e, u));
-    const double norm = tensor(stress).norm();
+    const double norm = tensor(stress.of(e)).norm();
     if (!std::isfinite(norm)) return std::numeric_limits<double>::infinity();
     largest = std::max(largest, norm);
   }
@@ -389,17 +443,25 @@ void Fields::cut_off(std::span<const Index> elements) {
   set_state_bits(elements, shaders::kCutOff);
 }
 
+/// With the pressures of patches before it.
+void Fields::record_stress(vulkan::Commands& commands, Field field, std::uint32_t keep) const {
+  const bool correction = field == Field::correction;
+  if (patches_ > 0) {
+    commands.dispatch(correction ? *correction_pools_ : *pools_pass_.binding, element_push(keep),
+                      patches_ / shaders::kGroup);
+  }
+  commands.dispatch(correction ? *correction_stress_ : *stress_pass_.binding, element_push(keep),
+                    elements_ / shaders::kGroup);
+}
+
 void Fields::record_state(vulkan::Commands& commands, bool balance) const {
   balance = (balance || !norms_) && has_residual_ && !host_balance_;
-  const std::uint32_t element_groups = elements_ / shaders::kGroup;
   const std::uint32_t node_groups = nodes_ / shaders::kGroup;
   if (norms_) {
     commands.pass("stress");
-    commands.dispatch(
-        *stress_pass_.binding,
-        element_push((keep_stress_ ? shaders::kKeepStress : 0) |
-                     (list_over_ ? shaders::kListOver : 0) | (shown_ ? shaders::kShown : 0)),
-        element_groups);
+    record_stress(commands, Field::displacement,
+                  (keep_stress_ ? shaders::kKeepStress : 0) |
+                      (list_over_ ? shaders::kListOver : 0) | (shown_ ? shaders::kShown : 0));
   }
   if (balance) {
     commands.pass("residual");
@@ -411,9 +473,8 @@ void Fields::record_state(vulkan::Commands& commands, bool balance) const {
 
 void Fields::record_correction(vulkan::Commands& commands) const {
   if (!norms_) return;
-  const std::uint32_t element_groups = elements_ / shaders::kGroup;
   commands.pass("estimate");
-  commands.dispatch(*correction_stress_, element_push(0), element_groups);
+  record_stress(commands, Field::correction, 0);
   summary_pass_->record(commands, {element_parts_, 0}, 1);
 }
 
@@ -519,7 +580,9 @@ std::vector<BufferPlan> Fields::buffers() const {
     return bytes;
   };
   return {
-      {"mesh and element state (device)", sum({&nodes_of_, &shape_, &facts_, &dofs_, &positions_})},
+      {"mesh and element state (device)",
+       sum({&nodes_of_, &shape_, &facts_, &dofs_, &positions_, &patch_first_, &patch_elements_,
+            &bulk_, &pressures_})},
       {"displacement, correction, load, residual (device)",
        sum({&displacement_, &kept_, &correction_, &load_, &residual_, &balance_})},
       {"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "body/supports.hpp"
 #include "material/singular_values.hpp"
 
@@ -195,6 +196,7 @@ void RigidSpace::update() {
     for (Index e = 0; e < problem_.tet_count(); ++e) {
       add_element(e, destroyed_[e] ? share_ : 1);
     }
+    for (Index p = 0; problem_.pools() && p < problem_.pools()->count(); ++p) add_patch(p);
   }
   invert();
 }
@@ -321,8 +323,8 @@ Eigen::Matrix<double, 3, 6> RigidSpace::motion(Index node) const {
 void RigidSpace::add_element(Index element, double scale) {
   const auto& tet = problem_.mesh().tets[element];
   const TetShape& shape = problem_.shape(element);
-  const double mu = problem_.small_strain(element).mu,
-               lambda = problem_.small_strain(element).lambda;
+  const SmallStrain law = fem::own_law(problem_, element);
+  const double mu = law.mu, lambda = law.lambda;
   const double weight = scale * shape.volume;
   for (int i = 0; i < 4; ++i) {
     const Index a = group_of_[tet[i]];
@@ -334,6 +336,31 @@ void RigidSpace::add_element(Index element, double scale) {
       const Mat3 k = lambda * gi * gj.transpose() + mu * gj * gi.transpose() +
                      mu * gi.dot(gj) * Mat3::Identity();
       coarse_.block<6, 6>(6 * a, 6 * b) += weight * motion(tet[i]).transpose() * k * motion(tet[j]);
+    }
+  }
+}
+
+/// Its share of Z^T K Z, of a patch of pooled volume as it is when groups are made: what it loses
+/// later only makes a preconditioner a little worse.
+void RigidSpace::add_patch(Index patch) {
+  const fem::Pools& pools = *problem_.pools();
+  double volume = 0;
+  std::map<Index, Eigen::Matrix<double, 6, 1>> of_group;
+  for (Index e : pools.elements(patch)) {
+    const TetShape& shape = problem_.shape(e);
+    const double own = (destroyed_[e] ? share_ : 1) * shape.volume;
+    volume += own;
+    for (int a = 0; a < 4; ++a) {
+      const Index n = problem_.mesh().tets[e][a], g = group_of_[n];
+      if (g == kNone) continue;
+      const auto place = of_group.try_emplace(g, Eigen::Matrix<double, 6, 1>::Zero()).first;
+      place->second += own * motion(n).transpose() * shape.gradient.col(a);
+    }
+  }
+  if (!(volume > 0)) return;
+  for (const auto& [a, of_a] : of_group) {
+    for (const auto& [b, of_b] : of_group) {
+      coarse_.block<6, 6>(6 * a, 6 * b) += pools.bulk(patch) / volume * of_a * of_b.transpose();
     }
   }
 }

@@ -70,6 +70,7 @@ class RigidSpace {
   void split(std::span<Index> nodes, Index count, std::vector<std::vector<Index>>& groups) const;
   void place_modes(std::span<const double> u);
   void add_element(Index element, double scale);
+  void add_patch(Index patch);
   void add_inertia(Eigen::MatrixXd& to) const;
   void invert();
   void turn(std::span<const double> u);
