@@ -107,6 +107,7 @@ FiniteDevice::FiniteDevice(const KernelFactory& kernels, const fem::Hyperelastic
       route + (60 * std::size_t{nodes_} + 71 * std::size_t{elements_}) * sizeof(double),
       "a body with tangents of its own", "a smaller mesh or backend cpu");
   create_buffers(options.viscous);
+  if (patches_ > 0) create_patches(body);
   create_passes();
   if (options.route == Route::inverse) create_inverse();
   if (options.route == Route::cg) create_cg(body);
@@ -127,12 +128,6 @@ void FiniteDevice::create_buffers(bool viscous) {
   const std::vector<std::uint32_t> corners = corners_of(problem_);
   nodes_of_ = filled(device_, corners);
   shape_ = filled(device_, shapes_of(problem_));
-  if (patches_ > 0) {
-    const Patches patches = patches_of(problem_);
-    patch_first_ = filled(device_, patches.first);
-    patch_elements_ = filled(device_, patches.elements);
-    pressures_ = doubles(std::size_t{patches_} * sizeof(shaders::FinitePatch) / sizeof(double));
-  }
   fibres_ = filled(device_, fibres_of(problem_));
   facts_ = filled(device_, std::vector<std::uint32_t>(elements_, shaders::kFiniteOut));
   std::vector<std::vector<std::uint32_t>> around(nodes_);
@@ -250,6 +245,16 @@ void FiniteDevice::create_passes() {
   }
 }
 
+/// As they are now: pieces that have come off have patches of their own.
+void FiniteDevice::create_patches(const fem::HyperelasticBody& body) {
+  const Patches patches = patches_of(body);
+  split_ = body.split;
+  patches_ = u32(patches.first.size() - 1);
+  patch_first_ = filled(device_, patches.first);
+  patch_elements_ = filled(device_, patches.elements);
+  pressures_ = Buffer(device_, patches_ * sizeof(shaders::FinitePatch), Placement::device);
+}
+
 /// binding[i] evaluates state i against the other one.
 void FiniteDevice::create_law() {
   std::array<std::vector<const Buffer*>, 2> law;
@@ -283,6 +288,10 @@ void FiniteDevice::attach(const solver::RestingBody& body) {
     entries[2 * i + 1] = d == kNone ? 0 : held[static_cast<std::size_t>(d)];
   }
   facts_.write(std::span<const std::uint32_t>(facts_of(body)));
+  if (patches_ > 0 && body.body().split != split_) {
+    create_patches(body.body());
+    create_law();
+  }
   entries_of_.write(std::span<const std::uint32_t>(entries));
   if (unknowns_ > 0) held_.write(std::span<const std::uint32_t>(held));
   if (cg_) cg_->attach(body);

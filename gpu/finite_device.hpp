@@ -71,6 +71,7 @@ class FiniteDevice final : public solver::FiniteDevice {
             const Buffers& second);
   void create_buffers(bool viscous);
   void create_passes();
+  void create_patches(const fem::HyperelasticBody& body);
   void create_law();
   void create_inverse();
   void create_cg(const fem::HyperelasticBody& body);
@@ -102,6 +103,7 @@ class FiniteDevice final : public solver::FiniteDevice {
   vulkan::Buffer nodes_of_, shape_, fibres_, facts_, first_, around_, entries_of_, held_, from_,
       target_;
   vulkan::Buffer patch_first_, patch_elements_, pressures_;  // where volume is pooled
+  std::shared_ptr<const fem::Pools> split_;                  // as they have it
   vulkan::Buffer corners_, viscous_corners_, element_partials_, entry_partials_, sums_,
       shares_of_sums_;  // the latter where there are several
   vulkan::Buffer du_, q_, x_, partial_, s_, y_, products_, lengths_;

@@ -18,7 +18,7 @@ std::uint32_t number_of(const Law& law) {
   const Law* const known[] = {&kLinear, &kCorotated, &kNeoHookean, &kSaintVenantKirchhoff};
   const auto* at = std::ranges::find(known, &law);
   if (at == std::end(known)) {
-    throw DeviceError("shaders/finite_law.comp does not know this law; use backend cpu");
+    throw DeviceError("shaders/finite_law.glsl does not know this law; use backend cpu");
   }
   return static_cast<std::uint32_t>(at - known);
 }
@@ -26,14 +26,14 @@ std::uint32_t number_of(const Law& law) {
 std::uint32_t patch_of(const fem::HyperelasticBody& body, Index e) {
   if (!fem::pools_volume(body, e)) return 0;
   return shaders::kFinitePooled |
-         shaders::kFinitePatch * static_cast<std::uint32_t>(body.problem.pools()->of(e));
+         shaders::kFinitePatch * static_cast<std::uint32_t>(body.pools()->of(e));
 }
 
 }  // namespace
 
-Patches patches_of(const Problem& problem) {
+Patches patches_of(const fem::HyperelasticBody& body) {
   Patches all;
-  const fem::Pools* pools = problem.pools();
+  const fem::Pools* pools = body.pools();
   for (Index p = 0; pools && p < pools->count(); ++p) {
     for (Index e : pools->elements(p)) all.elements.push_back(static_cast<std::uint32_t>(e));
     all.first.push_back(static_cast<std::uint32_t>(all.elements.size()));

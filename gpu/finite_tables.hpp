@@ -20,7 +20,7 @@ namespace sunder::gpu {
 struct Patches {
   std::vector<std::uint32_t> first{0}, elements;
 };
-[[nodiscard]] Patches patches_of(const Problem& problem);
+[[nodiscard]] Patches patches_of(const fem::HyperelasticBody& body);
 /// Bits, law and patch of each element. Throws DeviceError for a law that the kernels do not know.
 [[nodiscard]] std::vector<std::uint32_t> facts_of(const solver::RestingBody& body);
 

@@ -44,7 +44,7 @@ Mat3 whole_stress(const HyperelasticBody& body, Index e, const Mat3& f,
                   const PatchVolumes& patches) {
   const SmallStrain& constants = body.problem.small_strain(e);
   if (!pools_volume(body, e)) return body.law(e).stress(constants, f);
-  const double pressure = patches.pressure()[body.problem.pools()->of(e)];
+  const double pressure = patches.pressure()[body.pools()->of(e)];
   const VolumeSplit& split = *body.law(e).split;
   return split.shape_stress(constants, f) + pressure * split.ratio_slope(f);
 }
@@ -112,7 +112,7 @@ ElementMatrix element_tangent(const HyperelasticBody& body, Index e, std::span<c
   const SmallStrain& constants = body.problem.small_strain(e);
   const Mat3 f = deformation_gradient(body, e, u);
   const bool pools = pools_volume(body, e);
-  const Index patch = pools ? body.problem.pools()->of(e) : kNone;
+  const Index patch = pools ? body.pools()->of(e) : kNone;
   const double of_patch = !pools             ? 0
                           : pressure.empty() ? patch_pressure(body, patch, u)
                                              : pressure[patch];

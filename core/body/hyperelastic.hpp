@@ -3,6 +3,7 @@
 // deformation"): total Lagrangian, x = X + u. A destroyed element adds nothing, no share alpha.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,10 @@ struct HyperelasticBody {
   const Problem& problem;
   std::span<const Law* const> law_of_volume;     ///< of Mesh::volumes; may differ
   std::span<const std::uint8_t> destroyed = {};  ///< per element 1: destroyed; empty: none
+  /// Patches of pooled volume in place of the problem's, where pieces have come off; null: those.
+  std::shared_ptr<const Pools> split = {};
 
+  [[nodiscard]] const Pools* pools() const { return split ? split.get() : problem.pools(); }
   [[nodiscard]] bool live(Index e) const { return destroyed.empty() || !destroyed[e]; }
   [[nodiscard]] const Law& law(Index e) const {
     return *law_of_volume[problem.mesh().volume_of[e]];

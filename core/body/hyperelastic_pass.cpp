@@ -150,7 +150,7 @@ void HyperelasticPass::arrange(const ElementGroup& kind) {
   if (!kind.pooled || blocks_.size() == first) return;
   volumes_.resize(blocks_.size() * kLanes);
   pressure_.assign(volumes_.size(), 0.0);
-  patches_.resize(static_cast<std::size_t>(problem.pools()->count()));
+  patches_.resize(static_cast<std::size_t>(body_.pools()->count()));
 }
 
 /// First J of all elements whose volume is pooled, then their patches' energies and pressures, each
@@ -177,7 +177,7 @@ void HyperelasticPass::pool_volumes(std::span<const double> u) {
 }
 
 void HyperelasticPass::pool_volume(Index patch) {
-  const auto elements = body_.problem.pools()->elements(patch);
+  const auto elements = body_.pools()->elements(patch);
   patches_[static_cast<std::size_t>(patch)] = 0;
   if (!pools_volume(body_, elements.front())) return;
   double volume = 0, now = 0;
@@ -194,6 +194,12 @@ void HyperelasticPass::pool_volume(Index patch) {
       body_.law(first).split->volume(body_.problem.small_strain(first), now / volume);
   patches_[static_cast<std::size_t>(patch)] = volume * found.energy;
   for (Index e : elements) pressure_[place_[e]] = found.pressure;
+}
+
+void HyperelasticPass::split_pools(std::shared_ptr<const Pools> split) {
+  if (patches_.empty()) return;
+  body_.split = std::move(split);
+  patches_.resize(static_cast<std::size_t>(body_.pools()->count()));
 }
 
 void HyperelasticPass::leave_alone(std::span<const std::uint8_t> elements) {

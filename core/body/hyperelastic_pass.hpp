@@ -56,6 +56,8 @@ class HyperelasticPass {
   void destroy(std::span<const Index> elements);
   /// Reads anew from the body which elements are destroyed and which law each volume has.
   void body_changed();
+  /// Patches of pooled volume are these from now on, as HyperelasticBody::split.
+  void split_pools(std::shared_ptr<const Pools> split);
   /// These no longer count in Found::largest and Found::deformation.
   void cut_off(std::span<const Index> elements);
 

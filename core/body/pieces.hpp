@@ -31,6 +31,8 @@ class LooseSearch {
   [[nodiscard]] bool isolated(Index node) const {
     return bodies_.body_of_node[node] == kNone && used_[static_cast<std::size_t>(node)] != 0;
   }
+  /// Live elements that hang together, held or not; kNone: destroyed.
+  [[nodiscard]] Index body_of(Index element) const { return bodies_.body_of_element[element]; }
   /// By their first element; kNone: held, or destroyed.
   [[nodiscard]] Index piece_of(Index element) const {
     const Index body = bodies_.body_of_element[element];

@@ -17,7 +17,7 @@ struct PatchVolume {
 PatchVolume volume_of(const HyperelasticBody& body, Index patch, std::span<const double> u) {
   PatchVolume of;
   double now = 0;
-  const auto elements = body.problem.pools()->elements(patch);
+  const auto elements = body.pools()->elements(patch);
   for (Index e : elements) {
     if (!body.live(e) || !pools_volume(body, e)) continue;
     const double volume = body.problem.shape(e).volume;
@@ -34,12 +34,13 @@ PatchVolume volume_of(const HyperelasticBody& body, Index patch, std::span<const
 }  // namespace
 
 bool pools_volume(const HyperelasticBody& body, Index element) {
-  const Pools* pools = body.problem.pools();
+  const Pools* pools = body.pools();
   return pools && pools->of(element) != kNone && body.law(element).split;
 }
 
-PatchVolumes::PatchVolumes(const HyperelasticBody& body, std::span<const double> u) {
-  const Pools* pools = body.problem.pools();
+PatchVolumes::PatchVolumes(const HyperelasticBody& body, std::span<const double> u,
+                           std::span<const double> pressure) {
+  const Pools* pools = body.pools();
   if (!pools) return;
   for (Index p = 0; p < pools->count(); ++p) {
     const PatchVolume of = volume_of(body, p, u);
@@ -47,6 +48,7 @@ PatchVolumes::PatchVolumes(const HyperelasticBody& body, std::span<const double>
     pressure_.push_back(of.found.pressure);
     stiffness_.push_back(of.found.stiffness);
   }
+  if (!pressure.empty()) pressure_.assign(pressure.begin(), pressure.end());
 }
 
 double patch_pressure(const HyperelasticBody& body, Index patch, std::span<const double> u) {
@@ -58,7 +60,7 @@ double PatchVolumes::energy() const { return std::accumulate(energy_.begin(), en
 PatchTangent patch_tangent(const HyperelasticBody& body, Index patch, std::span<const double> u,
                            double stiffness, Tangent kind) {
   const Problem& problem = body.problem;
-  const Pools& pools = *problem.pools();
+  const Pools& pools = *body.pools();
   const std::vector<Index> nodes = pools.nodes(problem, patch);
   PatchTangent of;
   double volume = 0;

@@ -17,8 +17,9 @@ namespace sunder::fem {
 class PatchVolumes {
  public:
   PatchVolumes() = default;
-  /// Empty where nothing pools.
-  PatchVolumes(const HyperelasticBody& body, std::span<const double> u);
+  /// Empty where nothing pools. `pressure`: in place of U'(J_p) where it is not empty, one a patch.
+  PatchVolumes(const HyperelasticBody& body, std::span<const double> u,
+               std::span<const double> pressure = {});
 
   /// Sum of V_p U(J_p) [N mm]; infinite where a law knows no such volume.
   [[nodiscard]] double energy() const;

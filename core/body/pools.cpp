@@ -196,6 +196,46 @@ Pools::Pools(const Problem& problem) : of_(static_cast<std::size_t>(problem.tet_
   }
 }
 
+std::shared_ptr<const Pools> Pools::split(const std::function<Index(Index)>& body_of) const {
+  std::vector<std::vector<Index>> first, further;
+  std::vector<double> bulk = bulk_, of_further;
+  std::vector<std::pair<Index, std::size_t>> parts;  // by body: where in `further`
+  for (Index p = 0; p < count(); ++p) {
+    std::vector<Index>& stay = first.emplace_back();
+    Index body = kNone;
+    parts.clear();
+    for (Index e : elements(p)) {
+      const Index of = body_of(e);
+      if (body == kNone) body = of;
+      if (of == kNone || of == body) {
+        stay.push_back(e);
+        continue;
+      }
+      auto part = std::ranges::find(parts, of, &std::pair<Index, std::size_t>::first);
+      if (part == parts.end()) {
+        part = parts.insert(parts.end(), {of, further.size()});
+        further.emplace_back();
+        of_further.push_back(bulk_[static_cast<std::size_t>(p)]);
+      }
+      further[part->second].push_back(e);
+    }
+  }
+  if (further.empty()) return nullptr;
+  const std::shared_ptr<Pools> made(new Pools);
+  made->of_ = of_;
+  made->small_ = small_;
+  made->bulk_ = std::move(bulk);
+  made->bulk_.insert(made->bulk_.end(), of_further.begin(), of_further.end());
+  first.insert(first.end(), further.begin(), further.end());
+  made->begin_.push_back(0);
+  for (std::size_t p = 0; p < first.size(); ++p) {
+    for (Index e : first[p]) made->of_[static_cast<std::size_t>(e)] = static_cast<Index>(p);
+    made->elements_.insert(made->elements_.end(), first[p].begin(), first[p].end());
+    made->begin_.push_back(made->elements_.size());
+  }
+  return made;
+}
+
 std::vector<Index> Pools::nodes(const Problem& problem, Index patch) const {
   std::vector<Index> nodes;
   for (Index e : elements(patch)) {

@@ -25,6 +25,14 @@ class Pools {
   /// the same for the same mesh on any machine but for the last digits of its coordinates.
   explicit Pools(const Problem& problem);
 
+  /// The same patches with each split by the body that its elements belong to (kNone: to none,
+  /// which then stay with the first): the body of its first element keeps its number, others follow
+  /// after all patches that there were. Null: none is split.
+  [[nodiscard]] std::shared_ptr<const Pools> split(
+      const std::function<Index(Index element)>& body_of) const;
+  /// Whether the patches are the same.
+  [[nodiscard]] bool operator==(const Pools& other) const { return of_ == other.of_; }
+
   [[nodiscard]] Index count() const { return static_cast<Index>(bulk_.size()); }
   /// Patch of an element; kNone: its material does not pool.
   [[nodiscard]] Index of(Index element) const { return of_[static_cast<std::size_t>(element)]; }
@@ -43,6 +51,7 @@ class Pools {
   void of(std::span<const Index> elements, std::vector<Index>& patches) const;
 
  private:
+  Pools() = default;
   std::vector<Index> of_;
   std::vector<std::size_t> begin_;
   std::vector<Index> elements_;

@@ -22,9 +22,9 @@ void for_pairs(Body&& body) {
 
 /// The same of the unknowns of a patch.
 template <class Body>
-void for_patch_pairs(const Problem& problem, Index patch, Body&& body) {
+void for_patch_pairs(const Problem& problem, const Pools& pools, Index patch, Body&& body) {
   std::vector<Index> dofs;
-  for (Index n : problem.pools()->nodes(problem, patch)) {
+  for (Index n : pools.nodes(problem, patch)) {
     for (int axis = 0; axis < 3; ++axis) dofs.push_back(problem.dof(n, axis));
   }
   for (std::size_t j = 0; j < dofs.size(); ++j) {
@@ -54,8 +54,35 @@ TangentPattern::TangentPattern(const Problem& problem)
   }
   const Index patches = problem.pools() ? problem.pools()->count() : 0;
   for (Index p = 0; p < patches; ++p) {
-    for_patch_pairs(problem, p,
+    for_patch_pairs(problem, *problem.pools(), p,
                     [&](Index one, Index other) { patch_places_.push_back(place_of(one, other)); });
+  }
+}
+
+/// Those of split patches are found where they are needed: they are parts of the problem's own.
+void TangentPattern::add_patches(const HyperelasticBody& body,
+                                 std::span<const PatchTangent> patches, double* values) const {
+  const Index* made = patch_places_.data();
+  std::vector<Index> found;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const PatchTangent& patch = patches[p];
+    const Pools& pools = *body.pools();
+    const Eigen::Index count =
+        3 * static_cast<Eigen::Index>(pools.nodes(problem_, static_cast<Index>(p)).size());
+    const Index* place = made;
+    if (!body.split) made += count * (count + 1) / 2;
+    if (patch.b.size() == 0) continue;
+    if (body.split) {
+      found.clear();
+      for_patch_pairs(problem_, pools, static_cast<Index>(p),
+                      [&](Index one, Index other) { found.push_back(place_of(one, other)); });
+      place = found.data();
+    }
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index i = j; i < count; ++i, ++place) {
+        if (*place != kNone) values[*place] += patch.factor * patch.b[i] * patch.b[j];
+      }
+    }
   }
 }
 
@@ -72,7 +99,13 @@ Index TangentPattern::place_of(Index one, Index other) const {
 linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
                                                      const Inertia& inertia) const {
-  const PatchVolumes volumes(body, u);
+  return tangent(body, u, kind, PatchVolumes(body, u), inertia);
+}
+
+linear_algebra::SparseMatrix TangentPattern::tangent(const HyperelasticBody& body,
+                                                     std::span<const double> u, Tangent kind,
+                                                     const PatchVolumes& volumes,
+                                                     const Inertia& inertia) const {
   return tangent(
       body, [&](Index e) { return element_tangent(body, e, u, kind, volumes.pressure()); },
       patch_tangents(body, u, volumes.stiffness(), kind), inertia);
@@ -92,22 +125,7 @@ linear_algebra::SparseMatrix TangentPattern::tangent(
       ++place;
     });
   }
-  const Index* place = patch_places_.data();
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    const PatchTangent& patch = patches[p];
-    const Eigen::Index count =
-        3 *
-        static_cast<Eigen::Index>(problem_.pools()->nodes(problem_, static_cast<Index>(p)).size());
-    if (patch.b.size() == 0) {
-      place += count * (count + 1) / 2;
-      continue;
-    }
-    for (Eigen::Index j = 0; j < count; ++j) {
-      for (Eigen::Index i = j; i < count; ++i, ++place) {
-        if (*place != kNone) values[*place] += patch.factor * patch.b[i] * patch.b[j];
-      }
-    }
-  }
+  add_patches(body, patches, values);
   const auto diagonal = [&](Index d) -> double& {
     return values[of.outerIndexPtr()[supernodes_->place[d]]];
   };

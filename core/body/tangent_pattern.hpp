@@ -35,6 +35,11 @@ class TangentPattern {
   [[nodiscard]] linear_algebra::SparseMatrix tangent(const HyperelasticBody& body,
                                                      std::span<const double> u, Tangent kind,
                                                      const Inertia& inertia = {}) const;
+  /// The same with these pressures and stiffnesses of patches of pooled volume.
+  [[nodiscard]] linear_algebra::SparseMatrix tangent(const HyperelasticBody& body,
+                                                     std::span<const double> u, Tangent kind,
+                                                     const PatchVolumes& volumes,
+                                                     const Inertia& inertia = {}) const;
   /// The same of any 12 x 12 of live elements, and of what patches of pooled volume add: one each;
   /// empty: none.
   [[nodiscard]] linear_algebra::SparseMatrix tangent(
@@ -48,6 +53,8 @@ class TangentPattern {
 
  private:
   [[nodiscard]] Index place_of(Index one, Index other) const;
+  void add_patches(const HyperelasticBody& body, std::span<const PatchTangent> patches,
+                   double* values) const;
 
   const Problem& problem_;
   std::vector<std::uint8_t> gripped_;  // per unknown

@@ -288,7 +288,10 @@ void LawBackend::publish_instruments() {
 StressSummary LawBackend::do_stress() {
   attempt([&] {
     if (stress_known_) return;  // nothing has moved
-    if (problem().pools()) now_.pass->leave_alone(without_stress());
+    if (problem().pools()) {
+      now_.pass->leave_alone(without_stress());
+      now_.pass->split_pools(resting().body().split);
+    }
     if (now_.device) {
       now_.device->stress(u_, stress_);
       return;

@@ -67,6 +67,8 @@ class LawBackend : public Backend {
     std::string what, tangent, iteration;
   };
   [[nodiscard]] virtual Words words() const = 0;
+  /// The body with the patches of pooled volume that it has now.
+  [[nodiscard]] virtual const solver::RestingBody& resting() const = 0;
   /// Per element 1: its stress is 0.
   [[nodiscard]] virtual std::span<const std::uint8_t> without_stress() const { return destroyed(); }
 

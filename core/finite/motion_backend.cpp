@@ -64,6 +64,8 @@ class MotionBackend final : public LawBackend {
   }
 
  private:
+  const solver::RestingBody& resting() const override { return motion_->resting(); }
+
   Words words() const override {
     const int cap = problem().scene().dynamics->max_iterations;
     return {"motion", "a recent tangent with the step's inertia",

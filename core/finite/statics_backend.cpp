@@ -108,6 +108,7 @@ class StaticsBackend final : public LawBackend {
 
   Eigen::MatrixXd grip_stiffness() override { return statics_->grip_stiffness(); }
 
+  [[nodiscard]] const solver::RestingBody& resting() const override { return statics_->resting(); }
   /// A piece that hangs on nothing has no stress to speak of.
   [[nodiscard]] std::span<const std::uint8_t> without_stress() const override {
     return statics_->out();

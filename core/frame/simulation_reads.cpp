@@ -6,6 +6,7 @@
 #include "body/hyperelastic.hpp"
 #include "body/law_stress.hpp"
 #include "body/pieces.hpp"
+#include "body/pools.hpp"
 #include "fracture/criterion.hpp"
 #include "fracture/finding.hpp"
 #include "frame/loads.hpp"
@@ -20,7 +21,10 @@ Vec3 forces_of_supports(const Problem& problem, std::span<const std::uint8_t> ou
                         std::span<const double> u) {
   std::vector<double> forces(u.size());
   const std::vector<const Law*> laws = fem::laws_of(problem);
-  fem::internal_forces({problem, laws, out}, u, forces);
+  LooseSearch search(problem);
+  search.look(out);
+  const auto split = problem.pools()->split([&](Index e) { return search.body_of(e); });
+  fem::internal_forces({problem, laws, out, split}, u, forces);
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (problem.dofs()[i] == kNone) sum[static_cast<Eigen::Index>(i % 3)] += forces[i];

@@ -27,6 +27,11 @@ std::uint64_t next_stamp() {
   return ++last;
 }
 
+bool same_patches(const std::shared_ptr<const fem::Pools>& one,
+                  const std::shared_ptr<const fem::Pools>& other) {
+  return one == other || (one && other && *one == *other);
+}
+
 Index full_vectors(Index columns) { return (columns + 7) / 8 * 8; }
 
 }  // namespace
@@ -40,6 +45,7 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
       out_(problem_->mesh().tets.size(), 0),
       u_(std::move(u)),
       kind_(kind),
+      split_(body.split),
       patches_(body, u_),
       inertia_(inertia.factor),
       factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
@@ -72,8 +78,10 @@ bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
     lost.push_back(e);
     for (Index n : border_.corners(e)) touch_node(n, fresh);
   }
+  if (!same_patches(now.body().split, split_)) return false;  // a piece has come off
+  split_ = now.body().split;
   changed_.clear();
-  if (const fem::Pools* pools = problem_->pools()) {
+  if (const fem::Pools* pools = fem::HyperelasticBody{*problem_, laws_, out_, split_}.pools()) {
     pools->of(lost, changed_);
     for (Index patch : changed_) {
       for (Index e : pools->elements(patch)) {
@@ -216,7 +224,7 @@ void FiniteBase::push_group(std::span<const Index> unknowns) {
 /// Adds an element's tangent to D.
 void FiniteBase::lose(Index element) {
   const fem::ElementMatrix k =
-      fem::element_tangent({*problem_, laws_}, element, u_, kind_, patches_.pressure());
+      fem::element_tangent({*problem_, laws_, {}, split_}, element, u_, kind_, patches_.pressure());
   std::array<Index, 12> at;
   for (int i = 0; i < 12; ++i) {
     const Index d = problem_->dof(border_.corners(element)[i / 3], i % 3);
@@ -232,11 +240,12 @@ void FiniteBase::lose(Index element) {
 
 /// Adds to D what the changed patches are stiff by with the elements that they have.
 void FiniteBase::lose_pressure(double times) {
+  const fem::HyperelasticBody of_base{*problem_, laws_, out_, split_};
   for (Index patch : changed_) {
     const fem::PatchTangent k =
-        fem::patch_tangent({*problem_, laws_, out_}, patch, u_, patches_.stiffness()[patch], kind_);
+        fem::patch_tangent(of_base, patch, u_, patches_.stiffness()[patch], kind_);
     if (k.b.size() == 0) continue;
-    const std::vector<Index> nodes = problem_->pools()->nodes(*problem_, patch);
+    const std::vector<Index> nodes = of_base.pools()->nodes(*problem_, patch);
     std::vector<Index> at;
     for (Index n : nodes) {
       for (int axis = 0; axis < 3; ++axis) {

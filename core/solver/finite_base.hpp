@@ -103,8 +103,9 @@ class FiniteBase {
   std::vector<std::uint8_t> out_;  // per element: not in the base
   std::vector<double> u_;          // of the base
   fem::Tangent kind_;
-  fem::PatchVolumes patches_;   // at its state
-  std::vector<Index> changed_;  // patches of what has left last
+  std::shared_ptr<const fem::Pools> split_;  // its patches of pooled volume; null: the problem's
+  fem::PatchVolumes patches_;                // at its state
+  std::vector<Index> changed_;               // patches of what has left last
   double inertia_;
   linear_algebra::Factor factor_;
   Eigen::MatrixXd inverse_;            // empty: the factor solves

@@ -99,6 +99,8 @@ class FiniteMotion {
 
   /// (3 * nodes) [mm], [mm/s]
   [[nodiscard]] const std::vector<double>& displacement() const { return u_; }
+  /// The body that moves, with its pieces.
+  [[nodiscard]] const RestingBody& resting() const { return moving_; }
   [[nodiscard]] const std::vector<double>& velocity() const { return v_; }
   /// Sets the velocities, supports' to 0; the next step is one of backward Euler. What the body
   /// gains by it counts as work.

@@ -31,6 +31,7 @@ FinitePotential::FinitePotential(const RestingBody& body, StressMeasure stress,
 }
 
 void FinitePotential::body_changed() {
+  pass_->split_pools(body_.body().split);
   pass_->body_changed();
   if (device_) device_->attach(body_);
 }

@@ -80,7 +80,7 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
   if (judgement) stable_ = stable.get_future();
   thread_ = std::thread(
       [this, &pattern, base, judgement, inertia, made = std::move(made), stable = std::move(stable),
-       of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_}]() mutable {
+       of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_, body.split}]() mutable {
         const linear_algebra::FactorWork work{.stop = &unwanted_};
         // Out of memory or unwanted: the old base goes on.
         const auto keep = [&](auto& promise, auto make, auto otherwise) {

@@ -77,6 +77,7 @@ class FiniteStatics {
   [[nodiscard]] Eigen::MatrixXd grip_stiffness();
   /// Per element 1: destroyed, or of a piece that nothing holds, whose stress has no meaning.
   [[nodiscard]] std::span<const std::uint8_t> out() const { return resting_.out(); }
+  [[nodiscard]] const RestingBody& resting() const { return resting_; }
 
   /// The device is gone: from the last state at rest on by the host.
   void leave_device();
@@ -104,6 +105,7 @@ class FiniteStatics {
   void extrapolate(const FiniteTarget& target);
   void move_grips(const FiniteTarget& target);
   [[nodiscard]] bool minimise(const FiniteTarget& target, int most, Report& report);
+  [[nodiscard]] bool by_kept_pressures(const FiniteTarget& target, Report& report);
   [[nodiscard]] bool by_new_factors(const FiniteTarget& target, int most, Report& report);
   [[nodiscard]] bool leave_saddle(const FiniteTarget& target, Report& report);
   [[nodiscard]] bool push(const FiniteTarget& target, const Eigen::VectorXd& mode);
@@ -130,6 +132,7 @@ class FiniteStatics {
   FiniteTarget step_begin_target_;
   double climbed_ = 0;  // share of its load at which a rest was found
   FiniteState shown_, state_, probe_;
+  std::vector<double> predicted_;  // where an approach began, with kept pressures
   Eigen::VectorXd motion_, following_;
   std::unique_ptr<FiniteBase> base_;
   bool parted_ = false;     // a base that is made within a step keeps no inverse
@@ -138,6 +141,7 @@ class FiniteStatics {
   int worn_ = 0;            // back-solves beyond a few a step since the base was made or asked for
   int since_check_ = 0, since_asked_ = 0, check_after_;
   bool judged_alone_ = false;  // what is asked for is no base
+  bool keeps_pressures_;       // kept_pressures.hpp
   DampedPath path_;
   FiniteRenewal renewal_;  // its thread reads pattern_
   bool linear_;            // by law "linear" alone

@@ -64,7 +64,7 @@ AtGrips tangent_at_grips(const RestingBody& now,
     const Eigen::VectorXd& b = patches[p].b;
     if (b.size() == 0) continue;
     dofs.clear();
-    for (Index n : problem.pools()->nodes(problem, static_cast<Index>(p))) {
+    for (Index n : now.body().pools()->nodes(problem, static_cast<Index>(p))) {
       for (int axis = 0; axis < 3; ++axis) dofs.push_back(problem.dof(n, axis));
     }
     add(dofs, [&](std::size_t i, std::size_t j) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "body/pools.hpp"
+
 namespace sunder::solver {
 
 RestingBody::RestingBody(const fem::HyperelasticBody& body, Loose loose)
@@ -38,6 +40,14 @@ void RestingBody::look() {
       }
     }
   }
+  if (problem.pools()) split_pools();
+}
+
+/// The same object as long as the same pieces have come off.
+void RestingBody::split_pools() {
+  auto split = resting_.problem.pools()->split([this](Index e) { return search_.body_of(e); });
+  if (split && resting_.split && *split == *resting_.split) return;
+  resting_.split = std::move(split);
 }
 
 }  // namespace sunder::solver

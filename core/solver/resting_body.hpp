@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of a damaged body statics can speak of: the live elements that something holds. A node that
 // no live element reaches and a piece that nothing holds have no equilibrium; they are frozen where
-// they are, and their elements carry no force. In motion nothing is frozen.
+// they are, and their elements carry no force. In motion nothing is frozen. A patch of pooled
+// volume through which a piece has come off is one patch in each of both.
 #pragma once
 
 #include <cstdint>
@@ -40,6 +41,8 @@ class RestingBody {
   [[nodiscard]] const FrozenParts& parts() const { return parts_; }
 
  private:
+  void split_pools();
+
   const fem::HyperelasticBody& body_;
   Loose loose_;
   LooseSearch search_;

@@ -23,7 +23,7 @@ inline linear_algebra::SparseMatrix assemble_tangent(const fem::HyperelasticBody
   for (std::size_t p = 0; p < volumes.stiffness().size(); ++p) {
     const auto patch =
         fem::patch_tangent(body, static_cast<Index>(p), u, volumes.stiffness()[p], kind);
-    const auto nodes = body.problem.pools()->nodes(body.problem, static_cast<Index>(p));
+    const auto nodes = body.pools()->nodes(body.problem, static_cast<Index>(p));
     for (Eigen::Index j = 0; j < patch.b.size(); ++j) {
       for (Eigen::Index i = 0; i < patch.b.size(); ++i) {
         const Index row = body.problem.dof(nodes[static_cast<std::size_t>(i / 3)], i % 3),

@@ -52,7 +52,16 @@ Scene with_fibres(Scene scene) {
   f.direction = Vec3(2, 0, 0);
   f.k1 = 1.5;
   f.k2 = 0.8;
-  for (auto& [name, material] : scene.materials) material.fibres = {f};
+  for (auto& [name, material] : scene.materials) {
+    material.fibres = {f};
+    if (material.law == MaterialLaw::linear) {
+      Fibres& linear = material.fibres[0];
+      linear.k1 = linear.k2 = {};
+      linear.young_along = 4 * material.young;
+      linear.poisson_along = 0.3;
+      linear.shear_along = material.young;
+    }
+  }
   return scene;
 }
 
@@ -256,6 +265,7 @@ TEST(PooledLaw, ThePassAgreesByAnyNumberOfThreads) {
   };
   std::vector<Case> cases{{true, false, MaterialLaw::neo_hookean},
                           {false, true, MaterialLaw::neo_hookean},
+                          {false, true, MaterialLaw::linear},
                           {false, true, MaterialLaw::saint_venant_kirchhoff}};
   for (MaterialLaw law : kLaws) cases.push_back({false, false, law});
   for (const auto& [both, fibres, law] : cases) {

@@ -216,35 +216,49 @@ std::string refusal(const Scene& scene) {
   return {};
 }
 
-TEST(Pools, AreRefusedWhereTheyAreNotComputed) {
-  Scene finite = board();
-  finite.materials["upper"].law = MaterialLaw::neo_hookean;
-  EXPECT_NE(refusal(finite).find("but its law \"linear\" pools volume only where all materials "
-                                 "have it, not beside law \"linear, neo-hookean\""),
-            std::string::npos)
-      << refusal(finite);
-  for (auto& [name, material] : finite.materials) material.law = MaterialLaw::neo_hookean;
-  EXPECT_EQ(refusal(finite), "");
-  for (auto& [name, material] : finite.materials) material.law = MaterialLaw::corotated;
-  EXPECT_NE(refusal(finite).find("law \"corotated\" measures volume by the trace of its stretch"),
-            std::string::npos)
-      << refusal(finite);
-  for (auto& [name, material] : finite.materials) {
-    material.law = MaterialLaw::saint_venant_kirchhoff;
+TEST(Pools, AreThereForEveryLawAtRestAndInMotion) {
+  for (MaterialLaw law : {MaterialLaw::linear, MaterialLaw::corotated, MaterialLaw::neo_hookean,
+                          MaterialLaw::saint_venant_kirchhoff}) {
+    Scene scene = board();
+    scene.materials["upper"].law = law;  // beside the linear one
+    EXPECT_EQ(refusal(scene), "");
+    for (auto& [name, material] : scene.materials) {
+      material.law = law;
+      material.density = 1e-9;
+    }
+    EXPECT_EQ(refusal(scene), "");
+    scene.dynamics = Dynamics{0.001};
+    EXPECT_EQ(refusal(scene), "");
   }
-  EXPECT_NE(refusal(finite).find("measures volume by the trace of Green's strain"),
-            std::string::npos)
-      << refusal(finite);
-  Scene moves = board();
-  for (auto& [name, material] : moves.materials) material.density = 1e-9;
-  moves.dynamics = Dynamics{0.001};
-  EXPECT_NE(refusal(moves).find("[dynamics] makes the scene move"), std::string::npos)
-      << refusal(moves);
-  for (auto& [name, material] : moves.materials) material.law = MaterialLaw::neo_hookean;
-  EXPECT_EQ(refusal(moves), "");
+}
+
+TEST(Pools, AreRefusedWhereTheyAreNotComputed) {
   Scene cracks = board();
   cracks.fracture.model = FractureModel::b;
   EXPECT_NE(refusal(cracks).find("model \"B\" grows cracks"), std::string::npos) << refusal(cracks);
+}
+
+// The body of a patch's first element keeps its number, what belongs to none stays there too.
+TEST(Pools, AreSplitByTheBodiesOfTheirElements) {
+  const Problem problem(board());
+  const Pools& whole = *problem.pools();
+  EXPECT_EQ(whole.split([](Index) { return 3; }), nullptr);
+  const auto first = whole.elements(1);
+  const std::vector<Index> members(first.begin(), first.end());
+  ASSERT_GE(members.size(), 4U);
+  const auto split = whole.split([&](Index e) {
+    if (whole.of(e) != 1) return 0;
+    if (e == members[1]) return kNone;
+    return e == members[2] ? 7 : e == members[3] ? 5 : 0;
+  });
+  ASSERT_TRUE(split);
+  EXPECT_EQ(split->count(), whole.count() + 2);
+  EXPECT_EQ(split->of(members[0]), 1);
+  EXPECT_EQ(split->of(members[1]), 1);
+  EXPECT_EQ(split->of(members[2]), whole.count());
+  EXPECT_EQ(split->of(members[3]), whole.count() + 1);
+  EXPECT_EQ(split->bulk(whole.count()), whole.bulk(1));
+  EXPECT_FALSE(*split == whole);
 }
 
 bool warns_of_locking(double nu, MaterialVolume volume) {

@@ -89,8 +89,6 @@ TEST(Fibres, BadInputIsRefused) {
   }
   expect_refused(odd([](S&, M&, F& f) { f.young_along = 3; }), "which is for law \"linear\"");
   expect_refused(odd([](S&, M& m, F&) { m.fibres.resize(3, m.fibres[0]); }), "at most 2");
-  expect_refused(odd([](S&, M& m, F&) { m.volume = MaterialVolume::pooled; }, true),
-                 "its law \"linear\" pools volume only where no material has fibres");
   expect_refused(odd([](S& s, M&, F&) { s.fracture.model = FractureModel::b; }),
                  "of whose stiffness model \"B\" knows nothing");
   expect_refused(odd([](S&, M& m, F& f) { m.fibres.push_back(f); }, true),

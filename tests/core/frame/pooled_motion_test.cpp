@@ -20,13 +20,14 @@ constexpr double kLength = 20, kWide = 4, kYoung = 0.03, kDensity = 1e-9;
 Box beyond(double x) { return {Vec3(x, -1, -1), Vec3(99, 99, 99)}; }
 
 /// A cantilever whose end a force pulls aside at once.
-Scene cantilever(MaterialVolume volume, double poisson) {
+Scene cantilever(MaterialVolume volume, double poisson,
+                 MaterialLaw law = MaterialLaw::neo_hookean) {
   Scene scene;
   scene.mesh = structured_board({20, 4, 4, kLength, kWide, kWide});
   Material& m = scene.materials["board"];
   m.young = kYoung;
   m.poisson = poisson;
-  m.law = MaterialLaw::neo_hookean;
+  m.law = law;
   m.volume = volume;
   m.density = kDensity;
   scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(1e-6, 9, 9)}, Axes{}});
@@ -82,6 +83,20 @@ TEST(PooledMotion, SwingsAsABeamWhereElementsLock) {
   EXPECT_NEAR(pooled / beam, 0.92, 0.03);
   EXPECT_NEAR(pooled / soft, 1, 0.02);
   EXPECT_LT(locked / beam, 0.4);
+}
+
+// The pull is a small one.
+TEST(PooledMotion, EveryLawSwingsAlike) {
+  const auto swings = [](MaterialLaw law) {
+    Scene scene = cantilever(MaterialVolume::pooled, 0.4999, law);
+    std::get<Pull>(scene.instruments[0].action).force /= 10;
+    return period(std::move(scene));
+  };
+  const double right = swings(MaterialLaw::neo_hookean);
+  for (MaterialLaw law :
+       {MaterialLaw::linear, MaterialLaw::corotated, MaterialLaw::saint_venant_kirchhoff}) {
+    EXPECT_NEAR(swings(law) / right, 1, 0.01);
+  }
 }
 
 TEST(PooledMotion, TheAccountOfEnergyCloses) {
