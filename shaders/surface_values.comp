@@ -9,7 +9,7 @@
 
 IN_UVEC4(3, Corners, corners)
 IN_WORDS(4, Elements, elements)  // of triangles
-IN_REAL4(5, Stress, stress)      // as stress.comp leaves it; kOfHost: (0, 0, maximum shear, ratio)
+IN_REAL4(5, Stress, stress)      // as stress.glsl leaves it; kOfHost: (0, 0, maximum shear, ratio)
 OUT(6, Values, float, values)
 layout(push_constant) uniform Push { SurfaceValuesPush p; };
 

@@ -34,10 +34,6 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
       elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
       nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
-      patches_(
-          !norms_ || !problem.pools()
-              ? 0
-              : round_up(static_cast<std::uint32_t>(problem.pools()->count()), shaders::kGroup)),
       element_parts_(elements_ / shaders::kGroup * kernels.parts()),
       node_parts_(nodes_ / shaders::kGroup * kernels.parts()),
       gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
@@ -73,7 +69,6 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
   upload_mesh();
   if (norms_) upload_shapes();
-  if (patches_ > 0) upload_patches();
   create_kernels();
   create_hold();
 }
@@ -100,12 +95,7 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
     sum += Buffer::padded(4 * elements * sizeof(std::uint32_t)) +
            Buffer::padded(12 * elements * sizeof(double));
   }
-  if (patches_ > 0) {  // their elements; first, bulk, pressure
-    sum += Buffer::padded(elements * sizeof(std::uint32_t)) +
-           Buffer::padded((patches_ + 1) * sizeof(std::uint32_t)) +
-           Buffer::padded(patches_ * sizeof(double)) +
-           Buffer::padded(patches_ * sizeof(shaders::PatchPressure));
-  }
+  if (norms_) sum += PatchPressures::planned_bytes(problem_);
   if (grips > 0) {
     sum += Buffer::padded(grips * sizeof(std::uint32_t)) + Buffer::padded(grips * sizeof(double));
   }
@@ -196,52 +186,23 @@ void Fields::upload_shapes() {
   write_wide(kernels_, shape_, shape);
 }
 
-void Fields::upload_patches() {
-  const fem::Pools& pools = *problem_.pools();
-  std::vector<std::uint32_t> first{0}, elements;
-  std::vector<double> bulk(patches_, 0.0);
-  for (Index p = 0; p < pools.count(); ++p) {
-    for (Index e : pools.elements(p)) elements.push_back(static_cast<std::uint32_t>(e));
-    first.push_back(static_cast<std::uint32_t>(elements.size()));
-    bulk[static_cast<std::size_t>(p)] = pools.bulk(p);
-  }
-  first.resize(patches_ + 1, first.back());
-  const auto upload = [&](Buffer& buffer, const auto& values) {
-    buffer = Buffer(kernels_.device(), values.size() * sizeof(values[0]), Placement::device);
-    buffer.write(std::span(values));
-  };
-  upload(patch_first_, first);
-  upload(patch_elements_, elements);
-  upload(bulk_, bulk);
-  pressures_ =
-      Buffer(kernels_.device(), patches_ * sizeof(shaders::PatchPressure), Placement::device);
-}
-
 void Fields::create_kernels() {
   vulkan::Device& device = kernels_.device();
-  const auto bind = [&](const vulkan::Kernel& kernel, const std::vector<const Buffer*>& list) {
-    return std::make_unique<vulkan::Binding>(device, kernel, list);
-  };
-  const bool pooled = patches_ > 0;
+  if (norms_ && problem_.pools()) {
+    pools_ = std::make_unique<PatchPressures>(
+        kernels_, problem_,
+        PatchPressures::Inputs{{&displacement_, &correction_}, nodes_of_, shape_, facts_});
+  }
   const auto stress_of = [&](const Buffer& u) {
     std::vector<const Buffer*> list{&u,       &nodes_of_,        &shape_, &facts_,
                                     &stress_, &stress_partials_, &over_};
-    if (pooled) list.push_back(&pressures_);
-    return bind(*stress_pass_.kernel, list);
-  };
-  const auto pools_of = [&](const Buffer& u) {
-    return bind(*pools_pass_.kernel, {&u, &nodes_of_, &shape_, &facts_, &patch_first_,
-                                      &patch_elements_, &bulk_, &pressures_});
+    if (pools_) list.push_back(&pools_->pressures());
+    return std::make_unique<vulkan::Binding>(device, *stress_pass_.kernel, list);
   };
   if (norms_) {
-    stress_pass_.kernel = kernels_.make(pooled ? "stress_pooled" : "stress");
+    stress_pass_.kernel = kernels_.make(pools_ ? "stress_pooled" : "stress");
     stress_pass_.binding = stress_of(displacement_);
     correction_stress_ = stress_of(correction_);
-  }
-  if (pooled) {
-    pools_pass_.kernel = kernels_.make_fp64("pools");
-    pools_pass_.binding = pools_of(displacement_);
-    correction_pools_ = pools_of(correction_);
   }
   if (has_residual_ && !host_balance_) create_residual_pass();
   summary_pass_ = std::make_unique<SummaryPass>(
@@ -446,10 +407,7 @@ void Fields::cut_off(std::span<const Index> elements) {
 /// With the pressures of patches before it.
 void Fields::record_stress(vulkan::Commands& commands, Field field, std::uint32_t keep) const {
   const bool correction = field == Field::correction;
-  if (patches_ > 0) {
-    commands.dispatch(correction ? *correction_pools_ : *pools_pass_.binding, element_push(keep),
-                      patches_ / shaders::kGroup);
-  }
+  if (pools_) pools_->record(commands, correction ? 1 : 0, element_push(keep));
   commands.dispatch(correction ? *correction_stress_ : *stress_pass_.binding, element_push(keep),
                     elements_ / shaders::kGroup);
 }
@@ -581,8 +539,7 @@ std::vector<BufferPlan> Fields::buffers() const {
   };
   return {
       {"mesh and element state (device)",
-       sum({&nodes_of_, &shape_, &facts_, &dofs_, &positions_, &patch_first_, &patch_elements_,
-            &bulk_, &pressures_})},
+       sum({&nodes_of_, &shape_, &facts_, &dofs_, &positions_}) + (pools_ ? pools_->bytes() : 0)},
       {"displacement, correction, load, residual (device)",
        sum({&displacement_, &kept_, &correction_, &load_, &residual_, &balance_})},
       {"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},

@@ -12,6 +12,7 @@
 #include "gpu/passes/block_matrix.hpp"
 #include "gpu/passes/gather.hpp"
 #include "gpu/passes/host_balance.hpp"
+#include "gpu/passes/patch_pressures.hpp"
 #include "gpu/passes/summary.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "shaders/layout.h"
@@ -102,7 +103,7 @@ class Fields {
   [[nodiscard]] vulkan::Buffer& nodal(Field field) {
     return field == Field::displacement ? displacement_ : correction_;
   }
-  /// Two texels an element (shaders/stress.comp); 16 bytes where stress was left out.
+  /// Two texels an element (shaders/stress.glsl); 16 bytes where stress was left out.
   [[nodiscard]] const vulkan::Buffer& stress() const { return stress_; }
   [[nodiscard]] const vulkan::Buffer& facts() const { return facts_; }
   /// The damaged stiffness.
@@ -137,7 +138,6 @@ class Fields {
   void upload_mesh();
   void upload_shapes();
   void set_state_bits(std::span<const Index> elements, std::uint32_t bits);
-  void upload_patches();
   void create_kernels();
   void create_residual_pass();
   void create_hold();
@@ -156,14 +156,12 @@ class Fields {
   bool keep_stress_, list_over_, norms_, shown_ = false;
   bool has_residual_;
   std::uint32_t rows_, elements_, nodes_;          // padded
-  std::uint32_t patches_;                          // of pooled volume, padded
   std::uint32_t element_parts_, node_parts_;       // partial results
   std::vector<shaders::ElementFacts> facts_host_;  // copy of facts_
   std::vector<std::uint32_t> place_;               // host copy of positions_
   std::vector<Index> gripped_;
 
   vulkan::Buffer nodes_of_, shape_, facts_;
-  vulkan::Buffer patch_first_, patch_elements_, bulk_, pressures_;  // where volume is pooled
   vulkan::Buffer dofs_, positions_;
   BlockMatrix matrix_;
   std::unique_ptr<HostBalance> host_balance_;  // empty: the device does it
@@ -175,11 +173,12 @@ class Fields {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::unique_ptr<vulkan::Binding> binding;
   };
-  Pass pools_pass_, stress_pass_, residual_pass_, hold_pass_;
+  std::unique_ptr<PatchPressures> pools_;  // empty: nothing pools
+  Pass stress_pass_, residual_pass_, hold_pass_;
   std::unique_ptr<SummaryPass> summary_pass_;
   vulkan::Buffer held_, prescribed_;  // gripped dofs
   std::unique_ptr<vulkan::Binding> correction_hold_;
-  std::unique_ptr<vulkan::Binding> correction_stress_, correction_pools_;
+  std::unique_ptr<vulkan::Binding> correction_stress_;
   std::unique_ptr<Gather> displacement_gather_, balance_gather_;
 };
 

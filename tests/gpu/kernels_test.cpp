@@ -238,7 +238,7 @@ TEST_P(Kernels, DeformationFromGivenDisplacement) {
       }
       const Deformation found = fields.deformation();
       // In fp32 from gradients of more digits; the rotation's axis is right to first order in the
-      // stretch (shaders/stress.comp).
+      // stretch (shaders/stress.glsl).
       EXPECT_NEAR(found.strain, exact.strain, 4e-6 * std::abs(exact.strain) + 1e-7) << size;
       EXPECT_NEAR(found.rotation_deg, exact.rotation_deg,
                   (0.7 * stretch * stretch + 1e-5) * exact.rotation_deg + 1e-5)
