@@ -41,6 +41,7 @@ TEST(SceneFiles, AllAreThere) {
                            "peel",
                            "brain-notch",
                            "skin",
+                           "skin-wounds",
                            "board",
                            "board-split",
                            "board-falls",
