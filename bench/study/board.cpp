@@ -33,6 +33,9 @@ Scene scene_of(const Difficulty& difficulty) {
                      {"lower", {8, nu, 4.0}},
                      {"top-frame", {frame, nu, std::nullopt}},
                      {"bottom-frame", {frame, nu, std::nullopt}}};
+  if (difficulty.pooled) {
+    for (auto& [name, material] : scene.materials) material.volume = MaterialVolume::pooled;
+  }
   const double s = difficulty.unit;
   for (Vec3& x : scene.mesh.nodes) x *= s;
   scene.supports.push_back({Box{Vec3(-1, 49.99, -1) * s, Vec3(51, 50.01, 6) * s}, Axes{7}});

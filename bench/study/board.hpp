@@ -20,6 +20,7 @@ struct Difficulty {
   std::string pattern = "crack";  ///< scattered, crack, cut, island, bridge
   int fractures = 10;             ///< scattered, crack; the others have their own number
   int layers = 1;                 ///< of cells through the thickness
+  bool pooled = false;            ///< volume pooled over patches, in all materials
 };
 
 struct DifficultBoard {

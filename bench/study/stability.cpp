@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stability study: one difficulty at a time, then pairs, every method; one CSV row per cell.
-//   bench_stability FILE [quick|full|many]
-// quick: one difficulty at a time; full: the pairs as well; many: 640 fractures. bench/run judges
-// the cells by the table of accuracy (suite/accuracy.py).
+//   bench_stability FILE [quick|full|many|pooled]
+// quick: one difficulty at a time; full: the pairs as well; many: 640 fractures; pooled: those cells
+// of full whose volume is pooled. bench/run judges the others by the table of accuracy
+// (suite/accuracy.py).
 // Exit code 1 when a cell is WRONG: a number that is off, or no number, and nothing said.
 #include <cstdio>
 #include <fstream>
@@ -80,6 +81,34 @@ void one_at_a_time(std::vector<Cell>& cells) {
   }
 }
 
+/// Volume pooled over patches: what is hard for it alone, then with nearly incompressible tissue.
+void pooled(std::vector<Cell>& cells, bool full) {
+  const auto add = [&](const std::string& study, const Difficulty& difficulty) {
+    cells.push_back({"pooled " + study, difficulty});
+    cells.back().difficulty.pooled = true;
+  };
+  for (double nu : {.4, .49, .499, .4999}) {
+    if (!full && nu == .4) continue;
+    Difficulty own;
+    own.poisson = nu;
+    for (const Knob& knob : {contrast(), sliver(), alpha(), crack()}) {
+      for (std::size_t i = 0; i < knob.values.size(); ++i) {
+        // Each by itself takes the ends and the middle.
+        const bool end = i == 0 || i + 1 == knob.values.size() || i == knob.values.size() / 2;
+        Difficulty difficulty = own;
+        knob.set(difficulty, knob.values[i]);
+        if (full || end) add("nu x " + knob.name, difficulty);
+      }
+    }
+    for (const char* pattern : {"scattered", "cut", "island", "bridge"}) {
+      Difficulty difficulty = own;
+      difficulty.pattern = pattern;
+      if (difficulty.pattern == "scattered") difficulty.fractures = 200;
+      add(pattern, difficulty);
+    }
+  }
+}
+
 /// Accumulated fractures past what one layer of cells can lose.
 void many_fractures(std::vector<Cell>& cells) {
   for (const char* pattern : {"crack", "scattered"}) {
@@ -116,7 +145,7 @@ void write_row(std::ostream& out, const Cell& cell, const Method& method, std::s
                const Reference& reference, const Outcome& o) {
   const Difficulty& d = cell.difficulty;
   out << cell.study << ',' << d.contrast << ',' << d.poisson << ',' << d.sliver << ',' << d.alpha
-      << ',' << d.unit << ',' << d.pattern << ',' << removed << ',' << cell.batch << ','
+      << ',' << d.unit << ',' << (d.pooled ? "pooled" : "element") << ',' << d.pattern << ',' << removed << ',' << cell.batch << ','
       << method.name << ',' << o.verdict << ',' << o.u_error << ',' << o.stress_error << ','
       << o.residual << ',' << o.estimate << ',' << o.iterations << ',' << o.first_ms << ','
       << o.median_ms << ',' << reference.rounding << ',' << quoted(o.reason) << '\n';
@@ -125,7 +154,7 @@ void write_row(std::ostream& out, const Cell& cell, const Method& method, std::s
 /// Returns the number of cells that are WRONG.
 int run(std::ostream& out, const std::vector<Cell>& cells) {
   const auto all = methods();
-  out << "study,contrast,nu,sliver,alpha,unit,pattern,fractures,batch,method,verdict,u_error,"
+  out << "study,contrast,nu,sliver,alpha,unit,volume,pattern,fractures,batch,method,verdict,u_error,"
          "stress_error,residual,estimate,iterations,first_ms,median_ms,fp32_rounding,reason\n";
   int wrong = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -149,12 +178,13 @@ int run(std::ostream& out, const std::vector<Cell>& cells) {
 int main(int argc, char** argv) {
   using namespace sunder::bench;
   const std::string mode = argc > 2 ? argv[2] : "full";
-  if (argc < 2 || argc > 3 || (mode != "quick" && mode != "full" && mode != "many")) {
-    std::cerr << "usage: bench_stability FILE [quick|full|many]\n";
+  if (argc < 2 || argc > 3 || (mode != "quick" && mode != "full" && mode != "many" && mode != "pooled")) {
+    std::cerr << "usage: bench_stability FILE [quick|full|many|pooled]\n";
     return 2;
   }
   std::vector<Cell> cells;
-  if (mode != "many") one_at_a_time(cells);
+  if (mode == "quick" || mode == "full") one_at_a_time(cells);
+  if (mode != "many") pooled(cells, mode != "quick");
   if (mode == "many") many_fractures(cells);
   if (mode == "full") pairs(cells);
   std::ofstream out(argv[1]);

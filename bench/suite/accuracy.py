@@ -19,6 +19,8 @@ TABLE = (["", "scattered", "along a crack, up to 200 fractures", "after a cut, a
 
 
 def is_named(cell):
+    if cell.get("volume") == "pooled":  # the table is of elements by themselves
+        return False
     along_a_crack = cell["pattern"] in ("crack", "bridge")
     if any(way in cell["method"] for way in DROPPED):
         return False

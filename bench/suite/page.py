@@ -189,8 +189,9 @@ def _stability(page, cells):
               "of ten where nothing else is said. Yardstick: a fresh fp64 factorisation refined in extended precision. A "
               "number that is off by more than the tolerance (1e-4) and is neither polished nor "
               "refused is WRONG.")
-    page.figure("stability", heat_map.singles(cells))
-    page.figure("stability-pairs", heat_map.pairs(cells))
+    alone = [c for c in cells if c.get("volume") != "pooled"]
+    page.figure("stability", heat_map.singles(alone))
+    page.figure("stability-pairs", heat_map.pairs(alone))
     if not cells:
         return
     page.add(_table(*tables.verdicts(cells)))

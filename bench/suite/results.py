@@ -85,10 +85,11 @@ def least(row):
 
 def cells_of(text):
     """Cells of the stability study from its CSV text; numbers become numbers."""
-    words = {"study", "pattern", "method", "verdict", "reason", "accuracy", "accuracy_reason"}
+    words = {"study", "volume", "pattern", "method", "verdict", "reason", "accuracy", "accuracy_reason"}
     cells = list(csv.DictReader(io.StringIO(text)))
     for cell in cells:
         cell.setdefault("batch", "10")  # of all cells before there was a choice
+        cell.setdefault("volume", "element")
         for key in cell.keys() - words:
             cell[key] = float(cell[key])
     return cells
