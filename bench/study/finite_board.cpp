@@ -25,7 +25,7 @@ std::vector<Fibres> fibres_of(const FibreDifficulty& difficulty, const Material&
     of.direction = Vec3(i == 0 ? 1 : -1, 1, 0);
     if (material.law == MaterialLaw::linear) {
       of.young_along = difficulty.k1;
-      of.poisson_along = material.poisson;
+      of.poisson_along = 0.1;  // far from where a deformation would set energy free
       of.shear_along = difficulty.k1 / 5;
     } else {
       of.k1 = difficulty.k1;

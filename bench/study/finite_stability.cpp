@@ -124,9 +124,10 @@ void fibres(std::vector<FiniteCell>& cells, bool full) {
   }
 }
 
-/// From one that opens as far as the board is long to one whose layer is as thin as any is laid.
+/// From one that opens as far as the board is long to one as stiff as any is taken, and one beyond.
 void interfaces(std::vector<FiniteCell>& cells, bool full) {
-  const InterfaceDifficulty all[] = {{.01, 1}, {1, 1}, {1, 1e-3}, {100, 1e-1}, {100, 1e-4}};
+  const InterfaceDifficulty all[] = {{.01, 1}, {1, 1}, {1, 1e-3},
+                                     {100, 1e-1}, {100, 1e-3}, {100, 1e-4}};
   for (const InterfaceDifficulty& of : all) {
     for (const auto law : {kLinear, kCorotated, kNeoHookean}) {
       if (!full && law == kCorotated) continue;

@@ -120,7 +120,11 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
         stop.tolerance > 0 && result.residual <= std::min(1.0, kResidualPerStress * stop.tolerance);
     FiniteTrial trial = steps.whole(near);
     ++result.back_solves;
-    if (near) {
+    if (near && !std::isfinite(trial.at.potential)) {
+      // Beyond what the law knows: such a change of stress says nothing.
+      before = ratio_before = 0;
+      good = good_before = false;
+    } else if (near) {
       const double change = stress_error(trial);
       const double ratio = before > 0 ? change / before : kLeastContraction;
       result.contraction =
