@@ -56,9 +56,8 @@ void part(const Problem& problem, const std::function<void(double)>& stretch,
   for (Index e = 0; e < problem.tet_count(); ++e) {
     if (problem.in_interface(e)) layer.push_back(e);
   }
-  std::ranges::stable_sort(layer, {}, [&](Index e) {
-    return test::centroid(problem.mesh(), e).x();
-  });
+  std::ranges::stable_sort(layer, {},
+                           [&](Index e) { return test::centroid(problem.mesh(), e).x(); });
   stretch(.05);
   stretch(.1);
   const std::size_t third = layer.size() / 3, last = layer.size() / 6;
@@ -77,10 +76,9 @@ Scene finite_scene(const FiniteCell& cell, const SolverOptions& solver) {
   Scene scene;
   scene.title = "board of the stability study at finite deformation";
   scene.solver = solver;
-  scene.mesh =
-      test::structured_board({6, 6, 1, kSide, kSide, kFiniteDepth}, [](const Vec3& x) {
-        return x.y() > 41 || x.y() < 9 ? "frame" : x.y() > 25 ? "upper" : "lower";
-      });
+  scene.mesh = test::structured_board({6, 6, 1, kSide, kSide, kFiniteDepth}, [](const Vec3& x) {
+    return x.y() > 41 || x.y() < 9 ? "frame" : x.y() > 25 ? "upper" : "lower";
+  });
   if (cell.sliver < 1) test::make_sliver(scene.mesh, Vec3(25, 33, 2.5), 9, cell.sliver);
   scene.materials = {{"upper", {5, cell.poisson, 2.0, cell.law}},
                      {"lower", {8, cell.poisson, 4.0, cell.law}},

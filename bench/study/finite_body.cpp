@@ -28,7 +28,7 @@ Needs needs() {
 /// Where there is none, as after a rigid motion, a millionth of the material's modulus is as
 /// good.
 double stress_error(std::span<const std::uint8_t> destroyed, std::span<const Voigt> found,
-                           std::span<const Voigt> exact) {
+                    std::span<const Voigt> exact) {
   double apart = 0, most = 1e-6 * 5;
   for (std::size_t e = 0; e < found.size(); ++e) {
     if (destroyed[e]) continue;
@@ -193,8 +193,9 @@ bool FiniteBodyOfStudy::compare(const Load& load, std::span<const std::uint8_t> 
 }
 
 /// Empty: its tangent is indefinite, or its residual stays.
-std::vector<double> FiniteBodyOfStudy::by_newton(const Load& load, std::span<const std::uint8_t> destroyed,
-                              const std::vector<double>& u) const {
+std::vector<double> FiniteBodyOfStudy::by_newton(const Load& load,
+                                                 std::span<const std::uint8_t> destroyed,
+                                                 const std::vector<double>& u) const {
   const auto laws = fem::laws_of(*problem_);
   try {
     const auto rest = test::newton({*problem_, laws, destroyed}, load, u);

@@ -110,7 +110,8 @@ void fibres(std::vector<FiniteCell>& cells, bool full) {
           for (const double k2 : {0.0, 10.0, 1e3}) {
             // One at a time: stiff, quickly stiffening, two families, dispersed.
             const int unlike = (k1 != 50) + (families != 1) + (dispersion > 0) + (k2 != 10);
-            if (full || (unlike <= 1 && law == kNeoHookean)) add(law, {families, k1, k2, dispersion});
+            if (full || (unlike <= 1 && law == kNeoHookean))
+              add(law, {families, k1, k2, dispersion});
           }
         }
       }
@@ -126,7 +127,7 @@ void fibres(std::vector<FiniteCell>& cells, bool full) {
 
 /// From one that opens as far as the board is long to one as stiff as any is taken, and one beyond.
 void interfaces(std::vector<FiniteCell>& cells, bool full) {
-  const InterfaceDifficulty all[] = {{.01, 1}, {1, 1}, {1, 1e-3},
+  const InterfaceDifficulty all[] = {{.01, 1},    {1, 1},      {1, 1e-3},
                                      {100, 1e-1}, {100, 1e-3}, {100, 1e-4}};
   for (const InterfaceDifficulty& of : all) {
     for (const auto law : {kLinear, kCorotated, kNeoHookean}) {
@@ -219,10 +220,10 @@ class Summary {
 
 void write_row(std::ostream& out, const FiniteCell& cell, const Way& by, double amount,
                const StepOutcome& o) {
-  out << cell.study << ',' << name_of(cell.law) << ',' << cell.contrast << ',' << cell.poisson << ','
-      << cell.sliver << ',' << added(cell) << ',' << by.name << ',' << cell.motion << ',' << amount
-      << ',' << o.verdict << ',' << o.u_error << ',' << o.stress_error << ',' << o.estimate << ','
-      << o.back_solves << ',' << o.calls << ',' << o.deformation.strain << ','
+  out << cell.study << ',' << name_of(cell.law) << ',' << cell.contrast << ',' << cell.poisson
+      << ',' << cell.sliver << ',' << added(cell) << ',' << by.name << ',' << cell.motion << ','
+      << amount << ',' << o.verdict << ',' << o.u_error << ',' << o.stress_error << ','
+      << o.estimate << ',' << o.back_solves << ',' << o.calls << ',' << o.deformation.strain << ','
       << o.deformation.rotation_deg << ',' << o.deformation.inverted << ',' << quoted(o.reason)
       << '\n';
   out.flush();

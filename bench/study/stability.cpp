@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stability study: one difficulty at a time, then pairs, every method; one CSV row per cell.
 //   bench_stability FILE [quick|full|many|pooled]
-// quick: one difficulty at a time; full: the pairs as well; many: 640 fractures; pooled: those cells
-// of full whose volume is pooled. bench/run judges the others by the table of accuracy
+// quick: one difficulty at a time; full: the pairs as well; many: 640 fractures; pooled: those
+// cells of full whose volume is pooled. bench/run judges the others by the table of accuracy
 // (suite/accuracy.py).
 // Exit code 1 when a cell is WRONG: a number that is off, or no number, and nothing said.
 #include <cstdio>
@@ -145,16 +145,18 @@ void write_row(std::ostream& out, const Cell& cell, const Method& method, std::s
                const Reference& reference, const Outcome& o) {
   const Difficulty& d = cell.difficulty;
   out << cell.study << ',' << d.contrast << ',' << d.poisson << ',' << d.sliver << ',' << d.alpha
-      << ',' << d.unit << ',' << (d.pooled ? "pooled" : "element") << ',' << d.pattern << ',' << removed << ',' << cell.batch << ','
-      << method.name << ',' << o.verdict << ',' << o.u_error << ',' << o.stress_error << ','
-      << o.residual << ',' << o.estimate << ',' << o.iterations << ',' << o.first_ms << ','
-      << o.median_ms << ',' << reference.rounding << ',' << quoted(o.reason) << '\n';
+      << ',' << d.unit << ',' << (d.pooled ? "pooled" : "element") << ',' << d.pattern << ','
+      << removed << ',' << cell.batch << ',' << method.name << ',' << o.verdict << ',' << o.u_error
+      << ',' << o.stress_error << ',' << o.residual << ',' << o.estimate << ',' << o.iterations
+      << ',' << o.first_ms << ',' << o.median_ms << ',' << reference.rounding << ','
+      << quoted(o.reason) << '\n';
 }
 
 /// Returns the number of cells that are WRONG.
 int run(std::ostream& out, const std::vector<Cell>& cells) {
   const auto all = methods();
-  out << "study,contrast,nu,sliver,alpha,unit,volume,pattern,fractures,batch,method,verdict,u_error,"
+  out << "study,contrast,nu,sliver,alpha,unit,volume,pattern,fractures,batch,method,verdict,u_"
+         "error,"
          "stress_error,residual,estimate,iterations,first_ms,median_ms,fp32_rounding,reason\n";
   int wrong = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -178,7 +180,8 @@ int run(std::ostream& out, const std::vector<Cell>& cells) {
 int main(int argc, char** argv) {
   using namespace sunder::bench;
   const std::string mode = argc > 2 ? argv[2] : "full";
-  if (argc < 2 || argc > 3 || (mode != "quick" && mode != "full" && mode != "many" && mode != "pooled")) {
+  if (argc < 2 || argc > 3 ||
+      (mode != "quick" && mode != "full" && mode != "many" && mode != "pooled")) {
     std::cerr << "usage: bench_stability FILE [quick|full|many|pooled]\n";
     return 2;
   }

@@ -45,7 +45,7 @@ Yardstick::Yardstick(const Problem& problem, std::span<const std::uint8_t> destr
     plain::Element& element = elements_.back();
     if (destroyed[id]) element.share = left;
     const bool linear = material.law == MaterialLaw::linear;
-    laws_.push_back(linear                                    ? &plain::kLinear
+    laws_.push_back(linear                                     ? &plain::kLinear
                     : material.law == MaterialLaw::corotated   ? &plain::kCorotated
                     : material.law == MaterialLaw::neo_hookean ? &plain::kNeoHookean
                                                                : &plain::kSaintVenantKirchhoff);
@@ -73,12 +73,10 @@ Real3x3 Yardstick::deformed(std::size_t id, const std::vector<Real>& u) const {
 
 /// How an element's measure of volume changes with F: of law linear that is tr F - 2.
 Real3x3 Yardstick::cofactor(std::size_t id, const Real3x3& f) const {
-  return patches_[patch_of_[id]].linear ? kOne
-                                        : Real3x3(f.determinant() * f.inverse().transpose());
+  return patches_[patch_of_[id]].linear ? kOne : Real3x3(f.determinant() * f.inverse().transpose());
 }
 
-std::vector<Yardstick::Pressure> Yardstick::pressures(
-    const std::vector<Real>& u) const {
+std::vector<Yardstick::Pressure> Yardstick::pressures(const std::vector<Real>& u) const {
   std::vector<Pressure> all;
   for (const Patch& patch : patches_) {
     Pressure of;
@@ -105,8 +103,7 @@ std::vector<Yardstick::Pressure> Yardstick::pressures(
 }
 
 /// First Piola-Kirchhoff stress, of a whole element.
-Real3x3 Yardstick::stress(std::size_t id, const Real3x3& f,
-                                const std::vector<Pressure>& of) const {
+Real3x3 Yardstick::stress(std::size_t id, const Real3x3& f, const std::vector<Pressure>& of) const {
   Real3x3 p;
   if (const std::size_t at = patch_of_[id]; at == patches_.size()) {
     p = laws_[id]->stress(elements_[id].d, f);
@@ -125,7 +122,7 @@ Real3x3 Yardstick::stress(std::size_t id, const Real3x3& f,
 
 /// The same, as F changes and the pressure does not.
 Real3x3 Yardstick::change(std::size_t id, const Real3x3& f, const Real3x3& df,
-                                const std::vector<Pressure>& of) const {
+                          const std::vector<Pressure>& of) const {
   Real3x3 dp;
   if (const std::size_t at = patch_of_[id]; at == patches_.size()) {
     dp = laws_[id]->change(elements_[id].d, f, df);
@@ -210,8 +207,7 @@ Eigen::VectorXd Yardstick::step(const std::vector<Real>& u, const Eigen::VectorX
   return factor.solve(-r);
 }
 
-Yardstick::Rest Yardstick::solve(const Load& load,
-                                             std::span<const double> start) const {
+Yardstick::Rest Yardstick::solve(const Load& load, std::span<const double> start) const {
   std::vector<Real> u(problem_.dofs().size(), 0), acting(u);
   std::ranges::copy(start, u.begin());
   const auto gripped = problem_.gripped_dofs();

@@ -283,13 +283,12 @@ TEST(ExitCode, OfWhatAScenesMeshCannotHaveIsThree) {
   const std::string scenes = SUNDER_SOURCE "/scenes/";
   const struct {
     std::string scene, change, message;
-  } cases[] = {
-      {"finite/skin-wounds.toml", "material.skin.fibres.direction=[0, 0, 0]",
-       "fibres 0 has direction = [0, 0, 0]; it must be finite and not zero"},
-      {"finite/skin-wounds.toml", R"(material.skin.fibres={field="helix", k1=1, k2=1})",
-       "field = \"helix\", which is no vector of the mesh's cells; its file has none"},
-      {"peel/artery.toml", R"(interface.0.between=["artery", "membrane"])",
-       "lies nowhere: the two volumes share no face"}};
+  } cases[] = {{"finite/skin-wounds.toml", "material.skin.fibres.direction=[0, 0, 0]",
+                "fibres 0 has direction = [0, 0, 0]; it must be finite and not zero"},
+               {"finite/skin-wounds.toml", R"(material.skin.fibres={field="helix", k1=1, k2=1})",
+                "field = \"helix\", which is no vector of the mesh's cells; its file has none"},
+               {"peel/artery.toml", R"(interface.0.between=["artery", "membrane"])",
+                "lies nowhere: the two volumes share no face"}};
   for (const auto& bad : cases) {
     const Outcome run = run_program(
         {"run", scenes + bad.scene, "--set", bad.change, "--out", (folder / "out").string()});

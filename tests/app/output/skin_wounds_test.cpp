@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// scenes/finite/skin-wounds.toml: one sheet of skin, one wound across its fibres and one along them.
+// scenes/finite/skin-wounds.toml: one sheet of skin, one wound across its fibres and one along
+// them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,10 +46,8 @@ double gape(const Mesh& mesh, const std::vector<Vec3>& u, double middle, int alo
 /// The scene in two steps: stretched, with the cuts already made in the second one.
 Gapes wounds(std::vector<std::string> changes) {
   changes.push_back("time.steps=2");
-  for (int cut = 0; cut < 6; ++cut)
-    changes.push_back("destroy." + std::to_string(cut) + ".step=1");
-  const auto problem =
-      app::read_problem(SUNDER_SOURCE "/scenes/finite/skin-wounds.toml", changes);
+  for (int cut = 0; cut < 6; ++cut) changes.push_back("destroy." + std::to_string(cut) + ".step=1");
+  const auto problem = app::read_problem(SUNDER_SOURCE "/scenes/finite/skin-wounds.toml", changes);
   Simulation run(problem, std::move(create_backend(problem, needs_of(*problem)).backend));
   while (!run.done()) run.step();
   const auto& u = run.displacement();
