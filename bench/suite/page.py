@@ -194,7 +194,11 @@ def _stability(page, cells):
     page.figure("stability-pairs", heat_map.pairs(alone))
     if not cells:
         return
-    page.add(_table(*tables.verdicts(cells)))
+    page.add(_table(*tables.verdicts(alone)))
+    pooled = [c for c in cells if c.get("volume") == "pooled"]
+    if pooled:
+        page.text("Pooled volume, at ratios to .4999 under each of the other difficulties:")
+        page.add(_table(*tables.verdicts(pooled)))
     _accuracy(page, cells)
     refusals = sorted({(c["method"], c["reason"]) for c in cells if c["verdict"] == "refused"})
     if refusals:
@@ -209,7 +213,9 @@ def _finite_stability(page, steps):
     page.text("A board of 216 tetrahedra between two hands that hold its edges as solids: stretched "
               "to twice its length, turned as a whole, twisted and folded to 180 degrees in steps of "
               "30, pulled ten lengths away in one step and back, pushed through the other hand in "
-              "one step, torn. Then all contrasts with all ratios and slivers. Yardstick: Newton's method in "
+              "one step, torn. Then all contrasts with all ratios and slivers; pooled volume, fibres, an "
+              "interface that is also taken away in thirds, and all three, by each way that computes "
+              "them. Yardstick: Newton's method in "
               "extended precision, from where the step ended. Refused: with a reason, and the state "
               "before it can be solved again. Unfinished: the path to rest goes on after 400 "
               "frames.")

@@ -115,9 +115,11 @@ def meshes_of(text):
 
 def steps_of(text):
     """Steps of the stability study at finite deformation."""
-    words = {"study", "law", "motion", "verdict", "reason"}
+    words = {"study", "law", "added", "method", "motion", "verdict", "reason"}
     steps = list(csv.DictReader(io.StringIO(text)))
     for step in steps:
+        step.setdefault("added", "")  # before anything was
+        step.setdefault("method", "cpu")
         for key in step.keys() - words:
             step[key] = float(step[key])
     return steps

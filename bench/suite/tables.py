@@ -193,9 +193,10 @@ def finite_verdicts(steps):
 
 def finite_refusals(steps):
     """Head and lines: every step that is not right, and why."""
-    return (["difficulty", "law", "contrast, nu, sliver", "motion", "amount", "verdict", "reason"],
-            [[s["study"], s["law"], f"{s['contrast']:g}, {s['nu']:g}, {s['sliver']:g}",
-              s["motion"], f"{s['amount']:g}", s["verdict"], s["reason"]]
+    return (["difficulty", "law", "contrast, nu, sliver", "added", "method", "motion", "amount",
+             "verdict", "reason"],
+            [[s["study"], s["law"], f"{s['contrast']:g}, {s['nu']:g}, {s['sliver']:g}", s["added"],
+              s["method"], s["motion"], f"{s['amount']:g}", s["verdict"], s["reason"]]
              for s in steps if s["verdict"] != "right"])
 
 

@@ -67,7 +67,7 @@ def finite_error(method):
 
 def finite_step(verdict="right", reason=""):
     return {"study": "nu", "law": "corotated", "contrast": 1.0, "nu": 0.499, "sliver": 1.0,
-            "motion": "twist", "amount": 90.0, "verdict": verdict, "u_error": 1e-6,
+            "added": "", "method": "cpu", "motion": "twist", "amount": 90.0, "verdict": verdict, "u_error": 1e-6,
             "stress_error": 1e-5, "estimate": 1e-5, "back_solves": 9.0, "calls": 0.0,
             "strain": 0.4, "rotation_deg": 92.0, "inverted": 0.0, "reason": reason}
 
@@ -350,6 +350,15 @@ class Accuracy(unittest.TestCase):
         cells = [cell(study="batch", batch=n) for n in (1.0, 10.0, 100.0)]
         self.assertEqual(kinds(outcome([], cells[:1]), outcome([], cells)), ["new", "new"])
         self.assertIn("elements an event", heat_map.singles(cells))
+
+    def test_cells_of_pooled_volume_have_a_table_of_their_own(self):
+        pooled = cell("cpu cg fp64", volume="pooled", study="pooled cut", contrast=1.0, nu=0.0)
+        self.assertEqual(pooled["accuracy"], "not named")
+        by_itself = page.page(outcome([], [cell(), cell(nu=0.49)]))[0]
+        self.assertNotIn("Pooled volume", by_itself)
+        text, figures = page.page(outcome([], [cell(), cell(nu=0.49), pooled]))
+        self.assertIn("Pooled volume", text)
+        self.assertNotIn("pooled cut", figures["stability"])
 
     def test_cells_of_before_there_was_a_choice_tore_by_ten(self):
         old = {k: v for k, v in cell().items() if k != "batch"}
