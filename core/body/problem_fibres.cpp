@@ -116,15 +116,34 @@ void check_strength(const std::string& what, const Scene& scene, const Material&
   }
 }
 
-/// Spencer's constants by the elasticity in the fibre's frame, whose first axis is along.
-AlongFibres along_fibres(const Material& m, const Fibres& f) {
+/// Of normal strains in the fibre's frame, whose first axis is along.
+Mat3 compliance_along(const Material& m, const Fibres& f) {
   const double along = *f.young_along, nu = *f.poisson_along;
   Mat3 compliance;
   compliance << 1 / along, -nu / along, -nu / along,   //
       -nu / along, 1 / m.young, -m.poisson / m.young,  //
       -nu / along, -m.poisson / m.young, 1 / m.young;
-  const Mat3 c = compliance.inverse();
-  const SmallStrain across = small_strain(m);
+  return compliance;
+}
+
+/// What the fibres of a material are added to. Where patches share its volume their kappa is that
+/// of an even stress, 1 over the sum of the compliances: D - kappa 1 1^T is then positive
+/// semidefinite (Cauchy and Schwarz). With that of `young` and `poisson` it is not, and changes of
+/// volume that even out over a patch would yield energy.
+SmallStrain matrix_of(const Material& m) {
+  SmallStrain of = small_strain(m);
+  const bool shares = m.law == MaterialLaw::linear && m.volume == MaterialVolume::pooled;
+  if (!shares || m.fibres.empty() || m.fibres.front().guide_cracks()) return of;
+  const double kappa = 1 / compliance_along(m, m.fibres.front()).sum();
+  of.triple_bulk = 3 * kappa;
+  of.lambda = kappa - of.double_shear / 3;
+  return of;
+}
+
+/// Spencer's constants by the elasticity in the fibre's frame.
+AlongFibres along_fibres(const Material& m, const Fibres& f) {
+  const Mat3 c = compliance_along(m, f).inverse();
+  const SmallStrain across = matrix_of(m);
   AlongFibres of;
   of.alpha = c(0, 1) - c(1, 2);
   of.beta = c(0, 0) - c(1, 2) - 2 * of.alpha - 4 * *f.shear_along + 2 * across.mu;
@@ -279,7 +298,7 @@ void Problem::lay_guides() {
 void Problem::note_fibres() {
   small_strain_of_element_.clear();
   for (Index e = 0; fibres_ && e < tet_count(); ++e) {
-    SmallStrain of = small_strain_of_volume_[mesh().volume_of[e]];
+    SmallStrain of = matrix_of(material(e));
     const ElementFibres& fibres = (*fibres_)[static_cast<std::size_t>(e)];
     if (fibres.count > 0) of.fibres = &fibres;
     small_strain_of_element_.push_back(of);

@@ -63,23 +63,27 @@ TangentPattern::TangentPattern(const Problem& problem)
 void TangentPattern::add_patches(const HyperelasticBody& body,
                                  std::span<const PatchTangent> patches, double* values) const {
   const Index* made = patch_places_.data();
+  const Index whole = problem_.pools() ? problem_.pools()->count() : 0;
   std::vector<Index> found;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const PatchTangent& patch = patches[p];
-    const Pools& pools = *body.pools();
-    const Eigen::Index count =
-        3 * static_cast<Eigen::Index>(pools.nodes(problem_, static_cast<Index>(p)).size());
+    const auto id = static_cast<Index>(p);
     const Index* place = made;
-    if (!body.split) made += count * (count + 1) / 2;
+    if (id < whole) {
+      const auto count = 3 * problem_.pools()->nodes(problem_, id).size();
+      made += count * (count + 1) / 2;
+    }
     if (patch.b.size() == 0) continue;
-    if (body.split) {
+    const bool split =
+        id >= whole || body.pools()->elements(id).size() != problem_.pools()->elements(id).size();
+    if (split) {
       found.clear();
-      for_patch_pairs(problem_, pools, static_cast<Index>(p),
+      for_patch_pairs(problem_, *body.pools(), id,
                       [&](Index one, Index other) { found.push_back(place_of(one, other)); });
       place = found.data();
     }
-    for (Eigen::Index j = 0; j < count; ++j) {
-      for (Eigen::Index i = j; i < count; ++i, ++place) {
+    for (Eigen::Index j = 0; j < patch.b.size(); ++j) {
+      for (Eigen::Index i = j; i < patch.b.size(); ++i, ++place) {
         if (*place != kNone) values[*place] += patch.factor * patch.b[i] * patch.b[j];
       }
     }

@@ -235,14 +235,24 @@ bool FiniteStatics::by_new_factors(const FiniteTarget& target, int most, Report&
 /// Where volumes are pooled that hardly change.
 bool FiniteStatics::by_kept_pressures(const FiniteTarget& target, Report& report) {
   if (!keeps_pressures_) return false;
+  // What a patch has lost since makes J jump, but not the pressure that the body keeps.
+  if (pressures_.size() != static_cast<std::size_t>(resting_.body().pools()->count())) {
+    note_pressures();
+  }
   probe_.u = predicted_;
   potential_.evaluate(target, false, probe_);
-  if (!newton_with_pressures({potential_, minimiser_, pattern_.get()}, target, u_, kNearRest,
-                             options_.most_factors, probe_, report.factors)) {
+  if (!newton_with_pressures({potential_, minimiser_, pattern_.get()}, target, pressures_,
+                             kNearRest, options_.most_factors, probe_, report.factors)) {
     return false;
   }
   std::swap(state_, probe_);
   return by_new_factors(target, kFactorsToFinish, report);
+}
+
+/// Of the last state at rest.
+void FiniteStatics::note_pressures() {
+  const fem::PatchVolumes volumes(resting_.body(), u_);
+  pressures_.assign(volumes.pressure().begin(), volumes.pressure().end());
 }
 
 /// From the last state at rest; false: not found, and that state stays.
@@ -268,6 +278,7 @@ void FiniteStatics::rest_at(const FiniteTarget& target) {
   reached_ = target;
   acting_ = state_.acting;
   std::swap(shown_, state_);
+  if (keeps_pressures_) note_pressures();
 }
 
 /// From state_, at rest, to a stable one. The lowest mode decides to which side: that on which its

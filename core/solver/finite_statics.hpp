@@ -106,6 +106,7 @@ class FiniteStatics {
   void move_grips(const FiniteTarget& target);
   [[nodiscard]] bool minimise(const FiniteTarget& target, int most, Report& report);
   [[nodiscard]] bool by_kept_pressures(const FiniteTarget& target, Report& report);
+  void note_pressures();
   [[nodiscard]] bool by_new_factors(const FiniteTarget& target, int most, Report& report);
   [[nodiscard]] bool leave_saddle(const FiniteTarget& target, Report& report);
   [[nodiscard]] bool push(const FiniteTarget& target, const Eigen::VectorXd& mode);
@@ -132,7 +133,8 @@ class FiniteStatics {
   FiniteTarget step_begin_target_;
   double climbed_ = 0;  // share of its load at which a rest was found
   FiniteState shown_, state_, probe_;
-  std::vector<double> predicted_;  // where an approach began, with kept pressures
+  // With kept pressures: where an approach began, and those of the last state at rest.
+  std::vector<double> predicted_, pressures_;
   Eigen::VectorXd motion_, following_;
   std::unique_ptr<FiniteBase> base_;
   bool parted_ = false;     // a base that is made within a step keeps no inverse

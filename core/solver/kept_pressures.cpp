@@ -12,6 +12,8 @@ namespace {
 
 // Tangents in a row that are not definite: the way out of there is not Newton's.
 constexpr int kMostTurns = 1;
+// Steps in a row that make the residual worse.
+constexpr int kMostWorse = 1;
 
 /// U'(J) + U''/V b . du of each patch at u.
 std::vector<double> pressures_after(const fem::HyperelasticBody& body, std::span<const double> u,
@@ -53,13 +55,13 @@ bool find_step(const PressureNewton& by, const fem::PatchVolumes& volumes, fem::
 }  // namespace
 
 bool newton_with_pressures(const PressureNewton& by, const FiniteTarget& target,
-                           const std::vector<double>& from, double enough, int most,
+                           std::vector<double> pressure, double enough, int most,
                            FiniteState& state, int& factors) {
   const fem::HyperelasticBody& body = by.potential.resting().body();
-  const auto at_rest = fem::PatchVolumes(body, from).pressure();
-  std::vector<double> pressure(at_rest.begin(), at_rest.end());
+  const double potential = state.potential;
+  double before = by.minimiser.residual(state);
   Eigen::VectorXd du;
-  int turns = 0;
+  int turns = 0, worse = 0;
   for (int i = 0; i < most; ++i) {
     const fem::PatchVolumes volumes(body, state.u, pressure);
     if (find_step(by, volumes, fem::Tangent::exact, state, du, factors)) {
@@ -74,7 +76,10 @@ bool newton_with_pressures(const PressureNewton& by, const FiniteTarget& target,
     by.potential.evaluate(target, false, state);
     const double residual = by.minimiser.residual(state);
     if (!std::isfinite(residual) || !std::isfinite(state.potential)) return false;
-    if (residual <= enough) return true;
+    if (residual <= enough) return state.potential <= potential;
+    worse = i > 0 && residual > before ? worse + 1 : 0;  // the first one leaves a rest
+    if (worse > kMostWorse) return false;
+    before = residual;
   }
   return false;
 }

@@ -18,11 +18,12 @@ struct PressureNewton {
   const fem::TangentPattern& pattern;
 };
 
-/// From an evaluated state, with the pressures that patches have at `from` (3 * nodes), until the
-/// residual is no more than `enough` of the forces that act. False: `most` factors do not do, or
-/// one is not positive definite; the state is then of no use.
+/// From an evaluated state, with the pressures that patches had at rest, until the residual is no
+/// more than `enough` of the forces that act. False: `most` steps do not do, two in a row have made
+/// it worse, a tangent is not positive definite, or the potential is more than it was; the state is
+/// then of no use.
 [[nodiscard]] bool newton_with_pressures(const PressureNewton& by, const FiniteTarget& target,
-                                         const std::vector<double>& from, double enough, int most,
+                                         std::vector<double> pressure, double enough, int most,
                                          FiniteState& state, int& factors);
 
 }  // namespace sunder::solver

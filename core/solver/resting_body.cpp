@@ -43,11 +43,14 @@ void RestingBody::look() {
   if (problem.pools()) split_pools();
 }
 
-/// The same object as long as the same pieces have come off.
+/// The same object as long as live elements share the same patches.
 void RestingBody::split_pools() {
-  auto split = resting_.problem.pools()->split([this](Index e) { return search_.body_of(e); });
-  if (split && resting_.split && *split == *resting_.split) return;
-  resting_.split = std::move(split);
+  const fem::Pools& pools = *resting_.problem.pools();
+  auto split = pools.split([this](Index e) { return out_[e] ? kNone : search_.body_of(e); });
+  const fem::Pools &now = split ? *split : pools, &before = *resting_.pools();
+  Index e = 0;
+  while (e < resting_.problem.tet_count() && (out_[e] || now.of(e) == before.of(e))) ++e;
+  if (e < resting_.problem.tet_count()) resting_.split = std::move(split);
 }
 
 }  // namespace sunder::solver

@@ -7,6 +7,7 @@
 #include "body/pools.hpp"
 #include "cpu_reference/cpu_reference.hpp"
 #include "gpu_body.hpp"
+#include "sunder/simulation.hpp"
 #include "support/pooled_body.hpp"
 
 namespace sunder::test {
@@ -176,6 +177,58 @@ INSTANTIATE_TEST_SUITE_P(
                     PooledWay{"gpu_neo_hookean_moves", MaterialLaw::neo_hookean, true,
                               Route::inverse, false, gpu::Variant::gpu}),
     [](const auto& tested) { return std::string(tested.param.name); });
+
+class PooledPieces : public WithVulkan<> {};
+
+// A piece that flies off through patches has patches of its own, on the device too, and none any
+// more when it is back.
+TEST_F(PooledPieces, FlyAsOnTheProcessor) {
+  Scene scene = pooled_board(0.49);
+  for (auto& [name, material] : scene.materials) {
+    material.law = MaterialLaw::neo_hookean;
+    material.density = 1e-9;
+  }
+  std::get<Pull>(scene.instruments[0].action).force = Vec3(0, -5, 0);
+  scene.dynamics = Dynamics{.time_step = 1e-4, .stiffness_damping = 1e-4};
+  scene.fracture.model = FractureModel::none;
+  scene.live = true;
+  scene.steps = 1000;
+  scene.solver = {.backend = "cpu", .tolerance = 1e-9};
+  const auto reference = std::make_shared<const Problem>(scene);
+  const WatchedBackend vulkan(
+      scene, {.precision = Precision::fp64, .update = Update::automatic, .tolerance = 1e-9});
+  Simulation expected(reference, cpu_reference::create(reference, needs_of(*reference))),
+      found(vulkan.problem, vulkan.create());
+  expected.keep_history([&] { return cpu_reference::create(reference, needs_of(*reference)); });
+  found.keep_history([&] { return vulkan.create(); });
+  const auto both = [&](const char* when) {
+    const auto u = found.displacement(), exact = expected.displacement();
+    const auto s = found.stress(), right = expected.stress();
+    double most = 0, apart = 0, largest = 0, wrong = 0;
+    for (std::size_t n = 0; n < u.size(); ++n) {
+      most = std::max(most, exact[n].norm());
+      apart = std::max(apart, (u[n] - exact[n]).norm());
+    }
+    for (std::size_t e = 0; e < s.size(); ++e) {
+      largest = std::max(largest, right[e].norm());
+      wrong = std::max(wrong, (s[e] - right[e]).norm());
+    }
+    EXPECT_LE(apart, 1e-6 * most) << when;
+    EXPECT_LE(wrong, 1e-6 * largest) << when;
+  };
+  const CutAcross cut = cut_through_a_patch(*reference);
+  for (Simulation* of : {&expected, &found}) of->step();
+  both("whole");
+  for (Simulation* of : {&expected, &found}) of->remove(cut.elements);
+  for (int step = 0; step < 3; ++step) {
+    for (Simulation* of : {&expected, &found}) of->step();
+    both("cut");
+  }
+  for (Simulation* of : {&expected, &found}) of->undo(4);
+  for (Simulation* of : {&expected, &found}) of->step();
+  both("whole again");
+  EXPECT_EQ(found.destroyed().size(), 0U);
+}
 
 class PooledRefusals : public WithVulkan<> {
  protected:

@@ -2,6 +2,8 @@
 // A body of pooled volume computed anew: what updates along fractures are held against.
 #pragma once
 
+#include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 #include "body/assembly.hpp"
@@ -38,6 +40,39 @@ inline std::vector<Voigt> pooled_stress(const fem::DamagedBody& body, std::span<
     stress.push_back(body.scale()[static_cast<std::size_t>(e)] * field.of(e));
   }
   return stress;
+}
+
+/// Elements that reach over a height y, and how many patches have elements left on both sides.
+struct CutAcross {
+  CutAcross(const Problem& problem, double y) : height(y) {
+    const auto nodes = [&](Index e, bool above) {
+      const auto& tet = problem.mesh().tets[static_cast<std::size_t>(e)];
+      return std::ranges::any_of(tet, [&](Index n) {
+        return (problem.mesh().nodes[static_cast<std::size_t>(n)].y() >= y) == above;
+      });
+    };
+    for (Index p = 0; p < problem.pools()->count(); ++p) {
+      bool above = false, below = false;
+      for (Index e : problem.pools()->elements(p)) {
+        const bool up = nodes(e, true), down = nodes(e, false);
+        if (up && down) elements.push_back(e);
+        if (up != down) (up ? above : below) = true;
+      }
+      shared += above && below ? 1 : 0;
+    }
+  }
+  std::vector<Index> elements;
+  int shared = 0;
+  double height;
+};
+
+/// The lowest of some heights at which such a cut leaves a patch with elements on both sides.
+inline CutAcross cut_through_a_patch(const Problem& problem) {
+  for (double y = 10; y < 40; y += 0.37) {
+    CutAcross cut(problem, y);
+    if (cut.shared > 0) return cut;
+  }
+  throw std::logic_error("no patch reaches over a cut");
 }
 
 /// By a factor of the body as it is, refined twice.

@@ -395,6 +395,30 @@ TEST(PooledLaw, AtRestIsThePooledLinearLaw) {
   }
 }
 
+// Stiff fibres by law linear: what patches share is no more than an even stress meets.
+TEST(PooledLaw, LinearFibresYieldNoEnergyAtRest) {
+  for (const double times : {4.0, 10.0, 50.0}) {
+    Scene scene = with_fibres(pooled_block(0.45, false, true, MaterialLaw::linear));
+    Scene element = scene;
+    for (auto* of : {&scene, &element}) {
+      for (auto& [name, material] : of->materials) {
+        material.fibres[0].young_along = times * material.young;
+        material.fibres[0].poisson_along = 0.45;
+        if (of == &element) material.volume = MaterialVolume::element;
+      }
+    }
+    const SomeBody of(scene), alone(element);
+    const std::vector<double> none(of.problem.dofs().size(), 0.0);
+    const Eigen::MatrixXd k = tangent_of(of, none, Tangent::exact);
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues();
+    EXPECT_GE(values[0], -1e-12 * values[values.size() - 1]) << times;
+    // An even strain has the same energy, whoever shares what.
+    const std::vector<double> u = moved_by(of.problem.mesh(), some_shear(), 0);
+    EXPECT_NEAR(energy(of.body(), u), energy(alone.body(), u), 1e-12 * energy(of.body(), u));
+  }
+}
+
 TEST(PooledLaw, KnowsNoVolumeBelowNone) {
   const SomeBody of(pooled_block(0.4));
   std::vector<double> u = moved_by(of.problem.mesh(), Mat3(Vec3(1, 1, -0.1).asDiagonal()), 0);

@@ -153,29 +153,6 @@ TEST(Pooled, ATearingRunOfAFiniteLawIsInEquilibriumAndGoesBack) {
   tear_and_go_back(MaterialLaw::neo_hookean, Route::inverse, 0.49, 18, 0.08);
 }
 
-/// Elements that reach over a height y, and how many patches have elements left on both sides.
-struct CutAcross {
-  CutAcross(const Problem& problem, double y) {
-    const auto nodes = [&](Index e, bool above) {
-      const auto& tet = problem.mesh().tets[static_cast<std::size_t>(e)];
-      return std::ranges::any_of(tet, [&](Index n) {
-        return (problem.mesh().nodes[static_cast<std::size_t>(n)].y() >= y) == above;
-      });
-    };
-    for (Index p = 0; p < problem.pools()->count(); ++p) {
-      bool above = false, below = false;
-      for (Index e : problem.pools()->elements(p)) {
-        const bool up = nodes(e, true), down = nodes(e, false);
-        if (up && down) elements.push_back(e);
-        if (up != down) (up ? above : below) = true;
-      }
-      shared += above && below ? 1 : 0;
-    }
-  }
-  std::vector<Index> elements;
-  int shared = 0;
-};
-
 /// A piece that shares patches with what stays is warned about, and no other.
 TEST(Pooled, APieceThatComesOffThroughPatchesIsToldOf) {
   Scene scene = routed_board(Route::factor, 0.499);
