@@ -18,6 +18,11 @@ constexpr double kColumns = 1.75;
 constexpr double kFewestColumns = 64;
 // The same where an element shares its volume with a patch, whose nodes come with it.
 constexpr double kPooledColumns = 8, kFewestPooledColumns = 256;
+// A crack that splits patches changes what the border of the new nodes rests on, which costs
+// columns times columns times new unknowns: a new base comes soon, and a step waits for it if need
+// be.
+constexpr double kSplitColumns = 30;
+constexpr int kMostSplitFrames = 6;
 // Columns beyond those that a base is expected to serve, in fractures of several elements.
 constexpr Index kSpare = 64;
 
@@ -45,8 +50,10 @@ class DeferredRoute final : public InverseRoute {
       return;
     }
     const bool pools = body.problem().pools() != nullptr;
-    const double each = pools ? kPooledColumns : kColumns;
-    const int frames = solver::frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
+    const bool splits = pools && body.problem().scene().fracture.crack == CrackWay::split;
+    const double each = splits ? kSplitColumns : pools ? kPooledColumns : kColumns;
+    const int of_factor = solver::frames_of_a_factor(intact.factor.cholesky(), body.scale().size());
+    const int frames = splits ? std::min(of_factor, kMostSplitFrames) : of_factor;
     solver::Renewal renewal;
     renewal.events = frames;
     renewal.rest = rest;

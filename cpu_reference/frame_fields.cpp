@@ -164,7 +164,7 @@ void FrameFields::change(const fem::Change& change) {
   moves(nodal_);
   moves(next_nodal_);
   if (has_forces()) nodal_forces_.resize(all);
-  if (kernel_) kernel_->change(change.come);
+  if (kernel_) kernel_->change(change.come, body_.forms());
 }
 
 void FrameFields::read_displacement(std::span<double> displacement) const {

@@ -161,6 +161,12 @@ Form Forms::of(Index element) const {
   return in_mesh;
 }
 
+const std::array<Index, 4>& Forms::corners(Index element) const {
+  const auto form = came_.find(element);
+  return form != came_.end() ? form->second.corners
+                             : problem_->mesh().tets[static_cast<std::size_t>(element)];
+}
+
 std::array<Index, 4> Forms::parents(const std::array<Index, 4>& corners) const {
   std::array<Index, 4> nodes = corners;
   for (Index& n : nodes) {

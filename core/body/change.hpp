@@ -122,6 +122,8 @@ class Forms {
   [[nodiscard]] std::span<const Index> own_gripped() const {
     return std::span(gripped_).first(own_gripped_);
   }
+  /// Of an element of the mesh, as it stands.
+  [[nodiscard]] const std::array<Index, 4>& corners(Index element) const;
   /// The corners' nodes of the mesh: a new node's is its parent.
   [[nodiscard]] std::array<Index, 4> parents(const std::array<Index, 4>& corners) const;
   [[nodiscard]] const Problem& problem() const { return *problem_; }

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "body/pooled_law.hpp"
 #include "material/finite_stress.hpp"
+#include "material/linear.hpp"
 #include "sunder/stress_measures.hpp"
 
 namespace sunder::fem {
@@ -56,6 +58,27 @@ Voigt named_stress(const Problem& problem, Index e,
 Voigt material_stress(const Problem& problem, Index e,
                       const Eigen::Matrix<double, 3, 4>& displacement) {
   return stress_by(problem, e, displacement, StressMeasure::biot);
+}
+
+PooledStress pooled_stress(const Problem& problem, Index e, const Mat3& f,
+                           const PatchChange& patch) {
+  const Law& law = law_of(problem, e);
+  const SmallStrain& constants = problem.small_strain(e);
+  if (!law.split) return {law.energy(constants, f), law.stress(constants, f)};
+  const VolumeSplit::Volume volume = law.split->volume(constants, patch.j);
+  return {law.split->shape_energy(constants, f) + volume.energy,
+          law.split->shape_stress(constants, f) + volume.pressure * cofactor(f)};
+}
+
+Voigt material_stress(const Problem& problem, Index e,
+                      const Eigen::Matrix<double, 3, 4>& displacement, const PatchChange& patch) {
+  const Mat3 f = gradient(problem.shape(e), displacement);
+  if (problem.material(e).law == MaterialLaw::linear) {
+    Mat3 h = f - Mat3::Identity();
+    h.diagonal().array() += (patch.theta - h.trace()) / 3;
+    return stress(problem.small_strain(e), h);
+  }
+  return biot_stress(pooled_stress(problem, e, f, patch).stress, f);
 }
 
 Eigen::Matrix<double, 3, 4> corner_forces(const Problem& problem, Index e,

@@ -21,6 +21,23 @@ namespace sunder::fem {
 [[nodiscard]] Voigt material_stress(const Problem& problem, Index e,
                                     const Eigen::Matrix<double, 3, 4>& displacement);
 
+/// Of a patch of pooled volume, means over its elements by volume and share.
+struct PatchChange {
+  double theta = 0;  ///< tr grad u
+  double j = 1;      ///< det F
+};
+/// The same of an element that shares the volume of such a patch.
+[[nodiscard]] Voigt material_stress(const Problem& problem, Index e,
+                                    const Eigen::Matrix<double, 3, 4>& displacement,
+                                    const PatchChange& patch);
+/// Energy [MPa] and P of an element that shares a patch's volume, by a law of finite deformation.
+struct PooledStress {
+  double energy;
+  Mat3 stress;
+};
+[[nodiscard]] PooledStress pooled_stress(const Problem& problem, Index e, const Mat3& f,
+                                         const PatchChange& patch);
+
 /// Forces on the corners [N] that the element resists its deformation with, from the displacement
 /// at all nodes (3 * nodes). Of a destroyed one a share alpha, and none at finite deformation, in
 /// motion and where there are fibres.

@@ -51,6 +51,17 @@ PatchVolumes::PatchVolumes(const HyperelasticBody& body, std::span<const double>
   if (!pressure.empty()) pressure_.assign(pressure.begin(), pressure.end());
 }
 
+void PatchVolumes::part(const Pools& was, const Pools& is) {
+  const PatchVolumes whole = std::move(*this);
+  *this = {};
+  for (Index p = 0; p < is.count(); ++p) {
+    const auto of = static_cast<std::size_t>(was.of(is.elements(p).front()));
+    energy_.push_back(0);
+    pressure_.push_back(whole.pressure_[of]);
+    stiffness_.push_back(whole.stiffness_[of]);
+  }
+}
+
 double patch_pressure(const HyperelasticBody& body, Index patch, std::span<const double> u) {
   return volume_of(body, patch, u).found.pressure;
 }

@@ -21,6 +21,9 @@ class PatchVolumes {
   PatchVolumes(const HyperelasticBody& body, std::span<const double> u,
                std::span<const double> pressure = {});
 
+  /// Patches have been split: each part has what its whole had, but for the energy, which is 0.
+  void part(const Pools& was, const Pools& is);
+
   /// Sum of V_p U(J_p) [N mm]; infinite where a law knows no such volume.
   [[nodiscard]] double energy() const;
   /// U'(J_p) of each patch [MPa].

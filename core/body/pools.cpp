@@ -236,6 +236,58 @@ std::shared_ptr<const Pools> Pools::split(const std::function<Index(Index)>& bod
   return made;
 }
 
+Pools::Pools(const Pools& whole, const CornersOf& corners, std::span<const Index> changed)
+    : of_(whole.of_), bulk_(whole.bulk_), small_(whole.small_) {
+  std::vector<Index> touched;
+  whole.of(changed, touched);
+  std::vector<std::vector<Index>> patches;
+  for (Index p = 0; p < whole.count(); ++p) {
+    patches.emplace_back(whole.elements(p).begin(), whole.elements(p).end());
+  }
+  for (Index p : touched) {
+    auto parts = whole.parts(p, corners);
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      bulk_.push_back(whole.bulk(p));
+      for (Index e : parts[i]) {
+        of_[static_cast<std::size_t>(e)] = static_cast<Index>(patches.size());
+      }
+      patches.push_back(std::move(parts[i]));
+    }
+    patches[static_cast<std::size_t>(p)] = std::move(parts.front());
+  }
+  begin_.push_back(0);
+  for (const std::vector<Index>& patch : patches) {
+    elements_.insert(elements_.end(), patch.begin(), patch.end());
+    begin_.push_back(elements_.size());
+  }
+}
+
+std::vector<std::vector<Index>> Pools::parts(Index patch, const CornersOf& corners) const {
+  const auto all = elements(patch);
+  const auto hang_together = [&](Index a, Index b) {
+    const auto &one = corners(a), &two = corners(b);
+    return std::ranges::count_if(
+               one, [&](Index n) { return std::ranges::find(two, n) != two.end(); }) >= 3;
+  };
+  std::vector<std::uint8_t> seen(all.size(), 0);
+  std::vector<std::vector<Index>> parts;
+  for (std::size_t first = 0; first < all.size(); ++first) {
+    if (seen[first]) continue;
+    seen[first] = 1;
+    std::vector<Index> part{all[first]};
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      for (std::size_t other = 0; other < all.size(); ++other) {
+        if (seen[other] || !hang_together(part[i], all[other])) continue;
+        seen[other] = 1;
+        part.push_back(all[other]);
+      }
+    }
+    std::ranges::sort(part);
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
 std::vector<Index> Pools::nodes(const Problem& problem, Index patch) const {
   std::vector<Index> nodes;
   for (Index e : elements(patch)) {
@@ -263,19 +315,42 @@ std::shared_ptr<const Pools> pools_of(const Problem& problem) {
   return nullptr;
 }
 
-void append_pressure(const Problem& problem, Index patch, const ShareOf& share,
-                     std::vector<StiffnessPart>& parts) {
-  const Pools& pools = *problem.pools();
-  const auto elements = pools.elements(patch);
-  const double root = std::sqrt(pools.bulk(patch) / volume(problem, elements, share));
+std::shared_ptr<const Pools> parted_pools(const Problem& problem,
+                                          const std::shared_ptr<const Pools>& whole,
+                                          std::span<const std::array<Index, 4>> corners) {
+  if (!whole) return nullptr;
+  std::vector<Index> changed;
+  for (std::size_t e = 0; e < corners.size(); ++e) {
+    if (corners[e] != problem.mesh().tets[e]) changed.push_back(static_cast<Index>(e));
+  }
+  if (changed.empty()) return whole;
+  const auto now = [&](Index e) -> const std::array<Index, 4>& {
+    return corners[static_cast<std::size_t>(e)];
+  };
+  return std::make_shared<const Pools>(*whole, now, changed);
+}
+
+void append_pressure(const Problem& problem, std::span<const Index> elements, Index number,
+                     const ShareOf& share, std::vector<StiffnessPart>& parts) {
+  const double bulk = problem.pools()->bulk(problem.pools()->of(elements.front()));
+  const double root = std::sqrt(bulk / volume(problem, elements, share));
   for (Index e : elements) {
     StiffnessPart& part = parts.emplace_back();
     part.nodes = problem.mesh().tets[static_cast<std::size_t>(e)];
-    part.patch = patch;
+    part.patch = number;
     part.u.setZero();
     const TetShape& shape = problem.shape(e);
     part.u.col(0) = root * share(e) * shape.volume *
                     Eigen::Map<const Eigen::Matrix<double, 12, 1>>(shape.gradient.data());
+  }
+}
+
+void append_pressure(const Problem& problem, Index patch, const Pools::CornersOf& corners,
+                     const ShareOf& share, std::vector<StiffnessPart>& parts) {
+  Index number = patch;
+  for (const std::vector<Index>& part : problem.pools()->parts(patch, corners)) {
+    append_pressure(problem, part, number, share, parts);
+    number += problem.pools()->count();
   }
 }
 

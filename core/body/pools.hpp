@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pooled volume (method.md "Pooled volume"): patches of elements of one material that change their
 // volume as one. Each element keeps its deviator, the patch has one pressure; so linear tetrahedra
-// do not lock where tissue is nearly incompressible. Patches are made once, of the intact mesh.
+// do not lock in nearly incompressible tissue. They are made once, intact; cracks split them.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -24,6 +25,16 @@ class Pools {
   /// Of the elements whose material pools its volume: joined by faces, of one volume of the mesh,
   /// the same for the same mesh on any machine but for the last digits of its coordinates.
   explicit Pools(const Problem& problem);
+  /// Corners of an element, as cracks have split the body.
+  using CornersOf = std::function<const std::array<Index, 4>&(Index element)>;
+  /// The same patches where nodes have parted: of one whose elements no longer hang together by
+  /// faces each part is a patch. The part with the first element keeps its number, the others
+  /// follow after all patches that there were. `changed`: elements whose corners differ from those
+  /// that they had in `whole`.
+  Pools(const Pools& whole, const CornersOf& corners, std::span<const Index> changed);
+
+  /// Elements of a patch that hang together by faces with these corners, by their first ones.
+  [[nodiscard]] std::vector<std::vector<Index>> parts(Index patch, const CornersOf& corners) const;
 
   /// The same patches with each split by the body that its elements belong to (kNone: to none,
   /// which then stay with the first): the body of its first element keeps its number, others follow
@@ -65,10 +76,18 @@ class Pools {
 /// Share of stiffness of an element.
 using ShareOf = std::function<double(Index element)>;
 
-/// The patch's stiffness kappa / V_p b_p b_p^T, V_p = sum a_e V_e, b_p = sum a_e V_e grad N, as
-/// parts, one an element, whose first columns add up to one vector (StiffnessPart::patch).
-void append_pressure(const Problem& problem, Index patch, const ShareOf& share,
-                     std::vector<StiffnessPart>& parts);
+/// Patches as cracks have split the body: those of its problem where none is split.
+[[nodiscard]] std::shared_ptr<const Pools> parted_pools(
+    const Problem& problem, const std::shared_ptr<const Pools>& whole,
+    std::span<const std::array<Index, 4>> corners);
+
+/// The stiffness kappa / V_p b_p b_p^T of a patch, V_p = sum a_e V_e, b_p = sum a_e V_e grad N, as
+/// parts, one an element, whose first columns add up to one vector. `number`: StiffnessPart::patch.
+void append_pressure(const Problem& problem, std::span<const Index> elements, Index number,
+                     const ShareOf& share, std::vector<StiffnessPart>& parts);
+/// The same of each part of a patch whose elements have these corners.
+void append_pressure(const Problem& problem, Index patch, const Pools::CornersOf& corners,
+                     const ShareOf& share, std::vector<StiffnessPart>& parts);
 
 /// Sum of kappa / V_p b_p b_p^T over the unknowns: lower triangle. `scale`: a_e of each element;
 /// empty: intact.

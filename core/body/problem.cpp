@@ -214,6 +214,7 @@ Problem::Problem(const Problem& whole, std::vector<std::array<Index, 4>> corners
       anchor_stiffness_(whole.anchor_stiffness_) {
   resolve_materials();
   Mesh& mesh = scene_.mesh;
+  pools_ = fem::parted_pools(whole, whole.pools_, corners);
   mesh.tets = std::move(corners);
   take_fibres(whole, {});
   for (const NodeThatParts& node : nodes) {
@@ -417,13 +418,6 @@ void Problem::build_shapes() {
 /// Past it linear tetrahedra lock: figures in docs/limits.md.
 constexpr double kLocks = 0.49;
 
-namespace {
-
-constexpr const char* kPools =
-    " has volume = \"pooled\", which is there with model \"none\", \"A\" or \"P\", but ";
-
-}  // namespace
-
 void Problem::make_pools() {
   std::vector<std::uint8_t> used(mesh().volumes.size(), 0);
   for (Index v : mesh().volume_of) used[static_cast<std::size_t>(v)] = 1;
@@ -431,14 +425,12 @@ void Problem::make_pools() {
     if (!used[v]) continue;
     const Material& material = *material_of_volume_[v];
     const std::string what = "material " + in_quotes(mesh().volumes[v].name);
-    if (material.volume == MaterialVolume::pooled) {
-      check_pooled(what);
-    } else if (material.poisson > kLocks) {
+    if (material.volume == MaterialVolume::element && material.poisson > kLocks) {
       warnings_.push_back(what + " has poisson = " + in_digits(material.poisson) +
                           " with volume = \"element\": linear tetrahedra lock over 0.49, a thick "
                           "cylinder is 4 % too stiff at 0.49, 16 % at 0.499 and 24 % at 0.4999, "
-                          "thin layers many times (docs/verification.md)" +
-                          (can_pool() ? "; volume = \"pooled\" does not" : ""));
+                          "thin layers many times (docs/verification.md); volume = \"pooled\" does "
+                          "not");
     }
   }
   pools_ = fem::pools_of(*this);
@@ -448,16 +440,6 @@ void Problem::make_pools() {
                         " elements: pieces of a material that has no more; they are too stiff, as "
                         "with volume = \"element\" (docs/limits.md)");
   }
-}
-
-/// Whether anything of the scene but laws speaks against pooled volume.
-bool Problem::can_pool() const { return !row_of(scene_.fracture.model).grows_cracks; }
-
-void Problem::check_pooled(const std::string& what) const {
-  if (can_pool()) return;
-  throw InputError(InputFault::out_of_range,
-                   what + kPools + "model " + in_quotes(row_of(scene_.fracture.model).name) +
-                       " grows cracks; take volume = \"element\" or model \"A\"");
 }
 
 void Problem::resolve_elements() {

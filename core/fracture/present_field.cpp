@@ -8,7 +8,7 @@
 namespace sunder::fracture {
 
 PresentField::PresentField(const Problem& problem, const Board& board)
-    : problem_(problem), board_(board) {
+    : problem_(problem), board_(board), patches_(problem) {
   if (problem.scene().fracture.sigma0 != RemoteStress::present) return;
   const std::size_t most = board.most_within(kNeighbourhood * board.h());
   near_.reserve(most);
@@ -26,6 +26,7 @@ std::optional<InPlane> PresentField::at(const Vec2& p) const {
   moved_.resize(corners_.size());
   (*displacement_)(corners_, moved_);
 
+  patches_.read(near_, {destroyed_, *displacement_, {}});
   Voigt sum = Voigt::Zero();
   double volume = 0;
   for (std::size_t i = 0; i < near_.size(); ++i) {
@@ -33,7 +34,7 @@ std::optional<InPlane> PresentField::at(const Vec2& p) const {
     Eigen::Matrix<double, 3, 4> u;
     for (int corner = 0; corner < 4; ++corner)
       u.col(corner) = moved_[4 * i + static_cast<std::size_t>(corner)];
-    sum += shape.volume * fem::material_stress(problem_, near_[i], u);
+    sum += shape.volume * stress_with(patches_, problem_, i, near_[i], u);
     volume += shape.volume;
   }
   return in_plane(sum / volume, board_.plane());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fracture/board.hpp"
+#include "fracture/patch_changes.hpp"
 #include "fracture/remote_field.hpp"
 #include "sunder/problem.hpp"
 
@@ -39,6 +40,7 @@ class PresentField final : public RemoteField {
   // Of the place being looked at: its elements, their corners, the corners' displacements.
   mutable std::vector<Index> near_, corners_;
   mutable std::vector<Vec3> moved_;
+  mutable PatchChanges patches_;
 };
 
 }  // namespace sunder::fracture

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fracture/board.hpp"
+#include "fracture/patch_changes.hpp"
 #include "fracture/remote_field.hpp"
 #include "sunder/problem.hpp"
 
@@ -17,7 +18,7 @@ class PristineField final : public RemoteField {
  public:
   /// `displacement` of the intact body, shape (3 * nodes), mm; must outlive the field.
   PristineField(const Problem& problem, const Board& board, std::span<const double> displacement)
-      : problem_(problem), board_(board), displacement_(displacement) {
+      : problem_(problem), board_(board), displacement_(displacement), patches_(problem) {
     near_.reserve(board.most_within(kNeighbourhood * board.h()));
   }
   /// From now on that of another displacement.
@@ -31,6 +32,7 @@ class PristineField final : public RemoteField {
   const Board& board_;
   std::span<const double> displacement_;
   mutable std::vector<Index> near_;  // of the place being looked at
+  mutable PatchChanges patches_;
 };
 
 }  // namespace sunder::fracture

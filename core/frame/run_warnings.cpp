@@ -97,11 +97,12 @@ std::vector<std::string> Simulation::warnings() const {
 /// In statics by law "linear" a patch of pooled volume is not split with its piece
 /// (docs/limits.md).
 void Simulation::add_shared_pressure(std::vector<std::string>& all) const {
-  const fem::Pools* const pools = problem_->pools();
-  if (!pools || problem_->finite() || problem_->moves() || problem_->fibrous() ||
+  if (!problem_->pools() || problem_->finite() || problem_->moves() || problem_->fibrous() ||
       now_.cut_off.empty()) {
     return;
   }
+  const auto parted = parted_now();  // a crack of split nodes splits patches too
+  const fem::Pools* const pools = parted ? parted->pools() : problem_->pools();
   long long shared = 0;
   for (Index p = 0; p < pools->count(); ++p) {
     bool held = false, loose = false;

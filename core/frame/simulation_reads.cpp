@@ -121,31 +121,56 @@ Vec3 Simulation::support_reaction() const {
   return sum;
 }
 
+/// The body as cracks have split it; null: as the mesh has it.
+std::shared_ptr<const Problem> Simulation::parted_now() const {
+  const auto corners = criterion_->corners();
+  if (corners.empty()) return nullptr;
+  std::vector<NodeThatParts> nodes(
+      static_cast<std::size_t>(backend_->node_count() - problem_->node_count()));
+  for (std::size_t e = 0; e < corners.size(); ++e) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Index added = corners[e][a] - problem_->node_count(),
+                  parent = problem_->mesh().tets[e][a];
+      if (added < 0) continue;
+      NodeThatParts& node = nodes[static_cast<std::size_t>(added)];
+      node = {parent, Axes{0}};
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool free = problem_->dof(parent, axis) != kNone;
+        node.axes.bits = static_cast<std::uint8_t>(node.axes.bits | (free ? 1U << axis : 0U));
+      }
+    }
+  }
+  return std::make_shared<const Problem>(
+      *problem_, std::vector<std::array<Index, 4>>(corners.begin(), corners.end()), nodes);
+}
+
 /// The same where patches have a pressure of all their elements' displacement.
 Vec3 Simulation::pooled_reaction(std::span<const Vec3> displacement) const {
   std::vector<double> u;
   u.reserve(3 * displacement.size());
   for (const Vec3& x : displacement) u.insert(u.end(), x.data(), x.data() + 3);
+  const auto parted = parted_now();
+  const Problem& body = parted ? *parted : *problem_;
   // By a law of its own each element counts whole or not at all, and a piece that is cut off shares
   // no patch with the rest.
   if (problem_->finite() || problem_->moves() || problem_->fibrous()) {
     std::vector<std::uint8_t> out(backend_->destroyed().begin(), backend_->destroyed().end());
     for (std::size_t e = 0; e < now_.cut_off.size(); ++e) out[e] |= now_.cut_off[e];
-    return forces_of_supports(*problem_, out, u);
+    return forces_of_supports(body, out, u);
   }
   std::vector<double> scale;
   scale.reserve(problem_->mesh().tets.size());
   for (std::uint8_t gone : backend_->destroyed()) {
     scale.push_back(gone ? problem_->scene().fracture.alpha : 1.0);
   }
-  const fem::StressField field(*problem_, scale, u);
+  const fem::StressField field(body, scale, u);
   Vec3 sum = Vec3::Zero();
-  for (Index e = 0; e < problem_->tet_count(); ++e) {
-    const auto& tet = problem_->mesh().tets[static_cast<std::size_t>(e)];
-    const auto held = [&](Index n, int axis) { return problem_->dof(n, axis) == kNone; };
+  for (Index e = 0; e < body.tet_count(); ++e) {
+    const auto& tet = body.mesh().tets[static_cast<std::size_t>(e)];
+    const auto held = [&](Index n, int axis) { return body.dof(n, axis) == kNone; };
     const auto at_support = [&](Index n) { return held(n, 0) || held(n, 1) || held(n, 2); };
     if (std::ranges::none_of(tet, at_support)) continue;
-    const auto forces = fem::corner_forces(*problem_, e, field, scale[static_cast<std::size_t>(e)]);
+    const auto forces = fem::corner_forces(body, e, field, scale[static_cast<std::size_t>(e)]);
     for (std::size_t a = 0; a < 4; ++a) {
       for (int axis = 0; axis < 3; ++axis) {
         if (held(tet[a], axis)) sum[axis] += forces(axis, static_cast<Eigen::Index>(a));

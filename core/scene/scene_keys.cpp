@@ -376,8 +376,8 @@ std::span<const MemberKey<Material>> material_keys() {
           "\"element\": each changes its volume by itself; \"pooled\": some 8 as one, so that "
           "nearly "
           "incompressible tissue does not lock (method.md \"Pooled volume\")",
-          "\"element\" with `poisson` over 0.49: warning; \"pooled\" with a model that grows "
-          "cracks: error; with a backend or route that cannot: exit code 4",
+          "\"element\" with `poisson` over 0.49: warning; \"pooled\" with a backend or route that "
+          "cannot: exit code 4",
           {.words = {"element", "pooled"}}),
   };
   return keys;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "body/element.hpp"
+#include "body/pools.hpp"
 #include "material/linear.hpp"
 #include "sunder/error.hpp"
 
@@ -29,6 +30,18 @@ Index Border::first_changed(const fem::Forms& forms, const fem::Event& event) {
   for (Index e : event.leave) {
     const auto at = corners_.find(e);
     if (at != corners_.end()) acts(at->second);
+  }
+  // Of a patch, what one element changes acts at the new nodes of all.
+  if (const fem::Pools* pools = forms.problem().pools()) {
+    std::vector<Index> elements(event.leave.begin(), event.leave.end()), patches;
+    for (const fem::Coming& c : event.come) elements.push_back(c.element);
+    pools->of(elements, patches);
+    for (Index patch : patches) {
+      for (Index e : pools->elements(patch)) {
+        const auto at = corners_.find(e);
+        if (at != corners_.end()) acts(at->second);
+      }
+    }
   }
   for (const fem::Tie& tie : event.ties) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -86,7 +99,66 @@ void Border::assemble(const fem::Forms& forms, DifferenceBasis& basis,
     const bool at_new = std::ranges::any_of(form.corners, [&](Index n) { return n >= first; });
     if (at_new && form.share > 0) add(forms, form, basis, of_basis, from);
   }
+  if (forms.problem().pools()) add_patches(forms, basis, of_basis, from);
   add_ties(from);
+}
+
+/// kappa / V_p b_p b_p^T of the patches with an element at new nodes.
+void Border::add_patches(const fem::Forms& forms, DifferenceBasis& basis,
+                         std::span<const Index> of_basis, Index from) {
+  const Problem& problem = forms.problem();
+  std::vector<Index> elements, patches;
+  for (const auto& [element, form] : forms.came()) {
+    for (Index column : own(forms, form.corners)) {
+      if (column >= from && form.share > 0) elements.push_back(element);  // kNone is less
+    }
+  }
+  problem.pools()->of(elements, patches);
+  const auto corners = [&](Index e) -> const std::array<Index, 4>& { return forms.corners(e); };
+  for (Index patch : patches) {
+    for (const std::vector<Index>& part : problem.pools()->parts(patch, corners)) {
+      add_patch(forms, part, basis, of_basis, from);
+    }
+  }
+}
+
+void Border::add_patch(const fem::Forms& forms, std::span<const Index> elements,
+                       DifferenceBasis& basis, std::span<const Index> of_basis, Index from) {
+  const auto share = [&](Index e) { return forms.share(e); };
+  std::vector<fem::StiffnessPart> parts;
+  fem::append_pressure(forms.problem(), elements, 0, share, parts);
+  on_old_.clear();
+  on_new_.clear();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::array<Index, 4>& corners = forms.corners(elements[i]);
+    basis.coordinates(forms.parents(corners), parts[i].u, rows_, y_);
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const Index row = of_basis[static_cast<std::size_t>(rows_[r])];
+      on_old_[row] += y_(static_cast<Eigen::Index>(r), 0);
+    }
+    const std::array<Index, 12> columns = own(forms, corners);
+    for (int j = 0; j < 12; ++j) {
+      const Index column = columns[static_cast<std::size_t>(j)];
+      if (column != kNone) on_new_[column] += parts[i].u(j, 0);
+    }
+  }
+  for (const auto& [column, value] : on_new_) {
+    if (column < from) continue;
+    for (const auto& [row, of_row] : on_old_) add_to_e(column, row, of_row * value);
+    for (const auto& [other, of_other] : on_new_) {
+      if (other <= column) f_(column, other) += value * of_other;
+    }
+  }
+}
+
+void Border::add_to_e(Index column, Index row, double value) {
+  auto& entries = e_[static_cast<std::size_t>(column)];
+  const auto there = std::ranges::find(entries, row, &Entry::row);
+  if (there == entries.end()) {
+    entries.push_back({row, value});
+  } else {
+    there->value += value;
+  }
 }
 
 /// Ties and springs between new nodes and their parents join F.
@@ -115,16 +187,9 @@ void Border::add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis
   for (int j = 0; j < 12; ++j) {
     const Index column = columns[static_cast<std::size_t>(j)];
     if (column < from) continue;  // kNone too
-    auto& entries = e_[static_cast<std::size_t>(column)];
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const Index row = of_basis[static_cast<std::size_t>(rows_[r])];
-      const double value = y_.row(static_cast<Eigen::Index>(r)).head<6>().dot(w.row(j));
-      const auto there = std::ranges::find(entries, row, &Entry::row);
-      if (there == entries.end()) {
-        entries.push_back({row, value});
-      } else {
-        there->value += value;
-      }
+      add_to_e(column, row, y_.row(static_cast<Eigen::Index>(r)).head<6>().dot(w.row(j)));
     }
     for (int i = 0; i < 12; ++i) {
       const Index other = columns[static_cast<std::size_t>(i)];

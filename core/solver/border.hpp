@@ -6,6 +6,8 @@
 //   [ E^T B^T    F   ] [d] = [f_d],   S = F - E^T B^T A^-1 B E.
 // With A^-1 = X + X B M B^T X and G = B^T X B (deferred.hpp) S = F - E^T H, H = G N,
 // N = E + M G E, and u = X (f + B x) with x = M p - N d, p = B^T X f, S d = f_d - N^T p.
+// A patch of pooled volume has one vector over all of its elements' nodes: its part on new unknowns
+// stands in E and F, that on old ones in A, which changes where a crack splits the patch.
 // An event changes few columns of E, the last ones: what came before them is kept, and the Cholesky
 // factor of S grows by a border of its own.
 #pragma once
@@ -78,6 +80,11 @@ class Border {
   void assemble(const fem::Forms& forms, DifferenceBasis& basis, std::span<const Index> of_basis,
                 Index from);
   void add_ties(Index from);
+  void add_patches(const fem::Forms& forms, DifferenceBasis& basis, std::span<const Index> of_basis,
+                   Index from);
+  void add_patch(const fem::Forms& forms, std::span<const Index> elements, DifferenceBasis& basis,
+                 std::span<const Index> of_basis, Index from);
+  void add_to_e(Index column, Index row, double value);
   void add(const fem::Forms& forms, const fem::Form& form, DifferenceBasis& basis,
            std::span<const Index> of_basis, Index from);
   void multiply(const linear_algebra::RowMajor& g, const linear_algebra::RowMajor& m,
@@ -100,6 +107,8 @@ class Border {
   std::vector<double> values_;
   std::vector<Index> rows_;
   linear_algebra::RowMajor y_;
+  // Of a patch of pooled volume: its vector by rows of B and by new unknowns.
+  std::map<Index, double> on_old_, on_new_;
 };
 
 }  // namespace sunder::solver

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "body/change.hpp"
+#include "body/pools.hpp"
 #include "body/stiffness_difference.hpp"
 #include "solver/base.hpp"
 #include "solver/border.hpp"
@@ -147,6 +148,13 @@ class Deferred {
   void collect(const fem::Event& event);
   void collect(const fem::StiffnessDifference& between);
   void collect_pressure(const fem::Event& event);
+  /// What decides the stiffness of patches of pooled volume.
+  struct PatchState {
+    fem::Pools::CornersOf corners;
+    fem::ShareOf share;
+  };
+  void collect_pressure(std::span<const Index> patches, const PatchState& before,
+                        const PatchState& after);
   [[nodiscard]] bool update(std::span<const Part> parts, bool more);
   void gather(std::span<const Part> parts);
   void gather_event(std::span<const Part> parts);

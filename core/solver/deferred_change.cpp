@@ -67,7 +67,8 @@ void Deferred::collect(const fem::Event& event) {
 }
 
 /// Of the patches whose elements an event changes: what they exerted, which goes, and what they
-/// exert after it, which comes. So the stiffness of what stays may grow where elements leave.
+/// exert after it, which comes. So the stiffness of what stays may grow where elements leave, and
+/// falls where a crack splits a patch.
 void Deferred::collect_pressure(const fem::Event& event) {
   pooled_.assign(event.leave.begin(), event.leave.end());
   for (const fem::Coming& c : event.come) pooled_.push_back(c.element);
@@ -79,9 +80,27 @@ void Deferred::collect_pressure(const fem::Event& event) {
     if (came != event.come.end()) return came->form.share;
     return std::ranges::find(event.leave, e) != event.leave.end() ? alpha : forms_.share(e);
   };
-  for (Index patch : patches_) {
-    fem::append_pressure(problem_, patch, before, less_);
-    fem::append_pressure(problem_, patch, after, more_);
+  const auto corners = [this](Index e) -> const std::array<Index, 4>& { return forms_.corners(e); };
+  const auto corners_after = [&](Index e) -> const std::array<Index, 4>& {
+    const auto came = std::ranges::find(event.come, e, &fem::Coming::element);
+    return came != event.come.end() ? came->form.corners : forms_.corners(e);
+  };
+  collect_pressure(patches_, {corners, before}, {corners_after, after});
+}
+
+/// Of those patches that are not the same: their elements' shares differ, or which of them hang
+/// together.
+void Deferred::collect_pressure(std::span<const Index> patches, const PatchState& before,
+                                const PatchState& after) {
+  const fem::Pools& pools = *problem_.pools();
+  for (Index patch : patches) {
+    const auto changes = [&](Index e) { return before.share(e) != after.share(e); };
+    if (std::ranges::none_of(pools.elements(patch), changes) &&
+        pools.parts(patch, before.corners) == pools.parts(patch, after.corners)) {
+      continue;
+    }
+    fem::append_pressure(problem_, patch, before.corners, before.share, less_);
+    fem::append_pressure(problem_, patch, after.corners, after.share, more_);
   }
 }
 
@@ -121,15 +140,19 @@ void Deferred::collect_all() {
   for (const auto& [element, form] : forms_.came()) {
     collect(fem::difference(in_base_, forms_, element));
   }
-  const fem::Pools* pools = problem_.pools();
-  for (Index patch = 0; pools && patch < pools->count(); ++patch) {
-    const auto differs = [this](Index e) { return in_base_.share(e) != forms_.share(e); };
-    if (!std::ranges::any_of(pools->elements(patch), differs)) continue;
-    fem::append_pressure(
-        problem_, patch, [this](Index e) { return in_base_.share(e); }, less_);
-    fem::append_pressure(
-        problem_, patch, [this](Index e) { return forms_.share(e); }, more_);
+  if (!problem_.pools()) return;
+  pooled_.clear();
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    if (in_base_.share(e) != forms_.share(e) || in_base_.corners(e) != forms_.corners(e)) {
+      pooled_.push_back(e);
+    }
   }
+  problem_.pools()->of(pooled_, patches_);
+  const auto of = [](const fem::Forms& forms) {
+    return PatchState{[&forms](Index e) -> const std::array<Index, 4>& { return forms.corners(e); },
+                      [&forms](Index e) { return forms.share(e); }};
+  };
+  collect_pressure(patches_, of(in_base_), of(forms_));
 }
 
 /// D element by element: what has come back leaves no rounding of its own stiffness in that of its

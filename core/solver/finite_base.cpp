@@ -45,7 +45,7 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
       out_(problem_->mesh().tets.size(), 0),
       u_(std::move(u)),
       kind_(kind),
-      split_(body.split),
+      pools_(body.split),
       patches_(body, u_),
       inertia_(inertia.factor),
       factor_(pattern.supernodes(), pattern.tangent(body, u_, kind, inertia), work),
@@ -78,18 +78,9 @@ bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
     lost.push_back(e);
     for (Index n : border_.corners(e)) touch_node(n, fresh);
   }
-  if (!same_patches(now.body().split, split_)) return false;  // a piece has come off
-  split_ = now.body().split;
-  changed_.clear();
-  if (const fem::Pools* pools = fem::HyperelasticBody{*problem_, laws_, out_, split_}.pools()) {
-    pools->of(lost, changed_);
-    for (Index patch : changed_) {
-      for (Index e : pools->elements(patch)) {
-        if (out_[e]) continue;
-        for (Index n : problem_->mesh().tets[e]) touch_node(n, fresh);
-      }
-    }
-  }
+  if (!same_patches(now.body().split, pools_)) return false;  // a piece has come off
+  pools_ = now.body().split;
+  touch_patches(lost, fresh);
   for (Index d = 0; gripped_ && d < static_cast<Index>(held_.size()); ++d) {
     if (!held_[d] || column_[d] != kNone) continue;
     column_[d] = static_cast<Index>(touched_.size() + fresh.size());
@@ -100,10 +91,12 @@ bool FiniteBase::follow(const RestingBody& now, Index most_rank) {
       touched_.size() + fresh.size() + static_cast<std::size_t>(border_.size());
   if (rank > static_cast<std::size_t>(most_rank)) return false;
   touch(fresh);
-  lose_pressure(1);
+  for (const PatchVector& k : before_) add_pressure(k, 1);
   for (Index e : lost) lose(e);
-  lose_pressure(-1);
-  if ((!lost.empty() || gripped_) && !correct(now)) return false;
+  for (Index patch : changed_) add_pressure(patch_vector(patch), -1);
+  const bool less = !lost.empty() || !before_.empty();
+  before_.clear();
+  if ((less || gripped_) && !correct(now)) return false;
   gripped_ = false;
   return border_.empty() || follow_border();
 }
@@ -121,6 +114,8 @@ void FiniteBase::touch_node(Index node, std::vector<Index>& fresh) {
 bool FiniteBase::part(const Problem& now, const fem::Parting& parting,
                       std::span<const double> mass) {
   if (std::ranges::find(held_, std::uint8_t{1}) != held_.end()) return false;
+  if (pools_) return false;  // pieces have patches of their own
+  if (problem_->pools()) part_patches(now);
   problem_ = &now;
   parting.nodal(u_);
   border_.part(now, mass);
@@ -148,11 +143,12 @@ bool FiniteBase::grip(const Problem& now) {
 bool FiniteBase::follow_border() {
   parted_ = false;
   const auto tangent = [this](Index e) {
-    return fem::element_tangent({*problem_, laws_}, e, u_, kind_);
+    return fem::element_tangent({*problem_, laws_}, e, u_, kind_, patches_.pressure());
   };
   return border_.follow(
-      {tangent, [this](Eigen::MatrixXd& of) { solve_columns(of); }, out_, coupled_, inertia_}, m_,
-      touched_);
+      {tangent, [this](Index patch) { return patch_tangent(patch); },
+       [this](Eigen::MatrixXd& of) { solve_columns(of); }, out_, coupled_, inertia_},
+      m_, touched_);
 }
 
 /// By A alone, nothing lost and nothing turned.
@@ -224,7 +220,7 @@ void FiniteBase::push_group(std::span<const Index> unknowns) {
 /// Adds an element's tangent to D.
 void FiniteBase::lose(Index element) {
   const fem::ElementMatrix k =
-      fem::element_tangent({*problem_, laws_, {}, split_}, element, u_, kind_, patches_.pressure());
+      fem::element_tangent({*problem_, laws_, {}, pools_}, element, u_, kind_, patches_.pressure());
   std::array<Index, 12> at;
   for (int i = 0; i < 12; ++i) {
     const Index d = problem_->dof(border_.corners(element)[i / 3], i % 3);
@@ -238,27 +234,77 @@ void FiniteBase::lose(Index element) {
   out_[element] = 1;
 }
 
-/// Adds to D what the changed patches are stiff by with the elements that they have.
-void FiniteBase::lose_pressure(double times) {
-  const fem::HyperelasticBody of_base{*problem_, laws_, out_, split_};
-  for (Index patch : changed_) {
-    const fem::PatchTangent k =
-        fem::patch_tangent(of_base, patch, u_, patches_.stiffness()[patch], kind_);
-    if (k.b.size() == 0) continue;
-    const std::vector<Index> nodes = of_base.pools()->nodes(*problem_, patch);
-    std::vector<Index> at;
-    for (Index n : nodes) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const Index d = problem_->dof(n, axis);
-        at.push_back(d == kNone ? kNone : column_[d]);
-      }
+/// With the elements that it has now, at the base's state.
+fem::PatchTangent FiniteBase::patch_tangent(Index patch) const {
+  return fem::patch_tangent({*problem_, laws_, out_, pools_}, patch, u_, patches_.stiffness()[patch],
+                            kind_);
+}
+
+FiniteBase::PatchVector FiniteBase::patch_vector(Index patch) const {
+  PatchVector of{patch_tangent(patch), {}};
+  if (of.tangent.b.size() == 0) return of;
+  for (Index n : pools()->nodes(*problem_, patch)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem_->dof(n, axis);
+      of.unknowns.push_back(d == kNone ? kNone : border_.glued(d));
     }
-    for (std::size_t j = 0; j < at.size(); ++j) {
-      for (std::size_t i = 0; i < at.size(); ++i) {
-        if (at[i] == kNone || at[j] == kNone) continue;
-        d_(at[i], at[j]) += times * k.factor * k.b[static_cast<Eigen::Index>(i)] *
-                            k.b[static_cast<Eigen::Index>(j)];
-      }
+  }
+  return of;
+}
+
+/// Patches are about to be those of a body that has parted further: what those that a crack splits
+/// were stiff by goes, and each part has the pressure and U'' of the whole.
+void FiniteBase::part_patches(const Problem& now) {
+  const fem::Pools &was = *problem_->pools(), &is = *now.pools();
+  for (Index patch = 0; patch < was.count(); ++patch) {
+    const auto elements = was.elements(patch);
+    if (std::ranges::equal(elements, is.elements(is.of(elements.front())))) continue;
+    if (!split_.contains(elements.front())) before_.push_back(patch_vector(patch));
+    split_.insert(elements.begin(), elements.end());
+  }
+  patches_.part(was, is);
+}
+
+/// Patches of what is lost, and those that a crack has split since: all of their nodes get columns.
+void FiniteBase::touch_patches(std::span<const Index> lost, std::vector<Index>& fresh) {
+  changed_.clear();
+  const fem::Pools* pools = this->pools();
+  if (!pools) return;
+  pools->of(lost, changed_);
+  // One that was split has its old vector there already.
+  for (Index patch : changed_) {
+    const auto of_split = [&](Index e) { return split_.contains(e); };
+    if (std::ranges::none_of(pools->elements(patch), of_split)) {
+      before_.push_back(patch_vector(patch));
+    }
+  }
+  std::vector<Index> split;
+  pools->of(std::vector<Index>(split_.begin(), split_.end()), split);
+  for (Index patch : split) {
+    if (std::ranges::find(changed_, patch) == changed_.end()) changed_.push_back(patch);
+  }
+  split_.clear();
+  for (Index patch : changed_) {
+    for (Index e : pools->elements(patch)) {
+      if (out_[e]) continue;
+      for (Index n : border_.corners(e)) touch_node(n, fresh);
+    }
+  }
+}
+
+/// Adds to D what a patch is stiff by.
+void FiniteBase::add_pressure(const PatchVector& patch, double times) {
+  const Eigen::VectorXd& b = patch.tangent.b;
+  const auto column = [&](std::size_t i) {
+    const Index d = patch.unknowns[i];
+    return d == kNone ? kNone : column_[static_cast<std::size_t>(d)];
+  };
+  for (std::size_t j = 0; j < patch.unknowns.size(); ++j) {
+    for (std::size_t i = 0; i < patch.unknowns.size(); ++i) {
+      const Index row = column(i), col = column(j);
+      if (row == kNone || col == kNone) continue;
+      d_(row, col) += times * patch.tangent.factor * b[static_cast<Eigen::Index>(i)] *
+                      b[static_cast<Eigen::Index>(j)];
     }
   }
 }

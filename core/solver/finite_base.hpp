@@ -8,11 +8,13 @@
 // G = R R^T, S = I - R^T D R: the tangent without them is positive definite where S is. Unknowns Z
 // that nothing reaches any more are held still: G without them is their Schur complement. Nodes
 // that have parted since are a border of all this (finite_border.hpp). A patch of pooled volume
-// with fewer elements is stiff along another vector: D holds the one before less the one after,
-// both at the base's state and pressure, and need not be positive semidefinite.
+// with fewer elements is stiff along another vector, one that a crack has split along several: D
+// holds the one before less those after, all at the base's state and pressure, and need not be
+// positive semidefinite.
 #pragma once
 
 #include <Eigen/Core>
+#include <set>
 #include <vector>
 
 #include "body/parting.hpp"
@@ -83,10 +85,22 @@ class FiniteBase {
   void touch(std::span<const Index> unknowns);
   void push_group(std::span<const Index> unknowns);
   void lose(Index element);
-  void lose_pressure(double times);
+  /// What a patch of pooled volume is stiff by, over unknowns of the base.
+  struct PatchVector {
+    fem::PatchTangent tangent;
+    std::vector<Index> unknowns;  // kNone: held
+  };
+  [[nodiscard]] PatchVector patch_vector(Index patch) const;
+  void part_patches(const Problem& now);
+  void touch_patches(std::span<const Index> lost, std::vector<Index>& fresh);
+  void add_pressure(const PatchVector& patch, double times);
+  [[nodiscard]] fem::PatchTangent patch_tangent(Index patch) const;
   void touch_node(Index node, std::vector<Index>& fresh);
   [[nodiscard]] bool correct(const RestingBody& now);
   [[nodiscard]] bool follow_border();
+  [[nodiscard]] const fem::Pools* pools() const {
+    return pools_ ? pools_.get() : problem_->pools();
+  }
   [[nodiscard]] Index touched_count() const { return static_cast<Index>(touched_.size()); }
   void solve_columns(Eigen::MatrixXd& of);
   void solve_by_factor(const Eigen::VectorXd& b, Eigen::VectorXd& x,
@@ -103,9 +117,13 @@ class FiniteBase {
   std::vector<std::uint8_t> out_;  // per element: not in the base
   std::vector<double> u_;          // of the base
   fem::Tangent kind_;
-  std::shared_ptr<const fem::Pools> split_;  // its patches of pooled volume; null: the problem's
-  fem::PatchVolumes patches_;                // at its state
-  std::vector<Index> changed_;               // patches of what has left last
+  std::shared_ptr<const fem::Pools> pools_;  // its patches of pooled volume; null: the problem's
+  fem::PatchVolumes patches_;   // at its state
+  std::vector<Index> changed_;  // patches of what has left last, or that a crack has split
+  // What the small matrix has still of patches that are as they were no longer; elements of those
+  // that have been split since.
+  std::vector<PatchVector> before_;
+  std::set<Index> split_;
   double inertia_;
   linear_algebra::Factor factor_;
   Eigen::MatrixXd inverse_;            // empty: the factor solves

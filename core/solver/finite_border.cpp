@@ -33,6 +33,41 @@ void FiniteBorder::part(const Problem& now, std::span<const double> mass) {
   }
 }
 
+/// Of the patches with an element at new nodes: each is stiff along one vector over all its nodes.
+void FiniteBorder::add_patches(const Base& base, std::vector<Column>& b, Eigen::MatrixXd& c) const {
+  std::vector<Index> elements, patches, glued, offset;
+  for (Index e = 0; e < now_->tet_count(); ++e) {
+    const bool out = base.out[static_cast<std::size_t>(e)] != 0;
+    if (!out && now_->mesh().tets[static_cast<std::size_t>(e)] != corners(e)) elements.push_back(e);
+  }
+  now_->pools()->of(elements, patches);
+  for (Index patch : patches) {
+    const fem::PatchTangent k = base.patch(patch);
+    if (k.b.size() == 0) continue;
+    glued.clear();
+    offset.clear();
+    const auto coupled = [&](Index d) {
+      return d != kNone && base.coupled[static_cast<std::size_t>(d)] ? d : kNone;
+    };
+    for (Index n : now_->pools()->nodes(*now_, patch)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = now_->dof(n, axis);
+        glued.push_back(coupled(this->glued(d)));
+        offset.push_back(d < own_ || coupled(d) == kNone ? kNone : d - own_);
+      }
+    }
+    for (std::size_t j = 0; j < offset.size(); ++j) {
+      if (offset[j] == kNone) continue;
+      for (std::size_t i = 0; i < offset.size(); ++i) {
+        const double value =
+            k.factor * k.b[static_cast<Eigen::Index>(i)] * k.b[static_cast<Eigen::Index>(j)];
+        if (glued[i] != kNone) b[static_cast<std::size_t>(offset[j])][glued[i]] += value;
+        if (offset[i] != kNone) c(offset[i], offset[j]) += value;
+      }
+    }
+  }
+}
+
 bool FiniteBorder::follow(const Base& base, const Eigen::MatrixXd& m,
                           std::span<const Index> touched) {
   const Index count = size();
@@ -62,6 +97,7 @@ bool FiniteBorder::follow(const Base& base, const Eigen::MatrixXd& m,
       }
     }
   }
+  if (now_->pools()) add_patches(base, b, c);
   for (Index i = 0; i < count; ++i) {
     const Index from = from_[static_cast<std::size_t>(i)];
     if (c(i, i) == 0) {  // nothing moves it but the node that it parts from

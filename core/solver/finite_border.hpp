@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "body/hyperelastic.hpp"
+#include "body/pooled_law.hpp"
 
 namespace sunder::solver {
 
@@ -38,9 +38,16 @@ class FiniteBorder {
     return corners_[static_cast<std::size_t>(element)];
   }
 
-  /// What the base knows of an element, and how it solves: columns of right sides in their place.
+  /// The base's unknown that one of the parted body moves as; kNone: none.
+  [[nodiscard]] Index glued(Index unknown) const {
+    return unknown < own_ ? unknown : from_[static_cast<std::size_t>(unknown - own_)];
+  }
+
+  /// What the base knows of an element and of a patch of pooled volume, and how it solves: columns
+  /// of right sides in their place.
   struct Base {
     std::function<fem::ElementMatrix(Index)> tangent;
+    std::function<fem::PatchTangent(Index)> patch;
     std::function<void(Eigen::MatrixXd& columns)> solve;
     std::span<const std::uint8_t> out;      ///< per element 1: not in the body
     std::span<const std::uint8_t> coupled;  ///< per unknown of the parted body
@@ -61,6 +68,7 @@ class FiniteBorder {
 
  private:
   using Column = std::map<Index, double>;
+  void add_patches(const Base& base, std::vector<Column>& b, Eigen::MatrixXd& c) const;
 
   const Problem* now_;
   std::span<const double> mass_;

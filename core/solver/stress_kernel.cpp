@@ -108,12 +108,25 @@ void StressKernel::revive(std::span<const Index> elements, const fem::Forms& for
     const auto at = static_cast<std::size_t>(place_[e]);
     Block& b = blocks_[at / kLanes];
     bring(b, at % kLanes, e);
-    const auto came = forms.came().find(e);
-    const std::array<Index, 4>& corners = came == forms.came().end()
-                                              ? problem_->mesh().tets[static_cast<std::size_t>(e)]
-                                              : came->second.corners;
+    const std::array<Index, 4>& corners = forms.corners(e);
     for (std::size_t a = 0; a < 4; ++a) b.corner[a][at % kLanes] = 3 * corners[a];
   }
+  part_pools(forms);
+}
+
+/// Patches of pooled volume as cracks have split them.
+void StressKernel::part_pools(const fem::Forms& forms) {
+  pools_.reset();
+  if (!problem_->pools()) return;
+  std::vector<Index> changed;
+  for (const auto& [element, form] : forms.came()) {
+    if (form.corners != problem_->mesh().tets[static_cast<std::size_t>(element)]) {
+      changed.push_back(element);
+    }
+  }
+  if (changed.empty()) return;
+  const auto corners = [&](Index e) -> const std::array<Index, 4>& { return forms.corners(e); };
+  pools_ = std::make_shared<const fem::Pools>(*problem_->pools(), corners, changed);
 }
 
 void StressKernel::keep_bounds() { bounds_.assign(blocks_.size() * kLanes, 0.0); }
@@ -151,7 +164,7 @@ void StressKernel::destroy(std::span<const Index> elements) {
   }
 }
 
-void StressKernel::change(std::span<const fem::Coming> come) {
+void StressKernel::change(std::span<const fem::Coming> come, const fem::Forms& forms) {
   for (const fem::Coming& c : come) {
     if (place_[c.element] == kNone) continue;
     Block& b = blocks_[static_cast<std::size_t>(place_[c.element] / kLanes)];
@@ -160,6 +173,7 @@ void StressKernel::change(std::span<const fem::Coming> come) {
     const auto at = std::ranges::lower_bound(changed_, c.element);
     if (at == changed_.end() || *at != c.element) changed_.insert(at, c.element);
   }
+  part_pools(forms);
 }
 
 namespace {
@@ -297,7 +311,7 @@ void StressKernel::run_pooled_and_bound(const Block* blocks, std::size_t count, 
 /// Two passes over all elements: what each adds to its patch's volume, and each patch's pressure,
 /// summed in the order of its elements: the same bits for any number of threads.
 void StressKernel::find_pressures(std::span<const double> u) {
-  const fem::Pools& pools = *problem_->pools();
+  const fem::Pools& pools = pools_ ? *pools_ : *problem_->pools();
   workers_->run([&](int worker) {
     const auto w = static_cast<std::size_t>(worker), all = partials_.size();
     for (std::size_t k = blocks_.size() * w / all; k < blocks_.size() * (w + 1) / all; ++k) {

@@ -30,7 +30,7 @@ class StressKernel {
   void revive(std::span<const Index> elements, const fem::Forms& forms);
 
   /// Follows elements that come as they were but for their corners.
-  void change(std::span<const fem::Coming> come);
+  void change(std::span<const fem::Coming> come, const fem::Forms& forms);
 
   /// Stress a_e D B u from the displacement at all nodes (3 * nodes), bit by bit that of
   /// fem::stress, one value per listed element in that order; empty `stress`: not stored. Returns
@@ -155,8 +155,11 @@ class StressKernel {
   [[nodiscard]] Mat3 most_by(Measure&& measure, Place at, std::span<const double> u) const;
   void take(DeformationSearch& search, std::size_t group, std::span<const double> u) const;
 
+  void part_pools(const fem::Forms& forms);
+
   std::shared_ptr<const Problem> problem_;
-  std::size_t size_ = 0;  // listed elements
+  std::shared_ptr<const fem::Pools> pools_;  // as cracks have split them; null: as the problem has
+  std::size_t size_ = 0;                     // listed elements
   std::vector<Block> blocks_;
   std::vector<Index> place_;    // of each element, kNone: not in here
   std::vector<double> bounds_;  // of ratios, squared and in order: J_2 / yield^2 for shear

@@ -154,8 +154,6 @@ class Problem {
   void lay_guides();
   void note_fibres();
   void take_fibres(const Problem& whole, std::span<const Index> elements);
-  [[nodiscard]] bool can_pool() const;
-  void check_pooled(const std::string& what) const;
   [[nodiscard]] std::vector<std::uint8_t> held_axes() const;
   void select_instrument_nodes();
   void leave_out_what_nothing_holds(const fem::Bodies& bodies, std::vector<std::uint8_t>& held);

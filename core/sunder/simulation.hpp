@@ -287,6 +287,7 @@ class Simulation {
   [[nodiscard]] std::vector<Voigt> stress() const;
 
  private:
+  [[nodiscard]] std::shared_ptr<const Problem> parted_now() const;
   [[nodiscard]] Vec3 pooled_reaction(std::span<const Vec3> displacement) const;
   void apply_presets();
   void apply_removals();

@@ -25,8 +25,11 @@ double energy_release(const IntegralInput& in) {
     }
     const Law& law = fem::law_of(in.problem, e);
     const Mat3 f = Mat3::Identity() + gradient;
-    const double energy = law.energy(in.problem.small_strain(e), f);
-    const Mat3 stress = law.stress(in.problem.small_strain(e), f);
+    const bool pools = !in.patches.empty() && in.patches[i];
+    const auto [energy, stress] =
+        pools ? fem::pooled_stress(in.problem, e, f, *in.patches[i])
+              : fem::PooledStress{law.energy(in.problem.small_strain(e), f),
+                                  law.stress(in.problem.small_strain(e), f)};
     const Vec3 x1 = axes.row(0);
     sum += shape.volume *
            ((stress * weight_gradient).dot(gradient * x1) - energy * weight_gradient.dot(x1));

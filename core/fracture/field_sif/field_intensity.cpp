@@ -73,6 +73,7 @@ FieldIntensityMeter::FieldIntensityMeter(const Problem& problem, const Board& bo
       notches_(find_notches(problem, board, surface_)),
       per_shift_(problem.scene().cracks.size()),
       builder_(board, surface_),
+      patches_(problem),
       own_(problem.mesh().tets.size(), 0) {
   board.plane().e3.cwiseAbs().maxCoeff(&normal_axis_);
   const FractureOptions& fracture = problem.scene().fracture;
@@ -273,6 +274,7 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
   view.displacement(domain.nodes, displacement_);
   IntegralInput input{problem_,      board_,      surface_, result.frame, domain,
                       displacement_, view.forces, {},       crack.id};
+  Mat3 turned = Mat3::Identity();
   if (problem_.finite() && !view.small) {
     const TurnedBack back = turn_back(problem_, domain, displacement_);
     if (!(back.strain <= kSmallStrain && back.rotation_deg <= kSmallRotationDeg))
@@ -280,7 +282,10 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
     turned_forces_.assign(view.forces.begin(), view.forces.end());
     for (NodalForce& at : turned_forces_) at.force = back.rotation.transpose() * at.force;
     input.forces = turned_forces_;
+    turned = back.rotation;
   }
+  patches_.read(domain.elements, {view.destroyed, view.displacement, view.corners}, turned);
+  input.patches = patches_.of_elements();
   const auto tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;
   const TipIntegrals found = interaction_integral(input, result.material);

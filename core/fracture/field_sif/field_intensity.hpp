@@ -127,6 +127,7 @@ class FieldIntensityMeter {
   std::vector<Notch> notches_;              // presets whose faces are the mesh's own
   std::vector<Eigen::MatrixXd> per_shift_;  // per preset; empty: no mesh of its own, or none seen
   DomainBuilder builder_;
+  PatchChanges patches_;
   std::vector<std::uint8_t> own_;  // shape (elements): of the crack being looked at
   // Of the tip in work, with room from the start: a frame allocates nothing.
   std::vector<Index> near_;

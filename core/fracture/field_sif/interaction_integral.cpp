@@ -37,6 +37,9 @@ ElementField element_field(const IntegralInput& in, std::size_t i, const Mat3& a
     gradient += u * shape.col(a).transpose();
     weight_gradient += (in.domain.weight[corners[a]] - in.domain.weight[corners[0]]) * shape.col(a);
   }
+  if (!in.patches.empty() && in.patches[i]) {
+    gradient.diagonal().array() += (in.patches[i]->theta - gradient.trace()) / 3;
+  }
   return {gradient, tensor(stress(in.problem.small_strain(e), gradient)), weight_gradient};
 }
 

@@ -10,9 +10,11 @@
 // K_III = mu I_III. t is the front's length, so K is its mean over the front. The faces of the
 // crack itself carry no term: the auxiliary state leaves them free, and what the width of a crack
 // of destroyed elements changes is of the order of (width / distance)^2. So it is with a notch of
-// the body's shape: its walls and its root are faces of the crack.
+// the body's shape: its walls and its root are faces of the crack. Where volume is pooled u_i,j, s
+// and e are those of the element's deviator with its patch's change of volume.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +22,7 @@
 #include "fracture/field_sif/auxiliary_field.hpp"
 #include "fracture/field_sif/free_surface.hpp"
 #include "fracture/field_sif/tip_domain.hpp"
+#include "fracture/patch_changes.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::fracture {
@@ -41,6 +44,8 @@ struct IntegralInput {
   /// The crack behind the tip, the tip last; empty: it is straight there.
   std::span<const Vec2> bent_path;
   int crack = kNone;  ///< of the tip: the faces of its notch carry no term
+  /// Of each element of the domain, where patches of pooled volume reach into it; else empty.
+  std::span<const std::optional<fem::PatchChange>> patches = {};
 };
 
 struct TipIntegrals {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "fracture/crack_path.hpp"
 
@@ -17,21 +18,24 @@ struct Row {
 };
 constexpr std::array<Row, 7> kTable{
     {{0, .46}, {.2, .42}, {.3, .41}, {.4, .43}, {.45, .51}, {.48, .70}, {.49, .92}}};
+/// The same where volume is pooled, which does not lock: to .4999 the last value holds.
+constexpr std::array<Row, 4> kPooled{{{0, .42}, {.3, .31}, {.45, .26}, {.49, .25}}};
 
 }  // namespace
 
-double tip_offset(const Board& board, const SmallStrain& tissue) {
-  const double nu = std::clamp(tissue.poisson, kTable.front().poisson, kTable.back().poisson);
-  const auto above =
-      std::ranges::find_if(kTable, [&](const Row& row) { return row.poisson >= nu; });
-  if (above == kTable.begin()) return above->offset * board.h();
+double tip_offset(const Board& board, const Material& tissue) {
+  const std::span<const Row> rows =
+      tissue.volume == MaterialVolume::pooled ? std::span<const Row>(kPooled) : kTable;
+  const double nu = std::clamp(tissue.poisson, rows.front().poisson, rows.back().poisson);
+  const auto above = std::ranges::find_if(rows, [&](const Row& row) { return row.poisson >= nu; });
+  if (above == rows.begin()) return above->offset * board.h();
   const Row& below = *(above - 1);
   const double share = (nu - below.poisson) / (above->poisson - below.poisson);
   return (below.offset + share * (above->offset - below.offset)) * board.h();
 }
 
 Crack as_its_field_shows(const Crack& crack, std::size_t tip, const Board& board,
-                         const SmallStrain& tissue) {
+                         const Material& tissue) {
   Crack shorter = crack;
   CrackTip& at = shorter.tips[tip];
   auto& path = shorter.path;

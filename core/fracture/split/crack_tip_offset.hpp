@@ -4,14 +4,14 @@
 
 #include "fracture/board.hpp"
 #include "sunder/crack.hpp"
-#include "sunder/small_strain.hpp"
+#include "sunder/scene.hpp"
 
 namespace sunder::fracture {
 
 /// By how much [mm], for the layers of elements through the thickness and the tissue at the tip.
-[[nodiscard]] double tip_offset(const Board& board, const SmallStrain& tissue);
+[[nodiscard]] double tip_offset(const Board& board, const Material& tissue);
 /// A crack whose tip is at its front, as its field shows it: with one tip so much further back.
 [[nodiscard]] Crack as_its_field_shows(const Crack& crack, std::size_t tip, const Board& board,
-                                       const SmallStrain& tissue);
+                                       const Material& tissue);
 
 }  // namespace sunder::fracture

@@ -117,7 +117,7 @@ FieldView::Lips SplitCracks::lips_at(const Crack& crack, std::size_t tip) const 
 Crack SplitCracks::measured(const Crack& crack, std::size_t tip) const {
   const SplitCrack& split = splits_[static_cast<std::size_t>(crack.id)];
   if (!split.grown) return crack;  // still as it was preset
-  return as_its_field_shows(crack, tip, board_, problem_.small_strain(split.faces.back().element));
+  return as_its_field_shows(crack, tip, board_, problem_.material(split.faces.back().element));
 }
 
 void SplitCracks::tips(const FractureState& state, std::vector<TipState>& tips,

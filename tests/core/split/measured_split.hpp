@@ -121,7 +121,7 @@ class MeasuredSplit {
 
  private:
   [[nodiscard]] Crack ends_at(std::size_t tip) const {
-    return fracture::as_its_field_shows(crack_.crack, tip, crack_.board, problem_->small_strain(0));
+    return fracture::as_its_field_shows(crack_.crack, tip, crack_.board, problem_->material(0));
   }
   void solve() {
     backend_->set_load(load_of(*problem_, force_, grips_));
