@@ -230,12 +230,58 @@ TEST(Pools, AreThereForEveryLawAtRestAndInMotion) {
     scene.dynamics = Dynamics{0.001};
     EXPECT_EQ(refusal(scene), "");
   }
+  for (const CrackWay way : {CrackWay::destroyed, CrackWay::split}) {
+    Scene cracks = board();
+    cracks.fracture.model = FractureModel::b;
+    cracks.fracture.crack = way;
+    EXPECT_EQ(refusal(cracks), "");
+  }
 }
 
-TEST(Pools, AreRefusedWhereTheyAreNotComputed) {
-  Scene cracks = board();
-  cracks.fracture.model = FractureModel::b;
-  EXPECT_NE(refusal(cracks).find("model \"B\" grows cracks"), std::string::npos) << refusal(cracks);
+/// A board parted along a plane through its patches: the parts of each on either side are patches.
+TEST(Pools, APatchIsSplitWhereItsElementsNoLongerHangTogether) {
+  const Problem whole(pooled(test::structured_board({7, 5, 3, 7, 5, 3})));
+  constexpr double kPlane = 3;
+  const auto is_above = [&](Index e) {
+    double y = 0;
+    for (Index n : whole.mesh().tets[static_cast<std::size_t>(e)]) {
+      y += whole.mesh().nodes[static_cast<std::size_t>(n)].y() / 4;
+    }
+    return y > kPlane;
+  };
+  std::vector<std::array<Index, 4>> corners = whole.mesh().tets;
+  for (Index e = 0; e < whole.tet_count(); ++e) {
+    for (Index& n : corners[static_cast<std::size_t>(e)]) {
+      const bool on_plane = whole.mesh().nodes[static_cast<std::size_t>(n)].y() == kPlane;
+      if (on_plane && is_above(e)) n += whole.node_count();
+    }
+  }
+  const Pools& was = *whole.pools();
+  const auto parted = parted_pools(whole, pools_of(whole), corners);
+  int split = 0;
+  for (Index p = 0; p < was.count(); ++p) {
+    const auto elements = was.elements(p);
+    const auto above = std::ranges::count_if(elements, is_above);
+    if (above > 0 && above < static_cast<std::ptrdiff_t>(elements.size())) {
+      ++split;
+    } else {
+      EXPECT_TRUE(std::ranges::equal(elements, parted->elements(p))) << p;
+    }
+  }
+  EXPECT_GT(split, 2);
+  EXPECT_GE(parted->count(), was.count() + split);
+  std::size_t all = 0;
+  for (Index p = 0; p < parted->count(); ++p) {
+    const auto elements = parted->elements(p);
+    all += elements.size();
+    for (Index e : elements) {
+      EXPECT_EQ(parted->of(e), p);
+      EXPECT_EQ(is_above(e), is_above(elements.front())) << p;
+      EXPECT_EQ(was.of(e), was.of(elements.front())) << p;
+    }
+    EXPECT_EQ(parted->bulk(p), was.bulk(was.of(elements.front())));
+  }
+  EXPECT_EQ(all, whole.mesh().tets.size());
 }
 
 // The body of a patch's first element keeps its number, what belongs to none stays there too.

@@ -120,6 +120,7 @@ Scene board_scene(const GridLines& lines, double from, double to, double y,
     split_nodes(scene.mesh, from, to, y, lines.x.front(), lines.x.back());
   if (options.jitter > 0) shake(lines, options.jitter, scene.mesh);
   scene.materials["board"] = {options.young, options.poisson, 2.0, options.law};
+  scene.materials["board"].volume = options.volume;
   scene.supports = supports(lines, scene.mesh, options);
   scene.fracture.alpha = options.alpha;
   return scene;

@@ -28,6 +28,7 @@ enum class CrackMade { deleted, split };
 struct CrackedBoardOptions {
   double young = 5, poisson = 0.3;
   MaterialLaw law = MaterialLaw::linear;
+  MaterialVolume volume = MaterialVolume::element;
   /// What is left of a destroyed element. The program's default 1e-6 still carries 0.1 % of the
   /// load across a crack of 100 elements; published solutions carry nothing.
   double alpha = 1e-9;

@@ -126,6 +126,21 @@ TEST(EnergyRelease, GrowthAtFiniteStrainGoesByIt) {
   EXPECT_GT(grown, 0) << simulation->destroyed().size() << " destroyed";
 }
 
+/// The patches' J is that of the elements where these do not lock, and the sheet's at nu .49.
+TEST(EnergyRelease, OfPooledVolumeIsThatOfTheSheetToo) {
+  for (const double stretch : {1.02, 1.3}) {
+    Scene scene = strip(MaterialLaw::neo_hookean, stretch, 24, stretch > 1.1 ? 25 : 37);
+    scene.materials["board"].volume = MaterialVolume::pooled;
+    const auto simulation = at_end(scene);
+    const TipState at = simulation->tips().front();
+    ASSERT_TRUE(at.j);
+    const double expected = kHeight * sheet_energy(MaterialLaw::neo_hookean, stretch);
+    std::printf("pooled at stretch %.2f: J %.5f N/mm, of the sheet %.5f (%+.2f %%)\n", stretch,
+                *at.j, expected, 100 * (*at.j / expected - 1));
+    EXPECT_NEAR(*at.j, expected, 0.01 * expected);
+  }
+}
+
 TEST(EnergyRelease, DoesNotDependOnTheCracksLength) {
   const double one = *stretched(MaterialLaw::neo_hookean, 1.3, 20).j,
                other = *stretched(MaterialLaw::neo_hookean, 1.3, 28).j;
