@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "body/pooled_law.hpp"
 #include "material/finite_stress.hpp"
 #include "material/linear.hpp"
 #include "sunder/stress_measures.hpp"
@@ -67,7 +66,7 @@ PooledStress pooled_stress(const Problem& problem, Index e, const Mat3& f,
   if (!law.split) return {law.energy(constants, f), law.stress(constants, f)};
   const VolumeSplit::Volume volume = law.split->volume(constants, patch.j);
   return {law.split->shape_energy(constants, f) + volume.energy,
-          law.split->shape_stress(constants, f) + volume.pressure * cofactor(f)};
+          law.split->shape_stress(constants, f) + volume.pressure * law.split->ratio_slope(f)};
 }
 
 Voigt material_stress(const Problem& problem, Index e,

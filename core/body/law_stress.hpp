@@ -24,7 +24,7 @@ namespace sunder::fem {
 /// Of a patch of pooled volume, means over its elements by volume and share.
 struct PatchChange {
   double theta = 0;  ///< tr grad u
-  double j = 1;      ///< det F
+  double j = 1;      ///< as its law measures it (VolumeSplit::ratio)
 };
 /// The same of an element that shares the volume of such a patch.
 [[nodiscard]] Voigt material_stress(const Problem& problem, Index e,

@@ -43,7 +43,9 @@ fem::PatchChange PatchChanges::of(std::span<const Index> patch, const Body& body
   moved_.resize(corners_.size());
   body.displacement(corners_, moved_);
   // By laws of finite deformation what is destroyed adds nothing.
-  const double alpha = problem_.finite() ? 0 : problem_.scene().fracture.alpha;
+  const bool nothing = problem_.finite() || problem_.moves() || problem_.fibrous();
+  const double alpha = nothing ? 0 : problem_.scene().fracture.alpha;
+  const auto ratio = fem::law_of(problem_, patch.front()).split->ratio;
   double volume = 0, theta = 0, j = 0;
   for (std::size_t i = 0; i < patch.size(); ++i) {
     const TetShape& shape = problem_.shape(patch[i]);
@@ -56,7 +58,7 @@ fem::PatchChange PatchChanges::of(std::span<const Index> patch, const Body& body
     const double share = (gone ? alpha : 1) * shape.volume;
     volume += share;
     theta += share * ((turned.transpose() * f).trace() - 3);
-    j += share * f.determinant();
+    j += share * ratio(f);
   }
   return {theta / volume, j / volume};
 }
