@@ -39,11 +39,11 @@ Way way(const char* backend, Route route, const char* name) {
 
 /// Of all cells, and of those with something added.
 const Way kUsual = way("cpu", Route::automatic, "cpu");
-std::vector<Way> ways() {
+std::vector<Way> ways(bool full) {
   std::vector<Way> all{way("cpu", Route::factor, "cpu factor"),
                        way("cpu", Route::inverse, "cpu inverse")};
   if (has_vulkan()) {
-    all.push_back(way("vulkan", Route::factor, "vulkan factor"));
+    if (full) all.push_back(way("vulkan", Route::factor, "vulkan factor"));
     all.push_back(way("vulkan", Route::inverse, "vulkan inverse"));
   }
   return all;
@@ -83,6 +83,7 @@ void by_element(std::vector<FiniteCell>& cells, bool full) {
 /// Law linear pools in bench_stability: here it would be no body of finite deformation.
 void pooled(std::vector<FiniteCell>& cells, bool full) {
   for (const double nu : {.45, .49, .499, .4999}) {
+    if (!full && nu == .45) continue;
     for (const double contrast : {1.0, 1e2, 1e4}) {
       for (const double sliver : {1.0, 1e-1, 1e-2}) {
         if (!full && (contrast != 1e2 || sliver != 1)) continue;
@@ -99,8 +100,10 @@ void pooled(std::vector<FiniteCell>& cells, bool full) {
 void fibres(std::vector<FiniteCell>& cells, bool full) {
   const auto add = [&](MaterialLaw law, const FibreDifficulty& of, double nu = .45,
                        double contrast = 1, double sliver = 1) {
-    for (const char* motion : kGrid)
+    for (const char* motion : kGrid) {
+      if (!full && motion == kGrid[0]) continue;  // tears begin with a stretch
       cells.push_back({"fibres", law, contrast, nu, sliver, motion, false, of});
+    }
   };
   for (const double k1 : {.5, 50.0, 5e3}) {
     add(kLinear, {1, 10 * k1});
@@ -131,12 +134,14 @@ void interfaces(std::vector<FiniteCell>& cells, bool full) {
                                      {100, 1e-1}, {100, 1e-3}, {100, 1e-4}};
   for (const InterfaceDifficulty& of : all) {
     for (const auto law : {kLinear, kCorotated, kNeoHookean}) {
-      if (!full && law == kCorotated) continue;
+      if (!full && law != kNeoHookean) continue;
       const auto add = [&](const char* motion, double nu, double contrast, double sliver) {
         cells.push_back({"interface", law, contrast, nu, sliver, motion, false, {}, of});
       };
       for (const char* motion : {"stretch", "twist", "part"}) {
-        add(motion, .45, 1, 1);
+        // A soft one that is twisted looks for a rest in vain, for half a minute.
+        const bool lost = of.strength < 1 && std::string(motion) == "twist";
+        if (full || (std::string(motion) != "stretch" && !lost)) add(motion, .45, 1, 1);
         if (!full) continue;
         for (const double nu : {.3, .499}) add(motion, nu, 1, 1);
         for (const double contrast : {1e3, 1e6}) add(motion, .45, contrast, 1);
@@ -248,11 +253,11 @@ void run_cell(std::ostream& out, const FiniteCell& cell, const Way& by, Summary&
 }
 
 /// Returns the number of steps that are WRONG.
-int run(std::ostream& out, const std::vector<FiniteCell>& cells) {
+int run(std::ostream& out, const std::vector<FiniteCell>& cells, bool full) {
   out << "study,law,contrast,nu,sliver,added,method,motion,amount,verdict,u_error,stress_error,"
          "estimate,back_solves,calls,strain,rotation_deg,inverted,reason\n";
   Summary summary;
-  const auto every = ways();
+  const auto every = ways(full);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (added(cells[i]).empty()) {
       run_cell(out, cells[i], kUsual, summary);
@@ -277,7 +282,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::ofstream out(argv[1]);
-  const int wrong = run(out, cells_of(mode == "full", argc > 3 ? argv[3] : ""));
+  const int wrong = run(out, cells_of(mode == "full", argc > 3 ? argv[3] : ""), mode == "full");
   out.close();
   if (!out) {
     std::cerr << "cannot write " << argv[1] << '\n';
