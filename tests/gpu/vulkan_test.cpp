@@ -400,6 +400,27 @@ TEST_F(VulkanWatch, WhatTheHostWritesAndReadsGoesByCopiesWhereMemoryIsNotMapped)
   for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(read[i], i >= 100 && i < 110 ? 1 : 0) << i;
 }
 
+// Writes wait in one staging buffer: one that is dropped gives no room back that others wait in.
+TEST_F(VulkanWatch, ABufferThatGoesLeavesWhatWaitsForOthers) {
+  Adder adder(0, true, true);  // reading sentinels would have everything copied
+  const std::vector<double> ones(256, 1.0), twos(256, 2.0), threes(256, 3.0);
+  const auto on_the_device = [&] {
+    return Buffer(*adder.device, 256 * sizeof(double), Placement::device);
+  };
+  Buffer second = on_the_device();
+  {
+    Buffer gone = on_the_device();
+    adder.to.write(std::span<const double>(ones));
+    gone.write(std::span<const double>(twos));
+  }
+  second.write(std::span<const double>(threes));
+  std::vector<double> first_read(256), second_read(256);
+  adder.to.read(std::span<double>(first_read));
+  second.read(std::span<double>(second_read));
+  EXPECT_EQ(first_read, ones);
+  EXPECT_EQ(second_read, threes);
+}
+
 // Kernels with sums over subgroups, of both variants, where a subgroup has four invocations.
 TEST_F(VulkanWatch, SubgroupsOfAnotherSizeGiveTheSame) {
   const auto [output, code] = run_again(
