@@ -112,8 +112,9 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
       result.error = 0;  // rounding, or not asked for
       return result;
     }
-    if (result.back_solves == most) {
-      result.at_rest = good && result.residual <= stop.residual;
+    if (result.back_solves == most) {  // one good estimate may be luck here too
+      result.at_rest =
+          good && (good_before || most <= kFewBackSolves) && result.residual <= stop.residual;
       return result;
     }
     const bool near =

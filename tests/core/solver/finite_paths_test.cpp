@@ -169,7 +169,7 @@ TEST(FinitePaths, IsUsableAfterAFailure) {
   const auto laws = fem::one_law(problem, kCorotated);
   const fem::HyperelasticBody body{problem, laws};
   FiniteStaticsOptions options;
-  options.most_back_solves = 8;
+  options.most_back_solves = 9;
   options.most_factors = 0;
   options.most_path_steps = 2;
   FiniteStatics statics(body, options), alone(body, options);
