@@ -125,8 +125,7 @@ int main(int argc, char** argv) {
         const std::string name = std::string(tears ? "event/" : "frame/") + place.name + "pooled/" +
                                  std::to_string(6 * cells * cells);
         benchmark::RegisterBenchmark(
-            name.c_str(),
-            [=](benchmark::State& state) { pooled_row(state, place, cells, tears); })
+            name.c_str(), [=](benchmark::State& state) { pooled_row(state, place, cells, tears); })
             ->UseManualTime()
             ->Iterations(1)
             ->Unit(benchmark::kMillisecond);

@@ -236,8 +236,8 @@ void FiniteBase::lose(Index element) {
 
 /// With the elements that it has now, at the base's state.
 fem::PatchTangent FiniteBase::patch_tangent(Index patch) const {
-  return fem::patch_tangent({*problem_, laws_, out_, pools_}, patch, u_, patches_.stiffness()[patch],
-                            kind_);
+  return fem::patch_tangent({*problem_, laws_, out_, pools_}, patch, u_,
+                            patches_.stiffness()[patch], kind_);
 }
 
 FiniteBase::PatchVector FiniteBase::patch_vector(Index patch) const {

@@ -118,7 +118,7 @@ class FiniteBase {
   std::vector<double> u_;          // of the base
   fem::Tangent kind_;
   std::shared_ptr<const fem::Pools> pools_;  // its patches of pooled volume; null: the problem's
-  fem::PatchVolumes patches_;   // at its state
+  fem::PatchVolumes patches_;                // at its state
   std::vector<Index> changed_;  // patches of what has left last, or that a crack has split
   // What the small matrix has still of patches that are as they were no longer; elements of those
   // that have been split since.
