@@ -84,7 +84,7 @@ PROGRAMS = [
     Program("bench_stability", "stability of every method",
             Share(75, words=("quick",)), Share(420, words=("full",)), file="stability.csv"),
     Program("bench_finite_stability", "stability at finite deformation, two laws",
-            Share(45, words=("quick",)), Share(900, words=("full",)), file="finite-stability.csv"),
+            Share(15, words=("quick",)), Share(900, words=("full",)), file="finite-stability.csv"),
     Program("bench_finite_fractures", "finite deformation along fractures, against Newton's method",
             Share(3, words=("quick",)), Share(60, words=("full",)), file="finite-fractures.csv"),
     Program("bench_scenes", "error against run time on scenes",

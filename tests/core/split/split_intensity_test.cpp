@@ -137,7 +137,8 @@ TEST(SplitPooled, HasTheKOfAShearedCrackToo) {
   for (const double length : {8.0, 12.0, 16.0}) {
     pooled_at_49.grow_to(length);
     const auto [a, k, energy] = pooled_at_49.measure();
-    const auto above = std::ranges::find_if(known, [&](const auto& at) { return at.first >= a; });
+    const auto above =
+        std::ranges::find_if(known, [reached = a](const auto& at) { return at.first >= reached; });
     const auto below = above - 1;
     const double expected = below->second + (above->second - below->second) * (a - below->first) /
                                                 (above->first - below->first);
