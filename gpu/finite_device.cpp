@@ -266,10 +266,9 @@ void FiniteDevice::create_law() {
   }
   make(law_, patches_ > 0 ? "finite_law_pooled" : "finite_law", false, law[0], law[1]);
   if (patches_ == 0) return;
-  make(
-      pools_, "finite_pools", false,
-      {&u_[0], &nodes_of_, &shape_, &facts_, &from_, &patch_first_, &patch_elements_, &pressures_},
-      {&u_[1], &nodes_of_, &shape_, &facts_, &from_, &patch_first_, &patch_elements_, &pressures_});
+  make(pools_, "finite_pools", false,
+       {&u_[0], &nodes_of_, &shape_, &facts_, &patch_first_, &patch_elements_, &pressures_},
+       {&u_[1], &nodes_of_, &shape_, &facts_, &patch_first_, &patch_elements_, &pressures_});
 }
 
 void FiniteDevice::attach(const solver::RestingBody& body) {

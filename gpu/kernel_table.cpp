@@ -113,7 +113,7 @@ constexpr KernelRow kTable[] = {
      sizeof(shaders::FiniteCgPush)},
     {"finite_pools",
      "pressure and energy of patches of pooled volume",
-     {plain, plain, plain, plain, plain, plain, plain, plain},
+     {plain, plain, plain, plain, plain, plain, plain},
      sizeof(shaders::FinitePush)},
     {"finite_product",
      "product with the dense inverse of a recent tangent",

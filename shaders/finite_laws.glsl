@@ -7,7 +7,9 @@ IN_DOUBLES(0, Nodal, u)
 layout(std430, set = 0, binding = 1) readonly buffer Nodes { uvec4 data[]; } nodes;
 IN_DOUBLES(2, Shape, shape)
 IN_WORDS(3, Facts, facts)
+#ifndef SUNDER_ELASTIC
 IN_DOUBLES(4, From, from)  // of the viscous strain: (xx, yy, zz, xy, yz, zx)
+#endif
 
 uint law_of(uint fact) { return fact / kFiniteLaw % kFiniteLaws; }
 
@@ -153,6 +155,7 @@ dmat3 gradient(uint e) {
   return h;
 }
 
+#ifndef SUNDER_ELASTIC
 // Strain since the step began, which viscous stress resists.
 dmat3 viscous_way(uint e, uint law, dmat3 h) {
   dmat3 way = symmetric(h);
@@ -162,3 +165,4 @@ dmat3 viscous_way(uint e, uint law, dmat3 h) {
   return way - dmat3(dvec3(from.data[at], xy, zx), dvec3(xy, from.data[at + 1u], yz),
                      dvec3(zx, yz, from.data[at + 2u]));
 }
+#endif

@@ -3,11 +3,12 @@
 // Of every patch of pooled volume: J, the mean of its live elements', and with it pressure and energy of volume
 // (core/body/pooled_law).
 #extension GL_GOOGLE_include_directive : require
+#define SUNDER_ELASTIC
 #include "finite_laws.glsl"
 
-IN_WORDS(5, First, first)  // of each patch
-IN_WORDS(6, Members, members)
-OUT(7, Patches, FinitePatch, patches)
+IN_WORDS(4, First, first)  // of each patch
+IN_WORDS(5, Members, members)
+OUT(6, Patches, FinitePatch, patches)
 layout(push_constant) uniform Push { FinitePush p; };
 
 // J less 1, as each law measures it.

@@ -220,11 +220,11 @@ TEST_F(PooledPieces, FlyAsOnTheProcessor) {
   for (Simulation* of : {&expected, &found}) of->step();
   both("whole");
   for (Simulation* of : {&expected, &found}) of->remove(cut.elements);
-  for (int step = 0; step < 3; ++step) {
+  for (int step = 0; step < 2; ++step) {
     for (Simulation* of : {&expected, &found}) of->step();
     both("cut");
   }
-  for (Simulation* of : {&expected, &found}) of->undo(4);
+  for (Simulation* of : {&expected, &found}) of->undo(1);
   for (Simulation* of : {&expected, &found}) of->step();
   both("whole again");
   EXPECT_EQ(found.destroyed().size(), 0U);
