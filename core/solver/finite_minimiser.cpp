@@ -18,9 +18,6 @@ constexpr double kForceRounding = 1e-14;   // of a residual: no iteration wins m
 // The error of stress is looked at where the residual is not far above the tolerance: on the
 // 1954-element board it is a tenth of the residual in the median.
 constexpr double kResidualPerStress = 100;
-// Of the tolerance of stress: a residual of rounding that is no more of the forces is as good as
-// none.
-constexpr double kRoundingPerStress = 0.01;
 // A measured contraction above the most says nothing, one below the least is luck: the next one is
 // not (bench_finite_stability prints what reported errors are worth).
 constexpr double kLeastContraction = 0.4, kMostContraction = 0.9;
@@ -109,24 +106,16 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
   for (;;) {
     result.residual = residual(at);
     if (!std::isfinite(result.residual)) return result;
-    const bool rounding = result.residual <= kForceRounding;
-    // Beside a part many times as stiff what is rounding there is not in tissue.
-    const double share = at.residual / std::max(at.acting, scale_.force);
-    if ((rounding && share <= kRoundingPerStress * stop.tolerance) ||
-        (stop.tolerance == 0 && (rounding || result.residual <= stop.residual))) {
+    if (result.residual <= kForceRounding ||
+        (stop.tolerance == 0 && result.residual <= stop.residual)) {
       result.at_rest = true;
       result.error = 0;  // rounding, or not asked for
       return result;
     }
-    const auto only_rounding = [&] {
-      result.at_rest = true;
-      result.error = std::max(result.error, share);
-      return result;
-    };
     if (result.back_solves == most) {  // one good estimate may be luck here too
       result.at_rest =
           good && (good_before || most <= kFewBackSolves) && result.residual <= stop.residual;
-      return rounding && !result.at_rest ? only_rounding() : result;
+      return result;
     }
     const bool near =
         stop.tolerance > 0 && result.residual <= std::min(1.0, kResidualPerStress * stop.tolerance);
@@ -161,7 +150,7 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
     }
     if (!line_search(steps, near, at, trial)) {
       result.at_rest = near && good;
-      return rounding && !result.at_rest ? only_rounding() : result;
+      return result;
     }
     // An unstable rest is left by what rounding has put into it: let who calls choose the side.
     if ((good || good_before) && trial.winding < 0 && trial.at.residual > kLeaving * at.residual) {
