@@ -456,10 +456,13 @@ std::span<const MemberKey<SolverOptions>> solver_keys() {
       row<&S::update>("solver", "update", "how a fracture enters",
                       "eager but for `inverse` in fp64: exit code 4",
                       {.words = {"auto", "eager", "deferred"}}),
-      row<&S::precision>("solver", "precision",
-                         "of a device; auto takes fp64 where `tolerance` is below 1e-4, the "
-                         "contrast of E over 1,000 or Poisson's ratio over 0.4999",
-                         "not there: exit code 4", {.words = {"auto", "fp32", "fp64"}}),
+      row<&S::precision>(
+          "solver", "precision",
+          "of a device; auto takes fp64 where `tolerance` is below 1e-4, the "
+          "contrast of E over 1,000 or Poisson's ratio over 0.4999 (of pooled volume "
+          "0.499)",
+          "not there, or fp32 for pooled volume over 0.499: exit code 4",
+          {.words = {"auto", "fp32", "fp64"}}),
       row<&S::tolerance>("solver", "tolerance", "the promised relative stress error of every frame",
                          "not above 0 and below 1: error; not kept: exit code 5"),
       row<&S::device>("solver", "device", "index among the backend's devices; left out: it chooses",

@@ -24,6 +24,9 @@ constexpr double kFp32Tolerance = 1e-4;
 // Past these the displacement handed out in fp32 alone costs a stiff element more than that
 // (bench_stability, verdict "rounded").
 constexpr double kFp32Contrast = 1e3, kFp32Poisson = 0.4999;
+// Of pooled volume: at .4999 and a contrast of 100 the estimate misses 50 fractures along a crack,
+// whose stress is 2.3e-4 off (bench_stability); at .499 all are right.
+constexpr double kFp32PooledPoisson = 0.499;
 
 std::string number(double value) {
   std::ostringstream out;
@@ -91,6 +94,16 @@ void check_split(const Needs& needs, const SolverOptions& solver) {
   }
 }
 
+/// The largest of what pools its volume; 0: nothing does.
+double pooled_poisson(const Problem& problem) {
+  double most = 0;
+  for (Index e = 0; problem.pools() && e < problem.tet_count(); ++e) {
+    if (problem.material(e).volume != MaterialVolume::pooled) continue;
+    most = std::max(most, problem.small_strain(e).poisson);
+  }
+  return most;
+}
+
 /// What patches of pooled volume ask of a device.
 void check_pools(const Problem& problem, const PlanDevice& device) {
   if (!problem.pools() || device.backend != "vulkan") return;
@@ -98,6 +111,14 @@ void check_pools(const Problem& problem, const PlanDevice& device) {
     throw DeviceError(
         "update eager on backend vulkan writes over an inverse element by element and does not "
         "compute pooled volume (volume = \"pooled\"); use update deferred or auto, or backend cpu");
+  }
+  const double poisson = pooled_poisson(problem);
+  if (problem.scene().solver.precision == Precision::fp32 && poisson > kFp32PooledPoisson) {
+    std::ostringstream ratio;
+    ratio << std::setprecision(8) << poisson;
+    throw DeviceError(
+        "precision fp32 does not keep its promise for pooled volume at a Poisson's ratio of " +
+        ratio.str() + ", over " + number(kFp32PooledPoisson) + "; use precision fp64 or auto");
   }
 }
 
@@ -149,6 +170,7 @@ const RouteRow& choose(const Question& q) {
 /// What of the materials is past kFp32Contrast and kFp32Poisson; empty: nothing.
 std::string past_fp32(const Problem& problem) {
   double softest = problem.small_strain(0).young, stiffest = softest, poisson = 0;
+  const double pooled = pooled_poisson(problem);
   for (Index e = 0; e < problem.tet_count(); ++e) {
     softest = std::min(softest, problem.small_strain(e).young);
     stiffest = std::max(stiffest, problem.small_strain(e).young);
@@ -162,6 +184,12 @@ std::string past_fp32(const Problem& problem) {
     std::ostringstream out;
     out << std::setprecision(8) << poisson;
     return "Poisson's ratio is " + out.str() + ", more than " + number(kFp32Poisson);
+  }
+  if (pooled > kFp32PooledPoisson) {
+    std::ostringstream out;
+    out << std::setprecision(8) << pooled;
+    return "Poisson's ratio of pooled volume is " + out.str() + ", more than " +
+           number(kFp32PooledPoisson);
   }
   return {};
 }
@@ -188,7 +216,9 @@ std::string choose_precision(const Problem& problem, const PlanDevice& device, P
   }
   if (plan.eager) return "the update eager needs fp64";
   if (stiff) {
-    return "these materials need fp64: contrast over 1000 or Poisson's ratio over 0.4999";
+    return "these materials need fp64: contrast over 1000, or Poisson's ratio over 0.4999 (of "
+           "pooled "
+           "volume 0.499)";
   }
   return "tolerance " + number(solver.tolerance) +
          (plan.fp64 ? " needs fp64" : " is kept by fp32 storage with fp64 sums");

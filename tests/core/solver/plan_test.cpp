@@ -162,6 +162,25 @@ TEST(Plan, SaysWhatADeviceOffersInstead) {
   }
 }
 
+TEST(Plan, PooledVolumeNextToIncompressibleTakesFp64) {
+  Scene scene = board(6);
+  PlanDevice device = apart();
+  device.fp64 = true;
+  for (auto& [name, material] : scene.materials) {
+    material.volume = MaterialVolume::pooled;
+    material.poisson = 0.499;
+  }
+  EXPECT_FALSE(plan_of(scene, device).fp64);
+  for (auto& [name, material] : scene.materials) material.poisson = 0.4995;
+  EXPECT_TRUE(plan_of(scene, device).fp64);
+  scene.solver.precision = Precision::fp32;
+  EXPECT_EQ(refusal<DeviceError>(scene, device),
+            "precision fp32 does not keep its promise for pooled volume at a Poisson's ratio of "
+            "0.4995, over 0.499; use precision fp64 or auto");
+  for (auto& [name, material] : scene.materials) material.volume = MaterialVolume::element;
+  EXPECT_FALSE(plan_of(scene, device).fp64);
+}
+
 TEST(Plan, LeavesTheWholeBodyToAHostThatDrawsIt) {
   PlanDevice shown = apart();
   shown.displayed = true;
