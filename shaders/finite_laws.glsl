@@ -13,15 +13,20 @@ IN_DOUBLES(4, From, from)  // of the viscous strain: (xx, yy, zz, xy, yz, zx)
 
 uint law_of(uint fact) { return fact / kFiniteLaw % kFiniteLaws; }
 
+// m about 1 with x = 2^k m.
+double about_one(double x, out int k) {
+  const uvec2 bits = unpackDouble2x32(x);
+  k = int(bits.y >> 20u) - 1023;
+  const double m = packDouble2x32(uvec2(bits.x, (bits.y & 0x000fffffu) | 0x3ff00000u));
+  if (!(m > 1.4142135623730951LF)) return m;
+  k += 1;
+  return 0.5LF * m;
+}
+
 // Cube root of x > 0, as lanes::cube_root: x = 2^(3 q + r) m, Halley's step twice.
 double cube_root_(double x) {
-  const uvec2 bits = unpackDouble2x32(x);
-  int k = int(bits.y >> 20u) - 1023;
-  double m = packDouble2x32(uvec2(bits.x, (bits.y & 0x000fffffu) | 0x3ff00000u));
-  if (m > 1.4142135623730951LF) {
-    m *= 0.5LF;
-    k += 1;
-  }
+  int k;
+  const double m = about_one(x, k);
   const int q = (k + (k > 0 ? 1 : -1)) / 3, r = k - 3 * q;
   const double f = m - 1.0LF;
   double root = 1.0LF + f * (1.0LF / 3.0LF - f * (1.0LF / 9.0LF));
@@ -38,13 +43,8 @@ const double kLeastVolume = 2.2250738585072014e-308LF;
 
 // Natural logarithm of x > 0, as lanes::log.
 double log_(double x) {
-  const uvec2 bits = unpackDouble2x32(x);
-  int k = int(bits.y >> 20u) - 1023;
-  double m = packDouble2x32(uvec2(bits.x, (bits.y & 0x000fffffu) | 0x3ff00000u));
-  if (m > 1.4142135623730951LF) {
-    m *= 0.5LF;
-    k += 1;
-  }
+  int k;
+  const double m = about_one(x, k);
   const double f = m - 1.0LF, z = f / (2.0LF + f), zz = z * z;
   double series = 2.0LF / 23.0LF;
   [[unroll]] for (int n = 21; n >= 3; n -= 2) series = series * zz + 2.0LF / double(n);

@@ -32,23 +32,15 @@ SpectralTangent law_tangent(const SmallStrain& law, const Mat3&) {
   return spectral_tangent({Mat3::Identity(), Vec3::Ones(), Mat3::Identity()}, at);
 }
 
-double shape_energy(const SmallStrain& law, const Mat3& f) {
-  return law_energy(without_pressure(law), f);
-}
-
-Mat3 shape_stress(const SmallStrain& law, const Mat3& f) {
-  return law_stress(without_pressure(law), f);
-}
-
-SpectralTangent shape_tangent(const SmallStrain& law, const Mat3& f, double) {
-  return law_tangent(without_pressure(law), f);
+SpectralTangent tangent_at(const SmallStrain& law, const Mat3& f, double) {
+  return law_tangent(law, f);
 }
 
 double ratio(const Mat3& f) { return strain(f).trace() + 1; }
 Mat3 ratio_slope(const Mat3&) { return Mat3::Identity(); }
 
-constexpr VolumeSplit kSplit = split_with_fibres<FibreTheory::linear, shape_energy, shape_stress,
-                                                 shape_tangent, ratio, ratio_slope, trace_volume>();
+constexpr VolumeSplit kSplit =
+    trace_split<FibreTheory::linear, law_energy, law_stress, tangent_at, ratio, ratio_slope>();
 
 }  // namespace
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/saint_venant_kirchhoff.hpp"
 
-#include "material/linear.hpp"
 #include "material/trace_volume.hpp"
 
 namespace sunder {
@@ -40,23 +39,11 @@ SpectralTangent tangent_at(const SmallStrain& law, const Mat3& f, double pressur
 
 SpectralTangent tangent(const SmallStrain& law, const Mat3& f) { return tangent_at(law, f, 0); }
 
-double shape_energy(const SmallStrain& law, const Mat3& f) {
-  return energy(without_pressure(law), f);
-}
-
-Mat3 shape_stress(const SmallStrain& law, const Mat3& f) {
-  return law_stress(without_pressure(law), f);
-}
-
-SpectralTangent shape_tangent(const SmallStrain& law, const Mat3& f, double pressure) {
-  return tangent_at(without_pressure(law), f, pressure);
-}
-
 double ratio(const Mat3& f) { return green_lagrange(f).trace() + 1; }
 Mat3 ratio_slope(const Mat3& f) { return f; }
 
-constexpr VolumeSplit kSplit = split_with_fibres<FibreTheory::finite, shape_energy, shape_stress,
-                                                 shape_tangent, ratio, ratio_slope, trace_volume>();
+constexpr VolumeSplit kSplit =
+    trace_split<FibreTheory::finite, energy, law_stress, tangent_at, ratio, ratio_slope>();
 
 }  // namespace
 

@@ -142,6 +142,24 @@ inline std::vector<Index> destroyed_by(const std::shared_ptr<const Problem>& pro
   return list;
 }
 
+/// Displacement and stress of two runs of one body agree, as shares of the largest.
+inline void expect_alike(const Simulation& found, const Simulation& expected, double share) {
+  const auto u = found.displacement(), exact = expected.displacement();
+  double most = 0, apart = 0;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    most = std::max(most, exact[n].norm());
+    apart = std::max(apart, (u[n] - exact[n]).norm());
+  }
+  EXPECT_LE(apart, share * most);
+  const auto s = found.stress(), right = expected.stress();
+  double largest = 0, wrong = 0;
+  for (std::size_t e = 0; e < s.size(); ++e) {
+    largest = std::max(largest, right[e].norm());
+    wrong = std::max(wrong, (s[e] - right[e]).norm());
+  }
+  EXPECT_LE(wrong, share * largest);
+}
+
 class Pair {
  public:
   /// `adjust` may set more of what the Vulkan backend is created with.

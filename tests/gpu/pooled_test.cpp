@@ -137,20 +137,7 @@ TEST_P(PooledOnTheDevice, DeformsAndTearsAsOnTheProcessor) {
     expected.step();
     found.step();
     ASSERT_EQ(found.destroyed().size(), expected.destroyed().size());
-    const auto u = found.displacement(), exact = expected.displacement();
-    double most = 0, apart = 0;
-    for (std::size_t n = 0; n < u.size(); ++n) {
-      most = std::max(most, exact[n].norm());
-      apart = std::max(apart, (u[n] - exact[n]).norm());
-    }
-    EXPECT_LE(apart, 1e-7 * most);
-    const auto s = found.stress(), right = expected.stress();
-    double largest = 0, wrong = 0;
-    for (std::size_t e = 0; e < s.size(); ++e) {
-      largest = std::max(largest, right[e].norm());
-      wrong = std::max(wrong, (s[e] - right[e]).norm());
-    }
-    EXPECT_LE(wrong, 1e-7 * largest);
+    expect_alike(found, expected, 1e-7);
   }
   ASSERT_GE(expected.destroyed().size(), 8U);
   for (std::size_t i = 0; i < expected.destroyed().size(); ++i) {
@@ -202,19 +189,8 @@ TEST_F(PooledPieces, FlyAsOnTheProcessor) {
   expected.keep_history([&] { return cpu_reference::create(reference, needs_of(*reference)); });
   found.keep_history([&] { return vulkan.create(); });
   const auto both = [&](const char* when) {
-    const auto u = found.displacement(), exact = expected.displacement();
-    const auto s = found.stress(), right = expected.stress();
-    double most = 0, apart = 0, largest = 0, wrong = 0;
-    for (std::size_t n = 0; n < u.size(); ++n) {
-      most = std::max(most, exact[n].norm());
-      apart = std::max(apart, (u[n] - exact[n]).norm());
-    }
-    for (std::size_t e = 0; e < s.size(); ++e) {
-      largest = std::max(largest, right[e].norm());
-      wrong = std::max(wrong, (s[e] - right[e]).norm());
-    }
-    EXPECT_LE(apart, 1e-6 * most) << when;
-    EXPECT_LE(wrong, 1e-6 * largest) << when;
+    SCOPED_TRACE(when);
+    expect_alike(found, expected, 1e-6);
   };
   const CutAcross cut = cut_through_a_patch(*reference);
   for (Simulation* of : {&expected, &found}) of->step();
