@@ -26,22 +26,30 @@ constexpr double kLeastContraction = 0.4, kMostContraction = 0.9;
 constexpr int kFewBackSolves = 2;
 constexpr double kLeaving = 2;  // times the residual, against a negative stiffness
 
-// Of the largest shear modulus: stress that is as good as none, and rounding.
+// Of the largest shear modulus: stress that is as good as none, and what rounding may leave of it.
 constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
+// Nor is it more than this of the smallest one: soft tissue in a stiff frame has stress of its own.
+constexpr double kNoStressOfSoft = 1e-6;
+// A change of stress that rounding may leave is taken for it where it falls by less than this from
+// one iteration to the next.
+constexpr double kStagnant = 0.5;
 // Of the sum of shear modulus and volume: an energy is what terms of that size leave.
 constexpr double kSumRounding = 2e-16;
 
 }  // namespace
 
 FiniteScale finite_scale(const Problem& problem) {
-  double stiffest = 0, sum = 0, volume = 0;
+  double stiffest = 0, softest = HUGE_VAL, sum = 0, volume = 0;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    stiffest = std::max(stiffest, shear_scale(problem.small_strain(e)));
+    const double shear = shear_scale(problem.small_strain(e));
+    stiffest = std::max(stiffest, shear);
+    softest = std::min(softest, shear);
     volume += problem.shape(e).volume;
-    sum += shear_scale(problem.small_strain(e)) * problem.shape(e).volume;
+    sum += shear * problem.shape(e).volume;
   }
   const double face = std::pow(volume / std::max(1, problem.tet_count()), 2.0 / 3);
-  return {kNoStress * stiffest * face, kNoStress * stiffest, kStressRounding * stiffest * face,
+  const double none = std::min(kNoStress * stiffest, kNoStressOfSoft * softest);
+  return {kNoStress * stiffest * face, none, kStressRounding * stiffest * face,
           kStressRounding * stiffest, kSumRounding * sum};
 }
 
@@ -55,9 +63,7 @@ double FiniteMinimiser::residual(const FinitePoint& at) const {
 
 /// Of where the trial begins, if where it ends were right.
 double FiniteMinimiser::stress_error(const FiniteTrial& trial) const {
-  return trial.change <= scale_.stress_rounding
-             ? 0
-             : trial.change / std::max(trial.largest, scale_.stress);
+  return trial.change / std::max(trial.largest, scale_.stress);
 }
 
 double FiniteMinimiser::energy_rounding(const FinitePoint& at) const {
@@ -103,6 +109,7 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
   double before = 0;                       // error of the last state but one
   double ratio_before = 0;                 // of that to the one before
   bool good = false, good_before = false;  // the last two estimates
+  bool rounding = false;                   // may be all that the last one is
   for (;;) {
     result.residual = residual(at);
     if (!std::isfinite(result.residual)) return result;
@@ -124,13 +131,15 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
     if (near && !std::isfinite(trial.at.potential)) {
       // Beyond what the law knows: such a change of stress says nothing.
       before = ratio_before = 0;
-      good = good_before = false;
+      good = good_before = rounding = false;
     } else if (near) {
       const double change = stress_error(trial);
       const double ratio = before > 0 ? change / before : kLeastContraction;
       result.contraction =
           std::clamp(std::max(ratio, ratio_before), kLeastContraction, kMostContraction);
       result.error = change / (1 - result.contraction);
+      rounding = trial.change <= scale_.stress_rounding;
+      if (rounding && before > 0 && ratio > kStagnant) result.error = 0;
       before = change;
       ratio_before = ratio;
       good_before =
@@ -149,7 +158,8 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
       }
     }
     if (!line_search(steps, near, at, trial)) {
-      result.at_rest = near && good;
+      if (near && rounding) result.error = 0;  // nothing better is to be had
+      result.at_rest = near && (good || (rounding && result.residual <= stop.residual));
       return result;
     }
     // An unstable rest is left by what rounding has put into it: let who calls choose the side.
