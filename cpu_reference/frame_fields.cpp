@@ -123,7 +123,9 @@ void FrameFields::exclude_candidates(std::span<const Index> elements) {
 }
 
 void FrameFields::destroy(std::span<const Index> elements) {
-  if (kernel_) kernel_->destroy(elements);
+  if (!kernel_) return;
+  kernel_->destroy(elements);
+  kernel_->take_pools(body_.forms());
 }
 
 FrameFields::State FrameFields::state() const {

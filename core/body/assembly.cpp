@@ -40,13 +40,14 @@ linear_algebra::SparseMatrix assemble_elements(
   return matrix;
 }
 
-linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale) {
+linear_algebra::SparseMatrix assemble_lower(const Problem& problem, std::span<const double> scale,
+                                            const Pools* pools) {
   linear_algebra::SparseMatrix lower = assemble_elements(problem, [&](Index e) {
     ElementMatrix k = element_stiffness(problem, e);
     if (!scale.empty()) k *= scale[e];
     return k;
   });
-  if (problem.pools()) lower += assemble_pressure(problem, scale);
+  if (problem.pools()) lower += assemble_pressure(problem, scale, pools);
   return lower;
 }
 
@@ -62,9 +63,9 @@ linear_algebra::SparseMatrix assemble_forms(const Problem& problem, std::span<co
 }
 
 void apply_stiffness(const Problem& problem, std::span<const double> scale,
-                     std::span<const double> u, std::span<double> y) {
+                     std::span<const double> u, std::span<double> y, const Pools* pools) {
   std::fill(y.begin(), y.end(), 0.0);
-  const StressField field(problem, scale, u);
+  const StressField field(problem, scale, u, pools);
   for (Index e = 0; e < problem.tet_count(); ++e) {
     const TetShape& shape = problem.shape(e);
     const Voigt s = field.of(e);

@@ -135,6 +135,20 @@ void Forms::follow(const Event& event) {
     if (c.element >= problem_->tet_count()) continue;
     destroyed_[static_cast<std::size_t>(c.element)] = c.form.share > alpha ? 0 : 1;
   }
+  if (problem_->pools()) split_pools(event);
+}
+
+void Forms::split_pools(const Event& event) {
+  std::vector<Index> changed(event.leave.begin(), event.leave.end()), split;
+  for (const Coming& c : event.come) changed.push_back(c.element);
+  if (changed.empty()) return;
+  const auto& tets = problem_->mesh().tets;
+  for (const auto& [element, form] : came_) {
+    if (element < problem_->tet_count() && form.corners != tets[static_cast<std::size_t>(element)])
+      split.push_back(element);
+  }
+  const auto corners_of = [this](Index e) -> const std::array<Index, 4>& { return corners(e); };
+  pools_.follow({*problem_, destroyed_, corners_of, split}, changed);
 }
 
 Index Forms::element_count() const {

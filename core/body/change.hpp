@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "body/damaged_pools.hpp"
 #include "sunder/problem.hpp"
 
 namespace sunder::fem {
@@ -126,12 +127,18 @@ class Forms {
   [[nodiscard]] const std::array<Index, 4>& corners(Index element) const;
   /// The corners' nodes of the mesh: a new node's is its parent.
   [[nodiscard]] std::array<Index, 4> parents(const std::array<Index, 4>& corners) const;
+  /// Patches of pooled volume as this body has them; null: none.
+  [[nodiscard]] const Pools* pools() const { return pools_.of(*problem_); }
+  [[nodiscard]] const DamagedPools& damaged_pools() const { return pools_; }
   [[nodiscard]] const Problem& problem() const { return *problem_; }
 
  private:
+  void split_pools(const Event& event);
+
   const Problem* problem_;
   std::vector<std::uint8_t> destroyed_;  // per element of the mesh
   std::map<Index, Form> came_;
+  DamagedPools pools_;
   std::vector<NewNode> nodes_;
   std::vector<Index> gripped_;
   std::size_t own_gripped_;

@@ -157,7 +157,7 @@ void DamagedBody::refuse_new_unknowns() const {
 
 linear_algebra::SparseMatrix DamagedBody::stiffness() const {
   refuse_new_unknowns();
-  linear_algebra::SparseMatrix k = assemble_lower(*problem_, scale_);
+  linear_algebra::SparseMatrix k = assemble_lower(*problem_, scale_, forms_.pools());
   if (!others_.empty()) k += assemble_forms(*problem_, others_);
   return k;
 }
@@ -169,7 +169,7 @@ void DamagedBody::scatter(const Eigen::VectorXd& x) const {
 
 void DamagedBody::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   scatter(x);
-  apply_stiffness(*problem_, scale_, nodal_in_, nodal_out_);
+  apply_stiffness(*problem_, scale_, nodal_in_, nodal_out_, forms_.pools());
   for (const Form& form : others_) {
     const Eigen::Matrix<double, 3, 4> force =
         form.shape.volume * (tensor(stress_of(form, nodal_in_)) * form.shape.gradient);
@@ -181,7 +181,7 @@ void DamagedBody::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
 
 double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
   scatter(x);
-  const StressField field(*problem_, scale_, nodal_in_);
+  const StressField field(*problem_, scale_, nodal_in_, forms_.pools());
   Largest largest;
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (!destroyed()[e]) largest.add(squared(scale_[e] * field.of(e)));
@@ -193,7 +193,7 @@ double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {
 double DamagedBody::largest_stress(const Eigen::VectorXd& x,
                                    std::span<const Index> elements) const {
   scatter(x);
-  const StressField field(*problem_, scale_, nodal_in_);
+  const StressField field(*problem_, scale_, nodal_in_, forms_.pools());
   Largest largest;
   for (Index e : elements) {
     if (!destroyed()[e]) largest.add(squared(scale_[e] * field.of(e)));

@@ -245,7 +245,7 @@ Pools::Pools(const Pools& whole, const CornersOf& corners, std::span<const Index
     patches.emplace_back(whole.elements(p).begin(), whole.elements(p).end());
   }
   for (Index p : touched) {
-    auto parts = whole.parts(p, corners);
+    auto parts = whole.hanging_together(p, corners);
     for (std::size_t i = 1; i < parts.size(); ++i) {
       bulk_.push_back(whole.bulk(p));
       for (Index e : parts[i]) {
@@ -262,7 +262,23 @@ Pools::Pools(const Pools& whole, const CornersOf& corners, std::span<const Index
   }
 }
 
-std::vector<std::vector<Index>> Pools::parts(Index patch, const CornersOf& corners) const {
+std::vector<std::vector<Index>> Pools::parts_of(const Pools& whole, Index patch) const {
+  std::vector<std::vector<Index>> parts;
+  std::vector<Index> patches;
+  for (Index e : whole.elements(patch)) {
+    const auto at = std::ranges::find(patches, of(e)) - patches.begin();
+    if (at == std::ssize(patches)) {
+      patches.push_back(of(e));
+      parts.emplace_back();
+    }
+    parts[static_cast<std::size_t>(at)].push_back(e);
+  }
+  return parts;
+}
+
+/// Elements of a patch that hang together by faces with these corners, by their first ones.
+std::vector<std::vector<Index>> Pools::hanging_together(Index patch,
+                                                        const CornersOf& corners) const {
   const auto all = elements(patch);
   const auto hang_together = [&](Index a, Index b) {
     const auto &one = corners(a), &two = corners(b);
@@ -345,18 +361,18 @@ void append_pressure(const Problem& problem, std::span<const Index> elements, In
   }
 }
 
-void append_pressure(const Problem& problem, Index patch, const Pools::CornersOf& corners,
-                     const ShareOf& share, std::vector<StiffnessPart>& parts) {
+void append_pressure(const Problem& problem, Index patch, const Pools& now, const ShareOf& share,
+                     std::vector<StiffnessPart>& parts) {
   Index number = patch;
-  for (const std::vector<Index>& part : problem.pools()->parts(patch, corners)) {
+  for (const std::vector<Index>& part : now.parts_of(*problem.pools(), patch)) {
     append_pressure(problem, part, number, share, parts);
     number += problem.pools()->count();
   }
 }
 
 linear_algebra::SparseMatrix assemble_pressure(const Problem& problem,
-                                               std::span<const double> scale) {
-  const Pools& pools = *problem.pools();
+                                               std::span<const double> scale, const Pools* now) {
+  const Pools& pools = now ? *now : *problem.pools();
   const auto share = [&](Index e) {
     return scale.empty() ? 1.0 : scale[static_cast<std::size_t>(e)];
   };
@@ -396,9 +412,9 @@ linear_algebra::SparseMatrix assemble_pressure(const Problem& problem,
 }
 
 StressField::StressField(const Problem& problem, std::span<const double> scale,
-                         std::span<const double> u)
-    : problem_(problem), u_(u) {
-  const Pools* pools = problem.pools();
+                         std::span<const double> u, const Pools* now)
+    : problem_(problem), u_(u), pools_(now ? now : problem.pools()) {
+  const Pools* const pools = pools_;
   if (!pools) return;
   pressure_.reserve(static_cast<std::size_t>(pools->count()));
   const auto share = [&](Index e) {
@@ -420,7 +436,7 @@ StressField::StressField(const Problem& problem, std::span<const double> scale,
 Voigt StressField::of(Index element) const {
   Voigt s = stress_by_itself(problem_, element, u_);
   if (pressure_.empty()) return s;
-  const Index patch = problem_.pools()->of(element);
+  const Index patch = pools_->of(element);
   if (patch != kNone) s.head<3>().array() += pressure_[static_cast<std::size_t>(patch)];
   return s;
 }

@@ -33,8 +33,8 @@ class Pools {
   /// that they had in `whole`.
   Pools(const Pools& whole, const CornersOf& corners, std::span<const Index> changed);
 
-  /// Elements of a patch that hang together by faces with these corners, by their first ones.
-  [[nodiscard]] std::vector<std::vector<Index>> parts(Index patch, const CornersOf& corners) const;
+  /// Elements of a patch of `whole` by the patches that they belong to here, by their first ones.
+  [[nodiscard]] std::vector<std::vector<Index>> parts_of(const Pools& whole, Index patch) const;
 
   /// The same patches with each split by the body that its elements belong to (kNone: to none,
   /// which then stay with the first): the body of its first element keeps its number, others follow
@@ -63,6 +63,8 @@ class Pools {
 
  private:
   Pools() = default;
+  [[nodiscard]] std::vector<std::vector<Index>> hanging_together(Index patch,
+                                                                 const CornersOf& corners) const;
   std::vector<Index> of_;
   std::vector<std::size_t> begin_;
   std::vector<Index> elements_;
@@ -85,27 +87,30 @@ using ShareOf = std::function<double(Index element)>;
 /// parts, one an element, whose first columns add up to one vector. `number`: StiffnessPart::patch.
 void append_pressure(const Problem& problem, std::span<const Index> elements, Index number,
                      const ShareOf& share, std::vector<StiffnessPart>& parts);
-/// The same of each part of a patch whose elements have these corners.
-void append_pressure(const Problem& problem, Index patch, const Pools::CornersOf& corners,
-                     const ShareOf& share, std::vector<StiffnessPart>& parts);
+/// The same of each part of a patch of the problem, as it is split in `now`.
+void append_pressure(const Problem& problem, Index patch, const Pools& now, const ShareOf& share,
+                     std::vector<StiffnessPart>& parts);
 
 /// Sum of kappa / V_p b_p b_p^T over the unknowns: lower triangle. `scale`: a_e of each element;
-/// empty: intact.
+/// empty: intact. `pools`: as damage has split them (damaged_pools.hpp); null: the problem's.
 [[nodiscard]] linear_algebra::SparseMatrix assemble_pressure(const Problem& problem,
-                                                             std::span<const double> scale);
+                                                             std::span<const double> scale,
+                                                             const Pools* pools = nullptr);
 
 /// Stress of elements in one displacement: what an element bears by itself, and the pressure
 /// kappa b_p . u / V_p of its patch where it pools.
 class StressField {
  public:
-  /// `scale` as above, `u`: at all nodes (3 * nodes). All three must outlive it.
-  StressField(const Problem& problem, std::span<const double> scale, std::span<const double> u);
+  /// `scale` and `pools` as above, `u`: at all nodes (3 * nodes). All of them must outlive it.
+  StressField(const Problem& problem, std::span<const double> scale, std::span<const double> u,
+              const Pools* pools = nullptr);
   /// As a live element has it: not scaled.
   [[nodiscard]] Voigt of(Index element) const;
 
  private:
   const Problem& problem_;
   std::span<const double> u_;
+  const Pools* pools_;
   std::vector<double> pressure_;  // of each patch
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,6 +36,8 @@ class PatchChanges {
   }
 
  private:
+  [[nodiscard]] std::shared_ptr<const fem::Pools> split_pools(std::span<const Index> elements,
+                                                              const Body& body) const;
   [[nodiscard]] fem::PatchChange of(std::span<const Index> patch, const Body& body,
                                     const Mat3& turned);
 

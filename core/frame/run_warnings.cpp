@@ -89,34 +89,8 @@ std::vector<std::string> Simulation::warnings() const {
                   (one ? " is" : " are") + " cut off (since step " +
                   std::to_string(now_.loose_pieces_step) + "); only destroyed elements hold " +
                   (one ? "it and its" : "them and their") + so);
-    add_shared_pressure(all);
   }
   return all;
-}
-
-/// In statics by law "linear" a patch of pooled volume is not split with its piece
-/// (docs/limits.md).
-void Simulation::add_shared_pressure(std::vector<std::string>& all) const {
-  if (!problem_->pools() || problem_->finite() || problem_->moves() || problem_->fibrous() ||
-      now_.cut_off.empty()) {
-    return;
-  }
-  const auto parted = parted_now();  // a crack of split nodes splits patches too
-  const fem::Pools* const pools = parted ? parted->pools() : problem_->pools();
-  long long shared = 0;
-  for (Index p = 0; p < pools->count(); ++p) {
-    bool held = false, loose = false;
-    for (Index e : pools->elements(p)) {
-      const auto at = static_cast<std::size_t>(e);
-      if (!backend_->destroyed()[at]) (now_.cut_off[at] ? loose : held) = true;
-    }
-    shared += held && loose ? 1 : 0;
-  }
-  if (shared == 0) return;
-  all.push_back(
-      count_of(shared, "patch of pooled volume reaches", "patches of pooled volume reach") +
-      " into a piece that is cut off: what is left of the body is too soft in volume there "
-      "(docs/limits.md)");
 }
 
 void Simulation::add_deformation_warnings(std::vector<std::string>& all) const {

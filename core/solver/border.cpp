@@ -14,7 +14,8 @@
 
 namespace sunder::solver {
 /// The least unknown at which the event's elements, before it or after it, or its ties act.
-Index Border::first_changed(const fem::Forms& forms, const fem::Event& event) {
+Index Border::first_changed(const fem::Forms& forms, const fem::Event& event,
+                            std::span<const Index> patches) {
   Index first = unknowns_.count();
   const auto acts = [&](const std::array<Index, 4>& corners) {
     for (Index column : own(forms, corners)) {
@@ -32,15 +33,10 @@ Index Border::first_changed(const fem::Forms& forms, const fem::Event& event) {
     if (at != corners_.end()) acts(at->second);
   }
   // Of a patch, what one element changes acts at the new nodes of all.
-  if (const fem::Pools* pools = forms.problem().pools()) {
-    std::vector<Index> elements(event.leave.begin(), event.leave.end()), patches;
-    for (const fem::Coming& c : event.come) elements.push_back(c.element);
-    pools->of(elements, patches);
-    for (Index patch : patches) {
-      for (Index e : pools->elements(patch)) {
-        const auto at = corners_.find(e);
-        if (at != corners_.end()) acts(at->second);
-      }
+  for (Index patch : patches) {
+    for (Index e : forms.problem().pools()->elements(patch)) {
+      const auto at = corners_.find(e);
+      if (at != corners_.end()) acts(at->second);
     }
   }
   for (const fem::Tie& tie : event.ties) {
@@ -71,7 +67,7 @@ bool Border::follow(const fem::Forms& forms, const fem::Event& event, Difference
   for (Eigen::VectorXd* v : {&load_, &d_, &lack_, &step_}) v->setZero(unknowns_.count());
   if (empty() && event.come.empty()) return true;
   const bool anew = over.anew || before > unknowns_.count() || before != l_.rows();
-  const Index changed = first_changed(forms, event);
+  const Index changed = first_changed(forms, event, over.patches);
   const Index from = anew ? 0 : std::min(changed, before);
   const Eigen::Index rows = anew ? 0 : rows_of_h_;
   resize(over.columns);
@@ -114,9 +110,8 @@ void Border::add_patches(const fem::Forms& forms, DifferenceBasis& basis,
     }
   }
   problem.pools()->of(elements, patches);
-  const auto corners = [&](Index e) -> const std::array<Index, 4>& { return forms.corners(e); };
   for (Index patch : patches) {
-    for (const std::vector<Index>& part : problem.pools()->parts(patch, corners)) {
+    for (const std::vector<Index>& part : forms.pools()->parts_of(*problem.pools(), patch)) {
       add_patch(forms, part, basis, of_basis, from);
     }
   }

@@ -34,11 +34,13 @@ class Border {
   /// them in the basis, S and its factor. E has `columns` rows: `of_basis` says which of them a
   /// difference of the basis has; those of unit vectors are zero. Reads the leading blocks of G and
   /// M; of M no more than `changed` rows are not 0, and with `anew` it is another one than at the
-  /// last event. False where S is not positive definite in double precision.
+  /// last event. `patches`: of pooled volume that the event may change. False where S is not
+  /// positive definite in double precision.
   struct Over {
     std::span<const Index> of_basis;
     Eigen::Index columns = 0, changed = 0;
     bool anew = false;
+    std::span<const Index> patches{};
   };
   [[nodiscard]] bool follow(const fem::Forms& forms, const fem::Event& event,
                             DifferenceBasis& basis, const linear_algebra::RowMajor& g,
@@ -73,7 +75,8 @@ class Border {
     Index row;
     double value;
   };
-  [[nodiscard]] Index first_changed(const fem::Forms& forms, const fem::Event& event);
+  [[nodiscard]] Index first_changed(const fem::Forms& forms, const fem::Event& event,
+                                    std::span<const Index> patches);
   [[nodiscard]] std::array<Index, 12> own(const fem::Forms& forms,
                                           const std::array<Index, 4>& corners) const;
   void resize(Eigen::Index rows);

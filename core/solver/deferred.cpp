@@ -230,9 +230,7 @@ void Deferred::push(const fem::Event& event) {
 /// A patch of pooled volume has one pressure: what changes one of its elements changes what it
 /// exerts on all of their nodes.
 void Deferred::connect_patches(const fem::Event& event) {
-  pooled_.assign(event.leave.begin(), event.leave.end());
-  for (const fem::Coming& c : event.come) pooled_.push_back(c.element);
-  problem_.pools()->of(pooled_, patches_);
+  find_patches(event, forms_after(event));
   for (Index patch : patches_) {
     for (Index e : problem_.pools()->elements(patch)) connect(glued(e));
   }

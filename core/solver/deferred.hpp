@@ -139,6 +139,8 @@ class Deferred {
   [[nodiscard]] bool follow_last();
   void push(const fem::Event& event);
   void connect_patches(const fem::Event& event);
+  [[nodiscard]] fem::Forms forms_after(const fem::Event& event) const;
+  void find_patches(const fem::Event& event, const fem::Forms& after);
   void push(std::span<const Difference> vectors);
   void push_units(std::span<const Index> dofs);
   [[nodiscard]] std::array<Index, 4> glued(Index element) const;
@@ -147,14 +149,8 @@ class Deferred {
   [[nodiscard]] bool apply(const fem::Event& event);
   void collect(const fem::Event& event);
   void collect(const fem::StiffnessDifference& between);
-  void collect_pressure(const fem::Event& event);
-  /// What decides the stiffness of patches of pooled volume.
-  struct PatchState {
-    fem::Pools::CornersOf corners;
-    fem::ShareOf share;
-  };
-  void collect_pressure(std::span<const Index> patches, const PatchState& before,
-                        const PatchState& after);
+  void collect_pressure(std::span<const Index> patches, const fem::Forms& before,
+                        const fem::Forms& after);
   [[nodiscard]] bool update(std::span<const Part> parts, bool more);
   void gather(std::span<const Part> parts);
   void gather_event(std::span<const Part> parts);
@@ -211,8 +207,7 @@ class Deferred {
   // The event in work: what it takes and what it adds, its update vectors and where they act, and
   // what comes of them.
   std::vector<Part> less_, more_;
-  std::vector<Index> patches_;  // of pooled volume that it touches, and the elements that do
-  std::vector<Index> pooled_;
+  std::vector<Index> patches_;  // of pooled volume that it may change
   std::vector<Index> rows_;
   Eigen::Index rank_ = 0;
   struct EventRoom {                // of an event with several elements

@@ -2,7 +2,10 @@
 // What a change takes from the stiffness between old unknowns and what it adds (method.md
 // "Changes").
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "body/element.hpp"
 #include "body/held_together.hpp"
@@ -63,44 +66,49 @@ void Deferred::collect(const fem::Event& event) {
     if (c.element < forms_.element_count()) before = forms_.of(c.element);
     collect(fem::difference(forms_, before, c.form));
   }
-  if (problem_.pools()) collect_pressure(event);
 }
 
-/// Of the patches whose elements an event changes: what they exerted, which goes, and what they
-/// exert after it, which comes. So the stiffness of what stays may grow where elements leave, and
-/// falls where a crack splits a patch.
-void Deferred::collect_pressure(const fem::Event& event) {
-  pooled_.assign(event.leave.begin(), event.leave.end());
-  for (const fem::Coming& c : event.come) pooled_.push_back(c.element);
-  problem_.pools()->of(pooled_, patches_);
-  const double alpha = problem_.scene().fracture.alpha;
-  const auto before = [this](Index e) { return forms_.share(e); };
-  const auto after = [&](Index e) {
-    const auto came = std::ranges::find(event.come, e, &fem::Coming::element);
-    if (came != event.come.end()) return came->form.share;
-    return std::ranges::find(event.leave, e) != event.leave.end() ? alpha : forms_.share(e);
-  };
-  const auto corners = [this](Index e) -> const std::array<Index, 4>& { return forms_.corners(e); };
-  const auto corners_after = [&](Index e) -> const std::array<Index, 4>& {
-    const auto came = std::ranges::find(event.come, e, &fem::Coming::element);
-    return came != event.come.end() ? came->form.corners : forms_.corners(e);
-  };
-  collect_pressure(patches_, {corners, before}, {corners_after, after});
+/// Its new nodes are known already.
+fem::Forms Deferred::forms_after(const fem::Event& event) const {
+  fem::Forms forms = forms_;
+  forms.follow(event);
+  return forms;
 }
 
-/// Of those patches that are not the same: their elements' shares differ, or which of them hang
-/// together.
-void Deferred::collect_pressure(std::span<const Index> patches, const PatchState& before,
-                                const PatchState& after) {
-  const fem::Pools& pools = *problem_.pools();
+/// The patches whose elements an event changes, and those that a piece which comes off parts.
+void Deferred::find_patches(const fem::Event& event, const fem::Forms& after) {
+  const fem::Pools& whole = *problem_.pools();
+  std::vector<Index> changed(event.leave.begin(), event.leave.end());
+  for (const fem::Coming& c : event.come) changed.push_back(c.element);
+  whole.of(changed, patches_);
+  const fem::Pools &was = *forms_.pools(), &is = *after.pools();
+  if (&was == &is || was == is) return;
+  const std::vector<Index> of_event = patches_;
+  for (Index patch = 0; patch < whole.count(); ++patch) {
+    if (!std::ranges::binary_search(of_event, patch) &&
+        was.parts_of(whole, patch) != is.parts_of(whole, patch)) {
+      patches_.push_back(patch);
+    }
+  }
+}
+
+/// What patches exerted, which goes, and what they exert from now on, which comes. So the stiffness
+/// of what stays may grow where elements leave, and falls where a patch is split.
+void Deferred::collect_pressure(std::span<const Index> patches, const fem::Forms& before,
+                                const fem::Forms& after) {
+  const fem::Pools& whole = *problem_.pools();
   for (Index patch : patches) {
     const auto changes = [&](Index e) { return before.share(e) != after.share(e); };
-    if (std::ranges::none_of(pools.elements(patch), changes) &&
-        pools.parts(patch, before.corners) == pools.parts(patch, after.corners)) {
+    if (std::ranges::none_of(whole.elements(patch), changes) &&
+        before.pools()->parts_of(whole, patch) == after.pools()->parts_of(whole, patch)) {
       continue;
     }
-    fem::append_pressure(problem_, patch, before.corners, before.share, less_);
-    fem::append_pressure(problem_, patch, after.corners, after.share, more_);
+    const auto add = [&](const fem::Forms& forms, std::vector<Part>& to) {
+      const auto share = [&forms](Index e) { return forms.share(e); };
+      fem::append_pressure(problem_, patch, *forms.pools(), share, to);
+    };
+    add(before, less_);
+    add(after, more_);
   }
 }
 
@@ -108,8 +116,18 @@ void Deferred::collect_pressure(std::span<const Index> patches, const PatchState
 /// digits of M decide otherwise, all changes so far are taken at once.
 bool Deferred::apply(const fem::Event& event) {
   collect(event);
+  std::optional<fem::Forms> after;
+  if (problem_.pools()) {
+    after = forms_after(event);
+    find_patches(event, *after);
+    collect_pressure(patches_, forms_, *after);
+  }
+  const auto follow = [&] {
+    if (after) forms_ = std::move(*after);
+    if (!after) forms_.follow(event);
+  };
   if (less_.empty() && more_.empty()) {  // splits alone change nothing between old unknowns
-    forms_.follow(event);
+    follow();
     if (event.of_grips()) find_grips();
     stiffened_ = false;
     return true;
@@ -117,7 +135,7 @@ bool Deferred::apply(const fem::Event& event) {
   stiffened_ = true;
   const bool destroys = event.come.empty() && forms_.came().empty();
   const bool followed = update_both();
-  forms_.follow(event);
+  follow();
   if (destroys || (followed && event.come.empty())) return followed;
   collect_all();
   if (!followed || (less_.empty() && more_.empty())) clear();
@@ -141,18 +159,9 @@ void Deferred::collect_all() {
     collect(fem::difference(in_base_, forms_, element));
   }
   if (!problem_.pools()) return;
-  pooled_.clear();
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
-    if (in_base_.share(e) != forms_.share(e) || in_base_.corners(e) != forms_.corners(e)) {
-      pooled_.push_back(e);
-    }
-  }
-  problem_.pools()->of(pooled_, patches_);
-  const auto of = [](const fem::Forms& forms) {
-    return PatchState{[&forms](Index e) -> const std::array<Index, 4>& { return forms.corners(e); },
-                      [&forms](Index e) { return forms.share(e); }};
-  };
-  collect_pressure(patches_, of(in_base_), of(forms_));
+  std::vector<Index> all(static_cast<std::size_t>(problem_.pools()->count()));
+  std::iota(all.begin(), all.end(), 0);
+  collect_pressure(all, in_base_, forms_);
 }
 
 /// D element by element: what has come back leaves no rounding of its own stiffness in that of its
@@ -175,7 +184,7 @@ void Deferred::sum_up_d(std::span<const Part> parts, bool more) {
 bool Deferred::follow_border(const fem::Event& event, Eigen::Index columns) {
   if (border_.empty() && forms_.new_nodes().empty()) return true;
   return border_.follow(forms_, event, basis_, compliance_, m_,
-                        {column_, columns, changed_, stiffened_});
+                        {column_, columns, changed_, stiffened_, patches_});
 }
 
 }  // namespace sunder::solver

@@ -111,23 +111,10 @@ void StressKernel::revive(std::span<const Index> elements, const fem::Forms& for
     const std::array<Index, 4>& corners = forms.corners(e);
     for (std::size_t a = 0; a < 4; ++a) b.corner[a][at % kLanes] = 3 * corners[a];
   }
-  part_pools(forms);
+  take_pools(forms);
 }
 
-/// Patches of pooled volume as cracks have split them.
-void StressKernel::part_pools(const fem::Forms& forms) {
-  pools_.reset();
-  if (!problem_->pools()) return;
-  std::vector<Index> changed;
-  for (const auto& [element, form] : forms.came()) {
-    if (form.corners != problem_->mesh().tets[static_cast<std::size_t>(element)]) {
-      changed.push_back(element);
-    }
-  }
-  if (changed.empty()) return;
-  const auto corners = [&](Index e) -> const std::array<Index, 4>& { return forms.corners(e); };
-  pools_ = std::make_shared<const fem::Pools>(*problem_->pools(), corners, changed);
-}
+void StressKernel::take_pools(const fem::Forms& forms) { pools_ = forms.damaged_pools().split(); }
 
 void StressKernel::keep_bounds() { bounds_.assign(blocks_.size() * kLanes, 0.0); }
 
@@ -173,7 +160,7 @@ void StressKernel::change(std::span<const fem::Coming> come, const fem::Forms& f
     const auto at = std::ranges::lower_bound(changed_, c.element);
     if (at == changed_.end() || *at != c.element) changed_.insert(at, c.element);
   }
-  part_pools(forms);
+  take_pools(forms);
 }
 
 namespace {

@@ -25,6 +25,8 @@ class StressKernel {
 
   /// Follows the removal of elements: their stress is scaled and no longer counts.
   void destroy(std::span<const Index> elements);
+  /// Patches of pooled volume are from now on those of these forms, as after each change().
+  void take_pools(const fem::Forms& forms);
   /// Follows the return of elements to what they were at first, but for their corners: those are
   /// as the forms have them.
   void revive(std::span<const Index> elements, const fem::Forms& forms);
@@ -155,10 +157,8 @@ class StressKernel {
   [[nodiscard]] Mat3 most_by(Measure&& measure, Place at, std::span<const double> u) const;
   void take(DeformationSearch& search, std::size_t group, std::span<const double> u) const;
 
-  void part_pools(const fem::Forms& forms);
-
   std::shared_ptr<const Problem> problem_;
-  std::shared_ptr<const fem::Pools> pools_;  // as cracks have split them; null: as the problem has
+  std::shared_ptr<const fem::Pools> pools_;  // as damage has split them; null: as the problem has
   std::size_t size_ = 0;                     // listed elements
   std::vector<Block> blocks_;
   std::vector<Index> place_;    // of each element, kNone: not in here

@@ -306,7 +306,6 @@ class Simulation {
   void leave_out_loose();
   void measure_deformation(StepReport& report);
   void add_deformation_warnings(std::vector<std::string>& all) const;
-  void add_shared_pressure(std::vector<std::string>& all) const;
   void note(const Finding& finding);
   [[nodiscard]] std::span<const double> pristine_displacement();
   [[nodiscard]] std::span<const NodalForce> instrument_forces();

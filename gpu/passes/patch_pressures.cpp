@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/passes/patch_pressures.hpp"
 
+#include <algorithm>
 #include <span>
-#include <vector>
 
 #include "body/pools.hpp"
 
@@ -11,13 +11,22 @@ namespace sunder::gpu {
 using vulkan::Buffer;
 using vulkan::Placement;
 
-std::uint32_t PatchPressures::padded(const Problem& problem) {
-  const auto count = problem.pools() ? static_cast<std::uint32_t>(problem.pools()->count()) : 0U;
-  return round_up(count, shaders::kGroup);
+namespace {
+
+/// Patches that there can ever be, padded: those that a piece splits share no node of a live
+/// element.
+std::uint32_t room_for(const Problem& problem) {
+  std::size_t most = 0;
+  for (Index p = 0; problem.pools() && p < problem.pools()->count(); ++p) {
+    most += std::max<std::size_t>(1, problem.pools()->nodes(problem, p).size() / 4);
+  }
+  return round_up(static_cast<std::uint32_t>(most), shaders::kGroup);
 }
 
+}  // namespace
+
 std::size_t PatchPressures::planned_bytes(const Problem& problem) {
-  const std::size_t patches = padded(problem);
+  const std::size_t patches = room_for(problem);
   if (patches == 0) return 0;
   return Buffer::padded((patches + 1) * sizeof(std::uint32_t)) +
          Buffer::padded(problem.mesh().tets.size() * sizeof(std::uint32_t)) +
@@ -27,25 +36,17 @@ std::size_t PatchPressures::planned_bytes(const Problem& problem) {
 
 PatchPressures::PatchPressures(const KernelFactory& kernels, const Problem& problem,
                                const Inputs& inputs)
-    : patches_(padded(problem)), kernel_(kernels.make_fp64("pools")) {
-  const fem::Pools& pools = *problem.pools();
-  std::vector<std::uint32_t> first{0}, elements;
-  std::vector<double> bulk(patches_, 0.0);
-  for (Index p = 0; p < pools.count(); ++p) {
-    for (Index e : pools.elements(p)) elements.push_back(static_cast<std::uint32_t>(e));
-    first.push_back(static_cast<std::uint32_t>(elements.size()));
-    bulk[static_cast<std::size_t>(p)] = pools.bulk(p);
-  }
-  first.resize(patches_ + 1, first.back());  // those that pad have no elements
+    : room_(room_for(problem)), kernel_(kernels.make_fp64("pools")) {
   vulkan::Device& device = kernels.device();
-  const auto upload = [&](Buffer& buffer, const auto& values) {
-    buffer = Buffer(device, values.size() * sizeof(values[0]), Placement::device);
-    buffer.write(std::span(values));
+  const Tables tables = tables_of(*problem.pools());
+  const auto create = [&](Buffer& buffer, std::size_t bytes) {
+    buffer = Buffer(device, bytes, Placement::device);
   };
-  upload(first_, first);
-  upload(elements_, elements);
-  upload(bulk_, bulk);
-  pressures_ = Buffer(device, patches_ * sizeof(shaders::PatchPressure), Placement::device);
+  create(first_, tables.first.size() * sizeof(std::uint32_t));
+  create(elements_, problem.mesh().tets.size() * sizeof(std::uint32_t));
+  create(bulk_, tables.bulk.size() * sizeof(double));
+  create(pressures_, room_ * sizeof(shaders::PatchPressure));
+  write(tables);
   for (std::size_t i = 0; i < bindings_.size(); ++i) {
     const std::vector<const Buffer*> list{inputs.u[i], &inputs.nodes, &inputs.shape, &inputs.facts,
                                           &first_,     &elements_,    &bulk_,        &pressures_};
@@ -53,13 +54,36 @@ PatchPressures::PatchPressures(const KernelFactory& kernels, const Problem& prob
   }
 }
 
+/// Those that pad have no elements.
+PatchPressures::Tables PatchPressures::tables_of(const fem::Pools& pools) const {
+  Tables tables{{0}, {}, std::vector<double>(room_, 0.0), 0};
+  for (Index p = 0; p < pools.count(); ++p) {
+    for (Index e : pools.elements(p)) tables.elements.push_back(static_cast<std::uint32_t>(e));
+    tables.first.push_back(static_cast<std::uint32_t>(tables.elements.size()));
+    tables.bulk[static_cast<std::size_t>(p)] = pools.bulk(p);
+  }
+  tables.groups =
+      round_up(static_cast<std::uint32_t>(pools.count()), shaders::kGroup) / shaders::kGroup;
+  tables.first.resize(room_ + 1, tables.first.back());
+  return tables;
+}
+
+void PatchPressures::write(const Tables& tables) {
+  first_.write(std::span(tables.first));
+  elements_.write(std::span(tables.elements));
+  bulk_.write(std::span(tables.bulk));
+  groups_ = tables.groups;
+}
+
+void PatchPressures::split(const fem::Pools& now) { write(tables_of(now)); }
+
 std::size_t PatchPressures::bytes() const {
   return first_.bytes() + elements_.bytes() + bulk_.bytes() + pressures_.bytes();
 }
 
 void PatchPressures::record(vulkan::Commands& commands, std::size_t field,
                             const shaders::ElementPush& push) const {
-  commands.dispatch(*bindings_[field], push, patches_ / shaders::kGroup);
+  commands.dispatch(*bindings_[field], push, groups_);
 }
 
 }  // namespace sunder::gpu

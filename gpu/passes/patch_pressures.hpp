@@ -4,8 +4,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "body/pools.hpp"
 #include "gpu/kernels.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "shaders/layout.h"
@@ -23,6 +26,8 @@ class PatchPressures {
   /// Of a problem that pools.
   PatchPressures(const KernelFactory& kernels, const Problem& problem, const Inputs& inputs);
 
+  /// Patches are from now on those of `now`, each a part of one of the problem's.
+  void split(const fem::Pools& now);
   /// Device bytes, before they exist; 0: nothing pools.
   [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
   [[nodiscard]] std::size_t bytes() const;
@@ -34,9 +39,16 @@ class PatchPressures {
               const shaders::ElementPush& push) const;
 
  private:
-  [[nodiscard]] static std::uint32_t padded(const Problem& problem);
+  struct Tables {
+    std::vector<std::uint32_t> first, elements;
+    std::vector<double> bulk;
+    std::uint32_t groups;
+  };
+  [[nodiscard]] Tables tables_of(const fem::Pools& pools) const;
+  void write(const Tables& tables);
 
-  std::uint32_t patches_;  // padded
+  std::uint32_t room_;        // for patches, padded
+  std::uint32_t groups_ = 0;  // of those that there are
   vulkan::Buffer first_, elements_, bulk_, pressures_;
   std::unique_ptr<vulkan::Kernel> kernel_;
   std::array<std::unique_ptr<vulkan::Binding>, 2> bindings_;  // of each field

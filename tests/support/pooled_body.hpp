@@ -34,7 +34,7 @@ inline std::vector<double> pull_at_corner(const Problem& problem) {
 
 /// Of a displacement at all nodes, destroyed elements with their share.
 inline std::vector<Voigt> pooled_stress(const fem::DamagedBody& body, std::span<const double> u) {
-  const fem::StressField field(body.problem(), body.scale(), u);
+  const fem::StressField field(body.problem(), body.scale(), u, body.forms().pools());
   std::vector<Voigt> stress;
   for (Index e = 0; e < body.problem().tet_count(); ++e) {
     stress.push_back(body.scale()[static_cast<std::size_t>(e)] * field.of(e));
@@ -104,6 +104,27 @@ inline std::vector<std::uint8_t> not_attached(const fem::DamagedBody& body) {
     for (Index e : piece) out[static_cast<std::size_t>(e)] = 1;
   }
   return out;
+}
+
+/// Forces at all nodes that inflate what a cut has left of the patches that it goes through, on the
+/// side that is held: of 1 MPa within. `torn`: the body after it.
+inline std::vector<double> inflate_beside(const CutAcross& cut, const fem::DamagedBody& torn) {
+  const Problem& problem = torn.problem();
+  const std::vector<std::uint8_t> loose = not_attached(torn);
+  std::vector<Index> patches;
+  problem.pools()->of(cut.elements, patches);
+  std::vector<double> force(problem.dofs().size(), 0.0);
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const auto at = static_cast<std::size_t>(e);
+    if (loose[at] || !std::ranges::binary_search(patches, problem.pools()->of(e))) continue;
+    const TetShape& shape = problem.shape(e);
+    for (std::size_t i = 0; i < 12; ++i) {
+      const auto n = static_cast<std::size_t>(problem.mesh().tets[at][i / 3]);
+      force[3 * n + i % 3] +=
+          shape.volume * shape.gradient(static_cast<Index>(i % 3), static_cast<Index>(i / 3));
+    }
+  }
+  return force;
 }
 
 }  // namespace sunder::test

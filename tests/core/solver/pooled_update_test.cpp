@@ -2,6 +2,9 @@
 // The signed update of pooled volume along fractures, against a fresh factor of the damaged body.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "solver/deferred.hpp"
 #include "solver/factor_base.hpp"
 #include "solver/inverse_base.hpp"
@@ -29,6 +32,19 @@ struct PooledBoard {
     return std::make_unique<FactorBase>(factor);
   }
 
+  /// By forces at all nodes [N].
+  void load(std::vector<double> forces) {
+    dofs.clear();
+    values.clear();
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      const Index dof = problem->dofs()[i];
+      if (forces[i] == 0 || dof == kNone) continue;
+      dofs.push_back(dof);
+      values.push_back(forces[i]);
+    }
+    force = std::move(forces);
+  }
+
   [[nodiscard]] std::vector<double> nodal(const Eigen::VectorXd& u) const {
     std::vector<double> all(problem->dofs().size());
     fem::scatter(*problem, {u.data(), static_cast<std::size_t>(u.size())}, all);
@@ -39,7 +55,7 @@ struct PooledBoard {
   fem::DamagedBody body;
   linear_algebra::Factor factor;
   std::vector<Index> dofs;
-  std::vector<double> values;
+  std::vector<double> values, force;
 };
 
 Eigen::VectorXd solution(const PooledBoard& board, Deferred& deferred) {
@@ -129,6 +145,59 @@ TEST(PooledUpdate, ElementsThatComeBackRestoreTheirPatch) {
   }
   const Eigen::VectorXd again = solution(board, deferred);
   EXPECT_LE((again - intact).norm(), 1e-9 * intact.norm());
+}
+
+/// Where nothing of a loose piece is left either.
+std::vector<double> without_the_piece(PooledBoard& board) {
+  const std::vector<std::uint8_t> loose = test::not_attached(board.body);
+  std::vector<Index> piece;
+  for (Index e = 0; e < board.problem->tet_count(); ++e) {
+    const auto at = static_cast<std::size_t>(e);
+    if (loose[at] && !board.body.destroyed()[at]) piece.push_back(e);
+  }
+  EXPECT_FALSE(piece.empty());
+  board.body.destroy(piece);
+  return test::FreshSolution(board.body, board.force).displacement;
+}
+
+// A piece that comes off takes its elements out of the patches that it shared, those that the
+// event before had cut through included: what is left is as if the piece had never been.
+TEST(PooledUpdate, APieceThatComesOffSharesNoPressure) {
+  PooledBoard board(0.4);
+  const test::CutAcross cut(*board.problem, 33);
+  fem::DamagedBody torn(board.problem);
+  torn.destroy(cut.elements);
+  board.load(test::inflate_beside(cut, torn));
+  Deferred dense(*board.problem, board.base(true)), sparse(*board.problem, board.base(false));
+  const std::size_t half = cut.elements.size() / 2;
+  std::vector<std::vector<Eigen::VectorXd>> before(2);
+  for (const auto event :
+       {std::span(cut.elements).first(half), std::span(cut.elements).subspan(half)}) {
+    EXPECT_EQ(board.body.forms().pools(), board.problem->pools());
+    before[0].push_back(solution(board, dense));
+    before[1].push_back(solution(board, sparse));
+    ASSERT_TRUE(dense.destroy(event));
+    ASSERT_TRUE(sparse.destroy(event));
+    board.body.destroy(event);
+  }
+  EXPECT_GE(board.body.forms().pools()->count(), board.problem->pools()->count() + cut.shared);
+  const std::vector<std::uint8_t> ignored = test::not_attached(board.body);
+  const test::FreshSolution right(board.body, board.force);
+  const std::vector<double> alone = without_the_piece(board);
+  const auto apart = [&](std::span<const double> u, std::span<const double> from) {
+    return test::displacement_error(board.problem->mesh(), ignored, u, from);
+  };
+  for (Deferred* deferred : {&dense, &sparse}) {
+    const std::vector<double> u = board.nodal(solution(board, *deferred));
+    EXPECT_LE(apart(u, right.displacement), test::kCrackTolerance);
+    EXPECT_LE(apart(u, alone), 100 * board.problem->scene().fracture.alpha);
+  }
+  for (std::size_t event : {std::size_t{1}, std::size_t{0}}) {
+    dense.take_back();
+    sparse.take_back();
+    EXPECT_EQ(solution(board, dense), before[0][event]);
+    EXPECT_EQ(solution(board, sparse), before[1][event]);
+  }
 }
 
 }  // namespace

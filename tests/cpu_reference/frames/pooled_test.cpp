@@ -153,26 +153,68 @@ TEST(Pooled, ATearingRunOfAFiniteLawIsInEquilibriumAndGoesBack) {
   tear_and_go_back(MaterialLaw::neo_hookean, Route::inverse, 0.49, 18, 0.08);
 }
 
-/// A piece that shares patches with what stays is warned about, and no other.
-TEST(Pooled, APieceThatComesOffThroughPatchesIsToldOf) {
-  Scene scene = routed_board(Route::factor, 0.499);
-  scene.steps = 2;
-  const auto problem = std::make_shared<const Problem>(std::move(scene));
-  bool seen[2] = {};
-  for (double y = 10; y < 40 && !(seen[0] && seen[1]); y += 0.37) {
-    const CutAcross cut(*problem, y);
-    if (std::exchange(seen[cut.shared > 0], true)) continue;
-    Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
-    simulation.step();
-    simulation.remove(cut.elements);
-    simulation.step();
-    const auto warnings = simulation.warnings();
-    const auto told = std::ranges::count_if(warnings, [](const std::string& warning) {
-      return warning.find("of pooled volume reach") != std::string::npos;
-    });
-    EXPECT_EQ(told, cut.shared > 0 ? 1 : 0) << y;
+/// A run in which a piece comes off through patches: what is left is as if the piece had gone too,
+/// the supports bear what pulls at it, and undo goes back to the same bits.
+void cut_a_piece_off(PooledWay way) {
+  const auto problem = std::make_shared<const Problem>(routed_board(way.route, 0.4, way.update));
+  const CutAcross cut(*problem, 33);
+  ASSERT_GT(cut.shared, 1);
+  const std::size_t half = cut.elements.size() / 2;
+  const Body body(routed_board(way.route, 0.4, way.update)), rest(routed_board(way.route, 0.4));
+  fem::DamagedBody record(problem);
+  record.destroy(cut.elements);
+  const std::vector<double> force = inflate_beside(cut, record);
+  std::vector<Index> piece;
+  const std::vector<std::uint8_t> ignored = not_attached(record);
+  for (Index e = 0; e < problem->tet_count(); ++e) {
+    if (ignored[static_cast<std::size_t>(e)] && !record.destroyed()[e]) piece.push_back(e);
   }
-  EXPECT_TRUE(seen[0] && seen[1]);
+  for (const Body* of : {&body, &rest}) {
+    of->load(force);
+    of->backend->solve();
+    of->backend->destroy(std::span(cut.elements).first(half));
+    of->backend->solve();
+    of->backend->destroy(std::span(cut.elements).subspan(half));
+    if (of == &rest) of->backend->destroy(piece);
+    of->load(force);
+    of->backend->solve();
+  }
+  const FreshSolution right(record, force);
+  EXPECT_LE(displacement_error(problem->mesh(), ignored, body.displacement(), right.displacement),
+            kCrackTolerance);
+  EXPECT_LE(stress_error(ignored, body.stress(), right.stress), kCrackTolerance);
+  EXPECT_LE(displacement_error(problem->mesh(), ignored, body.displacement(), rest.displacement()),
+            100 * problem->scene().fracture.alpha);
+}
+
+TEST(Pooled, APieceThatComesOffSharesNoPressure) {
+  for (PooledWay way : {PooledWay{Route::factor}, PooledWay{Route::inverse}, PooledWay{Route::cg},
+                        PooledWay{Route::inverse, Update::eager}}) {
+    SCOPED_TRACE(static_cast<int>(way.route));
+    cut_a_piece_off(way);
+  }
+}
+
+/// The supports bear what pulls at what is left, nothing is warned about but the piece, and undo
+/// goes back to the same bits.
+TEST(Pooled, ARunWhosePieceComesOffIsInEquilibriumAndGoesBack) {
+  Scene scene = routed_board(Route::factor, 0.499);
+  scene.steps = 4;
+  const auto problem = std::make_shared<const Problem>(std::move(scene));
+  Simulation simulation(problem, cpu_reference::create(problem, needs_of(*problem)));
+  simulation.keep_history([problem] { return cpu_reference::create(problem, needs_of(*problem)); });
+  const CutAcross cut = cut_through_a_patch(*problem);
+  const std::size_t half = cut.elements.size() / 2;
+  simulation.step();
+  simulation.remove(std::span(cut.elements).first(half));
+  simulation.step();
+  const std::vector<Vec3> before = simulation.displacement();
+  simulation.remove(std::span(cut.elements).subspan(half));
+  simulation.step();
+  const Vec3 sum = simulation.support_reaction() + simulation.reactions()[0];
+  EXPECT_LE(sum.norm(), 1e-6 * simulation.reactions()[0].norm());
+  simulation.undo(1);
+  EXPECT_EQ(simulation.displacement(), before);
 }
 
 }  // namespace
