@@ -15,7 +15,8 @@ using vulkan::Placement;
 constexpr int kIterations = 64;
 constexpr std::size_t kArguments = 3 * shaders::kCgSizes;  // words
 // Where in them the sizes of each kind of dispatches stand, in bytes.
-constexpr std::size_t kNodes = 0, kOne = 9 * sizeof(std::uint32_t);
+constexpr std::size_t kNodes = 0, kOne = 9 * sizeof(std::uint32_t),
+                      kPatches = 12 * sizeof(std::uint32_t);
 constexpr int kMaxIterations = 50000;
 // Energy norms of the residual, squared: a solution to eleven digits of its own energy, so that a
 // good first guess saves iterations; a correction to two, as it is an estimate of the error.
@@ -52,7 +53,8 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
       most_known_(most_known(kernels, body.problem())),
       commands_(kernels.device()) {
   const vulkan::PhysicalDevice& device = kernels.device().physical();
-  device.require(matrix_.groups(), device.limits.groups, "route cg");
+  device.require(std::max(matrix_.groups(), matrix_.patches().groups()), device.limits.groups,
+                 "route cg");
   const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;
   for (Buffer* vector : {&r_, &p_, &q_, &z_}) {
     *vector = Buffer(kernels.device(), nodes * 4 * sizeof(double), Placement::device);
@@ -85,10 +87,9 @@ std::size_t CgRoute::planned_bytes(const KernelFactory& kernels, const Problem& 
 void CgRoute::create_kernels(const Fields& fields) {
   const KernelFactory kernels = kernels_.in_fp64();
   const auto make = [&](Pass& pass, const char* name, std::uint32_t group,
-                        std::initializer_list<const Buffer*> buffers) {
+                        const std::vector<const Buffer*>& buffers) {
     pass.kernel = kernels.make(name, group);
-    pass.binding = std::make_unique<vulkan::Binding>(kernels.device(), *pass.kernel,
-                                                     std::vector<const Buffer*>(buffers));
+    pass.binding = std::make_unique<vulkan::Binding>(kernels.device(), *pass.kernel, buffers);
   };
   constexpr std::uint32_t all = shaders::kGroup;
   const std::uint32_t one = kernels.summing_group();
@@ -97,8 +98,15 @@ void CgRoute::create_kernels(const Fields& fields) {
   make(begin_, "cg_begin", all,
        {&fields.residual(), &fields.dofs(), &fields.nodal(Field::displacement), &r_, &p_, &rz_});
   make(known_step_, "cg_known", all, {&known_, &fields.dofs(), &r_, &p_, &rz_});
-  make(multiply_, "cg_multiply", all,
-       {&matrix_.blocks(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_});
+  const PatchVectors& patches = matrix_.patches();
+  std::vector<const Buffer*> of_product{
+      &matrix_.blocks(), &matrix_.slices(), &fields.dofs(), &p_, &q_, &pq_};
+  if (!patches.empty()) {
+    patches.append_to(of_product);
+    patch_sums_.kernel = kernels.make("patch_sums", all);
+    patch_sums_.binding = patches.bind_sums(kernels, *patch_sums_.kernel, p_);
+  }
+  make(multiply_, patches.empty() ? "cg_multiply" : "cg_multiply_pooled", all, of_product);
   make(length_, "cg_length", one, {&pq_, &rz_, &state_});
   make(step_, "cg_step", all, {&state_, &m, &p_, &q_, &x, &r_, &x, &r_, &z_, &rz_});
   make(check_, "cg_check", one, {&rz_, &rigid_.terms(), &state_, &arguments_});
@@ -113,6 +121,7 @@ shaders::CgPush CgRoute::push(bool first) const {
   push.rigid_groups = rigid_.groups();
   push.rigid_solves = rigid_.solve_groups();
   push.first = first ? 1 : 0;
+  push.elements = matrix_.patches().groups();
   return push;
 }
 
@@ -126,6 +135,7 @@ void CgRoute::record_start(double reduction, bool solution) {
   };
   dispatch(begin_, matrix_.groups());
   const auto step = [&] {
+    if (patch_sums_.binding) dispatch(patch_sums_, matrix_.patches().groups());
     dispatch(multiply_, matrix_.groups());
     dispatch(length_, 1);
     dispatch(step_, matrix_.groups());
@@ -154,6 +164,7 @@ void CgRoute::record_iterations() {
     commands_.dispatch_indirect(*pass.binding, of_iteration, arguments_, size);
   };
   for (int i = 0; i < kIterations; ++i) {
+    if (patch_sums_.binding) dispatch(patch_sums_, kPatches);
     dispatch(multiply_, kNodes);
     dispatch(length_, kOne);
     dispatch(step_, kNodes);

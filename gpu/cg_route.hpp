@@ -75,6 +75,7 @@ class CgRoute final : public DeviceRoute {
     std::unique_ptr<vulkan::Kernel> kernel;
     std::unique_ptr<vulkan::Binding> binding;
   };
+  Pass patch_sums_;  // before multiply_, of a body that pools
   Pass begin_, known_step_, multiply_, length_, step_, check_, direction_;
   vulkan::Commands commands_;
 };

@@ -181,11 +181,11 @@ struct CgPush {
   uint first;         // 1: nothing has been iterated yet
   uint guess;         // the first step goes along: 0 nothing, 1 u, 2 a solution that is known
   double reduction;   // stop at this share of the first r^T M r, or of u's energy
-  uint elements;      // workgroups of 64 elements, where a kernel goes over these
+  uint elements;      // workgroups of 64 elements or patches, where a kernel goes over these
   uint known;         // which of those
 };
 
-// Kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup, elements.
+// Kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup, elements or patches.
 SUNDER_CONST kCgSizes = 5u;
 
 // State of conjugate gradients, on the device from the first iteration to the last.

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "body/element.hpp"
-#include "body/pools.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -25,24 +24,22 @@ Index corner_of(const std::array<Index, 4>& tet, Index node) {
 BlockMatrix::BlockMatrix(const Problem& problem)
     : problem_(problem),
       gripped_(problem.gripped_dofs().begin(), problem.gripped_dofs().end()),
-      groups_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup) /
-              shaders::kGroup),
       elements_of_(problem.mesh().nodes.size()),
-      neighbours_(problem.mesh().nodes.size()) {
+      neighbours_(problem.mesh().nodes.size()),
+      patches_(problem) {
   build_pattern();
 }
 
 std::size_t BlockMatrix::planned_bytes(bool preconditioner) const {
-  const std::size_t rows = std::size_t{groups_} * shaders::kGroup;
-  return block_count() * kBlockDoubles * sizeof(double) +
-         vulkan::Buffer::padded(first_.size() * sizeof(std::uint32_t)) +
-         (preconditioner ? rows * kBlockDoubles * sizeof(double) : 0);
+  const std::size_t rows = std::size_t{groups()} * shaders::kGroup;
+  return rows_.count() * kBlockDoubles * sizeof(double) + vulkan::Buffer::padded(rows_.bytes()) +
+         (preconditioner ? rows * kBlockDoubles * sizeof(double) : 0) + patches_.planned_bytes();
 }
 
 void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wanted) {
   const Problem& problem = problem_;
   const vulkan::PhysicalDevice& device = kernels.device().physical();
-  const std::size_t bytes = block_count() * kBlockDoubles * sizeof(double);
+  const std::size_t bytes = rows_.count() * kBlockDoubles * sizeof(double);
   // `lvp` reads blocks as texels alone, which lavapipe allows 16 times the range of storage
   // buffers.
   const std::size_t range =
@@ -53,17 +50,17 @@ void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wante
                       " bytes, but the device \"" + device.name + "\" takes buffers of " +
                       std::to_string(limit) + "; use backend cpu");
   }
-  std::vector<double> blocks(block_count() * kBlockDoubles, 0.0);  // padding: of node 0, zero
+  std::vector<double> blocks(rows_.count() * kBlockDoubles, 0.0);  // padding: of node 0, zero
   std::vector<double> preconditioner(
-      preconditioner_wanted ? std::size_t{groups_} * shaders::kGroup * kBlockDoubles : 0, 0.0);
+      preconditioner_wanted ? std::size_t{groups()} * shaders::kGroup * kBlockDoubles : 0, 0.0);
   for (Index n = 0; n < problem.node_count(); ++n) {
     const auto row = static_cast<std::size_t>(n);
     for (std::size_t k = 0; k < neighbours_[row].size(); ++k) {
       pack(block(n, neighbours_[row][k]), neighbours_[row][k],
-           &blocks[place(row, k) * kBlockDoubles]);
+           &blocks[rows_.place(row, k) * kBlockDoubles]);
     }
     if (preconditioner_wanted) {
-      pack(inverse_of_free(n, block(n, n)), 0, &preconditioner[row * kBlockDoubles]);
+      pack(inverse_of_free(n, diagonal(n)), 0, &preconditioner[row * kBlockDoubles]);
     }
   }
   const auto upload = [&](vulkan::Buffer& buffer, auto& values) {
@@ -72,8 +69,9 @@ void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wante
     buffer.write(std::span<const std::remove_reference_t<decltype(values[0])>>(values));
   };
   upload(blocks_, blocks);
-  upload(slices_, first_);
+  upload(slices_, rows_.first());
   if (preconditioner_wanted) upload(preconditioner_, preconditioner);
+  patches_.upload(kernels);
 }
 
 void BlockMatrix::build_pattern() {
@@ -86,30 +84,13 @@ void BlockMatrix::build_pattern() {
       all[n].insert(problem_.mesh().tets[e].begin(), problem_.mesh().tets[e].end());
     }
   }
-  if (const fem::Pools* pools = problem_.pools()) {
-    patches_of_.resize(neighbours_.size());
-    for (Index p = 0; p < pools->count(); ++p) {
-      const std::vector<Index> nodes = pools->nodes(problem_, p);
-      for (Index n : nodes) {
-        all[n].insert(nodes.begin(), nodes.end());
-        patches_of_[n].push_back(p);
-      }
-    }
-  }
+  std::vector<std::size_t> lengths;
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     all[n].erase(static_cast<Index>(n));
     neighbours_[n].assign(all[n].begin(), all[n].end());
+    lengths.push_back(neighbours_[n].size());
   }
-  first_.assign(groups_ + 1, 0);
-  for (std::uint32_t slice = 0; slice < groups_; ++slice) {
-    std::size_t width = 1;
-    const std::size_t end =
-        std::min<std::size_t>(std::size_t{slice + 1} * shaders::kGroup, neighbours_.size());
-    for (std::size_t n = std::size_t{slice} * shaders::kGroup; n < end; ++n) {
-      width = std::max(width, neighbours_[n].size());
-    }
-    first_[slice + 1] = first_[slice] + static_cast<std::uint32_t>(width);
-  }
+  rows_ = Slices(lengths);
 }
 
 /// Sum of a_e V (lambda g_i g_j^T + mu g_j g_i^T + mu g_i.g_j I) over the elements of both nodes.
@@ -127,49 +108,7 @@ Mat3 BlockMatrix::block(Index row, Index column, std::span<const double> scale) 
            (lambda * gi * gj.transpose() + mu * gj * gi.transpose() +
             mu * gi.dot(gj) * Mat3::Identity());
   }
-  return patches_of_.empty() ? sum : Mat3(sum + pressure_block(row, column, scale));
-}
-
-/// Sum of kappa/V_p b_i b_j^T over the patches of both nodes.
-Mat3 BlockMatrix::pressure_block(Index row, Index column, std::span<const double> scale) const {
-  Mat3 sum = Mat3::Zero();
-  const auto& others = patches_of_[column];
-  for (Index patch : patches_of_[row]) {
-    if (!std::ranges::binary_search(others, patch)) continue;
-    double volume = 0;
-    for (Index e : problem_.pools()->elements(patch)) {
-      volume += (scale.empty() ? 1.0 : scale[e]) * problem_.shape(e).volume;
-    }
-    sum += problem_.pools()->bulk(patch) / volume * patch_vector(patch, row, scale) *
-           patch_vector(patch, column, scale).transpose();
-  }
   return sum;
-}
-
-/// b_p of a node: sum of a_e V_e grad N over the patch's elements there.
-Vec3 BlockMatrix::patch_vector(Index patch, Index node, std::span<const double> scale) const {
-  Vec3 sum = Vec3::Zero();
-  for (Index e : elements_of_[node]) {
-    if (problem_.pools()->of(e) != patch) continue;
-    const TetShape& shape = problem_.shape(e);
-    sum += (scale.empty() ? 1.0 : scale[e]) * shape.volume *
-           shape.gradient.col(corner_of(problem_.mesh().tets[e], node));
-  }
-  return sum;
-}
-
-/// The blocks between all nodes of these elements' patches.
-void BlockMatrix::touch_patches(std::span<const Index> elements,
-                                std::set<std::pair<Index, Index>>& touched) const {
-  if (patches_of_.empty()) return;
-  std::vector<Index> patches;
-  problem_.pools()->of(elements, patches);
-  for (Index patch : patches) {
-    const std::vector<Index> nodes = problem_.pools()->nodes(problem_, patch);
-    for (Index i : nodes) {
-      for (Index j : nodes) touched.insert({i, j});
-    }
-  }
 }
 
 void BlockMatrix::pack(const Mat3& block, Index column, double* to) const {
@@ -177,10 +116,6 @@ void BlockMatrix::pack(const Mat3& block, Index column, double* to) const {
     for (int j = 0; j < 3; ++j) to[4 * i + j] = block(i, j);
   }
   to[kColumnAt] = column;
-}
-
-std::size_t BlockMatrix::place(std::size_t row, std::size_t k) const {
-  return (first_[row / shaders::kGroup] + k) * shaders::kGroup + row % shaders::kGroup;
 }
 
 /// Inverse of a diagonal block over the axes that neither a support nor a grip holds.
@@ -204,26 +139,27 @@ Mat3 BlockMatrix::inverse_of_free(Index node, const Mat3& diagonal) const {
 
 void BlockMatrix::destroy(std::span<const Index> elements, std::span<const double> scale) {
   std::set<std::pair<Index, Index>> touched;
+  std::set<Index> diagonals;
   for (Index e : elements) {
     for (Index i : problem_.mesh().tets[e]) {
-      for (Index j : problem_.mesh().tets[e]) touched.insert({i, j});
+      diagonals.insert(i);
+      for (Index j : problem_.mesh().tets[e]) {
+        if (i != j) touched.insert({i, j});
+      }
     }
   }
-  touch_patches(elements, touched);
+  patches_.destroy(elements, scale, diagonals);
   std::array<double, kBlockDoubles> packed{};
   for (const auto& [i, j] : touched) {
-    const auto n = static_cast<std::size_t>(i);
-    if (i != j) {
-      const auto& row = neighbours_[i];
-      const auto k =
-          static_cast<std::size_t>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
-      pack(block(i, j, scale), j, packed.data());
-      blocks_.write(std::span<const double>(packed), place(n, k) * kBlockDoubles);
-    } else if (preconditioner_.bytes() > 0) {
-      pack(inverse_of_free(i, block(i, i, scale)), 0, packed.data());
-      preconditioner_.write(std::span<const double>(packed), n * kBlockDoubles);
-    }
+    const auto& row = neighbours_[i];
+    const auto k =
+        static_cast<std::size_t>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
+    pack(block(i, j, scale), j, packed.data());
+    blocks_.write(std::span<const double>(packed),
+                  rows_.place(static_cast<std::size_t>(i), k) * kBlockDoubles);
   }
+  if (preconditioner_.bytes() == 0) return;
+  for (const Index n : diagonals) write_preconditioner(n, scale);
 }
 
 void BlockMatrix::grip(std::span<const Index> gripped, std::span<const double> scale) {
@@ -233,21 +169,24 @@ void BlockMatrix::grip(std::span<const Index> gripped, std::span<const double> s
                                 std::back_inserter(others));
   gripped_ = std::move(now);
   if (preconditioner_.bytes() == 0) return;
-  std::array<double, kBlockDoubles> packed{};
   for (Index n = 0; n < problem_.node_count(); ++n) {
     bool other = false;
     for (int axis = 0; axis < 3; ++axis) {
       other = other || std::ranges::binary_search(others, problem_.dof(n, axis));
     }
-    if (!other) continue;
-    pack(inverse_of_free(n, block(n, n, scale)), 0, packed.data());
-    preconditioner_.write(std::span<const double>(packed),
-                          static_cast<std::size_t>(n) * kBlockDoubles);
+    if (other) write_preconditioner(n, scale);
   }
 }
 
+void BlockMatrix::write_preconditioner(Index node, std::span<const double> scale) {
+  std::array<double, kBlockDoubles> packed{};
+  pack(inverse_of_free(node, diagonal(node, scale)), 0, packed.data());
+  preconditioner_.write(std::span<const double>(packed),
+                        static_cast<std::size_t>(node) * kBlockDoubles);
+}
+
 std::size_t BlockMatrix::bytes() const {
-  return blocks_.bytes() + slices_.bytes() + preconditioner_.bytes();
+  return blocks_.bytes() + slices_.bytes() + preconditioner_.bytes() + patches_.bytes();
 }
 
 }  // namespace sunder::gpu

@@ -211,9 +211,16 @@ void Fields::create_kernels() {
 }
 
 void Fields::create_residual_pass() {
-  residual_pass_.kernel = kernels_.make_fp64("residual");
-  const Buffer* buffers[] = {&displacement_, &matrix_.blocks(), &matrix_.slices(), &dofs_,
-                             &load_,         &balance_,         &residual_,        &node_partials_};
+  const PatchVectors& patches = matrix_.patches();
+  residual_pass_.kernel = kernels_.make_fp64(patches.empty() ? "residual" : "residual_pooled");
+  std::vector<const Buffer*> buffers{
+      &displacement_, &matrix_.blocks(), &matrix_.slices(), &dofs_,
+      &load_,         &balance_,         &residual_,        &node_partials_};
+  if (!patches.empty()) {
+    patches.append_to(buffers);
+    patch_sums_.kernel = kernels_.make_fp64("patch_sums");
+    patch_sums_.binding = patches.bind_sums(kernels_, *patch_sums_.kernel, displacement_);
+  }
   residual_pass_.binding =
       std::make_unique<vulkan::Binding>(kernels_.device(), *residual_pass_.kernel, buffers);
   balance_gather_ = std::make_unique<Gather>(kernels_, balance_);
@@ -423,6 +430,7 @@ void Fields::record_state(vulkan::Commands& commands, bool balance) const {
   }
   if (balance) {
     commands.pass("residual");
+    if (patch_sums_.binding) commands.dispatch(*patch_sums_.binding, matrix_.patches().groups());
     commands.dispatch(*residual_pass_.binding, node_groups);
   }
   commands.pass(norms_ ? "stress" : "residual");

@@ -175,6 +175,7 @@ class Fields {
   };
   std::unique_ptr<PatchPressures> pools_;  // empty: nothing pools
   Pass stress_pass_, residual_pass_, hold_pass_;
+  Pass patch_sums_;  // before the residual of a body that pools
   std::unique_ptr<SummaryPass> summary_pass_;
   vulkan::Buffer held_, prescribed_;  // gripped dofs
   std::unique_ptr<vulkan::Binding> correction_hold_;
