@@ -101,6 +101,22 @@ TEST_F(DeviceUse, MemoryIsKnownToTheByteBeforeItIsAllocated) {
   }
 }
 
+/// All of its volume pooled.
+Scene all_pooled(Scene scene) {
+  for (auto& [name, material] : scene.materials) material.volume = MaterialVolume::pooled;
+  return scene;
+}
+
+TEST_F(DeviceUse, MemoryOfPooledVolumeIsKnownToTheByteBeforeItIsAllocated) {
+  for (const Way& way : ways_of_all_routes()) {
+    if (way.update == Update::eager || !way.float64) continue;  // not offered
+    const auto problem = problem_for(all_pooled(small_scene(true)), way);
+    const gpu::VulkanOptions options = watched(way);
+    expect_refused_under(gpu::device_use(*gpu::create(problem, needs_with(true), options)).bytes,
+                         problem, options);
+  }
+}
+
 /// Three rows of cells can tear, of 20.
 Scene organ() {
   Scene scene;
@@ -304,11 +320,11 @@ TEST_F(DeviceUse, AFrameIsOneSubmitAndAQuietOneReadsNoFieldBack) {
 
 // Memory that the host does not map.
 struct Unmapped {
-  explicit Unmapped(Route route) {
+  explicit Unmapped(Route route, Scene scene = held_board()) {
     Way way{gpu::Variant::lvp, Precision::fp64};
     way.route = route;
     if (route == Route::cg) way.update = Update::automatic;
-    problem = problem_for(held_board(), way);
+    problem = problem_for(std::move(scene), way);
     gpu::VulkanOptions options = watched(way);
     options.probe.as_gpu = true;
     options.probe.allocations = &allocations;
@@ -370,6 +386,24 @@ TEST_F(DeviceUse, AnEventOfConjugateGradientsTakesFewSubmits) {
   }
 }
 
+// Vectors of patches, too, ride in the frame's own submit.
+TEST_F(DeviceUse, AnEventOfPooledVolumeTakesNoMoreSubmits) {
+  for (const Route route : {Route::inverse, Route::cg}) {
+    SCOPED_TRACE(route == Route::inverse ? "inverse" : "cg");
+    Unmapped body(route, all_pooled(held_board()));
+    body.frame(Vec3(0, -10, 0));
+    const auto crack = crack_sequence(*body.problem, 6, 10);
+    for (std::size_t event = 0; event < 3; ++event) {
+      const std::size_t submits = body.use().submits, allocated = body.allocations;
+      body.backend->destroy({crack.data() + 2 * event, 2});
+      const SolveReport report = body.frame(Vec3(0, -10, 0));
+      const auto iterations = static_cast<std::size_t>(report.iterations);
+      EXPECT_LE(body.use().submits - submits, route == Route::inverse ? 1 : iterations / 64 + 8);
+      EXPECT_EQ(body.allocations, allocated);
+    }
+  }
+}
+
 // A load that is a multiple of one that is known takes no iteration, and nothing is recorded for
 // one: the dispatches left are those of a step along what is known.
 TEST_F(DeviceUse, AQuietFrameOfConjugateGradientsHasNoEmptyDispatch) {
@@ -381,6 +415,9 @@ TEST_F(DeviceUse, AQuietFrameOfConjugateGradientsHasNoEmptyDispatch) {
   EXPECT_EQ(report.iterations, 0);
   EXPECT_LE(body.use().submits - before.submits, 3u);
   EXPECT_LE(body.use().dispatches - before.dispatches, 17u);
+  for (const char* of_patches : {"patch_sums", "cg_multiply_pooled", "residual_pooled"}) {
+    EXPECT_FALSE(has_kernel(*body.backend, of_patches)) << of_patches;
+  }
 }
 
 TEST_F(DeviceUse, TheDeviceListsWhatIsOverYield) {
