@@ -7,13 +7,14 @@
 #include "common.glsl"
 
 IN_DVEC4(0, Vectors, vectors)  // v at a node, and the node
-IN_WORDS(1, Slices, slices)    // first of each slice, / 64
+IN_WORDS(1, Ranges, ranges)    // first of each slice and behind its last, / 64
 IN_DVEC4(2, P, direction)
 OUT(3, Sums, dvec2, sums)  // the second: 0
 
 void main() {
-  const uint slice = workgroup(), last = slices.data[slice + 1u];
-  uint k = slices.data[slice];
+  const uint slice = workgroup(), last = ranges.data[2u * slice + 1u];
+  uint k = ranges.data[2u * slice];
+  if (k >= last) return;  // room for parts that are not there
   const dvec3 first = DVEC4(direction, uint(DVEC4(vectors, k * kGroup + gl_LocalInvocationID.x).w)).xyz;
   double sum = 0;
   for (++k; k < last; ++k) {

@@ -137,7 +137,8 @@ Mat3 BlockMatrix::inverse_of_free(Index node, const Mat3& diagonal) const {
   return inverse;
 }
 
-void BlockMatrix::destroy(std::span<const Index> elements, std::span<const double> scale) {
+void BlockMatrix::destroy(std::span<const Index> elements, std::span<const double> scale,
+                          const fem::Pools* now) {
   std::set<std::pair<Index, Index>> touched;
   std::set<Index> diagonals;
   for (Index e : elements) {
@@ -148,7 +149,9 @@ void BlockMatrix::destroy(std::span<const Index> elements, std::span<const doubl
       }
     }
   }
-  patches_.destroy(elements, scale, diagonals);
+  if (!patches_.empty()) {
+    patches_.destroy(elements, scale, now ? *now : *problem_.pools(), diagonals);
+  }
   std::array<double, kBlockDoubles> packed{};
   for (const auto& [i, j] : touched) {
     const auto& row = neighbours_[i];

@@ -30,8 +30,10 @@ class BlockMatrix {
   /// Throws DeviceError when the device's buffers cannot hold it.
   void upload(const KernelFactory& kernels, bool preconditioner);
 
-  /// Follows an event; `scale`: a_e after it.
-  void destroy(std::span<const Index> elements, std::span<const double> scale);
+  /// Follows an event; `scale`: a_e after it; `now`: patches of pooled volume as damage has split
+  /// them, null: the problem's.
+  void destroy(std::span<const Index> elements, std::span<const double> scale,
+               const fem::Pools* now = nullptr);
   /// These unknowns are gripped from now on, those of the problem at first: what preconditions
   /// their nodes is made anew. `scale` as there.
   void grip(std::span<const Index> gripped, std::span<const double> scale);

@@ -394,11 +394,12 @@ void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits)
   }
 }
 
-void Fields::destroy(std::span<const Index> elements, std::span<const double> scale) {
+void Fields::destroy(std::span<const Index> elements, std::span<const double> scale,
+                     const fem::Pools* now) {
   if (host_balance_) {
     host_balance_->scale_by(scale);
   } else if (has_residual_) {
-    matrix_.destroy(elements, scale);
+    matrix_.destroy(elements, scale, now);
   }
   set_state_bits(elements, shaders::kDestroyed);
 }

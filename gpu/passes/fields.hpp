@@ -53,8 +53,10 @@ class Fields {
   /// These unknowns are gripped from now on, those of the problem at first: what was recorded by
   /// others is to be recorded anew.
   void grip(std::span<const Index> gripped, std::span<const double> scale);
-  /// Follows an event; `scale`: a_e after it (fem::DamagedBody::scale()), which stays where it is.
-  void destroy(std::span<const Index> elements, std::span<const double> scale);
+  /// Follows an event; `scale`: a_e after it (fem::DamagedBody::scale()), which stays where it is;
+  /// `now`: as BlockMatrix::destroy() has it.
+  void destroy(std::span<const Index> elements, std::span<const double> scale,
+               const fem::Pools* now = nullptr);
   void exclude(std::span<const Index> elements);
   /// Their deformation no longer counts, from the next record_state() on.
   void cut_off(std::span<const Index> elements);

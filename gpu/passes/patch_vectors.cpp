@@ -2,8 +2,8 @@
 #include "gpu/passes/patch_vectors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "body/pools.hpp"
 
@@ -12,13 +12,19 @@ namespace {
 
 using vulkan::Buffer;
 
-using PackedVector = std::array<double, 4>;  // the fourth: the node or the patch, exact
+using PackedVector = std::array<double, 4>;  // the fourth: the node or the patch's row, exact
+
+constexpr std::size_t kSumBytes = 2 * sizeof(double);
+// Parts hang together by nodes and have an element each.
+constexpr std::size_t kNodesOfAPart = 4;
 
 PackedVector pack_vector(const Vec3& v, std::size_t of) {
   return {v.x(), v.y(), v.z(), static_cast<double>(of)};
 }
 
-constexpr std::size_t kSumBytes = 2 * sizeof(double);
+std::size_t words_bytes(const std::vector<std::uint32_t>& words) {
+  return Buffer::padded(words.size() * sizeof(std::uint32_t));
+}
 
 }  // namespace
 
@@ -26,108 +32,211 @@ PatchVectors::PatchVectors(const Problem& problem) : problem_(problem) {
   const fem::Pools* pools = problem.pools();
   if (!pools) return;
   of_node_.resize(problem.mesh().nodes.size());
-  std::vector<std::size_t> lengths;
+  std::vector<std::size_t> lengths, of_further;
+  const auto count = static_cast<std::uint32_t>(pools->count());
+  const std::size_t whole = round_up(count, shaders::kGroup);
   for (Index p = 0; p < pools->count(); ++p) {
+    Patch& patch = patches_.emplace_back();
     for (Index n : pools->nodes(problem, p)) {
       auto& of = of_node_[static_cast<std::size_t>(n)];
-      row_.push_back(of.size());
-      of.push_back(nodes_.size());
-      nodes_.push_back(n);
+      of.emplace_back(p, patch.entries.size());
+      patch.entries.push_back({n, of.size() - 1, {}});
     }
-    lengths.push_back(nodes_.size() - begin_.back());
-    begin_.push_back(nodes_.size());
+    lengths.push_back(patch.entries.size());
+    patch.further = whole + of_further.size();
+    of_further.resize(of_further.size() + patch.entries.size() / kNodesOfAPart - 1,
+                      patch.entries.size());
   }
-  values_.resize(nodes_.size());
-  by_patch_ = Slices(lengths);
+  lengths.resize(whole, 0);
+  lengths.insert(lengths.end(), of_further.begin(), of_further.end());
+  const Slices by_patch(lengths);
+  by_patch_ = ReservedSlices(by_patch, [&](std::uint32_t slice) {
+    return slice < whole / shaders::kGroup ? by_patch.width(slice) : 0;
+  });
   lengths.clear();
-  for (const auto& of : of_node_) lengths.push_back(of.size());
-  by_node_ = Slices(lengths);
+  for (const auto& of : of_node_) lengths.push_back(2 * of.size());
+  const Slices by_node(lengths);
+  by_node_ = ReservedSlices(by_node, [&](std::uint32_t slice) { return by_node.width(slice) / 2; });
   for (Index p = 0; p < pools->count(); ++p) compute(p, {});
 }
 
-/// v of a patch: (kappa / V_p)^1/2 sum a_e V_e grad N with V_p = sum a_e V_e.
-void PatchVectors::compute(Index patch, std::span<const double> scale) {
-  const fem::Pools& pools = *problem_.pools();
-  const auto p = static_cast<std::size_t>(patch);
-  const std::span nodes = std::span(nodes_).subspan(begin_[p], begin_[p + 1] - begin_[p]);
-  const std::span values = std::span(values_).subspan(begin_[p], nodes.size());
-  std::ranges::fill(values, Vec3::Zero());
+PatchVectors::Parts PatchVectors::parts_of(Index patch, const fem::Pools& now) const {
+  Parts parts;
+  std::vector<Index> numbers;
+  for (Index e : problem_.pools()->elements(patch)) {
+    const auto at = std::ranges::find(numbers, now.of(e)) - numbers.begin();
+    if (static_cast<std::size_t>(at) == numbers.size()) {
+      numbers.push_back(now.of(e));
+      parts.emplace_back();
+    }
+    parts[static_cast<std::size_t>(at)].push_back(e);
+  }
+  if (parts.size() == 1) parts.clear();
+  return parts;
+}
+
+/// Adds v of a part: (kappa / V_p)^1/2 sum a_e V_e grad N with V_p = sum a_e V_e.
+void PatchVectors::add(Patch& patch, std::size_t part, std::span<const Index> elements, double bulk,
+                       std::span<const double> scale) {
   double volume = 0;
-  for (Index e : pools.elements(patch)) {
+  for (Index e : elements) {
     const TetShape& shape = problem_.shape(e);
     const double own = (scale.empty() ? 1.0 : scale[static_cast<std::size_t>(e)]) * shape.volume;
     volume += own;
     const auto& tet = problem_.mesh().tets[static_cast<std::size_t>(e)];
     for (std::size_t a = 0; a < 4; ++a) {
-      const auto at = std::ranges::lower_bound(nodes, tet[a]) - nodes.begin();
-      values[static_cast<std::size_t>(at)] += own * shape.gradient.col(static_cast<Index>(a));
+      auto& values = std::ranges::lower_bound(patch.entries, tet[a], {}, &Entry::node)->values;
+      auto value = std::ranges::find(values, part, &Value::part);
+      if (value == values.end()) value = std::ranges::find(values, kUnused, &Value::part);
+      if (value == values.end()) throw std::logic_error("a node lies in three parts of a patch");
+      value->part = part;
+      value->v += own * shape.gradient.col(static_cast<Index>(a));
     }
   }
-  const double root = std::sqrt(pools.bulk(patch) / volume);
-  for (Vec3& v : values) v *= root;
+  const double root = std::sqrt(bulk / volume);
+  for (Entry& entry : patch.entries) {
+    for (Value& value : entry.values) {
+      if (value.part == part) value.v *= root;
+    }
+  }
+}
+
+void PatchVectors::compute(Index number, std::span<const double> scale) {
+  const fem::Pools& pools = *problem_.pools();
+  Patch& patch = patches_[static_cast<std::size_t>(number)];
+  for (Entry& entry : patch.entries) entry.values = {};
+  if (patch.parts.empty()) add(patch, 0, pools.elements(number), pools.bulk(number), scale);
+  if (patch.parts.size() > std::max(patch.entries.size() / kNodesOfAPart, std::size_t{1})) {
+    throw std::logic_error("parts of a patch share nodes of live elements");
+  }
+  for (std::size_t part = 0; part < patch.parts.size(); ++part) {
+    add(patch, part, patch.parts[part], pools.bulk(number), scale);
+  }
+}
+
+void PatchVectors::use_reserve(const Patch& patch, int one) {
+  for (std::size_t part = 1; part < patch.parts.size(); ++part) {
+    by_patch_.use(patch.further + part - 1, one);
+  }
+  for (const Entry& entry : patch.entries) {
+    if (entry.values[1].part != kUnused) {
+      by_node_.use(static_cast<std::size_t>(entry.node), one);
+    }
+  }
+}
+
+std::size_t PatchVectors::row_of(Index patch, std::size_t part) const {
+  const auto p = static_cast<std::size_t>(patch);
+  return part == 0 ? p : patches_[p].further + part - 1;
+}
+
+template <class Put>
+void PatchVectors::place(Index number, bool reserve, const Put& put) const {
+  const Patch& patch = patches_[static_cast<std::size_t>(number)];
+  for (std::size_t part = 0; part < std::max(patch.parts.size(), std::size_t{1}); ++part) {
+    const std::size_t row = row_of(number, part);
+    std::size_t k = 0, first = 0;
+    for (const Entry& entry : patch.entries) {
+      for (const Value& value : entry.values) {
+        if (value.part != part) continue;
+        const auto n = static_cast<std::size_t>(entry.node);
+        if (k == 0) first = n;
+        put(by_patch_, by_patch_.slices().place(row, k++), value.v, n);
+      }
+    }
+    while (k < patch.entries.size()) {
+      put(by_patch_, by_patch_.slices().place(row, k++), Vec3::Zero(), first);
+    }
+  }
+  for (const Entry& entry : patch.entries) {
+    const auto n = static_cast<std::size_t>(entry.node);
+    const auto& [one, two] = entry.values;
+    put(by_node_, by_node_.slices().place(n, entry.at), one.v, row_of(number, one.part));
+    if (!reserve) continue;
+    put(by_node_, by_node_.place_in_reserve(n, entry.at), two.v,
+        two.part == kUnused ? row_of(number, 0) : row_of(number, two.part));
+  }
 }
 
 std::size_t PatchVectors::planned_bytes() const {
   if (empty()) return 0;
-  return (by_patch_.count() + by_node_.count()) * sizeof(PackedVector) +
-         Buffer::padded(by_patch_.bytes()) + Buffer::padded(by_node_.bytes()) +
+  return (by_patch_.slices().count() + by_node_.slices().count()) * sizeof(PackedVector) +
+         words_bytes(by_patch_.ranges()) + words_bytes(by_node_.ranges()) +
          std::size_t{groups()} * shaders::kGroup * kSumBytes;
 }
 
 void PatchVectors::upload(const KernelFactory& kernels) {
   if (empty()) return;
   // What pads is 0.
-  std::vector<PackedVector> by_patch(by_patch_.count(), pack_vector(Vec3::Zero(), 0)),
-      by_node(by_node_.count(), pack_vector(Vec3::Zero(), 0));
-  for (std::size_t p = 0; p + 1 < begin_.size(); ++p) {
-    for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
-      const auto n = static_cast<std::size_t>(nodes_[i]);
-      by_patch[by_patch_.place(p, i - begin_[p])] = pack_vector(values_[i], n);
-      by_node[by_node_.place(n, row_[i])] = pack_vector(values_[i], p);
-    }
+  std::vector<PackedVector> by_patch(by_patch_.slices().count(), pack_vector(Vec3::Zero(), 0)),
+      by_node(by_node_.slices().count(), pack_vector(Vec3::Zero(), 0));
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    place(static_cast<Index>(p), false,
+          [&](const ReservedSlices& order, std::size_t at, const Vec3& v, std::size_t of) {
+            (&order == &by_patch_ ? by_patch : by_node)[at] = pack_vector(v, of);
+          });
   }
   const auto upload = [&](Buffer& buffer, const auto& values) {
     buffer = Buffer(kernels.device(), values.size() * sizeof(values[0]), vulkan::Placement::device);
     buffer.write(std::span(values));
   };
-  upload(patches_, by_patch);
-  upload(patch_slices_, by_patch_.first());
-  upload(nodal_, by_node);
-  upload(nodal_slices_, by_node_.first());
+  upload(patch_values_, by_patch);
+  upload(patch_ranges_, by_patch_.ranges());
+  upload(node_values_, by_node);
+  upload(node_ranges_, by_node_.ranges());
   sums_ = Buffer(kernels.device(), std::size_t{groups()} * shaders::kGroup * kSumBytes,
                  vulkan::Placement::device);
+  sums_.fill_zero();
 }
 
 void PatchVectors::destroy(std::span<const Index> elements, std::span<const double> scale,
-                           std::set<Index>& touched) {
-  if (empty()) return;
-  std::vector<Index> patches;
-  problem_.pools()->of(elements, patches);
-  for (Index patch : patches) {
-    compute(patch, scale);
-    write(patch);
-    const auto p = static_cast<std::size_t>(patch);
-    touched.insert(&nodes_[begin_[p]], &nodes_[begin_[p]] + (begin_[p + 1] - begin_[p]));
+                           const fem::Pools& now, std::set<Index>& touched) {
+  const fem::Pools& pools = *problem_.pools();
+  std::vector<Index> own;
+  pools.of(elements, own);
+  std::set<Index> changed(own.begin(), own.end()), others = split_;
+  for (Index further = pools.count(); further < now.count(); ++further) {
+    others.insert(pools.of(now.elements(further).front()));
   }
+  for (Index p : others) {
+    if (parts_of(p, now) != patches_[static_cast<std::size_t>(p)].parts) changed.insert(p);
+  }
+  const auto before = std::pair(by_patch_.ranges(), by_node_.ranges());
+  for (Index p : changed) {
+    become(p, parts_of(p, now), scale);
+    for (const Entry& of : patches_[static_cast<std::size_t>(p)].entries) touched.insert(of.node);
+  }
+  if (by_patch_.ranges() != before.first) patch_ranges_.write(std::span(by_patch_.ranges()));
+  if (by_node_.ranges() != before.second) node_ranges_.write(std::span(by_node_.ranges()));
 }
 
-void PatchVectors::write(Index patch) {
-  const auto p = static_cast<std::size_t>(patch);
-  const auto put = [](Buffer& buffer, std::size_t at, const PackedVector& value) {
-    buffer.write(std::span<const double>(value), at * value.size());
-  };
-  for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
-    const auto n = static_cast<std::size_t>(nodes_[i]);
-    put(patches_, by_patch_.place(p, i - begin_[p]), pack_vector(values_[i], n));
-    put(nodal_, by_node_.place(n, row_[i]), pack_vector(values_[i], p));
+void PatchVectors::become(Index number, Parts parts, std::span<const double> scale) {
+  Patch& patch = patches_[static_cast<std::size_t>(number)];
+  const bool reserve = !parts.empty() || !patch.parts.empty();
+  use_reserve(patch, -1);
+  patch.parts = std::move(parts);
+  compute(number, scale);
+  use_reserve(patch, 1);
+  if (patch.parts.empty()) {
+    split_.erase(number);
+  } else {
+    split_.insert(number);
   }
+  place(number, reserve,
+        [&](const ReservedSlices& order, std::size_t at, const Vec3& v, std::size_t of) {
+          const PackedVector packed = pack_vector(v, of);
+          (&order == &by_patch_ ? patch_values_ : node_values_)
+              .write(std::span<const double>(packed), at * packed.size());
+        });
 }
 
 Mat3 PatchVectors::diagonal(Index node) const {
   Mat3 sum = Mat3::Zero();
   if (empty()) return sum;
-  for (const std::size_t i : of_node_[static_cast<std::size_t>(node)]) {
-    sum += values_[i] * values_[i].transpose();
+  for (const auto& [patch, entry] : of_node_[static_cast<std::size_t>(node)]) {
+    for (const Value& value : patches_[static_cast<std::size_t>(patch)].entries[entry].values) {
+      sum += value.v * value.v.transpose();
+    }
   }
   return sum;
 }
@@ -135,17 +244,17 @@ Mat3 PatchVectors::diagonal(Index node) const {
 std::unique_ptr<vulkan::Binding> PatchVectors::bind_sums(const KernelFactory& kernels,
                                                          const vulkan::Kernel& kernel,
                                                          const Buffer& p) const {
-  const Buffer* buffers[] = {&patches_, &patch_slices_, &p, &sums_};
+  const Buffer* buffers[] = {&patch_values_, &patch_ranges_, &p, &sums_};
   return std::make_unique<vulkan::Binding>(kernels.device(), kernel, buffers);
 }
 
 void PatchVectors::append_to(std::vector<const Buffer*>& buffers) const {
-  buffers.insert(buffers.end(), {&nodal_, &nodal_slices_, &sums_});
+  buffers.insert(buffers.end(), {&node_values_, &node_ranges_, &sums_});
 }
 
 std::size_t PatchVectors::bytes() const {
-  return patches_.bytes() + patch_slices_.bytes() + nodal_.bytes() + nodal_slices_.bytes() +
-         sums_.bytes();
+  return patch_values_.bytes() + patch_ranges_.bytes() + node_values_.bytes() +
+         node_ranges_.bytes() + sums_.bytes();
 }
 
 }  // namespace sunder::gpu
