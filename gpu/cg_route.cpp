@@ -121,7 +121,7 @@ shaders::CgPush CgRoute::push(bool first) const {
   push.rigid_groups = rigid_.groups();
   push.rigid_solves = rigid_.solve_groups();
   push.first = first ? 1 : 0;
-  push.elements = matrix_.patches().groups();
+  push.elements = matrix_.patches().groups_now();
   return push;
 }
 
@@ -135,7 +135,7 @@ void CgRoute::record_start(double reduction, bool solution) {
   };
   dispatch(begin_, matrix_.groups());
   const auto step = [&] {
-    if (patch_sums_.binding) dispatch(patch_sums_, matrix_.patches().groups());
+    if (patch_sums_.binding) dispatch(patch_sums_, matrix_.patches().groups_now());
     dispatch(multiply_, matrix_.groups());
     dispatch(length_, 1);
     dispatch(step_, matrix_.groups());

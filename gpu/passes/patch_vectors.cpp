@@ -35,6 +35,7 @@ PatchVectors::PatchVectors(const Problem& problem) : problem_(problem) {
   std::vector<std::size_t> lengths, of_further;
   const auto count = static_cast<std::uint32_t>(pools->count());
   const std::size_t whole = round_up(count, shaders::kGroup);
+  groups_of_whole_ = static_cast<std::uint32_t>(whole / shaders::kGroup);
   for (Index p = 0; p < pools->count(); ++p) {
     Patch& patch = patches_.emplace_back();
     for (Index n : pools->nodes(problem, p)) {
@@ -51,7 +52,7 @@ PatchVectors::PatchVectors(const Problem& problem) : problem_(problem) {
   lengths.insert(lengths.end(), of_further.begin(), of_further.end());
   const Slices by_patch(lengths);
   by_patch_ = ReservedSlices(by_patch, [&](std::uint32_t slice) {
-    return slice < whole / shaders::kGroup ? by_patch.width(slice) : 0;
+    return slice < groups_of_whole_ ? by_patch.width(slice) : 0;
   });
   lengths.clear();
   for (const auto& of : of_node_) lengths.push_back(2 * of.size());

@@ -41,8 +41,12 @@ class PatchVectors {
   /// Sum of v v^T at a node.
   [[nodiscard]] Mat3 diagonal(Index node) const;
 
-  /// Workgroups of 64 patches.
+  /// Workgroups of 64 patches and parts, for as long as it lives.
   [[nodiscard]] std::uint32_t groups() const { return by_patch_.slices().groups(); }
+  /// Until the next event.
+  [[nodiscard]] std::uint32_t groups_now() const {
+    return split_.empty() ? groups_of_whole_ : groups();
+  }
   /// v . p of each patch.
   [[nodiscard]] std::unique_ptr<vulkan::Binding> bind_sums(const KernelFactory& kernels,
                                                            const vulkan::Kernel& kernel,
@@ -83,6 +87,7 @@ class PatchVectors {
 
   const Problem& problem_;
   std::vector<Patch> patches_;
+  std::uint32_t groups_of_whole_ = 0;
   std::set<Index> split_;                                            // those with parts
   std::vector<std::vector<std::pair<Index, std::size_t>>> of_node_;  // patches and their entries
   ReservedSlices by_patch_, by_node_;  // in reserve: rows of further parts; a node's second parts
