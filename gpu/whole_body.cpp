@@ -67,7 +67,7 @@ void WholeBody::set_load(const Load& load) {
 }
 
 void WholeBody::destroy(std::span<const Index> elements) {
-  fields_.destroy(elements, damaged_.scale());
+  fields_.destroy(elements, damaged_.scale(), damaged_.forms().pools());
   route_->destroy(elements);
 }
 

@@ -397,11 +397,26 @@ void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits)
 void Fields::destroy(std::span<const Index> elements, std::span<const double> scale,
                      const fem::Pools* now) {
   if (host_balance_) {
-    host_balance_->scale_by(scale);
+    host_balance_->scale_by(scale, now);
   } else if (has_residual_) {
     matrix_.destroy(elements, scale, now);
   }
   set_state_bits(elements, shaders::kDestroyed);
+  if (pools_ && now) split_pools(*now);
+}
+
+/// Where they are other patches than before.
+void Fields::split_pools(const fem::Pools& now) {
+  bool others = false;
+  for (Index e = 0; e < problem_.tet_count(); ++e) {
+    const auto at = static_cast<std::size_t>(e);
+    const auto patch = static_cast<std::uint32_t>(now.of(e) + 1);  // kNone: 0
+    if (facts_host_[at].patch_number == patch) continue;
+    facts_host_[at].patch_number = patch;
+    facts_.write(std::span<const shaders::ElementFacts>(&facts_host_[at], 1), at);
+    others = true;
+  }
+  if (others) pools_->split(now);
 }
 
 void Fields::exclude(std::span<const Index> elements) {

@@ -139,6 +139,7 @@ class Fields {
  private:
   void upload_mesh();
   void upload_shapes();
+  void split_pools(const fem::Pools& now);
   void set_state_bits(std::span<const Index> elements, std::uint32_t bits);
   void create_kernels();
   void create_residual_pass();

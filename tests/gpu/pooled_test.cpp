@@ -165,11 +165,62 @@ INSTANTIATE_TEST_SUITE_P(
                               Route::inverse, false, gpu::Variant::gpu}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
-class PooledPieces : public WithVulkan<> {};
+class PooledPieces : public WithVulkan<testing::TestWithParam<PooledAlong>> {};
+
+// A piece that comes off shares no pressure with what is left: displacement, stress and what a
+// solution says of its own error are those of the patches as they are split.
+TEST_P(PooledPieces, ShareNoPressure) {
+  const PooledAlong& along = GetParam();
+  Scene scene = pooled_board(along.nu);
+  scene.live = true;
+  const WatchedBackend vulkan(scene, {.variant = along.variant,
+                                      .precision = along.precision,
+                                      .update = Update::automatic,
+                                      .route = along.route});
+  const auto backend = vulkan.create();
+  const Problem& problem = *vulkan.problem;
+  fem::DamagedBody record(vulkan.problem), torn(vulkan.problem);
+  const CutAcross cut(problem, 33);
+  torn.destroy(cut.elements);
+  const std::vector<double> force = inflate_beside(cut, torn);
+  const std::vector<std::uint8_t> ignored = not_attached(torn);
+  const std::size_t half = cut.elements.size() / 2;
+  std::vector<double> u(problem.dofs().size());
+  std::vector<Voigt> stress(problem.mesh().tets.size());
+  for (const auto event : {std::span<const Index>{}, std::span(cut.elements).first(half),
+                           std::span(cut.elements).subspan(half)}) {
+    if (!event.empty()) {
+      backend->destroy(event);
+      record.destroy(event);
+    }
+    backend->set_load(load_of(problem, force, {}));
+    backend->solve();
+    backend->stress();
+    backend->read_displacement(u);
+    backend->read_stress(stress);
+    const FreshSolution right(record, force);
+    EXPECT_LE(displacement_error(problem.mesh(), ignored, u, right.displacement), along.tolerance);
+    EXPECT_LE(stress_error(ignored, stress, right.stress), along.tolerance);
+  }
+  EXPECT_GT(record.forms().pools()->count(), problem.pools()->count() + 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, PooledPieces,
+    testing::Values(PooledAlong{"inverse", Route::inverse, 0.4, false},
+                    PooledAlong{"fp32", Route::inverse, 0.4, false, Precision::fp32, 1e-4},
+                    PooledAlong{"cg", Route::cg, 0.4, false},
+                    PooledAlong{"gpu_inverse", Route::inverse, 0.4, false, Precision::fp64,
+                                kCrackTolerance, gpu::Variant::gpu},
+                    PooledAlong{"gpu_cg", Route::cg, 0.4, false, Precision::fp64, kCrackTolerance,
+                                gpu::Variant::gpu}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+class PooledFlight : public WithVulkan<> {};
 
 // A piece that flies off through patches has patches of its own, on the device too, and none any
 // more when it is back.
-TEST_F(PooledPieces, FlyAsOnTheProcessor) {
+TEST_F(PooledFlight, IsAsOnTheProcessor) {
   Scene scene = pooled_board(0.49);
   for (auto& [name, material] : scene.materials) {
     material.law = MaterialLaw::neo_hookean;
