@@ -265,11 +265,12 @@ int run(std::ostream& out, const std::vector<FiniteCell>& cells, bool full) {
          "estimate,back_solves,calls,strain,rotation_deg,inverted,reason\n";
   Summary summary;
   const auto every = ways(full);
+  std::size_t turn = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (added(cells[i]).empty()) {
       run_cell(out, cells[i], kUsual, summary);
     } else if (takes_turns(cells[i])) {
-      run_cell(out, cells[i], every[i % every.size()], summary);
+      run_cell(out, cells[i], every[turn++ % every.size()], summary);
     } else {
       for (const Way& by : every) run_cell(out, cells[i], by, summary);
     }

@@ -111,7 +111,7 @@ void Forms::add(std::span<const NewNode> nodes) {
   nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
 }
 
-void Forms::follow(const Event& event) {
+void Forms::follow(const Event& event, bool more) {
   for (Index d : event.release) {
     const auto at = std::ranges::find(gripped_, d);
     if (at == gripped_.end()) continue;
@@ -135,20 +135,22 @@ void Forms::follow(const Event& event) {
     if (c.element >= problem_->tet_count()) continue;
     destroyed_[static_cast<std::size_t>(c.element)] = c.form.share > alpha ? 0 : 1;
   }
-  if (problem_->pools()) split_pools(event);
+  if (!problem_->pools()) return;
+  changed_.insert(changed_.end(), event.leave.begin(), event.leave.end());
+  for (const Coming& c : event.come) changed_.push_back(c.element);
+  if (!more && !changed_.empty()) split_pools();
 }
 
-void Forms::split_pools(const Event& event) {
-  std::vector<Index> changed(event.leave.begin(), event.leave.end()), split;
-  for (const Coming& c : event.come) changed.push_back(c.element);
-  if (changed.empty()) return;
+void Forms::split_pools() {
+  std::vector<Index> split;
   const auto& tets = problem_->mesh().tets;
   for (const auto& [element, form] : came_) {
     if (element < problem_->tet_count() && form.corners != tets[static_cast<std::size_t>(element)])
       split.push_back(element);
   }
   const auto corners_of = [this](Index e) -> const std::array<Index, 4>& { return corners(e); };
-  pools_.follow({*problem_, destroyed_, corners_of, split}, changed);
+  pools_.follow({*problem_, destroyed_, corners_of, split}, changed_);
+  changed_.clear();
 }
 
 Index Forms::element_count() const {
@@ -239,7 +241,7 @@ void check(const Forms& forms, const Event& change) {
 Change reverse(Forms before, const Damage& damage, std::size_t i) {
   for (std::size_t j = 0; j < i; ++j) {
     before.add(damage[j].nodes);
-    before.follow(damage[j]);
+    before.follow(damage[j], true);
   }
   const Event event = damage[i];
   std::map<Index, Form> forms;

@@ -101,8 +101,9 @@ class Forms {
   /// The nodes of an event, before its elements are asked about or followed.
   void add(std::span<const NewNode> nodes);
   /// The elements of an event and its ties. Allocates nothing where elements of the mesh's form
-  /// leave.
-  void follow(const Event& event);
+  /// leave and nothing pools its volume. `more`: events follow at once, and pools() only after
+  /// them.
+  void follow(const Event& event, bool more = false);
 
   [[nodiscard]] Index element_count() const;
   [[nodiscard]] Index node_count() const;
@@ -133,12 +134,13 @@ class Forms {
   [[nodiscard]] const Problem& problem() const { return *problem_; }
 
  private:
-  void split_pools(const Event& event);
+  void split_pools();
 
   const Problem* problem_;
   std::vector<std::uint8_t> destroyed_;  // per element of the mesh
   std::map<Index, Form> came_;
   DamagedPools pools_;
+  std::vector<Index> changed_;  // by events that pools_ has not followed
   std::vector<NewNode> nodes_;
   std::vector<Index> gripped_;
   std::size_t own_gripped_;

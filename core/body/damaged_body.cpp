@@ -76,9 +76,9 @@ void DamagedBody::record(const Event& event) {
   follow(event);
 }
 
-void DamagedBody::follow(const Event& event) {
+void DamagedBody::follow(const Event& event, bool more) {
   forms_.add(event.nodes);
-  forms_.follow(event);
+  forms_.follow(event, more);
   ++events_;
   for (Index e : event.leave) {
     if (e < problem_->tet_count()) scale_[e] = problem_->scene().fracture.alpha;
@@ -96,7 +96,7 @@ void DamagedBody::follow(const Event& event) {
 void DamagedBody::follow(std::size_t events) {
   for (Change event; events_ < events;) {
     read(events_, event);
-    follow(event);
+    follow(event, events_ + 1 < events);
   }
 }
 

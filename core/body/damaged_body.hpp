@@ -22,7 +22,7 @@ class DamagedBody {
  public:
   /// Intact, with a record of its own.
   explicit DamagedBody(std::shared_ptr<const Problem> problem);
-  /// For events that destroy each element once: they allocate nothing.
+  /// For events that destroy each element once: they allocate nothing, where nothing pools.
   void reserve();
 
   /// Records an event and follows it. On the body that began the record alone.
@@ -37,8 +37,8 @@ class DamagedBody {
   [[nodiscard]] std::size_t events() const { return events_; }
   /// Follows the record up to so many events, no fewer than now.
   void follow(std::size_t events);
-  /// Follows the record's next event, as read() gave it.
-  void follow(const Event& event);
+  /// Follows the record's next event, as read() gave it; `more`: as Forms::follow().
+  void follow(const Event& event, bool more = false);
   /// Drops all events but so many, as if they had not been. On the body that began the record
   /// alone; a copy that has followed more is of no use any more.
   void take_back(std::size_t events);

@@ -49,8 +49,10 @@ DestroyedElement growth_row(const Passed& passed, int crack, SifTerms terms) {
 }
 
 FieldView field_view(const FractureState& state) {
-  return {state.destroyed, state.displacement,
-          state.forces ? state.forces() : std::span<const NodalForce>{}};
+  FieldView view{state.destroyed, state.displacement,
+                 state.forces ? state.forces() : std::span<const NodalForce>{}};
+  view.pools = state.pools;
+  return view;
 }
 
 /// The terms of the field with those of the formula beside them.
@@ -190,7 +192,7 @@ void Combined::next_in_line(const FractureState& state, std::vector<Index>& next
 
 const RemoteField& Combined::remote_field(const FractureState& state) {
   if (problem_.scene().fracture.sigma0 == RemoteStress::present) {
-    present_.take(state.destroyed, state.displacement);
+    present_.take(state.destroyed, state.displacement, state.pools);
     return present_;
   }
   pristine_.take(state.pristine_displacement());

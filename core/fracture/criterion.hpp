@@ -51,6 +51,8 @@ struct FractureState {
   std::function<std::span<const NodalForce>()> forces = {};
   /// Live breakable elements at or over yield, by id; asked for in motion alone.
   std::function<std::span<const Worst>()> over = {};
+  /// Patches of pooled volume as damage has split them; null: the problem's, if any.
+  const fem::Pools* pools = nullptr;
 };
 
 /// One event: the elements that one update destroys. `cause`, `element`, `crack`, `ratio`, `sif`

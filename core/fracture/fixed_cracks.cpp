@@ -35,7 +35,8 @@ void FixedCracks::tips(const FractureState& state, std::vector<TipState>& tips,
   if (cracks_.empty()) return;
   const bool by_field = problem_.scene().fracture.sif == SifSource::field;
   if (by_field && !meter_) meter_.emplace(problem_, *board_);
-  const FieldView view{state.destroyed, state.displacement, state.forces()};
+  FieldView view{state.destroyed, state.displacement, state.forces()};
+  view.pools = state.pools;
   for (const Crack& crack : cracks_) {
     for (std::size_t tip = 0; tip < crack.tips.size(); ++tip) {
       tips.push_back(tip_state(*board_, crack, tip));

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "body/damaged_pools.hpp"
 #include "body/pools.hpp"
 
 namespace sunder::fracture {
@@ -13,8 +12,7 @@ void PatchChanges::read(std::span<const Index> elements, const Body& body, const
   of_elements_.clear();
   if (!problem_.pools()) return;
   of_elements_.resize(elements.size());
-  const std::shared_ptr<const fem::Pools> split = split_pools(elements, body);
-  const fem::Pools& pools = split ? *split : *problem_.pools();
+  const fem::Pools& pools = body.pools ? *body.pools : *problem_.pools();
   pools.of(elements, patches_);
   for (Index patch : patches_) {
     const fem::PatchChange change = of(pools.elements(patch), body, turned);
@@ -22,26 +20,6 @@ void PatchChanges::read(std::span<const Index> elements, const Body& body, const
       if (pools.of(elements[i]) == patch) of_elements_[i] = change;
     }
   }
-}
-
-/// Null: those of some elements are not split.
-std::shared_ptr<const fem::Pools> PatchChanges::split_pools(std::span<const Index> elements,
-                                                            const Body& body) const {
-  const auto& tets = problem_.mesh().tets;
-  std::vector<Index> split;
-  for (std::size_t e = 0; e < body.corners.size(); ++e) {
-    if (body.corners[e] != tets[e]) split.push_back(static_cast<Index>(e));
-  }
-  if (body.destroyed.empty() && split.empty()) return nullptr;
-  const auto& corners = body.corners;
-  const std::function<const std::array<Index, 4>&(Index)> corners_of =
-      [&](Index e) -> const std::array<Index, 4>& {
-    const auto at = static_cast<std::size_t>(e);
-    return corners.empty() ? tets[at] : corners[at];
-  };
-  fem::DamagedPools pools;
-  pools.follow({problem_, body.destroyed, corners_of, split}, elements);
-  return pools.split();
 }
 
 fem::PatchChange PatchChanges::of(std::span<const Index> patch, const Body& body,

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,6 +25,7 @@ class PatchChanges {
     std::span<const std::uint8_t> destroyed;  ///< per element; empty: none is
     const std::function<void(std::span<const Index>, std::span<Vec3>)>& displacement;
     std::span<const std::array<Index, 4>> corners;  ///< empty: as the mesh has them
+    const fem::Pools* pools = nullptr;              ///< null: the problem's
   };
   /// Reads the patches of some elements. `turned`: in the body turned back by this rotation.
   void read(std::span<const Index> elements, const Body& body,
@@ -36,8 +36,6 @@ class PatchChanges {
   }
 
  private:
-  [[nodiscard]] std::shared_ptr<const fem::Pools> split_pools(std::span<const Index> elements,
-                                                              const Body& body) const;
   [[nodiscard]] fem::PatchChange of(std::span<const Index> patch, const Body& body,
                                     const Mat3& turned);
 

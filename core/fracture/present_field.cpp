@@ -26,7 +26,7 @@ std::optional<InPlane> PresentField::at(const Vec2& p) const {
   moved_.resize(corners_.size());
   (*displacement_)(corners_, moved_);
 
-  patches_.read(near_, {destroyed_, *displacement_, {}});
+  patches_.read(near_, {destroyed_, *displacement_, {}, pools_});
   Voigt sum = Voigt::Zero();
   double volume = 0;
   for (std::size_t i = 0; i < near_.size(); ++i) {

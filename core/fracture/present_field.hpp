@@ -22,10 +22,12 @@ class PresentField final : public RemoteField {
   using ReadDisplacement = std::function<void(std::span<const Index>, std::span<Vec3>)>;
 
   PresentField(const Problem& problem, const Board& board);
-  /// From now on that of this state. `destroyed` (per element) and `displacement` (of some nodes,
-  /// mm) must outlive its use.
-  void take(std::span<const std::uint8_t> destroyed, const ReadDisplacement& displacement) {
+  /// From now on that of this state. `destroyed` (per element), `displacement` (of some nodes, mm)
+  /// and `pools`, as FractureState has them, must outlive its use.
+  void take(std::span<const std::uint8_t> destroyed, const ReadDisplacement& displacement,
+            const fem::Pools* pools = nullptr) {
     destroyed_ = destroyed;
+    pools_ = pools;
     displacement_ = &displacement;
   }
 
@@ -37,6 +39,7 @@ class PresentField final : public RemoteField {
   const Board& board_;
   std::span<const std::uint8_t> destroyed_;
   const ReadDisplacement* displacement_ = nullptr;
+  const fem::Pools* pools_ = nullptr;
   // Of the place being looked at: its elements, their corners, the corners' displacements.
   mutable std::vector<Index> near_, corners_;
   mutable std::vector<Vec3> moved_;

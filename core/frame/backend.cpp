@@ -215,6 +215,8 @@ bool Backend::restore(const BackendState& state) {
 
 void Backend::take_body_back(std::size_t events) { damaged_body_->take_back(events); }
 
+const fem::Pools* Backend::pools() const { return damaged_body_->forms().pools(); }
+
 Index Backend::node_count() const { return damaged_body_->forms().node_count(); }
 
 void Backend::do_change(const fem::Change&) {

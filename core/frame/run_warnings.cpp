@@ -3,7 +3,6 @@
 #include <iomanip>
 #include <sstream>
 
-#include "body/pools.hpp"
 #include "fracture/finding.hpp"
 #include "sunder/simulation.hpp"
 #include "sunder/words.hpp"

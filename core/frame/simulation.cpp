@@ -287,6 +287,7 @@ FractureState Simulation::fracture_state(const StressSummary& summary) {
       },
       [this] { return instrument_forces(); },
       [this] { return over_yield(); },
+      backend_->pools(),
   };
 }
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is read of a simulation.
 #include <algorithm>
-#include <array>
-#include <functional>
 #include <numeric>
 
-#include "body/damaged_pools.hpp"
 #include "body/hyperelastic.hpp"
 #include "body/law_stress.hpp"
 #include "body/pieces.hpp"
@@ -166,17 +163,7 @@ Vec3 Simulation::pooled_reaction(std::span<const Vec3> displacement) const {
   for (std::uint8_t gone : backend_->destroyed()) {
     scale.push_back(gone ? problem_->scene().fracture.alpha : 1.0);
   }
-  const std::function<const std::array<Index, 4>&(Index)> corners =
-      [&](Index e) -> const std::array<Index, 4>& {
-    return body.mesh().tets[static_cast<std::size_t>(e)];
-  };
-  std::vector<Index> gone;
-  for (Index e = 0; e < body.tet_count(); ++e) {
-    if (backend_->destroyed()[e]) gone.push_back(e);
-  }
-  fem::DamagedPools pools;  // `parted` has its cracks in its mesh
-  pools.follow({body, backend_->destroyed(), corners, {}}, gone);
-  const fem::StressField field(body, scale, u, pools.of(body));
+  const fem::StressField field(body, scale, u, backend_->pools());
   Vec3 sum = Vec3::Zero();
   for (Index e = 0; e < body.tet_count(); ++e) {
     const auto& tet = body.mesh().tets[static_cast<std::size_t>(e)];

@@ -185,8 +185,9 @@ bool Deferred::destroy(std::span<const Index> elements) {
 bool Deferred::follow_last() {
   const fem::Event event = damage_.last();
   forms_.add(event.nodes);
-  push(event);
-  if (apply(event) && follow_border(event, count()) && factor_grips()) return true;
+  const std::unique_ptr<fem::Forms> after = forms_after(event);
+  push(event, after.get());
+  if (apply(event, after.get()) && follow_border(event, count()) && factor_grips()) return true;
   take_back();
   return false;
 }
@@ -208,14 +209,14 @@ void Deferred::connect(const std::array<Index, 4>& nodes) {
 }
 
 /// Brings the differences of an event to hand.
-void Deferred::push(const fem::Event& event) {
+void Deferred::push(const fem::Event& event, const fem::Forms* after) {
   Before had{touched_.size(), basis_.differences().size(), units_.size(), false};
   for (Index e : event.leave) connect(glued(e));
   for (const fem::Coming& c : event.come) {
     if (c.element < forms_.element_count()) connect(glued(c.element));
     connect(forms_.parents(c.form.corners));
   }
-  if (problem_.pools()) connect_patches(event);
+  if (after) connect_patches(event, *after);
   const auto differences = basis_.differences().subspan(had.differences);
   for (std::size_t i = 0; i < differences.size(); ++i) {
     column_.push_back(count_ + static_cast<Index>(i));
@@ -229,8 +230,8 @@ void Deferred::push(const fem::Event& event) {
 
 /// A patch of pooled volume has one pressure: what changes one of its elements changes what it
 /// exerts on all of their nodes.
-void Deferred::connect_patches(const fem::Event& event) {
-  find_patches(event, forms_after(event));
+void Deferred::connect_patches(const fem::Event& event, const fem::Forms& after) {
+  find_patches(event, after);
   for (Index patch : patches_) {
     for (Index e : problem_.pools()->elements(patch)) connect(glued(e));
   }
@@ -347,7 +348,8 @@ bool Deferred::replay() {
   bool bordered = true;
   for (std::size_t i = go_to_sums(); i < damage_.size(); ++i) {
     forms_.add(damage_[i].nodes);
-    static_cast<void>(apply(damage_[i]));
+    const std::unique_ptr<fem::Forms> after = forms_after(damage_[i]);
+    static_cast<void>(apply(damage_[i], after.get()));
     // As many columns as there were: products of another size round otherwise.
     const Eigen::Index columns =
         i + 1 < before_.size()

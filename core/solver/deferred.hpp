@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "body/change.hpp"
-#include "body/pools.hpp"
 #include "body/stiffness_difference.hpp"
 #include "solver/base.hpp"
 #include "solver/border.hpp"
@@ -137,16 +136,16 @@ class Deferred {
   void reserve_for_fractures(Index columns);
   void reserve(Index columns);
   [[nodiscard]] bool follow_last();
-  void push(const fem::Event& event);
-  void connect_patches(const fem::Event& event);
-  [[nodiscard]] fem::Forms forms_after(const fem::Event& event) const;
+  void push(const fem::Event& event, const fem::Forms* after);
+  void connect_patches(const fem::Event& event, const fem::Forms& after);
+  [[nodiscard]] std::unique_ptr<fem::Forms> forms_after(const fem::Event& event) const;
   void find_patches(const fem::Event& event, const fem::Forms& after);
   void push(std::span<const Difference> vectors);
   void push_units(std::span<const Index> dofs);
   [[nodiscard]] std::array<Index, 4> glued(Index element) const;
   void connect(const std::array<Index, 4>& nodes);
   void pop();
-  [[nodiscard]] bool apply(const fem::Event& event);
+  [[nodiscard]] bool apply(const fem::Event& event, fem::Forms* after);
   void collect(const fem::Event& event);
   void collect(const fem::StiffnessDifference& between);
   void collect_pressure(std::span<const Index> patches, const fem::Forms& before,

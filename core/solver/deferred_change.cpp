@@ -3,7 +3,6 @@
 // "Changes").
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -68,10 +67,12 @@ void Deferred::collect(const fem::Event& event) {
   }
 }
 
-/// Its new nodes are known already.
-fem::Forms Deferred::forms_after(const fem::Event& event) const {
-  fem::Forms forms = forms_;
-  forms.follow(event);
+/// Where volume is pooled: an event may split patches that it does not touch. Its new nodes are
+/// known already.
+std::unique_ptr<fem::Forms> Deferred::forms_after(const fem::Event& event) const {
+  if (!problem_.pools()) return nullptr;
+  auto forms = std::make_unique<fem::Forms>(forms_);
+  forms->follow(event);
   return forms;
 }
 
@@ -114,11 +115,9 @@ void Deferred::collect_pressure(std::span<const Index> patches, const fem::Forms
 
 /// More stiffness first: then both small matrices are definite wherever the body is. Where the last
 /// digits of M decide otherwise, all changes so far are taken at once.
-bool Deferred::apply(const fem::Event& event) {
+bool Deferred::apply(const fem::Event& event, fem::Forms* after) {
   collect(event);
-  std::optional<fem::Forms> after;
-  if (problem_.pools()) {
-    after = forms_after(event);
+  if (after) {
     find_patches(event, *after);
     collect_pressure(patches_, forms_, *after);
   }

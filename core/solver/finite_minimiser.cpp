@@ -28,11 +28,9 @@ constexpr double kLeaving = 2;  // times the residual, against a negative stiffn
 
 // Of the largest shear modulus: stress that is as good as none, and what rounding may leave of it.
 constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
-// Nor is it more than this of the smallest one: soft tissue in a stiff frame has stress of its own.
-constexpr double kNoStressOfSoft = 1e-6;
-// A change of stress that rounding may leave is taken for it where it falls by less than this from
-// one iteration to the next.
-constexpr double kStagnant = 0.5;
+// Nor is it more than this of the smallest one: soft tissue in a stiff frame has stress of its own,
+// as long as it is some times what rounding leaves.
+constexpr double kNoStressOfSoft = 1e-6, kOverRounding = 10;
 // Of the sum of shear modulus and volume: an energy is what terms of that size leave.
 constexpr double kSumRounding = 2e-16;
 
@@ -48,7 +46,8 @@ FiniteScale finite_scale(const Problem& problem) {
     sum += shear * problem.shape(e).volume;
   }
   const double face = std::pow(volume / std::max(1, problem.tet_count()), 2.0 / 3);
-  const double none = std::min(kNoStress * stiffest, kNoStressOfSoft * softest);
+  const double none = std::max(std::min(kNoStress * stiffest, kNoStressOfSoft * softest),
+                               kOverRounding * kStressRounding * stiffest);
   return {kNoStress * stiffest * face, none, kStressRounding * stiffest * face,
           kStressRounding * stiffest, kSumRounding * sum};
 }
@@ -139,7 +138,8 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
           std::clamp(std::max(ratio, ratio_before), kLeastContraction, kMostContraction);
       result.error = change / (1 - result.contraction);
       rounding = trial.change <= scale_.stress_rounding;
-      if (rounding && before > 0 && ratio > kStagnant) result.error = 0;
+      // What rounding may leave is that once it falls no more.
+      if (rounding && before > 0 && ratio > kMostContraction) result.error = 0;
       before = change;
       ratio_before = ratio;
       good_before =
@@ -158,8 +158,8 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
       }
     }
     if (!line_search(steps, near, at, trial)) {
-      if (near && rounding) result.error = 0;  // nothing better is to be had
       result.at_rest = near && (good || (rounding && result.residual <= stop.residual));
+      if (result.at_rest && rounding) result.error = 0;  // nothing better is to be had
       return result;
     }
     // An unstable rest is left by what rounding has put into it: let who calls choose the side.

@@ -268,6 +268,8 @@ class Backend {
 
   /// Nodes of the mesh and, with ids after theirs, those that changes have brought.
   [[nodiscard]] Index node_count() const;
+  /// Patches of pooled volume as damage has split them, until the next event; null: nothing pools.
+  [[nodiscard]] const fem::Pools* pools() const;
 
   /// Takes elements out of StressSummary::candidate for good.
   void exclude_candidates(std::span<const Index> elements);

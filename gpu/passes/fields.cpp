@@ -397,12 +397,12 @@ void Fields::set_state_bits(std::span<const Index> elements, std::uint32_t bits)
 void Fields::destroy(std::span<const Index> elements, std::span<const double> scale,
                      const fem::Pools* now) {
   if (host_balance_) {
-    host_balance_->scale_by(scale, now);
+    host_balance_->scale_by(scale);
   } else if (has_residual_) {
     matrix_.destroy(elements, scale, now);
   }
   set_state_bits(elements, shaders::kDestroyed);
-  if (pools_ && now) split_pools(*now);
+  if (pools_) split_pools(now ? *now : *problem_.pools());
 }
 
 /// Where they are other patches than before.

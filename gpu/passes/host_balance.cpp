@@ -22,7 +22,7 @@ void HostBalance::set_load(std::span<const double> force) {
 }
 
 void HostBalance::compute(std::span<const double> displacement) {
-  fem::apply_stiffness(problem_, scale_, displacement, k_u_, pools_);
+  fem::apply_stiffness(problem_, scale_, displacement, k_u_);
   largest_u_ = 0;
   for (double u : displacement) largest_u_ = std::max(largest_u_, std::abs(u));
   for (Index n = 0; n < problem_.node_count(); ++n) {

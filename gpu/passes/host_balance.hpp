@@ -19,12 +19,8 @@ class HostBalance {
   void grip(std::span<const Index> gripped) { gripped_.assign(gripped.begin(), gripped.end()); }
   /// Over the unknowns.
   void set_load(std::span<const double> force);
-  /// a_e of the elements and the patches from now on, which stay where they are; empty: intact,
-  /// null: the problem's.
-  void scale_by(std::span<const double> scale, const fem::Pools* pools) {
-    scale_ = scale;
-    pools_ = pools;
-  }
+  /// a_e of the elements from now on, which stay where they are; empty: intact.
+  void scale_by(std::span<const double> scale) { scale_ = scale; }
 
   /// `displacement`: shape (3 * nodes).
   void compute(std::span<const double> displacement);
@@ -40,7 +36,6 @@ class HostBalance {
  private:
   const Problem& problem_;
   std::span<const double> scale_;
-  const fem::Pools* pools_ = nullptr;
   std::vector<Index> gripped_;
   std::vector<double> k_u_;  // K u at all nodes
   Eigen::VectorXd load_, balance_, residual_;

@@ -54,16 +54,15 @@ PatchPressures::PatchPressures(const KernelFactory& kernels, const Problem& prob
   }
 }
 
-/// Those that pad have no elements.
+/// Those that pad have no elements. All the room is dispatched: what is recorded holds after a
+/// split.
 PatchPressures::Tables PatchPressures::tables_of(const fem::Pools& pools) const {
-  Tables tables{{0}, {}, std::vector<double>(room_, 0.0), 0};
+  Tables tables{{0}, {}, std::vector<double>(room_, 0.0)};
   for (Index p = 0; p < pools.count(); ++p) {
     for (Index e : pools.elements(p)) tables.elements.push_back(static_cast<std::uint32_t>(e));
     tables.first.push_back(static_cast<std::uint32_t>(tables.elements.size()));
     tables.bulk[static_cast<std::size_t>(p)] = pools.bulk(p);
   }
-  tables.groups =
-      round_up(static_cast<std::uint32_t>(pools.count()), shaders::kGroup) / shaders::kGroup;
   tables.first.resize(room_ + 1, tables.first.back());
   return tables;
 }
@@ -72,7 +71,6 @@ void PatchPressures::write(const Tables& tables) {
   first_.write(std::span(tables.first));
   elements_.write(std::span(tables.elements));
   bulk_.write(std::span(tables.bulk));
-  groups_ = tables.groups;
 }
 
 void PatchPressures::split(const fem::Pools& now) { write(tables_of(now)); }
@@ -83,7 +81,7 @@ std::size_t PatchPressures::bytes() const {
 
 void PatchPressures::record(vulkan::Commands& commands, std::size_t field,
                             const shaders::ElementPush& push) const {
-  commands.dispatch(*bindings_[field], push, groups_);
+  commands.dispatch(*bindings_[field], push, room_ / shaders::kGroup);
 }
 
 }  // namespace sunder::gpu

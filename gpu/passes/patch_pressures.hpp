@@ -42,13 +42,11 @@ class PatchPressures {
   struct Tables {
     std::vector<std::uint32_t> first, elements;
     std::vector<double> bulk;
-    std::uint32_t groups;
   };
   [[nodiscard]] Tables tables_of(const fem::Pools& pools) const;
   void write(const Tables& tables);
 
-  std::uint32_t room_;        // for patches, padded
-  std::uint32_t groups_ = 0;  // of those that there are
+  std::uint32_t room_;  // for patches, padded
   vulkan::Buffer first_, elements_, bulk_, pressures_;
   std::unique_ptr<vulkan::Kernel> kernel_;
   std::array<std::unique_ptr<vulkan::Binding>, 2> bindings_;  // of each field

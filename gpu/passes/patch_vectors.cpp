@@ -62,16 +62,7 @@ PatchVectors::PatchVectors(const Problem& problem) : problem_(problem) {
 }
 
 PatchVectors::Parts PatchVectors::parts_of(Index patch, const fem::Pools& now) const {
-  Parts parts;
-  std::vector<Index> numbers;
-  for (Index e : problem_.pools()->elements(patch)) {
-    const auto at = std::ranges::find(numbers, now.of(e)) - numbers.begin();
-    if (static_cast<std::size_t>(at) == numbers.size()) {
-      numbers.push_back(now.of(e));
-      parts.emplace_back();
-    }
-    parts[static_cast<std::size_t>(at)].push_back(e);
-  }
+  Parts parts = now.parts_of(*problem_.pools(), patch);
   if (parts.size() == 1) parts.clear();
   return parts;
 }

@@ -284,7 +284,8 @@ FieldIntensity FieldIntensityMeter::measure(const Crack& crack, std::size_t tip,
     input.forces = turned_forces_;
     turned = back.rotation;
   }
-  patches_.read(domain.elements, {view.destroyed, view.displacement, view.corners}, turned);
+  patches_.read(domain.elements, {view.destroyed, view.displacement, view.corners, view.pools},
+                turned);
   input.patches = patches_.of_elements();
   const auto tail = path_tail(crack, tip, 2 * radius);
   if (!straight(tail, result.frame, 1e-6 * board_.h())) input.bent_path = tail;

@@ -37,6 +37,8 @@ struct FieldView {
   Lips lips = Lips::unknown;
   /// By the direction in which the tip would grow; none: the same in all.
   std::optional<TipResistance> resistance = {};
+  /// Patches of pooled volume as damage has split them; null: the problem's, if any.
+  const fem::Pools* pools = nullptr;
 };
 
 /// What disturbs the field around a tip.

@@ -101,6 +101,7 @@ FieldView SplitCracks::view(const FractureState& state) const {
   FieldView view{state.destroyed, state.displacement,
                  state.forces ? state.forces() : std::span<const NodalForce>{}};
   view.corners = body_.corners();
+  view.pools = state.pools;
   return view;
 }
 

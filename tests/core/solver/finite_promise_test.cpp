@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "material/corotated.hpp"
 #include "material/neo_hookean.hpp"
+#include "solver/finite_minimiser.hpp"
 #include "support/accuracy.hpp"
 #include "support/finite_newton.hpp"
 #include "support/finite_torn.hpp"
@@ -56,6 +58,25 @@ INSTANTIATE_TEST_SUITE_P(Laws, FinitePromise, ::testing::Values(&kCorotated, &kN
                          [](const auto& law) {
                            return law.param == &kCorotated ? "corotated" : "neo_hookean";
                          });
+
+// Beside a frame that is a million times as stiff tissue has stress of its own, which errors are
+// measured by; what rounding leaves of the frame's is less.
+TEST(FiniteScale, IsThatOfTheSoftTissueInAStiffFrame) {
+  for (double contrast : {1.0, 1e3, 1e6, 1e9}) {
+    Scene scene = test::pulled_board();
+    test::set_contrast(scene, contrast);
+    const Problem problem(std::move(scene));
+    double soft = HUGE_VAL, stiff = 0;
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      soft = std::min(soft, problem.small_strain(e).mu);
+      stiff = std::max(stiff, problem.small_strain(e).mu);
+    }
+    const FiniteScale scale = finite_scale(problem);
+    EXPECT_LE(scale.stress, 1e-9 * stiff);
+    EXPECT_LE(scale.stress, std::max(1.0001e-6 * soft, 1.0001e-12 * stiff));
+    EXPECT_GE(scale.stress, 10 * scale.stress_rounding);
+  }
+}
 
 }  // namespace
 }  // namespace sunder::solver

@@ -102,6 +102,7 @@ class MeasuredSplit {
                              },
                              {}};
     view.corners = crack_.body.corners();
+    view.pools = backend_->pools();
     const Crack shorter = ends_at(tip);
     return {crack_.board.plane().lift(shorter.tips[tip].position),
             meter_.at(shorter, tip, view).factors};
