@@ -25,6 +25,9 @@ constexpr double kLeastContraction = 0.4, kMostContraction = 0.9;
 // to be good twice in a row.
 constexpr int kFewBackSolves = 2;
 constexpr double kLeaving = 2;  // times the residual, against a negative stiffness
+// Where the residual has grown since by more than this, small changes tell of no contraction: the
+// iteration has turned into another direction, along which more may be left.
+constexpr double kMostRegrown = 2;
 
 // Of the largest shear modulus: stress that is as good as none, and what rounding may leave of it.
 constexpr double kNoStress = 1e-9, kStressRounding = 1e-13;
@@ -109,6 +112,7 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
   double ratio_before = 0;                 // of that to the one before
   bool good = false, good_before = false;  // the last two estimates
   bool rounding = false;                   // may be all that the last one is
+  double least = HUGE_VAL;                 // residual so far
   for (;;) {
     result.residual = residual(at);
     if (!std::isfinite(result.residual)) return result;
@@ -123,6 +127,7 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
           good && (good_before || most <= kFewBackSolves) && result.residual <= stop.residual;
       return result;
     }
+    least = std::min(least, result.residual);
     const bool near =
         stop.tolerance > 0 && result.residual <= std::min(1.0, kResidualPerStress * stop.tolerance);
     FiniteTrial trial = steps.whole(near);
@@ -143,7 +148,8 @@ FiniteMinimiser::Result FiniteMinimiser::minimise(FiniteSteps& steps, const Stop
       before = change;
       ratio_before = ratio;
       good_before =
-          std::exchange(good, result.error <= stop.tolerance && result.residual <= stop.residual);
+          std::exchange(good, result.error <= stop.tolerance && result.residual <= stop.residual &&
+                                  (result.error == 0 || result.residual <= kMostRegrown * least));
       if (good && (good_before || result.back_solves <= kFewBackSolves)) {
         const bool better = is_better(trial.at, at);
         // A base that overshoots so small a step is not to leave the body where it drifts.
