@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pooled volume (method.md "Pooled volume"): patches of elements of one material that change their
 // volume as one. Each element keeps its deviator, the patch has one pressure; so linear tetrahedra
-// do not lock in nearly incompressible tissue. They are made once, intact; cracks split them.
+// do not lock in nearly incompressible tissue. They are made once, intact; damage splits them
+// (damaged_pools.hpp).
 #pragma once
 
 #include <array>
