@@ -64,7 +64,7 @@ std::size_t FiniteCg::planned_bytes(const KernelFactory& kernels, const Problem&
   return std::size_t{4} * shaders::kFiniteTangent * kernels.real_bytes() *
              problem.mesh().tets.size() +
          (12 + 5 * 4 + 4) * sizeof(double) * problem.mesh().nodes.size() +
-         RigidSpace::planned_bytes(problem);
+         RigidSpace::planned_bytes(problem, true);
 }
 
 void FiniteCg::make(Pass& pass, std::string_view name, bool real, std::uint32_t group,

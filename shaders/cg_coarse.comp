@@ -10,15 +10,13 @@ OUT(2, W, double, w)  // of each group: shift, 0, turn, 0
 OUT(3, Terms, double, terms)
 layout(push_constant) uniform Push { CgPush p; };
 
-const uint kPacks = 6u * kRigidGroups / 4u;  // of a row
-
 void main() {
   const uint first = 4u * workgroup();
   dvec4 sum = dvec4(0);
   for (uint j = gl_LocalInvocationID.x; j < p.rigid_solves; j += gl_WorkGroupSize.x) {
     const dvec4 yj = DVEC4(y, j);
     [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-      sum[i] += dot(DVEC4(inverse_, (first + i) * kPacks + j), yj);
+      sum[i] += dot(DVEC4(inverse_, (first + i) * p.rigid_solves + j), yj);
     }
   }
   const dvec4 wi =

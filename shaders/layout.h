@@ -21,7 +21,6 @@ SUNDER_CONST kRankBlock = 6u;      // update vectors of one element
 SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update works on
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
 SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
-SUNDER_CONST kRigidGroups = 64u;   // groups of nodes in the second level of CG, at most
 SUNDER_CONST kPartsAtOnce = 256u;  // partial results that one of many workgroups joins
 SUNDER_CONST kHeld = 0xffffffffu;  // dof of an axis that a support holds
 

@@ -231,7 +231,7 @@ Yardstick::Rest Yardstick::solve(const Load& load, std::span<const double> start
       left += Real(du[static_cast<Index>(d)]) * du[static_cast<Index>(d)];
       size += u[places_[d]] * u[places_[d]];
     }
-    rest.correction = size > 0 ? static_cast<double>(std::sqrt(left / size)) : 0;
+    rest.correction = size == 0 ? 0 : static_cast<double>(std::sqrt(left / size));
     if (rest.correction < kClose && !(rest.correction < before / 2)) break;  // at rounding
     if (rest.correction == 0) break;
     if (factors == kMostFactors || !std::isfinite(rest.correction))

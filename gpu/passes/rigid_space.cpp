@@ -20,7 +20,11 @@ namespace {
 using vulkan::Buffer;
 using vulkan::Placement;
 
-constexpr Index kMost = shaders::kRigidGroups;
+// Groups, at most: of a body at rest one for so many nodes where that is more, as iterations grow
+// with the square root of a group's size; their product then reads an eighth of what K's does.
+// Of a board of 979,200 tetrahedra 64, 256 and 512 groups take 1340, 449 and 282 iterations, of a
+// block of 998,250 342, 269 and 186; a matrix of 512 takes seconds to invert.
+constexpr Index kMost = 64, kNodesOfALargeGroup = 160, kMostOfALargeBody = 512;
 constexpr Index kNodesPerGroup = 64;  // of the largest body, until there are too many groups
 // Where groups are kept apart: of the 1944-element board's steps in motion 64, 24 and 10 take 746,
 // 407 and 140 ms on lavapipe.
@@ -32,7 +36,16 @@ constexpr double kShift = 1e-13;
 // Another inertia than so many times or a part of it is another body's.
 constexpr double kMostInertiaApart = 4;
 
-std::size_t coarse_size() { return std::size_t{6} * kMost; }
+Index most_groups(const Problem& problem, bool apart) {
+  const Index many = problem.node_count() / kNodesOfALargeGroup / 2 * 2;
+  return apart ? kMost : std::clamp(many, kMost, kMostOfALargeBody);
+}
+
+/// Rows and columns that there is room for: whole packs of terms.
+std::size_t coarse_size(Index groups) {
+  return round_up(6 * static_cast<std::uint32_t>(groups), 16);
+}
+
 // Texels of four words.
 constexpr std::size_t kTexel = 4 * sizeof(std::uint32_t);
 
@@ -42,6 +55,7 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
                        std::span<const std::uint8_t> destroyed, double share, bool apart)
     : kernels_(kernels),
       problem_(problem),
+      most_(most_groups(problem, apart)),
       destroyed_(destroyed),
       share_(share),
       held_(problem_.mesh().nodes.size(), 0) {
@@ -55,20 +69,22 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
     return buffer;
   };
   modes_ = make(nodes * kTexel, Placement::device);
-  first_ = make((kMost + 1) * sizeof(std::uint32_t), Placement::device);
+  const std::size_t size = coarse_size(most_), groups = size / 6 + 1;
+  first_ = make((groups + 1) * sizeof(std::uint32_t), Placement::device);
   members_ = make(nodes * kTexel, Placement::device);
-  inverse_ = make(coarse_size() * coarse_size() * sizeof(double), Placement::device);
-  y_ = make(coarse_size() * sizeof(double), Placement::device);
-  w_ = make(kMost * 8 * sizeof(double), Placement::device);
-  terms_ = make(coarse_size() / 4 * sizeof(double), Placement::device);
+  inverse_ = make(size * size * sizeof(double), Placement::device);
+  y_ = make(size * sizeof(double), Placement::device);
+  w_ = make(groups * 8 * sizeof(double), Placement::device);
+  terms_ = make(size / 4 * sizeof(double), Placement::device);
 }
 
-std::size_t RigidSpace::planned_bytes(const Problem& problem) {
+std::size_t RigidSpace::planned_bytes(const Problem& problem, bool apart) {
+  const std::size_t size = coarse_size(most_groups(problem, apart)), groups = size / 6 + 1;
   const std::size_t nodes =
       round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
-  return 2 * nodes * kTexel + Buffer::padded((kMost + 1) * sizeof(std::uint32_t)) +
-         (coarse_size() + 1) * coarse_size() * sizeof(double) + kMost * 8 * sizeof(double) +
-         coarse_size() / 4 * sizeof(double);
+  return 2 * nodes * kTexel + Buffer::padded((groups + 1) * sizeof(std::uint32_t)) +
+         (size + 1) * size * sizeof(double) + groups * 8 * sizeof(double) +
+         size / 4 * sizeof(double);
 }
 
 std::size_t RigidSpace::bytes() const {
@@ -110,18 +126,18 @@ void RigidSpace::hold(std::span<const Index> gripped) {
   }
 }
 
-void RigidSpace::grip(std::span<const Index> gripped) {
-  std::vector<Index> ascending(gripped.begin(), gripped.end());
-  std::ranges::sort(ascending);
-  hold(ascending);
-  forget();
-}
-
 void RigidSpace::destroy(std::span<const Index> elements) {
   for (Index e : elements) {
     if (coarse_.size() > 0) add_element(e, share_ - 1);
   }
   changed_ = true;
+}
+
+void RigidSpace::grip(std::span<const Index> gripped) {
+  std::vector<Index> ascending(gripped.begin(), gripped.end());
+  std::ranges::sort(ascending);
+  hold(ascending);
+  forget();
 }
 
 void RigidSpace::forget() {
@@ -197,6 +213,8 @@ void RigidSpace::update() {
       add_element(e, destroyed_[e] ? share_ : 1);
     }
     for (Index p = 0; problem_.pools() && p < problem_.pools()->count(); ++p) add_patch(p);
+  } else if (most_ > kMost && resting_inverse_.size() > 0 && !(inertia_.factor > 0)) {
+    return;  // a large one stays as it is: a cut nearly through a board costs 3 % more iterations
   }
   invert();
 }
@@ -214,14 +232,14 @@ std::vector<std::vector<Index>> RigidSpace::grouped() {
   std::erase_if(nodes, [](const auto& body) { return body.size() < kFewest; });
   std::vector<std::vector<Index>> groups;
   if (nodes.empty()) return groups;
-  const auto others = std::min<Index>(static_cast<Index>(nodes.size()) - 1, kMost / 2);
+  const auto others = std::min<Index>(static_cast<Index>(nodes.size()) - 1, most_ / 2);
   const auto wanted = std::max<Index>(static_cast<Index>(nodes.front().size()) / kNodesPerGroup, 1);
   if (kind_.empty()) {
-    split(nodes.front(), std::min(wanted, kMost - others), groups);
+    split(nodes.front(), std::min(wanted, most_ - others), groups);
   } else {
     std::map<Index, std::vector<Index>> by_kind;
     for (Index n : nodes.front()) by_kind[kind_[n]].push_back(n);
-    const auto spare = std::max<Index>(kMost - others - static_cast<Index>(by_kind.size()), 0);
+    const auto spare = std::max<Index>(most_ - others - static_cast<Index>(by_kind.size()), 0);
     for (auto& [kind, list] : by_kind) {
       const auto share = static_cast<Index>(spare * list.size() / nodes.front().size());
       split(list,
@@ -273,7 +291,7 @@ void RigidSpace::place_modes(std::span<const double> u) {
   using Texel = std::array<std::uint32_t, 4>;
   std::vector<Texel> modes(modes_.bytes() / kTexel, Texel{0, 0, 0, shaders::kHeld});  // no group
   std::vector<Texel> members;
-  std::vector<std::uint32_t> first(static_cast<std::size_t>(kMost) + 1, 0);
+  std::vector<std::uint32_t> first(coarse_size(most_) / 6 + 2, 0);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Vec3 centre = Vec3::Zero();
     for (Index n : groups_[g]) centre += x[n];
@@ -395,7 +413,7 @@ void RigidSpace::invert() {
 }
 
 void RigidSpace::upload_inverse(const Eigen::MatrixXd& inverse) {
-  const auto full = static_cast<Index>(coarse_size());
+  const Eigen::Index full = Eigen::Index{4} * solve_groups();
   Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(full, full);
   padded.topLeftCorner(inverse.rows(), inverse.cols()) = inverse;
   inverse_.write(std::span<const double>(padded.data(), static_cast<std::size_t>(padded.size())));

@@ -29,7 +29,7 @@ class RigidSpace {
              std::span<const std::uint8_t> destroyed, double share, bool apart = false);
 
   /// Device bytes, before they exist.
-  [[nodiscard]] static std::size_t planned_bytes(const Problem& problem);
+  [[nodiscard]] static std::size_t planned_bytes(const Problem& problem, bool apart = false);
 
   /// Follows an event that the body has recorded already.
   void destroy(std::span<const Index> elements);
@@ -79,6 +79,7 @@ class RigidSpace {
 
   const KernelFactory& kernels_;
   const Problem& problem_;
+  Index most_;  // groups that there is room for
   std::span<const std::uint8_t> destroyed_;
   double share_;
   std::vector<Index> kind_;  // of every node: groups have one alone; empty: it does not matter
