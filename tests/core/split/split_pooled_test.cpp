@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "body/pieces.hpp"
+#include "body/pools.hpp"
 #include "core/fracture/board_fixture.hpp"
 #include "split_against_fresh.hpp"
 #include "support/notch_board.hpp"
@@ -166,6 +168,79 @@ TEST(PooledCracks, ALongCrackIsAsAFreshBodySays) {
   EXPECT_LE(displacement_error(fresh_problem->mesh(), crack.destroyed, found.u, expected.u),
             kCrackTolerance);
   EXPECT_LE(stress_error(crack.destroyed, found.stress, expected.stress), kCrackTolerance);
+}
+
+/// What meets an element that shares its patch with another that it does not meet, all of it whole
+/// and far from a crack: without it the element is a piece of its own.
+std::vector<Index> ring_far_from(const Problem& problem, const EdgeSplit& crack) {
+  const auto& tets = problem.mesh().tets;
+  const auto meet = [&](Index a, Index b) {
+    return std::ranges::find_first_of(tets[static_cast<std::size_t>(a)],
+                                      tets[static_cast<std::size_t>(b)]) !=
+           tets[static_cast<std::size_t>(a)].end();
+  };
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const auto patch = problem.pools()->elements(problem.pools()->of(e));
+    if (std::ranges::all_of(patch, [&](Index other) { return meet(e, other); })) continue;
+    std::vector<Index> ring;
+    bool far = true;
+    for (Index other = 0; other < problem.tet_count(); ++other) {
+      if (other == e || !meet(e, other)) continue;
+      ring.push_back(other);
+      far = far && (crack.board.centroid(other) - crack.crack.path.front()).norm() > 5 &&
+            crack.body.corners()[static_cast<std::size_t>(other)] ==
+                tets[static_cast<std::size_t>(other)];
+    }
+    if (far) return ring;
+  }
+  return {};
+}
+
+/// A piece comes off beside a crack of split nodes, which goes on: patches are split by both.
+TEST(PooledCracks, APieceBesideACrackSharesNoPressure) {
+  for (Route route : {Route::factor, Route::inverse}) {
+    std::mt19937 random(7);
+    const auto problem = std::make_shared<const Problem>(
+        scene_of(PooledCase{route, MaterialLaw::linear, 0.4, false},
+                 shaken_board({12, 10, 2, 12, 10, 2}, random, 0.2)));
+    const auto backend = cpu_reference::create(problem, needs_of(*problem));
+    std::vector<double> force =
+        shared_force(problem->mesh(), problem->instrument_nodes()[0].nodes, kBy);
+    EdgeSplit crack(*problem);
+    backend->set_load(load_of(*problem, force, {}));
+    backend->change(crack.begin(0).change);
+    for (int i = 1; i <= 3; ++i) backend->change(crack.advance(0).change);
+    const std::vector<Index> ring = ring_far_from(*problem, crack);
+    ASSERT_FALSE(ring.empty());
+    const Index split_by_crack = backend->pools()->count();
+    const std::size_t half = ring.size() / 2;
+    backend->destroy(std::span(ring).first(half));
+    backend->destroy(std::span(ring).subspan(half));
+    EXPECT_GT(backend->pools()->count(), split_by_crack);
+    EXPECT_GT(split_by_crack, problem->pools()->count());
+    for (Index e : ring) crack.destroyed[static_cast<std::size_t>(e)] = 1;
+    for (int i = 1; i <= 2; ++i) backend->change(crack.advance(0).change);
+    backend->set_load(load_of(*problem, force, {}));
+    EXPECT_LE(backend->solve().error, 1e-8);
+    static_cast<void>(backend->stress());
+    const auto fresh_problem = opened(*problem, crack);
+    const auto fresh = cpu_reference::create(fresh_problem, needs_of(*fresh_problem));
+    force.resize(fresh_problem->dofs().size(), 0.0);
+    fresh->set_load(load_of(*fresh_problem, force, {}));
+    fresh->destroy(ring);
+    static_cast<void>(fresh->solve());
+    static_cast<void>(fresh->stress());
+    const Read expected(*fresh), found(*backend);
+    LooseSearch search(*fresh_problem);
+    search.look(crack.destroyed);
+    std::vector<std::uint8_t> ignored(crack.destroyed.begin(), crack.destroyed.end());
+    for (Index e = 0; e < problem->tet_count(); ++e) {
+      if (search.piece_of(e) != kNone) ignored[static_cast<std::size_t>(e)] = 1;
+    }
+    EXPECT_LE(displacement_error(fresh_problem->mesh(), ignored, found.u, expected.u),
+              kCrackTolerance);
+    EXPECT_LE(stress_error(ignored, found.stress, expected.stress), kCrackTolerance);
+  }
 }
 
 /// Where a crack splits a patch its parts had changed their volume by as much in the mean alone:
