@@ -134,40 +134,60 @@ TEST_P(PooledSplit, FollowsACrackAsAFreshBodyWithOpenFacesSays) {
   }
 }
 
+/// A board of law linear under its load, with a crack that has begun.
+struct CrackedBoard {
+  CrackedBoard(Route route, double poisson, const BoardShape& shape)
+      : problem(std::make_shared<const Problem>(
+            scene_of(PooledCase{route, MaterialLaw::linear, poisson, false}, shaken(shape)))),
+        backend(cpu_reference::create(problem, needs_of(*problem))),
+        force(shared_force(problem->mesh(), problem->instrument_nodes()[0].nodes, kBy)),
+        crack(*problem) {
+    load();
+    backend->change(crack.begin(0).change);
+  }
+  static Mesh shaken(const BoardShape& shape) {
+    std::mt19937 random(7);
+    return shaken_board(shape, random, 0.2);
+  }
+  void load() const { backend->set_load(load_of(*problem, force, {})); }
+  /// Of the last solution, with stress; `gone`: what is destroyed.
+  void expect_as_fresh(std::span<const Index> gone, std::span<const std::uint8_t> ignored) const {
+    const auto opened_problem = opened(*problem, crack);
+    const auto fresh = cpu_reference::create(opened_problem, needs_of(*opened_problem));
+    std::vector<double> all = force;
+    all.resize(opened_problem->dofs().size(), 0.0);
+    fresh->set_load(load_of(*opened_problem, all, {}));
+    fresh->destroy(gone);
+    static_cast<void>(fresh->solve());
+    static_cast<void>(fresh->stress());
+    const Read expected(*fresh), found(*backend);
+    EXPECT_LE(displacement_error(opened_problem->mesh(), ignored, found.u, expected.u),
+              kCrackTolerance);
+    EXPECT_LE(stress_error(ignored, found.stress, expected.stress), kCrackTolerance);
+  }
+  std::shared_ptr<const Problem> problem;
+  std::unique_ptr<Backend> backend;
+  std::vector<double> force;
+  EdgeSplit crack;
+};
+
 /// Past new bases, which take over what has parted: their patches are those that are left.
 TEST(PooledCracks, ALongCrackIsAsAFreshBodySays) {
-  std::mt19937 random(7);
-  const auto problem = std::make_shared<const Problem>(
-      scene_of(PooledCase{Route::factor, MaterialLaw::linear, 0.49, false},
-               shaken_board({45, 6, 2, 45, 6, 2}, random, 0.2)));
-  const auto backend = cpu_reference::create(problem, needs_of(*problem));
-  std::vector<double> force =
-      shared_force(problem->mesh(), problem->instrument_nodes()[0].nodes, kBy);
-  EdgeSplit crack(*problem);
-  backend->set_load(load_of(*problem, force, {}));
-  backend->change(crack.begin(0).change);
+  CrackedBoard board(Route::factor, 0.49, {45, 6, 2, 45, 6, 2});
+  const auto& backend = board.backend;
   for (int i = 1; i <= 30; ++i) {
-    auto step = crack.advance(0);
+    auto step = board.crack.advance(0);
     ASSERT_TRUE(step.moved() && !step.through) << i;
     step.change.held = true;
     backend->change(step.change);
-    backend->set_load(load_of(*problem, force, {}));
+    board.load();
     EXPECT_LE(backend->solve().error, 1e-8) << i;
     static_cast<void>(backend->stress());
   }
   EXPECT_TRUE(std::ranges::any_of(backend->buffers(), [](const BufferPlan& b) {
     return b.name.starts_with("damaged factor");
   })) << "no new base on the way";
-  const auto fresh_problem = opened(*problem, crack);
-  const auto fresh = cpu_reference::create(fresh_problem, needs_of(*fresh_problem));
-  force.resize(fresh_problem->dofs().size(), 0.0);
-  fresh->set_load(load_of(*fresh_problem, force, {}));
-  static_cast<void>(fresh->solve());
-  static_cast<void>(fresh->stress());
-  const Read expected(*fresh), found(*backend);
-  EXPECT_LE(displacement_error(fresh_problem->mesh(), crack.destroyed, found.u, expected.u),
-            kCrackTolerance);
-  EXPECT_LE(stress_error(crack.destroyed, found.stress, expected.stress), kCrackTolerance);
+  board.expect_as_fresh({}, board.crack.destroyed);
 }
 
 /// What meets an element that shares its patch with another that it does not meet, all of it whole
@@ -199,47 +219,31 @@ std::vector<Index> ring_far_from(const Problem& problem, const EdgeSplit& crack)
 /// A piece comes off beside a crack of split nodes, which goes on: patches are split by both.
 TEST(PooledCracks, APieceBesideACrackSharesNoPressure) {
   for (Route route : {Route::factor, Route::inverse}) {
-    std::mt19937 random(7);
-    const auto problem = std::make_shared<const Problem>(
-        scene_of(PooledCase{route, MaterialLaw::linear, 0.4, false},
-                 shaken_board({12, 10, 2, 12, 10, 2}, random, 0.2)));
-    const auto backend = cpu_reference::create(problem, needs_of(*problem));
-    std::vector<double> force =
-        shared_force(problem->mesh(), problem->instrument_nodes()[0].nodes, kBy);
-    EdgeSplit crack(*problem);
-    backend->set_load(load_of(*problem, force, {}));
-    backend->change(crack.begin(0).change);
-    for (int i = 1; i <= 3; ++i) backend->change(crack.advance(0).change);
-    const std::vector<Index> ring = ring_far_from(*problem, crack);
+    CrackedBoard board(route, 0.4, {12, 10, 2, 12, 10, 2});
+    Backend& backend = *board.backend;
+    EdgeSplit& crack = board.crack;
+    for (int i = 1; i <= 3; ++i) backend.change(crack.advance(0).change);
+    const std::vector<Index> ring = ring_far_from(*board.problem, crack);
     ASSERT_FALSE(ring.empty());
-    const Index split_by_crack = backend->pools()->count();
+    const Index split_by_crack = backend.pools()->count();
     const std::size_t half = ring.size() / 2;
-    backend->destroy(std::span(ring).first(half));
-    backend->destroy(std::span(ring).subspan(half));
-    EXPECT_GT(backend->pools()->count(), split_by_crack);
-    EXPECT_GT(split_by_crack, problem->pools()->count());
+    backend.destroy(std::span(ring).first(half));
+    backend.destroy(std::span(ring).subspan(half));
+    EXPECT_GT(backend.pools()->count(), split_by_crack);
+    EXPECT_GT(split_by_crack, board.problem->pools()->count());
     for (Index e : ring) crack.destroyed[static_cast<std::size_t>(e)] = 1;
-    for (int i = 1; i <= 2; ++i) backend->change(crack.advance(0).change);
-    backend->set_load(load_of(*problem, force, {}));
-    EXPECT_LE(backend->solve().error, 1e-8);
-    static_cast<void>(backend->stress());
-    const auto fresh_problem = opened(*problem, crack);
-    const auto fresh = cpu_reference::create(fresh_problem, needs_of(*fresh_problem));
-    force.resize(fresh_problem->dofs().size(), 0.0);
-    fresh->set_load(load_of(*fresh_problem, force, {}));
-    fresh->destroy(ring);
-    static_cast<void>(fresh->solve());
-    static_cast<void>(fresh->stress());
-    const Read expected(*fresh), found(*backend);
-    LooseSearch search(*fresh_problem);
+    for (int i = 1; i <= 2; ++i) backend.change(crack.advance(0).change);
+    board.load();
+    EXPECT_LE(backend.solve().error, 1e-8);
+    static_cast<void>(backend.stress());
+    const auto parted = opened(*board.problem, crack);
+    LooseSearch search(*parted);
     search.look(crack.destroyed);
     std::vector<std::uint8_t> ignored(crack.destroyed.begin(), crack.destroyed.end());
-    for (Index e = 0; e < problem->tet_count(); ++e) {
+    for (Index e = 0; e < parted->tet_count(); ++e) {
       if (search.piece_of(e) != kNone) ignored[static_cast<std::size_t>(e)] = 1;
     }
-    EXPECT_LE(displacement_error(fresh_problem->mesh(), ignored, found.u, expected.u),
-              kCrackTolerance);
-    EXPECT_LE(stress_error(ignored, found.stress, expected.stress), kCrackTolerance);
+    board.expect_as_fresh(ring, ignored);
   }
 }
 
