@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 namespace sunder::bench {
@@ -18,9 +19,36 @@ const Real3x3 kOne = Real3x3::Identity();
 // Of the displacement: Newton's method is close from there on; what its last step may change.
 constexpr double kClose = 1e-4, kLargestCorrection = 1e-10;
 constexpr int kMostFactors = 40;
+constexpr auto kNoPatch = std::numeric_limits<std::size_t>::max();
 
 Real3x3 strain_of(const Real3x3& f) { return (f + f.transpose()) / 2 - kOne; }
 Real3x3 deviator(const Real3x3& e) { return e - e.trace() / 3 * kOne; }
+
+/// Per element a node of the body that it belongs to: live elements that share nodes are of one.
+/// Destroyed ones have none.
+std::vector<Index> bodies(const Mesh& mesh, std::span<const std::uint8_t> destroyed) {
+  constexpr Index kNobody = -1;
+  std::vector<std::vector<std::size_t>> elements_at(mesh.nodes.size());
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    for (Index n : mesh.tets[e]) elements_at[static_cast<std::size_t>(n)].push_back(e);
+  }
+  std::vector<Index> body(mesh.tets.size(), kNobody);
+  std::vector<std::size_t> front;
+  for (std::size_t first = 0; first < mesh.tets.size(); ++first) {
+    if (!destroyed[first] && body[first] == kNobody) front.push_back(first);
+    while (!front.empty()) {
+      const std::size_t e = front.back();
+      front.pop_back();
+      if (destroyed[e] || body[e] != kNobody) continue;
+      body[e] = mesh.tets[first][0];
+      for (Index n : mesh.tets[e]) {
+        const auto& next = elements_at[static_cast<std::size_t>(n)];
+        front.insert(front.end(), next.begin(), next.end());
+      }
+    }
+  }
+  return body;
+}
 
 }  // namespace
 
@@ -51,7 +79,7 @@ Yardstick::Yardstick(const Problem& problem, std::span<const std::uint8_t> destr
                                                                : &plain::kSaintVenantKirchhoff);
     if (problem.fibrous()) fibres_.emplace_back(problem, e, element);
     const Index p = pools.of(e);
-    patch_of_.push_back(p == kNone ? patches_.size() : static_cast<std::size_t>(p));
+    patch_of_.push_back(p == kNone ? kNoPatch : static_cast<std::size_t>(p));
     if (p == kNone) continue;
     if (!linear && material.law != MaterialLaw::neo_hookean)
       throw std::runtime_error("this yardstick pools laws linear and neo-hookean alone");
@@ -61,10 +89,41 @@ Yardstick::Yardstick(const Problem& problem, std::span<const std::uint8_t> destr
     patch.linear = linear;
     patch.elements.push_back(id);
   }
+  split_patches(bodies(problem.mesh(), destroyed));
   for (std::size_t i = 0; i < problem.dofs().size(); ++i) {
     if (problem.dofs()[i] != kNone) places_[static_cast<std::size_t>(problem.dofs()[i])] = i;
   }
   for (Index d : problem.gripped_dofs()) free_[static_cast<std::size_t>(d)] = 0;
+}
+
+/// A patch holds elements of one body; what is destroyed stays with the first.
+void Yardstick::split_patches(const std::vector<Index>& body) {
+  const std::size_t whole = patches_.size();
+  for (std::size_t p = 0; p < whole; ++p) {
+    std::map<Index, Patch> parts;  // by body
+    std::vector<std::size_t> gone;
+    Index first = -1;
+    for (std::size_t id : patches_[p].elements) {
+      if (body[id] < 0) {
+        gone.push_back(id);
+        continue;
+      }
+      if (first < 0) first = body[id];
+      parts[body[id]].elements.push_back(id);
+    }
+    if (parts.size() < 2) continue;
+    Patch patch = patches_[p];
+    for (auto& [of, part] : parts) {
+      patch.elements = std::move(part.elements);
+      if (of == first) {
+        patch.elements.insert(patch.elements.end(), gone.begin(), gone.end());
+        patches_[p] = patch;
+        continue;
+      }
+      for (std::size_t id : patch.elements) patch_of_[id] = patches_.size();
+      patches_.push_back(patch);
+    }
+  }
 }
 
 Real3x3 Yardstick::deformed(std::size_t id, const std::vector<Real>& u) const {
@@ -105,7 +164,7 @@ std::vector<Yardstick::Pressure> Yardstick::pressures(const std::vector<Real>& u
 /// First Piola-Kirchhoff stress, of a whole element.
 Real3x3 Yardstick::stress(std::size_t id, const Real3x3& f, const std::vector<Pressure>& of) const {
   Real3x3 p;
-  if (const std::size_t at = patch_of_[id]; at == patches_.size()) {
+  if (const std::size_t at = patch_of_[id]; at == kNoPatch) {
     p = laws_[id]->stress(elements_[id].d, f);
   } else {
     const Real mu = patches_[at].shear;
@@ -124,7 +183,7 @@ Real3x3 Yardstick::stress(std::size_t id, const Real3x3& f, const std::vector<Pr
 Real3x3 Yardstick::change(std::size_t id, const Real3x3& f, const Real3x3& df,
                           const std::vector<Pressure>& of) const {
   Real3x3 dp;
-  if (const std::size_t at = patch_of_[id]; at == patches_.size()) {
+  if (const std::size_t at = patch_of_[id]; at == kNoPatch) {
     dp = laws_[id]->change(elements_[id].d, f, df);
   } else if (const Real mu = patches_[at].shear; patches_[at].linear) {
     dp = 2 * mu * deviator((df + df.transpose()) / 2);
@@ -177,7 +236,7 @@ Eigen::VectorXd Yardstick::step(const std::vector<Real>& u, const Eigen::VectorX
       const Real3x3 dp = volume * change(id, f, df, of);
       for (Index i = 0; i < 12; ++i)
         add(e.places[static_cast<std::size_t>(i)], column, dp.row(i % 3).dot(e.slope(i / 3)));
-      if (patch_of_[id] < patches_.size()) {
+      if (patch_of_[id] != kNoPatch) {
         const Real grows = volume * cofactor(id, f).row(j % 3).dot(e.slope(j / 3));
         auto& b = volume_of[patch_of_[id]];
         const auto at = std::ranges::find(b, column, &std::pair<std::size_t, Real>::first);

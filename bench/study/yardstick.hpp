@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stability studies' own yardstick: volume pooled over patches (docs/method.md "Pooled volume")
 // or by element, in extended precision from the first iteration to the stress. Of what it judges it
-// takes the checked problem and the list of patches; elements, laws and fibres are those of
+// takes the checked problem and the list of intact patches; elements, laws and fibres are those of
 // cpu_reference/plain.
 #pragma once
 
@@ -38,6 +38,7 @@ class Yardstick {
   struct Pressure {
     Real volume = 0, pressure = 0, stiffness = 0;  // V_p, U'(J_p), U''(J_p)
   };
+  void split_patches(const std::vector<Index>& body_of_element);
   [[nodiscard]] Real3x3 deformed(std::size_t element, const std::vector<Real>& u) const;
   [[nodiscard]] Real3x3 cofactor(std::size_t element, const Real3x3& f) const;
   [[nodiscard]] std::vector<Pressure> pressures(const std::vector<Real>& u) const;
@@ -52,7 +53,7 @@ class Yardstick {
   std::vector<plain::Element> elements_;
   std::vector<plain::Fibres> fibres_;
   std::vector<const plain::Law*> laws_;
-  std::vector<std::size_t> patch_of_;  // patches_.size(): pools nothing
+  std::vector<std::size_t> patch_of_;  // largest number: pools nothing
   std::vector<Patch> patches_;
   std::vector<std::size_t> places_;  // per dof: 3 * node + axis
   std::vector<std::uint8_t> free_;   // per dof
