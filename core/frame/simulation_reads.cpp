@@ -40,7 +40,7 @@ Mesh Simulation::mesh() const {
   Mesh mesh = problem_->mesh();
   const auto corners = criterion_->corners();
   if (corners.empty()) return mesh;
-  mesh.nodes.resize(static_cast<std::size_t>(backend_->node_count()));
+  mesh.nodes.resize(static_cast<std::size_t>(backend_->node_count()), Vec3::Zero());
   for (std::size_t e = 0; e < corners.size(); ++e) {
     for (std::size_t a = 0; a < 4; ++a) {
       mesh.nodes[static_cast<std::size_t>(corners[e][a])] =
@@ -248,10 +248,9 @@ std::vector<Vec3> Simulation::velocity() const {
 }
 
 std::vector<Vec3> Simulation::displacement() const {
-  std::vector<Vec3> result(problem_->mesh().nodes.size(), Vec3::Zero());
+  std::vector<Vec3> result(static_cast<std::size_t>(backend_->node_count()), Vec3::Zero());
   if (!now_.solved) return result;
   if (backend_->node_count() > problem_->node_count()) {
-    result.resize(static_cast<std::size_t>(backend_->node_count()));
     std::vector<Index> nodes(result.size());
     std::iota(nodes.begin(), nodes.end(), 0);
     backend_->read_displacement(nodes, result);

@@ -115,6 +115,22 @@ TEST_P(SplitCut, IsTakenBackAndDoneAgainBitForBitAndTold) {
   EXPECT_EQ(other.simulation.store(), bytes);
 }
 
+TEST(SplitCutAll, BeforeTheFirstStepMayFollowAnother) {
+  const CutCase own{{}, Route::factor, false};
+  CutRun run(own);
+  Simulation& s = run.simulation;
+  ASSERT_GT(s.cut(through({-1, 4.1}, {3.2, 4.2})), 10);
+  const Index nodes = s.backend().node_count();
+  ASSERT_GT(nodes, run.problem->node_count());
+  // Nothing has moved, the nodes that the cut has brought neither.
+  ASSERT_EQ(s.mesh().nodes.size(), static_cast<std::size_t>(nodes));
+  EXPECT_EQ(s.displacement(),
+            std::vector<Vec3>(static_cast<std::size_t>(nodes), Vec3(Vec3::Zero())));
+  ASSERT_GT(s.cut(through({11, 4.1}, {6.8, 4.2})), 10);
+  s.step();
+  expect_as_fresh(run, own);
+}
+
 TEST(SplitCutAll, OfAWholeBoardMakesTwoPieces) {
   for (const std::optional<MaterialLaw> law :
        {std::optional<MaterialLaw>(), std::optional(MaterialLaw::corotated)}) {
