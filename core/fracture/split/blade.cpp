@@ -340,8 +340,12 @@ std::vector<Vec2> path_through(const Board& board, const SplitBody& body,
 }
 
 bool lies_flat(const Board& board, const SplitBody& body, std::span<const PassedFace> sheet) {
-  // Of a sheet that bends back on itself the sum is small and says nothing.
+  // Of a sheet that bends back on itself the sum is small and says nothing; nor do fewer faces than
+  // a cell of six tetrahedra has, however the blade stood: beside cuts that were made before one
+  // face may be all that is left to open.
   constexpr double kBent = 0.3, kStands = 0.5;
+  constexpr std::size_t kFewest = 6;
+  if (sheet.size() < kFewest) return false;
   double sizes = 0;
   for (const PassedFace& passed : sheet) sizes += outward_area(board, body, passed.face).norm();
   const Vec3 area = area_of(board, body, sheet);

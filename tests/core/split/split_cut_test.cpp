@@ -281,6 +281,20 @@ void refused(Simulation& s, const Blade& blade, const std::string& why) {
   EXPECT_EQ(s.store(), bytes);
 }
 
+// Beside cuts that were made before, one face that lies flat may be all that a blade opens.
+TEST(SplitCutAll, ByABladeThatStandsIsNeverSaidToLie) {
+  std::mt19937 random(3);
+  const auto part = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  CutRun run(CutCase{{}, Route::factor, false});
+  Simulation& s = run.simulation;
+  int cuts = 0;
+  for (int i = 0; i < 400 && s.crack_faces().size() < 300; ++i) {
+    const Vec2 from{5 + 4 * part(), 4 + 3 * part()}, way{0.7 * part(), 0.7 * part()};
+    EXPECT_NO_THROW(cuts += s.cut(through(from, from + way)) > 0) << i;
+  }
+  EXPECT_GT(cuts, 30);
+}
+
 TEST(SplitCutAll, RefusesABladeThatCannotCut) {
   const CutCase c{{}, Route::factor, false};
   Scene scene = scene_of(c, cut_board());

@@ -57,7 +57,7 @@ class SplitHand {
   /// What comes off is put back at once.
   void cut() {
     if (s_.crack_faces().size() > 150) return;
-    const Vec2 from(5 + 5 * part(), 4 + 4 * part()), way(2 * part(), 2 * part());
+    const Vec2 from{5 + 5 * part(), 4 + 4 * part()}, way{2 * part(), 2 * part()};
     if (s_.cut(through(from, from + way)) == 0) return;
     ++cuts;
     if (pieces() > 1) undo();
@@ -91,7 +91,7 @@ class SplitHand {
   void grasp() {
     if (grips().size() > 2) return;
     try {
-      const Vec3 at(5 + 4 * part(), 3 + 2.5 * part(), 1);
+      const Vec3 at{5 + 4 * part(), 3 + 2.5 * part(), 1};
       highest_ = std::max(highest_, s_.grasp(at, 1.1, below(2) == 1));
       ++grasped;
     } catch (const UsageError&) {  // all there is held, or by another
