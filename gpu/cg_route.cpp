@@ -29,13 +29,13 @@ std::uint32_t nodes_of(const Problem& problem) {
 
 std::size_t known_slot(std::size_t nodes) { return nodes * 4 * sizeof(double); }
 
-/// Two hands that shift and turn; no more than a scene's instruments can do, nor than a buffer of
-/// the device holds.
+/// The first solution of a body, which later ones do not displace, and two hands that shift and
+/// turn; no more than a scene's instruments can do, nor than a buffer of the device holds.
 std::uint32_t most_known(const KernelFactory& kernels, const Problem& problem) {
-  constexpr std::size_t kMost = 12, kOfAHand = 6;
+  constexpr std::size_t kFewest = 2, kMost = 12, kOfAHand = 6;
   const auto& scene = problem.scene();
   const std::size_t wanted =
-      scene.live ? kMost : std::clamp<std::size_t>(kOfAHand * scene.instruments.size(), 1, kMost);
+      scene.live ? kMost : std::clamp(kOfAHand * scene.instruments.size(), kFewest, kMost);
   const std::size_t held =
       kernels.device().physical().limits.buffer_bytes.value / known_slot(nodes_of(problem));
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(held, 1, wanted));
@@ -213,13 +213,13 @@ int CgRoute::run(double reduction, bool solution) {
 
 void CgRoute::finish(bool keep_known) {
   commands_.begin();
-  if (keep_known) {
+  if (keep_known && (known_count_ == 0 || most_known_ > 1)) {
     const Buffer& x = fields_.nodal(Field::correction);
     next_known_ = known_count_ == 0 ? 0 : next_known_;
     commands_.copy(x.handle(), x.offset(), known_.handle(),
                    known_.offset() + next_known_ * slot_bytes(), slot_bytes());
     known_count_ = std::min(known_count_ + 1, most_known_);
-    next_known_ = (next_known_ + 1) % most_known_;
+    if (++next_known_ == most_known_) next_known_ = 1;
   }
   commands_.pass("refine");
   add_.record(commands_);

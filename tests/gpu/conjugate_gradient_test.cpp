@@ -85,6 +85,27 @@ TEST_P(ConjugateGradient, LoadsThatGrowTurnVanishAndComeBack) {
   expect(pair.solve(), kIntactTolerance, "after none");
 }
 
+/// Of a scene without instruments, whose host turns the load: what was solved first stays known.
+TEST_P(ConjugateGradient, AMultipleOfATurnedLoadTakesNoIteration) {
+  Pair pair(held_board(), way());
+  ASSERT_TRUE(pair.problem().scene().instruments.empty());
+  Load load = corner_pull(pair.problem());
+  const auto crack = crack_sequence(pair.problem(), 1, 10);
+  pair.destroy(crack);
+  pair.load(load);
+  EXPECT_GT(pair.solve().report.iterations, 0);
+  load.forces[0] *= 1.01;
+  pair.load(load);
+  const auto turned = pair.solve();
+  expect(turned, kCrackTolerance, "turned");
+  EXPECT_GT(turned.report.iterations, 0);
+  for (double& f : load.forces) f *= 1.2;
+  pair.load(load);
+  const auto multiple = pair.solve();
+  expect(multiple, kCrackTolerance, "and grown");
+  EXPECT_EQ(multiple.report.iterations, 0);
+}
+
 /// A sum of former loads takes a step along each of their solutions and no iteration (CgKernels);
 /// what is left here are those of the error's estimate.
 TEST_P(ConjugateGradient, HandsThatWanderStayRight) {
