@@ -108,6 +108,15 @@ std::vector<std::string> backend_names() {
 #endif
 }
 
+std::vector<DeviceInfo> measure_devices(bool again) {
+#ifdef SUNDER_GPU
+  static_cast<void>(gpu::measure_devices(again));
+#else
+  static_cast<void>(again);
+#endif
+  return devices();
+}
+
 std::vector<DeviceInfo> devices() {
   std::vector<DeviceInfo> list = {cpu_reference::device()};
   for (DeviceInfo& d : vulkan_devices()) {

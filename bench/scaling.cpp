@@ -2,7 +2,10 @@
 // Size of the board against set-up, quiet frame, fracture frame and memory, every route. The time
 // of a row is that of a frame in which one element breaks; the others are counters. floor_ms is the
 // time in which the machine copies as many bytes as the backend holds: no route that reads all it
-// holds can be faster; iterations: the most of conjugate gradients that such a frame took. Rows above 200,000 tetrahedra take minutes: choose them by
+// holds can be faster; cg_iterations: the most that such a frame took. quiet_ms: of a frame under a
+// load turned a little, proportional_ms under one that has grown; predicted_*: what a plan says of
+// the latter and of a row's time (`sunder devices --measure` first). Rows above 200,000 tetrahedra
+// take minutes: choose them by
 // --benchmark_filter.
 #include <benchmark/benchmark.h>
 
@@ -80,10 +83,19 @@ void size_row(benchmark::State& state, const Method& method, Index cells) {
       load.forces[0] *= 1.001;
       quiet = std::min(quiet, frame(*backend, load, {}).ms);
     }
-    const auto bytes = static_cast<double>(backend->info().memory_bytes);
+    double proportional = 1e300;
+    for (int i = 0; i < 5; ++i) {
+      for (double& force : load.forces) force *= 1.001;
+      proportional = std::min(proportional, frame(*backend, load, {}).ms);
+    }
+    const BackendInfo info = backend->info();
+    const auto bytes = static_cast<double>(info.memory_bytes);
     state.counters["quiet_ms"] = quiet;
+    state.counters["proportional_ms"] = proportional;
+    state.counters["predicted_ms"] = info.fracture_ms;
+    state.counters["predicted_proportional_ms"] = info.quiet_ms;
     state.counters["MiB"] = bytes / 1048576;
-    if (iterations > 0) state.counters["iterations"] = iterations;
+    if (iterations > 0) state.counters["cg_iterations"] = iterations;
     state.counters["floor_ms"] = bytes / copy_rate();
     state.counters["unknowns"] = static_cast<double>(problem->dof_count());
   } catch (const Error& error) {

@@ -32,6 +32,9 @@ class CgRoute final : public DeviceRoute {
   }
 
   std::vector<BufferPlan> buffers() const override;
+  void add_to(solver::FrameShape& shape) const override {
+    shape.groups = RigidSpace::planned_groups(body_.problem());
+  }
 
   /// Sizes of the dispatches of an iteration, three words for each of kCgSizes kinds: the device
   /// sets them to zero where it is done.

@@ -72,6 +72,8 @@ class DeviceBody {
   virtual void solve_pristine(const Load& load, std::span<double> displacement) = 0;
 
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// What a prediction of its frames has to know of it.
+  virtual void add_to(solver::FrameShape&) const {}
   /// The deferred update of the whole body; null: it has another or none.
   [[nodiscard]] virtual const solver::RenewedUpdate* update() const { return nullptr; }
   /// Bases after the first one so far.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which Vulkan device a scene gets, and the list that `sunder devices` shows.
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
 
 #include "gpu/choose_device.hpp"
+#include "gpu/device_rates.hpp"
 #include "gpu/vulkan_backend.hpp"
 #include "sunder/error.hpp"
 
@@ -34,6 +37,14 @@ std::vector<vulkan::PhysicalDevice> list_devices(const vulkan::Instance& instanc
 
 std::string megabytes(VkDeviceSize bytes) { return std::to_string(bytes / 1000000) + " MB"; }
 
+std::string in_words(const DeviceRates& rates) {
+  std::ostringstream text;
+  text << std::setprecision(3) << 1e6 * rates.submit << " us a submit, " << 1e6 * rates.dispatch
+       << " us a dispatch, " << 1e-9 * rates.bytes << " GB/s, " << 1e-9 * rates.flops
+       << " GFLOP/s";
+  return text.str();
+}
+
 DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen) {
   DeviceInfo info;
   info.backend = "vulkan";
@@ -47,6 +58,7 @@ DeviceInfo describe(const vulkan::PhysicalDevice& device, int index, int chosen)
       megabytes(device.limits.buffer_bytes.value) + ", subgroups of " +
       std::to_string(device.subgroup) +
       (device.float64 ? ", routes inverse, condensed, cg" : ", routes inverse, condensed");
+  if (const auto rates = kept_rates(device)) info.rates = in_words(*rates);
   info.chosen = index == chosen;
   if (!shortcoming.empty()) {
     info.why = "cannot be used: " + shortcoming;
@@ -92,6 +104,21 @@ std::vector<DeviceInfo> devices() {
     infos.push_back(describe(list[d], static_cast<int>(d), chosen));
   }
   return infos;
+}
+
+std::vector<DeviceInfo> measure_devices(bool again) {
+  const VulkanOptions options = options_from_environment();
+  try {
+    const auto instance = std::make_shared<vulkan::Instance>(options.instance);
+    for (const auto& device : list_devices(*instance, options.probe)) {
+      if (!device.shortcoming().empty() || (!again && kept_rates(device))) continue;
+      const auto own = vulkan::create_device(instance, device, options.probe, {});
+      keep_rates(device, measure_rates(*own, choose_variant(device)));
+    }
+  } catch (const DeviceError&) {
+    // What could not be measured is predicted by its kind.
+  }
+  return devices();
 }
 
 std::optional<std::string> missing_gpu() {

@@ -42,6 +42,9 @@ class InverseRoute final : public DeviceRoute {
     return eager_ ? &grips_.matrixLLT() : DeviceRoute::grip_factor();
   }
   std::vector<BufferPlan> buffers() const override;
+  void add_to(solver::FrameShape& shape) const override {
+    if (!intact_->is_dense()) shape.entries = intact_->factor().entries();
+  }
 
  private:
   void fill_base(const HostInverse& host);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/plan_device.hpp"
 
+#include "gpu/device_rates.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -8,19 +10,40 @@ namespace {
 // than a second. Never on a processor that emulates a GPU, where the host is quicker at every size.
 constexpr Index kInvertOnDevice = 3000;
 
+// Of an element's stress, beside the bytes that it moves: as many multiply-adds of the kernel that
+// measures a device take as long (lavapipe).
+constexpr double kStressFlops = 900;
+// Of the rate at which a kernel reads what lies side by side, what those of a frame reach, which
+// gather (lavapipe).
+constexpr double kOfStreaming = .7;
+
 /// Nominal, of a kind of device.
-solver::FrameRates rates(VkPhysicalDeviceType type) {
+solver::FrameRates nominal(VkPhysicalDeviceType type) {
   solver::FrameRates rates{.frame = 0, .event = 60e-6, .submit = 20e-6};
   switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_CPU:  // lavapipe on two cores
-      rates.stress = 10e-9, rates.bytes = 8e9, rates.dispatch = 15e-6;
+      rates.stress = 10e-9, rates.bytes = 8e9, rates.dispatch = 15e-6, rates.flops = 15e9;
       break;
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      rates.stress = .05e-9, rates.bytes = 400e9, rates.dispatch = 5e-6;
+      rates.stress = .05e-9, rates.bytes = 400e9, rates.dispatch = 5e-6, rates.flops = 300e9;
       break;
     default:
-      rates.stress = .5e-9, rates.bytes = 40e9, rates.dispatch = 5e-6;
+      rates.stress = .5e-9, rates.bytes = 40e9, rates.dispatch = 5e-6, rates.flops = 30e9;
   }
+  return rates;
+}
+
+/// As measured once, else of its kind.
+solver::FrameRates rates_of(const vulkan::PhysicalDevice& device) {
+  solver::FrameRates rates = nominal(device.type);
+  const auto kept = kept_rates(device);
+  if (!kept) return rates;
+  rates.submit = kept->submit;
+  rates.dispatch = kept->dispatch;
+  rates.bytes = kOfStreaming * kept->bytes;
+  rates.flops = kept->flops;
+  rates.stress = kStressFlops / kept->flops;
+  rates.measured = true;
   return rates;
 }
 
@@ -36,7 +59,7 @@ solver::PlanDevice plan_device(const vulkan::PhysicalDevice& device, bool displa
   plan.fp64 = device.float64;
   plan.displayed = displayed;
   if (!device.is_cpu()) plan.inverts_from = kInvertOnDevice;
-  plan.rates = rates(device.type);
+  plan.rates = rates_of(device);
   return plan;
 }
 

@@ -9,6 +9,7 @@
 
 #include "gpu/passes/fields.hpp"
 #include "gpu/vulkan/commands.hpp"
+#include "solver/frame_cost.hpp"
 #include "solver/renewed_update.hpp"
 #include "sunder/backend.hpp"
 #include "sunder/error.hpp"
@@ -44,6 +45,8 @@ class DeviceRoute {
   }
 
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// What a prediction of its frames has to know of it.
+  virtual void add_to(solver::FrameShape&) const {}
 };
 
 }  // namespace sunder::gpu

@@ -76,6 +76,8 @@ class VulkanBackend final : public Backend {
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
     const solver::FrameCost cost = predicted();
+    info.predicted_by =
+        for_plan_.rates.measured ? "rates measured on the device" : "nominal rates of such devices";
     info.quiet_ms = cost.quiet_ms;
     info.fracture_ms = cost.fracture_ms;
     return info;
@@ -157,6 +159,7 @@ class VulkanBackend final : public Backend {
     shape.real_bytes = kernels_.real_bytes();
     shape.exact_loads = kExactLoads;
     shape.stiffness_bytes = whole ? body_->fields().matrix().bytes() : 0;
+    body_->add_to(shape);
     return shape;
   }
 

@@ -22,6 +22,7 @@ SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
 SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
 SUNDER_CONST kPartsAtOnce = 256u;  // partial results that one of many workgroups joins
+SUNDER_CONST kRateUnrolled = 8u;   // multiply-adds in a row, where a device's rates are measured
 SUNDER_CONST kHeld = 0xffffffffu;  // dof of an axis that a support holds
 
 // State of an element, bit by bit.
@@ -64,6 +65,12 @@ struct SumPush {
   uint packs;
   uint chunks;
   uint add;  // 1: add to what is there
+};
+
+struct RatePush {
+  uint invocations;
+  uint reads;  // packs of four values, of each invocation
+  uint turns;  // of kRateUnrolled multiply-adds of a pack
 };
 
 struct HoldPush {

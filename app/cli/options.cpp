@@ -263,7 +263,9 @@ void add_commands(CLI::App& app, Options& options) {
       *app.add_subcommand("reproduce", "The paper's experiments with figures and verdicts"),
       options);
   add_mesh_options(*app.add_subcommand("mesh", "Make meshes"), options);
-  app.add_subcommand("devices", "Devices and backends, and what would be chosen");
+  app.add_subcommand("devices", "Devices and backends, and what would be chosen")
+      ->add_flag("--measure", options.measure,
+                 "Measure anew what each Vulkan device does in a second; plans predict by it");
   app.add_subcommand("materials",
                      "Tissues that a scene can name, with where their numbers are from");
   app.add_subcommand("help", "Help for a command")
@@ -280,7 +282,7 @@ int carry_out(const CLI::App& app, const Options& options, Interruption& interru
     return reproduce_paper(reproduce_arguments(options), interruption);
   if (app.got_subcommand("mesh")) return mesh_board(board_arguments(options), interruption);
   if (app.got_subcommand("materials")) return list_materials();
-  return list_devices();
+  return list_devices(options.measure);
 }
 
 }  // namespace sunder::app

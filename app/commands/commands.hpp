@@ -57,7 +57,8 @@ struct SweepArguments {
 int run(const RunArguments& arguments, Interruption& interruption);
 /// `measure`: run the first steps and print the time of each stage and pass.
 int plan(const SceneArguments& arguments, bool measure);
-int list_devices();
+/// `measure`: what they do in a second, anew.
+int list_devices(bool measure);
 /// The tissues that a material's `preset` may name, each number with its source.
 int list_materials();
 int reproduce_paper(const ReproduceArguments& arguments, Interruption& interruption);

@@ -33,8 +33,8 @@ void print(const Row& row, const std::array<std::size_t, kColumns>& widths) {
 
 }  // namespace
 
-int list_devices() {
-  const std::vector<DeviceInfo> all = devices();
+int list_devices(bool measure) {
+  const std::vector<DeviceInfo> all = measure ? measure_devices(true) : devices();
   std::vector<Row> rows = {{"  backend", "device", "name", "driver", "precisions", "limits"}};
   for (const DeviceInfo& device : all) rows.push_back(row_of(device));
   std::array<std::size_t, kColumns> widths{};
@@ -45,6 +45,9 @@ int list_devices() {
   for (const DeviceInfo& device : all)
     if (!device.why.empty())
       std::cout << device.backend << " " << device.index << ": " << device.why << "\n";
+  for (const DeviceInfo& device : all)
+    if (!device.rates.empty())
+      std::cout << device.backend << " " << device.index << ", measured: " << device.rates << "\n";
   return 0;
 }
 

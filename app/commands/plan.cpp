@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <numeric>
@@ -47,6 +48,7 @@ std::string predicted(const BackendInfo& info) {
   if (!(info.quiet_ms > 0)) return "not by backend " + info.backend + "; --measure measures it";
   std::string text = rounded(info.quiet_ms, 3) + " quiet";
   if (info.fracture_ms > 0) text += ", " + rounded(info.fracture_ms, 3) + " with a fracture";
+  if (!info.predicted_by.empty()) text += ", by " + info.predicted_by;
   return text;
 }
 
@@ -112,10 +114,20 @@ CreatedBackend prepared_backend(const OpenedScene& scene) {
   return create_backend(scene.problem, needs_of(*scene.problem));
 }
 
+/// What a Vulkan device does in a second is measured before the first plan for one.
+void measure_for(const std::string& backend) {
+  const auto all = backend == "auto" ? devices() : std::vector<DeviceInfo>{};
+  const bool by_device = backend == "vulkan" || std::ranges::any_of(all, [](const DeviceInfo& d) {
+                           return d.chosen && d.backend == "vulkan";
+                         });
+  if (by_device) measure_devices(false);
+}
+
 }  // namespace
 
 int plan(const SceneArguments& arguments, bool measure) {
   const OpenedScene scene = open_scene(arguments);
+  measure_for(scene.problem->scene().solver.backend);
   const Problem& problem = *scene.problem;
   CreatedBackend created = prepared_backend(scene);
   const Backend& backend = *created.backend;

@@ -2,6 +2,7 @@
 #include "solver/frame_cost.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/route_table.hpp"
 
@@ -22,9 +23,11 @@ constexpr double kCheckSeconds = 200e-9;    // per element of a full check by pl
 constexpr double kAllowanceOfAThread = 4;
 
 constexpr double kValue = sizeof(double);
-// On a device apart, from the last solution to one under a larger load or with an element less: 490
-// to 500 on boards with frames 100 times stiffer, 208 to 229 without.
-constexpr double kIterationsApart = 500;
+// Of conjugate gradients on a device apart, on boards with frames 100 times stiffer
+// (bench_scaling): they grow with the square root of a group's nodes, and take more where groups
+// are too few to tell the frames from the tissue.
+constexpr double kIterationsOfANode = 14, kIterationsOfFewGroups = 440, kManyGroups = 60;
+constexpr double kCheckShare = .25;  // of them, for a correction to two digits instead of eleven
 // Dispatches of one of these, and bytes a node of its 13 vectors of four values and two places.
 constexpr double kIterationDispatches = 7, kIterationBytes = 13 * 32 + 2 * 16;
 // Bytes of an element's stress there: shape, corners, state, displacement of four nodes.
@@ -96,16 +99,22 @@ void FrameWork::fields(const FrameShape& s, bool balance) {
   pass(0);
 }
 
-void FrameWork::iterate(const FrameShape& s, double share) {
+double iterations_apart(const FrameShape& s) {
+  const double groups = real(std::max<std::size_t>(s.groups, 1));
+  const double nodes = real(s.kept) / 3;
+  return std::max(kIterationsOfANode * std::sqrt(nodes / groups),
+                  kIterationsOfFewGroups * (1 - groups / kManyGroups));
+}
+
+void FrameWork::iterate(const FrameShape& s, double iterations) {
   const double bytes = real(s.stiffness_bytes) + kIterationBytes * real(s.kept) / 3;
-  const double iterations = share * kIterationsApart;
   passes(iterations * kIterationDispatches, iterations * bytes);
 }
 
 void FrameWork::check(const FrameShape& s) {
   submit();
   if (s.route == Route::cg) {
-    iterate(s, .2);  // to two digits of eleven
+    iterate(s, kCheckShare * iterations_apart(s));
   } else {
     pass(real(s.kept) * real(s.kept) * real(s.real_bytes));
     pass(2 * real(s.kept) * kValue);

@@ -20,6 +20,8 @@ struct FrameRates {
   // Of a device apart from the host: bytes a second, from memory or, for small sets, the cache; [s]
   // of a submit with its fence, of a dispatch with its barrier. 0 bytes a second: there is none.
   double bytes = 0, submit = 0, dispatch = 0;
+  double flops = 0;       ///< a second, of multiply-adds there in fp64
+  bool measured = false;  ///< on the device itself; else of its kind
   [[nodiscard]] bool apart() const { return bytes > 0; }
 };
 
@@ -44,6 +46,7 @@ struct FrameShape {
   std::size_t real_bytes = 8;       ///< of a value of the inverse and of stress
   std::size_t exact_loads = 0;      ///< up to so many loads have columns in fp64
   std::size_t stiffness_bytes = 0;  ///< that f - K u reads
+  std::size_t groups = 1;           ///< whose rigid motions precondition its conjugate gradients
 };
 
 /// A frame's work, added up as it comes.
@@ -62,8 +65,8 @@ class FrameWork {
   void passes(double dispatches, double bytes);
   /// Stress with its summary, and f - K u where it does not come with the stress.
   void fields(const FrameShape& shape, bool balance);
-  /// Conjugate gradients there: a share of what a solution takes.
-  void iterate(const FrameShape& shape, double share);
+  /// So many iterations of conjugate gradients there.
+  void iterate(const FrameShape& shape, double iterations);
   /// Where no update estimates the error: a correction by them or the whole inverse, its stress.
   void check(const FrameShape& shape);
 
@@ -81,6 +84,9 @@ struct FrameCost {
   // What the passes on a device apart from the host read and write at least.
   double quiet_bytes = 0, fracture_bytes = 0;
 };
+
+/// Of conjugate gradients on a device apart, from the last solution to that with an element less.
+[[nodiscard]] double iterations_apart(const FrameShape& shape);
 
 [[nodiscard]] FrameCost frame_cost(const FrameShape& shape, const FrameRates& rates);
 

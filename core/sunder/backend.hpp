@@ -115,6 +115,7 @@ struct BackendInfo {
   /// Predicted time of a frame without fracture and with the first one, the decision left out; 0:
   /// the backend predicts nothing.
   double quiet_ms = 0, fracture_ms = 0;
+  std::string predicted_by = {};  ///< whose rates; empty: nominal ones of a processor
 };
 
 /// Passes that a device times by its own clock, in the order of a frame; the names that
@@ -137,6 +138,7 @@ struct DeviceInfo {
   std::string limits;      ///< one line: memory, largest buffer, threads
   bool chosen = false;     ///< by backend = "auto"
   std::string why;         ///< why it is chosen, or why not
+  std::string rates;       ///< what it does in a second, as once measured; empty: it was not
 };
 
 /// A buffer that a scene makes a backend hold, for `plan`.

@@ -78,6 +78,11 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
   terms_ = make(size / 4 * sizeof(double), Placement::device);
 }
 
+std::size_t RigidSpace::planned_groups(const Problem& problem) {
+  return static_cast<std::size_t>(
+      std::clamp<Index>(problem.node_count() / kNodesPerGroup, 1, most_groups(problem, false)));
+}
+
 std::size_t RigidSpace::planned_bytes(const Problem& problem, bool apart) {
   const std::size_t size = coarse_size(most_groups(problem, apart)), groups = size / 6 + 1;
   const std::size_t nodes =

@@ -28,6 +28,8 @@ class RigidSpace {
   RigidSpace(const KernelFactory& kernels, const Problem& problem,
              std::span<const std::uint8_t> destroyed, double share, bool apart = false);
 
+  /// Groups that a body in one piece will have.
+  [[nodiscard]] static std::size_t planned_groups(const Problem& problem);
   /// Device bytes, before they exist.
   [[nodiscard]] static std::size_t planned_bytes(const Problem& problem, bool apart = false);
 

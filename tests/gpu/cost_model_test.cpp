@@ -83,6 +83,39 @@ TEST(DeviceCostModel, CountsTheBytesOfAFrame) {
   EXPECT_EQ(frame_cost(shape, gpu).quiet_bytes, columns + state + 1024 * 8 * 4);
 }
 
+// Of boards with stiff frames on lavapipe (bench_scaling): solution alone, nodes and groups.
+TEST(DeviceCostModel, CountsIterationsByTheGroups) {
+  struct Board {
+    std::size_t nodes, groups;
+    double iterations;
+  };
+  for (const Board& b : {Board{722, 11, 310}, Board{2738, 42, 125}, Board{10224, 64, 152},
+                         Board{40328, 250, 171}, Board{336200, 512, 343}}) {
+    FrameShape shape = board(3 * b.nodes);
+    shape.groups = b.groups;
+    const double ratio = iterations_apart(shape) / b.iterations;
+    EXPECT_GT(ratio, .7) << b.nodes;
+    EXPECT_LT(ratio, 1.4) << b.nodes;
+  }
+}
+
+// What a host's factor solves for an event's columns; an inverse that the host has kept is read.
+TEST(DeviceCostModel, CountsTheHostsColumns) {
+  FrameShape kept = board(6000), factored = board(6000);
+  factored.entries = 1'000'000;
+  const auto gpu = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
+  EXPECT_GT(frame_cost(factored, gpu).fracture_ms, frame_cost(kept, gpu).fracture_ms + 1);
+  EXPECT_EQ(frame_cost(factored, gpu).quiet_ms, frame_cost(kept, gpu).quiet_ms);
+}
+
+// A load that has only grown takes steps along solutions that are known.
+TEST(DeviceCostModel, AQuietFrameOfConjugateGradientsIteratesNot) {
+  FrameShape cg = board(6000);
+  cg.route = Route::cg;
+  const FrameCost cost = frame_cost(cg, device(VK_PHYSICAL_DEVICE_TYPE_CPU));
+  EXPECT_LT(20 * cost.quiet_ms, cost.fracture_ms);
+}
+
 TEST(DeviceCostModel, AGpuIsQuickerOnLargeBodies) {
   const FrameCost lavapipe = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_CPU));
   const FrameCost gpu = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU));

@@ -218,6 +218,37 @@ TEST_F(Program, PlanMeasuresThePassesOfTheFirstSteps) {
   EXPECT_EQ(devices, 5) << plan.out;
 }
 
+// Once: the next plan takes what is kept, and says the same.
+TEST_F(Program, PlansByTheRatesThatItHasMeasured) {
+  const Board board;
+  const TempFolder kept;
+  const Variable here("SUNDER_CACHE_DIR", kept.path().string());
+  const auto files = [&] {
+    return std::distance(std::filesystem::directory_iterator(kept.path()), {});
+  };
+  EXPECT_EQ(run_program({"devices"}).out.find("measured:"), std::string::npos);
+  const auto predicted = [&](const std::string& backend) {
+    const Outcome plan = run_program({"plan", board.board.scene.string(), "--backend", backend});
+    EXPECT_EQ(plan.exit_code, 0) << plan.err;
+    const std::size_t at = plan.out.find("predicted frame [ms]");
+    return plan.out.substr(at, plan.out.find('\n', at) - at);
+  };
+  EXPECT_EQ(predicted("cpu").find(", by "), std::string::npos);
+  EXPECT_EQ(files(), 0) << "backend cpu needs none of it";
+  const std::string first = predicted("vulkan");
+  EXPECT_NE(first.find(", by rates measured on the device"), std::string::npos) << first;
+  EXPECT_GE(files(), 1);
+  EXPECT_EQ(predicted("vulkan"), first);
+  const std::string list = run_program({"devices"}).out;
+  const std::size_t at = list.find(", measured: ");
+  ASSERT_NE(at, std::string::npos) << list;
+  for (const char* unit : {" us a submit, ", " us a dispatch, ", " GB/s, ", " GFLOP/s"})
+    EXPECT_NE(list.find(unit, at), std::string::npos) << list;
+  const Outcome again = run_program({"devices", "--measure"});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_NE(again.out.find(", measured: "), std::string::npos) << again.out;
+}
+
 TEST_F(Program, RunsUnderTheValidationLayerHere) {
   const Variable debug("VK_LOADER_DEBUG", "layer");
   const Outcome run = run_program({"devices"});

@@ -9,7 +9,7 @@
 namespace sunder::test {
 namespace {
 
-struct Torn {
+struct SplitBoard {
   const char* name;
   MaterialLaw law;
   bool moves;
@@ -20,7 +20,7 @@ struct Torn {
 
 constexpr double kTight = 1e-10;
 
-Scene scene_of(const Torn& of) {
+Scene scene_of(const SplitBoard& of) {
   Scene scene = notch_board(FractureModel::b);
   scene.fracture.crack = CrackWay::split;
   scene.fracture.sif = SifSource::field;
@@ -95,10 +95,10 @@ void expect_alike(const Course& found, const Course& expected, double allowed) {
   EXPECT_LE(stress_error(found.out, found.stress, expected.stress), allowed);
 }
 
-class SplitCracksOnTheDevice : public WithVulkan<testing::TestWithParam<Torn>> {};
+class SplitCracksOnTheDevice : public WithVulkan<testing::TestWithParam<SplitBoard>> {};
 
 TEST_P(SplitCracksOnTheDevice, GrowAsOnTheHost) {
-  const Torn& of = GetParam();
+  const SplitBoard& of = GetParam();
   const Scene scene = scene_of(of);
   WatchedBackend watched(scene,
                          {.precision = of.precision, .tolerance = kTight, .route = of.route});
@@ -130,7 +130,7 @@ Course cut_and_grasped(const std::shared_ptr<const Problem>& problem,
 }
 
 TEST_P(SplitCracksOnTheDevice, AreCutAndHeldAsOnTheHost) {
-  const Torn& of = GetParam();
+  const SplitBoard& of = GetParam();
   Scene scene = scene_of(of);
   scene.instruments[0].ramp = Ramp{0, 4};  // nothing tears by itself
   WatchedBackend watched(scene,
@@ -146,16 +146,16 @@ TEST_P(SplitCracksOnTheDevice, AreCutAndHeldAsOnTheHost) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, SplitCracksOnTheDevice,
-    testing::Values(Torn{"linear", MaterialLaw::linear, false, Route::automatic},
-                    Torn{"linear_fp32", MaterialLaw::linear, false, Route::inverse,
-                         Precision::fp32},
-                    Torn{"linear_by_factor", MaterialLaw::linear, false, Route::factor},
-                    Torn{"corotated", MaterialLaw::corotated, false, Route::automatic},
-                    Torn{"neo_hookean_by_factor", MaterialLaw::neo_hookean, false, Route::factor},
-                    Torn{"motion_linear", MaterialLaw::linear, true, Route::automatic},
-                    Torn{"motion_neo_hookean", MaterialLaw::neo_hookean, true, Route::automatic},
-                    Torn{"motion_corotated_by_cg", MaterialLaw::corotated, true, Route::cg,
-                         Precision::fp64, 1}),
+    testing::Values(
+        SplitBoard{"linear", MaterialLaw::linear, false, Route::automatic},
+        SplitBoard{"linear_fp32", MaterialLaw::linear, false, Route::inverse, Precision::fp32},
+        SplitBoard{"linear_by_factor", MaterialLaw::linear, false, Route::factor},
+        SplitBoard{"corotated", MaterialLaw::corotated, false, Route::automatic},
+        SplitBoard{"neo_hookean_by_factor", MaterialLaw::neo_hookean, false, Route::factor},
+        SplitBoard{"motion_linear", MaterialLaw::linear, true, Route::automatic},
+        SplitBoard{"motion_neo_hookean", MaterialLaw::neo_hookean, true, Route::automatic},
+        SplitBoard{"motion_corotated_by_cg", MaterialLaw::corotated, true, Route::cg,
+                   Precision::fp64, 1}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 class SplitDeviceLost : public WithVulkan<testing::TestWithParam<bool>> {};
