@@ -32,6 +32,7 @@ class CgRoute final : public DeviceRoute {
   }
 
   std::vector<BufferPlan> buffers() const override;
+  bool iterates() const override { return true; }
   void add_to(solver::FrameShape& shape) const override {
     shape.groups = RigidSpace::planned_groups(body_.problem());
   }

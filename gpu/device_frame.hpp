@@ -18,6 +18,7 @@ class DeviceFrame final : public solver::FrameDevice {
 
   [[nodiscard]] solver::Precision precision() const override;
   [[nodiscard]] bool residual_costs() const override { return true; }
+  [[nodiscard]] bool iterates() const override { return route_.iterates(); }
   int solve(double energy_tolerance, bool residual) override;
   [[nodiscard]] solver::Balance balance() const override;
   [[nodiscard]] bool finite() const override { return fields_.finite(); }

@@ -25,8 +25,8 @@ struct DeviceRates {
 /// empty.
 [[nodiscard]] std::optional<std::filesystem::path> rates_file(const vulkan::PhysicalDevice& device);
 
-/// What this process has measured of a device, else what the file keeps; nothing: neither has it, or
-/// the file is not in the form in which it was written.
+/// What this process has measured of a device, else what the file keeps; nothing: neither has it,
+/// or the file is not in the form in which it was written.
 [[nodiscard]] std::optional<DeviceRates> kept_rates(const vulkan::PhysicalDevice& device);
 
 /// For this process, and in the file; false: that could not be written.

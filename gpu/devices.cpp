@@ -40,8 +40,7 @@ std::string megabytes(VkDeviceSize bytes) { return std::to_string(bytes / 100000
 std::string in_words(const DeviceRates& rates) {
   std::ostringstream text;
   text << std::setprecision(3) << 1e6 * rates.submit << " us a submit, " << 1e6 * rates.dispatch
-       << " us a dispatch, " << 1e-9 * rates.bytes << " GB/s, " << 1e-9 * rates.flops
-       << " GFLOP/s";
+       << " us a dispatch, " << 1e-9 * rates.bytes << " GB/s, " << 1e-9 * rates.flops << " GFLOP/s";
   return text.str();
 }
 

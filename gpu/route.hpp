@@ -45,6 +45,8 @@ class DeviceRoute {
   }
 
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// solver::FrameDevice::iterates().
+  [[nodiscard]] virtual bool iterates() const { return false; }
   /// What a prediction of its frames has to know of it.
   virtual void add_to(solver::FrameShape&) const {}
 };

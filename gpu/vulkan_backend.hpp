@@ -41,7 +41,8 @@ struct VulkanOptions {
 /// take is marked; a processor that emulates a GPU never is.
 [[nodiscard]] std::vector<DeviceInfo> devices();
 
-/// Measures what each of them does in a second that can run the kernels and of which nothing is kept
+/// Measures what each of them does in a second that can run the kernels and of which nothing is
+/// kept
 /// (`again`: whatever is kept), keeps it for plans (gpu/device_rates.hpp) and lists them.
 [[nodiscard]] std::vector<DeviceInfo> measure_devices(bool again);
 

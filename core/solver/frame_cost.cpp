@@ -27,7 +27,6 @@ constexpr double kValue = sizeof(double);
 // (bench_scaling): they grow with the square root of a group's nodes, and take more where groups
 // are too few to tell the frames from the tissue.
 constexpr double kIterationsOfANode = 14, kIterationsOfFewGroups = 440, kManyGroups = 60;
-constexpr double kCheckShare = .25;  // of them, for a correction to two digits instead of eleven
 // Dispatches of one of these, and bytes a node of its 13 vectors of four values and two places.
 constexpr double kIterationDispatches = 7, kIterationBytes = 13 * 32 + 2 * 16;
 // Bytes of an element's stress there: shape, corners, state, displacement of four nodes.
@@ -52,7 +51,7 @@ FrameWork work_of(const FrameShape& s, const FrameRates& rates, bool torn) {
   route.solution(work, s, torn);
   if (s.grips > 0) work.pass(0);
   work.fields(s, torn || s.grips > 0 || s.route == Route::cg);
-  if (torn && s.apart && (s.eager || s.route == Route::cg)) work.check(s);
+  if (torn && s.apart && s.eager) work.check(s);
   return work;
 }
 
@@ -113,12 +112,8 @@ void FrameWork::iterate(const FrameShape& s, double iterations) {
 
 void FrameWork::check(const FrameShape& s) {
   submit();
-  if (s.route == Route::cg) {
-    iterate(s, kCheckShare * iterations_apart(s));
-  } else {
-    pass(real(s.kept) * real(s.kept) * real(s.real_bytes));
-    pass(2 * real(s.kept) * kValue);
-  }
+  pass(real(s.kept) * real(s.kept) * real(s.real_bytes));
+  pass(2 * real(s.kept) * kValue);
   pass(kStressBytes * real(s.elements));
   seconds_ += real(s.elements) * rates_.stress;
   pass(0);

@@ -67,7 +67,7 @@ class FrameWork {
   void fields(const FrameShape& shape, bool balance);
   /// So many iterations of conjugate gradients there.
   void iterate(const FrameShape& shape, double iterations);
-  /// Where no update estimates the error: a correction by them or the whole inverse, its stress.
+  /// Where nothing estimates the error: a correction by the whole inverse, and its stress.
   void check(const FrameShape& shape);
 
   [[nodiscard]] double milliseconds() const { return 1e3 * seconds_; }

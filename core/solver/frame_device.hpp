@@ -33,6 +33,8 @@ class FrameDevice {
   [[nodiscard]] virtual Precision precision() const = 0;
   /// A plain route that others are measured by: it refines once in any case.
   [[nodiscard]] virtual bool yardstick() const { return false; }
+  /// Solves by iterations to a residual of the same kind every time, by no base that wears out.
+  [[nodiscard]] virtual bool iterates() const { return false; }
   /// Whether the residual costs a pass of its own, to be left out where nothing depends on it.
   [[nodiscard]] virtual bool residual_costs() const { return false; }
 

@@ -18,6 +18,8 @@ constexpr int kRefinements = 8;
 // The errors of a fresh base and of those events later differ by less where it is the body that
 // lets them be no smaller.
 constexpr double kLikeFresh = 10;
+// Iterations have no base; after so many events a full check is due as after a new one.
+constexpr int kEventsOfACheck = 16;
 // What rounding of the displacement costs by its bound, so many times, is no fault of the base.
 constexpr double kRoundings = 10;
 
@@ -38,7 +40,7 @@ FrameSolver::FrameSolver(const Problem& problem, FrameDevice& device)
       kept_error_(std::min(precision_.kept, tolerance())) {
   if (device.condensed()) {
     energy_checks_.emplace(problem);
-  } else if (device.deferred()) {
+  } else if (device.deferred() || device.iterates()) {
     checks_.emplace(problem, precision_.promised);
   }
   reserve(last_.load, problem);
@@ -57,6 +59,7 @@ void FrameSolver::grips_changed() {
 
 void FrameSolver::event() {
   last_.holds = false;
+  ++events_;
   if (checks_) {
     for (FrameCheck& check : checks_->all()) check.event();
   }
@@ -72,6 +75,7 @@ void FrameSolver::restore(const State& state) {
   if (state.checks_) checks_.emplace(*state.checks_);
   if (state.energy_checks_) energy_checks_.emplace(*state.energy_checks_);
   kept_error_ = state.kept_error_;
+  events_ = state.events_;
   last_ = state.last_;
   checked_base_ = state.checked_base_;
   check_ = nullptr;
@@ -109,11 +113,10 @@ SolveReport FrameSolver::solve_everywhere(const Load& load) {
   SolveReport report;
   refined_ = false;
   check_ = check_of(load);
-  const auto expected = check_ ? check_->expected(load, device_.bases()) : std::nullopt;
+  const auto expected = check_ ? check_->expected(load, bases()) : std::nullopt;
   solve_once(expected ? check_->energy_tolerance(*expected) : 0, report);
-  const auto known = expected && device_.deferred()->converged()
-                         ? check_->error(*expected, solution())
-                         : std::nullopt;
+  const auto known =
+      expected && speaks_for_itself() ? check_->error(*expected, solution()) : std::nullopt;
   if (known) {
     report.error = *known;
   } else {
@@ -122,10 +125,21 @@ SolveReport FrameSolver::solve_everywhere(const Load& load) {
   return report;
 }
 
+int FrameSolver::bases() const {
+  return device_.deferred() ? device_.bases() : 1 + events_ / kEventsOfACheck;
+}
+
+/// Whether the residual of the solution in work says how good it is. Iterations do not see what
+/// rounding of the products costs that they are made of.
+bool FrameSolver::speaks_for_itself() const {
+  if (const Deferred* deferred = device_.deferred()) return deferred->converged();
+  return error_of_rounding() <= precision_.kept;
+}
+
 /// Nothing: the route is checked fully in any case.
 FrameCheck* FrameSolver::check_of(const Load& load) {
   if (!checks_) return nullptr;
-  for (FrameCheck& check : checks_->all()) check.follow(device_.bases(), device_.base_check());
+  for (FrameCheck& check : checks_->all()) check.follow(bases(), device_.base_check());
   return &checks_->of(load);
 }
 
@@ -205,7 +219,7 @@ void FrameSolver::refine(SolveReport& report, bool by_base) {
                                                  : stress;
     if (attempt == 0) {
       unrefined_ = error;
-      if (check_ && by_base) check_->checked(*load_, solution(), stress, device_.bases());
+      if (check_ && by_base) check_->checked(*load_, solution(), stress, bases());
       report.polished = report.polished || !(error <= tolerance());
     }
     // A correction that no longer shrinks is rounding.

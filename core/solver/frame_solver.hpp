@@ -41,6 +41,8 @@ class FrameSolver {
   [[nodiscard]] std::optional<SolveReport> solve_known(const Load& load);
   [[nodiscard]] std::optional<SolveReport> solve_by_base(const EnergyCheck& check);
   [[nodiscard]] FrameCheck* check_of(const Load& load);
+  [[nodiscard]] int bases() const;
+  [[nodiscard]] bool speaks_for_itself() const;
 
   void solve_once(double energy_tolerance, SolveReport& report);
   void read_balance(SolveReport& report);
@@ -56,12 +58,14 @@ class FrameSolver {
   const Problem& problem_;
   FrameDevice& device_;
   Precision precision_;
-  std::optional<RecentChecks<FrameCheck>> checks_;  // of a deferred update that knows u everywhere
+  // Of a deferred update that knows u everywhere, and of iterations.
+  std::optional<RecentChecks<FrameCheck>> checks_;
   std::optional<RecentChecks<EnergyCheck>> energy_checks_;  // of a condensed body
 
   // Stress error up to which a base is kept: what the precision promises, or somewhat above what a
   // fresh one came to where that is more.
   double kept_error_;
+  int events_ = 0;
 
   const Load* load_ = nullptr;   // of the solve() in work
   FrameCheck* check_ = nullptr;  // of that load, of checks_
@@ -92,6 +96,7 @@ class FrameSolver::State {
       : checks_(of.checks_),
         energy_checks_(of.energy_checks_),
         kept_error_(of.kept_error_),
+        events_(of.events_),
         last_(of.last_),
         checked_base_(of.checked_base_) {}
 
@@ -100,6 +105,7 @@ class FrameSolver::State {
   std::optional<RecentChecks<FrameCheck>> checks_;
   std::optional<RecentChecks<EnergyCheck>> energy_checks_;
   double kept_error_;
+  int events_;
   Last last_;
   CheckedBase checked_base_;
 };

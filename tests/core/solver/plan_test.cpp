@@ -148,7 +148,7 @@ TEST(Plan, SaysWhatADeviceOffersInstead) {
             "backend vulkan offers the routes inverse, condensed and cg; choose one, auto or "
             "backend cpu");
   scene.solver = {};
-  scene.solver.precision = Precision::fp32;
+  scene.solver.precision = sunder::Precision::fp32;
   EXPECT_EQ(refusal<DeviceError>(scene, host()),
             "backend cpu computes in fp64 only; use precision fp64 or auto");
   EXPECT_FALSE(plan_of(scene, apart()).fp64);
@@ -173,7 +173,7 @@ TEST(Plan, PooledVolumeNextToIncompressibleTakesFp64) {
   EXPECT_FALSE(plan_of(scene, device).fp64);
   for (auto& [name, material] : scene.materials) material.poisson = 0.4995;
   EXPECT_TRUE(plan_of(scene, device).fp64);
-  scene.solver.precision = Precision::fp32;
+  scene.solver.precision = sunder::Precision::fp32;
   EXPECT_EQ(refusal<DeviceError>(scene, device),
             "precision fp32 does not keep its promise for pooled volume at a Poisson's ratio of "
             "0.4995, over 0.499; use precision fp64 or auto");
