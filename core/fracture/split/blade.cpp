@@ -340,16 +340,26 @@ std::vector<Vec2> path_through(const Board& board, const SplitBody& body,
 }
 
 bool lies_flat(const Board& board, const SplitBody& body, std::span<const PassedFace> sheet) {
-  // Of a sheet that bends back on itself the sum is small and says nothing; nor do fewer faces than
-  // a cell of six tetrahedra has, however the blade stood: beside cuts that were made before one
-  // face may be all that is left to open.
+  // Of a sheet that bends back on itself the sum is small and says nothing.
   constexpr double kBent = 0.3, kStands = 0.5;
-  constexpr std::size_t kFewest = 6;
-  if (sheet.size() < kFewest) return false;
   double sizes = 0;
   for (const PassedFace& passed : sheet) sizes += outward_area(board, body, passed.face).norm();
   const Vec3 area = area_of(board, body, sheet);
   return area.norm() > kBent * sizes && board.plane().project(area).norm() < kStands * area.norm();
+}
+
+bool follow_blade(const SplitBody& body, std::span<const PassedFace> faces,
+                  std::span<const std::array<Vec3, 3>> blade, std::span<const Vec3> places) {
+  constexpr double kAlike = 0.7;  // cosine of 45 deg
+  return std::ranges::all_of(faces, [&](const PassedFace& passed) {
+    Triangle corners;
+    const auto nodes = body.nodes(passed.face);
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = places[static_cast<std::size_t>(nodes[i])];
+    const Vec3 normal = normal_of(corners).stableNormalized();
+    return std::ranges::any_of(blade, [&](const Triangle& t) {
+      return std::abs(normal.dot(normal_of(t).stableNormalized())) > kAlike;
+    });
+  });
 }
 
 }  // namespace sunder::fracture

@@ -34,6 +34,11 @@ namespace sunder::fracture {
 [[nodiscard]] std::vector<Vec2> path_through(const Board& board, const SplitBody& body,
                                              std::span<const PassedFace> sheet);
 
+/// Whether all faces lie as the blade does, in the deformed body.
+[[nodiscard]] bool follow_blade(const SplitBody& body, std::span<const PassedFace> faces,
+                                std::span<const std::array<Vec3, 3>> blade,
+                                std::span<const Vec3> places);
+
 /// Whether faces lie along the board's plane more than they stand on it.
 [[nodiscard]] bool lies_flat(const Board& board, const SplitBody& body,
                              std::span<const PassedFace> sheet);

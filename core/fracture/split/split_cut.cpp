@@ -13,6 +13,16 @@
 namespace sunder::fracture {
 namespace {
 
+// Beside cuts that were made before a face or two may be all that is left to open: how so few lie
+// says nothing of how the blade stood.
+constexpr std::size_t kManyFaces = 6;
+
+[[noreturn]] void refuse_flat_blade() {
+  throw UsageError(
+      "the blade lies along the board's plane, and split cracks stand on it; turn the blade, or "
+      "take fracture.crack = \"destroyed\"");
+}
+
 void turn_round(Crack& crack, SplitCrack& split, const SplitBody& body) {
   std::reverse(crack.path.begin(), crack.path.end());
   for (auto& [element, side] : split.label) side = static_cast<std::int8_t>(-side);
@@ -66,7 +76,12 @@ void SplitFront::take_cut(Crack& crack, SplitCrack& split, std::span<const Passe
 std::vector<PassedFace> SplitCracks::passed(std::span<const std::array<Vec3, 3>> blade,
                                             std::span<const Vec3> places,
                                             std::span<const std::uint8_t> gone) const {
-  return passed_faces(problem_, body_, blade, places, gone);
+  auto faces = passed_faces(problem_, body_, blade, places, gone);
+  if (faces.size() < kManyFaces && lies_flat(board_, body_, faces) &&
+      follow_blade(body_, faces, blade, places)) {
+    refuse_flat_blade();
+  }
+  return faces;
 }
 
 void SplitCracks::check_opening(std::span<const PassedFace> faces,
@@ -96,11 +111,7 @@ void SplitCracks::check_opening(std::span<const PassedFace> faces,
   const auto twice = std::adjacent_find(named.begin(), named.end());
   if (twice != named.end()) refuse({twice->first, twice->second}, "it is named twice");
   // All of them together: a few jagged faces by themselves may lie in any way.
-  if (lies_flat(board_, body_, faces)) {
-    throw UsageError(
-        "the blade lies along the board's plane, and split cracks stand on it; turn the blade, or "
-        "take fracture.crack = \"destroyed\"");
-  }
+  if (faces.size() >= kManyFaces && lies_flat(board_, body_, faces)) refuse_flat_blade();
   std::vector<Face> all;
   for (const PassedFace& passed : faces) all.push_back(passed.face);
   if (!body_.can_open(all, gone)) {
