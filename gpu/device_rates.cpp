@@ -8,12 +8,14 @@
 #include <fstream>
 #include <iomanip>
 #include <limits>
+#include <locale>
 #include <map>
 #include <mutex>
 #include <random>
 #include <sstream>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "gpu/vulkan/commands.hpp"
 
@@ -23,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFirstLine = "sunder device rates 1";
-// More than caches hold, where a buffer may be so large; of a processor that emulates a GPU fewer,
-// as it takes its time.
+// More than most caches hold, where a buffer may be so large; of a processor that emulates a GPU
+// fewer, as it takes its time.
 constexpr std::size_t kBytes = std::size_t{128} << 20, kBytesEmulated = std::size_t{64} << 20;
 constexpr std::uint32_t kReads = 16;        // packs of an invocation
 constexpr std::uint32_t kSmallGroups = 32;  // of a small body's dispatch: 2,048 nodes
@@ -111,6 +113,7 @@ std::optional<fs::path> cache_folder() {
 /// By the driver's own number for what it makes of kernels, another with every build of it.
 std::string name_of(const vulkan::PhysicalDevice& device) {
   std::ostringstream name;
+  name.imbue(std::locale::classic());  // whatever a host's is
   name << "rates-" << std::hex << device.vendor << "-" << device.device << "-" << std::setfill('0');
   for (const std::uint8_t byte : device.cache_uuid) name << std::setw(2) << int{byte};
   name << (device.float64 ? ".txt" : "-fp32.txt");
@@ -180,12 +183,17 @@ std::optional<DeviceRates> kept_rates(const vulkan::PhysicalDevice& device) {
   const auto path = rates_file(device);
   if (!path) return std::nullopt;
   std::ifstream in(*path);
+  in.imbue(std::locale::classic());
   std::string line, key;
   if (!std::getline(in, line) || line != kFirstLine) return std::nullopt;
   std::getline(in, line);  // the device's name, for who reads it
   DeviceRates rates;
-  for (double* value : {&rates.submit, &rates.dispatch, &rates.bytes, &rates.flops}) {
-    if (!(in >> key >> *value)) return std::nullopt;
+  const std::pair<const char*, double*> all[] = {{"submit_s", &rates.submit},
+                                                 {"dispatch_s", &rates.dispatch},
+                                                 {"bytes_per_s", &rates.bytes},
+                                                 {"flops_per_s", &rates.flops}};
+  for (const auto& [name, value] : all) {
+    if (!(in >> key >> *value) || key != name) return std::nullopt;
   }
   return holds(rates) ? std::optional(rates) : std::nullopt;
 }
@@ -202,9 +210,11 @@ bool keep_rates(const vulkan::PhysicalDevice& device, const DeviceRates& rates) 
   own += "." + std::to_string(std::random_device{}()) + ".tmp";
   {
     std::ofstream out(own);
+    out.imbue(std::locale::classic());
     out << kFirstLine << "\n# " << device.name << ", " << device.driver << "\n"
-        << std::setprecision(6) << "submit_s " << rates.submit << "\ndispatch_s " << rates.dispatch
-        << "\nbytes_per_s " << rates.bytes << "\nflops_per_s " << rates.flops << "\n";
+        << std::setprecision(std::numeric_limits<double>::max_digits10) << "submit_s "
+        << rates.submit << "\ndispatch_s " << rates.dispatch << "\nbytes_per_s " << rates.bytes
+        << "\nflops_per_s " << rates.flops << "\n";
     out.close();
     if (!out) {
       fs::remove(own, failed);

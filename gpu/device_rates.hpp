@@ -14,7 +14,7 @@ struct DeviceRates {
   double submit = 0;    ///< [s] of a submit with its fence
   double dispatch = 0;  ///< [s] of a dispatch with its barrier
   double bytes = 0;     ///< a second, read from memory by kernels
-  double flops = 0;     ///< a second, of multiply-adds in fp64 (fp32 on a device without)
+  double flops = 0;     ///< a second, in fp64 (fp32 on a device without); a multiply-add is two
 };
 
 /// Of an idle device in under a second; the least of some runs each. Throws DeviceLost.

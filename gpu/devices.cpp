@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which Vulkan device a scene gets, and the list that `sunder devices` shows.
 #include <algorithm>
+#include <exception>
 #include <iomanip>
+#include <locale>
 #include <sstream>
 
 #include "gpu/choose_device.hpp"
@@ -39,6 +41,7 @@ std::string megabytes(VkDeviceSize bytes) { return std::to_string(bytes / 100000
 
 std::string in_words(const DeviceRates& rates) {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << std::setprecision(3) << 1e6 * rates.submit << " us a submit, " << 1e6 * rates.dispatch
        << " us a dispatch, " << 1e-9 * rates.bytes << " GB/s, " << 1e-9 * rates.flops << " GFLOP/s";
   return text.str();
@@ -107,15 +110,22 @@ std::vector<DeviceInfo> devices() {
 
 std::vector<DeviceInfo> measure_devices(bool again) {
   const VulkanOptions options = options_from_environment();
+  std::shared_ptr<vulkan::Instance> instance;
+  std::vector<vulkan::PhysicalDevice> list;
   try {
-    const auto instance = std::make_shared<vulkan::Instance>(options.instance);
-    for (const auto& device : list_devices(*instance, options.probe)) {
-      if (!device.shortcoming().empty() || (!again && kept_rates(device))) continue;
+    instance = std::make_shared<vulkan::Instance>(options.instance);
+    list = list_devices(*instance, options.probe);
+  } catch (const DeviceError&) {
+    return {};  // as devices()
+  }
+  for (const auto& device : list) {
+    if (!device.shortcoming().empty() || (!again && kept_rates(device))) continue;
+    try {
       const auto own = vulkan::create_device(instance, device, options.probe, {});
       keep_rates(device, measure_rates(*own, choose_variant(device)));
+    } catch (const std::exception&) {
+      // One that cannot be measured is predicted by its kind.
     }
-  } catch (const DeviceError&) {
-    // What could not be measured is predicted by its kind.
   }
   return devices();
 }

@@ -10,8 +10,8 @@ namespace {
 // than a second. Never on a processor that emulates a GPU, where the host is quicker at every size.
 constexpr Index kInvertOnDevice = 3000;
 
-// Of an element's stress, beside the bytes that it moves: as many multiply-adds of the kernel that
-// measures a device take as long (lavapipe).
+// Of an element's stress, beside the bytes that it moves: so many by the kernel that measures a
+// device take as long (lavapipe).
 constexpr double kStressFlops = 900;
 // Of the rate at which a kernel reads what lies side by side, what those of a frame reach, which
 // gather (lavapipe).

@@ -41,9 +41,9 @@ struct VulkanOptions {
 /// take is marked; a processor that emulates a GPU never is.
 [[nodiscard]] std::vector<DeviceInfo> devices();
 
-/// Measures what each of them does in a second that can run the kernels and of which nothing is
-/// kept
-/// (`again`: whatever is kept), keeps it for plans (gpu/device_rates.hpp) and lists them.
+/// Measures what devices do in a second: those that can run the kernels and of which nothing is
+/// kept, or with `again` all that can. Keeps it for plans (gpu/device_rates.hpp), lists all
+/// devices.
 [[nodiscard]] std::vector<DeviceInfo> measure_devices(bool again);
 
 /// Why `auto` finds no GPU, with what to do about it; an empty sentence where there is none to be

@@ -20,7 +20,7 @@ struct FrameRates {
   // Of a device apart from the host: bytes a second, from memory or, for small sets, the cache; [s]
   // of a submit with its fence, of a dispatch with its barrier. 0 bytes a second: there is none.
   double bytes = 0, submit = 0, dispatch = 0;
-  double flops = 0;       ///< a second, of multiply-adds there in fp64
+  double flops = 0;       ///< a second there, in fp64; a multiply-add is two
   bool measured = false;  ///< on the device itself; else of its kind
   [[nodiscard]] bool apart() const { return bytes > 0; }
 };

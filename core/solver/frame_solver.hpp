@@ -66,6 +66,7 @@ class FrameSolver {
   // fresh one came to where that is more.
   double kept_error_;
   int events_ = 0;
+  mutable std::optional<double> stress_of_1_mm_;  // that rounding of it may cost [MPa]; once asked
 
   const Load* load_ = nullptr;   // of the solve() in work
   FrameCheck* check_ = nullptr;  // of that load, of checks_

@@ -15,9 +15,10 @@ namespace {
 // seconds to prepare (n^2 nnz(L)), while the factor's frame is still within a millisecond of it.
 constexpr std::size_t kDenseLimit = 6000;
 // A device that makes the inverse itself takes a larger one by itself where it is made within so
-// many seconds, by half of what the device can do, and half of its memory holds it: a frame with a
-// fracture is then a hundred times quicker than by conjugate gradients. Bytes of a value while it
-// is made, apart from where it is stored; steps of the inversion of so many columns each.
+// many seconds, by half of what the device can do, and half of its memory holds it. A frame whose
+// load has turned is then ten times quicker than by conjugate gradients; one with a fracture takes
+// as long by either, since the host's factor solves for its columns. Bytes of a value while it is
+// made, apart from where it is stored; columns of a step of the inversion.
 constexpr double kPreparation = 5, kOfItsRates = .5, kOfItsMemory = .5;
 constexpr double kInversionBytes = 8, kInversionColumns = 60;
 

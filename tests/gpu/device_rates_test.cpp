@@ -60,12 +60,12 @@ TEST(DeviceRates, AreKeptByDeviceAndDriver) {
   const Variable here("SUNDER_CACHE_DIR", (folder / "new").string());
   const auto device = device_number(1);
   EXPECT_FALSE(gpu::kept_rates(device));
-  ASSERT_TRUE(gpu::keep_rates(device, {1e-5, 2e-6, 3e11, 4e12}));
+  ASSERT_TRUE(gpu::keep_rates(device, {1. / 1024, 1. / 4096, 3e11, 4e12}));
   const auto path = gpu::rates_file(device);
   ASSERT_TRUE(path);
   EXPECT_EQ(text_of(*path),
-            "sunder device rates 1\n# a card, a driver 1.0\nsubmit_s 1e-05\ndispatch_s 2e-06\n"
-            "bytes_per_s 3e+11\nflops_per_s 4e+12\n");
+            "sunder device rates 1\n# a card, a driver 1.0\nsubmit_s 0.0009765625\n"
+            "dispatch_s 0.000244140625\nbytes_per_s 300000000000\nflops_per_s 4000000000000\n");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "new"), {}), 1) << "nothing beside it";
   // Another driver is another device.
   EXPECT_FALSE(gpu::kept_rates(device_number(2)));

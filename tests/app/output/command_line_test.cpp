@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/output/program.hpp"
+#include "app/output/variable.hpp"
 
 namespace sunder::test {
 namespace {
@@ -265,6 +266,7 @@ TEST(CommandLine, SetAndStepsOverrideTheScene) {
 TEST(CommandLine, PlanSaysWhatIsNeededAndLeftOut) {
   const TempFolder folder;
   const TearingBoard board(folder);
+  const Variable nowhere("SUNDER_CACHE_DIR", "");  // where a GPU is there
   const Outcome plan = run_program(
       {"plan", board.scene.string(), "--set", "fracture.model=none", "--set", "destroy=[]"});
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
