@@ -120,6 +120,11 @@ std::string name_of(const vulkan::PhysicalDevice& device) {
   return name.str();
 }
 
+/// The driver by its text as well: lavapipe has one number whatever its build.
+std::string second_line(const vulkan::PhysicalDevice& device) {
+  return "# " + device.name + ", " + device.driver;
+}
+
 /// What this process has measured, where no folder keeps it.
 class Measured {
  public:
@@ -186,7 +191,7 @@ std::optional<DeviceRates> kept_rates(const vulkan::PhysicalDevice& device) {
   in.imbue(std::locale::classic());
   std::string line, key;
   if (!std::getline(in, line) || line != kFirstLine) return std::nullopt;
-  std::getline(in, line);  // the device's name, for who reads it
+  if (!std::getline(in, line) || line != second_line(device)) return std::nullopt;
   DeviceRates rates;
   const std::pair<const char*, double*> all[] = {{"submit_s", &rates.submit},
                                                  {"dispatch_s", &rates.dispatch},
@@ -211,7 +216,8 @@ bool keep_rates(const vulkan::PhysicalDevice& device, const DeviceRates& rates) 
   {
     std::ofstream out(own);
     out.imbue(std::locale::classic());
-    out << kFirstLine << "\n# " << device.name << ", " << device.driver << "\n"
+    out << kFirstLine << "\n"
+        << second_line(device) << "\n"
         << std::setprecision(std::numeric_limits<double>::max_digits10) << "submit_s "
         << rates.submit << "\ndispatch_s " << rates.dispatch << "\nbytes_per_s " << rates.bytes
         << "\nflops_per_s " << rates.flops << "\n";

@@ -77,7 +77,7 @@ TEST(DeviceRates, OfAFileAreReadWhereItIsWhole) {
   const Variable here("SUNDER_CACHE_DIR", folder.name());
   const auto device = device_number(3);
   const auto path = gpu::rates_file(device).value();
-  const std::string head = "sunder device rates 1\n# a card\n";
+  const std::string head = "sunder device rates 1\n# a card, a driver 1.0\n";
   for (const std::string& bad :
        {std::string(), std::string("sunder device rates 2\n# a card\nsubmit_s 1\n"), head,
         head + "submit_s 1e-5\ndispatch_s 2e-6\nbytes_per_s 3e11\n",
@@ -89,6 +89,10 @@ TEST(DeviceRates, OfAFileAreReadWhereItIsWhole) {
     EXPECT_FALSE(gpu::plan_device(device, false).rates.measured);
   }
   write(path, head + "submit_s 1e-5\ndispatch_s 2e-6\nbytes_per_s 3e11\nflops_per_s 4e12\n");
+  auto updated = device;  // lavapipe's number stays the same
+  updated.driver = "a driver 1.1";
+  EXPECT_EQ(gpu::rates_file(updated), path);
+  EXPECT_FALSE(gpu::kept_rates(updated));
   const auto rates = gpu::plan_device(device, false).rates;
   EXPECT_TRUE(rates.measured);
   EXPECT_EQ(rates.submit, 1e-5);
