@@ -108,13 +108,13 @@ std::vector<std::string> backend_names() {
 #endif
 }
 
-std::vector<DeviceInfo> measure_devices(bool again) {
+std::vector<std::string> measure_devices(bool again) {
 #ifdef SUNDER_GPU
-  static_cast<void>(gpu::measure_devices(again));
+  return gpu::measure_devices(again);
 #else
   static_cast<void>(again);
+  return {};
 #endif
-  return devices();
 }
 
 std::vector<DeviceInfo> devices() {

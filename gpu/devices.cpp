@@ -108,7 +108,8 @@ std::vector<DeviceInfo> devices() {
   return infos;
 }
 
-std::vector<DeviceInfo> measure_devices(bool again) {
+std::vector<std::string> measure_devices(bool again) {
+  std::vector<std::string> missing;
   const VulkanOptions options = options_from_environment();
   std::shared_ptr<vulkan::Instance> instance;
   std::vector<vulkan::PhysicalDevice> list;
@@ -116,18 +117,23 @@ std::vector<DeviceInfo> measure_devices(bool again) {
     instance = std::make_shared<vulkan::Instance>(options.instance);
     list = list_devices(*instance, options.probe);
   } catch (const DeviceError&) {
-    return {};  // as devices()
+    return missing;  // as devices()
   }
   for (const auto& device : list) {
     if (!device.shortcoming().empty() || (!again && kept_rates(device))) continue;
     try {
       const auto own = vulkan::create_device(instance, device, options.probe, {});
-      keep_rates(device, measure_rates(*own, choose_variant(device)));
-    } catch (const std::exception&) {
-      // One that cannot be measured is predicted by its kind.
+      const bool kept = keep_rates(device, measure_rates(*own, choose_variant(device)));
+      if (const auto file = rates_file(device); !kept && file) {
+        missing.push_back("what the device \"" + device.name +
+                          "\" does in a second cannot be kept in " + file->string() +
+                          "; let SUNDER_CACHE_DIR be a folder that can be written");
+      }
+    } catch (const std::exception& error) {
+      missing.push_back("the device \"" + device.name + "\" cannot be measured: " + error.what());
     }
   }
-  return devices();
+  return missing;
 }
 
 std::optional<std::string> missing_gpu() {

@@ -42,9 +42,10 @@ struct VulkanOptions {
 [[nodiscard]] std::vector<DeviceInfo> devices();
 
 /// Measures what devices do in a second: those that can run the kernels and of which nothing is
-/// kept, or with `again` all that can. Keeps it for plans (gpu/device_rates.hpp), lists all
-/// devices.
-[[nodiscard]] std::vector<DeviceInfo> measure_devices(bool again);
+/// kept, or with `again` all that can. Keeps it for plans (gpu/device_rates.hpp). Returns a
+/// sentence for each of which that did not succeed; it is predicted by its kind, or as was kept
+/// before.
+[[nodiscard]] std::vector<std::string> measure_devices(bool again);
 
 /// Why `auto` finds no GPU, with what to do about it; an empty sentence where there is none to be
 /// missed, for the only devices are processors that emulate one. None: there is a GPU.

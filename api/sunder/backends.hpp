@@ -18,11 +18,11 @@ namespace sunder {
 [[nodiscard]] std::vector<std::string> backend_names();
 
 [[nodiscard]] std::vector<DeviceInfo> devices();
-/// The same, each Vulkan device measured first of which no rates are kept by device and driver
-/// (`again`: all of them), in under a second each. Plans predict by what is kept and weigh by it
-/// how large an inverse a GPU is to make; it lies in SUNDER_CACHE_DIR, else in sunder/ of the
-/// user's folder for such files.
-std::vector<DeviceInfo> measure_devices(bool again);
+/// Measures each Vulkan device of which no rates are kept by device and driver (`again`: all of
+/// them), in under a second each. Plans predict by what is kept, in SUNDER_CACHE_DIR, else in
+/// sunder/ of the user's folder for such files, and weigh by it how large an inverse a GPU is to
+/// make. Returns a sentence for each device that could not be measured or kept.
+[[nodiscard]] std::vector<std::string> measure_devices(bool again);
 
 struct CreatedBackend {
   std::unique_ptr<Backend> backend;

@@ -34,7 +34,9 @@ void print(const Row& row, const std::array<std::size_t, kColumns>& widths) {
 }  // namespace
 
 int list_devices(bool measure) {
-  const std::vector<DeviceInfo> all = measure ? measure_devices(true) : devices();
+  const std::vector<std::string> missing =
+      measure ? measure_devices(true) : std::vector<std::string>{};
+  const std::vector<DeviceInfo> all = devices();
   std::vector<Row> rows = {{"  backend", "device", "name", "driver", "precisions", "limits"}};
   for (const DeviceInfo& device : all) rows.push_back(row_of(device));
   std::array<std::size_t, kColumns> widths{};
@@ -48,6 +50,7 @@ int list_devices(bool measure) {
   for (const DeviceInfo& device : all)
     if (!device.rates.empty())
       std::cout << device.backend << " " << device.index << ", measured: " << device.rates << "\n";
+  for (const std::string& what : missing) std::cerr << "sunder: warning: " << what << "\n";
   return 0;
 }
 

@@ -114,20 +114,21 @@ CreatedBackend prepared_backend(const OpenedScene& scene) {
   return create_backend(scene.problem, needs_of(*scene.problem));
 }
 
-/// What a Vulkan device does in a second is measured before the first plan for one.
-void measure_for(const std::string& backend) {
+/// What a Vulkan device does in a second is measured before the first plan for one; returns what
+/// did not succeed.
+std::vector<std::string> measure_for(const std::string& backend) {
   const auto all = backend == "auto" ? devices() : std::vector<DeviceInfo>{};
   const bool by_device = backend == "vulkan" || std::ranges::any_of(all, [](const DeviceInfo& d) {
                            return d.chosen && d.backend == "vulkan";
                          });
-  if (by_device) measure_devices(false);
+  return by_device ? measure_devices(false) : std::vector<std::string>{};
 }
 
 }  // namespace
 
 int plan(const SceneArguments& arguments, bool measure) {
   const OpenedScene scene = open_scene(arguments);
-  measure_for(scene.problem->scene().solver.backend);
+  std::vector<std::string> warnings = measure_for(scene.problem->scene().solver.backend);
   const Problem& problem = *scene.problem;
   CreatedBackend created = prepared_backend(scene);
   const Backend& backend = *created.backend;
@@ -138,7 +139,7 @@ int plan(const SceneArguments& arguments, bool measure) {
   print_list("Operations of a frame", operations(problem, backend.needs()));
   print_kernels(backend);
   print_list("Left out: this scene does not need it", backend.needs().left_out);
-  std::vector<std::string> warnings = scene.warnings;
+  warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
   warnings.insert(warnings.end(), problem.warnings().begin(), problem.warnings().end());
   warnings.insert(warnings.end(), created.warnings.begin(), created.warnings.end());
   if (measure) measure_steps(scene, std::move(created.backend));

@@ -126,10 +126,10 @@ INSTANTIATE_TEST_SUITE_P(All, RatesKernels,
                                          Numbers{gpu::Variant::lvp, true}),
                          [](const auto& info) { return name_of(info.param); });
 
-TEST_P(RatesKernels, MeasureWhatTheDeviceDoesAndLeaveNothing) {
-  const std::size_t before = device_->held_bytes();
-  const gpu::DeviceRates rates = gpu::measure_rates(*device_, GetParam().variant);
-  EXPECT_EQ(device_->held_bytes(), before);
+void expect_rates(vulkan::Device& device, gpu::Variant variant) {
+  const std::size_t before = device.held_bytes();
+  const gpu::DeviceRates rates = gpu::measure_rates(device, variant);
+  EXPECT_EQ(device.held_bytes(), before);
   for (const double seconds : {rates.submit, rates.dispatch}) {
     EXPECT_GT(seconds, 0);
     EXPECT_LT(seconds, 1);
@@ -138,6 +138,20 @@ TEST_P(RatesKernels, MeasureWhatTheDeviceDoesAndLeaveNothing) {
     EXPECT_GT(per_second, 1e6);
     EXPECT_LT(per_second, 1e16);
   }
+}
+
+TEST_P(RatesKernels, MeasureWhatTheDeviceDoesAndLeaveNothing) {
+  expect_rates(*device_, GetParam().variant);
+}
+
+TEST_P(RatesKernels, MeasureADeviceWithoutFp64) {
+  vulkan::InstanceOptions options;
+  options.validation = validated();
+  options.messages = messages_;
+  vulkan::DeviceProbe probe = watched_probe();
+  probe.no_float64 = true;
+  const auto single = watched_device(std::make_shared<vulkan::Instance>(options), probe);
+  expect_rates(*single, GetParam().variant);
 }
 
 }  // namespace

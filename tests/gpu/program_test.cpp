@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -247,6 +248,26 @@ TEST_F(Program, PlansByTheRatesThatItHasMeasured) {
   const Outcome again = run_program({"devices", "--measure"});
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_NE(again.out.find(", measured: "), std::string::npos) << again.out;
+  EXPECT_EQ(again.err, "");
+}
+
+TEST_F(Program, SaysThatRatesCannotBeKeptOrMeasured) {
+  const TempFolder kept;
+  std::ofstream(kept / "file") << "no folder";
+  {
+    const Variable here("SUNDER_CACHE_DIR", (kept / "file").string());
+    const Outcome run = run_program({"devices", "--measure"});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_NE(run.err.find("cannot be kept in " + (kept / "file").string()), std::string::npos)
+        << run.err;
+    EXPECT_NE(run.out.find(", measured: "), std::string::npos) << "for this process";
+  }
+  const Variable here("SUNDER_CACHE_DIR", kept.path().string());
+  const Variable lost("SUNDER_VULKAN_PROBE", "lost=3");
+  const Outcome run = run_program({"devices", "--measure"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_NE(run.err.find("cannot be measured: "), std::string::npos) << run.err;
+  EXPECT_EQ(run.out.find(", measured: "), std::string::npos) << run.out;
 }
 
 TEST_F(Program, RunsUnderTheValidationLayerHere) {
