@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gpu/passes/cg_sizes.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -13,10 +14,6 @@ using vulkan::Placement;
 
 // Iterations recorded in one submit; the device skips those that it does not need.
 constexpr int kIterations = 64;
-constexpr std::size_t kArguments = 3 * shaders::kCgSizes;  // words
-// Where in them the sizes of each kind of dispatches stand, in bytes.
-constexpr std::size_t kNodes = 0, kOne = 9 * sizeof(std::uint32_t),
-                      kPatches = 12 * sizeof(std::uint32_t);
 constexpr int kMaxIterations = 50000;
 // Energy norms of the residual, squared: a solution to eleven digits of its own energy, so that a
 // good first guess saves iterations; a correction to two, as it is an estimate of the error.
@@ -67,7 +64,7 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
   known_ = Buffer(kernels.device(), known_slot(nodes) * most_known_, Placement::device);
   known_.fill_zero();
   state_ = Buffer(kernels.device(), sizeof(shaders::CgState), Placement::host);
-  arguments_ = Buffer(kernels.device(), kArguments * sizeof(std::uint32_t), Placement::device);
+  arguments_ = Buffer(kernels.device(), kCgSizeWords * sizeof(std::uint32_t), Placement::device);
   create_kernels(fields);
 }
 
@@ -81,7 +78,7 @@ std::size_t CgRoute::planned_bytes(const KernelFactory& kernels, const Problem& 
          known_slot(nodes) * most_known(kernels, problem) +
          2 * round_up(nodes / shaders::kGroup * kernels.parts(), 4) * sizeof(double) +
          Buffer::padded(sizeof(shaders::CgState)) +
-         Buffer::padded(kArguments * sizeof(std::uint32_t)) + RigidSpace::planned_bytes(problem);
+         Buffer::padded(kCgSizeWords * sizeof(std::uint32_t)) + RigidSpace::planned_bytes(problem);
 }
 
 void CgRoute::create_kernels(const Fields& fields) {
@@ -118,8 +115,7 @@ shaders::CgPush CgRoute::push(bool first) const {
   shaders::CgPush push{};
   push.groups = matrix_.groups();
   push.partials = partials();
-  push.rigid_groups = rigid_.groups();
-  push.rigid_solves = rigid_.solve_groups();
+  rigid_.add_to(push);
   push.first = first ? 1 : 0;
   push.elements = matrix_.patches().groups_now();
   return push;
@@ -160,17 +156,17 @@ void CgRoute::record_start(double reduction, bool solution) {
 
 void CgRoute::record_iterations() {
   const shaders::CgPush of_iteration = push(false);
-  const auto dispatch = [&](const Pass& pass, std::size_t size) {
-    commands_.dispatch_indirect(*pass.binding, of_iteration, arguments_, size);
+  const auto dispatch = [&](const Pass& pass, std::uint32_t kind) {
+    commands_.dispatch_indirect(*pass.binding, of_iteration, arguments_, size_of_dispatch(kind));
   };
   for (int i = 0; i < kIterations; ++i) {
-    if (patch_sums_.binding) dispatch(patch_sums_, kPatches);
-    dispatch(multiply_, kNodes);
-    dispatch(length_, kOne);
-    dispatch(step_, kNodes);
+    if (patch_sums_.binding) dispatch(patch_sums_, shaders::kCgByElement);
+    dispatch(multiply_, shaders::kCgByNode);
+    dispatch(length_, shaders::kCgByOne);
+    dispatch(step_, shaders::kCgByNode);
     rigid_.record_indirect(commands_, of_iteration, arguments_);
-    dispatch(check_, kOne);
-    dispatch(direction_, kNodes);
+    dispatch(check_, shaders::kCgByOne);
+    dispatch(direction_, shaders::kCgByNode);
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "gpu/passes/cg_sizes.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -16,10 +18,9 @@ constexpr double kForcing = 0.1;
 // Iterations recorded in a submit: twice those of the last one. The device skips the others, which
 // costs a launch each.
 constexpr int kFewestRecorded = 16, kMostRecorded = 512;
-constexpr std::size_t kArgumentWords = 3 * shaders::kCgSizes;  // words
-// Where in them the sizes of each kind of dispatches stand, in bytes.
-constexpr std::size_t kByNode = 0, kByElement = 12 * sizeof(std::uint32_t),
-                      kByOne = 9 * sizeof(std::uint32_t);
+constexpr std::size_t kByNode = size_of_dispatch(shaders::kCgByNode),
+                      kByElement = size_of_dispatch(shaders::kCgByElement),
+                      kByOne = size_of_dispatch(shaders::kCgByOne);
 
 std::uint32_t groups_of(std::size_t count) {
   return std::max(1U,
@@ -56,7 +57,7 @@ FiniteCg::FiniteCg(const KernelFactory& kernels, const Problem& problem,
   for (Buffer* vector : {&x_, &r_, &p_, &q_, &z_}) *vector = make(padded * 4 * sizeof(double));
   for (Buffer* sums : {&pq_, &rz_}) *sums = make(partials_ * 4 * sizeof(double));
   state_ = Buffer(device, sizeof(shaders::CgState), Placement::host);
-  arguments_ = make(kArgumentWords * sizeof(std::uint32_t));
+  arguments_ = make(kCgSizeWords * sizeof(std::uint32_t));
   create_passes(body);
 }
 
@@ -133,8 +134,7 @@ shaders::CgPush FiniteCg::push(bool first) const {
   shaders::CgPush push{};
   push.groups = node_groups_;
   push.partials = partials_;
-  push.rigid_groups = rigid_.groups();
-  push.rigid_solves = rigid_.solve_groups();
+  rigid_.add_to(push);
   push.elements = element_groups_;
   push.first = first ? 1 : 0;
   push.reduction = kForcing * kForcing;

@@ -27,7 +27,7 @@ void main() {
     const dvec4 of = DVEC4(rz_partial, i);
     sum += (of.x + of.y) + (of.z + of.w);
   }
-  for (uint i = gl_LocalInvocationID.x; 4u * i < p.rigid_solves; i += gl_WorkGroupSize.x) {
+  for (uint i = gl_LocalInvocationID.x; 4u * i < p.rigid_terms; i += gl_WorkGroupSize.x) {
     const dvec4 of = DVEC4(terms, i);
     sum += (of.x + of.y) + (of.z + of.w);
   }
@@ -44,9 +44,11 @@ void main() {
   const double enough = p.first == 1u && p.guess == 2u ? kOfASum : 1.0LF;
   const bool run = state.data[0].broken == 0u && rz > enough * state.data[0].target;
   state.data[0].running = run ? 1u : 0u;
-  arguments.data[0] = run ? p.groups : 0u;
-  arguments.data[3] = run ? p.rigid_groups : 0u;
-  arguments.data[6] = run ? p.rigid_solves : 0u;
-  arguments.data[9] = run ? 1u : 0u;
-  arguments.data[12] = run ? p.elements : 0u;
+  arguments.data[3u * kCgByNode] = run ? p.groups : 0u;
+  arguments.data[3u * kCgByGroup] = run ? p.rigid_groups : 0u;
+  arguments.data[3u * kCgBySolve] = run ? p.rigid_solves : 0u;
+  arguments.data[3u * kCgByOne] = run ? 1u : 0u;
+  arguments.data[3u * kCgByElement] = run ? p.elements : 0u;
+  arguments.data[3u * kCgByAggregate] = run ? p.rigid_aggregates : 0u;
+  arguments.data[3u * kCgByRow] = run ? p.rigid_rows : 0u;
 }

@@ -183,16 +183,28 @@ struct CgPush {
   uint groups;        // workgroups of 64 nodes
   uint partials;      // partial sums / 4
   uint rigid_groups;  // of the second level: groups of nodes
-  uint rigid_solves;  // of the second level: workgroups of four unknowns
+  uint rigid_solves;  // of the dense level: workgroups of four unknowns
   uint first;         // 1: nothing has been iterated yet
   uint guess;         // the first step goes along: 0 nothing, 1 u, 2 a solution that is known
   double reduction;   // stop at this share of the first r^T M r, or of u's energy
   uint elements;      // workgroups of 64 elements or patches, where a kernel goes over these
   uint known;         // which of those
+  uint rigid_terms;   // of y^T w of the second level: whole packs of four
+  uint rigid_aggregates, rigid_rows;  // of the third level: aggregates, workgroups of 64 groups
+  uint unused;
 };
 
-// Kinds of dispatches: nodes, groups of nodes, unknowns, one workgroup, elements or patches.
-SUNDER_CONST kCgSizes = 5u;
+// Kinds of dispatches: nodes, groups of nodes, unknowns of the dense level, one workgroup, elements or
+// patches, aggregates of groups, 64 groups.
+SUNDER_CONST kCgByNode = 0u;
+SUNDER_CONST kCgByGroup = 1u;
+SUNDER_CONST kCgBySolve = 2u;
+SUNDER_CONST kCgByOne = 3u;
+SUNDER_CONST kCgByElement = 4u;
+SUNDER_CONST kCgByAggregate = 5u;
+SUNDER_CONST kCgByRow = 6u;
+SUNDER_CONST kCgSizes = 7u;
+SUNDER_CONST kSixWords = 40u;  // of a 6 x 6 block between groups, in fp32, and its column
 
 // State of conjugate gradients, on the device from the first iteration to the last.
 struct CgState {
@@ -327,7 +339,7 @@ static_assert(sizeof(StressPartial) == 48);
 static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 80);
-static_assert(sizeof(CgPush) == 40);
+static_assert(sizeof(CgPush) == 56);
 static_assert(sizeof(ComplementPush) == 32);
 static_assert(sizeof(CgState) == 56);
 static_assert(sizeof(FinitePush) == 80);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/passes/rigid_space.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +11,8 @@
 #include "body/element.hpp"
 #include "body/pools.hpp"
 #include "body/supports.hpp"
+#include "gpu/passes/bisection.hpp"
+#include "gpu/passes/cg_sizes.hpp"
 #include "material/singular_values.hpp"
 
 namespace sunder::gpu {
@@ -20,34 +21,59 @@ namespace {
 using vulkan::Buffer;
 using vulkan::Placement;
 
-// Groups, at most: of a body at rest one for so many nodes where that is more, as iterations grow
-// with the square root of a group's size; their product then reads an eighth of what K's does.
-// Of a board of 979,200 tetrahedra 64, 256 and 512 groups take 1340, 449 and 282 iterations, of a
-// block of 998,250 342, 269 and 186; a matrix of 512 takes seconds to invert.
-constexpr Index kMost = 64, kNodesOfALargeGroup = 160, kMostOfALargeBody = 512;
-constexpr Index kNodesPerGroup = 64;  // of the largest body, until there are too many groups
+// Nodes of a group of the largest body: few, while their equations are few. Iterations of boards of
+// 1,944, 7,776, 30,246, 119,286 and 1,003,686 tetrahedra: 139, 110, 125, 167 and 260, where groups
+// of 64 nodes, 64 to 512 at most, take 330, 213, 213, 218 and 537.
+constexpr Index kNodesPerGroup = 16, kManyGroups = 1024, kNodesOfManyGroups = 32;
+// Groups whose equations have a dense inverse; more have two levels in its place
+// (rigid_levels.hpp), and groups of their own for so many pieces that have come off.
+constexpr Index kMost = 64, kMostPieces = 64;
 // Where groups are kept apart: of the 1944-element board's steps in motion 64, 24 and 10 take 746,
 // 407 and 140 ms on lavapipe.
 constexpr Index kNodesPerGroupApart = 10;
 constexpr Index kFewest = 4;  // nodes of a body worth a group: below, D alone is exact enough
-// Added to the diagonal of Z^T K Z, in shares of its largest entry: motions that supports take away
-// leave zeros there.
-constexpr double kShift = 1e-13;
+// Elements that a large body loses before its levels are made anew: so many for each of its groups.
+constexpr double kLostOfAGroup = 0.25;
 // Another inertia than so many times or a part of it is another body's.
 constexpr double kMostInertiaApart = 4;
 
-Index most_groups(const Problem& problem, bool apart) {
-  const Index many = problem.node_count() / kNodesOfALargeGroup / 2 * 2;
-  return apart ? kMost : std::clamp(many, kMost, kMostOfALargeBody);
+Index groups_of(Index nodes) {
+  return std::max({nodes / kNodesOfManyGroups, std::min(nodes / kNodesPerGroup, kManyGroups), 1});
 }
 
-/// Rows and columns that there is room for: whole packs of terms.
-std::size_t coarse_size(Index groups) {
-  return round_up(6 * static_cast<std::uint32_t>(groups), 16);
+/// That there is room for.
+Index most_groups(const Problem& problem, bool apart) {
+  const Index wanted = apart ? kMost : groups_of(problem.node_count());
+  return wanted > kMost ? wanted + kMostPieces : kMost;
 }
+
+/// Groups that vectors have room for: whole workgroups.
+std::size_t room_of(Index groups) {
+  return round_up(static_cast<std::uint32_t>(groups), shaders::kGroup);
+}
+// Terms of y^T w a group, at most.
+constexpr std::size_t kTerms = 2;
 
 // Texels of four words.
 constexpr std::size_t kTexel = 4 * sizeof(std::uint32_t);
+
+/// t x p, as a matrix times t.
+Mat3 turned(const Vec3& p) {
+  return (Mat3() << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0).finished();
+}
+
+/// Strain (Voigt, engineering shear) by a displacement of a node whose shape function has this
+/// gradient.
+Eigen::Matrix<double, 6, 3> strain_of(const Vec3& g) {
+  Eigen::Matrix<double, 6, 3> b;
+  b << g.x(), 0, 0, 0, g.y(), 0, 0, 0, g.z(), 0, g.z(), g.y(), g.z(), 0, g.x(), g.y(), g.x(), 0;
+  return b;
+}
+
+/// Of so many parts; at least one.
+Index share_of(Index parts, std::size_t size, std::size_t total) {
+  return std::max<Index>(static_cast<Index>(static_cast<std::size_t>(parts) * size / total), 1);
+}
 
 }  // namespace
 
@@ -69,32 +95,37 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
     return buffer;
   };
   modes_ = make(nodes * kTexel, Placement::device);
-  const std::size_t size = coarse_size(most_), groups = size / 6 + 1;
-  first_ = make((groups + 1) * sizeof(std::uint32_t), Placement::device);
+  const std::size_t room = room_of(most_);
+  first_ = make((room + 1) * sizeof(std::uint32_t), Placement::device);
   members_ = make(nodes * kTexel, Placement::device);
-  inverse_ = make(size * size * sizeof(double), Placement::device);
-  y_ = make(size * sizeof(double), Placement::device);
-  w_ = make(groups * 8 * sizeof(double), Placement::device);
-  terms_ = make(size / 4 * sizeof(double), Placement::device);
+  if (most_ > kMost) {
+    levels_.emplace(kernels, most_);
+  } else {
+    inverse_ = make(6 * room * 6 * room * sizeof(double), Placement::device);
+  }
+  y_ = make(room * 6 * sizeof(double), Placement::device);
+  w_ = make(room * 8 * sizeof(double), Placement::device);
+  terms_ = make(room * kTerms * sizeof(double), Placement::device);
 }
 
 std::size_t RigidSpace::planned_groups(const Problem& problem) {
   return static_cast<std::size_t>(
-      std::clamp<Index>(problem.node_count() / kNodesPerGroup, 1, most_groups(problem, false)));
+      std::min(groups_of(problem.node_count()), most_groups(problem, false)));
 }
 
 std::size_t RigidSpace::planned_bytes(const Problem& problem, bool apart) {
-  const std::size_t size = coarse_size(most_groups(problem, apart)), groups = size / 6 + 1;
+  const Index most = most_groups(problem, apart);
+  const std::size_t room = room_of(most);
   const std::size_t nodes =
       round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
-  return 2 * nodes * kTexel + Buffer::padded((groups + 1) * sizeof(std::uint32_t)) +
-         (size + 1) * size * sizeof(double) + groups * 8 * sizeof(double) +
-         size / 4 * sizeof(double);
+  return 2 * nodes * kTexel + Buffer::padded((room + 1) * sizeof(std::uint32_t)) +
+         (most > kMost ? RigidLevels::planned_bytes(most) : 6 * room * 6 * room * sizeof(double)) +
+         room * (6 + 8 + kTerms) * sizeof(double);
 }
 
 std::size_t RigidSpace::bytes() const {
   return modes_.bytes() + first_.bytes() + members_.bytes() + inverse_.bytes() + y_.bytes() +
-         w_.bytes() + terms_.bytes();
+         w_.bytes() + terms_.bytes() + (levels_ ? levels_->bytes() : 0);
 }
 
 void RigidSpace::bind(const Buffer& r) {
@@ -102,20 +133,39 @@ void RigidSpace::bind(const Buffer& r) {
   restrict_ = kernels_.in_fp64().make("cg_restrict", group);
   const Buffer* restricted[] = {&first_, &members_, &r, &y_};
   restrict_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *restrict_, restricted);
+  if (levels_) {
+    levels_->bind(y_, w_, terms_);
+    return;
+  }
   solve_ = kernels_.in_fp64().make("cg_coarse", group);
   const Buffer* solved[] = {&inverse_, &y_, &w_, &terms_};
   solve_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *solve_, solved);
 }
 
+void RigidSpace::add_to(shaders::CgPush& push) const {
+  push.rigid_groups = groups();
+  push.rigid_solves = push.rigid_terms = solve_groups();
+  if (levels_) levels_->add_to(push);
+}
+
 void RigidSpace::record(vulkan::Commands& commands, const shaders::CgPush& push) const {
   commands.dispatch(*restrict_binding_, groups());
-  commands.dispatch(*solve_binding_, push, solve_groups());
+  if (levels_) {
+    levels_->record(commands, push);
+  } else {
+    commands.dispatch(*solve_binding_, push, solve_groups());
+  }
 }
 
 void RigidSpace::record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
                                  const Buffer& arguments) const {
-  commands.dispatch_indirect(*restrict_binding_, arguments, 3 * sizeof(std::uint32_t));
-  commands.dispatch_indirect(*solve_binding_, push, arguments, 6 * sizeof(std::uint32_t));
+  commands.dispatch_indirect(*restrict_binding_, arguments, size_of_dispatch(shaders::kCgByGroup));
+  if (levels_) {
+    levels_->record_indirect(commands, push, arguments);
+  } else {
+    commands.dispatch_indirect(*solve_binding_, push, arguments,
+                               size_of_dispatch(shaders::kCgBySolve));
+  }
 }
 
 /// By supports and these unknowns, ascending.
@@ -133,8 +183,9 @@ void RigidSpace::hold(std::span<const Index> gripped) {
 
 void RigidSpace::destroy(std::span<const Index> elements) {
   for (Index e : elements) {
-    if (coarse_.size() > 0) add_element(e, share_ - 1);
+    if (stiffness_.rows() > 0) add_element(e, share_ - 1);
   }
+  lost_ += elements.size();
   changed_ = true;
 }
 
@@ -147,7 +198,7 @@ void RigidSpace::grip(std::span<const Index> gripped) {
 
 void RigidSpace::forget() {
   groups_.clear();
-  coarse_.resize(0, 0);
+  stiffness_ = {};
   changed_ = true;
 }
 
@@ -208,26 +259,32 @@ void RigidSpace::update() {
   if (!changed_) return;
   changed_ = false;
   shown_.clear();
-  std::vector<std::vector<Index>> groups = grouped();
+  Lists nodes = pieces();
+  if (stays(nodes)) return;
+  pieces_ = nodes.size();
+  Lists groups = grouped(std::move(nodes));
   if (groups != groups_) {
     groups_ = std::move(groups);
     place_modes({});
-    const auto size = 6 * static_cast<Index>(groups_.size());
-    coarse_.setZero(size, size);
+    const std::size_t size = groups_.size();
+    stiffness_ = GroupBlocks(size, static_cast<Index>(size));
     for (Index e = 0; e < problem_.tet_count(); ++e) {
       add_element(e, destroyed_[e] ? share_ : 1);
     }
     for (Index p = 0; problem_.pools() && p < problem_.pools()->count(); ++p) add_patch(p);
-  } else if (most_ > kMost && resting_inverse_.size() > 0 && !(inertia_.factor > 0)) {
-    return;  // a large one stays as it is: a cut nearly through a board costs 3 % more iterations
   }
-  invert();
+  build();
 }
 
-/// The largest body by its extent in parts of some 64 nodes, every other body whole.
-std::vector<std::vector<Index>> RigidSpace::grouped() {
+/// A cut through nine tenths of a board by levels of the whole one costs 3 % more iterations.
+bool RigidSpace::stays(const Lists& nodes) const {
+  return levels_ && !groups_.empty() && nodes.size() == pieces_ &&
+         static_cast<double>(lost_) < kLostOfAGroup * static_cast<double>(groups_.size());
+}
+
+RigidSpace::Lists RigidSpace::pieces() const {
   const auto bodies = fem::find_bodies(problem_.mesh(), destroyed_);
-  std::vector<std::vector<Index>> nodes(static_cast<std::size_t>(bodies.count));
+  Lists nodes(static_cast<std::size_t>(bodies.count));
   for (Index n = 0; n < problem_.node_count(); ++n) {
     const Index body = bodies.body_of_node[n];
     if (body != kNone) nodes[body].push_back(n);
@@ -235,52 +292,44 @@ std::vector<std::vector<Index>> RigidSpace::grouped() {
   std::stable_sort(nodes.begin(), nodes.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   std::erase_if(nodes, [](const auto& body) { return body.size() < kFewest; });
-  std::vector<std::vector<Index>> groups;
+  return nodes;
+}
+
+/// Parts of so many pieces by their extent, as many as their nodes ask for.
+RigidSpace::Lists RigidSpace::grouped(Lists nodes) {
+  Lists groups;
+  groups_of_piece_.clear();
   if (nodes.empty()) return groups;
-  const auto others = std::min<Index>(static_cast<Index>(nodes.size()) - 1, most_ / 2);
-  const auto wanted = std::max<Index>(static_cast<Index>(nodes.front().size()) / kNodesPerGroup, 1);
-  if (kind_.empty()) {
-    split(nodes.front(), std::min(wanted, most_ - others), groups);
-  } else {
-    std::map<Index, std::vector<Index>> by_kind;
-    for (Index n : nodes.front()) by_kind[kind_[n]].push_back(n);
-    const auto spare = std::max<Index>(most_ - others - static_cast<Index>(by_kind.size()), 0);
-    for (auto& [kind, list] : by_kind) {
-      const auto share = static_cast<Index>(spare * list.size() / nodes.front().size());
-      split(list,
-            std::min(std::max<Index>(static_cast<Index>(list.size()) / kNodesPerGroupApart, 1),
-                     1 + share),
-            groups);
+  nodes.resize(std::min<std::size_t>(nodes.size(), levels_ ? kMostPieces : most_ / 2));
+  const auto& x = problem_.mesh().nodes;
+  const Index others = static_cast<Index>(nodes.size()) - 1;
+  std::size_t total = 0;
+  for (const auto& piece : nodes) total += piece.size();
+  const Index wanted = std::min(groups_of(static_cast<Index>(total)), most_ - others);
+  for (std::size_t p = 0; p < nodes.size(); ++p) {
+    const std::size_t before = groups.size();
+    if (!kind_.empty()) {
+      group_by_kind(nodes[p], p == 0 ? most_ - others : 1, groups);
+    } else {
+      bisect(nodes[p], share_of(wanted, nodes[p].size(), total), kFewest, x, groups);
     }
+    groups_of_piece_.push_back(groups.size() - before);
   }
-  for (Index b = 1; b <= others; ++b) groups.push_back(nodes[b]);
-  for (auto& group : groups) std::sort(group.begin(), group.end());
   return groups;
 }
 
-/// Halves along the longest side of the nodes' box, in proportion to the groups on either side.
-void RigidSpace::split(std::span<Index> nodes, Index count,
-                       std::vector<std::vector<Index>>& groups) const {
-  if (count <= 1 || static_cast<Index>(nodes.size()) < 2 * kFewest) {
-    groups.emplace_back(nodes.begin(), nodes.end());
-    return;
-  }
+void RigidSpace::group_by_kind(std::vector<Index>& nodes, Index most, Lists& groups) const {
   const auto& x = problem_.mesh().nodes;
-  Vec3 low = x[nodes.front()], high = low;
-  for (Index n : nodes) {
-    low = low.cwiseMin(x[n]);
-    high = high.cwiseMax(x[n]);
+  std::map<Index, std::vector<Index>> by_kind;
+  for (Index n : nodes) by_kind[most > 1 ? kind_[n] : 0].push_back(n);
+  const auto spare = std::max<Index>(most - static_cast<Index>(by_kind.size()), 0);
+  for (auto& [kind, list] : by_kind) {
+    const auto share = static_cast<Index>(spare * list.size() / nodes.size());
+    bisect(list,
+           std::min(std::max<Index>(static_cast<Index>(list.size()) / kNodesPerGroupApart, 1),
+                    1 + share),
+           kFewest, x, groups);
   }
-  int axis = 0;
-  (high - low).maxCoeff(&axis);
-  std::sort(nodes.begin(), nodes.end(), [&](Index a, Index b) {
-    return x[a][axis] != x[b][axis] ? x[a][axis] < x[b][axis] : a < b;
-  });
-  const Index below = count / 2;
-  const std::size_t cut =
-      nodes.size() * static_cast<std::size_t>(below) / static_cast<std::size_t>(count);
-  split(nodes.first(cut), below, groups);
-  split(nodes.subspan(cut), count - below, groups);
 }
 
 /// At displacement u; empty: undeformed, as Z^T K Z is taken.
@@ -292,16 +341,18 @@ void RigidSpace::place_modes(std::span<const double> u) {
     group_of_.assign(x.size(), kNone);
     place_.assign(x.size(), Vec3::Zero());
     size_.assign(groups_.size(), 0.0);
+    centre_.assign(groups_.size(), Vec3::Zero());
   }
   using Texel = std::array<std::uint32_t, 4>;
   std::vector<Texel> modes(modes_.bytes() / kTexel, Texel{0, 0, 0, shaders::kHeld});  // no group
   std::vector<Texel> members;
-  std::vector<std::uint32_t> first(coarse_size(most_) / 6 + 2, 0);
+  std::vector<std::uint32_t> first(room_of(most_) + 1, 0);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Vec3 centre = Vec3::Zero();
     for (Index n : groups_[g]) centre += x[n];
     centre /= static_cast<double>(groups_[g].size());
     if (rests) {
+      centre_[g] = centre;
       for (Index n : groups_[g]) size_[g] = std::max(size_[g], (x[n] - centre).norm());
     }
     const double size = size_[g];
@@ -334,31 +385,46 @@ void RigidSpace::place_modes(std::span<const double> u) {
 Eigen::Matrix<double, 3, 6> RigidSpace::motion(Index node) const {
   const Vec3& p = place_[node];
   Eigen::Matrix<double, 3, 6> m;
-  m << Mat3::Identity(),
-      (Mat3() << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0).finished();
+  m << Mat3::Identity(), turned(p);
   for (int axis = 0; axis < 3; ++axis) {
     if (held_[node] >> axis & 1) m.row(axis).setZero();
   }
   return m;
 }
 
-/// `scale` times the element's share of Z^T K Z.
+/// `scale` times the element's share of Z^T K Z: what strain the motions of its groups give it.
 void RigidSpace::add_element(Index element, double scale) {
   const auto& tet = problem_.mesh().tets[element];
   const TetShape& shape = problem_.shape(element);
+  std::array<Index, 4> of{};
+  bool moves_whole = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    of[i] = group_of_[tet[i]];
+    moves_whole = moves_whole && of[i] == of[0] && held_[tet[i]] == 0;
+  }
+  if (moves_whole) return;
   const SmallStrain law = fem::own_law(problem_, element);
-  const double mu = law.mu, lambda = law.lambda;
   const double weight = scale * shape.volume;
-  for (int i = 0; i < 4; ++i) {
-    const Index a = group_of_[tet[i]];
-    if (a == kNone) continue;
-    for (int j = 0; j < 4; ++j) {
-      const Index b = group_of_[tet[j]];
-      if (b == kNone) continue;
-      const Vec3 gi = shape.gradient.col(i), gj = shape.gradient.col(j);
-      const Mat3 k = lambda * gi * gj.transpose() + mu * gj * gi.transpose() +
-                     mu * gi.dot(gj) * Mat3::Identity();
-      coarse_.block<6, 6>(6 * a, 6 * b) += weight * motion(tet[i]).transpose() * k * motion(tet[j]);
+  std::array<Six, 4> strain;
+  std::array<Index, 4> groups{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (of[i] == kNone) continue;
+    std::size_t g = 0;
+    while (g < count && groups[g] != of[i]) ++g;
+    if (g == count) {
+      groups[count++] = of[i];
+      strain[g] = Six::Zero();
+    }
+    strain[g] += strain_of(shape.gradient.col(static_cast<Index>(i))) * motion(tet[i]);
+  }
+  for (std::size_t b = 0; b < count; ++b) {
+    Six stress = 2 * law.mu * strain[b];
+    stress.bottomRows<3>() /= 2;  // engineering shear
+    const Eigen::Matrix<double, 1, 6> volume = strain[b].topRows<3>().colwise().sum();
+    for (int axis = 0; axis < 3; ++axis) stress.row(axis) += law.lambda * volume;
+    for (std::size_t a = 0; a < count; ++a) {
+      stiffness_.at(groups[a], groups[b]).noalias() += weight * strain[a].transpose() * stress;
     }
   }
 }
@@ -383,7 +449,7 @@ void RigidSpace::add_patch(Index patch) {
   if (!(volume > 0)) return;
   for (const auto& [a, of_a] : of_group) {
     for (const auto& [b, of_b] : of_group) {
-      coarse_.block<6, 6>(6 * a, 6 * b) += pools.bulk(patch) / volume * of_a * of_b.transpose();
+      stiffness_.at(a, b) += pools.bulk(patch) / volume * of_a * of_b.transpose();
     }
   }
 }
@@ -402,19 +468,52 @@ void RigidSpace::add_inertia(Eigen::MatrixXd& to) const {
   }
 }
 
+void RigidSpace::build() {
+  lost_ = 0;
+  if (levels_) {
+    levels_->update(smoothed_levels(stiffness_, motions_of_aggregates()));
+  } else {
+    invert();
+  }
+}
+
 void RigidSpace::invert() {
-  resting_inverse_.resize(0, 0);
-  if (coarse_.rows() > 0) {
-    Eigen::MatrixXd whole = coarse_;
-    if (inertia_.factor > 0) add_inertia(whole);
-    whole.diagonal().array() += kShift * whole.diagonal().maxCoeff();
-    const Eigen::LLT<Eigen::MatrixXd> llt(whole);
-    // Else blocks alone: slower, but right.
-    if (llt.info() == Eigen::Success && llt.matrixLLT().allFinite()) {
-      resting_inverse_ = llt.solve(Eigen::MatrixXd::Identity(whole.rows(), whole.rows()));
+  Eigen::MatrixXd whole = stiffness_.dense();
+  if (inertia_.factor > 0) add_inertia(whole);
+  resting_inverse_ =
+      inverse_of_positive(std::move(whole));  // none: blocks alone, slower, but right
+  upload_inverse(resting_inverse_);
+}
+
+/// Every piece has its own, while there are few pieces.
+GroupBlocks RigidSpace::motions_of_aggregates() const {
+  const auto count = static_cast<Index>(groups_.size()), most = RigidLevels::aggregates_of(most_);
+  const std::size_t pieces = std::min(groups_of_piece_.size(), static_cast<std::size_t>(most) / 2);
+  const Index wanted =
+      std::min(RigidLevels::aggregates_of(count), most - static_cast<Index>(pieces));
+  Lists aggregates;
+  Index first = 0;
+  for (std::size_t p = 0; p < pieces; ++p) {
+    std::vector<Index> list(groups_of_piece_[p]);
+    std::iota(list.begin(), list.end(), first);
+    first += static_cast<Index>(list.size());
+    bisect(list, share_of(wanted, list.size(), groups_.size()), 1, centre_, aggregates);
+  }
+  GroupBlocks motions(groups_.size(), static_cast<Index>(aggregates.size()));
+  for (std::size_t a = 0; a < aggregates.size(); ++a) {
+    Vec3 centre = Vec3::Zero();
+    for (Index g : aggregates[a]) centre += centre_[g] / static_cast<double>(aggregates[a].size());
+    double size = 0;
+    for (Index g : aggregates[a]) size = std::max(size, (centre_[g] - centre).norm() + size_[g]);
+    for (Index g : aggregates[a]) {
+      Six& of = motions.at(g, static_cast<Index>(a));
+      of.setIdentity();
+      if (!(size > 0)) continue;
+      of.topRightCorner<3, 3>() = turned((centre_[g] - centre) / size);
+      of.bottomRightCorner<3, 3>() *= size_[g] / size;
     }
   }
-  upload_inverse(resting_inverse_);
+  return motions;
 }
 
 void RigidSpace::upload_inverse(const Eigen::MatrixXd& inverse) {

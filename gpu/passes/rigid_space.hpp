@@ -11,11 +11,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "body/tangent_pattern.hpp"
 #include "gpu/kernels.hpp"
+#include "gpu/passes/rigid_levels.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "sunder/problem.hpp"
 
@@ -49,13 +51,13 @@ class RigidSpace {
   [[nodiscard]] std::uint32_t groups() const {
     return std::max(1u, static_cast<std::uint32_t>(groups_.size()));
   }
-  /// Workgroups of the small matrix's product, four rows each; whole packs of terms.
-  [[nodiscard]] std::uint32_t solve_groups() const { return round_up(6 * groups(), 16) / 4; }
+  /// Adds its sizes to what kernels are told.
+  void add_to(shaders::CgPush& push) const;
 
   void bind(const vulkan::Buffer& r);
   /// w = (Z^T K Z)^-1 Z^T r of the bound vector, and the terms of (Z^T r)^T w.
   void record(vulkan::Commands& commands, const shaders::CgPush& push) const;
-  /// The same, sizes of the dispatches from the second and third three words of `arguments`.
+  /// The same with sizes of dispatches that the device has written.
   void record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
                        const vulkan::Buffer& arguments) const;
 
@@ -66,15 +68,25 @@ class RigidSpace {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  [[nodiscard]] std::vector<std::vector<Index>> grouped();
+  using Lists = std::vector<std::vector<Index>>;
+  /// Nodes of every piece that is worth a group, the largest first.
+  [[nodiscard]] Lists pieces() const;
+  [[nodiscard]] Lists grouped(Lists nodes);
+  void group_by_kind(std::vector<Index>& nodes, Index most, Lists& groups) const;
+  /// Too little has happened for another second level.
+  [[nodiscard]] bool stays(const Lists& nodes) const;
   [[nodiscard]] std::vector<Index> kinds_of_nodes() const;
   void hold(std::span<const Index> gripped);
-  void split(std::span<Index> nodes, Index count, std::vector<std::vector<Index>>& groups) const;
   void place_modes(std::span<const double> u);
   void add_element(Index element, double scale);
   void add_patch(Index patch);
   void add_inertia(Eigen::MatrixXd& to) const;
+  void build();
   void invert();
+  /// Rigid motions of aggregates of groups, in the motions of these.
+  [[nodiscard]] GroupBlocks motions_of_aggregates() const;
+  /// Workgroups of the dense level's product, four rows each; whole packs of terms.
+  [[nodiscard]] std::uint32_t solve_groups() const { return round_up(6 * groups(), 16) / 4; }
   void turn(std::span<const double> u);
   void upload_inverse(const Eigen::MatrixXd& inverse);
   [[nodiscard]] Eigen::Matrix<double, 3, 6> motion(Index node) const;
@@ -87,15 +99,19 @@ class RigidSpace {
   std::vector<Index> kind_;  // of every node: groups have one alone; empty: it does not matter
   bool changed_ = true;
   fem::Inertia inertia_;
-  std::vector<double> mass_;                // that inertia_ refers to
-  std::vector<double> size_;                // of the groups
-  std::vector<double> shown_;               // u that the device has; empty: the undeformed places
-  std::vector<std::vector<Index>> groups_;  // nodes of each, ascending
-  std::vector<Index> group_of_;             // of every node, kNone: none
-  std::vector<Vec3> place_;                 // of every node from its group's centre, by its size
-  std::vector<std::uint8_t> held_;          // axes of every node that nothing moves, as bits
-  Eigen::MatrixXd coarse_;                  // Z^T K Z, at rest, without inertia
-  Eigen::MatrixXd resting_inverse_;         // with it; empty: there is none
+  std::vector<double> mass_;                  // that inertia_ refers to
+  std::vector<double> size_;                  // of the groups
+  std::vector<double> shown_;                 // u that the device has; empty: the undeformed places
+  Lists groups_;                              // nodes of each, ascending
+  std::vector<Vec3> centre_;                  // of the groups, undeformed
+  std::vector<std::size_t> groups_of_piece_;  // that have some, the largest first
+  std::size_t pieces_ = 0, lost_ = 0;         // at the last build; elements destroyed since
+  std::vector<Index> group_of_;               // of every node, kNone: none
+  std::vector<Vec3> place_;                   // of every node from its group's centre, by its size
+  std::vector<std::uint8_t> held_;            // axes of every node that nothing moves, as bits
+  GroupBlocks stiffness_;                     // Z^T K Z, at rest, without inertia
+  Eigen::MatrixXd resting_inverse_;           // with it; empty: there is none
+  std::optional<RigidLevels> levels_;         // of a large body, in place of the inverse
   vulkan::Buffer modes_, first_, members_, inverse_, y_, w_, terms_;
   std::unique_ptr<vulkan::Kernel> restrict_, solve_;
   std::unique_ptr<vulkan::Binding> restrict_binding_, solve_binding_;

@@ -11,7 +11,9 @@
 
 #include "body/assembly.hpp"
 #include "gpu/cg_route.hpp"
+#include "gpu/passes/cg_sizes.hpp"
 #include "gpu/passes/fields.hpp"
+#include "gpu/passes/rigid_levels.hpp"
 #include "gpu_body.hpp"
 #include "kernels_fixture.hpp"
 #include "stiffness_product.hpp"
@@ -48,6 +50,7 @@ class CgKernels : public Kernels {
       EXPECT_LE(std::abs(got[part] - sum), static_cast<double>(per_part) * kEps64 * size) << part;
     }
   }
+  [[nodiscard]] gpu::GroupBlocks positive_blocks(std::size_t rows);
   [[nodiscard]] shaders::CgState& state(vulkan::Buffer& of) const {
     if (of.bytes() == 0) {
       of = vulkan::Buffer(*device_, sizeof(shaders::CgState), vulkan::Placement::host);
@@ -383,22 +386,25 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
     vulkan::Buffer of_state;
     state(of_state) = before;
     const auto sums = buffer(of_rz), of_terms = buffer(terms);
-    const auto arguments = buffer(Words(15, 9));
+    const auto arguments = buffer(Words(gpu::kCgSizeWords, 9));
     shaders::CgPush push{};
     push.groups = 50;
     push.partials = kPacks;
     push.rigid_groups = 23;
-    push.rigid_solves = kSolves;
+    push.rigid_solves = 17;
+    push.rigid_terms = kSolves;
+    push.rigid_aggregates = 7;
+    push.rigid_rows = 3;
     push.elements = 31;
     push.first = first ? 1 : 0;
     push.guess = guess;
     push.reduction = 1e-3;
     run("cg_check", {&sums, &of_terms, &of_state, &arguments}, push, 1, factory_->summing_group());
-    Words sizes(15);
+    Words sizes(gpu::kCgSizeWords);
     arguments.read(std::span<std::uint32_t>(sizes));
     return Outcome{state(of_state), sizes};
   };
-  const Words on = {50, 1, 1, 23, 1, 1, kSolves, 1, 1, 1, 1, 1, 31, 1, 1};
+  const Words on = {50, 1, 1, 23, 1, 1, 17, 1, 1, 1, 1, 1, 31, 1, 1, 7, 1, 1, 3, 1, 1};
   shaders::CgState before{};
   before.iterations = 99;
   before.energy = 2 * sum;
@@ -426,16 +432,16 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
   EXPECT_EQ(later.state.iterations, 100u);
   EXPECT_EQ(later.state.target, sum / 2);
   EXPECT_EQ(later.state.running, 1u);
-  EXPECT_EQ(later.arguments[0], 50u);
-  EXPECT_EQ(later.arguments[3], 23u);
-  EXPECT_EQ(later.arguments[6], kSolves);
-  EXPECT_EQ(later.arguments[9], 1u);
-  EXPECT_EQ(later.arguments[12], 31u);
+  for (std::size_t word = 0; word < gpu::kCgSizeWords; word += 3) {
+    EXPECT_EQ(later.arguments[word], on[word]) << word;
+  }
 
   const auto expect_stopped = [](const Outcome& outcome, std::uint32_t broken, const char* why) {
     EXPECT_EQ(outcome.state.running, 0u) << why;
     EXPECT_EQ(outcome.state.broken, broken) << why;
-    for (std::size_t kind : {0, 3, 6, 9, 12}) EXPECT_EQ(outcome.arguments[kind], 0u) << why;
+    for (std::size_t word = 0; word < gpu::kCgSizeWords; word += 3) {
+      EXPECT_EQ(outcome.arguments[word], 0u) << why << ", word " << word;
+    }
   };
   before.target = 2 * sum;
   expect_stopped(check(rz, before, false), 0, "converged");
@@ -484,6 +490,103 @@ TEST_P(CgKernels, SmallProblemOfTheRigidMotions) {
       size += std::abs(w[place(row)] * y[row]);
     }
     EXPECT_LE(std::abs(terms[k] - sum), 4 * kEps64 * size) << "rows from " << 4 * k;
+  }
+}
+
+/// Symmetric with a positive diagonal, each row with the next few and one far away.
+gpu::GroupBlocks CgKernels::positive_blocks(std::size_t rows) {
+  gpu::GroupBlocks matrix(rows, static_cast<Index>(rows));
+  const auto add = [&](std::size_t a, std::size_t b) {
+    // sum = (v_a - v_b)^T m (v_a - v_b) with m positive.
+    gpu::Six root;
+    for (double& value : root.reshaped()) value = random();
+    const gpu::Six m = root * root.transpose() + gpu::Six::Identity();
+    const auto i = static_cast<Index>(a), j = static_cast<Index>(b);
+    matrix.at(i, i) += m;
+    matrix.at(j, j) += m;
+    matrix.at(i, j) -= m;
+    matrix.at(j, i) -= m;
+  };
+  for (std::size_t r = 0; r + 1 < rows; ++r) {
+    add(r, r + 1);
+    if (r % 3 == 0 && r + 7 < rows) add(r, r + 7);
+  }
+  matrix.at(0, 0) += gpu::Six::Identity();
+  return matrix;
+}
+
+TEST_P(CgKernels, TwoLevelsOverTheRigidMotions) {
+  // More than a workgroup of groups, no whole number of these, and fewer afterwards.
+  constexpr Index kMost = 150;
+  gpu::RigidLevels levels(*factory_, kMost);
+  const std::size_t room = 192;
+  auto of_y = empty(6 * room);
+  const auto of_w = empty(8 * room);
+  auto of_terms = empty(room);
+  levels.bind(of_y, of_w, of_terms);
+  for (const std::size_t groups : {std::size_t{150}, std::size_t{70}}) {
+    const gpu::GroupBlocks stiffness = positive_blocks(groups);
+    const auto aggregates = static_cast<Index>(groups / 8);
+    gpu::GroupBlocks motions(groups, aggregates);
+    for (std::size_t g = 0; g < groups; ++g) {
+      motions.at(static_cast<Index>(g), std::min(static_cast<Index>(g / 8), aggregates - 1)) =
+          gpu::Six::Identity();
+    }
+    const gpu::SmoothedLevels of = gpu::smoothed_levels(stiffness, motions);
+    levels.update(of);
+    Doubles y = random_values(6 * groups);
+    y.resize(6 * room, 0.0);
+    of_y.write(std::span<const double>(y));
+    of_terms.fill_zero();
+    shaders::CgPush push{};
+    levels.add_to(push);
+    EXPECT_EQ(push.rigid_aggregates, static_cast<std::uint32_t>(aggregates));
+    vulkan::Commands commands(*device_);
+    commands.begin();
+    levels.record(commands, push);
+    commands.end();
+    commands.submit();
+
+    const auto size = static_cast<Eigen::Index>(6 * groups);
+    const Eigen::MatrixXd s = of.smoother.dense(), q = of.prolongation.dense();
+    const Eigen::Map<const Eigen::VectorXd> of_groups(y.data(), size);
+    const Eigen::VectorXd coarse = of.inverse * (q.transpose() * of_groups);
+    const Eigen::VectorXd expected = s * of_groups + q * coarse;
+    // S and Q are rounded to fp32; A^-1 makes of what that does to Q^T y as much as of Q^T y.
+    const Eigen::VectorXd sizes =
+        s.cwiseAbs() * of_groups.cwiseAbs() +
+        2 * q.cwiseAbs() *
+            (of.inverse.cwiseAbs() * (q.transpose().cwiseAbs() * of_groups.cwiseAbs()));
+    const Doubles w = read(of_w, 8 * room);
+    double product = 0;
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const auto at = static_cast<std::size_t>(8 * (k / 6) + k % 6 + (k % 6 < 3 ? 0 : 1));
+      EXPECT_LE(std::abs(w[at] - expected[k]), 1.2 * kEps32 * sizes[k]) << k;
+      product += w[at] * of_groups[k];
+    }
+    const Doubles terms = read(of_terms, push.rigid_terms);
+    EXPECT_NEAR(std::accumulate(terms.begin(), terms.end(), 0.0), product,
+                1e-12 * sizes.dot(of_groups.cwiseAbs()));
+  }
+}
+
+TEST_P(CgKernels, RigidMotionsHoldNoMoreThanWasPlanned) {
+  for (const BoardShape& shape :
+       {BoardShape{9, 9, 1, 50, 50, 2.5}, BoardShape{36, 36, 1, 50, 50, 2.5},
+        BoardShape{71, 71, 1, 50, 50, 2.5}, BoardShape{16, 16, 16, 50, 50, 50},
+        BoardShape{24, 24, 24, 50, 50, 50}, BoardShape{300, 4, 4, 500, 5, 5}}) {
+    Scene scene;
+    scene.mesh = structured_board(shape);
+    scene.materials["board"] = {5, 0.4, 2.0};
+    scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(0.1, 60, 60)}, Axes{7}});
+    const Problem problem(std::move(scene));
+    const std::vector<std::uint8_t> destroyed(problem.mesh().tets.size(), 0);
+    gpu::RigidSpace space(*factory_, problem, destroyed, 1e-3);
+    space.update();
+    const std::size_t planned = gpu::RigidSpace::planned_bytes(problem);
+    const std::string where = std::to_string(shape.nx) + " x " + std::to_string(shape.nz);
+    EXPECT_LE(space.bytes(), planned) << where;
+    EXPECT_GE(5 * space.bytes(), planned) << where;
   }
 }
 

@@ -190,6 +190,74 @@ TEST_P(ConjugateGradient, NothingLoadedTakesNoIteration) {
   for (double u : Pair::displacement(*pair.vulkan)) EXPECT_EQ(u, 0);
 }
 
+/// A body with frames a hundred times as stiff, held at the top, pulled at its lower right edge.
+Scene framed_body(const BoardShape& shape) {
+  Scene scene;
+  const auto of_height = [&](const Vec3& x) { return x.y() / shape.height; };
+  scene.mesh = structured_board(shape, [&](const Vec3& x) {
+    return of_height(x) > 0.9 || of_height(x) < 0.1 ? "frame" : "tissue";
+  });
+  scene.materials = {{"tissue", {5, 0.4, 2.0}}, {"frame", {500, 0.4, std::nullopt}}};
+  scene.supports.push_back(
+      {Box{Vec3(-1, 0.9999 * shape.height, -1), Vec3(1e3, 1e3, 1e3)}, Axes{7}});
+  return scene;
+}
+
+/// Elements of the cells whose centres lie in a box.
+std::vector<Index> cells_in(const Problem& problem, const BoardShape& shape, const Box& box) {
+  std::vector<Index> found;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const Index c = e / 6;
+    const Vec3 cell(c % shape.nx, c / shape.nx % shape.ny, c / shape.nx / shape.ny);
+    const Vec3 centre = (cell + Vec3::Constant(0.5))
+                            .cwiseProduct(Vec3(shape.width / shape.nx, shape.height / shape.ny,
+                                               shape.depth / shape.nz));
+    if ((centre - box.min).minCoeff() > 0 && (box.max - centre).minCoeff() > 0) found.push_back(e);
+  }
+  return found;
+}
+
+/// Hundreds of groups of nodes, and their aggregates, thick and thin: intact, with a cut through
+/// nine tenths of the width, and once a piece has come off.
+TEST_P(ConjugateGradient, LargeBodiesTakeUnderTwoHundredIterations) {
+  std::vector<BoardShape> shapes{{36, 36, 1, 50, 50, 2.5}};
+  if (GetParam() == gpu::Variant::lvp) {  // the other one takes twice as long
+    shapes = {{71, 71, 1, 50, 50, 2.5}, {18, 18, 18, 50, 50, 50}};
+  }
+  for (const BoardShape& shape : shapes) {
+    const std::string body = shape.nz > 1 ? "block, " : "board, ";
+    Pair pair(framed_body(shape), way());
+    pair.load(pull(pair.problem(),
+                   nodes_in(pair.problem().mesh(), {Vec3(49.9, -1, -1), Vec3(51, 4, 51)}),
+                   Vec3(0.1, -1, 0.3)));
+    const auto intact = pair.solve();
+    expect(intact, kIntactTolerance, body + "intact");
+    EXPECT_LE(intact.report.iterations, 200) << body;
+    const Index row = shape.ny / 2;
+    const double side = 50.0 / shape.ny;
+    const auto cut =
+        cells_in(pair.problem(), shape, {Vec3(-1, row * side, -1), Vec3(45, (row + 1) * side, 51)});
+    pair.destroy(cut);
+    const auto after = pair.solve();
+    expect(after, kCutTolerance, body + "cut");
+    EXPECT_LE(after.report.iterations, 300) << body << "cut, corrected once";
+    // A piece comes off: two cells thick, inside.
+    std::vector<Index> shell;
+    const Vec3 low(10, 30, shape.nz > 1 ? 10 : -1), high(25, 40, shape.nz > 1 ? 25 : 51);
+    const auto outer = cells_in(pair.problem(), shape, {low, high});
+    const Vec3 in = Vec3::Constant(2 * side);
+    const auto inner = cells_in(pair.problem(), shape,
+                                {low + in, high - (shape.nz > 1 ? in : Vec3(in.x(), in.y(), 0))});
+    std::ranges::set_difference(outer, inner, std::back_inserter(shell));
+    pair.destroy(shell);
+    std::vector<std::uint8_t> loose(pair.problem().mesh().tets.size(), 0);
+    for (Index e : inner) loose[e] = 1;
+    const auto apart = pair.solve(loose);
+    expect(apart, kCutTolerance, body + "piece");
+    EXPECT_LE(apart.report.iterations, 460) << body << "piece, corrected twice";
+  }
+}
+
 TEST_P(ConjugateGradient, AnUpdateOfTheInverseIsRefused) {
   Scene scene = held_board();
   scene.solver = {.backend = "vulkan", .route = Route::cg, .update = Update::eager};
