@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// q = K p from 3 x 3 blocks in slices of 64 rows (SELL) and differences: K's rows sum to zero
-// (block_matrix.hpp). Partial sums of p^T q. Reads 96 bytes a block. SUNDER_POOLED: patches of pooled
-// volume add their forces.
+// q = K p (stiffness_rows.glsl). Partial sums of p^T q. SUNDER_POOLED: patches of pooled volume add
+// their forces.
 #include "cg.glsl"
 
-IN_DVEC4(0, Blocks, blocks)  // three rows a block; the fourth value of the first: the column
-IN_WORDS(1, Slices, slices)  // first block of each slice, / 64
 IN_UVEC4(2, Dofs, dofs)
 IN_DVEC4(3, P, direction)
 OUT(4, Q, dvec4, q)
 OUT(5, Partial, double, partial)
+#define SUNDER_ROWS_BINDING 0
+#define SUNDER_ROWS_OF(j) DVEC4(direction, j).xyz
+#include "stiffness_rows.glsl"
 #ifdef SUNDER_POOLED
 #define SUNDER_PATCH_BINDING 6
 #include "patch_forces.glsl"
@@ -18,14 +18,7 @@ OUT(5, Partial, double, partial)
 void main() {
   const uint n = invocation(), slice = workgroup();
   const dvec3 own = DVEC4(direction, n).xyz;
-  dvec3 sum = dvec3(0);
-  const uint last = slices.data[slice + 1u];
-  for (uint k = slices.data[slice]; k < last; ++k) {
-    const uint at = 3u * (k * kGroup + gl_LocalInvocationID.x);
-    const dvec4 row = DVEC4(blocks, at);
-    const dvec3 d = DVEC4(direction, uint(row.w)).xyz - own;
-    sum += times(row, DVEC4(blocks, at + 1u), DVEC4(blocks, at + 2u), d);
-  }
+  dvec3 sum = stiffness_row(slice, own);
 #ifdef SUNDER_POOLED
   sum += force_of_patches(slice);
 #endif

@@ -194,6 +194,8 @@ struct CgPush {
   uint unused;
 };
 
+SUNDER_CONST kBlockPacks = 5u;  // of a 3 x 3 block of the stiffness, in packs of four words
+
 // Kinds of dispatches: nodes, groups of nodes, unknowns of the dense level, one workgroup, elements or
 // patches, aggregates of groups, 64 groups.
 SUNDER_CONST kCgByNode = 0u;

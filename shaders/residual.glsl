@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// r = f - K u over the unknowns, from the 3 x 3 blocks of K (block_matrix.hpp) and displacement
-// differences: K's rows sum to zero, so (K u)_i = sum_j K_ij (u_j - u_i) and a rigid offset costs no
-// digits. At a gripped dof f - K u is minus the grip's reaction, and r = 0. Reads 96 bytes a block.
+// r = f - K u over the unknowns (stiffness_rows.glsl). At a gripped dof f - K u is minus the grip's
+// reaction, and r = 0.
 // SUNDER_POOLED: patches of pooled volume add their forces.
 #include "common.glsl"
 #include "reduce.glsl"
 
 IN_DVEC4(0, Nodal, u)
-IN_DVEC4(1, Blocks, blocks)  // three rows a block; the fourth value of the first: the column
-IN_WORDS(2, Slices, slices)  // first block of each slice, / 64
 IN_UVEC4(3, Dofs, dofs)      // x, y, z; w: gripped axes as bits
 IN_DVEC4(4, Load, load)      // of each node
 OUT(5, Balance, dvec4, balance)     // f - K u of each node
 OUT(6, Residual, double, residual)  // r of each unknown
 OUT(7, NodePartials, NodePartial, partials)
+#define SUNDER_ROWS_BINDING 1
+#define SUNDER_ROWS_OF(j) DVEC4(u, j).xyz
+#include "stiffness_rows.glsl"
 #ifdef SUNDER_POOLED
 #define SUNDER_PATCH_BINDING 8
 #include "patch_forces.glsl"
@@ -39,15 +39,7 @@ void leave(dvec3 sums) {
 void main() {
   const uint n = invocation(), slice = workgroup();
   const dvec3 own = DVEC4(u, n).xyz;
-  dvec3 k_u = dvec3(0);
-  const uint last = slices.data[slice + 1u];
-  for (uint k = slices.data[slice]; k < last; ++k) {
-    const uint at = 3u * (k * kGroup + gl_LocalInvocationID.x);
-    const dvec4 row = DVEC4(blocks, at);
-    const dvec3 d = DVEC4(u, uint(row.w)).xyz - own;
-    k_u += dvec3(dot(row.xyz, d), dot(DVEC4(blocks, at + 1u).xyz, d),
-                 dot(DVEC4(blocks, at + 2u).xyz, d));
-  }
+  dvec3 k_u = stiffness_row(slice, own);
 #ifdef SUNDER_POOLED
   k_u += force_of_patches(slice);
 #endif

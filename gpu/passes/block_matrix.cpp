@@ -3,6 +3,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <iterator>
 #include <set>
 
@@ -12,8 +14,30 @@
 namespace sunder::gpu {
 namespace {
 
-constexpr std::size_t kBlockDoubles = 12;  // three rows of four
-constexpr std::size_t kColumnAt = 3;       // of a block: its column, exact in fp32 up to 2^24
+constexpr std::size_t kBlockWords = 4 * shaders::kBlockPacks;
+constexpr std::size_t kColumnAt = 18;        // of a block's words, behind its nine values
+constexpr std::size_t kInverseDoubles = 12;  // of what preconditions a node: three rows of four
+using PackedBlock = std::array<std::uint32_t, kBlockWords>;
+using PackedInverse = std::array<double, kInverseDoubles>;
+
+PackedBlock pack(const Mat3& block, Index column) {
+  PackedBlock packed{};
+  for (std::size_t k = 0; k < 9; ++k) {
+    const double value = block(static_cast<Index>(k / 3), static_cast<Index>(k % 3));
+    const auto words = std::bit_cast<std::array<std::uint32_t, 2>>(value);
+    std::ranges::copy(words, &packed[2 * k]);
+  }
+  packed[kColumnAt] = static_cast<std::uint32_t>(column);
+  return packed;
+}
+
+PackedInverse pack_inverse(const Mat3& inverse) {
+  PackedInverse packed{};
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 3; ++j) packed[static_cast<std::size_t>(4 * i + j)] = inverse(i, j);
+  }
+  return packed;
+}
 
 Index corner_of(const std::array<Index, 4>& tet, Index node) {
   return static_cast<Index>(std::find(tet.begin(), tet.end(), node) - tet.begin());
@@ -32,14 +56,14 @@ BlockMatrix::BlockMatrix(const Problem& problem)
 
 std::size_t BlockMatrix::planned_bytes(bool preconditioner) const {
   const std::size_t rows = std::size_t{groups()} * shaders::kGroup;
-  return rows_.count() * kBlockDoubles * sizeof(double) + vulkan::Buffer::padded(rows_.bytes()) +
-         (preconditioner ? rows * kBlockDoubles * sizeof(double) : 0) + patches_.planned_bytes();
+  return rows_.count() * sizeof(PackedBlock) + vulkan::Buffer::padded(rows_.bytes()) +
+         (preconditioner ? rows * sizeof(PackedInverse) : 0) + patches_.planned_bytes();
 }
 
 void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wanted) {
   const Problem& problem = problem_;
   const vulkan::PhysicalDevice& device = kernels.device().physical();
-  const std::size_t bytes = rows_.count() * kBlockDoubles * sizeof(double);
+  const std::size_t bytes = rows_.count() * sizeof(PackedBlock);
   // `lvp` reads blocks as texels alone, which lavapipe allows 16 times the range of storage
   // buffers.
   const std::size_t range =
@@ -50,17 +74,16 @@ void BlockMatrix::upload(const KernelFactory& kernels, bool preconditioner_wante
                       " bytes, but the device \"" + device.name + "\" takes buffers of " +
                       std::to_string(limit) + "; use backend cpu");
   }
-  std::vector<double> blocks(rows_.count() * kBlockDoubles, 0.0);  // padding: of node 0, zero
-  std::vector<double> preconditioner(
-      preconditioner_wanted ? std::size_t{groups()} * shaders::kGroup * kBlockDoubles : 0, 0.0);
+  std::vector<PackedBlock> blocks(rows_.count(), PackedBlock{});  // padding: of node 0, zero
+  std::vector<PackedInverse> preconditioner(
+      preconditioner_wanted ? std::size_t{groups()} * shaders::kGroup : 0, PackedInverse{});
   for (Index n = 0; n < problem.node_count(); ++n) {
     const auto row = static_cast<std::size_t>(n);
     for (std::size_t k = 0; k < neighbours_[row].size(); ++k) {
-      pack(block(n, neighbours_[row][k]), neighbours_[row][k],
-           &blocks[rows_.place(row, k) * kBlockDoubles]);
+      blocks[rows_.place(row, k)] = pack(block(n, neighbours_[row][k]), neighbours_[row][k]);
     }
     if (preconditioner_wanted) {
-      pack(inverse_of_free(n, diagonal(n)), 0, &preconditioner[row * kBlockDoubles]);
+      preconditioner[row] = pack_inverse(inverse_of_free(n, diagonal(n)));
     }
   }
   const auto upload = [&](vulkan::Buffer& buffer, auto& values) {
@@ -111,13 +134,6 @@ Mat3 BlockMatrix::block(Index row, Index column, std::span<const double> scale) 
   return sum;
 }
 
-void BlockMatrix::pack(const Mat3& block, Index column, double* to) const {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) to[4 * i + j] = block(i, j);
-  }
-  to[kColumnAt] = column;
-}
-
 /// Inverse of a diagonal block over the axes that neither a support nor a grip holds.
 Mat3 BlockMatrix::inverse_of_free(Index node, const Mat3& diagonal) const {
   Mat3 matrix = diagonal;
@@ -152,14 +168,13 @@ void BlockMatrix::destroy(std::span<const Index> elements, std::span<const doubl
   if (!patches_.empty()) {
     patches_.destroy(elements, scale, now ? *now : *problem_.pools(), diagonals);
   }
-  std::array<double, kBlockDoubles> packed{};
   for (const auto& [i, j] : touched) {
     const auto& row = neighbours_[i];
     const auto k =
         static_cast<std::size_t>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
-    pack(block(i, j, scale), j, packed.data());
-    blocks_.write(std::span<const double>(packed),
-                  rows_.place(static_cast<std::size_t>(i), k) * kBlockDoubles);
+    const PackedBlock packed = pack(block(i, j, scale), j);
+    blocks_.write(std::span<const PackedBlock>(&packed, 1),
+                  rows_.place(static_cast<std::size_t>(i), k));
   }
   if (preconditioner_.bytes() == 0) return;
   for (const Index n : diagonals) write_preconditioner(n, scale);
@@ -182,10 +197,8 @@ void BlockMatrix::grip(std::span<const Index> gripped, std::span<const double> s
 }
 
 void BlockMatrix::write_preconditioner(Index node, std::span<const double> scale) {
-  std::array<double, kBlockDoubles> packed{};
-  pack(inverse_of_free(node, diagonal(node, scale)), 0, packed.data());
-  preconditioner_.write(std::span<const double>(packed),
-                        static_cast<std::size_t>(node) * kBlockDoubles);
+  const PackedInverse packed = pack_inverse(inverse_of_free(node, diagonal(node, scale)));
+  preconditioner_.write(std::span<const PackedInverse>(&packed, 1), static_cast<std::size_t>(node));
 }
 
 std::size_t BlockMatrix::bytes() const {

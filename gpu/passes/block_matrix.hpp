@@ -7,7 +7,6 @@
 // (patch_vectors.hpp).
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -54,7 +53,6 @@ class BlockMatrix {
   [[nodiscard]] Mat3 diagonal(Index node, std::span<const double> scale = {}) const {
     return block(node, node, scale) + patches_.diagonal(node);
   }
-  void pack(const Mat3& block, Index column, double* to) const;
   void write_preconditioner(Index node, std::span<const double> scale);
   [[nodiscard]] Mat3 inverse_of_free(Index node, const Mat3& diagonal) const;
 
