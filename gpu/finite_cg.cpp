@@ -52,7 +52,7 @@ FiniteCg::FiniteCg(const KernelFactory& kernels, const Problem& problem,
   };
   const std::size_t padded = std::size_t{node_groups_} * shaders::kGroup;
   tangents_ = make(std::size_t{4} * shaders::kFiniteTangent * elements_ * kernels.real_bytes());
-  inverses_ = make(padded * 12 * sizeof(double));
+  inverses_ = make(padded * 6 * sizeof(double));
   dofs_ = make(padded * 4 * sizeof(std::uint32_t));
   for (Buffer* vector : {&x_, &r_, &p_, &q_, &z_}) *vector = make(padded * 4 * sizeof(double));
   for (Buffer* sums : {&pq_, &rz_}) *sums = make(partials_ * 4 * sizeof(double));
@@ -64,7 +64,7 @@ FiniteCg::FiniteCg(const KernelFactory& kernels, const Problem& problem,
 std::size_t FiniteCg::planned_bytes(const KernelFactory& kernels, const Problem& problem) {
   return std::size_t{4} * shaders::kFiniteTangent * kernels.real_bytes() *
              problem.mesh().tets.size() +
-         (12 + 5 * 4 + 4) * sizeof(double) * problem.mesh().nodes.size() +
+         (6 + 5 * 4 + 4) * sizeof(double) * problem.mesh().nodes.size() +
          RigidSpace::planned_bytes(problem, true);
 }
 

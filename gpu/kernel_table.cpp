@@ -61,7 +61,7 @@ constexpr KernelRow kTable[] = {
      0},
     {"cg_step",
      "step of conjugate gradients, and its preconditioner",
-     {plain, doubles, doubles, doubles, doubles, doubles, plain, plain, plain, plain},
+     {plain, words, doubles, doubles, doubles, doubles, plain, plain, plain, plain},
      0},
     {"complement",
      "last step of the inversion on the device",

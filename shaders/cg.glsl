@@ -11,7 +11,3 @@ bvec3 held_axes(uvec4 dofs) {
   return bvec3(dofs.x == kHeld || (dofs.w & 1u) != 0u, dofs.y == kHeld || (dofs.w & 2u) != 0u,
                dofs.z == kHeld || (dofs.w & 4u) != 0u);
 }
-
-dvec3 times(dvec4 row0, dvec4 row1, dvec4 row2, dvec3 v) {
-  return dvec3(dot(row0.xyz, v), dot(row1.xyz, v), dot(row2.xyz, v));
-}

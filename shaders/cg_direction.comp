@@ -24,5 +24,5 @@ void main() {
                            loose || (mode.w & 4u) != 0u);
   const dvec3 m_r = DVEC4(z, n).xyz + mix(moved, dvec3(0), none);
   const dvec3 next = m_r + state.data[0].ratio * DVEC4(before, n).xyz;
-  direction.data[n] = dvec4(p.first == 1u ? m_r : next, 0);
+  STORE_THREE(direction.data[n], p.first == 1u ? m_r : next);
 }

@@ -23,7 +23,7 @@ void main() {
   sum += force_of_patches(slice);
 #endif
   sum = mix(sum, dvec3(0), held_axes(UVEC4(dofs, n)));
-  q.data[n] = dvec4(sum, 0);
+  STORE_THREE(q.data[n], sum);
   const double pq = part_sum(dot(sum, own));
   if (leads_part()) partial.data[part()] = pq;
 }

@@ -5,7 +5,7 @@
 #include "cg.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer State { CgState data[]; } state;
-IN_DVEC4(1, Preconditioner, m)
+IN_UVEC4(1, Preconditioner, m)  // the upper triangle of each block's inverse, row by row
 IN_DVEC4(2, P, direction)
 IN_DVEC4(3, Q, q)
 IN_DVEC4(4, XBefore, x_before)  // the same memory as x and r; each invocation its own values
@@ -18,12 +18,16 @@ OUT(9, RzPartial, double, rz_partial)
 void main() {
   const uint n = invocation();
   const double a = state.data[0].length_;
-  x.data[n] = dvec4(DVEC4(x_before, n).xyz + a * DVEC4(direction, n).xyz, 0);
+  STORE_THREE(x.data[n], DVEC4(x_before, n).xyz + a * DVEC4(direction, n).xyz);
   const dvec3 rn = DVEC4(r_before, n).xyz - a * DVEC4(q, n).xyz;
-  const dvec3 zn = times(DVEC4(m, 3u * n), DVEC4(m, 3u * n + 1u),
-                         DVEC4(m, 3u * n + 2u), rn);
-  r.data[n] = dvec4(rn, 0);
-  z_.data[n] = dvec4(zn, 0);
+  const uvec4 first = UVEC4(m, 3u * n), second = UVEC4(m, 3u * n + 1u), third = UVEC4(m, 3u * n + 2u);
+  const double xy = packDouble2x32(first.zw), xz = packDouble2x32(second.xy),
+               yz = packDouble2x32(third.xy);
+  const dvec3 zn = dvec3(dot(dvec3(packDouble2x32(first.xy), xy, xz), rn),
+                         dot(dvec3(xy, packDouble2x32(second.zw), yz), rn),
+                         dot(dvec3(xz, yz, packDouble2x32(third.zw)), rn));
+  STORE_THREE(r.data[n], rn);
+  STORE_THREE(z_.data[n], zn);
   const double rz = part_sum(dot(rn, zn));
   if (leads_part()) rz_partial.data[part()] = rz;
 }

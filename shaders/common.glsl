@@ -44,6 +44,17 @@ dvec4 fetch_dvec4(usamplerBuffer buffer_, uint i) {
 #define UVEC4(name, i) name.data[i]
 #endif
 
+#ifndef SUNDER_SINGLE
+// A number among values in fp64, as its bits: lavapipe takes longer to convert one than to load it.
+uint number_in(double bits) { return unpackDouble2x32(bits).x; }
+#endif
+// Three values of a pack of four whose fourth is 0 from the first: lavapipe stores them one by one.
+#ifdef SUNDER_LVP
+#define STORE_THREE(place, value) place.xyz = value
+#else
+#define STORE_THREE(place, value) place = dvec4(value, 0)
+#endif
+
 // Storage precision of the inverse and of element stress.
 #ifdef SUNDER_FP64
 #define REAL double

@@ -9,7 +9,7 @@ IN_WORDS(2, First, first)    // of each node
 IN_WORDS(3, Around, around)  // 4 * element + corner
 IN_UVEC4(4, Dofs, dofs)
 IN_DOUBLES(5, Target, target)  // as finite_gather
-OUT(6, Inverses, dvec4, inverses)  // three rows a node
+OUT(6, Inverses, dvec2, inverses)  // three a node: the upper triangle, row by row
 
 void main() {
   const uint n = invocation();
@@ -43,9 +43,8 @@ void main() {
   }
   const dmat3 c = dmat3(cross(block[1], block[2]), cross(block[2], block[0]), cross(block[0], block[1]));
   const dmat3 inverse_ = c * (1.0LF / dot(block[0], c[0]));
-  [[unroll]] for (uint axis = 0u; axis < 3u; ++axis) {
-    dvec3 row = dvec3(inverse_[0][axis], inverse_[1][axis], inverse_[2][axis]);
-    row = mix(row, dvec3(0), bvec3(held.x || held[axis], held.y || held[axis], held.z || held[axis]));
-    inverses.data[3u * n + axis] = dvec4(row, 0);
-  }
+  const dvec3 free = mix(dvec3(1), dvec3(0), held);
+  inverses.data[3u * n] = dvec2(inverse_[0][0] * free.x, inverse_[1][0] * free.x * free.y);
+  inverses.data[3u * n + 1u] = dvec2(inverse_[2][0] * free.x * free.z, inverse_[1][1] * free.y);
+  inverses.data[3u * n + 2u] = dvec2(inverse_[2][1] * free.y * free.z, inverse_[2][2] * free.z);
 }

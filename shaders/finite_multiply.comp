@@ -29,7 +29,7 @@ void main() {
       if (dof[axis] != kHeld) sum[axis] += target.data[p.unknowns + dof[axis]] * own[axis];
     }
     sum = mix(sum, dvec3(0), held_axes(dof));
-    q.data[n] = dvec4(sum, 0);
+    STORE_THREE(q.data[n], sum);
   }
   const double pq = part_sum(dot(sum, own));
   if (leads_part()) partial.data[part()] = pq;

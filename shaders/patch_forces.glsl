@@ -11,7 +11,7 @@ dvec3 force_of_patches(uint slice) {
   const uint last = patch_ranges.data[2u * slice + 1u];
   for (uint k = patch_ranges.data[2u * slice]; k < last; ++k) {
     const dvec4 v = DVEC4(patch_vectors, k * kGroup + gl_LocalInvocationID.x);
-    sum += packDouble2x32(UVEC4(patch_sums, uint(v.w)).xy) * v.xyz;
+    sum += packDouble2x32(UVEC4(patch_sums, number_in(v.w)).xy) * v.xyz;
   }
   return sum;
 }

@@ -15,11 +15,11 @@ void main() {
   const uint slice = workgroup(), last = ranges.data[2u * slice + 1u];
   uint k = ranges.data[2u * slice];
   if (k >= last) return;  // room for parts that are not there
-  const dvec3 first = DVEC4(direction, uint(DVEC4(vectors, k * kGroup + gl_LocalInvocationID.x).w)).xyz;
+  const dvec3 first = DVEC4(direction, number_in(DVEC4(vectors, k * kGroup + gl_LocalInvocationID.x).w)).xyz;
   double sum = 0;
   for (++k; k < last; ++k) {
     const dvec4 v = DVEC4(vectors, k * kGroup + gl_LocalInvocationID.x);
-    sum += dot(v.xyz, DVEC4(direction, uint(v.w)).xyz - first);
+    sum += dot(v.xyz, DVEC4(direction, number_in(v.w)).xyz - first);
   }
   sums.data[invocation()] = dvec2(sum, 0);
 }

@@ -15,10 +15,9 @@ namespace sunder::gpu {
 namespace {
 
 constexpr std::size_t kBlockWords = 4 * shaders::kBlockPacks;
-constexpr std::size_t kColumnAt = 18;        // of a block's words, behind its nine values
-constexpr std::size_t kInverseDoubles = 12;  // of what preconditions a node: three rows of four
+constexpr std::size_t kColumnAt = 18;  // of a block's words, behind its nine values
 using PackedBlock = std::array<std::uint32_t, kBlockWords>;
-using PackedInverse = std::array<double, kInverseDoubles>;
+using PackedInverse = std::array<double, 6>;  // the upper triangle, row by row
 
 PackedBlock pack(const Mat3& block, Index column) {
   PackedBlock packed{};
@@ -32,11 +31,7 @@ PackedBlock pack(const Mat3& block, Index column) {
 }
 
 PackedInverse pack_inverse(const Mat3& inverse) {
-  PackedInverse packed{};
-  for (Index i = 0; i < 3; ++i) {
-    for (Index j = 0; j < 3; ++j) packed[static_cast<std::size_t>(4 * i + j)] = inverse(i, j);
-  }
-  return packed;
+  return {inverse(0, 0), inverse(0, 1), inverse(0, 2), inverse(1, 1), inverse(1, 2), inverse(2, 2)};
 }
 
 Index corner_of(const std::array<Index, 4>& tet, Index node) {

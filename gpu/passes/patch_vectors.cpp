@@ -2,6 +2,7 @@
 #include "gpu/passes/patch_vectors.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,14 +13,14 @@ namespace {
 
 using vulkan::Buffer;
 
-using PackedVector = std::array<double, 4>;  // the fourth: the node or the patch's row, exact
+using PackedVector = std::array<double, 4>;  // the fourth, as a word: the node or the patch's row
 
 constexpr std::size_t kSumBytes = 2 * sizeof(double);
 // Parts hang together by nodes and have an element each.
 constexpr std::size_t kNodesOfAPart = 4;
 
 PackedVector pack_vector(const Vec3& v, std::size_t of) {
-  return {v.x(), v.y(), v.z(), static_cast<double>(of)};
+  return {v.x(), v.y(), v.z(), std::bit_cast<double>(std::uint64_t{of})};
 }
 
 std::size_t words_bytes(const std::vector<std::uint32_t>& words) {

@@ -81,6 +81,9 @@ class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
     return made;
   }
   /// Of numbers that are none: whatever is not written shows.
+  [[nodiscard]] vulkan::Buffer zeros(std::size_t doubles) const {
+    return buffer(Doubles(doubles, 0.0));
+  }
   [[nodiscard]] vulkan::Buffer empty(std::size_t doubles) const {
     return buffer(Doubles(doubles, kNaN));
   }

@@ -70,13 +70,13 @@ class PooledStiffness {
 /// M K_nn = I over the axes that are free.
 void expect_inverse(const Problem& problem, const Eigen::MatrixXd& k, const vulkan::Buffer& blocks,
                     Index node) {
-  std::array<double, 12> packed{};
-  blocks.read(std::span<double>(packed), 12 * static_cast<std::size_t>(node));
+  std::array<double, 6> packed{};
+  blocks.read(std::span<double>(packed), 6 * static_cast<std::size_t>(node));
   Mat3 m = Mat3::Identity(), of_k = Mat3::Identity();
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (problem.dof(node, i) == kNone || problem.dof(node, j) == kNone) continue;
-      m(i, j) = packed[static_cast<std::size_t>(4 * i + j)];
+      m(i, j) = packed[static_cast<std::size_t>(i + j + (i > 0 && j > 0 ? 1 : 0))];
       of_k(i, j) = k(3 * node + i, 3 * node + j);
     }
   }
