@@ -59,8 +59,8 @@ Frame frame(Backend& backend, const Load& load, std::span<const Index> broken) {
   return {milliseconds_since(start), iterations};
 }
 
-void size_row(benchmark::State& state, const Method& method, Index cells) {
-  const TearingBoard board(cells);
+void size_row(benchmark::State& state, const Method& method, const test::BoardShape& shape) {
+  const TearingBoard board(shape);
   Scene scene = board.problem->scene();
   scene.solver = method.options;
   const auto problem = std::make_shared<Problem>(std::move(scene));
@@ -126,6 +126,22 @@ int frames(const Method& method, Index cells, bool software) {
   return cells > 141 ? 3 : 10;
 }
 
+/// Bodies as thick as wide, whose groups of nodes have more neighbours.
+void register_blocks(const Method& method) {
+  if (method.options.backend != "vulkan" || method.options.precision != Precision::fp64) return;
+  for (Index cells : {18, 26, 55}) {
+    const std::string name =
+        "scaling_block/" + method.name + "/" + std::to_string(6 * cells * cells * cells);
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [=](auto& state) {
+                                   size_row(state, method, {cells, cells, cells, 50, 50, 50});
+                                 })
+        ->UseManualTime()
+        ->Iterations(1)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
 void register_rows() {
   const bool software = software_renderer_only();
   for (const Method& method : methods()) {
@@ -134,11 +150,14 @@ void register_rows() {
       if (cells > most_cells(method, software)) break;
       const std::string name = "scaling/" + method.name + "/" + std::to_string(6 * cells * cells);
       benchmark::RegisterBenchmark(name.c_str(),
-                                   [=](auto& state) { size_row(state, method, cells); })
+                                   [=](auto& state) {
+                                     size_row(state, method, {cells, cells, 1, 50, 50, 2.5});
+                                   })
           ->UseManualTime()
           ->Iterations(frames(method, cells, software))
           ->Unit(benchmark::kMillisecond);
     }
+    if (method.options.route == Route::cg) register_blocks(method);
   }
 }
 

@@ -107,7 +107,7 @@ LARGE = [
             Share(0), Share(950, "board (30246|119286)/|(7776|7986)/.* eager"
                             "|1944/to640/vulkan cg", 1)),
     Program("bench_scaling", "conjugate gradients on the Vulkan device, large boards",
-            Share(0), Share(400, "vulkan.*/(30246|119286|501126|1003686)/", 1)),
+            Share(0), Share(430, "vulkan.*/(30246|119286|501126|1003686)/|block", 1)),
     Program("bench_scaling", "boards of half a million and a million tetrahedra",
             Share(0), Share(150, "cpu.*/(501126|1003686)/", 1)),
 ]

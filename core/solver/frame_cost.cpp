@@ -26,9 +26,13 @@ constexpr double kValue = sizeof(double);
 // Of conjugate gradients on a device apart, on boards with frames 100 times stiffer
 // (bench_scaling): they grow with the square root of a group's nodes, and take more where groups
 // are too few to tell the frames from the tissue.
-constexpr double kIterationsOfANode = 14, kIterationsOfFewGroups = 440, kManyGroups = 60;
-// Dispatches of one of these, and bytes a node of its 13 vectors of four values and two places.
+constexpr double kIterationsOfANode = 25, kIterationsOfFewGroups = 400, kManyGroups = 60;
+// Dispatches of one of these, two more over more groups than have a dense inverse; bytes a node of
+// its 13 vectors of four values and two places, and of a group's blocks with others and with
+// aggregates.
 constexpr double kIterationDispatches = 7, kIterationBytes = 13 * 32 + 2 * 16;
+constexpr std::size_t kDenseGroups = 64;
+constexpr double kGroupBytes = 22 * 160;
 // Bytes of an element's stress there: shape, corners, state, displacement of four nodes.
 constexpr double kStressBytes = 96 + 16 + 16 + 128;
 
@@ -106,8 +110,10 @@ double iterations_apart(const FrameShape& s) {
 }
 
 void FrameWork::iterate(const FrameShape& s, double iterations) {
-  const double bytes = real(s.stiffness_bytes) + kIterationBytes * real(s.kept) / 3;
-  passes(iterations * kIterationDispatches, iterations * bytes);
+  const bool levels = s.groups > kDenseGroups;
+  const double bytes = real(s.stiffness_bytes) + kIterationBytes * real(s.kept) / 3 +
+                       (levels ? kGroupBytes * real(s.groups) : 0);
+  passes(iterations * (kIterationDispatches + (levels ? 2 : 0)), iterations * bytes);
 }
 
 void FrameWork::check(const FrameShape& s) {

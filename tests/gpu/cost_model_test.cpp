@@ -89,8 +89,9 @@ TEST(DeviceCostModel, CountsIterationsByTheGroups) {
     std::size_t nodes, groups;
     double iterations;
   };
-  for (const Board& b : {Board{722, 11, 310}, Board{2738, 42, 125}, Board{10224, 64, 152},
-                         Board{40328, 250, 171}, Board{336200, 512, 343}}) {
+  for (const Board& b :
+       {Board{200, 12, 233}, Board{722, 45, 132}, Board{2738, 171, 102}, Board{10368, 648, 95},
+        Board{40328, 1260, 121}, Board{168200, 5256, 176}, Board{336200, 10506, 163}}) {
     FrameShape shape = board(3 * b.nodes);
     shape.groups = b.groups;
     const double ratio = iterations_apart(shape) / b.iterations;
