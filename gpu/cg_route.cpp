@@ -50,8 +50,8 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
       most_known_(most_known(kernels, body.problem())),
       commands_(kernels.device()) {
   const vulkan::PhysicalDevice& device = kernels.device().physical();
-  device.require(std::max(matrix_.groups(), matrix_.patches().groups()), device.limits.groups,
-                 "route cg");
+  device.require(std::max({matrix_.groups(), matrix_.patches().groups(), rigid_.most_workgroups()}),
+                 device.limits.groups, "route cg");
   const std::size_t nodes = std::size_t{matrix_.groups()} * shaders::kGroup;
   for (Buffer* vector : {&r_, &p_, &q_, &z_}) {
     *vector = Buffer(kernels.device(), nodes * 4 * sizeof(double), Placement::device);

@@ -45,7 +45,7 @@ dvec4 fetch_dvec4(usamplerBuffer buffer_, uint i) {
 #endif
 
 #ifndef SUNDER_SINGLE
-// A number among values in fp64, as its bits: lavapipe takes longer to convert one than to load it.
+// A number among values in fp64, as bits of one near 1: lavapipe takes longer to convert one than to load it.
 uint number_in(double bits) { return unpackDouble2x32(bits).x; }
 #endif
 // Three values of a pack of four whose fourth is 0 from the first: lavapipe stores them one by one.

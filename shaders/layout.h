@@ -196,8 +196,8 @@ struct CgPush {
 
 SUNDER_CONST kBlockPacks = 5u;  // of a 3 x 3 block of the stiffness, in packs of four words
 
-// Kinds of dispatches: nodes, groups of nodes, unknowns of the dense level, one workgroup, elements or
-// patches, aggregates of groups, 64 groups.
+// Kinds of dispatches: nodes, groups of nodes, unknowns of the dense level, one workgroup, elements
+// or patches, aggregates of groups, 64 groups.
 SUNDER_CONST kCgByNode = 0u;
 SUNDER_CONST kCgByGroup = 1u;
 SUNDER_CONST kCgBySolve = 2u;

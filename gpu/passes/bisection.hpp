@@ -11,8 +11,9 @@
 
 namespace sunder::gpu {
 
-/// Adds `count` parts of these points, in proportion to the parts on either side of a cut, or fewer
-/// where a part would have less than `fewest`; `x`: of every point. The order of `points` is lost.
+/// Adds `count` parts of these points, in proportion to the parts on either side of a cut; fewer
+/// than twice `fewest` are not cut again; `count`: at most the points. `x`: of every point. The
+/// order of `points` is lost.
 inline void bisect(std::span<Index> points, Index count, std::size_t fewest,
                    const std::vector<Vec3>& x, std::vector<std::vector<Index>>& parts) {
   if (count <= 1 || points.size() < 2 * fewest) {

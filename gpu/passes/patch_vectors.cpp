@@ -20,7 +20,8 @@ constexpr std::size_t kSumBytes = 2 * sizeof(double);
 constexpr std::size_t kNodesOfAPart = 4;
 
 PackedVector pack_vector(const Vec3& v, std::size_t of) {
-  return {v.x(), v.y(), v.z(), std::bit_cast<double>(std::uint64_t{of})};
+  // In the lower word of a number near 1, that a device may not take for zero.
+  return {v.x(), v.y(), v.z(), std::bit_cast<double>(0x3ff0'0000'0000'0000 | std::uint64_t{of})};
 }
 
 std::size_t words_bytes(const std::vector<std::uint32_t>& words) {

@@ -16,9 +16,9 @@ namespace {
 using vulkan::Buffer;
 using vulkan::Placement;
 
-// Of so many groups one aggregate, or of fewer while there are less than kFewAggregates: of 166,
-// 1251 and 10481 groups of boards 43, 156 and 256 aggregates take 110, 167 and 260 iterations,
-// where all equations of the groups take 110, 173 and no less than 250.
+// Of so many groups one aggregate, or of fewer while there are less than kFewAggregates. By a model
+// of the boards 43 of 166 groups and 156 of 1,251 take as many iterations as all equations of the
+// groups.
 constexpr Index kGroupsOfOne = 8, kFewestOfOne = 4, kFewAggregates = 64, kMostAggregates = 256;
 // Blocks of a group in S and in Q: of a board 11 and 4, of a body as thick as long 27 and 15;
 // slices pad.
@@ -51,6 +51,19 @@ void pack_all(const GroupBlocks& matrix, const Slices& slices, std::uint32_t* to
       pack(entry.block, entry.column, to + slices.place(r, k) * kEntryWords);
     }
   }
+}
+
+/// Symmetric: with what rounding to fp32 may take from a quadratic form more on the diagonal.
+GroupBlocks kept_positive(GroupBlocks matrix) {
+  constexpr double kRounding = 0x1p-24;
+  for (std::size_t r = 0; r < matrix.rows(); ++r) {
+    Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+    for (const GroupBlocks::Entry& entry : matrix.row(r)) {
+      sum += entry.block.cwiseAbs().rowwise().sum();
+    }
+    matrix.at(static_cast<Index>(r), static_cast<Index>(r)).diagonal() += 2 * kRounding * sum;
+  }
+  return matrix;
 }
 
 std::uint32_t rows_of(Index groups) {
@@ -131,12 +144,13 @@ void RigidLevels::update(const SmoothedLevels& levels) {
 void RigidLevels::write_sums(const SmoothedLevels& levels) {
   const Slices smoother = slices_of(levels.smoother), rest = slices_of(levels.prolongation);
   std::vector<std::uint32_t> blocks((smoother.count() + rest.count()) * kEntryWords, 0);
-  pack_all(levels.smoother, smoother, blocks.data());
+  pack_all(kept_positive(levels.smoother), smoother, blocks.data());
   pack_all(levels.prolongation, rest, blocks.data() + smoother.count() * kEntryWords);
   std::vector<std::uint32_t> slices = smoother.first();
   for (const std::uint32_t first : rest.first()) {
     slices.push_back(smoother.first().back() + first);
   }
+  blocks.resize(std::max(blocks.size(), kEntryWords), 0);  // of a body of which nothing is left
   hold(blocks_, blocks.size() * sizeof(std::uint32_t));
   hold(slices_, slices.size() * sizeof(std::uint32_t));
   blocks_.write(std::span<const std::uint32_t>(blocks));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // w = B y over groups of nodes on the device, B the two levels of smoothed_levels.hpp: y of
 // aggregates is Q^T y, a workgroup each; theirs w = A^-1 y, by the kernel of a small body's groups;
-// then w = S y + Q w, an invocation a group. S and Q in fp32, which keeps B symmetric and positive;
-// sums in fp64.
+// then w = S y + Q w, an invocation a group. S and Q in fp32, S with as much more on its diagonal
+// as rounding may take: B stays symmetric and positive. Sums in fp64.
 #pragma once
 
 #include <memory>
@@ -43,10 +43,6 @@ class RigidLevels {
   void bind_all();
   [[nodiscard]] std::uint32_t solve_groups() const {
     return round_up(6 * static_cast<std::uint32_t>(most_), 16) / 4;
-  }
-  [[nodiscard]] shaders::CgPush of_aggregates(shaders::CgPush push) const {
-    push.rigid_solves = solve_groups();
-    return push;
   }
 
   const KernelFactory& kernels_;

@@ -21,9 +21,9 @@ namespace {
 using vulkan::Buffer;
 using vulkan::Placement;
 
-// Nodes of a group of the largest body: few, while their equations are few. Iterations of boards of
-// 1,944, 7,776, 30,246, 119,286 and 1,003,686 tetrahedra: 139, 110, 125, 167 and 260, where groups
-// of 64 nodes, 64 to 512 at most, take 330, 213, 213, 218 and 537.
+// Nodes of a group: few, while their equations are few. Iterations of boards of 1,944, 7,776,
+// 30,246, 119,286 and 1,003,686 tetrahedra: 132, 102, 95, 121 and 163, where groups of 64 nodes, 64
+// at most or 512 of the last two, take 317, 124, 156, 171 and 343.
 constexpr Index kNodesPerGroup = 16, kManyGroups = 1024, kNodesOfManyGroups = 32;
 // Groups whose equations have a dense inverse; more have two levels in its place
 // (rigid_levels.hpp), and groups of their own for so many pieces that have come off.
@@ -142,6 +142,12 @@ void RigidSpace::bind(const Buffer& r) {
   solve_binding_ = std::make_unique<vulkan::Binding>(kernels_.device(), *solve_, solved);
 }
 
+std::uint32_t RigidSpace::most_workgroups() const {
+  const Index solved = levels_ ? RigidLevels::aggregates_of(most_) : kMost;
+  return std::max(static_cast<std::uint32_t>(most_),
+                  round_up(6 * static_cast<std::uint32_t>(solved), 16) / 4);
+}
+
 void RigidSpace::add_to(shaders::CgPush& push) const {
   push.rigid_groups = groups();
   push.rigid_solves = push.rigid_terms = solve_groups();
@@ -257,29 +263,53 @@ void RigidSpace::turn(std::span<const double> u) {
 
 void RigidSpace::update() {
   if (!changed_) return;
-  changed_ = false;
   shown_.clear();
   Lists nodes = pieces();
-  if (stays(nodes)) return;
-  pieces_ = nodes.size();
-  Lists groups = grouped(std::move(nodes));
-  if (groups != groups_) {
-    groups_ = std::move(groups);
-    place_modes({});
-    const std::size_t size = groups_.size();
-    stiffness_ = GroupBlocks(size, static_cast<Index>(size));
-    for (Index e = 0; e < problem_.tet_count(); ++e) {
-      add_element(e, destroyed_[e] ? share_ : 1);
+  if (!stays(nodes)) {
+    pieces_ = nodes.size();
+    Lists groups = grouped(std::move(nodes));
+    if (groups != groups_) {
+      groups_ = std::move(groups);
+      place_modes({});
+      add_all();
     }
-    for (Index p = 0; problem_.pools() && p < problem_.pools()->count(); ++p) add_patch(p);
+    build();
   }
-  build();
+  changed_ = false;
+}
+
+void RigidSpace::add_all() {
+  const std::size_t size = groups_.size();
+  stiffness_ = GroupBlocks(size, static_cast<Index>(size));
+  for (Index e = 0; e < problem_.tet_count(); ++e) add_element(e, destroyed_[e] ? share_ : 1);
+  for (Index p = 0; problem_.pools() && p < problem_.pools()->count(); ++p) add_patch(p);
 }
 
 /// A cut through nine tenths of a board by levels of the whole one costs 3 % more iterations.
 bool RigidSpace::stays(const Lists& nodes) const {
-  return levels_ && !groups_.empty() && nodes.size() == pieces_ &&
-         static_cast<double>(lost_) < kLostOfAGroup * static_cast<double>(groups_.size());
+  return levels_ && !groups_.empty() &&
+         static_cast<double>(lost_) < kLostOfAGroup * static_cast<double>(groups_.size()) &&
+         same_pieces(nodes);
+}
+
+bool RigidSpace::same_pieces(const Lists& nodes) const {
+  std::vector<std::size_t> piece_of_group;
+  for (std::size_t p = 0; p < groups_of_piece_.size(); ++p) {
+    piece_of_group.insert(piece_of_group.end(), groups_of_piece_[p], p);
+  }
+  const std::size_t none = groups_of_piece_.size();  // for which there was no room
+  const auto before = [&](Index node) {
+    const Index g = group_of_[node];
+    return g == kNone ? none : piece_of_group[static_cast<std::size_t>(g)];
+  };
+  std::vector<bool> found(none + 1, false);
+  for (const auto& piece : nodes) {
+    const std::size_t was = before(piece.front());
+    if (!std::ranges::all_of(piece, [&](Index n) { return before(n) == was; })) return false;
+    if (was == none ? pieces_ <= none : found[was]) return false;
+    found[was] = true;
+  }
+  return true;
 }
 
 RigidSpace::Lists RigidSpace::pieces() const {

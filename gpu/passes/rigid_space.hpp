@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Second level of the preconditioner of conjugate gradients: M^-1 = D^-1 + Z (Z^T K Z)^-1 Z^T with
-// the rigid motions Z of groups of nodes (additive two-level method; e.g. Tang, Nabben, Vuik,
-// Erlangga, J. Sci. Comput. 39, 2009). Blocks D alone pass a motion on by one element an iteration,
-// and what a cut sets free is held by destroyed elements only: its rigid motions are modes of their
-// own, which cost thousands of iterations. At finite deformation Z are the rigid motions of where
-// the nodes are now, and Z^T K Z is that of the body at rest, turned with the groups: the stiffness
-// turns so as long as their strain is small.
+// Second level of the preconditioner of conjugate gradients: M^-1 = D^-1 + Z B Z^T with the rigid
+// motions Z of groups of nodes and B = (Z^T K Z)^-1, or of many groups what rigid_levels.hpp has in
+// its place (additive two-level method; e.g. Tang, Nabben, Vuik, Erlangga, J. Sci. Comput. 39,
+// 2009). Blocks D alone pass a motion on by one element an iteration, and what a cut sets free is
+// held by destroyed elements only: its rigid motions are modes of their own, which cost thousands
+// of iterations. At finite deformation Z are the rigid motions of where the nodes are now, and Z^T
+// K Z is that of the body at rest, turned with the groups: the stiffness turns so as long as their
+// strain is small.
 #pragma once
 
 #include <Eigen/Core>
@@ -51,11 +52,13 @@ class RigidSpace {
   [[nodiscard]] std::uint32_t groups() const {
     return std::max(1u, static_cast<std::uint32_t>(groups_.size()));
   }
+  /// Workgroups of one of its dispatches, at most.
+  [[nodiscard]] std::uint32_t most_workgroups() const;
   /// Adds its sizes to what kernels are told.
   void add_to(shaders::CgPush& push) const;
 
   void bind(const vulkan::Buffer& r);
-  /// w = (Z^T K Z)^-1 Z^T r of the bound vector, and the terms of (Z^T r)^T w.
+  /// w = B Z^T r of the bound vector, and the terms of (Z^T r)^T w.
   void record(vulkan::Commands& commands, const shaders::CgPush& push) const;
   /// The same with sizes of dispatches that the device has written.
   void record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
@@ -73,11 +76,14 @@ class RigidSpace {
   [[nodiscard]] Lists pieces() const;
   [[nodiscard]] Lists grouped(Lists nodes);
   void group_by_kind(std::vector<Index>& nodes, Index most, Lists& groups) const;
-  /// Too little has happened for another second level.
+  /// Too little has happened to a large body for other levels.
   [[nodiscard]] bool stays(const Lists& nodes) const;
+  /// These pieces are those that the groups are of, or some of them, less a few nodes.
+  [[nodiscard]] bool same_pieces(const Lists& nodes) const;
   [[nodiscard]] std::vector<Index> kinds_of_nodes() const;
   void hold(std::span<const Index> gripped);
   void place_modes(std::span<const double> u);
+  void add_all();
   void add_element(Index element, double scale);
   void add_patch(Index patch);
   void add_inertia(Eigen::MatrixXd& to) const;

@@ -80,10 +80,10 @@ class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
     made.write(std::span<const T>(values));
     return made;
   }
-  /// Of numbers that are none: whatever is not written shows.
   [[nodiscard]] vulkan::Buffer zeros(std::size_t doubles) const {
     return buffer(Doubles(doubles, 0.0));
   }
+  /// Of numbers that are none: whatever is not written shows.
   [[nodiscard]] vulkan::Buffer empty(std::size_t doubles) const {
     return buffer(Doubles(doubles, kNaN));
   }

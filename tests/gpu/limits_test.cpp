@@ -190,9 +190,9 @@ TEST_F(Limits, OfRowsOfWorkgroups) {
 TEST_F(Limits, OfIndirectDispatches) {
   WatchedBackend watched(pulled_until_it_tears(),
                          {.update = Update::automatic, .route = Route::cg});
-  const auto groups =
-      (static_cast<std::uint64_t>(watched.problem->node_count()) + shaders::kGroup - 1) /
-      shaders::kGroup;
+  // Of the small matrix of 64 groups of nodes, four rows each; those of the nodes are fewer here.
+  constexpr std::uint64_t groups = 6 * 64 / 4;
+  ASSERT_LT(watched.problem->node_count() / shaders::kGroup, groups);
   watched.options.probe.limits.groups = groups - 1;
   const std::string said = message_of([&] { static_cast<void>(watched.create()); });
   EXPECT_NE(said.find("route cg needs " + std::to_string(groups) +
