@@ -10,7 +10,6 @@
 
 #include "body/element.hpp"
 #include "body/pools.hpp"
-#include "body/supports.hpp"
 #include "gpu/passes/bisection.hpp"
 #include "gpu/passes/cg_sizes.hpp"
 #include "material/singular_values.hpp"
@@ -21,29 +20,17 @@ namespace {
 using vulkan::Buffer;
 using vulkan::Placement;
 
-// Nodes of a group: few, while their equations are few. Iterations of boards of 1,944, 7,776,
-// 30,246, 119,286 and 1,003,686 tetrahedra: 132, 102, 95, 121 and 163, where groups of 64 nodes, 64
-// at most or 512 of the last two, take 317, 124, 156, 171 and 343.
-constexpr Index kNodesPerGroup = 16, kManyGroups = 1024, kNodesOfManyGroups = 32;
 // Groups whose equations have a dense inverse; more have two levels in its place
 // (rigid_levels.hpp), and groups of their own for so many pieces that have come off.
 constexpr Index kMost = 64, kMostPieces = 64;
-// Where groups are kept apart: of the 1944-element board's steps in motion 64, 24 and 10 take 746,
-// 407 and 140 ms on lavapipe.
-constexpr Index kNodesPerGroupApart = 10;
-constexpr Index kFewest = 4;  // nodes of a body worth a group: below, D alone is exact enough
 // Elements that a large body loses before its levels are made anew: so many for each of its groups.
 constexpr double kLostOfAGroup = 0.25;
 // Another inertia than so many times or a part of it is another body's.
 constexpr double kMostInertiaApart = 4;
 
-Index groups_of(Index nodes) {
-  return std::max({nodes / kNodesOfManyGroups, std::min(nodes / kNodesPerGroup, kManyGroups), 1});
-}
-
 /// That there is room for.
 Index most_groups(const Problem& problem, bool apart) {
-  const Index wanted = apart ? kMost : groups_of(problem.node_count());
+  const Index wanted = apart ? kMost : wanted_groups(problem.node_count());
   return wanted > kMost ? wanted + kMostPieces : kMost;
 }
 
@@ -70,11 +57,6 @@ Eigen::Matrix<double, 6, 3> strain_of(const Vec3& g) {
   return b;
 }
 
-/// Of so many parts; at least one.
-Index share_of(Index parts, std::size_t size, std::size_t total) {
-  return std::max<Index>(static_cast<Index>(static_cast<std::size_t>(parts) * size / total), 1);
-}
-
 }  // namespace
 
 RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
@@ -82,10 +64,10 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
     : kernels_(kernels),
       problem_(problem),
       most_(most_groups(problem, apart)),
+      groups_(problem, most_, most_ > kMost ? kMostPieces : most_ / 2, apart),
       destroyed_(destroyed),
       share_(share),
       held_(problem_.mesh().nodes.size(), 0) {
-  if (apart) kind_ = kinds_of_nodes();
   hold(problem.gripped_dofs());
   const std::size_t nodes =
       round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup);
@@ -110,7 +92,7 @@ RigidSpace::RigidSpace(const KernelFactory& kernels, const Problem& problem,
 
 std::size_t RigidSpace::planned_groups(const Problem& problem) {
   return static_cast<std::size_t>(
-      std::min(groups_of(problem.node_count()), most_groups(problem, false)));
+      std::min(wanted_groups(problem.node_count()), most_groups(problem, false)));
 }
 
 std::size_t RigidSpace::planned_bytes(const Problem& problem, bool apart) {
@@ -217,22 +199,9 @@ void RigidSpace::set_inertia(const fem::Inertia& inertia) {
   changed_ = true;
 }
 
-/// A node's is the stiffest of its elements', by the shear modulus.
-std::vector<Index> RigidSpace::kinds_of_nodes() const {
-  std::vector<double> stiffest(problem_.mesh().nodes.size(), 0.0);
-  for (Index e = 0; e < problem_.tet_count(); ++e) {
-    for (Index n : problem_.mesh().tets[e]) {
-      stiffest[n] = std::max(stiffest[n], problem_.small_strain(e).mu);
-    }
-  }
-  std::vector<Index> kinds;
-  for (const double mu : stiffest) kinds.push_back(mu > 0 ? std::ilogb(mu) : 0);
-  return kinds;
-}
-
 void RigidSpace::update(std::span<const double> u) {
   update();
-  if (groups_.empty() || std::ranges::equal(u, shown_)) return;
+  if (groups_.count() == 0 || std::ranges::equal(u, shown_)) return;
   shown_.assign(u.begin(), u.end());
   place_modes(u);
   turn(u);
@@ -242,12 +211,12 @@ void RigidSpace::update(std::span<const double> u) {
 void RigidSpace::turn(std::span<const double> u) {
   if (resting_inverse_.size() == 0) return;
   Eigen::MatrixXd turned = resting_inverse_;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
+  for (std::size_t g = 0; g < groups_.count(); ++g) {
     Vec3 mean = Vec3::Zero();
-    for (Index n : groups_[g]) mean += Vec3(&u[3 * static_cast<std::size_t>(n)]);
-    mean /= static_cast<double>(groups_[g].size());
+    for (Index n : groups_.nodes(g)) mean += Vec3(&u[3 * static_cast<std::size_t>(n)]);
+    mean /= static_cast<double>(groups_.nodes(g).size());
     Mat3 sum = Mat3::Zero();
-    for (Index n : groups_[g]) {
+    for (Index n : groups_.nodes(g)) {
       const Vec3 from = place_[n] * size_[g];
       sum += (from + Vec3(&u[3 * static_cast<std::size_t>(n)]) - mean) * from.transpose();
     }
@@ -264,12 +233,9 @@ void RigidSpace::turn(std::span<const double> u) {
 void RigidSpace::update() {
   if (!changed_) return;
   shown_.clear();
-  Lists nodes = pieces();
-  if (!stays(nodes)) {
-    pieces_ = nodes.size();
-    Lists groups = grouped(std::move(nodes));
-    if (groups != groups_) {
-      groups_ = std::move(groups);
+  NodeGroups::Lists pieces = groups_.pieces(destroyed_);
+  if (!stays(pieces)) {
+    if (groups_.make(std::move(pieces))) {
       place_modes({});
       add_all();
     }
@@ -279,87 +245,17 @@ void RigidSpace::update() {
 }
 
 void RigidSpace::add_all() {
-  const std::size_t size = groups_.size();
+  const std::size_t size = groups_.count();
   stiffness_ = GroupBlocks(size, static_cast<Index>(size));
   for (Index e = 0; e < problem_.tet_count(); ++e) add_element(e, destroyed_[e] ? share_ : 1);
   for (Index p = 0; problem_.pools() && p < problem_.pools()->count(); ++p) add_patch(p);
 }
 
 /// A cut through nine tenths of a board by levels of the whole one costs 3 % more iterations.
-bool RigidSpace::stays(const Lists& nodes) const {
-  return levels_ && !groups_.empty() &&
-         static_cast<double>(lost_) < kLostOfAGroup * static_cast<double>(groups_.size()) &&
-         same_pieces(nodes);
-}
-
-bool RigidSpace::same_pieces(const Lists& nodes) const {
-  std::vector<std::size_t> piece_of_group;
-  for (std::size_t p = 0; p < groups_of_piece_.size(); ++p) {
-    piece_of_group.insert(piece_of_group.end(), groups_of_piece_[p], p);
-  }
-  const std::size_t none = groups_of_piece_.size();  // for which there was no room
-  const auto before = [&](Index node) {
-    const Index g = group_of_[node];
-    return g == kNone ? none : piece_of_group[static_cast<std::size_t>(g)];
-  };
-  std::vector<bool> found(none + 1, false);
-  for (const auto& piece : nodes) {
-    const std::size_t was = before(piece.front());
-    if (!std::ranges::all_of(piece, [&](Index n) { return before(n) == was; })) return false;
-    if (was == none ? pieces_ <= none : found[was]) return false;
-    found[was] = true;
-  }
-  return true;
-}
-
-RigidSpace::Lists RigidSpace::pieces() const {
-  const auto bodies = fem::find_bodies(problem_.mesh(), destroyed_);
-  Lists nodes(static_cast<std::size_t>(bodies.count));
-  for (Index n = 0; n < problem_.node_count(); ++n) {
-    const Index body = bodies.body_of_node[n];
-    if (body != kNone) nodes[body].push_back(n);
-  }
-  std::stable_sort(nodes.begin(), nodes.end(),
-                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  std::erase_if(nodes, [](const auto& body) { return body.size() < kFewest; });
-  return nodes;
-}
-
-/// Parts of so many pieces by their extent, as many as their nodes ask for.
-RigidSpace::Lists RigidSpace::grouped(Lists nodes) {
-  Lists groups;
-  groups_of_piece_.clear();
-  if (nodes.empty()) return groups;
-  nodes.resize(std::min<std::size_t>(nodes.size(), levels_ ? kMostPieces : most_ / 2));
-  const auto& x = problem_.mesh().nodes;
-  const Index others = static_cast<Index>(nodes.size()) - 1;
-  std::size_t total = 0;
-  for (const auto& piece : nodes) total += piece.size();
-  const Index wanted = std::min(groups_of(static_cast<Index>(total)), most_ - others);
-  for (std::size_t p = 0; p < nodes.size(); ++p) {
-    const std::size_t before = groups.size();
-    if (!kind_.empty()) {
-      group_by_kind(nodes[p], p == 0 ? most_ - others : 1, groups);
-    } else {
-      bisect(nodes[p], share_of(wanted, nodes[p].size(), total), kFewest, x, groups);
-    }
-    groups_of_piece_.push_back(groups.size() - before);
-  }
-  return groups;
-}
-
-void RigidSpace::group_by_kind(std::vector<Index>& nodes, Index most, Lists& groups) const {
-  const auto& x = problem_.mesh().nodes;
-  std::map<Index, std::vector<Index>> by_kind;
-  for (Index n : nodes) by_kind[most > 1 ? kind_[n] : 0].push_back(n);
-  const auto spare = std::max<Index>(most - static_cast<Index>(by_kind.size()), 0);
-  for (auto& [kind, list] : by_kind) {
-    const auto share = static_cast<Index>(spare * list.size() / nodes.size());
-    bisect(list,
-           std::min(std::max<Index>(static_cast<Index>(list.size()) / kNodesPerGroupApart, 1),
-                    1 + share),
-           kFewest, x, groups);
-  }
+bool RigidSpace::stays(const NodeGroups::Lists& pieces) const {
+  return levels_ && !groups_.count() == 0 &&
+         static_cast<double>(lost_) < kLostOfAGroup * static_cast<double>(groups_.count()) &&
+         groups_.are_of(pieces);
 }
 
 /// At displacement u; empty: undeformed, as Z^T K Z is taken.
@@ -368,26 +264,24 @@ void RigidSpace::place_modes(std::span<const double> u) {
   for (std::size_t n = 0; n < x.size() && !u.empty(); ++n) x[n] += Vec3(&u[3 * n]);
   const bool rests = u.empty();
   if (rests) {
-    group_of_.assign(x.size(), kNone);
     place_.assign(x.size(), Vec3::Zero());
-    size_.assign(groups_.size(), 0.0);
-    centre_.assign(groups_.size(), Vec3::Zero());
+    size_.assign(groups_.count(), 0.0);
+    centre_.assign(groups_.count(), Vec3::Zero());
   }
   using Texel = std::array<std::uint32_t, 4>;
   std::vector<Texel> modes(modes_.bytes() / kTexel, Texel{0, 0, 0, shaders::kHeld});  // no group
   std::vector<Texel> members;
   std::vector<std::uint32_t> first(room_of(most_) + 1, 0);
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
+  for (std::size_t g = 0; g < groups_.count(); ++g) {
     Vec3 centre = Vec3::Zero();
-    for (Index n : groups_[g]) centre += x[n];
-    centre /= static_cast<double>(groups_[g].size());
+    for (Index n : groups_.nodes(g)) centre += x[n];
+    centre /= static_cast<double>(groups_.nodes(g).size());
     if (rests) {
       centre_[g] = centre;
-      for (Index n : groups_[g]) size_[g] = std::max(size_[g], (x[n] - centre).norm());
+      for (Index n : groups_.nodes(g)) size_[g] = std::max(size_[g], (x[n] - centre).norm());
     }
     const double size = size_[g];
-    for (Index n : groups_[g]) {
-      group_of_[n] = static_cast<Index>(g);
+    for (Index n : groups_.nodes(g)) {
       // What the device has, to the last bit: Z^T K Z is of the same Z.
       const Eigen::Vector3f place =
           size > 0 ? ((x[n] - centre) / size).cast<float>() : Eigen::Vector3f(0, 0, 0);
@@ -401,7 +295,7 @@ void RigidSpace::place_modes(std::span<const double> u) {
     }
     first[g + 1] = static_cast<std::uint32_t>(members.size());
   }
-  std::fill(first.begin() + static_cast<std::ptrdiff_t>(groups_.size()) + 1, first.end(),
+  std::fill(first.begin() + static_cast<std::ptrdiff_t>(groups_.count()) + 1, first.end(),
             static_cast<std::uint32_t>(members.size()));
   modes_.write(std::span<const Texel>(modes));
   members_.write(std::span<const Texel>(members));
@@ -429,7 +323,7 @@ void RigidSpace::add_element(Index element, double scale) {
   std::array<Index, 4> of{};
   bool moves_whole = true;
   for (std::size_t i = 0; i < 4; ++i) {
-    of[i] = group_of_[tet[i]];
+    of[i] = groups_.of(tet[i]);
     moves_whole = moves_whole && of[i] == of[0] && held_[tet[i]] == 0;
   }
   if (moves_whole) return;
@@ -470,7 +364,7 @@ void RigidSpace::add_patch(Index patch) {
     const double own = (destroyed_[e] ? share_ : 1) * shape.volume;
     volume += own;
     for (int a = 0; a < 4; ++a) {
-      const Index n = problem_.mesh().tets[e][a], g = group_of_[n];
+      const Index n = problem_.mesh().tets[e][a], g = groups_.of(n);
       if (g == kNone) continue;
       const auto place = of_group.try_emplace(g, Eigen::Matrix<double, 6, 1>::Zero()).first;
       place->second += own * motion(n).transpose() * shape.gradient.col(a);
@@ -486,7 +380,7 @@ void RigidSpace::add_patch(Index patch) {
 
 void RigidSpace::add_inertia(Eigen::MatrixXd& to) const {
   for (Index n = 0; n < problem_.node_count(); ++n) {
-    const Index g = group_of_[n];
+    const Index g = groups_.of(n);
     if (g == kNone) continue;
     Vec3 springs = Vec3::Zero();
     for (int axis = 0; axis < 3; ++axis) {
@@ -517,19 +411,20 @@ void RigidSpace::invert() {
 
 /// Every piece has its own, while there are few pieces.
 GroupBlocks RigidSpace::motions_of_aggregates() const {
-  const auto count = static_cast<Index>(groups_.size()), most = RigidLevels::aggregates_of(most_);
-  const std::size_t pieces = std::min(groups_of_piece_.size(), static_cast<std::size_t>(most) / 2);
+  const auto count = static_cast<Index>(groups_.count()), most = RigidLevels::aggregates_of(most_);
+  const std::size_t pieces =
+      std::min(groups_.of_pieces().size(), static_cast<std::size_t>(most) / 2);
   const Index wanted =
       std::min(RigidLevels::aggregates_of(count), most - static_cast<Index>(pieces));
-  Lists aggregates;
+  NodeGroups::Lists aggregates;
   Index first = 0;
   for (std::size_t p = 0; p < pieces; ++p) {
-    std::vector<Index> list(groups_of_piece_[p]);
+    std::vector<Index> list(groups_.of_pieces()[p]);
     std::iota(list.begin(), list.end(), first);
     first += static_cast<Index>(list.size());
-    bisect(list, share_of(wanted, list.size(), groups_.size()), 1, centre_, aggregates);
+    bisect(list, share_of(wanted, list.size(), groups_.count()), 1, centre_, aggregates);
   }
-  GroupBlocks motions(groups_.size(), static_cast<Index>(aggregates.size()));
+  GroupBlocks motions(groups_.count(), static_cast<Index>(aggregates.size()));
   for (std::size_t a = 0; a < aggregates.size(); ++a) {
     Vec3 centre = Vec3::Zero();
     for (Index g : aggregates[a]) centre += centre_[g] / static_cast<double>(aggregates[a].size());

@@ -18,6 +18,7 @@
 
 #include "body/tangent_pattern.hpp"
 #include "gpu/kernels.hpp"
+#include "gpu/passes/node_groups.hpp"
 #include "gpu/passes/rigid_levels.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "sunder/problem.hpp"
@@ -50,7 +51,7 @@ class RigidSpace {
   void update(std::span<const double> u);
   /// Groups of nodes, at least one (an empty one where there is no body).
   [[nodiscard]] std::uint32_t groups() const {
-    return std::max(1u, static_cast<std::uint32_t>(groups_.size()));
+    return std::max(1u, static_cast<std::uint32_t>(groups_.count()));
   }
   /// Workgroups of one of its dispatches, at most.
   [[nodiscard]] std::uint32_t most_workgroups() const;
@@ -71,16 +72,8 @@ class RigidSpace {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  using Lists = std::vector<std::vector<Index>>;
-  /// Nodes of every piece that is worth a group, the largest first.
-  [[nodiscard]] Lists pieces() const;
-  [[nodiscard]] Lists grouped(Lists nodes);
-  void group_by_kind(std::vector<Index>& nodes, Index most, Lists& groups) const;
   /// Too little has happened to a large body for other levels.
-  [[nodiscard]] bool stays(const Lists& nodes) const;
-  /// These pieces are those that the groups are of, or some of them, less a few nodes.
-  [[nodiscard]] bool same_pieces(const Lists& nodes) const;
-  [[nodiscard]] std::vector<Index> kinds_of_nodes() const;
+  [[nodiscard]] bool stays(const NodeGroups::Lists& pieces) const;
   void hold(std::span<const Index> gripped);
   void place_modes(std::span<const double> u);
   void add_all();
@@ -100,24 +93,21 @@ class RigidSpace {
   const KernelFactory& kernels_;
   const Problem& problem_;
   Index most_;  // groups that there is room for
+  NodeGroups groups_;
   std::span<const std::uint8_t> destroyed_;
   double share_;
-  std::vector<Index> kind_;  // of every node: groups have one alone; empty: it does not matter
   bool changed_ = true;
   fem::Inertia inertia_;
-  std::vector<double> mass_;                  // that inertia_ refers to
-  std::vector<double> size_;                  // of the groups
-  std::vector<double> shown_;                 // u that the device has; empty: the undeformed places
-  Lists groups_;                              // nodes of each, ascending
-  std::vector<Vec3> centre_;                  // of the groups, undeformed
-  std::vector<std::size_t> groups_of_piece_;  // that have some, the largest first
-  std::size_t pieces_ = 0, lost_ = 0;         // at the last build; elements destroyed since
-  std::vector<Index> group_of_;               // of every node, kNone: none
-  std::vector<Vec3> place_;                   // of every node from its group's centre, by its size
-  std::vector<std::uint8_t> held_;            // axes of every node that nothing moves, as bits
-  GroupBlocks stiffness_;                     // Z^T K Z, at rest, without inertia
-  Eigen::MatrixXd resting_inverse_;           // with it; empty: there is none
-  std::optional<RigidLevels> levels_;         // of a large body, in place of the inverse
+  std::vector<double> mass_;           // that inertia_ refers to
+  std::vector<double> size_;           // of the groups
+  std::vector<double> shown_;          // u that the device has; empty: the undeformed places
+  std::vector<Vec3> centre_;           // of the groups, undeformed
+  std::size_t lost_ = 0;               // elements destroyed since the last build
+  std::vector<Vec3> place_;            // of every node from its group's centre, by its size
+  std::vector<std::uint8_t> held_;     // axes of every node that nothing moves, as bits
+  GroupBlocks stiffness_;              // Z^T K Z, at rest, without inertia
+  Eigen::MatrixXd resting_inverse_;    // with it; empty: there is none
+  std::optional<RigidLevels> levels_;  // of a large body, in place of the inverse
   vulkan::Buffer modes_, first_, members_, inverse_, y_, w_, terms_;
   std::unique_ptr<vulkan::Kernel> restrict_, solve_;
   std::unique_ptr<vulkan::Binding> restrict_binding_, solve_binding_;
