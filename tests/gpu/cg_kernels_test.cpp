@@ -312,6 +312,64 @@ TEST_P(CgKernels, StepAndItsPreconditioner) {
   expect_parts(sums, left, z);
 }
 
+/// Of one element's tangent, with springs at the unknowns; some axes held by supports, some by
+/// grips.
+TEST_P(CgKernels, InversesOfTheTangentsBlocks) {
+  constexpr std::uint32_t kElementNodes = 4, kUnknowns = 12;
+  Eigen::Matrix<double, 9, 9> root;
+  for (double& value : root.reshaped()) value = random();
+  const Eigen::Matrix<double, 9, 9> t =
+      root * root.transpose() + Eigen::Matrix<double, 9, 9>::Identity();
+  Doubles upper;
+  for (Eigen::Index b = 0; b < 9; ++b) {
+    for (Eigen::Index a = 0; a <= b; ++a) upper.push_back(t(a, b));
+  }
+  upper.resize(std::size_t{4} * shaders::kFiniteTangent, 0.0);
+  const Doubles shape = random_values(shaders::kFiniteShape);
+  Doubles target(2 * kUnknowns, 0.0);
+  for (std::size_t d = kUnknowns; d < target.size(); ++d) target[d] = 1 + random();
+  Words dofs(4 * shaders::kGroup, shaders::kHeld);
+  for (std::uint32_t i = 0; i < 4 * kElementNodes; ++i) dofs[i] = 3 * (i / 4) + i % 4;
+  for (std::uint32_t n = 0; n < kElementNodes; ++n) dofs[4 * n + 3] = n == 2 ? 4 : 0;
+  dofs[4 * 3 + 1] = shaders::kHeld;
+  const auto of_upper = buffer(upper), of_shape = buffer(shape), of_target = buffer(target),
+             inverses = zeros(6 * shaders::kGroup);
+  const auto first = buffer(Words{0, 1, 2, 3, 4}), around = buffer(Words{0, 1, 2, 3}),
+             of_dofs = buffer(dofs);
+  const shaders::FiniteCgPush push{1, kElementNodes, kUnknowns};
+  Kernels::run(*factory_->make("finite_blocks"),
+               {&of_upper, &of_shape, &first, &around, &of_dofs, &of_target, &inverses}, push, 1);
+  const Doubles packed = read(inverses, 6 * kElementNodes);
+  for (std::uint32_t n = 0; n < kElementNodes; ++n) {
+    Vec3 g = Vec3::Zero();
+    for (std::size_t c = 1; c < 4; ++c) {
+      const Vec3 of(&shape[3 * (c - 1)]);
+      if (n == 0) g -= of;
+      if (n == c) g = of;
+    }
+    Mat3 block = Mat3::Zero();
+    for (Index a = 0; a < 9; ++a) {
+      for (Index b = 0; b < 9; ++b) block(a % 3, b % 3) += t(a, b) * g[a / 3] * g[b / 3];
+    }
+    for (Index axis = 0; axis < 3; ++axis) {
+      const auto dof = dofs[4 * n + static_cast<std::uint32_t>(axis)];
+      if (dof != shaders::kHeld) block(axis, axis) += target[kUnknowns + dof];
+      if (dof != shaders::kHeld && (dofs[4 * n + 3] >> axis & 1) == 0) continue;
+      block.row(axis).setZero();
+      block.col(axis).setZero();
+      block(axis, axis) = 1e30;  // its inverse: 0
+    }
+    const Mat3 inverse = block.inverse();
+    for (Index i = 0, k = 0; i < 3; ++i) {
+      for (Index j = i; j < 3; ++j, ++k) {
+        EXPECT_NEAR(packed[6 * n + static_cast<std::size_t>(k)], inverse(i, j),
+                    1e-12 * inverse.norm())
+            << "node " << n << ", " << i << " " << j;
+      }
+    }
+  }
+}
+
 TEST_P(CgKernels, LengthOfAStep) {
   constexpr std::uint32_t kPacks = 45;  // no multiple of a workgroup
   constexpr double kTerms = 4 * kPacks;

@@ -11,6 +11,8 @@
 #include <random>
 
 #include "gpu/passes/bisection.hpp"
+#include "gpu/passes/node_groups.hpp"
+#include "support/structured_board.hpp"
 
 namespace sunder::test {
 namespace {
@@ -169,6 +171,58 @@ TEST_F(Bisection, PartsAreOfEqualSizeAndWhole) {
   std::vector<std::vector<Index>> parts;
   gpu::bisect(points, 1000, 4, x, parts);
   for (const auto& part : parts) EXPECT_GE(part.size(), 4u);
+}
+
+/// Elements of a board one cell thick whose cells lie in a square, without those of another.
+std::vector<Index> square(const BoardShape& shape, Index low, Index high, Index inner_low = 0,
+                          Index inner_high = 0) {
+  std::vector<Index> found;
+  for (Index e = 0; e < 6 * shape.nx * shape.ny; ++e) {
+    const Index x = e / 6 % shape.nx, y = e / 6 / shape.nx;
+    const auto lies = [&](Index from, Index to) {
+      return std::min(x, y) >= from && std::max(x, y) < to;
+    };
+    if (lies(low, high) && !lies(inner_low, inner_high)) found.push_back(e);
+  }
+  return found;
+}
+
+TEST(NodeGroups, AreOfThePiecesThatTheyWereMadeOf) {
+  const BoardShape shape{30, 30, 1, 50, 50, 2.5};
+  Scene scene;
+  scene.mesh = structured_board(shape);
+  scene.materials["board"] = {5, 0.4, 2.0};
+  scene.supports.push_back({Box{Vec3(-1, 49.9, -1), Vec3(51, 51, 3)}, Axes{7}});
+  const Problem problem(std::move(scene));
+  std::vector<std::uint8_t> destroyed(problem.mesh().tets.size(), 0);
+  const auto destroy = [&](const std::vector<Index>& elements) {
+    for (Index e : elements) destroyed[static_cast<std::size_t>(e)] = 1;
+  };
+  gpu::NodeGroups groups(problem, 200, 64, false);
+  EXPECT_TRUE(groups.make(groups.pieces(destroyed)));
+  EXPECT_EQ(groups.count(), 961u * 2 / 16);
+  EXPECT_FALSE(groups.make(groups.pieces(destroyed)));
+
+  destroy({0, 1, 2, 3, 4, 5});  // at a corner: nodes go, the piece stays
+  EXPECT_TRUE(groups.are_of(groups.pieces(destroyed)));
+  destroy(square(shape, 3, 12, 4, 11));
+  EXPECT_FALSE(groups.are_of(groups.pieces(destroyed))) << "one has come off";
+  EXPECT_TRUE(groups.make(groups.pieces(destroyed)));
+  ASSERT_EQ(groups.of_pieces().size(), 2u);
+  EXPECT_EQ(groups.of_pieces()[1], 8u) << "its 128 nodes have groups of their own";
+  EXPECT_TRUE(groups.are_of(groups.pieces(destroyed)));
+
+  auto gone = destroyed;
+  destroy(square(shape, 4, 11));
+  EXPECT_TRUE(groups.are_of(groups.pieces(destroyed))) << "it is destroyed";
+  destroy(square(shape, 15, 26, 16, 25));
+  ASSERT_EQ(groups.pieces(destroyed).size(), 2u);
+  EXPECT_FALSE(groups.are_of(groups.pieces(destroyed))) << "as many, but another one";
+  // More pieces than may have groups.
+  gpu::NodeGroups few(problem, 200, 1, false);
+  EXPECT_TRUE(few.make(few.pieces(gone)));
+  EXPECT_EQ(few.of_pieces().size(), 1u);
+  EXPECT_TRUE(few.are_of(few.pieces(gone)));
 }
 
 }  // namespace
