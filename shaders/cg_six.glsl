@@ -8,13 +8,12 @@ struct Six {
   dvec3 shift, turn;
 };
 
-double pair(uvec2 words) { return packDouble2x32(words); }
-
 // Of six values a group.
 #define SIX_OF_GROUP(name, g)                                                             \
   six_of(UVEC4(name, 3u * (g)), UVEC4(name, 3u * (g) + 1u), UVEC4(name, 3u * (g) + 2u))
 Six six_of(uvec4 a, uvec4 b, uvec4 c) {
-  return Six(dvec3(pair(a.xy), pair(a.zw), pair(b.xy)), dvec3(pair(b.zw), pair(c.xy), pair(c.zw)));
+  return Six(dvec3(packDouble2x32(a.xy), packDouble2x32(a.zw), packDouble2x32(b.xy)),
+             dvec3(packDouble2x32(b.zw), packDouble2x32(c.xy), packDouble2x32(c.zw)));
 }
 
 // The nine packs of a block.
