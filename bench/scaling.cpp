@@ -109,8 +109,7 @@ Index most_cells(const Method& method, bool software) {
   const bool slow = software && method.options.backend == "vulkan";
   const bool fp64 = method.options.precision == Precision::fp64;
   if (method.options.route != Route::inverse) return slow && !fp64 ? 141 : 409;
-  if (method.options.update == Update::eager) return 18;
-  return slow && fp64 ? 18 : 36;
+  return method.options.update == Update::eager ? 18 : 36;
 }
 
 bool software_renderer_only() {

@@ -3,10 +3,115 @@
 
 #include <algorithm>
 
-namespace sunder::gpu {
+#include "solver/instrument_block.hpp"
 
-HostBase::HostBase(std::shared_ptr<const HostInverse> inverse) : inverse_(std::move(inverse)) {
+namespace sunder::gpu {
+namespace {
+
+// Room for so many columns from the start, if it takes no more memory than that; for as many unit
+// vectors as two elements touch.
+constexpr Index kColumns = 256, kUnits = 24;
+constexpr std::size_t kRoomBytes = std::size_t{64} << 20;
+
+// So many columns tell whether others are to be refined: where one is off by more than a fifth of
+// what an intact body's displacement may be.
+constexpr Index kTried = 12;
+constexpr double kExact = 2e-10;
+
+}  // namespace
+
+HostBase::HostBase(std::shared_ptr<const HostInverse> inverse, const fem::DamagedBody* body)
+    : inverse_(std::move(inverse)) {
   columns_.resize(inverse_->factor().cholesky().size(), 0);
+  if (!body || inverse_->is_dense()) return;
+  body_ = *body;
+  const auto gripped = body_->forms().gripped();
+  solver::Anchors anchors(body_->problem());
+  const auto stiffness = anchors.of(gripped);
+  for (std::size_t g = 0; g < gripped.size(); ++g) anchors_.emplace_back(gripped[g], stiffness[g]);
+  try_columns();
+}
+
+void HostBase::read_from(const DenseInverse& device) {
+  device_ = &device;
+  if (body_) try_columns();
+}
+
+/// Refines some columns that lie evenly, to see what that changes.
+void HostBase::try_columns() {
+  dofs_.clear();
+  for (Index i = 0; i < kTried; ++i) dofs_.push_back(i * size() / kTried);
+  dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
+  refines_ = false;
+  Eigen::MatrixXd some(size(), static_cast<Index>(dofs_.size()));
+  read_units(dofs_, some);
+  refines_ = refine(dofs_, some) > kExact;
+}
+
+Eigen::MatrixXd HostBase::unit_columns(std::span<const Index> dofs) {
+  Eigen::MatrixXd columns(size(), static_cast<Index>(dofs.size()));
+  read_units(dofs, columns);
+  return columns;
+}
+
+void HostBase::read_units(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> to) {
+  if (device_) {
+    device_->read_columns(dofs, to);
+  } else {
+    to = inverse_->columns(dofs);
+  }
+  if (refines_) refine(dofs, to);
+}
+
+/// Returns the largest change of one, relative to its norm.
+double HostBase::refine(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> columns) {
+  double most = 0;
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    auto column = columns.col(static_cast<Index>(i));
+    body_->apply(column, lacks_);
+    for (const auto& [dof, stiffness] : anchors_) lacks_[dof] += stiffness * column[dof];
+    lacks_ = -lacks_;
+    lacks_[dofs[i]] += 1;
+    inverse_->factor().solve(lacks_, correction_, work_);
+    most = std::max(most, correction_.norm() / column.norm());
+    column += correction_;
+  }
+  return most;
+}
+
+void HostBase::make_room() {
+  const auto fits = static_cast<Index>(kRoomBytes / (static_cast<std::size_t>(size()) * 8 + 1));
+  if (columns_.cols() < std::min(kColumns, fits)) {
+    columns_.conservativeResize(Eigen::NoChange, std::min(kColumns, fits));
+  }
+  if (!inverse_->is_dense()) units_.resize(size(), kUnits);
+}
+
+/// X B_new to columns_, from the first on.
+void HostBase::add_columns(std::span<const solver::Difference> vectors, Eigen::Index first) {
+  dofs_.clear();
+  for (const solver::Difference& v : vectors) {
+    dofs_.push_back(v.dof);
+    if (v.other != kNone) dofs_.push_back(v.other);
+  }
+  std::sort(dofs_.begin(), dofs_.end());
+  dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
+  const bool dense = inverse_->is_dense();
+  if (!dense) {
+    const auto count = static_cast<Eigen::Index>(dofs_.size());
+    if (units_.cols() < count) units_.resize(size(), count);
+    read_units(dofs_, units_.leftCols(count));
+  }
+  const auto column = [&](Index dof) {
+    if (dense) return inverse_->dense().col(dof);
+    const auto at = std::lower_bound(dofs_.begin(), dofs_.end(), dof) - dofs_.begin();
+    return std::as_const(units_).col(at);
+  };
+  for (const auto& [dof, other] : vectors) {
+    columns_.col(first) = column(dof);
+    if (other != kNone) columns_.col(first) -= column(other);
+    ++first;
+  }
 }
 
 void HostBase::push(std::span<const solver::Difference> vectors, linear_algebra::RowMajor& gram) {
@@ -16,7 +121,7 @@ void HostBase::push(std::span<const solver::Difference> vectors, linear_algebra:
   if (count() > columns_.cols()) {
     columns_.conservativeResize(Eigen::NoChange, std::max(count(), 2 * before));
   }
-  inverse_->differences(vectors, columns_.middleCols(before, added));
+  add_columns(vectors, before);
   for (Index j = 0; j < added; ++j) {
     const double* column = columns_.col(before + j).data();
     for (Index i = 0; i < count(); ++i) {
@@ -61,7 +166,8 @@ void HostBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
 
 std::vector<BufferPlan> HostBase::buffers() const {
   return {{"factor and inverse of the base (host)", inverse_->bytes()},
-          {"exact columns (host)", static_cast<std::size_t>(columns_.size()) * sizeof(double)}};
+          {"exact columns (host)",
+           static_cast<std::size_t>(columns_.size() + units_.size()) * sizeof(double)}};
 }
 
 }  // namespace sunder::gpu

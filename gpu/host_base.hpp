@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The base below the deferred update of a device: the host has its columns X B in fp64, which the
-// device gets as exact columns, and solves with its factor where all of X is needed.
+// device gets as exact columns, and solves with its factor where all of X is needed. Columns come
+// from the dense inverse that the host keeps or the device has in fp64, else from the factor. Where
+// stiffnesses differ so much that such columns are off by more than displacement may be, each is
+// refined once by the residual that elements sum.
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "gpu/host_inverse.hpp"
@@ -14,9 +19,19 @@ namespace sunder::gpu {
 
 class HostBase final : public solver::Base {
  public:
-  explicit HostBase(std::shared_ptr<const HostInverse> inverse);
+  /// `body`: whose inverse it is, to refine columns by; null: they stay as they come.
+  explicit HostBase(std::shared_ptr<const HostInverse> inverse,
+                    const fem::DamagedBody* body = nullptr);
+
+  /// The same inverse, in fp64 on the device, to read columns of; it must outlive this.
+  void read_from(const DenseInverse& device);
+  /// Columns of X, shape (n x dofs).
+  [[nodiscard]] Eigen::MatrixXd unit_columns(std::span<const Index> dofs);
+  /// Whether columns need to be refined.
+  [[nodiscard]] bool refines() const { return refines_; }
 
   [[nodiscard]] Index size() const override { return static_cast<Index>(columns_.rows()); }
+  void make_room() override;
   void push(std::span<const solver::Difference> vectors, linear_algebra::RowMajor& gram) override;
   void pop() override;
   const Eigen::VectorXd& load(const solver::Forces& forces) override;
@@ -29,12 +44,23 @@ class HostBase final : public solver::Base {
   [[nodiscard]] Index count() const { return static_cast<Index>(vectors_.size()); }
 
  private:
+  void add_columns(std::span<const solver::Difference> vectors, Eigen::Index first);
+  void read_units(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> to);
+  double refine(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> columns);
+  void try_columns();
+
   std::shared_ptr<const HostInverse> inverse_;
-  Eigen::MatrixXd columns_;
+  const DenseInverse* device_ = nullptr;
+  // To refine by, and what K has beside its elements, which anchors the gripped unknowns.
+  std::optional<fem::DamagedBody> body_;
+  std::vector<std::pair<Index, double>> anchors_;
+  bool refines_ = false;
+  Eigen::MatrixXd columns_, units_;          // units_: of those that an event needs
+  std::vector<Index> dofs_;                  // which these are
   std::vector<solver::Difference> vectors_;  // B
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
   solver::LastLoad load_;
-  Eigen::VectorXd projected_, right_side_;
+  Eigen::VectorXd projected_, right_side_, lacks_, correction_;
   Index projected_columns_ = 0;  // of projected_ that belong to the last load
   linear_algebra::SolveWork work_;
 };

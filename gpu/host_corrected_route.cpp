@@ -19,7 +19,7 @@ HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels, const fem::
                                        std::size_t panel_bytes, bool damage)
     : problem_(body.problem()),
       fields_(fields),
-      update_(host_update(body, intact, damage)),
+      update_(host_update(body, intact, damage, false)),
       base_(kernels, problem_.dof_count(), fields.rows(), panel_bytes),
       partials_(kernels, fields.rows(), base_.chunks() + base_.loaded_chunks({})),
       add_(kernels, fields),

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/host_inverse.hpp"
 
-#include <algorithm>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 #include "body/stiffness_factor.hpp"
@@ -40,29 +38,6 @@ Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
   std::vector<Index> list(static_cast<std::size_t>(count));
   std::iota(list.begin(), list.end(), first);
   return factor_.inverse_columns(list);
-}
-
-void HostInverse::differences(std::span<const solver::Difference> vectors,
-                              Eigen::Ref<Eigen::MatrixXd> to) const {
-  std::vector<Index> dofs;
-  for (const solver::Difference& v : vectors) {
-    dofs.push_back(v.dof);
-    if (v.other != kNone) dofs.push_back(v.other);
-  }
-  std::sort(dofs.begin(), dofs.end());
-  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
-  Eigen::MatrixXd solved;
-  if (!is_dense()) solved = factor_.inverse_columns(dofs);
-  const auto column = [&](Index dof) {
-    if (is_dense()) return dense_.col(dof);
-    const auto at = std::lower_bound(dofs.begin(), dofs.end(), dof) - dofs.begin();
-    return std::as_const(solved).col(at);
-  };
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    const auto [dof, other] = vectors[i];
-    to.col(static_cast<Index>(i)) = column(dof);
-    if (other != kNone) to.col(static_cast<Index>(i)) -= column(other);
-  }
 }
 
 void upload_inverse(const HostInverse& host, DenseInverse& device) {

@@ -9,7 +9,6 @@
 #include "body/damaged_body.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "linear_algebra/factor.hpp"
-#include "solver/difference_basis.hpp"
 
 namespace sunder::gpu {
 
@@ -21,11 +20,10 @@ class HostInverse {
   HostInverse(const fem::DamagedBody& body, bool keep_dense,
               const linear_algebra::FactorWork& work);
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
-  /// The same for differences of unit vectors, into `to`, shape (n x vectors).
-  void differences(std::span<const solver::Difference> vectors,
-                   Eigen::Ref<Eigen::MatrixXd> to) const;
   [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
   [[nodiscard]] bool is_dense() const { return dense_.size() > 0; }
+  /// Empty where it is not kept.
+  [[nodiscard]] const Eigen::MatrixXd& dense() const { return dense_; }
   [[nodiscard]] const linear_algebra::Factor& factor() const { return factor_; }
   [[nodiscard]] std::size_t bytes() const;
 

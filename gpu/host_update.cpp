@@ -10,11 +10,11 @@ constexpr Index kColumnsPerBase = 256;
 constexpr int kEventsUntilNext = 24;
 
 solver::Based based_on(const fem::Forms& in_base, std::shared_ptr<const HostInverse> inverse,
-                       bool damage) {
+                       bool damage, const fem::DamagedBody* body = nullptr) {
   solver::Based based;
   based.factor = {inverse, &inverse->factor()};
   based.deferred = std::make_unique<solver::Deferred>(
-      in_base, std::make_unique<HostBase>(std::move(inverse)), damage, kColumnsPerBase);
+      in_base, std::make_unique<HostBase>(std::move(inverse), body), damage, kColumnsPerBase);
   return based;
 }
 
@@ -27,9 +27,11 @@ std::shared_ptr<solver::Deferred> intact_update(const Problem& problem,
 
 std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
                                                    std::shared_ptr<const HostInverse> intact,
-                                                   bool damage) {
+                                                   bool damage, bool fp64) {
   const bool dense = intact->is_dense();
-  solver::Based first = based_on(fem::Forms(body.problem()), std::move(intact), damage);
+  const fem::DamagedBody before = body.as_of(0);
+  solver::Based first =
+      based_on(before.forms(), std::move(intact), damage, fp64 ? &before : nullptr);
   if (!damage) return std::make_unique<solver::RenewedUpdate>(body, std::move(first));
   solver::Renewal renewal;
   if (dense) {
@@ -39,8 +41,9 @@ std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
   }
   return std::make_unique<solver::RenewedUpdate>(
       body, std::move(first), renewal,
-      [dense](const fem::DamagedBody& of, const linear_algebra::FactorWork& work) {
-        return based_on(of.forms(), std::make_shared<const HostInverse>(of, dense, work), true);
+      [dense, fp64](const fem::DamagedBody& of, const linear_algebra::FactorWork& work) {
+        return based_on(of.forms(), std::make_shared<const HostInverse>(of, dense, work), true,
+                        fp64 ? &of : nullptr);
       });
 }
 

@@ -18,13 +18,18 @@ inline constexpr std::size_t kExactLoads = 64;
 [[nodiscard]] std::shared_ptr<solver::Deferred> intact_update(
     const Problem& problem, std::shared_ptr<const HostInverse> intact);
 
-/// The same for a body that can be damaged; a dense inverse is made anew beside the frames.
+/// The same for a body that can be damaged; a dense inverse is made anew beside the frames. `fp64`:
+/// what is promised, for which columns may have to be refined.
 [[nodiscard]] std::unique_ptr<solver::RenewedUpdate> host_update(
-    const fem::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage);
+    const fem::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage,
+    bool fp64);
 
 /// The base that such an update has at present.
 [[nodiscard]] inline const HostBase& base_of(const solver::RenewedUpdate& update) {
   return static_cast<const HostBase&>(update.deferred().base());
+}
+[[nodiscard]] inline HostBase& base_of(solver::RenewedUpdate& update) {
+  return static_cast<HostBase&>(update.deferred().base());
 }
 
 }  // namespace sunder::gpu

@@ -15,7 +15,8 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
                                         const InverseOptions& options) {
   const Index n = problem.dof_count();
   const auto rows = round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
-  const auto base = DenseInverse::planned(kernels, n, rows, options.panel_bytes);
+  const KernelFactory stored = options.fp64 ? kernels.in_fp64() : kernels;
+  const auto base = DenseInverse::planned(stored, n, rows, options.panel_bytes);
   std::size_t bytes = base.bytes;
   std::uint32_t capacity = 0;
   const std::size_t grips = problem.gripped_dofs().size();
@@ -28,9 +29,9 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
   const std::size_t sums =
       std::size_t{base.chunks + base.panels + capacity / shaders::kChunk} * rows * sizeof(double);
   if (!options.on_device) return bytes + sums;
-  // While it is computed: the fp64 matrix beside the stored one, before the rest exists.
+  // While it is computed, before the rest exists.
   return std::max(bytes + sums,
-                  base.bytes + planned_inversion_bytes(kernels, n, rows, options.panel_bytes));
+                  base.bytes + planned_inversion_bytes(stored, n, rows, options.panel_bytes));
 }
 
 InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody& body,
@@ -44,7 +45,8 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
       options_(options),
       eager_(options.eager),
       damage_(damage),
-      base_(kernels, problem_.dof_count(), fields.rows(), options.panel_bytes),
+      stored_(options.fp64 ? kernels.in_fp64() : kernels),
+      base_(stored_, problem_.dof_count(), fields.rows(), options.panel_bytes),
       exact_(kernels, fields.rows()),
       load_place_(static_cast<std::size_t>(problem_.dof_count()), kNone),
       residual_(problem_.dof_count()),
@@ -60,7 +62,7 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
     bind();
     factor_grips();
   } else {
-    update_ = host_update(body_, intact_, damage_);
+    update_ = host_update(body_, intact_, damage_, kernels_.fp64());
     new_base();
   }
 }
@@ -69,7 +71,7 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
 void InverseRoute::fill_base(const HostInverse& host) {
   base_stale_ = false;
   if (options_.on_device) {
-    invert_on_device(kernels_, body_.as_of(base_events_).stiffness(), fields_.rows(),
+    invert_on_device(stored_, body_.as_of(base_events_).stiffness(), fields_.rows(),
                      options_.panel_bytes, base_);
   } else {
     upload_inverse(host, base_);
@@ -78,7 +80,16 @@ void InverseRoute::fill_base(const HostInverse& host) {
 
 /// The base on the device, which a new one leaves behind until a load needs it.
 void InverseRoute::ensure_base() {
-  if (base_stale_) fill_base(base_of(*update_).inverse());
+  if (!base_stale_) return;
+  fill_base(base_of(*update_).inverse());
+  read_columns();
+}
+
+/// Where the device has the update's base in fp64, new columns are read there.
+void InverseRoute::read_columns() {
+  HostBase& host = base_of(*update_);
+  columns_there_ = !base_stale_ && base_.fp64() && !host.inverse().is_dense();
+  if (columns_there_) host.read_from(base_);
 }
 
 void InverseRoute::bind() {
@@ -95,6 +106,7 @@ void InverseRoute::bind() {
 /// The columns of the update's present base, in place of those of the one before.
 void InverseRoute::new_base() {
   bases_ = update_->bases();
+  read_columns();
   exact_.clear();
   exact_.reserve();
   place_.clear();
@@ -123,7 +135,7 @@ void InverseRoute::hold_loads(const Load& load) {
   for (std::size_t i = 0; i < added.size(); ++i) {
     load_place_[added[i]] = exact_.count() + static_cast<Index>(i);
   }
-  if (exact_.append(base_of(*update_).inverse().columns(added))) bind();
+  if (exact_.append(base_of(*update_).unit_columns(added))) bind();
 }
 
 void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) {
@@ -352,7 +364,7 @@ void InverseRoute::defer() {
   eager_ = false;
   base_stale_ = true;  // events have been worked into it
   base_events_ = 0;
-  update_ = host_update(body_, intact_, damage_);
+  update_ = host_update(body_, intact_, damage_, kernels_.fp64());
   std::vector<Index> destroyed;
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     if (body_.destroyed()[e]) destroyed.push_back(e);
@@ -364,7 +376,7 @@ void InverseRoute::defer() {
 
 std::vector<BufferPlan> InverseRoute::buffers() const {
   std::vector<BufferPlan> plan = {
-      {kernels_.fp64() ? "inverse (device, fp64)" : "inverse (device, fp32)", base_.bytes()},
+      {base_.fp64() ? "inverse (device, fp64)" : "inverse (device, fp32)", base_.bytes()},
       {"partial sums (device)", partials_.buffer().bytes()}};
   if (!update_) {
     plan.push_back({"factor and inverse of the base (host)", intact_->bytes()});

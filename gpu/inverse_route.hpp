@@ -16,6 +16,7 @@ struct InverseOptions {
   bool eager = false;
   std::size_t panel_bytes = 0;  ///< largest buffer wanted, 0: the device's limit
   bool on_device = false;       ///< the inverse is computed there
+  bool fp64 = false;            ///< and stays in fp64, whatever the precision is
 };
 
 class InverseRoute final : public DeviceRoute {
@@ -44,11 +45,15 @@ class InverseRoute final : public DeviceRoute {
   std::vector<BufferPlan> buffers() const override;
   void add_to(solver::FrameShape& shape) const override {
     if (!intact_->is_dense()) shape.entries = intact_->factor().entries();
+    shape.columns_there = columns_there_;
+    shape.columns_refined = update_ && base_of(*update_).refines();
+    shape.inverse_bytes = stored_.real_bytes();
   }
 
  private:
   void fill_base(const HostInverse& host);
   void ensure_base();
+  void read_columns();
   void bind();
   void new_base();
   void extend_exact();
@@ -75,7 +80,9 @@ class InverseRoute final : public DeviceRoute {
   std::unique_ptr<solver::RenewedUpdate> update_;  // empty while eager
   int bases_ = 0;                                  // of update_, whose columns are in exact_
   bool base_stale_ = false;                        // base_ is that of an earlier one
+  bool columns_there_ = false;                     // new columns are read from base_
   std::size_t base_events_ = 0;                    // of the body that base_ is to be made of
+  KernelFactory stored_;                           // in the precision that base_ is stored in
   DenseInverse base_;
   // The update's columns and those of loads, as they came: where each column is among them.
   ExactColumns exact_;

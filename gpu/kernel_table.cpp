@@ -65,7 +65,7 @@ constexpr KernelRow kTable[] = {
      0},
     {"complement",
      "last step of the inversion on the device",
-     {doubles, plain},
+     {doubles, doubles, plain},
      sizeof(shaders::ComplementPush)},
     {"dense",
      "dense product with the inverse, to estimate errors and refine",

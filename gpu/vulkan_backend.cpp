@@ -34,18 +34,23 @@ std::future<IntactInverse> start_inverse(const Problem& problem, const VulkanOpt
                     [&problem] { return std::make_shared<const HostInverse>(problem, true); });
 }
 
+solver::PlanDevice device_to_plan(const VulkanOptions& options, const vulkan::Device& device) {
+  solver::PlanDevice plan = plan_device(device.physical(), options.lent.has_value());
+  if (options.invert_on_device) plan.inverts_from = *options.invert_on_device ? 1 : kNone;
+  return plan;
+}
+
 class VulkanBackend final : public Backend {
  public:
   VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
       : Backend(problem, std::move(needs)),
         started_(start_inverse(*problem, options)),
         device_(open_device(options, problem->scene().solver.device)),
-        for_plan_(plan_device(device_->physical(), options.lent.has_value())),
+        for_plan_(device_to_plan(options, *device_)),
         plan_(solver::make_plan(*problem, this->needs(), for_plan_)),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
-        inverse_{plan_.eager, options.panel_bytes,
-                 options.invert_on_device.value_or(plan_.invert_on_device)} {
+        inverse_{plan_.eager, options.panel_bytes, plan_.invert_on_device, plan_.exact_inverse} {
     device_->set_timing(false);
     for (const std::string& what : plan_.left_out) leave_out(what);
     const DeviceSetup setup{damaged_body(), kernels_, plan_, inverse_, this->needs()};
@@ -156,7 +161,7 @@ class VulkanBackend final : public Backend {
     shape.apart = whole;
     shape.host_corrects = kernels_.single();
     shape.stress = needs().stress;
-    shape.real_bytes = kernels_.real_bytes();
+    shape.real_bytes = shape.inverse_bytes = kernels_.real_bytes();
     shape.exact_loads = kExactLoads;
     shape.stiffness_bytes = whole ? body_->fields().matrix().bytes() : 0;
     body_->add_to(shape);

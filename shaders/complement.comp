@@ -1,19 +1,21 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// X = scale (I - B), rounded to storage precision: the last step of the inversion on the device. Of B
-// only the lower tiles count, X is whole; a dispatch fills in what one panel of B has.
+// X = S (I - B) S for a diagonal S, rounded to storage precision: the last step of the inversion on the
+// device. Of B only the lower tiles count, X is whole; a dispatch fills in what one panel of B has. In
+// place by two dispatches: the tiles over the diagonal from those under it, then these themselves.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 
 IN_DVEC4(0, Swept, swept)
-OUT(1, Matrix, REAL4, matrix)
+IN_DVEC4(1, Scales, scales)  // the diagonal of S; zero of padding
+OUT(2, Matrix, REAL4, matrix)
 layout(push_constant) uniform Push { ComplementPush p; };
 
 void main() {
   const uint pack = invocation(), column = p.to + gl_WorkGroupID.y;
   const bool direct = 4u * pack / kTile >= column / kTile;
   const uint within = (direct ? column : 4u * pack) - p.first_column;
-  if (within < p.columns) {
+  if (within < p.columns && p.left_out != (direct ? kLowerTiles : kUpperTiles)) {
     const uint at = within * p.packs + (direct ? pack : column / 4u);
     const uint step = direct ? 0u : p.packs, q = column % 4u;
     dvec4 value = -DVEC4(swept, at);
@@ -22,8 +24,8 @@ void main() {
                      DVEC4(swept, at + 3u * step)[q]);
     }
     [[unroll]] for (uint i = 0u; i < 4u; ++i) value[i] += 4u * pack + i == column ? 1.0LF : 0.0LF;
-    // Columns of padding stay zero.
-    const dvec4 result = column < p.unknowns ? p.scale * value : dvec4(0);
+    const double scale = DVEC4(scales, column / 4u)[q];
+    const dvec4 result = scale > 0.0LF ? scale * DVEC4(scales, pack) * value : dvec4(0);
     matrix.data[gl_WorkGroupID.y * p.packs + pack] = REAL4(result);
   }
 }

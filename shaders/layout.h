@@ -19,6 +19,8 @@ SUNDER_CONST kColumnPad = 64u;     // columns of a matrix
 SUNDER_CONST kChunk = 64u;         // columns that one workgroup sums
 SUNDER_CONST kRankBlock = 6u;      // update vectors of one element
 SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update works on
+SUNDER_CONST kLowerTiles = 1u;     // those on and under the diagonal
+SUNDER_CONST kUpperTiles = 2u;     // those over it
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
 SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
 SUNDER_CONST kPartsAtOnce = 256u;  // partial results that one of many workgroups joins
@@ -172,11 +174,10 @@ struct LowRankPush {
 };
 
 struct ComplementPush {
-  double scale;
-  uint packs, unknowns;
+  uint packs;
   uint first_column, columns;  // of the panel that is read
   uint to;                     // first column of the panel that is written
-  uint unused;
+  uint left_out;               // kLowerTiles, kUpperTiles, or 0
 };
 
 struct CgPush {
@@ -342,7 +343,7 @@ static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 80);
 static_assert(sizeof(CgPush) == 56);
-static_assert(sizeof(ComplementPush) == 32);
+static_assert(sizeof(ComplementPush) == 20);
 static_assert(sizeof(CgState) == 56);
 static_assert(sizeof(FinitePush) == 80);
 static_assert(sizeof(FinitePatch) == 24);

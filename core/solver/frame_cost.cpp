@@ -118,7 +118,7 @@ void FrameWork::iterate(const FrameShape& s, double iterations) {
 
 void FrameWork::check(const FrameShape& s) {
   submit();
-  pass(real(s.kept) * real(s.kept) * real(s.real_bytes));
+  pass(real(s.kept) * real(s.kept) * real(s.inverse_bytes));
   pass(2 * real(s.kept) * kValue);
   pass(kStressBytes * real(s.elements));
   seconds_ += real(s.elements) * rates_.stress;

@@ -43,7 +43,10 @@ struct FrameShape {
   bool apart = false;               ///< the base is there
   bool host_corrects = false;       ///< it lacks shaderFloat64
   bool stress = false;              ///< is kept there
-  std::size_t real_bytes = 8;       ///< of a value of the inverse and of stress
+  std::size_t real_bytes = 8;       ///< of a value of stress
+  std::size_t inverse_bytes = 8;    ///< of a value of the inverse
+  bool columns_there = false;       ///< the device has it in fp64: new exact columns are read
+  bool columns_refined = false;     ///< once, on the host, however they come
   std::size_t exact_loads = 0;      ///< up to so many loads have columns in fp64
   std::size_t stiffness_bytes = 0;  ///< that f - K u reads
   std::size_t groups = 1;           ///< whose rigid motions precondition its conjugate gradients

@@ -255,6 +255,7 @@ Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& dev
   const std::string precision = device.fp32 ? choose_precision(problem, device, plan) : "";
   Question q{problem, needs, device};
   q.real_bytes = plan.fp64 ? 8 : 4;
+  q.open_precision = solver.precision == Precision::automatic;
   q.asked = solver.route != Route::automatic || plan.eager;
   const RouteRow* row = nullptr;
   if (q.asked) {
@@ -281,10 +282,10 @@ Plan make_plan(const Problem& problem, const Needs& needs, const PlanDevice& dev
     plan.left_out = left_out_of(problem, q.region());
     plan.region = std::move(q.found);
   }
-  plan.invert_on_device = plan.route == Route::inverse && device.fp64 &&
-                          device.inverts_from != kNone &&
-                          problem.dof_count() >= device.inverts_from;
+  plan.invert_on_device = plan.route == Route::inverse && q.device_inverts();
+  plan.exact_inverse = plan.invert_on_device && q.inverse_bytes() == sizeof(double);
   if (plan.invert_on_device) plan.why += "; the device computes the inverse";
+  if (plan.exact_inverse && !plan.fp64) plan.why += " and keeps it in fp64";
   return plan;
 }
 

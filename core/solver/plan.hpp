@@ -35,6 +35,7 @@ struct Plan {
   bool eager = false;             ///< the update
   bool fp64 = true;               ///< storage of the inverse and of element stress
   bool invert_on_device = false;  ///< the inverse is computed there
+  bool exact_inverse = false;     ///< and stays there in fp64, whatever else is
   std::string why;
   std::vector<std::string> warnings;
   std::optional<Region> region;       ///< of route condensed

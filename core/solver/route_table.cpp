@@ -15,10 +15,10 @@ namespace {
 // seconds to prepare (n^2 nnz(L)), while the factor's frame is still within a millisecond of it.
 constexpr std::size_t kDenseLimit = 6000;
 // A device that makes the inverse itself takes a larger one by itself where it is made within so
-// many seconds, by half of what the device can do, and half of its memory holds it. A frame whose
-// load has turned is then ten times quicker than by conjugate gradients; one with a fracture takes
-// as long by either, since the host's factor solves for its columns. Bytes of a value while it is
-// made, apart from where it is stored; columns of a step of the inversion.
+// many seconds, by half of what the device can do, and half of its memory holds it: frames whose
+// load has turned or in which something breaks then take no iterations, and read their new columns
+// there. Bytes of a value while it is made, in place where it is stored in as many; columns of a
+// step of the inversion.
 constexpr double kPreparation = 5, kOfItsRates = .5, kOfItsMemory = .5;
 constexpr double kInversionBytes = 8, kInversionColumns = 60;
 
@@ -105,7 +105,9 @@ void small_update(FrameWork& work, const FrameShape&) {
 
 // inverse
 
-std::size_t stored_bytes(const Question& q) { return q.unknowns() * q.unknowns() * q.real_bytes; }
+std::size_t stored_bytes(const Question& q) {
+  return q.unknowns() * q.unknowns() * q.inverse_bytes();
+}
 
 /// On the host there is to be room to make it.
 std::size_t whole_inverse_bytes(const Question& q) {
@@ -127,17 +129,16 @@ double inversion_seconds(const Question& q) {
 }
 
 /// Whether the device itself makes an inverse of this size, in time and in half of its memory.
-bool device_inverts(const Question& q) {
-  const PlanDevice& device = q.device;
-  if (device.inverts_from == kNone || !device.fp64 || !(device.rates.flops > 0)) return false;
-  if (q.unknowns() < static_cast<std::size_t>(device.inverts_from)) return false;
-  const double n = real(q.unknowns()), memory = real(device.memory);
-  return inversion_seconds(q) <= kPreparation &&
-         n * n * (kInversionBytes + real(q.real_bytes)) <= kOfItsMemory * memory;
+bool inverts_in_time(const Question& q) {
+  if (!q.device_inverts() || !(q.device.rates.flops > 0)) return false;
+  const double n = real(q.unknowns()), memory = real(q.device.memory);
+  const double stored = real(q.inverse_bytes()),
+               beside = stored < kInversionBytes ? kInversionBytes : 0;
+  return inversion_seconds(q) <= kPreparation && n * n * (stored + beside) <= kOfItsMemory * memory;
 }
 
 bool inverse_pays(const Question& q) {
-  if (q.unknowns() > kDenseLimit && !device_inverts(q)) return false;
+  if (q.unknowns() > kDenseLimit && !inverts_in_time(q)) return false;
   return !q.device.has(Route::factor) || (q.needs.damage && !loads_favour_factor(q));
 }
 
@@ -163,7 +164,7 @@ std::string no_dense_inverse(const Question& q) {
 
 /// u = X f by the loaded columns, on a device apart as they are stored.
 void stored_columns(FrameWork& work, const FrameShape& s) {
-  work.pass(real(s.kept) * real(s.loaded) * real(s.real_bytes));
+  work.pass(real(s.kept) * real(s.loaded) * real(s.inverse_bytes));
   work.pass(2 * real(s.kept) * sizeof(double));
 }
 
@@ -187,17 +188,29 @@ void inverse_solution(FrameWork& work, const FrameShape& s, bool torn) {
   }
 }
 
+/// Of an event, once more by what they lack: a product K u and a solve each.
+void refined_columns(FrameWork& work, const FrameShape& s) {
+  work.product(kTouched * real(s.elements));
+  work.host(2 * real(s.entries), kTouched);
+}
+
 void inverse_update(FrameWork& work, const FrameShape& s) {
-  const double n = real(s.kept), bytes = real(s.real_bytes);
+  const double n = real(s.kept), bytes = real(s.inverse_bytes);
   if (s.apart && s.eager) {
     work.submit();  // the block that the event touches
     work.pass(0);
     work.submit();
     work.pass(kTouched * n * bytes);
     work.pass(n * n * bytes);  // half of them, read and written
+  } else if (s.apart && s.columns_there && s.entries > 0) {
+    work.submit();  // new exact columns, there and back
+    work.pass(2 * kTouched * n * sizeof(double));
+    work.host(2 * kTouched * n);
+    if (s.columns_refined) refined_columns(work, s);
   } else if (s.apart && s.entries > 0) {
     // New exact columns, all at once by the host's factor.
     work.host(2 * real(s.entries), 1, 4 * kDifferences * real(s.entries));
+    if (s.columns_refined) refined_columns(work, s);
   } else if (s.apart) {
     work.host(2 * kTouched * n);  // from the inverse that it has kept
   } else if (s.eager) {
@@ -289,6 +302,14 @@ constexpr std::array<RouteRow, 4> kRoutes = {{
 }  // namespace
 
 std::size_t Question::unknowns() const { return static_cast<std::size_t>(problem.dof_count()); }
+
+bool Question::device_inverts() const {
+  return device.fp64 && device.inverts_from != kNone && problem.dof_count() >= device.inverts_from;
+}
+
+std::size_t Question::inverse_bytes() const {
+  return open_precision && device_inverts() ? sizeof(double) : real_bytes;
+}
 
 const Region& Question::region() const {
   if (!found) found = region_of(problem, needs);

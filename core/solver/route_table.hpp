@@ -16,11 +16,17 @@ struct Question {
   const Needs& needs;
   const PlanDevice& device;
   bool asked = false;              ///< the scene names the route, or an update that one has
-  std::size_t real_bytes = 8;      ///< of a value of an inverse on a device apart
+  std::size_t real_bytes = 8;      ///< of a value in the precision of a device apart
+  bool open_precision = false;     ///< nobody has asked for one
   std::size_t factor_bytes = 0;    ///< of the host's factors, where it counts them
   std::size_t factor_entries = 0;  ///< of one of them
 
   [[nodiscard]] std::size_t unknowns() const;
+  /// Whether the device computes a dense inverse of this size itself.
+  [[nodiscard]] bool device_inverts() const;
+  /// Of a value of that on a device apart: what it has computed in fp64 stays so unless fp32 was
+  /// asked for, since new exact columns are then at hand.
+  [[nodiscard]] std::size_t inverse_bytes() const;
   /// Found once, when first asked for.
   [[nodiscard]] const Region& region() const;
   mutable std::optional<Region> found = {};

@@ -3,7 +3,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "sunder/error.hpp"
 
@@ -25,21 +27,24 @@ Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& pivot, Index first) {
   return llt.matrixL().solve(Eigen::MatrixXd::Identity(k, k)).transpose();
 }
 
-/// The largest diagonal entry, which the scaled matrix has as 1: the shift by the unit matrix below
-/// then costs no digits.
-double largest_diagonal(const linear_algebra::SparseMatrix& lower) {
-  double largest = 0;
-  for (Index d = 0; d < lower.rows(); ++d) largest = std::max(largest, lower.coeff(d, d));
-  return largest;
+/// Powers of two s that bring each diagonal entry s a s between 1/2 and 2: scaling rounds nothing,
+/// and the shift by the unit matrix costs no digits however much stiffnesses differ.
+std::vector<double> equilibration(const linear_algebra::SparseMatrix& lower) {
+  std::vector<double> scales;
+  for (Index d = 0; d < lower.rows(); ++d) {
+    const double a = lower.coeff(d, d);
+    scales.push_back(a > 0 ? std::exp2(-std::round(std::log2(a) / 2)) : 1);
+  }
+  return scales;
 }
 
 }  // namespace
 
-std::size_t planned_inversion_bytes(const KernelFactory& kernels, Index n, std::uint32_t rows,
+std::size_t planned_inversion_bytes(const KernelFactory& stored, Index n, std::uint32_t rows,
                                     std::size_t panel_bytes) {
-  const KernelFactory exact = kernels.in_fp64();
+  const KernelFactory exact = stored.in_fp64();
   const auto block = static_cast<std::uint32_t>(std::min(kBlock, n));
-  return DenseInverse::planned(exact, n, rows, panel_bytes).bytes +
+  return (stored.fp64() ? 0 : DenseInverse::planned(exact, n, rows, panel_bytes).bytes) +
          DenseInverse::planned_pick(block, block) +
          DenseInverse::planned_update(exact, rows, block, block);
 }
@@ -52,14 +57,17 @@ void invert_on_device(const KernelFactory& kernels, const linear_algebra::Sparse
                       std::uint32_t rows, std::size_t panel_bytes, DenseInverse& inverse) {
   const Index n = static_cast<Index>(lower.rows());
   const KernelFactory exact = kernels.in_fp64();
-  DenseInverse swept(exact, n, rows, panel_bytes);
-  const double scale = 1 / largest_diagonal(lower);
+  std::optional<DenseInverse> beside;
+  if (!inverse.fp64()) beside.emplace(exact, n, rows, panel_bytes);
+  DenseInverse& swept = beside ? *beside : inverse;
+  const std::vector<double> scales = equilibration(lower);
   const linear_algebra::SparseMatrix full = lower.selfadjointView<Eigen::Lower>();
   swept.upload([&](Index first, Index count) {
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(n, count);
     for (Index c = 0; c < count; ++c) {
       for (linear_algebra::SparseMatrix::InnerIterator it(full, first + c); it; ++it) {
-        block(it.row(), c) = scale * it.value();
+        block(it.row(), c) = scales[static_cast<std::size_t>(it.row())] * it.value() *
+                             scales[static_cast<std::size_t>(first + c)];
       }
       block(first + c, c) -= 1;
     }
@@ -73,7 +81,7 @@ void invert_on_device(const KernelFactory& kernels, const linear_algebra::Sparse
     pivot.diagonal().array() += 1;
     swept.update(columns, inverse_root(pivot, first), -1);
   }
-  inverse.take_complement(swept, scale);
+  inverse.take_complement(swept, scales);
 }
 
 }  // namespace sunder::gpu

@@ -380,22 +380,63 @@ void DenseInverse::record_low_rank(vulkan::Commands& commands, const Panel& pane
                     shaders::LowRankPush{rows_ / 4, blocks, panel.first, rows, sign}, groups);
 }
 
-void DenseInverse::take_complement(const DenseInverse& other, double scale) {
+void DenseInverse::take_complement(const DenseInverse& other, std::span<const double> scales) {
   const auto kernel = kernels_.make("complement");
-  trust(false);
-  for (const Panel& from : other.panels_) {
-    for (const Panel& to : panels_) {
-      const auto binding = bind_buffers(kernels_, *kernel, {&from.matrix, &to.matrix});
-      vulkan::Commands commands(kernels_.device());
-      commands.begin();
-      commands.dispatch(
-          *binding,
-          shaders::ComplementPush{scale, rows_ / 4, u32(n_), from.first, from.columns, to.first, 0},
-          rows_ / shaders::kRowPad, to.columns);
-      commands.end();
-      commands.submit();
+  std::vector<double> padded(std::max(rows_, columns_), 0.0);
+  std::ranges::copy(scales, padded.begin());
+  Buffer diagonal(kernels_.device(), padded.size() * sizeof(double), Placement::staging);
+  diagonal.write(std::span<const double>(padded));
+  std::vector<std::unique_ptr<Binding>> bindings;
+  vulkan::Commands commands(kernels_.device());
+  commands.begin();
+  const auto record = [&](std::uint32_t left_out) {
+    for (const Panel& from : other.panels_) {
+      for (const Panel& to : panels_) {
+        if (left_out == shaders::kUpperTiles && from.first != to.first) continue;
+        bindings.push_back(bind_buffers(kernels_, *kernel, {&from.matrix, &diagonal, &to.matrix}));
+        commands.dispatch(
+            *bindings.back(),
+            shaders::ComplementPush{rows_ / 4, from.first, from.columns, to.first, left_out},
+            rows_ / shaders::kRowPad, to.columns);
+      }
     }
+  };
+  if (&other == this) {
+    record(shaders::kLowerTiles);
+    record(shaders::kUpperTiles);
+  } else {
+    record(0);
   }
+  commands.end();
+  commands.submit();
+  release_room();
+  trust(false);
+}
+
+/// What pick() and update() work with comes back with the next of them.
+void DenseInverse::release_room() {
+  for (Panel& panel : panels_) {
+    panel.pick.reset();
+    panel.vectors.reset();
+    panel.low_rank.reset();
+    panel.rank_6.reset();
+  }
+  pick_.reset();
+  vectors_.reset();
+  for (Buffer* room : {&pick_dofs_, &picked_, &update_dofs_, &factors_, &z_}) *room = Buffer();
+}
+
+void DenseInverse::read_columns(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> to) const {
+  std::vector<Buffer::Part> parts;
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    const auto panel = std::ranges::find_if(panels_, [&](const Panel& p) {
+      return u32(dofs[i]) >= p.first && u32(dofs[i]) < p.first + p.columns;
+    });
+    const std::size_t at = std::size_t{u32(dofs[i]) - panel->first} * rows_;
+    const std::span column(to.col(static_cast<Index>(i)).data(), static_cast<std::size_t>(n_));
+    parts.emplace_back(panel->matrix, at, column);
+  }
+  Buffer::read_all(parts);
 }
 
 std::size_t DenseInverse::bytes() const {

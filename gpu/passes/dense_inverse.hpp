@@ -86,9 +86,14 @@ class DenseInverse {
   /// X += sign Z Z^T with Z = X(:, dofs) V; V: shape (dofs x rank). From then on the tiles over the
   /// diagonal are out of date, and whatever reads X reads the lower ones (shaders/lower.glsl).
   void update(std::span<const Index> dofs, const Eigen::MatrixXd& v, float sign = 1);
-  /// X = scale (I - other), of the same size; `other` in fp64.
-  void take_complement(const DenseInverse& other, double scale);
+  /// X = S (I - other) S, S the diagonal matrix of the scales, positive ones; `other` in fp64, of
+  /// the same size, which may be this one.
+  void take_complement(const DenseInverse& other, std::span<const double> scales);
+  /// Columns of X, stored in fp64 and not updated, into `to`, shape (n x dofs): a submit where the
+  /// memory is not mapped.
+  void read_columns(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> to) const;
 
+  [[nodiscard]] bool fp64() const { return kernels_.fp64(); }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -102,6 +107,7 @@ class DenseInverse {
   void create_panels(std::size_t panel_bytes);
   void create_apply();
   void trust(bool lower_alone);
+  void release_room();
   void record_low_rank(vulkan::Commands& commands, const Panel& panel, std::uint32_t blocks,
                        float sign) const;
   void bind_loaded();

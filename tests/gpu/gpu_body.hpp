@@ -69,7 +69,8 @@ struct Way {
   double tolerance = 1e-4;
   std::size_t panel_bytes = 0;
   Route route = Route::inverse;
-  bool float64 = true;  ///< false: the device has no shaderFloat64
+  bool float64 = true;   ///< false: the device has no shaderFloat64
+  bool inverts = false;  ///< the device computes the inverse
 };
 
 inline std::vector<Way> all_ways() {
@@ -89,7 +90,8 @@ inline std::string name_of(const Way& s) {
                     : s.update == Update::deferred ? "_deferred"
                                                    : "";
   return std::string(s.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
-         (s.precision == Precision::fp64 ? "_fp64" : "_fp32") + how + (s.float64 ? "" : "_single");
+         (s.precision == Precision::fp64 ? "_fp64" : "_fp32") + how + (s.float64 ? "" : "_single") +
+         (s.inverts ? "_inverts" : "");
 }
 
 inline std::shared_ptr<const Problem> vulkan_problem(Scene scene, const Way& way) {
@@ -112,6 +114,7 @@ class WatchedBackend {
     options.variant = way.variant;
     options.panel_bytes = way.panel_bytes;
     options.probe.no_float64 = !way.float64;
+    if (way.inverts) options.invert_on_device = true;
   }
   /// Every backend must be gone by then.
   ~WatchedBackend() {

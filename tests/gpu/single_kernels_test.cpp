@@ -276,7 +276,9 @@ TEST_P(SingleKernels, SummaryOfPartialResults) {
 
 TEST_P(SingleKernels, ComplementMirrorsTheLowerTiles) {
   constexpr Index kUnknowns = 150, kColumns = 192, kSplit = 128;
-  constexpr double kScale = 0.37;
+  Doubles scales(shaders::kRowPad, 0.0);
+  for (std::size_t i = 0; i < kUnknowns; ++i) scales[i] = std::exp2(static_cast<double>(i % 5) - 2);
+  const auto diagonal = buffer(scales);
   const Matrix b = random_symmetric(kUnknowns);
   const Matrix swept = lower_tiles(b, kColumns);
   const auto kernel = factory_->make("complement");
@@ -286,9 +288,8 @@ TEST_P(SingleKernels, ComplementMirrorsTheLowerTiles) {
       const Index count = !panels ? kColumns : first == 0 ? kSplit : kColumns - kSplit;
       const Matrix panel = swept.middleCols(first, count);
       const auto of_panel = buffer(Doubles(panel.data(), panel.data() + panel.size()));
-      run(*kernel, {&of_panel, &x},
-          shaders::ComplementPush{kScale, shaders::kRowPad / 4, kUnknowns,
-                                  static_cast<std::uint32_t>(first),
+      run(*kernel, {&of_panel, &diagonal, &x},
+          shaders::ComplementPush{shaders::kRowPad / 4, static_cast<std::uint32_t>(first),
                                   static_cast<std::uint32_t>(count), 0, 0},
           1, kColumns);
     }
@@ -297,8 +298,10 @@ TEST_P(SingleKernels, ComplementMirrorsTheLowerTiles) {
     for (Index c = 0; c < kColumns; ++c) {
       for (Index r = 0; r < kColumns; ++r) {
         const bool inside = r < kUnknowns && c < kUnknowns;
-        const double one = r == c ? 1 : 0, expected = inside ? kScale * (one - b(r, c)) : 0;
-        const double size = inside ? kScale * (one + std::abs(b(r, c))) : 0;
+        const double scale =
+            scales[static_cast<std::size_t>(r)] * scales[static_cast<std::size_t>(c)];
+        const double one = r == c ? 1 : 0, expected = inside ? scale * (one - b(r, c)) : 0;
+        const double size = inside ? scale * (one + std::abs(b(r, c))) : 0;
         if (r >= kUnknowns && r == c) continue;  // nobody reads a row of padding
         ASSERT_LE(std::abs(got(r, c) - expected), units * size) << r << ", " << c;
       }

@@ -214,10 +214,21 @@ TEST(Plan, TakesALargeInverseThatTheDeviceMakesInTime) {
   card.rates.measured = true;
   EXPECT_TRUE(mentions(plan_of(large, card).why, "by its measured rates"))
       << plan_of(large, card).why;
+  // In fp64, in place, whatever the precision is that nobody has asked for; fp32 beside that.
+  EXPECT_FALSE(plan.fp64);
+  EXPECT_TRUE(plan.exact_inverse);
+  EXPECT_TRUE(mentions(plan.why, "the device computes the inverse and keeps it in fp64"));
+  PlanDevice enough = card;
+  enough.memory = std::size_t{700} << 20;
+  EXPECT_EQ(plan_of(large, enough).route, Route::inverse);
+  Scene in_fp32 = large;
+  in_fp32.solver.precision = sunder::Precision::fp32;
+  EXPECT_EQ(plan_of(in_fp32, enough).route, Route::cg) << "482 MB while it is made, twice";
+  EXPECT_FALSE(plan_of(in_fp32, card).exact_inverse);
   PlanDevice slow = card, narrow = card, small = card, none = card, single = card;
   slow.rates.flops = 5e10;
   narrow.rates.bytes = 1e10;
-  small.memory = std::size_t{700} << 20;  // 480 MB of fp32 storage and its making, twice
+  small.memory = std::size_t{600} << 20;  // 321 MB in fp64, twice
   none.inverts_from = kNone;
   single.rates.flops = 0;
   for (const PlanDevice& device : {slow, narrow, small, none, single}) {
