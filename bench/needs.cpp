@@ -5,12 +5,16 @@
 // nobody asks for stress. The time of a row is that of a frame with one fracture (a quiet one where
 // nothing can break), the least of all; predicted_* is what `sunder plan` says. Rows "simulated"
 // tear by themselves, one event a step: hit_rate of the predictions, what they cost and what they
-// spared in all.
+// spared in all. Rows "live_10k" tear 300 elements of a patch of 10,000 unknowns one by one, up to
+// a body of a million: medians of the first and of the last 50, and what of these is the calling
+// thread's, which a device leaves to the host.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
+#include "gpu/vulkan_backend.hpp"
 #include "has_vulkan.hpp"
 #include "run_rows.hpp"
 #include "sunder/backends.hpp"
@@ -106,6 +110,75 @@ void row(benchmark::State& state, const Variant& variant, Index cells) {
 double median_of(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   return v[v.size() / 2];
+}
+
+double thread_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+/// `by_device`: where the device multiplies the columns of the region.
+void live(benchmark::State& state, const Variant& variant, bool by_device, Index cells) {
+  const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  const auto start = Clock::now();
+  std::unique_ptr<Backend> backend;
+  if (by_device) {
+    gpu::VulkanOptions options;
+    options.region_on_device = true;
+    backend = gpu::create(problem, needs, options);
+  } else {
+    backend = create_backend(problem, needs).backend;
+  }
+  state.counters["setup_ms"] = milliseconds_since(start);
+  Load load;
+  for (Index n : problem->instrument_nodes()[0].nodes) {
+    load.force_dofs.push_back(problem->dof(n, 1));
+    load.forces.push_back(-30);
+  }
+  frame(*backend, load, {});  // has the full check
+  const auto order = patch_tear(*problem);
+  std::vector<double> times, host;
+  for (auto _ : state) {
+    const double before = thread_ms();
+    const double ms = frame(*backend, load, {&order[times.size()], 1}).ms;
+    host.push_back(thread_ms() - before);
+    times.push_back(ms);
+    state.SetIterationTime(1e-3 * ms);
+    for (double& f : load.forces) f *= 1.0009765625;
+  }
+  const std::size_t some = std::min<std::size_t>(50, times.size());
+  state.counters["first_ms"] = median_of({times.begin(), times.begin() + some});
+  state.counters["last_ms"] = median_of({times.end() - some, times.end()});
+  state.counters["last_host_ms"] = median_of({host.end() - some, host.end()});
+  state.counters["MiB"] = static_cast<double>(backend->info().memory_bytes) / 1048576;
+  state.counters["unknowns"] = static_cast<double>(problem->dof_count());
+}
+
+void register_live() {
+  struct Row {
+    const char *name, *backend;
+    bool by_device;
+  };
+  std::vector<Row> rows{{"cpu", "cpu", false}};
+  if (has_vulkan()) {
+    rows.push_back({"vulkan", "vulkan", false});
+    rows.push_back({"vulkan_multiplies", "vulkan", true});
+  }
+  for (const Index cells : {141, 409}) {
+    for (const Row& of : rows) {
+      const Variant variant{of.name, Route::condensed, false, true, true, false, of.backend, 40};
+      benchmark::RegisterBenchmark(
+          ("needs/live_10k_" + std::string(of.name) + "/" + std::to_string(6 * cells * cells))
+              .c_str(),
+          [=](auto& state) { live(state, variant, of.by_device, cells); })
+          ->UseManualTime()
+          ->Iterations(300)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
 }
 
 /// 640 fractures of the patch, one a frame.
@@ -259,5 +332,6 @@ void register_rows() {
 
 int main(int argc, char** argv) {
   sunder::bench::register_rows();
+  sunder::bench::register_live();
   return sunder::bench::run_rows(argc, argv);
 }

@@ -89,7 +89,7 @@ void CgRoute::create_kernels(const Fields& fields) {
     pass.binding = std::make_unique<vulkan::Binding>(kernels.device(), *pass.kernel, buffers);
   };
   constexpr std::uint32_t all = shaders::kGroup;
-  const std::uint32_t one = kernels.summing_group();
+  const std::uint32_t one = kernels.closing_group();
   const Buffer& x = fields.nodal(Field::correction);
   const Buffer& m = matrix_.preconditioner();
   make(begin_, "cg_begin", all,

@@ -8,15 +8,34 @@
 
 namespace sunder::gpu {
 
+namespace {
+
+std::size_t columns_bytes(const DeviceSetup& setup, const solver::Region& region) {
+  if (!setup.inverse.region) return 0;
+  return RegionColumns::planned_bytes(setup.kernels.device().physical(),
+                                      static_cast<Index>(region.dofs.size()));
+}
+
+std::unique_ptr<RegionColumns> make_columns(const DeviceSetup& setup,
+                                            const solver::Region& region) {
+  if (!setup.inverse.region) return nullptr;
+  return std::make_unique<RegionColumns>(setup.kernels, static_cast<Index>(region.dofs.size()),
+                                         *setup.inverse.region);
+}
+
+}  // namespace
+
 CondensedBody::CondensedBody(const DeviceSetup& setup, const solver::Region& region)
     : problem_(setup.body.problem()),
       damaged_(setup.body),
       part_(problem_, region),
-      fields_(setup.kernels, *part_.problem(), setup.needs, {.residual = false}),
+      fields_(setup.kernels, *part_.problem(), setup.needs,
+              {.bytes = columns_bytes(setup, region), .residual = false}),
       commands_(setup.kernels.device()),
       intact_(std::make_shared<const HostInverse>(problem_, false)),
+      columns_(make_columns(setup, region)),
       route_(solver::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
-                                     setup.needs.damage, {})),
+                                     setup.needs.damage, {}, columns_.get())),
       frame_(damaged_, *route_, *this),
       outside_(damaged_, region),
       nodal_(part_.problem()->dofs().size(), 0.0),
@@ -138,6 +157,7 @@ std::vector<BufferPlan> CondensedBody::buffers() const {
   plan.push_back({"intact factor (host)", intact_->bytes()});
   plan.push_back({"fields outside the condensed region (host)",
                   outside_.bytes() + whole_nodal_.size() * sizeof(double)});
+  if (columns_) plan.push_back({"columns of the region (device)", columns_->bytes()});
   for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
   return plan;
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Route condensed: the host solves for the region by the engine's own route (condensed_route.hpp),
 // in fp64 and at the price of what the region is large; the device has the region's displacement,
-// stress, summary and list of elements over yield. What lies outside is solved for when somebody
-// reads it.
+// stress, summary and list of elements over yield, and on a GPU the product with many columns. What
+// lies outside is solved for when somebody reads it.
 #pragma once
 
 #include "gpu/device_body.hpp"
+#include "gpu/passes/region_columns.hpp"
 #include "solver/condensed_fields.hpp"
 #include "solver/condensed_route.hpp"
 #include "solver/host_frame.hpp"
@@ -55,6 +56,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   vulkan::Commands commands_;
   IntactInverse intact_;                        // its factor
   std::shared_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
+  std::unique_ptr<RegionColumns> columns_;      // null: the host multiplies
   std::unique_ptr<solver::InverseRoute> route_;
   solver::HostFrame frame_;
   mutable solver::CondensedFields outside_;  // computes what is read

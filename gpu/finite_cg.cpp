@@ -78,7 +78,7 @@ void FiniteCg::make(Pass& pass, std::string_view name, bool real, std::uint32_t 
 
 void FiniteCg::create_passes(const FiniteCgBody& body) {
   constexpr std::uint32_t all = shaders::kGroup;
-  const std::uint32_t one = kernels_.summing_group();
+  const std::uint32_t one = kernels_.closing_group();
   for (std::size_t i : {0, 1}) {
     make(tangent_[i], "finite_tangent", true, all,
          {body.u[i], &body.nodes, &body.shape, &body.facts, &body.from, &tangents_, &body.fibres});

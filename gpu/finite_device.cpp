@@ -17,11 +17,6 @@ using shaders::FinitePush;
 using vulkan::Buffer;
 using vulkan::Placement;
 
-/// Invocations of the passes over all unknowns that leave one sum, on a device.
-std::uint32_t one_group(const vulkan::PhysicalDevice& device) {
-  constexpr std::uint64_t kMost = 256;
-  return static_cast<std::uint32_t>(std::min(kMost, device.limits.group.value));
-}
 /// Into how many shares the sums of an iteration are cut, each for a workgroup: none where one is
 /// as quick as another dispatch would begin.
 std::uint32_t shares_for(std::uint32_t elements, std::uint32_t unknowns) {
@@ -219,9 +214,7 @@ void FiniteDevice::make(Pass& pass, std::string_view name, bool real, const Buff
   const bool one = name == "finite_sums" || name == "finite_sums_join" || name == "finite_begin" ||
                    name == "finite_end";
   const KernelFactory factory = real ? kernels_ : kernels_.in_fp64();
-  const std::uint32_t group = !one                  ? shaders::kGroup
-                              : kernels_.emulated() ? kernels_.summing_group()
-                                                    : one_group(device_.physical());
+  const std::uint32_t group = one ? kernels_.closing_group() : shaders::kGroup;
   if (!pass.kernel) pass.kernel = factory.make(name, group);
   pass.binding[0] = std::make_unique<vulkan::Binding>(device_, *pass.kernel, first);
   pass.binding[1] = std::make_unique<vulkan::Binding>(device_, *pass.kernel, second);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "gpu/host_update.hpp"
 #include "gpu/passes/add.hpp"
@@ -17,6 +18,9 @@ struct InverseOptions {
   std::size_t panel_bytes = 0;  ///< largest buffer wanted, 0: the device's limit
   bool on_device = false;       ///< the inverse is computed there
   bool fp64 = false;            ///< and stays in fp64, whatever the precision is
+  /// Of route condensed: values of the region's columns from which on the device multiplies them;
+  /// none: the host does.
+  std::optional<std::size_t> region = {};
 };
 
 class InverseRoute final : public DeviceRoute {

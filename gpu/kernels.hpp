@@ -2,6 +2,7 @@
 // Turns embedded kernels into pipelines, in the variant that suits the driver.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <set>
 #include <string>
@@ -56,6 +57,13 @@ class KernelFactory {
   /// subgroup a coroutine, no more than one subgroup.
   [[nodiscard]] std::uint32_t summing_group() const {
     return emulated() ? device_.physical().subgroup : shaders::kGroup;
+  }
+  /// The same of a workgroup that leaves the one sum of all others' results: on a device more,
+  /// since each waits for what it reads.
+  [[nodiscard]] std::uint32_t closing_group() const {
+    constexpr std::uint64_t kMost = 256;
+    if (emulated()) return summing_group();
+    return static_cast<std::uint32_t>(std::min(kMost, device_.physical().limits.group.value));
   }
   /// Invocations of a workgroup of the low-rank update, and the columns that it updates
   /// (shaders/low_rank.comp).

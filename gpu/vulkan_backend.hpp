@@ -22,9 +22,10 @@ namespace sunder::gpu {
 struct VulkanOptions {
   vulkan::InstanceOptions instance;
   vulkan::DeviceProbe probe;
-  std::optional<Variant> variant;          ///< none: chosen by driver (choose_variant)
-  std::size_t panel_bytes = 0;             ///< largest buffer of the inverse, 0: the device's limit
-  std::optional<bool> invert_on_device;    ///< none: on a GPU, for larger scenes
+  std::optional<Variant> variant;        ///< none: chosen by driver (choose_variant)
+  std::size_t panel_bytes = 0;           ///< largest buffer of the inverse, 0: the device's limit
+  std::optional<bool> invert_on_device;  ///< none: on a GPU, for larger scenes
+  std::optional<bool> region_on_device;  ///< product of route condensed; none: on a GPU, where long
   std::optional<vulkan::LentDevice> lent;  ///< a host's device; none: one of our own
   DisplayTargets display;                  ///< on a host's device: where to put what it draws
   std::shared_ptr<PipelineCache> cache;    ///< of the host's; null: nobody keeps it

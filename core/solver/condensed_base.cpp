@@ -151,6 +151,7 @@ void CondensedBase::push(std::span<const Difference> vectors, linear_algebra::Ro
 void CondensedBase::pop() {
   vectors_.resize(pushes_.back());
   pushes_.pop_back();
+  if (product_) product_->forget(count());
   for (Index p : touched_) is_touched_[p] = kNone;
   touched_.clear();
   for (const Difference& v : vectors_) {
@@ -230,15 +231,38 @@ const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
   return projected_;
 }
 
-void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
+void CondensedBase::multiply_by(RegionProduct* product) {
+  product_ = product;
+  if (product_) product_->begin();
+}
+
+void CondensedBase::columns(Index first, Eigen::Ref<Eigen::MatrixXd> to) const {
+  for (Eigen::Index j = 0; j < to.cols(); ++j) {
+    const auto [dof, other] = vectors_[static_cast<std::size_t>(first + j)];
+    to.col(j) = x_->col(place_[dof]);
+    if (other != kNone) to.col(j) -= x_->col(place_[other]);
+  }
+}
+
+/// B c of the vectors from the first on, on the places that B touches.
+void CondensedBase::collect_forces(const Eigen::VectorXd& c, Index first) {
   forces_.assign(touched_.size(), 0.0);
-  for (std::size_t i = 0; i < vectors_.size(); ++i) {
+  for (std::size_t i = static_cast<std::size_t>(first); i < vectors_.size(); ++i) {
     const double force = c[static_cast<Eigen::Index>(i)];
     forces_[is_touched_[place_[vectors_[i].dof]]] += force;
     if (vectors_[i].other != kNone) forces_[is_touched_[place_[vectors_[i].other]]] -= force;
   }
+}
+
+void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
+  const Index there = product_ ? product_->follow(*this) : 0;
   u_.setZero();
-  add_columns(*x_, touched_, forces_, u_);
+  if (there > 0) product_->add(c, u_);
+  if (there < count()) {
+    collect_forces(c, there);
+    add_columns(*x_, touched_, forces_, u_);
+  }
+  if (there > 0) collect_forces(c, 0);
   u_ += of_load_;
   if (u.size() != size()) u.setZero(size());
   for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = u_[static_cast<Eigen::Index>(i)];

@@ -10,6 +10,7 @@
 #include "linear_algebra/factor.hpp"
 #include "solver/last_load.hpp"
 #include "solver/lost_stiffness.hpp"
+#include "solver/region_product.hpp"
 
 namespace sunder::solver {
 
@@ -62,6 +63,12 @@ class CondensedBase final : public Base {
   /// What the last expand() lacks on S by the factor's own inverse, D u as a force: with X0 that
   /// inverse and g = X0 (f + B c + D u) - u it is g + X D g. All loads inside S.
   [[nodiscard]] Eigen::VectorXd drift() const;
+  /// `product` takes what it can of every expand() from now on; it must outlive this. Null: nobody.
+  void multiply_by(RegionProduct* product);
+  /// Columns of X_SS B, rows as dofs(), into `to`, shape (dofs x columns).
+  void columns(Index first, Eigen::Ref<Eigen::MatrixXd> to) const;
+  /// Of B.
+  [[nodiscard]] Index count() const { return static_cast<Index>(vectors_.size()); }
   [[nodiscard]] bool inside(std::span<const Index> dofs) const;
   /// S; at first the unknowns given.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }
@@ -73,6 +80,7 @@ class CondensedBase final : public Base {
   CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs,
                 std::shared_ptr<const Eigen::MatrixXd> x);
   void grow(std::span<const Difference> vectors);
+  void collect_forces(const Eigen::VectorXd& c, Index first);
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
   void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
   void make_room_everywhere();
@@ -89,6 +97,7 @@ class CondensedBase final : public Base {
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
   std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_
   std::vector<double> forces_;               // B c on them
+  RegionProduct* product_ = nullptr;
   LastLoad load_;
   std::vector<Index> loaded_;  // places that the load touches
   Eigen::VectorXd of_load_;    // (X f)_S

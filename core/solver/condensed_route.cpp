@@ -31,11 +31,6 @@ Index events_of_a_base(std::size_t dofs) {
 // as much as the columns of X_SS.
 constexpr std::size_t kFewestColumns = 64, kMostColumns = 256;
 
-// Columns that a base is expected to serve, fractures of some elements among them.
-Index columns_of_a_base(std::size_t dofs) {
-  return static_cast<Index>(kMostColumns) + 2 * events_of_a_base(dofs);
-}
-
 // Columns that an event brings: there is room for the damage of large ones (as in deferred.cpp),
 // and that of a few elements is touched from the start.
 constexpr std::size_t kLargestEvent = 512, kUsualEvent = 32;
@@ -185,10 +180,12 @@ class NextBase {
 class CondensedRoute final : public InverseRoute {
  public:
   CondensedRoute(const fem::DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
-                 std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest)
-      : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()) {
+                 std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest,
+                 RegionProduct* product)
+      : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()), product_(product) {
     std::iota(all_.begin(), all_.end(), 0);
     based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage);
+    base_of(based_).multiply_by(product_);
     intact_ = based_.factor.get();
     make_room(body.problem());
     if (!damage) return;
@@ -255,6 +252,7 @@ class CondensedRoute final : public InverseRoute {
       coming_->go_back(events);
     }
     based_ = state.based;
+    base_of(based_).multiply_by(product_);
     factored_ = state.factored;
     bases_ = state.bases;
     based_.laid_over().take_back(based_.laid_over().events() - state.laid);
@@ -273,6 +271,7 @@ class CondensedRoute final : public InverseRoute {
     based_ = condensed_by(body_.forms(),
                           std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body_)),
                           dofs_, true);
+    base_of(based_).multiply_by(product_);
     factored_ = body_.events();
     ++bases_;
     return true;
@@ -365,6 +364,7 @@ class CondensedRoute final : public InverseRoute {
   void take_base() {
     const auto factor = based_.factor;
     if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
+    base_of(based_).multiply_by(product_);
     if (based_.factor != factor) factored_ = started_;
     ++bases_;
     ++new_bases_.count;
@@ -372,6 +372,7 @@ class CondensedRoute final : public InverseRoute {
 
   const fem::DamagedBody& body_;
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
+  RegionProduct* product_;
   const linear_algebra::Factor* intact_ = nullptr;
   Load load_;        // of the last solution
   Load start_load_;  // of the one before coming_ started
@@ -390,11 +391,17 @@ class CondensedRoute final : public InverseRoute {
 
 }  // namespace
 
+// Fractures of some elements among them.
+Index columns_of_a_base(std::size_t dofs) {
+  return static_cast<Index>(kMostColumns) + 2 * events_of_a_base(dofs);
+}
+
 std::unique_ptr<InverseRoute> condensed_route(const fem::DamagedBody& body,
                                               std::shared_ptr<const linear_algebra::Factor> intact,
                                               std::span<const Index> dofs, bool damage,
-                                              std::chrono::milliseconds rest) {
-  return std::make_unique<CondensedRoute>(body, std::move(intact), dofs, damage, rest);
+                                              std::chrono::milliseconds rest,
+                                              RegionProduct* product) {
+  return std::make_unique<CondensedRoute>(body, std::move(intact), dofs, damage, rest, product);
 }
 
 }  // namespace sunder::solver

@@ -9,13 +9,19 @@
 
 #include "body/damaged_body.hpp"
 #include "solver/inverse_route.hpp"
+#include "solver/region_product.hpp"
 
 namespace sunder::solver {
 
 /// Over the unknowns S = `dofs` (ascending), by the intact body's factor. The body must outlive it.
-/// `rest`: of the thread that makes new bases (background_rebase.hpp).
+/// `rest`: of the thread that makes new bases (background_rebase.hpp). `product`: takes what it can
+/// of every frame's product with X_SS, and outlives the route; null: nobody.
 [[nodiscard]] std::unique_ptr<InverseRoute> condensed_route(
     const fem::DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
-    std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest);
+    std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest,
+    RegionProduct* product = nullptr);
+
+/// Columns of X_SS B that a base of so many unknowns is expected to come to.
+[[nodiscard]] Index columns_of_a_base(std::size_t dofs);
 
 }  // namespace sunder::solver

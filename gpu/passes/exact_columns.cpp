@@ -22,17 +22,10 @@ namespace {
 constexpr std::size_t kRoom = 512;
 constexpr std::size_t kRoomBytes = std::size_t{64} << 20;
 
-std::uint32_t most_columns(const vulkan::PhysicalDevice& device, std::uint32_t rows) {
-  const std::size_t limit =
-      std::min<std::size_t>(device.limits.buffer_bytes.value, device.limits.allocation_bytes.value);
-  const std::size_t most = limit / (rows * sizeof(double)) / shaders::kChunk * shaders::kChunk;
-  return static_cast<std::uint32_t>(std::min<std::size_t>(most, 1u << 20));
-}
-
 std::uint32_t reserved(const vulkan::PhysicalDevice& device, std::uint32_t rows) {
   const std::size_t room = std::min(kRoom, kRoomBytes / (rows * sizeof(double)));
   return std::min(round_up(static_cast<std::uint32_t>(room), shaders::kChunk),
-                  most_columns(device, rows));
+                  ExactColumns::most(device, rows));
 }
 
 /// Capacity for `count` columns beyond `capacity`: doubled, so that growth is rare.
@@ -44,13 +37,20 @@ std::uint32_t grown(std::uint32_t capacity, std::uint32_t count, std::uint32_t m
 }  // namespace
 
 Index ExactColumns::most() const {
-  return static_cast<Index>(most_columns(kernels_.device().physical(), rows_));
+  return static_cast<Index>(most(kernels_.device().physical(), rows_));
+}
+
+std::uint32_t ExactColumns::most(const vulkan::PhysicalDevice& device, std::uint32_t rows) {
+  const std::size_t limit =
+      std::min<std::size_t>(device.limits.buffer_bytes.value, device.limits.allocation_bytes.value);
+  const std::size_t columns = limit / (rows * sizeof(double)) / shaders::kChunk * shaders::kChunk;
+  return static_cast<std::uint32_t>(std::min<std::size_t>(columns, 1u << 20));
 }
 
 std::uint32_t ExactColumns::planned_capacity(const vulkan::PhysicalDevice& device,
                                              std::uint32_t rows, Index count) {
   const std::uint32_t first = reserved(device, rows), wanted = static_cast<std::uint32_t>(count);
-  return wanted <= first ? first : grown(first, wanted, most_columns(device, rows));
+  return wanted <= first ? first : grown(first, wanted, most(device, rows));
 }
 
 std::size_t ExactColumns::planned_bytes(std::uint32_t rows, std::uint32_t capacity) {
@@ -83,9 +83,10 @@ void ExactColumns::allocate(std::uint32_t capacity) {
   commands.submit();
 }
 
-void ExactColumns::reserve() {
-  const std::uint32_t room = reserved(kernels_.device().physical(), rows_);
-  if (room > capacity_) allocate(room);
+void ExactColumns::reserve() { reserve(reserved(kernels_.device().physical(), rows_)); }
+
+void ExactColumns::reserve(std::uint32_t columns) {
+  if (columns > capacity_) allocate(columns);
 }
 
 bool ExactColumns::append(const Eigen::Ref<const Eigen::MatrixXd>& columns) {

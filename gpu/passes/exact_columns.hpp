@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -20,11 +21,16 @@ class ExactColumns {
 
   /// Columns beyond this do not fit the device's buffers.
   [[nodiscard]] Index most() const;
+  [[nodiscard]] static std::uint32_t most(const vulkan::PhysicalDevice& device, std::uint32_t rows);
   /// Adds columns, shape (n x columns). Returns true when buffers moved: bind() anew.
   bool append(const Eigen::Ref<const Eigen::MatrixXd>& columns);
   void clear() { count_ = 0; }
+  /// Drops those from `count` on.
+  void keep(Index count) { count_ = std::min(count_, count); }
   /// Room for the damage to come, so that a frame need not allocate.
   void reserve();
+  /// Room for so many columns.
+  void reserve(std::uint32_t columns);
   /// Columns that reserve() and then extend() to `count` make room for, and their bytes.
   [[nodiscard]] static std::uint32_t planned_capacity(const vulkan::PhysicalDevice& device,
                                                       std::uint32_t rows, Index count);

@@ -24,6 +24,9 @@ std::vector<std::uint8_t> ignore_loose(const Backend& backend) {
 std::vector<Way> condensed_ways() {
   std::vector<Way> ways = all_ways();
   std::erase_if(ways, [](const Way& way) { return way.update == Update::eager; });
+  for (const gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
+    ways.push_back({.variant = variant, .region = true});
+  }
   for (Way& way : ways) way.route = Route::condensed;
   return ways;
 }
@@ -56,6 +59,9 @@ TEST_P(CondensedOnVulkan, AlongACrack) {
   add_pull(scene);
   Pair pair(std::move(scene), GetParam());
   EXPECT_EQ(pair.vulkan->info().route, "condensed");
+  EXPECT_EQ(std::ranges::count(pair.vulkan->buffers(), "columns of the region (device)",
+                               &BufferPlan::name),
+            GetParam().region ? 1 : 0);
   pair.load(corner_pull(pair.problem()));
   expect(pair.solve(), allowed(kIntactTolerance), "intact");
   follow(pair, crack_sequence(pair.problem(), 180, 12), kCrackTolerance);

@@ -129,13 +129,16 @@ Scene organ() {
 }
 
 TEST_F(DeviceUse, MemoryOfACondensedSceneIsKnownToTheByteBeforeItIsAllocated) {
-  for (Way way : all_ways()) {
+  std::vector<Way> ways = all_ways();
+  ways.push_back({.region = true});
+  for (Way way : ways) {
     if (way.update == Update::eager) continue;  // not offered
     way.route = Route::condensed;
     SCOPED_TRACE(name_of(way));
     const auto problem = problem_for(organ(), way);
     gpu::VulkanOptions options = watched(way);
     options.probe.no_float64 = !way.float64;
+    if (way.region) options.region_on_device = true;
     const std::size_t bytes =
         gpu::device_use(*gpu::create(problem, needs_with(true), options)).bytes;
     expect_refused_under(bytes, problem, options);
@@ -320,7 +323,8 @@ TEST_F(DeviceUse, AFrameIsOneSubmitAndAQuietOneReadsNoFieldBack) {
 
 // Memory that the host does not map.
 struct Unmapped {
-  explicit Unmapped(Route route, Scene scene = held_board(), bool inverts = false) {
+  explicit Unmapped(Route route, Scene scene = held_board(), bool inverts = false,
+                    bool region = false) {
     Way way{gpu::Variant::lvp, Precision::fp64};
     way.route = route;
     if (route == Route::cg) way.update = Update::automatic;
@@ -329,6 +333,7 @@ struct Unmapped {
     options.probe.as_gpu = true;
     options.probe.allocations = &allocations;
     if (inverts) options.invert_on_device = true;
+    options.region_on_device = region;
     backend = gpu::create(problem, needs_with(true), options);
   }
   SolveReport frame(const Vec3& force) {
@@ -381,6 +386,23 @@ TEST_F(DeviceUse, AnEventOfAnInverseFromTheDeviceIsTwoSubmits) {
       body.backend->destroy({crack.data() + event * of_an_event, of_an_event});
       body.frame(Vec3(0, -10, 0));
       EXPECT_EQ(body.use().submits - submits, 2u) << "event " << event;
+      EXPECT_EQ(body.allocations, allocated) << "event " << event;
+    }
+  }
+}
+
+// Where the device multiplies the columns of a region, the host reads what comes of it before the
+// stress: three products where 100 elements at once take a refinement.
+TEST_F(DeviceUse, AProductOfTheRegionIsOneSubmitMore) {
+  for (const std::size_t of_an_event : {1, 10, 100}) {
+    Unmapped body(Route::condensed, held_board(), false, true);
+    body.frame(Vec3(0, -10, 0));
+    const auto crack = crack_sequence(*body.problem, 3 * of_an_event, 10);
+    for (std::size_t event = 0; event < 3; ++event) {
+      const std::size_t submits = body.use().submits, allocated = body.allocations;
+      body.backend->destroy({crack.data() + of_an_event * event, of_an_event});
+      body.frame(Vec3(0, -10, 0));
+      EXPECT_EQ(body.use().submits - submits, of_an_event < 100 ? 2u : 6u) << "event " << event;
       EXPECT_EQ(body.allocations, allocated) << "event " << event;
     }
   }

@@ -71,6 +71,7 @@ struct Way {
   Route route = Route::inverse;
   bool float64 = true;   ///< false: the device has no shaderFloat64
   bool inverts = false;  ///< the device computes the inverse
+  bool region = false;   ///< the device multiplies the columns of a condensed region
 };
 
 inline std::vector<Way> all_ways() {
@@ -91,7 +92,7 @@ inline std::string name_of(const Way& s) {
                                                    : "";
   return std::string(s.variant == gpu::Variant::gpu ? "gpu" : "lvp") +
          (s.precision == Precision::fp64 ? "_fp64" : "_fp32") + how + (s.float64 ? "" : "_single") +
-         (s.inverts ? "_inverts" : "");
+         (s.inverts ? "_inverts" : "") + (s.region ? "_region" : "");
 }
 
 inline std::shared_ptr<const Problem> vulkan_problem(Scene scene, const Way& way) {
@@ -115,6 +116,7 @@ class WatchedBackend {
     options.panel_bytes = way.panel_bytes;
     options.probe.no_float64 = !way.float64;
     if (way.inverts) options.invert_on_device = true;
+    if (way.region) options.region_on_device = true;
   }
   /// Every backend must be gone by then.
   ~WatchedBackend() {
