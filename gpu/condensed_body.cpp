@@ -10,17 +10,17 @@ namespace sunder::gpu {
 
 namespace {
 
-std::size_t columns_bytes(const DeviceSetup& setup, const solver::Region& region) {
-  if (!setup.inverse.region) return 0;
-  return RegionColumns::planned_bytes(setup.kernels.device().physical(),
-                                      static_cast<Index>(region.dofs.size()));
-}
-
+/// Null where the device is not to multiply, would never come to so many columns, or has no memory
+/// left for them beside the fields: the host does it then.
 std::unique_ptr<RegionColumns> make_columns(const DeviceSetup& setup,
                                             const solver::Region& region) {
-  if (!setup.inverse.region) return nullptr;
-  return std::make_unique<RegionColumns>(setup.kernels, static_cast<Index>(region.dofs.size()),
-                                         *setup.inverse.region);
+  const auto& least = setup.inverse.region;
+  const vulkan::Device& device = setup.kernels.device();
+  const auto unknowns = static_cast<Index>(region.dofs.size());
+  if (!least || RegionColumns::most_values(device.physical(), unknowns) < *least) return nullptr;
+  const std::size_t bytes = RegionColumns::planned_bytes(device.physical(), unknowns);
+  if (device.held_bytes() + bytes > device.physical().memory) return nullptr;
+  return std::make_unique<RegionColumns>(setup.kernels, unknowns, *least);
 }
 
 }  // namespace
@@ -29,8 +29,7 @@ CondensedBody::CondensedBody(const DeviceSetup& setup, const solver::Region& reg
     : problem_(setup.body.problem()),
       damaged_(setup.body),
       part_(problem_, region),
-      fields_(setup.kernels, *part_.problem(), setup.needs,
-              {.bytes = columns_bytes(setup, region), .residual = false}),
+      fields_(setup.kernels, *part_.problem(), setup.needs, {.residual = false}),
       commands_(setup.kernels.device()),
       intact_(std::make_shared<const HostInverse>(problem_, false)),
       columns_(make_columns(setup, region)),

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "solver/instrument_block.hpp"
-
 namespace sunder::gpu {
 namespace {
 
@@ -20,21 +18,13 @@ constexpr double kExact = 2e-10;
 
 }  // namespace
 
-HostBase::HostBase(std::shared_ptr<const HostInverse> inverse, const fem::DamagedBody* body)
-    : inverse_(std::move(inverse)) {
+HostBase::HostBase(std::shared_ptr<const HostInverse> inverse, const fem::DamagedBody* body,
+                   const DenseInverse* device)
+    : inverse_(std::move(inverse)), device_(device) {
   columns_.resize(inverse_->factor().cholesky().size(), 0);
   if (!body || inverse_->is_dense()) return;
   body_ = *body;
-  const auto gripped = body_->forms().gripped();
-  solver::Anchors anchors(body_->problem());
-  const auto stiffness = anchors.of(gripped);
-  for (std::size_t g = 0; g < gripped.size(); ++g) anchors_.emplace_back(gripped[g], stiffness[g]);
   try_columns();
-}
-
-void HostBase::read_from(const DenseInverse& device) {
-  device_ = &device;
-  if (body_) try_columns();
 }
 
 /// Refines some columns that lie evenly, to see what that changes.
@@ -42,7 +32,6 @@ void HostBase::try_columns() {
   dofs_.clear();
   for (Index i = 0; i < kTried; ++i) dofs_.push_back(i * size() / kTried);
   dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
-  refines_ = false;
   Eigen::MatrixXd some(size(), static_cast<Index>(dofs_.size()));
   read_units(dofs_, some);
   refines_ = refine(dofs_, some) > kExact;
@@ -65,11 +54,13 @@ void HostBase::read_units(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixX
 
 /// Returns the largest change of one, relative to its norm.
 double HostBase::refine(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const auto anchored = body_->problem().anchored_dofs();
+  const double stiffness = body_->problem().anchor_stiffness();  // K has it beside its elements
   double most = 0;
   for (std::size_t i = 0; i < dofs.size(); ++i) {
     auto column = columns.col(static_cast<Index>(i));
     body_->apply(column, lacks_);
-    for (const auto& [dof, stiffness] : anchors_) lacks_[dof] += stiffness * column[dof];
+    for (Index d : anchored) lacks_[d] += stiffness * column[d];
     lacks_ = -lacks_;
     lacks_[dofs[i]] += 1;
     inverse_->factor().solve(lacks_, correction_, work_);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The base below the deferred update of a device: the host has its columns X B in fp64, which the
 // device gets as exact columns, and solves with its factor where all of X is needed. Columns come
-// from the dense inverse that the host keeps or the device has in fp64, else from the factor. Where
-// stiffnesses differ so much that such columns are off by more than displacement may be, each is
-// refined once by the residual that elements sum.
+// from the dense inverse that the host keeps, else from the device's in fp64, else from the factor.
+// Where stiffnesses differ so much that columns of the latter two are off by more than displacement
+// may be, each is refined once by the residual that elements sum.
 #pragma once
 
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "gpu/host_inverse.hpp"
@@ -19,12 +18,14 @@ namespace sunder::gpu {
 
 class HostBase final : public solver::Base {
  public:
-  /// `body`: whose inverse it is, to refine columns by; null: they stay as they come.
+  /// `body`: whose inverse it is, to refine columns by; null: they stay as they come. `device`: as
+  /// read_from().
   explicit HostBase(std::shared_ptr<const HostInverse> inverse,
-                    const fem::DamagedBody* body = nullptr);
+                    const fem::DamagedBody* body = nullptr, const DenseInverse* device = nullptr);
 
-  /// The same inverse, in fp64 on the device, to read columns of; it must outlive this.
-  void read_from(const DenseInverse& device);
+  /// The same inverse, in fp64 on the device, to read columns of from now on; it must outlive this.
+  /// Null: there is none.
+  void read_from(const DenseInverse* device) { device_ = device; }
   /// Columns of X, shape (n x dofs).
   [[nodiscard]] Eigen::MatrixXd unit_columns(std::span<const Index> dofs);
   /// Whether columns need to be refined.
@@ -51,9 +52,7 @@ class HostBase final : public solver::Base {
 
   std::shared_ptr<const HostInverse> inverse_;
   const DenseInverse* device_ = nullptr;
-  // To refine by, and what K has beside its elements, which anchors the gripped unknowns.
-  std::optional<fem::DamagedBody> body_;
-  std::vector<std::pair<Index, double>> anchors_;
+  std::optional<fem::DamagedBody> body_;  // to refine by
   bool refines_ = false;
   Eigen::MatrixXd columns_, units_;          // units_: of those that an event needs
   std::vector<Index> dofs_;                  // which these are

@@ -10,11 +10,13 @@ constexpr Index kColumnsPerBase = 256;
 constexpr int kEventsUntilNext = 24;
 
 solver::Based based_on(const fem::Forms& in_base, std::shared_ptr<const HostInverse> inverse,
-                       bool damage, const fem::DamagedBody* body = nullptr) {
+                       bool damage, const fem::DamagedBody* body = nullptr,
+                       const DenseInverse* device = nullptr) {
   solver::Based based;
   based.factor = {inverse, &inverse->factor()};
   based.deferred = std::make_unique<solver::Deferred>(
-      in_base, std::make_unique<HostBase>(std::move(inverse), body), damage, kColumnsPerBase);
+      in_base, std::make_unique<HostBase>(std::move(inverse), body, device), damage,
+      kColumnsPerBase);
   return based;
 }
 
@@ -27,11 +29,12 @@ std::shared_ptr<solver::Deferred> intact_update(const Problem& problem,
 
 std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
                                                    std::shared_ptr<const HostInverse> intact,
-                                                   bool damage, bool fp64) {
+                                                   bool damage, bool fp64,
+                                                   const DenseInverse* device) {
   const bool dense = intact->is_dense();
   const fem::DamagedBody before = body.as_of(0);
   solver::Based first =
-      based_on(before.forms(), std::move(intact), damage, fp64 ? &before : nullptr);
+      based_on(before.forms(), std::move(intact), damage, fp64 ? &before : nullptr, device);
   if (!damage) return std::make_unique<solver::RenewedUpdate>(body, std::move(first));
   solver::Renewal renewal;
   if (dense) {

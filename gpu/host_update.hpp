@@ -19,10 +19,11 @@ inline constexpr std::size_t kExactLoads = 64;
     const Problem& problem, std::shared_ptr<const HostInverse> intact);
 
 /// The same for a body that can be damaged; a dense inverse is made anew beside the frames. `fp64`:
-/// what is promised, for which columns may have to be refined.
+/// what is promised, for which columns may have to be refined. `device`: the first base's inverse,
+/// to read its columns there.
 [[nodiscard]] std::unique_ptr<solver::RenewedUpdate> host_update(
-    const fem::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage,
-    bool fp64);
+    const fem::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage, bool fp64,
+    const DenseInverse* device = nullptr);
 
 /// The base that such an update has at present.
 [[nodiscard]] inline const HostBase& base_of(const solver::RenewedUpdate& update) {

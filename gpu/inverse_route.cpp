@@ -62,20 +62,20 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
     bind();
     factor_grips();
   } else {
-    update_ = host_update(body_, intact_, damage_, kernels_.fp64());
+    update_ = host_update(body_, intact_, damage_, kernels_.fp64(), exact_base(*intact_));
     new_base();
   }
 }
 
 /// X of the body as it was after base_events_.
 void InverseRoute::fill_base(const HostInverse& host) {
-  base_stale_ = false;
   if (options_.on_device) {
     invert_on_device(stored_, body_.as_of(base_events_).stiffness(), fields_.rows(),
                      options_.panel_bytes, base_);
   } else {
     upload_inverse(host, base_);
   }
+  base_stale_ = false;  // not where that has failed
 }
 
 /// The base on the device, which a new one leaves behind until a load needs it.
@@ -85,11 +85,17 @@ void InverseRoute::ensure_base() {
   read_columns();
 }
 
-/// Where the device has the update's base in fp64, new columns are read there.
+/// Where the device has the update's base in fp64 and the host keeps no dense inverse, new columns
+/// are read there; null: not.
+const DenseInverse* InverseRoute::exact_base(const HostInverse& host) const {
+  return !base_stale_ && base_.fp64() && !host.is_dense() ? &base_ : nullptr;
+}
+
 void InverseRoute::read_columns() {
   HostBase& host = base_of(*update_);
-  columns_there_ = !base_stale_ && base_.fp64() && !host.inverse().is_dense();
-  if (columns_there_) host.read_from(base_);
+  const DenseInverse* there = exact_base(host.inverse());
+  columns_there_ = there != nullptr;
+  host.read_from(there);
 }
 
 void InverseRoute::bind() {
@@ -364,7 +370,7 @@ void InverseRoute::defer() {
   eager_ = false;
   base_stale_ = true;  // events have been worked into it
   base_events_ = 0;
-  update_ = host_update(body_, intact_, damage_, kernels_.fp64());
+  update_ = host_update(body_, intact_, damage_, kernels_.fp64(), exact_base(*intact_));
   std::vector<Index> destroyed;
   for (Index e = 0; e < problem_.tet_count(); ++e) {
     if (body_.destroyed()[e]) destroyed.push_back(e);

@@ -57,6 +57,7 @@ class InverseRoute final : public DeviceRoute {
  private:
   void fill_base(const HostInverse& host);
   void ensure_base();
+  [[nodiscard]] const DenseInverse* exact_base(const HostInverse& host) const;
   void read_columns();
   void bind();
   void new_base();
@@ -81,13 +82,13 @@ class InverseRoute final : public DeviceRoute {
   std::shared_ptr<const HostInverse> intact_;
   InverseOptions options_;
   bool eager_, damage_;
-  std::unique_ptr<solver::RenewedUpdate> update_;  // empty while eager
-  int bases_ = 0;                                  // of update_, whose columns are in exact_
-  bool base_stale_ = false;                        // base_ is that of an earlier one
-  bool columns_there_ = false;                     // new columns are read from base_
-  std::size_t base_events_ = 0;                    // of the body that base_ is to be made of
-  KernelFactory stored_;                           // in the precision that base_ is stored in
+  int bases_ = 0;                // of update_, whose columns are in exact_
+  bool base_stale_ = false;      // base_ is that of an earlier one
+  bool columns_there_ = false;   // new columns are read from base_
+  std::size_t base_events_ = 0;  // of the body that base_ is to be made of
+  KernelFactory stored_;         // in the precision that base_ is stored in
   DenseInverse base_;
+  std::unique_ptr<solver::RenewedUpdate> update_;  // empty while eager; reads columns of base_
   // The update's columns and those of loads, as they came: where each column is among them.
   ExactColumns exact_;
   std::vector<Index> place_;       // of the update's columns

@@ -61,7 +61,7 @@ class KernelFactory {
   /// The same of a workgroup that leaves the one sum of all others' results: on a device more,
   /// since each waits for what it reads.
   [[nodiscard]] std::uint32_t closing_group() const {
-    constexpr std::uint64_t kMost = 256;
+    constexpr std::uint64_t kMost = shaders::kClosingGroup;
     if (emulated()) return summing_group();
     return static_cast<std::uint32_t>(std::min(kMost, device_.physical().limits.group.value));
   }

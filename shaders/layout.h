@@ -13,7 +13,9 @@ using uint = std::uint32_t;
 #define SUNDER_CONST const uint
 #endif
 
-SUNDER_CONST kGroup = 64u;         // invocations of a workgroup
+SUNDER_CONST kGroup = 64u;  // invocations of a workgroup
+SUNDER_CONST kClosingGroup =
+    256u;                          // at most, of one that leaves the one sum of all others' results
 SUNDER_CONST kRowPad = 256u;       // rows of a vector: four an invocation
 SUNDER_CONST kColumnPad = 64u;     // columns of a matrix
 SUNDER_CONST kChunk = 64u;         // columns that one workgroup sums

@@ -2,7 +2,7 @@
 // Sums and largest values over what leaves one result together (reduce.glsl), in a fixed order. `lvp`:
 // kernels of one workgroup, or of one for each result, have workgroups of one subgroup.
 #ifndef SUNDER_LVP
-shared double subgroup_sums[kGroup];
+shared double subgroup_sums[kClosingGroup];  // subgroups may be of one invocation
 #endif
 
 double part_sum(double value) {

@@ -74,6 +74,7 @@ CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> facto
   touched_.reserve(dofs_.size());
   loaded_.reserve(dofs_.size());
   forces_.reserve(dofs_.size());
+  loads_.reserve(dofs_.size());
   vectors_.reserve(kVectors);
   pushes_.reserve(kVectors);
   make_room_everywhere();
@@ -254,15 +255,30 @@ void CondensedBase::collect_forces(const Eigen::VectorXd& c, Index first) {
   }
 }
 
+/// u_ += X_SS by the columns that bear a force.
+void CondensedBase::add_loaded_columns() {
+  loaded_.clear();
+  loads_.clear();
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    if (forces_[i] == 0) continue;
+    loaded_.push_back(touched_[i]);
+    loads_.push_back(forces_[i]);
+  }
+  if (!loaded_.empty()) add_columns(*x_, loaded_, loads_, u_);
+}
+
 void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
   const Index there = product_ ? product_->follow(*this) : 0;
   u_.setZero();
   if (there > 0) product_->add(c, u_);
-  if (there < count()) {
-    collect_forces(c, there);
+  if (there == 0) {
+    collect_forces(c, 0);
     add_columns(*x_, touched_, forces_, u_);
+  } else {
+    collect_forces(c, there);
+    add_loaded_columns();
+    collect_forces(c, 0);
   }
-  if (there > 0) collect_forces(c, 0);
   u_ += of_load_;
   if (u.size() != size()) u.setZero(size());
   for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = u_[static_cast<Eigen::Index>(i)];

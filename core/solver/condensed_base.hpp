@@ -81,6 +81,7 @@ class CondensedBase final : public Base {
                 std::shared_ptr<const Eigen::MatrixXd> x);
   void grow(std::span<const Difference> vectors);
   void collect_forces(const Eigen::VectorXd& c, Index first);
+  void add_loaded_columns();
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
   void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
   void make_room_everywhere();
@@ -99,7 +100,8 @@ class CondensedBase final : public Base {
   std::vector<double> forces_;               // B c on them
   RegionProduct* product_ = nullptr;
   LastLoad load_;
-  std::vector<Index> loaded_;  // places that the load touches
+  std::vector<Index> loaded_;  // places that a load touches
+  std::vector<double> loads_;  // those of damage that the host multiplies
   Eigen::VectorXd of_load_;    // (X f)_S
   Eigen::VectorXd u_, projected_, right_side_, solution_;
   // Where a load is outside S and stiffness was lost: u on the unknowns of D, D u there and on S,

@@ -32,8 +32,8 @@ struct PlanDevice {
 
 struct Plan {
   Route route = Route::automatic;
-  bool eager = false;             ///< the update
-  bool fp64 = true;               ///< storage of the inverse and of element stress
+  bool eager = false;  ///< the update
+  bool fp64 = true;    ///< storage of element stress and, but for exact_inverse, of the inverse
   bool invert_on_device = false;  ///< the inverse is computed there
   bool exact_inverse = false;     ///< and stays there in fp64, whatever else is
   std::string why;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The product of route condensed's columns X_SS B with a vector, by whoever can read them faster
-// than the host: they are all that a frame reads of X_SS.
+// than the host: what damage makes a frame read of X_SS.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ class RegionProduct {
   virtual void begin() = 0;
   /// Columns from `count` on are gone.
   virtual void forget(Index count) = 0;
-  /// Takes columns that are new, as many as a frame has time for. Returns how many of the first
+  /// Takes columns that are new, as many as there is time for. Returns how many of the first
   /// ones add() multiplies; the rest is the host's.
   virtual Index follow(const CondensedBase& base) = 0;
   /// u += these columns times c.

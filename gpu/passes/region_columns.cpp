@@ -13,8 +13,8 @@ namespace {
 using vulkan::Buffer;
 using vulkan::Placement;
 
-// Columns that a frame brings to the device: of 10,000 unknowns 5 MB.
-constexpr Index kOfAFrame = 64;
+// Columns that a product brings to the device: of 10,000 unknowns 5 MB.
+constexpr Index kAtOnce = 64;
 
 std::uint32_t padded_rows(Index unknowns) {
   return round_up(static_cast<std::uint32_t>(unknowns), shaders::kRowPad);
@@ -48,7 +48,7 @@ RegionColumns::RegionColumns(const KernelFactory& kernels, Index unknowns, std::
   columns_.bind(partials_);
   columns_.bind_solve(positions_, product_);
   sum_ = partials_.bind_sum(positions_, product_);
-  added_.resize(unknowns_, kOfAFrame);
+  added_.resize(unknowns_, kAtOnce);
 }
 
 std::size_t RegionColumns::planned_bytes(const vulkan::PhysicalDevice& device, Index unknowns) {
@@ -56,6 +56,10 @@ std::size_t RegionColumns::planned_bytes(const vulkan::PhysicalDevice& device, I
   return ExactColumns::planned_bytes(rows, capacity) +
          std::size_t{capacity / shaders::kChunk} * rows * sizeof(double) +
          rows * (sizeof(std::uint32_t) + 2 * sizeof(double));
+}
+
+std::size_t RegionColumns::most_values(const vulkan::PhysicalDevice& device, Index unknowns) {
+  return std::size_t{capacity_of(device, unknowns)} * static_cast<std::size_t>(unknowns);
 }
 
 std::size_t RegionColumns::bytes() const {
@@ -68,7 +72,7 @@ Index RegionColumns::follow(const solver::CondensedBase& base) {
   if (rows != unknowns_) return 0;  // S has grown
   if (static_cast<std::size_t>(base.count()) * static_cast<std::size_t>(rows) < least_) return 0;
   const Index before = columns_.count(),
-              end = std::min({base.count(), before + kOfAFrame, static_cast<Index>(capacity_)});
+              end = std::min({base.count(), before + kAtOnce, static_cast<Index>(capacity_)});
   if (end > before) {
     base.columns(before, added_.leftCols(end - before));
     columns_.append(added_.leftCols(end - before));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Route condensed's columns X_SS B on the device, which multiplies them: in fp64, some columns a
-// frame, as far as there is room. The host has X_SS and multiplies what is not there.
+// Route condensed's columns X_SS B on the device, which multiplies them in fp64: a product brings
+// 64 at most, as far as there is room. The host has X_SS and multiplies what is not there.
 #pragma once
 
 #include <memory>
@@ -19,6 +19,9 @@ class RegionColumns final : public solver::RegionProduct {
   /// Device bytes of that, before it exists.
   [[nodiscard]] static std::size_t planned_bytes(const vulkan::PhysicalDevice& device,
                                                  Index unknowns);
+  /// Values of as many columns as there is room for.
+  [[nodiscard]] static std::size_t most_values(const vulkan::PhysicalDevice& device,
+                                               Index unknowns);
   [[nodiscard]] std::size_t bytes() const;
 
   void begin() override { columns_.clear(); }

@@ -291,7 +291,7 @@ TEST_P(CgKernels, InversesOfTheTangentsBlocks) {
 }
 
 TEST_P(CgKernels, LengthOfAStep) {
-  constexpr std::uint32_t kPacks = 45;  // no multiple of a workgroup
+  constexpr std::uint32_t kPacks = 301;  // no multiple of a workgroup
   constexpr double kTerms = 4 * kPacks;
   Doubles pq = random_values(4 * kPacks);
   for (double& v : pq) v = std::abs(v);
@@ -314,7 +314,7 @@ TEST_P(CgKernels, LengthOfAStep) {
     push.first = first ? 1 : 0;
     push.guess = known > 0 ? 2 : 1;
     push.known = known > 0 ? known - 1 : 0;
-    run("cg_length", {&pq_sums, &rp_sums, &of_state}, push, 1, factory_->summing_group());
+    run("cg_length", {&pq_sums, &rp_sums, &of_state}, push, 1, factory_->closing_group());
     return s;
   };
   const shaders::CgState later = length(pq, false);
@@ -348,7 +348,7 @@ TEST_P(CgKernels, LengthOfAStep) {
 }
 
 TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
-  constexpr std::uint32_t kPacks = 45, kSolves = 36;
+  constexpr std::uint32_t kPacks = 301, kSolves = 1236;
   Doubles rz = random_values(4 * kPacks), terms = random_values(kSolves);
   rz[3] += 100;  // positive in all
   double sum = 0, size = 0;
@@ -381,7 +381,7 @@ TEST_P(CgKernels, CheckDecidesAndSetsTheSizesOfWhatFollows) {
     push.first = first ? 1 : 0;
     push.guess = guess;
     push.reduction = 1e-3;
-    run("cg_check", {&sums, &of_terms, &of_state, &arguments}, push, 1, factory_->summing_group());
+    run("cg_check", {&sums, &of_terms, &of_state, &arguments}, push, 1, factory_->closing_group());
     Words sizes(gpu::kCgSizeWords);
     arguments.read(std::span<std::uint32_t>(sizes));
     return Outcome{state(of_state), sizes};

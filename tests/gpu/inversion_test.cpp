@@ -154,8 +154,7 @@ TEST_F(Inversion, ColumnsOfStiffFramesAreRefined) {
     gpu::DenseInverse inverse(*device.factory, n, rows, 0);
     gpu::invert_on_device(*device.factory, body.stiffness(), rows, 0, inverse);
     const auto factor = std::make_shared<const gpu::HostInverse>(*problem, false);
-    gpu::HostBase by_factor(factor, &body), by_device(factor, &body), plain(factor);
-    by_device.read_from(inverse);
+    gpu::HostBase by_factor(factor, &body), by_device(factor, &body, &inverse), plain(factor);
     EXPECT_EQ(by_factor.refines(), contrast > 1);
     EXPECT_EQ(by_device.refines(), contrast > 1);
     const std::vector<Index> some{4, n / 2, n - 5};
@@ -182,7 +181,7 @@ TEST_F(Inversion, NewColumnsAreReadFromTheDevice) {
     gpu::DenseInverse inverse(*device.factory, n, rows, panel_bytes);
     gpu::invert_on_device(*device.factory, doubled, rows, panel_bytes, inverse);
     gpu::HostBase base(std::make_shared<const gpu::HostInverse>(problem, false));
-    base.read_from(inverse);
+    base.read_from(&inverse);
     const std::vector<solver::Difference> vectors{{7, kNone}, {200, 9}, {n - 1, 7}};
     linear_algebra::RowMajor gram(8, 8);
     base.push(vectors, gram);
