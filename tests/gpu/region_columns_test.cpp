@@ -84,6 +84,7 @@ TEST_P(RegionColumnsKernels, FollowTheBase) {
   EXPECT_EQ(columns.follow(*bases.by_device), 109);
   bases.expect_agreement();
   bases.push(20);
+  bases.expect_agreement();
   bases.pop();
   bases.push(15);
   bases.expect_agreement();
