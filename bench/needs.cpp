@@ -61,6 +61,16 @@ FrameTime frame(Backend& backend, const Load& load, std::span<const Index> broke
   return {milliseconds_since(start), waited};
 }
 
+/// What the forceps begin with.
+Load corner_pull(const Problem& problem) {
+  Load load;
+  for (Index n : problem.instrument_nodes()[0].nodes) {
+    load.force_dofs.push_back(problem.dof(n, 1));
+    load.forces.push_back(-30);
+  }
+  return load;
+}
+
 void row(benchmark::State& state, const Variant& variant, Index cells) {
   const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
   Needs needs;
@@ -69,11 +79,7 @@ void row(benchmark::State& state, const Variant& variant, Index cells) {
   const auto start = Clock::now();
   const auto backend = create_backend(problem, needs).backend;
   state.counters["setup_ms"] = milliseconds_since(start);
-  Load load;
-  for (Index n : problem->instrument_nodes()[0].nodes) {
-    load.force_dofs.push_back(problem->dof(n, 1));
-    load.forces.push_back(-30);
-  }
+  Load load = corner_pull(*problem);
   frame(*backend, load, {});  // has the full check
   const auto order = patch_tear(*problem);
   double quiet = 1e300, fracture = 1e300;
@@ -133,11 +139,7 @@ void live(benchmark::State& state, const Variant& variant, bool by_device, Index
     backend = create_backend(problem, needs).backend;
   }
   state.counters["setup_ms"] = milliseconds_since(start);
-  Load load;
-  for (Index n : problem->instrument_nodes()[0].nodes) {
-    load.force_dofs.push_back(problem->dof(n, 1));
-    load.forces.push_back(-30);
-  }
+  Load load = corner_pull(*problem);
   frame(*backend, load, {});  // has the full check
   const auto order = patch_tear(*problem);
   std::vector<double> times, host;
@@ -188,11 +190,7 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
   needs.stress = needs.yield = needs.damage = true;
   const auto order = patch_tear(*problem);
   const std::size_t count = std::min<std::size_t>(640, order.size());
-  Load load;
-  for (Index n : problem->instrument_nodes()[0].nodes) {
-    load.force_dofs.push_back(problem->dof(n, 1));
-    load.forces.push_back(-30);
-  }
+  Load load = corner_pull(*problem);
   for (auto _ : state) {
     const auto backend = create_backend(problem, needs).backend;
     frame(*backend, load, {});

@@ -36,6 +36,10 @@ struct Bases {
     by_device = std::make_unique<solver::CondensedBase>(factor, dofs);
     by_device->multiply_by(product);
   }
+  void multiply_by(solver::RegionProduct& of) {
+    product = &of;
+    begin();
+  }
   void push(Index vectors) {
     std::vector<solver::Difference> added;
     for (Index i = 0; i < vectors; ++i) {
@@ -74,8 +78,7 @@ TEST_P(RegionColumnsKernels, FollowTheBase) {
   Bases bases;
   const auto unknowns = static_cast<Index>(bases.dofs.size());
   gpu::RegionColumns columns(*factory_, unknowns, static_cast<std::size_t>(10 * unknowns));
-  bases.product = &columns;
-  bases.begin();
+  bases.multiply_by(columns);
   bases.push(9);
   bases.expect_agreement();
   EXPECT_EQ(columns.follow(*bases.by_device), 0) << "too few columns to be worth it";
@@ -98,8 +101,7 @@ TEST_P(RegionColumnsKernels, FollowTheBase) {
 TEST_P(RegionColumnsKernels, LeaveARegionThatHasGrownToTheHost) {
   Bases bases;
   gpu::RegionColumns columns(*factory_, static_cast<Index>(bases.dofs.size()), 0);
-  bases.product = &columns;
-  bases.begin();
+  bases.multiply_by(columns);
   bases.push(20);
   EXPECT_EQ(columns.follow(*bases.by_device), 20);
   bases.dofs.push_back(bases.dofs.front() + 1);
@@ -111,8 +113,7 @@ TEST_P(RegionColumnsKernels, LeaveARegionThatHasGrownToTheHost) {
 TEST_P(RegionColumnsKernels, ColumnsBeyondTheRoomAreTheHosts) {
   Bases bases;
   gpu::RegionColumns columns(*factory_, static_cast<Index>(bases.dofs.size()), 0);
-  bases.product = &columns;
-  bases.begin();
+  bases.multiply_by(columns);
   for (int i = 0; i < 10; ++i) bases.push(64);
   for (int i = 0; i < 10; ++i) bases.expect_agreement();
   const Index there = columns.follow(*bases.by_device);
