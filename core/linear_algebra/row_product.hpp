@@ -10,6 +10,9 @@ namespace sunder::linear_algebra {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Entries of a row that is processed in full vectors, wherever its n end.
+[[nodiscard]] constexpr Eigen::Index padded(Eigen::Index n) { return (n + 7) / 8 * 8; }
+
 /// A strided view of a left factor; a transpose swaps the strides.
 struct LeftFactor {
   const double* data;

@@ -47,6 +47,7 @@ struct PlainLanes {
     for (int i = 0; i < N; ++i) at[i] += other.at[i];
     return *this;
   }
+  friend PlainLanes operator+(PlainLanes a, const PlainLanes& b) { return a += b; }
   friend PlainLanes operator*(const PlainLanes& a, const PlainLanes& b) {
     PlainLanes c;
     for (int i = 0; i < N; ++i) c.at[i] = a.at[i] * b.at[i];

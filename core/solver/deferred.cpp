@@ -9,13 +9,13 @@
 #include "sunder/error.hpp"
 
 namespace sunder::solver {
+
+using linear_algebra::padded;
+
 namespace {
 
 // Room for the differences of predicted fractures.
 constexpr std::size_t kPredicted = std::size_t{1} << 14;
-
-/// Rows and columns are processed in full vectors.
-Eigen::Index padded(Eigen::Index n) { return (n + 7) / 8 * 8; }
 
 /// At least so large; what it held is lost when it grows.
 void make_room(linear_algebra::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
@@ -90,6 +90,7 @@ void Deferred::reserve(Index columns) {
   compliance_.conservativeResize(size, padded(size));
   m_.conservativeResize(size, padded(size));
   d_.conservativeResize(size, padded(size));
+  under_grips_.conservativeResize(under_grips_.rows(), padded(size));
   for (Eigen::VectorXd* v : {&v_, &x_, &lack_, &gx_, &mgx_}) v->resize(size);
 }
 
@@ -125,12 +126,15 @@ void Deferred::find_grips() {
                                            held_[static_cast<std::size_t>(j)].column);
     }
   }
+  under_grips_.resize(g, m_.cols());
+  under_grips_.leftCols(padded(count())).setZero();
+  for (Eigen::VectorXd* v : {&forces_, &at_held_}) v->resize(g);
   if (g == 0 || n == 0) return;
   const Columns of = columns_of_grips();
   const Eigen::Map<const linear_algebra::RowMajor, 0, Eigen::OuterStride<>> columns(
       of.data, n, g, Eigen::OuterStride<>(of.stride));
-  const Eigen::MatrixXd forces = m_.topLeftCorner(n, n) * columns;
-  grip_compliance_.leftCols(g).noalias() += columns.transpose() * forces;
+  under_grips_.leftCols(n).noalias() = columns.transpose() * m_.topLeftCorner(n, n);
+  grip_compliance_.leftCols(g).noalias() += under_grips_.leftCols(n) * columns;
 }
 
 /// Of G, those of the gripped unknowns side by side.
@@ -268,6 +272,7 @@ void Deferred::push(std::span<const Difference> vectors) {
     a->block(0, before, before, padded(count()) - before).setZero();
     a->block(before, 0, added, padded(count())).setZero();
   }
+  under_grips_.middleCols(before, padded(count()) - before).setZero();
 }
 
 void Deferred::prepare(std::span<const Index> elements) {
@@ -325,7 +330,7 @@ void Deferred::remember() {
   if (events() < (sums_.empty() ? 0 : sums_.back().events) + kEvents) return;
   const Eigen::Index n = count();
   sums_.push_back({events(), changed_, m_.topLeftCorner(n, n), d_.topLeftCorner(n, n),
-                   grip_compliance_, forms_, border_});
+                   grip_compliance_, under_grips_.leftCols(n), forms_, border_});
 }
 
 /// The last sums that are kept; returns the events in them.
@@ -339,6 +344,9 @@ std::size_t Deferred::go_to_sums() {
   m_.topLeftCorner(of.m.rows(), of.m.cols()) = of.m;
   d_.topLeftCorner(of.d.rows(), of.d.cols()) = of.d;
   grip_compliance_ = of.grip_compliance;
+  under_grips_.resize(of.under_grips.rows(), m_.cols());
+  under_grips_.leftCols(padded(count())).setZero();
+  under_grips_.leftCols(of.under_grips.cols()) = of.under_grips;
   border_ = of.border;
   return static_cast<std::size_t>(of.events);
 }
@@ -461,7 +469,7 @@ bool Deferred::update(std::span<const Part> parts, bool more) {
   }
   linear_algebra::row_product_add({left->data(), n, width, 1, left->outerStride()}, zt_.data(),
                                   zt_.outerStride(), padded(n), m_.data(), m_.outerStride());
-  if (grips() > 0) add_to_grips(width, more);
+  if (grips() > 0) add_to_grips(width, *left);
   add_to_d(more);
   return true;
 }
@@ -485,14 +493,17 @@ void Deferred::add_to_d(bool more) {
   }
 }
 
-/// (A^-1)_GG grows by the event's share of it.
-void Deferred::add_to_grips(Eigen::Index width, bool more) {
+/// (A^-1)_GG and M G take the event's share of them; M has taken signed_zt^T zt_.
+void Deferred::add_to_grips(Eigen::Index width, const linear_algebra::RowMajor& signed_zt) {
   const Eigen::Index g = padded(grips());
   const Columns columns = columns_of_grips();
   make_room(at_grips_, width, g);
   linear_algebra::row_product({zt_.data(), width, count(), zt_.outerStride(), 1}, columns.data,
                               columns.stride, g, at_grips_.data(), at_grips_.outerStride());
-  if (more) {
+  linear_algebra::row_product_add({at_grips_.data(), grips(), width, 1, at_grips_.outerStride()},
+                                  signed_zt.data(), signed_zt.outerStride(), padded(count()),
+                                  under_grips_.data(), under_grips_.outerStride());
+  if (&signed_zt != &zt_) {
     const auto t = at_grips_.topLeftCorner(width, grips());
     grip_compliance_.leftCols(grips()).noalias() -= t.transpose() * t;
     return;

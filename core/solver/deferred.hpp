@@ -128,7 +128,7 @@ class Deferred {
   struct Sums {
     Index events = 0;
     Eigen::Index changed = 0;
-    linear_algebra::RowMajor m, d, grip_compliance;
+    linear_algebra::RowMajor m, d, grip_compliance, under_grips;
     fem::Forms forms;
     Border border;
   };
@@ -162,8 +162,12 @@ class Deferred {
   [[nodiscard]] Forces on_body(const Forces& forces);
   void start(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
+  [[nodiscard]] double refine_by_base(std::span<const double> displacement);
+  [[nodiscard]] double refine_with_border(std::span<const double> displacement);
   void add_grips(std::span<const double> displacement);
-  void add_to_grips(Eigen::Index width, bool more);
+  void solve_grips(std::span<const double> displacement);
+  void add_of_grips(Eigen::VectorXd& to) const;
+  void add_to_grips(Eigen::Index width, const linear_algebra::RowMajor& signed_zt);
   [[nodiscard]] const Eigen::VectorXd& correct(const Eigen::VectorXd& projection);
   void clear();
   [[nodiscard]] std::size_t go_to_sums();
@@ -200,6 +204,7 @@ class Deferred {
   bool stiffened_ = false;    // the last event has changed M
   Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
+  linear_algebra::RowMajor under_grips_;      // (M G)^T of the grips, a row each
   linear_algebra::RowMajor grip_columns_;     // of G, where they are not the first ones
   std::vector<Sums> sums_;                    // of fewer events first
   Eigen::LLT<Eigen::MatrixXd> grip_block_{Eigen::MatrixXd(0, 0)};
@@ -219,7 +224,7 @@ class Deferred {
   linear_algebra::RowMajor u_, columns_, xu_, z_, zt_, product_, gram_, at_grips_;
   Eigen::MatrixXd c_;
   // A solution: u in B, the forces x on B, what they lack, and its products; count() entries each.
-  Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_, moved_;
+  Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_, moved_, at_held_;
   double defect_energy_ = 0;
   bool converged_ = true;
 };

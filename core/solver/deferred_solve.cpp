@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A solution by the small matrices over the base: the forces of damage and grips, and what refines
 // them.
-#include "solver/columns.hpp"
+#include "linear_algebra/symmetric_product.hpp"
 #include "solver/deferred.hpp"
 
 namespace sunder::solver {
@@ -11,8 +11,8 @@ namespace {
 /// x and y.
 void multiply(const linear_algebra::RowMajor& s, Eigen::Index n, Eigen::Index k,
               const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-  y.head(n).setZero();
-  add_product(s.data(), s.outerStride(), k, x.data(), k, y.data());
+  linear_algebra::symmetric_product(s.data(), s.outerStride(), k, x.data(), y.data());
+  y.segment(k, n - k).setZero();
 }
 
 }  // namespace
@@ -63,15 +63,27 @@ Forces Deferred::on_body(const Forces& forces) {
 
 /// x = M p and what the grips add: A^-1 as it is stored.
 void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacement) {
-  multiply(m_, count(), changed_, p, x_);
-  if (!border_.empty()) border_.start(p, x_);
-  if (held_.empty()) return;
-  forces_.resize(grips());
+  const Eigen::Index n = count();
   for (std::size_t i = 0; i < held_.size(); ++i) {
     forces_[static_cast<Eigen::Index>(i)] = -p[held_[i].column];
   }
-  subtract_at_grips(x_, forces_);
-  add_grips(displacement);
+  if (!border_.empty()) {
+    multiply(m_, n, changed_, p, x_);
+    border_.start(p, x_);
+    subtract_at_grips(x_, forces_);
+    add_grips(displacement);
+    return;
+  }
+  gx_.head(n) = p.head(n);
+  if (!held_.empty()) {
+    forces_.noalias() -= under_grips_.leftCols(n) * p.head(n);
+    solve_grips(displacement);
+    add_of_grips(gx_);
+  }
+  multiply(m_, n, changed_, gx_, x_);
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    x_[held_[i].column] += forces_[static_cast<Eigen::Index>(i)];
+  }
 }
 
 /// One step towards x = D B^T u, u_G = displacement; returns the energy of what was lacking.
@@ -84,20 +96,44 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
   for (Index d : units_) lack_[unit_[d]] = 0;  // where only grips act
   if (!border_.empty()) border_.add_lack(v_, lack_);
   multiply(compliance_, n, n, lack_, gx_);
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] = -v_[held_[i].column] - gx_[held_[i].column];
+  }
+  return border_.empty() ? refine_by_base(displacement) : refine_with_border(displacement);
+}
+
+/// The grips' forces are known before M is multiplied: M has the lack and them at once.
+double Deferred::refine_by_base(std::span<const double> displacement) {
+  const Eigen::Index n = count();
+  double of_grips = 0;  // g^T M G_G forces, g = G lack
+  v_.head(n) = gx_.head(n);
+  if (!held_.empty()) {
+    at_held_.noalias() = under_grips_.leftCols(n) * gx_.head(n);
+    forces_ -= at_held_;
+    solve_grips(displacement);
+    of_grips = at_held_.dot(forces_);
+    add_of_grips(v_);
+  }
+  multiply(m_, n, changed_, v_, mgx_);
+  const double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n)) - of_grips;
+  x_.head(n) += lack_.head(n);
+  x_.head(n) += mgx_.head(n);
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    x_[held_[i].column] += forces_[static_cast<Eigen::Index>(i)];
+  }
+  return energy;
+}
+
+/// With new unknowns, which lack something too.
+double Deferred::refine_with_border(std::span<const double> displacement) {
+  const Eigen::Index n = count();
   multiply(m_, n, changed_, gx_, mgx_);
   double energy = lack_.head(n).dot(gx_.head(n)) + gx_.head(n).dot(mgx_.head(n));
   x_.head(n) += lack_.head(n);
   x_.head(n) += mgx_.head(n);
-  if (!border_.empty()) {
-    moved_.setZero(grips());
-    energy += border_.correct(gx_, x_, moved_);
-  }
-  if (held_.empty()) return energy;
-  forces_.resize(grips());
-  for (std::size_t i = 0; i < held_.size(); ++i) {
-    forces_[static_cast<Eigen::Index>(i)] = -v_[held_[i].column] - gx_[held_[i].column];
-  }
-  if (!border_.empty()) forces_ -= moved_;
+  moved_.setZero(grips());
+  energy += border_.correct(gx_, x_, moved_);
+  forces_ -= moved_;
   subtract_at_grips(mgx_, forces_);
   add_grips(displacement);
   return energy;
@@ -105,22 +141,34 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
 
 /// Adds the grips' forces that move u_G, which is at -forces_, to the displacement.
 void Deferred::add_grips(std::span<const double> displacement) {
+  if (held_.empty()) return;
   const Eigen::Index n = count();
-  for (std::size_t i = 0; i < held_.size() && !displacement.empty(); ++i) {
-    forces_[static_cast<Eigen::Index>(i)] += displacement[i];
-  }
-  grip_block_.solveInPlace(forces_);
+  solve_grips(displacement);
   gx_.head(n).setZero();
-  for (std::size_t i = 0; i < held_.size(); ++i) {
-    gx_.head(n) += forces_[static_cast<Eigen::Index>(i)] *
-                   compliance_.row(held_[i].column).head(n).transpose();
-  }
+  add_of_grips(gx_);
   multiply(m_, n, changed_, gx_, mgx_);
   x_.head(n) += mgx_.head(n);
   for (std::size_t i = 0; i < held_.size(); ++i) {
     x_[held_[i].column] += forces_[static_cast<Eigen::Index>(i)];
   }
-  if (!border_.empty()) border_.follow_grips(forces_, x_);
+  border_.follow_grips(forces_, x_);
+}
+
+/// forces_, the negative of u_G, becomes the forces that move it to the displacement (empty: 0).
+void Deferred::solve_grips(std::span<const double> displacement) {
+  for (std::size_t i = 0; i < held_.size() && !displacement.empty(); ++i) {
+    forces_[static_cast<Eigen::Index>(i)] += displacement[i];
+  }
+  grip_block_.solveInPlace(forces_);
+}
+
+/// Adds G_G forces_: what they do in the base.
+void Deferred::add_of_grips(Eigen::VectorXd& to) const {
+  const Eigen::Index n = count();
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    to.head(n) += forces_[static_cast<Eigen::Index>(i)] *
+                  compliance_.row(held_[i].column).head(n).transpose();
+  }
 }
 
 }  // namespace sunder::solver

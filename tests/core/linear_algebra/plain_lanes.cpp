@@ -10,6 +10,7 @@
 #define linear_algebra plain_linear_algebra
 #include "../core/linear_algebra/panel_kernels.cpp"
 #include "../core/linear_algebra/row_product.cpp"
+#include "../core/linear_algebra/symmetric_product.cpp"
 
 namespace sunder::test {
 
@@ -23,6 +24,13 @@ std::vector<double> plain_product(const Eigen::MatrixXd& a, const std::vector<do
     linear_algebra::row_product(left, b.data(), width, width, c.data(), width);
   }
   return c;
+}
+
+std::vector<double> plain_symmetric_product(const std::vector<double>& s, Index stride, Index n,
+                                            const std::vector<double>& x) {
+  std::vector<double> y(x.size());
+  linear_algebra::symmetric_product(s.data(), stride, n, x.data(), y.data());
+  return y;
 }
 
 void plain_forward_few(const double* panel, Index width, Index height, Index columns, double* x,

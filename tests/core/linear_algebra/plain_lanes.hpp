@@ -13,6 +13,10 @@ namespace sunder::test {
 [[nodiscard]] std::vector<double> plain_product(const Eigen::MatrixXd& a,
                                                 const std::vector<double>& b, Index width,
                                                 bool packed);
+/// S x of a symmetric S, row by row at `stride`, n x n.
+[[nodiscard]] std::vector<double> plain_symmetric_product(const std::vector<double>& s,
+                                                          Index stride, Index n,
+                                                          const std::vector<double>& x);
 /// As the functions of panel_kernels.hpp without `plain_`.
 void plain_forward_few(const double* panel, Index width, Index height, Index columns, double* x,
                        double* below, double* product, Index stride);

@@ -8,6 +8,7 @@
 
 #include "linear_algebra/panel_kernels.hpp"
 #include "linear_algebra/row_product.hpp"
+#include "linear_algebra/symmetric_product.hpp"
 
 namespace sunder::test {
 namespace {
@@ -33,6 +34,16 @@ TEST(PlainLanes, GiveProductsOfTheSameBits) {
       linear_algebra::packed_product(factor, b.data(), width, width, packed.data(), width, room);
       EXPECT_EQ(plain_product(a, b, width, true), packed) << rows << " x " << width;
     }
+  }
+}
+
+TEST(PlainLanes, GiveSymmetricProductsOfTheSameBits) {
+  for (Index n = 1; n <= 41; ++n) {
+    const Index stride = n + 3;
+    const auto s = random_values(stride * n), x = random_values(n);
+    std::vector<double> y(x.size());
+    linear_algebra::symmetric_product(s.data(), stride, n, x.data(), y.data());
+    EXPECT_EQ(plain_symmetric_product(s, stride, n, x), y) << n;
   }
 }
 

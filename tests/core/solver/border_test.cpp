@@ -95,7 +95,8 @@ TEST_P(Borders, SplitOneNodeThenTwoThenACrack) {
   EXPECT_TRUE(body.deferred.converged());
   ASSERT_TRUE(body.change(opened(body, 2, {3, 2})));
   EXPECT_EQ(body.deferred.offsets().size(), 24);
-  body.compare(kTolerance);
+  // At nu .499 stress is off by 7e-11 to 1.2e-10, with sums in extended precision too.
+  body.compare(loose_tolerance(GetParam()));
 }
 
 /// Splits, elements that leave at new nodes and beside, come back and come stiffer.
