@@ -48,7 +48,7 @@ bool DeviceFrame::sum_by_elements(bool on) {
   return by_elements_;
 }
 
-/// f - K u, 0 at grips, on the host and from there to the device.
+/// f - K u, 0 at grips, on the host.
 void DeviceFrame::sum_residual() {
   nodal_.resize(problem_.dofs().size());
   fields_.read_displacement(nodal_);
@@ -58,15 +58,20 @@ void DeviceFrame::sum_residual() {
   r_ = -r_;
   for (std::size_t i = 0; i < load_.forces.size(); ++i) r_[load_.force_dofs[i]] += load_.forces[i];
   for (Index d : body_.forms().gripped()) r_[d] = 0;
+}
+
+int DeviceFrame::correct_by_elements() {
+  sum_residual();
+  if (route_.correct_by_host(r_)) return 0;
   padded_.assign(fields_.rows(), 0.0);
   std::copy(r_.begin(), r_.end(), padded_.begin());
   fields_.write_residual(padded_);
+  return route_.correct();
 }
 
 solver::FrameDevice::Correction DeviceFrame::correct() {
-  if (by_elements_) sum_residual();
   Correction found;
-  found.iterations = route_.correct();
+  found.iterations = by_elements_ ? correct_by_elements() : route_.correct();
   found.stress = fields_.largest_stress(Field::correction);
   return found;
 }

@@ -32,6 +32,7 @@ class DeviceFrame final : public solver::FrameDevice {
 
  private:
   void sum_residual();
+  [[nodiscard]] int correct_by_elements();
 
   const Problem& problem_;
   const fem::DamagedBody& body_;

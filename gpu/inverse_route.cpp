@@ -249,14 +249,20 @@ int InverseRoute::correct() {
     return 0;
   }
   fields_.residual().read(std::span<double>(residual_.data(), all_.size()));
-  update_->deferred().correct({all_, {residual_.data(), all_.size()}}, correction_);
+  correct_by_host(residual_);
+  return 0;
+}
+
+bool InverseRoute::correct_by_host(const Eigen::VectorXd& r) {
+  if (eager_) return false;
+  update_->deferred().correct({all_, {r.data(), all_.size()}}, correction_);
   fields_.write_unknowns(Field::correction, correction_);
   commands_.begin();
   commands_.pass("estimate");
   fields_.record_correction(commands_);
   commands_.end();
   commands_.submit();
-  return 0;
+  return true;
 }
 
 void InverseRoute::correct_eager() {

@@ -37,6 +37,7 @@ class InverseRoute final : public DeviceRoute {
 
   int solve(const Load& load, double energy_tolerance, bool balance) override;
   int correct() override;
+  bool correct_by_host(const Eigen::VectorXd& r) override;
   void add_correction() override;
   void destroy(std::span<const Index> elements) override;
   void grip(const fem::Event& event) override;

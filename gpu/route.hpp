@@ -28,6 +28,8 @@ class DeviceRoute {
   virtual int solve(const Load& load, double energy_tolerance, bool balance) = 0;
   /// Correction = A^-1 r with grips at 0, and Fields' summary of it. Returns iterations.
   virtual int correct() = 0;
+  /// The same of a residual r that the host has. False, and nothing is done: it reads the fields'.
+  virtual bool correct_by_host(const Eigen::VectorXd& /*r*/) { return false; }
   /// Displacement += correction, and Fields' state anew.
   virtual void add_correction() = 0;
   /// Follows an event; the body has destroyed the elements already.

@@ -3,8 +3,7 @@
 // the host goes on.
 #include <cstdlib>
 
-#include "api/vulkan_host.hpp"
-#include "gpu/vulkan_backend.hpp"
+#include "api/vulkan_options.hpp"
 #include "sunder/error.hpp"
 #include "sunder/simulation.hpp"
 #include "support/structured_board.hpp"
@@ -22,23 +21,6 @@ std::shared_ptr<const Problem> tearing_board() {
   scene.fracture.model = FractureModel::b;
   scene.solver.backend = "vulkan";
   return std::make_shared<const Problem>(std::move(scene));
-}
-
-gpu::VulkanOptions options_of(const VulkanHost& host) {
-  gpu::VulkanOptions options;
-  const sunder_vulkan_host lent = host.lend();
-  options.lent.emplace();
-  options.lent->get = reinterpret_cast<PFN_vkGetInstanceProcAddr>(lent.get_instance_proc_addr);
-  options.lent->instance = host.instance;
-  options.lent->physical = host.physical;
-  options.lent->device = host.device;
-  options.lent->queue = host.queue;
-  options.lent->family = host.family;
-  options.lent->api_version = lent.api_version;
-  options.lent->float64 = options.lent->int64 = true;
-  options.lent->lock.lock = [lent] { lent.lock(nullptr); };
-  options.lent->lock.unlock = [lent] { lent.unlock(nullptr); };
-  return options;
 }
 
 /// Runs one step with a device that is lost at submit `at`. Returns whether it was reached.

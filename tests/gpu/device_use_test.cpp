@@ -392,6 +392,26 @@ TEST_F(DeviceUse, AnEventIsOneSubmitAndNoAllocation) {
   }
 }
 
+// Where a part turns far for its strain the residual is summed element by element on the host,
+// which reads the displacement for it in place of the device's residual.
+TEST_F(DeviceUse, ACheckByElementsTakesNoMoreSubmitsThanAnother) {
+  Unmapped body(Route::inverse);
+  body.frame(Vec3(0, -10, 0));
+  auto cut = elements_across(body.problem->mesh(), 26.5);
+  cut.pop_back();
+  const std::size_t submits = body.use().submits, allocated = body.allocations,
+                    read = gpu::bytes_read(*body.backend);
+  body.backend->destroy(cut);
+  const SolveReport report = body.frame(Vec3(0, -10, 0));
+  const auto checks = static_cast<std::size_t>(report.back_solves) - 1;
+  EXPECT_GE(checks, 2u);
+  EXPECT_EQ(body.use().submits - submits, 1 + 2 * checks + (checks - 1));  // additions between
+  EXPECT_EQ(body.allocations, allocated);
+  EXPECT_GE(gpu::bytes_read(*body.backend) - read,
+            checks * 4 * sizeof(double) * body.problem->mesh().nodes.size())
+      << "not every check was by elements";
+}
+
 // Of an inverse that the device has computed the host has no columns: those that are new come in a
 // submit before, and no factor solves for them.
 TEST_F(DeviceUse, AnEventOfAnInverseFromTheDeviceIsTwoSubmits) {
