@@ -126,7 +126,9 @@ void Deferred::find_grips() {
                                            held_[static_cast<std::size_t>(j)].column);
     }
   }
-  under_grips_.resize(g, m_.cols());
+  if (under_grips_.rows() != g || under_grips_.cols() != m_.cols()) {
+    under_grips_.setZero(g, m_.cols());  // all of it: no later frame waits for the memory
+  }
   under_grips_.leftCols(padded(count())).setZero();
   for (Eigen::VectorXd* v : {&forces_, &at_held_}) v->resize(g);
   if (g == 0 || n == 0) return;
@@ -525,11 +527,13 @@ void Deferred::copy_damage(DamageMatrices& to) const {
 std::vector<BufferPlan> Deferred::buffers() const {
   std::vector<BufferPlan> plan = base_->buffers();
   const auto n = static_cast<std::size_t>(count());
-  if (n > 0) plan.push_back({"small matrix of the damage", 3 * n * n * sizeof(double)});
+  const auto grips = static_cast<std::size_t>(under_grips_.rows());
+  if (n > 0) plan.push_back({"small matrix of the damage", (3 * n + grips) * n * sizeof(double)});
   if (!border_.empty()) plan.push_back({"border of the new unknowns", border_.bytes()});
   std::size_t kept = 0;
   for (const Sums& of : sums_) {
-    kept += static_cast<std::size_t>(2 * of.m.size()) * sizeof(double) + of.border.bytes();
+    kept += static_cast<std::size_t>(2 * of.m.size() + of.under_grips.size()) * sizeof(double) +
+            of.border.bytes();
   }
   if (kept > 0) plan.push_back({"sums of events to go back to", kept});
   return plan;

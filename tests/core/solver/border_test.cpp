@@ -95,8 +95,9 @@ TEST_P(Borders, SplitOneNodeThenTwoThenACrack) {
   EXPECT_TRUE(body.deferred.converged());
   ASSERT_TRUE(body.change(opened(body, 2, {3, 2})));
   EXPECT_EQ(body.deferred.offsets().size(), 24);
-  // At nu .499 stress is off by 7e-11 to 1.2e-10, with sums in extended precision too.
-  body.compare(loose_tolerance(GetParam()));
+  // At nu .499 stress is off by some 1e-10: what the base's own columns owe, as products in
+  // extended precision left it there.
+  body.compare(GetParam().poisson > 0.4 ? 1e-9 : kTolerance);
 }
 
 /// Splits, elements that leave at new nodes and beside, come back and come stiffer.
