@@ -35,7 +35,8 @@ class Factor {
   [[nodiscard]] Eigen::MatrixXd inverse() const;
   /// Some columns of the inverse, shape (n x columns).
   [[nodiscard]] Eigen::MatrixXd inverse_columns(std::span<const Index> columns) const;
-  /// Some columns of the inverse at some rows, shape (rows x columns).
+  /// Some columns of the inverse at some rows, shape (rows x columns). An entry has the same bits
+  /// whatever others it is computed with.
   [[nodiscard]] Eigen::MatrixXd inverse_block(std::span<const Index> rows,
                                               std::span<const Index> columns) const;
   /// Entries of L: a triangular solve reads each once.

@@ -179,4 +179,30 @@ void lower_solve(const double* l, Index l_stride, Index n, double* x, Index x_st
   }
 }
 
+SUNDER_VECTORISED
+void upper_solve(const double* l, Index l_stride, Index n, double* x, Index x_stride, Index width,
+                 double* product_room) {
+  for (Index end = n; end > 0;) {
+    const Index begin = (end - 1) / kBackRows * kBackRows;
+    if (end < n) {
+      product<false>({l + begin * l_stride + end, end - begin, n - end, l_stride, 1},
+                     x + end * x_stride, x_stride, width, product_room, width);
+      for (Index i = begin; i < end; ++i) {
+        const double* from = product_room + (i - begin) * width;
+        for (Index c = 0; c < width; ++c) x[i * x_stride + c] -= from[c];
+      }
+    }
+    for (Index j = end; j-- > begin;) {
+      const double* column = l + j * l_stride;
+      double* row = x + j * x_stride;
+      for (Index i = j + 1; i < end; ++i) {
+        const double* solved = x + i * x_stride;
+        for (Index c = 0; c < width; ++c) row[c] -= column[i] * solved[c];
+      }
+      for (Index c = 0; c < width; ++c) row[c] /= column[j];
+    }
+    end = begin;
+  }
+}
+
 }  // namespace sunder::linear_algebra

@@ -47,6 +47,11 @@ void packed_product(const LeftFactor& a, const double* b, Eigen::Index b_stride,
 void lower_solve(const double* l, Eigen::Index l_stride, Eigen::Index n, double* x,
                  Eigen::Index x_stride, Eigen::Index width, double* product);
 
+/// x <- L^-T x; `product` is room for kBackRows * width values.
+inline constexpr Eigen::Index kBackRows = 16;
+void upper_solve(const double* l, Eigen::Index l_stride, Eigen::Index n, double* x,
+                 Eigen::Index x_stride, Eigen::Index width, double* product);
+
 /// A b for a row-major b.
 [[nodiscard]] inline RowMajor row_product(const LeftFactor& a, const RowMajor& b) {
   RowMajor c(a.rows, b.cols());

@@ -152,7 +152,8 @@ void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y, SolveWork& work) const
 void SupernodalCholesky::backward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y,
                                   SolveWork& work) const {
   RowMajor gathered;
-  work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(tallest_ * y.cols())));
+  const Eigen::Index room = std::max<Eigen::Index>(tallest_, kBackRows) * y.cols();
+  work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(room)));
   for (std::size_t at = supernodes.size(); at-- > 0;) {
     const Index s = supernodes[at];
     const ConstPanel p = panel(s);
@@ -168,7 +169,8 @@ void SupernodalCholesky::backward(std::span<const Index> supernodes, Eigen::Ref<
                   gathered.outerStride(), y.cols(), work.product.data(), y.cols());
       x -= ConstRows(work.product.data(), width, y.cols());
     }
-    p.topRows(width).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+    upper_solve(p.data(), p.outerStride(), width, x.data(), y.outerStride(), y.cols(),
+                work.product.data());
   }
 }
 

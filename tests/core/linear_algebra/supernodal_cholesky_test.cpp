@@ -7,7 +7,9 @@
 #include <Eigen/LU>
 
 #include <limits>
+#include <numeric>
 #include <random>
+#include <span>
 
 #include "linear_algebra/factor.hpp"
 #include "sunder/error.hpp"
@@ -65,6 +67,25 @@ TEST(SupernodalCholesky, GivesSomeColumnsAtSomeRows) {
   const Eigen::MatrixXd inverse = dense(a).inverse();
   EXPECT_LE((block - inverse(rows, columns)).norm(), 1e-14);
   EXPECT_LE((factor.inverse_columns(columns) - inverse(Eigen::all, columns)).norm(), 1e-14);
+}
+
+// What route condensed's region grows by may have been computed before, with other columns.
+TEST(SupernodalCholesky, AnEntryHasTheSameBitsWhateverItIsComputedWith) {
+  const Factor factor(random_matrix(597, 3, 5));
+  std::vector<Index> rows(400), columns(90);
+  std::iota(rows.begin(), rows.end(), 100);
+  std::iota(columns.begin(), columns.end(), 3);
+  const Eigen::MatrixXd all = factor.inverse_block(rows, columns);
+  const std::vector<Index> fewer(rows.begin() + 20, rows.end());
+  for (std::size_t k = 1; k <= 70; ++k) {
+    for (std::size_t first : {0, 7}) {
+      SCOPED_TRACE(std::to_string(k) + " from " + std::to_string(first));
+      const auto some = std::span(columns).subspan(first, k);
+      const auto begin = static_cast<Eigen::Index>(first), count = static_cast<Eigen::Index>(k);
+      ASSERT_EQ(factor.inverse_block(rows, some), all.middleCols(begin, count));
+      ASSERT_EQ(factor.inverse_block(fewer, some), all.bottomRows(380).middleCols(begin, count));
+    }
+  }
 }
 
 TEST(SupernodalCholesky, ForwardSolutionStaysOnItsPath) {
