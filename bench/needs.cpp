@@ -7,12 +7,15 @@
 // tear by themselves, one event a step: hit_rate of the predictions, what they cost and what they
 // spared in all. Rows "live_10k" tear 300 elements of a patch of 10,000 unknowns one by one, up to
 // a body of a million: medians of the first and of the last 50, and what of these is the calling
-// thread's, which a device leaves to the host.
+// thread's, which a device leaves to the host. Rows "wander" cut 60 elements beyond a patch of
+// 1,000 or 10,000 unknowns, where the region must grow, without a pause and with 33 ms after each
+// ("rests"), in which a thread computes what it may grow by.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <thread>
 
 #include "gpu/vulkan_backend.hpp"
 #include "has_vulkan.hpp"
@@ -157,6 +160,48 @@ void live(benchmark::State& state, const Variant& variant, bool by_device, Index
   state.counters["last_host_ms"] = median_of({host.end() - some, host.end()});
   state.counters["MiB"] = static_cast<double>(backend->info().memory_bytes) / 1048576;
   state.counters["unknowns"] = static_cast<double>(problem->dof_count());
+}
+
+/// A host that cuts where nothing breaks by itself, on from the patch: an element a frame, `rest`
+/// after each.
+void wander(benchmark::State& state, const Variant& variant, std::chrono::milliseconds rest,
+            Index cells) {
+  const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  const auto backend = create_backend(problem, needs).backend;
+  Load load = corner_pull(*problem);
+  frame(*backend, load, {});
+  const auto order = tear_beyond_patch(*problem);
+  std::vector<double> times;
+  for (auto _ : state) {
+    const double ms = frame(*backend, load, {&order[times.size()], 1}).ms;
+    times.push_back(ms);
+    state.SetIterationTime(1e-3 * ms);
+    std::this_thread::sleep_for(rest);
+  }
+  state.counters["first_ms"] = times.front();
+  std::sort(times.begin(), times.end());
+  state.counters["median_ms"] = state.counters["min_ms"] = median_of(times);
+  state.counters["p90_ms"] = times[times.size() * 9 / 10];
+  state.counters["worst_ms"] = times.back();
+}
+
+void register_wander() {
+  constexpr Index kCells = 141;
+  for (const Index patch : {kPatch, Index{40}}) {
+    for (const int rest : {0, 33}) {
+      const Variant variant{"wander", Route::condensed, false, true, true, false, "cpu", patch};
+      benchmark::RegisterBenchmark(
+          ("needs/wander" + std::string(patch == kPatch ? "_1k" : "_10k") +
+           (rest > 0 ? "_rests/" : "/") + std::to_string(6 * kCells * kCells))
+              .c_str(),
+          [=](auto& state) { wander(state, variant, std::chrono::milliseconds(rest), kCells); })
+          ->UseManualTime()
+          ->Iterations(60)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
 }
 
 void register_live() {
@@ -331,5 +376,6 @@ void register_rows() {
 int main(int argc, char** argv) {
   sunder::bench::register_rows();
   sunder::bench::register_live();
+  sunder::bench::register_wander();
   return sunder::bench::run_rows(argc, argv);
 }

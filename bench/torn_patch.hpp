@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "sunder/problem.hpp"
@@ -32,12 +33,12 @@ inline Scene patch_scene(Index cells, Index patch = kPatch) {
   return scene;
 }
 
-/// Elements of the patch, row by row from its middle, from the edge inwards.
-inline std::vector<Index> patch_tear(const Problem& problem) {
+/// Elements of a volume, row by row from its middle, from the right edge inwards.
+inline std::vector<Index> tear_of(const Problem& problem, std::string_view volume) {
   const Mesh& mesh = problem.mesh();
   std::vector<std::pair<std::pair<double, double>, Index>> keys;
   for (Index e = 0; e < problem.tet_count(); ++e) {
-    if (mesh.volumes[mesh.volume_of[e]].name != "patch") continue;
+    if (mesh.volumes[mesh.volume_of[e]].name != volume) continue;
     Vec3 c = Vec3::Zero();
     for (Index n : mesh.tets[e]) c += mesh.nodes[n] / 4;
     keys.push_back({{std::round(std::abs(c.y() - 25.01)), -c.x()}, e});
@@ -46,6 +47,13 @@ inline std::vector<Index> patch_tear(const Problem& problem) {
   std::vector<Index> order;
   for (const auto& k : keys) order.push_back(k.second);
   return order;
+}
+
+inline std::vector<Index> patch_tear(const Problem& problem) { return tear_of(problem, "patch"); }
+
+/// What comes after the middle row of the patch: not one of its elements can break by itself.
+inline std::vector<Index> tear_beyond_patch(const Problem& problem) {
+  return tear_of(problem, "organ");
 }
 
 class TornPatch {

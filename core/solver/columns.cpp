@@ -24,22 +24,32 @@ void add_one(const double* a, double value, Eigen::Index rows, double* y) {
   for (Eigen::Index i = 0; i < rows; ++i) y[i] += value * a[i];
 }
 
+/// `column`: where the i-th one begins.
+template <class Column>
+void add_all(Column&& column, std::size_t count, const double* values, Eigen::Index all_rows,
+             double* y) {
+  for (Eigen::Index start = 0; start < all_rows; start += kRows) {
+    const Eigen::Index rows = std::min(kRows, all_rows - start);
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+      add_four(column(i) + start, column(i + 1) + start, column(i + 2) + start,
+               column(i + 3) + start, values + i, rows, y + start);
+    }
+    for (; i < count; ++i) add_one(column(i) + start, values[i], rows, y + start);
+  }
+}
+
 }  // namespace
 
 void add_columns(const Eigen::MatrixXd& x, std::span<const Index> columns,
                  std::span<const double> values, Eigen::VectorXd& y) {
-  for (Eigen::Index start = 0; start < x.rows(); start += kRows) {
-    const Eigen::Index rows = std::min(kRows, x.rows() - start);
-    std::size_t i = 0;
-    for (; i + 4 <= columns.size(); i += 4) {
-      add_four(x.col(columns[i]).data() + start, x.col(columns[i + 1]).data() + start,
-               x.col(columns[i + 2]).data() + start, x.col(columns[i + 3]).data() + start,
-               &values[i], rows, y.data() + start);
-    }
-    for (; i < columns.size(); ++i) {
-      add_one(x.col(columns[i]).data() + start, values[i], rows, y.data() + start);
-    }
-  }
+  add_all([&](std::size_t i) { return x.col(columns[i]).data(); }, columns.size(), values.data(),
+          x.rows(), y.data());
+}
+
+void add_columns(std::span<const double* const> columns, std::span<const double> values,
+                 Eigen::Index rows, double* y) {
+  add_all([&](std::size_t i) { return columns[i]; }, columns.size(), values.data(), rows, y);
 }
 
 SUNDER_VECTORISED

@@ -14,6 +14,10 @@ namespace sunder::solver {
 void add_columns(const Eigen::MatrixXd& x, std::span<const Index> columns,
                  std::span<const double> values, Eigen::VectorXd& y);
 
+/// The same of columns that begin anywhere, so many rows each.
+void add_columns(std::span<const double* const> columns, std::span<const double> values,
+                 Eigen::Index rows, double* y);
+
 /// y += V c; V has `rows` rows, its columns begin `stride` apart.
 void add_product(const double* v, Eigen::Index stride, Eigen::Index rows, const double* c,
                  Eigen::Index columns, double* y);

@@ -9,17 +9,6 @@ namespace sunder::solver {
 
 namespace {
 
-/// X with further columns and, by symmetry, rows.
-std::shared_ptr<const Eigen::MatrixXd> extended(const Eigen::MatrixXd& x,
-                                                const Eigen::MatrixXd& columns) {
-  const Eigen::Index old = x.rows(), size = columns.rows();
-  auto result = std::make_shared<Eigen::MatrixXd>(size, size);
-  result->topLeftCorner(old, old) = x;
-  result->rightCols(size - old) = columns;
-  result->bottomLeftCorner(size - old, old) = columns.topRows(old).transpose();
-  return result;
-}
-
 constexpr std::size_t kVectors = 1024;  // room for them
 
 }  // namespace
@@ -39,10 +28,16 @@ void CondensedState::reserve(std::size_t unknowns, std::size_t differences) {
   vectors.reserve(differences);
 }
 
+void CondensedState::settle() {
+  const bool same = x.same_as(x_of_factor);
+  x = GrownInverse(x.whole());
+  x_of_factor = same ? x : GrownInverse(x_of_factor.whole());
+}
+
 void CondensedState::release() {
   factor.reset();
-  x.reset();
-  x_of_factor.reset();
+  x = {};
+  x_of_factor = {};
   lost.reset();
 }
 
@@ -68,8 +63,9 @@ CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> facto
       x_of_factor_(x_) {
   for (std::size_t i = 0; i < dofs_.size(); ++i) place_[dofs_[i]] = static_cast<Index>(i);
   is_touched_.assign(dofs_.size(), kNone);
-  of_load_.setZero(x_->rows());
-  u_.setZero(x_->rows());
+  of_load_.setZero(x_.size());
+  u_.setZero(x_.size());
+  starts_.reserve(dofs_.size());
   projected_.resize(kVectors);
   touched_.reserve(dofs_.size());
   loaded_.reserve(dofs_.size());
@@ -90,8 +86,6 @@ void CondensedBase::make_room_everywhere() {
   work_.permuted.setZero(size());
   moved_.reserve(dofs_.size());
   of_moved_.reserve(dofs_.size());
-  forces_lost_.setZero(x_->rows());
-  of_lost_.setZero(x_->rows());
 }
 
 void CondensedBase::grow(std::span<const Difference> vectors) {
@@ -105,21 +99,56 @@ void CondensedBase::grow(std::span<const Difference> vectors) {
   }
   if (dofs_.size() == before) return;
   const auto added = std::span(dofs_).subspan(before);
-  const auto old = static_cast<Eigen::Index>(before),
-             size = static_cast<Eigen::Index>(dofs_.size());
-  Eigen::MatrixXd columns = factor_->inverse_block(dofs_, added);
-  x_of_factor_ = extended(*x_of_factor_, columns);
-  if (lost_) {  // X = X0 + X0 D X0 + X0 D X D X0, and X D X0 of it on the old unknowns
-    const Eigen::MatrixXd forces = forces_lost(columns.topRows(old));
-    columns.topRows(old) += *x_ * forces;
-    columns.bottomRows(size - old) += forces.transpose() * columns.topRows(old);
-    x_ = extended(*x_, columns);
+  Eigen::MatrixXd columns;
+  if (!growth_ || !growth_->take(*factor_, dofs_, added, columns)) {
+    columns = factor_->inverse_block(dofs_, added);
+  }
+  x_of_factor_.add(columns);
+  if (lost_) {
+    add_lost_to(columns);
+    x_.add(columns);
   } else {
     x_ = x_of_factor_;
   }
   is_touched_.resize(dofs_.size(), kNone);
   load_.forget();
-  u_.setZero(size);
+  u_.setZero(x_.size());
+}
+
+/// Columns of X0 for further unknowns, over all of S, become those of X: with D what was lost, X =
+/// X0 + X0 D X0 + X0 D X D X0, and X D X0 of it on the old unknowns.
+void CondensedBase::add_lost_to(Eigen::MatrixXd& columns) {
+  const Eigen::Index old = x_.size(), k = columns.cols();
+  const auto dofs = lost_->dofs();
+  std::vector<Index> places;
+  for (Index d : dofs) places.push_back(place_[d]);
+  Eigen::MatrixXd forces(static_cast<Eigen::Index>(dofs.size()), k);
+  std::vector<double> moved(dofs.size());
+  for (Eigen::Index j = 0; j < k; ++j) {
+    lose(columns.col(j).data(), moved, {forces.col(j).data(), dofs.size()});
+  }
+  for (Eigen::Index j = 0; j < k; ++j) {
+    add(x_, places, {forces.col(j).data(), dofs.size()}, columns.col(j).data());
+  }
+  for (Eigen::Index j = 0; j < k; ++j) {
+    for (Eigen::Index i = 0; i < k; ++i) {
+      for (std::size_t l = 0; l < places.size(); ++l) {
+        columns(old + i, j) += forces(static_cast<Eigen::Index>(l), i) * columns(places[l], j);
+      }
+    }
+  }
+}
+
+/// y += the columns of x at some places times values.
+void CondensedBase::add(const GrownInverse& x, std::span<const Index> places,
+                        std::span<const double> values, double* y) {
+  starts_.clear();
+  for (Index p : places) starts_.push_back(x.column(p).first);
+  add_columns(starts_, values, x.first_rows(), y);
+  if (x.added() == 0) return;
+  starts_.clear();
+  for (Index p : places) starts_.push_back(x.column(p).added);
+  add_columns(starts_, values, x.added(), y + x.first_rows());
 }
 
 void CondensedBase::push(std::span<const Difference> vectors, linear_algebra::RowMajor& gram) {
@@ -134,15 +163,15 @@ void CondensedBase::push(std::span<const Difference> vectors, linear_algebra::Ro
     }
   }
   for (std::size_t j = 0; j < vectors.size(); ++j) {
-    const double* a = x_->col(place_[vectors[j].dof]).data();
-    const double* b =
-        vectors[j].other == kNone ? nullptr : x_->col(place_[vectors[j].other]).data();
+    const bool two = vectors[j].other != kNone;
+    const GrownInverse::Column a = x_.column(place_[vectors[j].dof]),
+                               b = two ? x_.column(place_[vectors[j].other]) : a;
     for (std::size_t i = 0; i < vectors_.size(); ++i) {
       const Index dof = place_[vectors_[i].dof];
-      double value = b ? a[dof] - b[dof] : a[dof];
+      double value = two ? a[dof] - b[dof] : a[dof];
       if (vectors_[i].other != kNone) {
         const Index other = place_[vectors_[i].other];
-        value -= b ? a[other] - b[other] : a[other];
+        value -= two ? a[other] - b[other] : a[other];
       }
       gram(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = value;
     }
@@ -167,8 +196,8 @@ void CondensedBase::pop() {
 void CondensedBase::apply_inside(std::span<const Index> dofs, std::span<const double> values) {
   loaded_.clear();
   for (Index d : dofs) loaded_.push_back(place_[d]);
-  of_load_.setZero(x_->rows());
-  add_columns(*x_, loaded_, values, of_load_);
+  of_load_.setZero(x_.size());
+  add(x_, loaded_, values, of_load_.data());
 }
 
 /// D u of one column u on S, on the unknowns of D; `moved` is u there.
@@ -178,15 +207,13 @@ void CondensedBase::lose(const double* u, std::span<double> moved, std::span<dou
   lost_->multiply(moved, forces);
 }
 
-/// D u for columns u on S, as forces on S.
-Eigen::MatrixXd CondensedBase::forces_lost(const Eigen::MatrixXd& u) const {
+/// D u of u on S, as forces on S.
+Eigen::VectorXd CondensedBase::forces_lost(const Eigen::VectorXd& u) const {
   const auto dofs = lost_->dofs();
   std::vector<double> moved(dofs.size()), forces(dofs.size());
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(u.rows(), u.cols());
-  for (Eigen::Index j = 0; j < u.cols(); ++j) {
-    lose(u.col(j).data(), moved, forces);
-    for (std::size_t i = 0; i < dofs.size(); ++i) result(place_[dofs[i]], j) = forces[i];
-  }
+  lose(u.data(), moved, forces);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
+  for (std::size_t i = 0; i < dofs.size(); ++i) result[place_[dofs[i]]] = forces[i];
   return result;
 }
 
@@ -196,10 +223,9 @@ void CondensedBase::add_lost() {
   moved_.resize(dofs.size());
   of_moved_.resize(dofs.size());
   lose(of_load_.data(), moved_, of_moved_);
-  forces_lost_.setZero(of_load_.size());
-  for (std::size_t i = 0; i < dofs.size(); ++i) forces_lost_[place_[dofs[i]]] = of_moved_[i];
-  of_lost_.noalias() = *x_ * forces_lost_;
-  of_load_ += of_lost_;
+  loaded_.clear();
+  for (Index d : dofs) loaded_.push_back(place_[d]);
+  add(x_, loaded_, of_moved_, of_load_.data());
 }
 
 /// With g = X0 f, X f = g + X D g.
@@ -207,7 +233,7 @@ void CondensedBase::apply_everywhere(std::span<const Index> dofs, std::span<cons
   right_side_.setZero(size());
   for (std::size_t i = 0; i < dofs.size(); ++i) right_side_[dofs[i]] += values[i];
   factor_->solve(right_side_, solution_, work_);
-  of_load_.resize(x_->rows());
+  of_load_.resize(x_.size());
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
     of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
   }
@@ -240,18 +266,31 @@ void CondensedBase::multiply_by(RegionProduct* product) {
 void CondensedBase::columns(Index first, Eigen::Ref<Eigen::MatrixXd> to) const {
   for (Eigen::Index j = 0; j < to.cols(); ++j) {
     const auto [dof, other] = vectors_[static_cast<std::size_t>(first + j)];
-    to.col(j) = x_->col(place_[dof]);
-    if (other != kNone) to.col(j) -= x_->col(place_[other]);
+    const GrownInverse::Column a = x_.column(place_[dof]);
+    for (Eigen::Index i = 0; i < to.rows(); ++i) to(i, j) = a[i];
+    if (other == kNone) continue;
+    const GrownInverse::Column b = x_.column(place_[other]);
+    for (Eigen::Index i = 0; i < to.rows(); ++i) to(i, j) -= b[i];
   }
 }
 
-/// B c of the vectors from the first on, on the places that B touches.
-void CondensedBase::collect_forces(const Eigen::VectorXd& c, Index first) {
+/// B c of some of the vectors, on the places that B touches.
+void CondensedBase::collect_forces(const Eigen::VectorXd& c, Index first, Index end) {
   forces_.assign(touched_.size(), 0.0);
-  for (std::size_t i = static_cast<std::size_t>(first); i < vectors_.size(); ++i) {
-    const double force = c[static_cast<Eigen::Index>(i)];
-    forces_[is_touched_[place_[vectors_[i].dof]]] += force;
-    if (vectors_[i].other != kNone) forces_[is_touched_[place_[vectors_[i].other]]] -= force;
+  for (Index i = first; i < end; ++i) {
+    const auto [dof, other] = vectors_[static_cast<std::size_t>(i)];
+    forces_[is_touched_[place_[dof]]] += c[i];
+    if (other != kNone) forces_[is_touched_[place_[other]]] -= c[i];
+  }
+}
+
+/// u_ += X_SS forces_ in the rows from one on.
+void CondensedBase::add_grown_rows(Index from) {
+  for (Eigen::Index i = from; i < u_.size(); ++i) {
+    const GrownInverse::Column row = x_.column(i);  // it is symmetric
+    double sum = 0;
+    for (std::size_t t = 0; t < touched_.size(); ++t) sum += forces_[t] * row[touched_[t]];
+    u_[i] += sum;
   }
 }
 
@@ -264,20 +303,24 @@ void CondensedBase::add_loaded_columns() {
     loaded_.push_back(touched_[i]);
     loads_.push_back(forces_[i]);
   }
-  if (!loaded_.empty()) add_columns(*x_, loaded_, loads_, u_);
+  if (!loaded_.empty()) add(x_, loaded_, loads_, u_.data());
 }
 
 void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
   const Index there = product_ ? product_->follow(*this) : 0;
   u_.setZero();
-  if (there > 0) product_->add(c, u_);
   if (there == 0) {
-    collect_forces(c, 0);
-    add_columns(*x_, touched_, forces_, u_);
+    collect_forces(c, 0, count());
+    add(x_, touched_, forces_, u_.data());
   } else {
-    collect_forces(c, there);
+    product_->add(c, u_);
+    if (u_.size() > product_->rows()) {
+      collect_forces(c, 0, there);
+      add_grown_rows(product_->rows());
+    }
+    collect_forces(c, there, count());
     add_loaded_columns();
-    collect_forces(c, 0);
+    collect_forces(c, 0, count());
   }
   u_ += of_load_;
   if (u.size() != size()) u.setZero(size());
@@ -295,8 +338,8 @@ Eigen::VectorXd CondensedBase::drift() const {
     forces[place_[load_.dofs()[i]]] += load_.values()[i];
   }
   for (std::size_t i = 0; i < touched_.size(); ++i) forces[touched_[i]] += forces_[i];
-  Eigen::VectorXd lacks = *x_of_factor_ * forces - u_;
-  if (lost_) lacks += *x_ * forces_lost(lacks);
+  Eigen::VectorXd lacks = x_of_factor_.times(forces) - u_;
+  if (lost_) lacks += x_.times(forces_lost(lacks));
   return lacks;
 }
 
@@ -324,9 +367,10 @@ void CondensedBase::equilibrium(Equilibrium& of) const {
 }
 
 std::vector<BufferPlan> CondensedBase::buffers() const {
-  const std::size_t bytes = static_cast<std::size_t>(x_->size()) * sizeof(double);
-  std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)", bytes}};
-  if (x_ != x_of_factor_) plan.push_back({"condensed inverse of the factor", bytes});
+  std::vector<BufferPlan> plan{{"condensed inverse (dense, |S| x |S|)", x_.bytes()}};
+  if (!x_.same_as(x_of_factor_)) {
+    plan.push_back({"condensed inverse of the factor", x_of_factor_.bytes()});
+  }
   if (lost_) plan.push_back({"stiffness lost between factor and inverse", lost_->bytes()});
   plan.push_back({"loads outside the condensed region",
                   static_cast<std::size_t>(size()) * (5 * sizeof(double) + sizeof(Index))});

@@ -8,8 +8,10 @@
 #include <memory>
 
 #include "linear_algebra/factor.hpp"
+#include "solver/grown_inverse.hpp"
 #include "solver/last_load.hpp"
 #include "solver/lost_stiffness.hpp"
+#include "solver/region_growth.hpp"
 #include "solver/region_product.hpp"
 
 namespace sunder::solver {
@@ -27,17 +29,19 @@ struct Equilibrium {
   std::vector<double> lost_u;                 // u on its unknowns [mm]
 };
 
-/// A base as it is at a moment; the inverse is shared, and nobody writes it.
+/// A base as it is at a moment; the inverse is shared, and nobody writes what it is of then.
 struct CondensedState {
   std::shared_ptr<const linear_algebra::Factor> factor;
-  std::vector<Index> dofs;                             // S
-  std::shared_ptr<const Eigen::MatrixXd> x;            // X_SS
-  std::shared_ptr<const Eigen::MatrixXd> x_of_factor;  // X_SS without what was lost since
-  std::shared_ptr<const LostStiffness> lost;           // since; empty: nothing
-  std::vector<Difference> vectors;                     // B
+  std::vector<Index> dofs;                    // S
+  GrownInverse x;                             // X_SS
+  GrownInverse x_of_factor;                   // X_SS without what was lost since
+  std::shared_ptr<const LostStiffness> lost;  // since; empty: nothing
+  std::vector<Difference> vectors;            // B
 
   /// For so many unknowns of S and vectors.
   void reserve(std::size_t unknowns, std::size_t differences);
+  /// Makes each X_SS one matrix, which takes a while where S has grown.
+  void settle();
   /// Lets go of what is shared; the lists keep their room.
   void release();
 };
@@ -46,12 +50,13 @@ class CondensedBase final : public Base {
  public:
   /// Over the unknowns `dofs`, ascending.
   CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs);
-  /// X_SS of a body that has lost stiffness, all of it within S, since it was factored.
+  /// X_SS of a body that has lost stiffness, all of it within S, since it was factored; `before` is
+  /// settled.
   CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
                 std::shared_ptr<const LostStiffness> lost);
 
   [[nodiscard]] Index size() const override { return factor_->cholesky().size(); }
-  /// Vectors that leave S make S grow: one solve per unknown.
+  /// Vectors that leave S make S grow: one solve for their unknowns, where grow_by() has none.
   void push(std::span<const Difference> vectors, linear_algebra::RowMajor& gram) override;
   void pop() override;
   /// A load that leaves S costs one solve; the same load as last time costs nothing.
@@ -65,7 +70,14 @@ class CondensedBase final : public Base {
   [[nodiscard]] Eigen::VectorXd drift() const;
   /// `product` takes what it can of every expand() from now on; it must outlive this. Null: nobody.
   void multiply_by(RegionProduct* product);
-  /// Columns of X_SS B, rows as dofs(), into `to`, shape (dofs x columns).
+  /// `growth` may have columns for S at hand where it grows; it must outlive this. Null: nobody
+  /// has.
+  void grow_by(RegionGrowth* growth) { growth_ = growth; }
+  [[nodiscard]] RegionGrowth* growth() const { return growth_; }
+  [[nodiscard]] const std::shared_ptr<const linear_algebra::Factor>& factor() const {
+    return factor_;
+  }
+  /// Columns of X_SS B into `to`, shape (rows x columns): the first rows of dofs().
   void columns(Index first, Eigen::Ref<Eigen::MatrixXd> to) const;
   /// Of B.
   [[nodiscard]] Index count() const { return static_cast<Index>(vectors_.size()); }
@@ -80,34 +92,38 @@ class CondensedBase final : public Base {
   CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs,
                 std::shared_ptr<const Eigen::MatrixXd> x);
   void grow(std::span<const Difference> vectors);
-  void collect_forces(const Eigen::VectorXd& c, Index first);
+  void collect_forces(const Eigen::VectorXd& c, Index first, Index end);
+  void add_grown_rows(Index from);
   void add_loaded_columns();
+  void add_lost_to(Eigen::MatrixXd& columns);
+  void add(const GrownInverse& x, std::span<const Index> places, std::span<const double> values,
+           double* y);
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
   void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
   void make_room_everywhere();
   void lose(const double* u, std::span<double> moved, std::span<double> forces) const;
-  [[nodiscard]] Eigen::MatrixXd forces_lost(const Eigen::MatrixXd& u) const;
+  [[nodiscard]] Eigen::VectorXd forces_lost(const Eigen::VectorXd& u) const;
   void add_lost();
 
   std::shared_ptr<const linear_algebra::Factor> factor_;
-  std::vector<Index> dofs_, place_;                     // S, and where in it each unknown is
-  std::shared_ptr<const Eigen::MatrixXd> x_;            // X_SS
-  std::shared_ptr<const Eigen::MatrixXd> x_of_factor_;  // the same where nothing was lost
-  std::shared_ptr<const LostStiffness> lost_;           // between factor_ and x_; empty: nothing
+  std::vector<Index> dofs_, place_;            // S, and where in it each unknown is
+  GrownInverse x_;                             // X_SS
+  GrownInverse x_of_factor_;                   // the same where nothing was lost
+  std::shared_ptr<const LostStiffness> lost_;  // between factor_ and x_; empty: nothing
   std::vector<Difference> vectors_;
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
   std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_
   std::vector<double> forces_;               // B c on them
   RegionProduct* product_ = nullptr;
+  RegionGrowth* growth_ = nullptr;
+  std::vector<const double*> starts_;  // of columns that are added up
   LastLoad load_;
   std::vector<Index> loaded_;  // places that a load touches
   std::vector<double> loads_;  // those of damage that the host multiplies
   Eigen::VectorXd of_load_;    // (X f)_S
   Eigen::VectorXd u_, projected_, right_side_, solution_;
-  // Where a load is outside S and stiffness was lost: u on the unknowns of D, D u there and on S,
-  // and X D u.
+  // Where a load is outside S and stiffness was lost: u on the unknowns of D and D u there.
   std::vector<double> moved_, of_moved_;
-  Eigen::VectorXd forces_lost_, of_lost_;
   linear_algebra::SolveWork work_;
 };
 

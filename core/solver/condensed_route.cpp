@@ -11,6 +11,7 @@
 #include "solver/condensed_update.hpp"
 #include "solver/load_room.hpp"
 #include "solver/new_base_timer.hpp"
+#include "solver/region_growth.hpp"
 #include "solver/whole_solution.hpp"
 #include "sunder/error.hpp"
 
@@ -145,6 +146,7 @@ class NextBase {
       NextBase& next;
       ~AtEnd() { next.release(); }
     } at_end{*this};
+    state_.settle();
     Based based = updated(body, load);
     if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
     if (based.check.error <= kDrift) return based;
@@ -185,10 +187,12 @@ class CondensedRoute final : public InverseRoute {
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()), product_(product) {
     std::iota(all_.begin(), all_.end(), 0);
     based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage);
-    base_of(based_).multiply_by(product_);
+    lend();
     intact_ = based_.factor.get();
     make_room(body.problem());
     if (!damage) return;
+    growth_.emplace(body.problem());
+    lend();
     next_.emplace(body.problem(), dofs_, threshold());
     coming_.emplace(body, static_cast<int>(events_of_a_base(dofs_.size())), rest);
   }
@@ -218,7 +222,9 @@ class CondensedRoute final : public InverseRoute {
   void follow(const fem::Event& event) override {
     if (coming_->due()) take_base();
     coming_->follow();
-    if (!based_.laid_over().follow(event)) {
+    const bool followed = based_.laid_over().follow(event);
+    strayed_ = strayed_ || base_of(based_).dofs().size() > size_;
+    if (!followed) {
       rebase();
     } else if (event.of_grips()) {
       based_.check = {};  // it was of loads by other grips
@@ -228,6 +234,7 @@ class CondensedRoute final : public InverseRoute {
       next_->begin(based_, factored_);
       coming_->start(load_, make_next());
     }
+    if (strayed_) prepare_around(event);
   }
 
   std::unique_ptr<RouteState> state() const override {
@@ -252,7 +259,7 @@ class CondensedRoute final : public InverseRoute {
       coming_->go_back(events);
     }
     based_ = state.based;
-    base_of(based_).multiply_by(product_);
+    lend();
     factored_ = state.factored;
     bases_ = state.bases;
     based_.laid_over().take_back(based_.laid_over().events() - state.laid);
@@ -267,11 +274,12 @@ class CondensedRoute final : public InverseRoute {
     const NewBaseTimer timer(new_bases_);
     coming_->give_up();
     next_->release();
+    if (growth_) growth_->forget();
     based_ = {};  // frees the old base first
     based_ = condensed_by(body_.forms(),
                           std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body_)),
                           dofs_, true);
-    base_of(based_).multiply_by(product_);
+    lend();
     factored_ = body_.events();
     ++bases_;
     return true;
@@ -293,6 +301,7 @@ class CondensedRoute final : public InverseRoute {
       plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
     }
     if (next_) plan.push_back({"damage that the next base takes over", next_->bytes()});
+    if (strayed_) plan.push_back({"columns that the region may grow by", growth_->bytes()});
     plan.push_back(
         {"room of full checks", whole_.bytes() + room_.bytes() +
                                     static_cast<std::size_t>(everywhere_.size()) * sizeof(double)});
@@ -361,11 +370,43 @@ class CondensedRoute final : public InverseRoute {
            body_.forms().new_nodes().empty();
   }
 
+  /// What the present base works with besides itself.
+  void lend() {
+    CondensedBase& base = base_of(based_);
+    base.multiply_by(product_);
+    base.grow_by(growth_ ? &*growth_ : nullptr);
+    size_ = base.dofs().size();
+  }
+
+  /// Once S has grown, what lies around events is likely to come next.
+  void prepare_around(const fem::Event& event) {
+    touched_.assign(event.grasp.begin(), event.grasp.end());
+    for (Index e : event.leave) touch(e);
+    for (const fem::Coming& c : event.come) touch(c.element);
+    const CondensedBase& base = base_of(based_);
+    growth_->follow(base.factor(), base.dofs(), touched_);
+  }
+
+  /// An element's unknowns, where it is one of the mesh's.
+  void touch(Index element) {
+    const Problem& problem = body_.problem();
+    if (element >= problem.tet_count()) return;
+    for (Index n : problem.mesh().tets[static_cast<std::size_t>(element)]) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Index d = problem.dof(n, axis);
+        if (d != kNone) touched_.push_back(d);
+      }
+    }
+  }
+
   void take_base() {
     const auto factor = based_.factor;
     if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
-    base_of(based_).multiply_by(product_);
-    if (based_.factor != factor) factored_ = started_;
+    lend();
+    if (based_.factor != factor) {
+      factored_ = started_;
+      growth_->forget();
+    }
     ++bases_;
     ++new_bases_.count;
   }
@@ -374,8 +415,9 @@ class CondensedRoute final : public InverseRoute {
   std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
   RegionProduct* product_;
   const linear_algebra::Factor* intact_ = nullptr;
-  Load load_;        // of the last solution
-  Load start_load_;  // of the one before coming_ started
+  Load load_;                           // of the last solution
+  Load start_load_;                     // of the one before coming_ started
+  std::optional<RegionGrowth> growth_;  // where something can be destroyed
   Based based_;
   std::size_t factored_ = 0, started_ = 0;  // events in based_.factor; before coming_ started
   Equilibrium whole_;
@@ -385,6 +427,9 @@ class CondensedRoute final : public InverseRoute {
   int bases_ = 1;
   NewBases new_bases_;
   // Where something can be destroyed.
+  std::size_t size_ = 0;        // of S when the base came
+  bool strayed_ = false;        // S has grown some time
+  std::vector<Index> touched_;  // unknowns of an event
   std::optional<NextBase> next_;
   std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
 };

@@ -8,7 +8,7 @@ namespace {
 
 /// (X B)^T, which is B^T X.
 linear_algebra::RowMajor differences_of(const CondensedState& state, std::span<const Index> place) {
-  const Eigen::MatrixXd& x = *state.x;
+  const Eigen::MatrixXd& x = state.x.first();
   linear_algebra::RowMajor result(static_cast<Eigen::Index>(state.vectors.size()), x.rows());
   for (std::size_t i = 0; i < state.vectors.size(); ++i) {
     const auto [dof, other] = state.vectors[i];
@@ -94,10 +94,11 @@ void make_exact(const CondensedState& state, std::span<const Index> place,
     if (forces[j].other != kNone) f(static_cast<Eigen::Index>(j), column[forces[j].other]) = -1;
   }
   add_lost(*state.lost, u, lost, columns, f);
-  const linear_algebra::RowMajor g = product(plain(f), rows_of(*state.x_of_factor, acted)) - u;
+  const linear_algebra::RowMajor g =
+      product(plain(f), rows_of(state.x_of_factor.first(), acted)) - u;
   f.setZero(u.rows(), static_cast<Eigen::Index>(lost.size()));
   add_lost(*state.lost, g, lost, columns, f);
-  u += g + product(plain(f), rows_of(*state.x, lost));
+  u += g + product(plain(f), rows_of(state.x.first(), lost));
 }
 
 /// B^T u for each row u over S, as a row.
@@ -133,9 +134,9 @@ void make_exact(const CondensedState& state, std::span<const Index> place,
     parts.loaded.push_back(place[d]);
     forces.push_back({d, kNone});
   }
-  linear_algebra::RowMajor u(static_cast<Eigen::Index>(forces.size()), state.x->rows());
+  linear_algebra::RowMajor u(static_cast<Eigen::Index>(forces.size()), state.x.first().rows());
   u.topRows(r) = parts.columns;
-  u.bottomRows(u.rows() - r) = rows_of(*state.x, parts.loaded);
+  u.bottomRows(u.rows() - r) = rows_of(state.x.first(), parts.loaded);
   make_exact(state, place, forces, u);
   parts.columns = u.topRows(r);
   parts.at_loads = u.bottomRows(u.rows() - r);
@@ -151,7 +152,7 @@ void make_exact(const CondensedState& state, std::span<const Index> place,
 void add_lower(const CondensedState& state, const Parts& parts, const linear_algebra::RowMajor& x,
                Eigen::MatrixXd& result) {
   constexpr Eigen::Index kColumns = 64;
-  const Eigen::Index n = state.x->rows();
+  const Eigen::Index n = state.x.first().rows();
   linear_algebra::RowMajor share(kColumns, n);
   std::vector<double> room;
   for (Eigen::Index first = 0; first < n; first += kColumns) {
@@ -168,12 +169,12 @@ void add_lower(const CondensedState& state, const Parts& parts, const linear_alg
         column += parts.at_loads.row(load).tail(below).transpose();
         continue;
       }
-      column += state.x->col(first + j).tail(below);
+      column += state.x.first().col(first + j).tail(below);
       for (std::size_t l = 0; l < parts.loaded.size(); ++l) {
         const Index at = parts.loaded[l];
         if (at < first) continue;
-        result(at, first + j) +=
-            parts.at_loads(static_cast<Eigen::Index>(l), first + j) - (*state.x)(at, first + j);
+        result(at, first + j) += parts.at_loads(static_cast<Eigen::Index>(l), first + j) -
+                                 state.x.first()(at, first + j);
       }
     }
   }
@@ -215,7 +216,7 @@ Eigen::MatrixXd updated_inverse(const CondensedState& state, const DamageMatrice
     parts.p = parts.columns;
   }
   const linear_algebra::RowMajor x = forces_of(parts.damage, parts.p);
-  Eigen::MatrixXd result(state.x->rows(), state.x->rows());
+  Eigen::MatrixXd result(state.x.first().rows(), state.x.first().rows());
   add_lower(state, parts, x, result);
   mirror_lower(result);
   return result;

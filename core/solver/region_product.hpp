@@ -25,8 +25,10 @@ class RegionProduct {
   /// Takes columns that are new, as many as there is time for. Returns how many of the first
   /// ones add() multiplies; the rest is the host's.
   virtual Index follow(const CondensedBase& base) = 0;
-  /// u += these columns times c.
+  /// u += these columns times c, in the first rows() unknowns of S.
   virtual void add(const Eigen::VectorXd& c, Eigen::VectorXd& u) = 0;
+  /// Those that S began with: what it has grown by is the host's.
+  [[nodiscard]] virtual Index rows() const = 0;
 };
 
 }  // namespace sunder::solver

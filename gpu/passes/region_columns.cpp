@@ -68,9 +68,9 @@ std::size_t RegionColumns::bytes() const {
 }
 
 Index RegionColumns::follow(const solver::CondensedBase& base) {
-  const auto rows = static_cast<Index>(base.dofs().size());
-  if (rows != unknowns_) return 0;  // S has grown
-  if (static_cast<std::size_t>(base.count()) * static_cast<std::size_t>(rows) < least_) return 0;
+  if (static_cast<std::size_t>(base.count()) * static_cast<std::size_t>(unknowns_) < least_) {
+    return 0;
+  }
   const Index before = columns_.count(),
               end = std::min({base.count(), before + kAtOnce, static_cast<Index>(capacity_)});
   if (end > before) {
@@ -93,7 +93,7 @@ void RegionColumns::add(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
                  product_.bytes());
   commands_.end();
   commands_.submit();
-  u += Eigen::Map<const Eigen::VectorXd>(read_back_.mapped<double>(), unknowns_);
+  u.head(unknowns_) += Eigen::Map<const Eigen::VectorXd>(read_back_.mapped<double>(), unknowns_);
 }
 
 }  // namespace sunder::gpu

@@ -28,6 +28,7 @@ class RegionColumns final : public solver::RegionProduct {
   void forget(Index count) override { columns_.keep(count); }
   Index follow(const solver::CondensedBase& base) override;
   void add(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
+  Index rows() const override { return unknowns_; }
 
  private:
   Index unknowns_;

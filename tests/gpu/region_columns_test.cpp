@@ -98,16 +98,21 @@ TEST_P(RegionColumnsKernels, FollowTheBase) {
   EXPECT_EQ(columns.follow(*bases.by_device), 40);
 }
 
-TEST_P(RegionColumnsKernels, LeaveARegionThatHasGrownToTheHost) {
+// What S has grown by since is added by the host, row by row.
+TEST_P(RegionColumnsKernels, HaveTheRowsThatTheRegionBeganWith) {
   Bases bases;
   gpu::RegionColumns columns(*factory_, static_cast<Index>(bases.dofs.size()), 0);
   bases.multiply_by(columns);
   bases.push(20);
   EXPECT_EQ(columns.follow(*bases.by_device), 20);
-  bases.dofs.push_back(bases.dofs.front() + 1);
-  bases.push(400);
-  bases.expect_agreement();
-  EXPECT_EQ(columns.follow(*bases.by_device), 0);
+  for (const Index beyond : {1, 4}) {
+    bases.dofs.push_back(bases.dofs[5] + beyond);
+    bases.push(400);
+    bases.expect_agreement();
+    EXPECT_EQ(columns.follow(*bases.by_device), beyond == 1 ? 148 : 340);
+    bases.expect_agreement();
+  }
+  EXPECT_GT(bases.by_device->dofs().size(), static_cast<std::size_t>(columns.rows()));
 }
 
 TEST_P(RegionColumnsKernels, ColumnsBeyondTheRoomAreTheHosts) {

@@ -64,6 +64,40 @@ TEST(LostStiffness, IsExactlyNothingForAMotionOfAll) {
   EXPECT_EQ(forces, std::vector<double>(12, 0.0));
 }
 
+// Damage that leaves S makes it grow; so does damage after a base that has lost stiffness.
+TEST(UpdatedInverse, IsThatOfADamagedBodyWhoseRegionHasGrown) {
+  const Torn torn;
+  const auto elements = std::span(torn.elements);
+  const LostStiffness few(torn.problem, elements.first(8));
+  std::vector<Index> dofs(few.dofs().begin(), few.dofs().end());
+  const auto intact =
+      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {}));
+  CondensedState state;
+  std::vector<double> scale(torn.scale.size(), 1.0);
+  auto base = std::make_unique<CondensedBase>(intact, dofs);
+  for (std::size_t first = 0; first < elements.size(); first += 20) {
+    SCOPED_TRACE(first);
+    const CondensedBase& condensed = *base;
+    Deferred deferred(torn.problem, std::move(base));
+    for (const Index& e : elements.subspan(first, 20)) ASSERT_TRUE(deferred.destroy({&e, 1}));
+    for (Index e : elements.first(first + 20)) scale[e] = torn.problem.scene().fracture.alpha;
+    ASSERT_GT(condensed.dofs().size(), dofs.size());
+    dofs.assign(condensed.dofs().begin(), condensed.dofs().end());
+    state = state_of(condensed);
+    state.settle();
+    const Eigen::MatrixXd x = updated_inverse(state, damage_of(deferred)),
+                          expected =
+                              linear_algebra::Factor(fem::assemble_lower(torn.problem, scale))
+                                  .inverse_block(dofs, dofs);
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      EXPECT_LE((x.col(j) - expected.col(j)).norm(), 1e-8 * expected.col(j).norm()) << j;
+    }
+    // The next elements differ from a base that has lost these.
+    base = std::make_unique<CondensedBase>(
+        state, x, std::make_shared<const LostStiffness>(torn.problem, elements.first(first + 20)));
+  }
+}
+
 TEST(UpdatedInverse, IsThatOfTheDamagedBody) {
   const Torn torn;
   std::vector<Index> dofs;  // of the elements and some others
@@ -105,8 +139,8 @@ TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
                         x = linear_algebra::Factor(fem::assemble_lower(torn.problem, scale))
                                 .inverse_block(dofs, dofs) *
                             (1 + kLacks);
-  const CondensedState worn{intact, dofs, nullptr, std::make_shared<const Eigen::MatrixXd>(x0),
-                            before, {}};
+  const CondensedState worn{
+      intact, dofs, {}, GrownInverse(std::make_shared<const Eigen::MatrixXd>(x0)), before, {}};
   auto base = std::make_unique<CondensedBase>(worn, x, before);
   const CondensedBase& condensed = *base;
   Deferred deferred(torn.problem, std::move(base));

@@ -3,8 +3,10 @@
 // that can be read is compared with the yardstick's solution of the whole body.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <string>
+#include <thread>
 
 #include "body/pieces.hpp"
 #include "support/accuracy.hpp"
@@ -192,6 +194,45 @@ TEST(CondensedRoute, GrowsAndIsLoadedOutsideItsRegionOnANewBase) {
   body.backend->destroy(std::span(outside).first(5));
   EXPECT_LE(body.backend->solve().error, kCrackTolerance);
   expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
+}
+
+/// Two cuts through what nobody expected to break, 144 elements, that leave the board in one piece.
+std::vector<Index> cuts_beyond(const Mesh& mesh) {
+  std::vector<Index> order;
+  for (const double y : {10.1, 40.1}) {
+    const auto across = elements_across(mesh, y);
+    order.insert(order.end(), across.begin(), across.end() - 12);
+  }
+  return order;
+}
+
+// Columns that a thread has by the time and those that the frame solves for have the same bits: a
+// host that rests between its events sees what one that does not sees.
+TEST(CondensedRoute, WandersBeyondItsRegionThroughNewBases) {
+  const auto force = corner_force(torn_organ().mesh);
+  const auto order = cuts_beyond(torn_organ().mesh);
+  ASSERT_EQ(order.size(), 144u);
+  std::vector<std::vector<double>> seen;
+  for (const bool rests : {false, true}) {
+    const Body body(torn_organ());
+    body.load(force);
+    int bases = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      SCOPED_TRACE(i);
+      body.backend->destroy({&order[i], 1});
+      EXPECT_LE(body.backend->solve().error, kCrackTolerance);
+      bases += body.backend->take_new_bases().count;
+      if (rests) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      if (i % 48 != 47) continue;
+      if (rests) {
+        EXPECT_EQ(body.displacement(), seen[i / 48]);
+      } else {
+        seen.push_back(body.displacement());
+        expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
+      }
+    }
+    EXPECT_EQ(bases, 1);
+  }
 }
 
 // A frame that repeats the residual of the one before has had no check over the whole body.
