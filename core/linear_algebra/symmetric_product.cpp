@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "linear_algebra/symmetric_product.hpp"
 
-#include <algorithm>
 #include <cstring>
 
 #include "machine/compiler.hpp"

@@ -412,7 +412,7 @@ class CondensedRoute final : public InverseRoute {
   }
 
   const fem::DamagedBody& body_;
-  std::vector<Index> dofs_, all_;  // S; every unknown: the loads of a residual
+  std::vector<Index> dofs_, all_;  // S at first; every unknown: the loads of a residual
   RegionProduct* product_;
   const linear_algebra::Factor* intact_ = nullptr;
   Load load_;                           // of the last solution

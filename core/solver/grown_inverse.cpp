@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/grown_inverse.hpp"
 
+#include <algorithm>
+
 namespace sunder::solver {
 namespace {
 

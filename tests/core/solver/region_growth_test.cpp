@@ -238,6 +238,61 @@ TEST_F(Growing, TheRouteTakesWhatIsThere) {
   }));
 }
 
+// S keeps what it has grown by; where it was before, the same events have the same bits again.
+TEST_F(Growing, TheRouteGoesBackToTheSameBits) {
+  fem::DamagedBody body(std::make_shared<const Problem>(test::held_board()));
+  const auto route = condensed_route(body, factor, inside, true, {});
+  const auto& base = dynamic_cast<const CondensedBase&>(route->deferred()->base());
+  Load load;
+  load.force_dofs = {inside[7]};
+  load.forces = {-3};
+  std::vector<Index> events;
+  const auto solution = [&] {
+    Eigen::VectorXd u;
+    static_cast<void>(route->solve(load, {}, u));
+    return Eigen::VectorXd(u(inside));
+  };
+  const auto destroy = [&](Index e) {
+    body.destroy({&e, 1});
+    route->follow({.leave = {&e, 1}});
+  };
+  for (Index e = 0; e < problem.tet_count() && events.size() < 6; ++e) {
+    const auto corners = dofs_of(problem.mesh().tets[static_cast<std::size_t>(e)]);
+    const bool out = !base.inside(corners);
+    const bool in = std::ranges::any_of(corners, [&](Index d) { return base.inside({&d, 1}); });
+    if (!out || !in) continue;
+    if (events.size() == 2) break;
+    events.push_back(e);
+    destroy(e);
+  }
+  ASSERT_EQ(events.size(), 2u);
+  const Eigen::VectorXd before = solution();
+  const auto state = route->state();
+  std::vector<Eigen::VectorXd> seen;
+  for (const bool again : {false, true}) {
+    SCOPED_TRACE(again);
+    std::size_t event = 0;
+    for (Index e = problem.tet_count() - 1; e > 0 && event < 4; --e) {  // elsewhere
+      const auto corners = dofs_of(problem.mesh().tets[static_cast<std::size_t>(e)]);
+      if (corners.empty() || (!again && base.inside(corners))) continue;
+      if (again && e != events[2 + event]) continue;
+      if (!again) events.push_back(e);
+      destroy(e);
+      if (again) {
+        EXPECT_EQ(solution(), seen[event]);
+      } else {
+        seen.push_back(solution());
+      }
+      ++event;
+    }
+    ASSERT_EQ(event, 4u);
+    ASSERT_TRUE(route->go_back(*state, 2));
+    body.take_back(2);
+    EXPECT_EQ(solution(), before);
+    base.growth()->wait();
+  }
+}
+
 // A hand that jumps: what is in work gives way, and what was asked for last is there in the end.
 TEST_F(Growing, TheLastRequestIsServed) {
   RegionGrowth growth(problem);
