@@ -18,7 +18,7 @@ template <int Rows, class Vector>
 SUNDER_FORCE_INLINE void take_rows(const double* s, Index stride, Index first, const double* x,
                                    double* y) {
   constexpr Index kEach = sizeof(Vector) / sizeof(double), kVectors = kAtOnce / kEach;
-  constexpr int kTogether = Rows < 4 ? Rows : 4;
+  constexpr int kSummed = Rows < 4 ? Rows : 4;
   Vector sum[Rows][kVectors] = {};
   const Index full = first / kAtOnce * kAtOnce;
   const double* rows = s + first * stride;
@@ -28,9 +28,9 @@ SUNDER_FORCE_INLINE void take_rows(const double* s, Index stride, Index first, c
       Vector of_x, of_y;
       std::memcpy(&of_x, x + at, sizeof(Vector));
       std::memcpy(&of_y, y + at, sizeof(Vector));
-      for (int r = 0; r < Rows; r += kTogether) {
+      for (int r = 0; r < Rows; r += kSummed) {
         Vector share[4] = {};
-        for (int t = 0; t < kTogether; ++t) {
+        for (int t = 0; t < kSummed; ++t) {
           Vector a;
           std::memcpy(&a, rows + (r + t) * stride + at, sizeof(Vector));
           sum[r + t][v] += a * of_x;
