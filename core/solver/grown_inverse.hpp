@@ -40,6 +40,7 @@ class GrownInverse {
   [[nodiscard]] Eigen::VectorXd times(const Eigen::VectorXd& v) const;
   /// As one matrix: that of the beginning where nothing has come, else a new one.
   [[nodiscard]] std::shared_ptr<const Eigen::MatrixXd> whole() const;
+  /// That of the beginning: all of it where nothing has come.
   [[nodiscard]] const Eigen::MatrixXd& first() const { return *first_; }
   [[nodiscard]] bool same_as(const GrownInverse& other) const {
     return first_ == other.first_ && right_ == other.right_ && added_ == other.added_;

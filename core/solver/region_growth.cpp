@@ -130,7 +130,8 @@ void RegionGrowth::run() {
       if (!lock.owns_lock()) lock.lock();
     }
     lock.unlock();
-    dropped.clear();  // it takes a while to free
+    dropped.clear();  // it takes a while to free, as does a factor that nobody else holds
+    request = {};
     lock.lock();
     busy_ = false;
     done_.notify_all();

@@ -11,7 +11,7 @@
 namespace sunder::test {
 namespace {
 
-std::shared_ptr<const Problem> held_board(Route route) {
+std::shared_ptr<const Problem> held_board() {
   Scene scene;
   scene.mesh = structured_board({6, 6, 2, 10, 10, 1});
   scene.materials["board"] = {5.0, 0.4, 2.0};
@@ -19,7 +19,7 @@ std::shared_ptr<const Problem> held_board(Route route) {
   const Box corner{Vec3(9.99, -0.01, -1), Vec3(10.01, 0.01, 2)};
   scene.instruments.push_back({"forceps", Pull{corner, Vec3(0, -1, 0)}, {}});
   scene.fracture.model = FractureModel::a;
-  scene.solver.route = route;
+  scene.solver.route = Route::inverse;
   scene.solver.backend = "vulkan";
   return std::make_shared<const Problem>(std::move(scene));
 }
@@ -32,7 +32,7 @@ TEST(DrawnEvent, IsTwoSubmitsAndNoAllocation) {
   for (const std::size_t of_an_event : {1, 5}) {
     SCOPED_TRACE(of_an_event);
     const VulkanHost host;
-    const auto problem = held_board(Route::inverse);
+    const auto problem = held_board();
     gpu::VulkanOptions options = options_of(host);
     std::size_t allocations = 0;
     options.probe.as_gpu = true;
