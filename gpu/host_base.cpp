@@ -6,35 +6,61 @@
 namespace sunder::gpu {
 namespace {
 
-// Room for so many columns from the start, if it takes no more memory than that; for as many unit
-// vectors as two elements touch.
-constexpr Index kColumns = 256, kUnits = 24;
+// Room for columns from the start, if it takes no more memory than that; for as many unit vectors
+// as two elements touch.
+constexpr Index kUnits = 24;
 constexpr std::size_t kRoomBytes = std::size_t{64} << 20;
 
 // So many columns tell whether others are to be refined: where one is off by more than a fifth of
-// what an intact body's displacement may be.
+// what an intact body's displacement may be, of a torn one half of that.
 constexpr Index kTried = 12;
-constexpr double kExact = 2e-10;
+constexpr double kExact = 2e-10, kExactTorn = 5e-10;
+// What is off by more is another inverse.
+constexpr double kSame = 1e-6;
 
 }  // namespace
 
 HostBase::HostBase(std::shared_ptr<const HostInverse> inverse, const fem::DamagedBody* body,
-                   const DenseInverse* device)
-    : inverse_(std::move(inverse)), device_(device) {
+                   const DenseInverse* device, Index columns)
+    : inverse_(std::move(inverse)), device_(device), room_(columns) {
   columns_.resize(inverse_->factor().cholesky().size(), 0);
   if (!body || inverse_->is_dense()) return;
   body_ = *body;
   try_columns();
 }
 
-/// Refines some columns that lie evenly, to see what that changes.
+/// Some that lie evenly, ascending.
+std::vector<Index> HostBase::tried_unknowns() const {
+  std::vector<Index> dofs;
+  for (Index i = 0; i < kTried; ++i) dofs.push_back(i * size() / kTried);
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  return dofs;
+}
+
+/// Refines some columns, to see what that changes.
 void HostBase::try_columns() {
-  dofs_.clear();
-  for (Index i = 0; i < kTried; ++i) dofs_.push_back(i * size() / kTried);
-  dofs_.erase(std::unique(dofs_.begin(), dofs_.end()), dofs_.end());
+  dofs_ = tried_unknowns();
   Eigen::MatrixXd some(size(), static_cast<Index>(dofs_.size()));
   read_units(dofs_, some);
-  refines_ = refine(dofs_, some) > kExact;
+  const bool torn = std::ranges::count(body_->destroyed(), 1) > 0;
+  refines_ = refine(dofs_, some) > (torn ? kExactTorn : kExact);
+}
+
+void HostBase::keep_columns() { kept_ = unit_columns(tried_unknowns()); }
+
+bool HostBase::try_device(const DenseInverse& device) {
+  Eigen::MatrixXd there(kept_.rows(), kept_.cols());
+  device.read_columns(tried_unknowns(), there);
+  double off = 0;
+  for (Eigen::Index c = 0; c < kept_.cols(); ++c) {
+    const double of_column = (there.col(c) - kept_.col(c)).norm() / kept_.col(c).norm();
+    if (!(of_column <= kSame)) return false;
+    off = std::max(off, of_column);
+  }
+  refines_ = refines_ || (body_ && off > 2 * kExactTorn);
+  kept_.resize(0, 0);
+  read_from(&device);
+  return true;
 }
 
 Eigen::MatrixXd HostBase::unit_columns(std::span<const Index> dofs) {
@@ -72,8 +98,8 @@ double HostBase::refine(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd>
 
 void HostBase::make_room() {
   const auto fits = static_cast<Index>(kRoomBytes / (static_cast<std::size_t>(size()) * 8 + 1));
-  if (columns_.cols() < std::min(kColumns, fits)) {
-    columns_.conservativeResize(Eigen::NoChange, std::min(kColumns, fits));
+  if (columns_.cols() < std::min(room_, fits)) {
+    columns_.conservativeResize(Eigen::NoChange, std::min(room_, fits));
   }
   if (!inverse_->is_dense()) units_.resize(size(), kUnits);
 }

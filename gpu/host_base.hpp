@@ -19,15 +19,22 @@ namespace sunder::gpu {
 class HostBase final : public solver::Base {
  public:
   /// `body`: whose inverse it is, to refine columns by; null: they stay as they come. `device`: as
-  /// read_from().
+  /// read_from(). `columns`: that make_room() has room for.
   explicit HostBase(std::shared_ptr<const HostInverse> inverse,
-                    const fem::DamagedBody* body = nullptr, const DenseInverse* device = nullptr);
+                    const fem::DamagedBody* body = nullptr, const DenseInverse* device = nullptr,
+                    Index columns = 256);
 
   /// The same inverse, in fp64 on the device, to read columns of from now on; it must outlive this.
   /// Null: there is none.
   void read_from(const DenseInverse* device) { device_ = device; }
   /// Columns of X, shape (n x dofs).
   [[nodiscard]] Eigen::MatrixXd unit_columns(std::span<const Index> dofs);
+  /// Keeps some columns by the factor, for try_device().
+  void keep_columns();
+  /// read_from() where those columns say that it is the same but for rounding, refining what is
+  /// read where much was rounded. False: it is not, and nothing changes.
+  [[nodiscard]] bool try_device(const DenseInverse& device);
+  [[nodiscard]] bool reads_device() const { return device_ != nullptr; }
   /// Whether columns need to be refined.
   [[nodiscard]] bool refines() const { return refines_; }
 
@@ -49,13 +56,16 @@ class HostBase final : public solver::Base {
   void read_units(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> to);
   double refine(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> columns);
   void try_columns();
+  [[nodiscard]] std::vector<Index> tried_unknowns() const;
 
   std::shared_ptr<const HostInverse> inverse_;
   const DenseInverse* device_ = nullptr;
   std::optional<fem::DamagedBody> body_;  // to refine by
   bool refines_ = false;
+  Index room_;                               // columns
   Eigen::MatrixXd columns_, units_;          // units_: of those that an event needs
   std::vector<Index> dofs_;                  // which these are
+  Eigen::MatrixXd kept_;                     // of unknowns that lie evenly; empty: none
   std::vector<solver::Difference> vectors_;  // B
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
   solver::LastLoad load_;

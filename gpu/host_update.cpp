@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/host_update.hpp"
 
+#include <algorithm>
+
+#include "solver/frame_cost.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -9,14 +13,25 @@ namespace {
 constexpr Index kColumnsPerBase = 256;
 constexpr int kEventsUntilNext = 24;
 
+// Columns of a usual event of one element, and seconds that one takes.
+constexpr Index kColumnsOfAnEvent = 3;
+constexpr double kEvent = 5e-4;
+// Where a device makes the next base's inverse (passes/inverse_update.hpp) with each event it does
+// so many flops, a tenth of a millisecond of three Tflop/s, and more where that would take more
+// than so many events: their columns would cost the host more than they spare the device. Nor does
+// a thread get more of them for its factor.
+constexpr double kFlopsOfAnEvent = 3e8, kMostEvents = 128;
+// Events that a base lacks once it is made: each further one follows so many.
+constexpr int kEventsAtOnce = 4;
+
 solver::Based based_on(const fem::Forms& in_base, std::shared_ptr<const HostInverse> inverse,
                        bool damage, const fem::DamagedBody* body = nullptr,
-                       const DenseInverse* device = nullptr) {
+                       const DenseInverse* device = nullptr, Index columns = kColumnsPerBase) {
   solver::Based based;
   based.factor = {inverse, &inverse->factor()};
   based.deferred = std::make_unique<solver::Deferred>(
-      in_base, std::make_unique<HostBase>(std::move(inverse), body, device), damage,
-      kColumnsPerBase);
+      in_base, std::make_unique<HostBase>(std::move(inverse), body, device, columns), damage,
+      columns);
   return based;
 }
 
@@ -27,26 +42,49 @@ std::shared_ptr<solver::Deferred> intact_update(const Problem& problem,
   return std::move(based_on(fem::Forms(problem), std::move(intact), false).deferred);
 }
 
+solver::Renewal renewal_of(const Problem& problem, const HostInverse& intact, bool renews) {
+  solver::Renewal renewal;
+  if (!intact.is_dense() && !renews) return renewal;
+  renewal.columns = problem.gripped_dofs().size() + kColumnsPerBase;
+  renewal.first_columns = renewal.columns;
+  renewal.events = kEventsUntilNext;
+  if (intact.is_dense()) return renewal;
+  const double n = problem.dof_count(), k = static_cast<double>(renewal.columns);
+  const double of_inverse = (12 * k * k * n + k * n * n) / kFlopsOfAnEvent;
+  const int of_factor = solver::frames_of_a_factor(
+      intact.factor().cholesky(), static_cast<std::size_t>(problem.tet_count()), kEvent);
+  renewal.events = static_cast<int>(std::min(std::max<double>(of_factor, of_inverse), kMostEvents));
+  renewal.events_at_once = kEventsAtOnce;
+  return renewal;
+}
+
+Index columns_between(const solver::Renewal& renewal) {
+  const int lacking = renewal.events / std::max(renewal.events_at_once - 1, 1);
+  return kColumnsOfAnEvent * static_cast<Index>(renewal.events + lacking);
+}
+
 std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
                                                    std::shared_ptr<const HostInverse> intact,
                                                    bool damage, bool fp64,
-                                                   const DenseInverse* device) {
+                                                   const DenseInverse* device, bool renews) {
   const bool dense = intact->is_dense();
+  const solver::Renewal renewal = renewal_of(body.problem(), *intact, renews);
+  const bool beside = renews && !dense;
+  const Index between = beside ? columns_between(renewal) : 0;
+  const Index columns = std::max(kColumnsPerBase, between) + between;
   const fem::DamagedBody before = body.as_of(0);
-  solver::Based first =
-      based_on(before.forms(), std::move(intact), damage, fp64 ? &before : nullptr, device);
+  solver::Based first = based_on(before.forms(), std::move(intact), damage,
+                                 fp64 ? &before : nullptr, device, columns);
   if (!damage) return std::make_unique<solver::RenewedUpdate>(body, std::move(first));
-  solver::Renewal renewal;
-  if (dense) {
-    renewal.columns = body.problem().gripped_dofs().size() + kColumnsPerBase;
-    renewal.first_columns = renewal.columns;
-    renewal.events = kEventsUntilNext;
-  }
   return std::make_unique<solver::RenewedUpdate>(
       body, std::move(first), renewal,
-      [dense, fp64](const fem::DamagedBody& of, const linear_algebra::FactorWork& work) {
-        return based_on(of.forms(), std::make_shared<const HostInverse>(of, dense, work), true,
-                        fp64 ? &of : nullptr);
+      [dense, fp64, beside, columns](const fem::DamagedBody& of,
+                                     const linear_algebra::FactorWork& work) {
+        solver::Based based =
+            based_on(of.forms(), std::make_shared<const HostInverse>(of, dense, work), true,
+                     fp64 ? &of : nullptr, nullptr, columns);
+        if (beside) static_cast<HostBase&>(based.deferred->base()).keep_columns();
+        return based;
       });
 }
 

@@ -20,10 +20,17 @@ inline constexpr std::size_t kExactLoads = 64;
 
 /// The same for a body that can be damaged; a dense inverse is made anew beside the frames. `fp64`:
 /// what is promised, for which columns may have to be refined. `device`: the first base's inverse,
-/// to read its columns there.
+/// to read its columns there. `renews`: that gets a new base's as well, so that a factor is made
+/// anew beside the frames (renewal_of()).
 [[nodiscard]] std::unique_ptr<solver::RenewedUpdate> host_update(
     const fem::DamagedBody& body, std::shared_ptr<const HostInverse> intact, bool damage, bool fp64,
-    const DenseInverse* device = nullptr);
+    const DenseInverse* device = nullptr, bool renews = false);
+
+/// When that makes a base anew.
+[[nodiscard]] solver::Renewal renewal_of(const Problem& problem, const HostInverse& intact,
+                                         bool renews);
+/// Columns that come from the beginning of such a base to the event that has it in place.
+[[nodiscard]] Index columns_between(const solver::Renewal& renewal);
 
 /// The base that such an update has at present.
 [[nodiscard]] inline const HostBase& base_of(const solver::RenewedUpdate& update) {

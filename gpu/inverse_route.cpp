@@ -47,7 +47,7 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
       damage_(damage),
       stored_(options.fp64 ? kernels.in_fp64() : kernels),
       base_(stored_, problem_.dof_count(), fields.rows(), options.panel_bytes),
-      exact_(kernels, fields.rows()),
+      exact_(std::make_unique<ExactColumns>(kernels, fields.rows())),
       load_place_(static_cast<std::size_t>(problem_.dof_count()), kNone),
       residual_(problem_.dof_count()),
       partials_(kernels, fields.rows()),
@@ -62,9 +62,38 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
     bind();
     factor_grips();
   } else {
-    update_ = host_update(body_, intact_, damage_, kernels_.fp64(), exact_base(*intact_));
-    new_base();
+    renews_ = can_renew();
+    update_ = host_update(body_, intact_, damage_, kernels_.fp64(), exact_base(*intact_), renews_);
+    new_base(false);
+    if (renews_) make_next();
   }
+}
+
+/// Whether the device computes the next base's inverse from this one: it has that in fp64, nobody
+/// else has it, and there is room for another.
+bool InverseRoute::can_renew() const {
+  constexpr double kOfMemory = .9;  // the rest is for columns to come, and others
+  if (!damage_ || !options_.on_device || exact_base(*intact_) == nullptr) return false;
+  const std::size_t bytes = InverseUpdate::planned_bytes(
+      stored_, problem_.dof_count(), fields_.rows(), options_.panel_bytes, next_columns());
+  const vulkan::Device& device = kernels_.device();
+  return static_cast<double>(device.held_bytes() + bytes) <=
+         kOfMemory * static_cast<double>(device.physical().memory);
+}
+
+/// Columns of the damage by which bases are expected to differ.
+std::uint32_t InverseRoute::next_columns() const {
+  const solver::Renewal renewal = renewal_of(problem_, *intact_, true);
+  const std::size_t between = static_cast<std::size_t>(columns_between(renewal));
+  return static_cast<std::uint32_t>(std::max(renewal.columns, between));
+}
+
+/// At the start, so that no frame allocates it.
+void InverseRoute::make_next() {
+  next_ = std::make_unique<InverseUpdate>(stored_, problem_.dof_count(), fields_.rows(),
+                                          options_.panel_bytes, next_columns());
+  next_exact_ = std::make_unique<ExactColumns>(kernels_, fields_.rows());
+  next_exact_->reserve();
 }
 
 /// X of the body as it was after base_events_.
@@ -96,26 +125,29 @@ void InverseRoute::read_columns() {
   const DenseInverse* there = exact_base(host.inverse());
   columns_there_ = there != nullptr;
   host.read_from(there);
+  update_->hold(renews_ && base_stale_);  // the next base would have columns by its factor
 }
 
 void InverseRoute::bind() {
   // The loaded columns never need more chunks than all columns do, one per panel aside.
-  partials_.reserve(base_.chunks() + base_.loaded_chunks({}) + exact_.chunk_capacity());
+  partials_.reserve(base_.chunks() + base_.loaded_chunks({}) + exact_->chunk_capacity());
   base_.bind(partials_, fields_.residual());
-  exact_.bind(partials_);
-  exact_.bind_solve(fields_.positions(), fields_.nodal(Field::displacement));
+  exact_->bind(partials_);
+  exact_->bind_solve(fields_.positions(), fields_.nodal(Field::displacement));
   sum_displacement_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::displacement));
   sum_correction_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::correction));
   quiet_.columns = checked_.columns = kNone;
 }
 
-/// The columns of the update's present base, in place of those of the one before.
-void InverseRoute::new_base() {
+/// The columns of the update's present base, in place of those of the one before; `with_columns`:
+/// they are there, and nothing else is.
+void InverseRoute::new_base(bool with_columns) {
   bases_ = update_->bases();
   read_columns();
-  exact_.clear();
-  exact_.reserve();
-  place_.clear();
+  if (!with_columns) exact_->clear();
+  exact_->reserve();
+  place_.resize(static_cast<std::size_t>(exact_->count()));
+  std::iota(place_.begin(), place_.end(), 0);
   std::fill(load_place_.begin(), load_place_.end(), kNone);
   sum_displacement_.reset();
   extend_exact();
@@ -125,8 +157,8 @@ void InverseRoute::new_base() {
 void InverseRoute::extend_exact() {
   const HostBase& base = base_of(*update_);
   const Index before = static_cast<Index>(place_.size());
-  for (Index c = before; c < base.count(); ++c) place_.push_back(exact_.count() + c - before);
-  const bool moved = exact_.append(base.columns().middleCols(before, base.count() - before));
+  for (Index c = before; c < base.count(); ++c) place_.push_back(exact_->count() + c - before);
+  const bool moved = exact_->append(base.columns().middleCols(before, base.count() - before));
   if (moved || !sum_displacement_) bind();
 }
 
@@ -137,11 +169,11 @@ void InverseRoute::hold_loads(const Load& load) {
   for (Index d : load.force_dofs) {
     if (load_place_[d] == kNone) added.push_back(d);
   }
-  if (added.empty() || exact_.count() + static_cast<Index>(added.size()) > exact_.most()) return;
+  if (added.empty() || exact_->count() + static_cast<Index>(added.size()) > exact_->most()) return;
   for (std::size_t i = 0; i < added.size(); ++i) {
-    load_place_[added[i]] = exact_.count() + static_cast<Index>(i);
+    load_place_[added[i]] = exact_->count() + static_cast<Index>(i);
   }
-  if (exact_.append(base_of(*update_).unit_columns(added))) bind();
+  if (exact_->append(base_of(*update_).unit_columns(added))) bind();
 }
 
 void InverseRoute::record_solution(Field field, std::uint32_t chunks, bool add) {
@@ -160,7 +192,7 @@ int InverseRoute::solve(const Load& load, double energy_tolerance, bool balance)
 
 /// Of the exact columns; returns what of the load has none.
 Loaded InverseRoute::set_coefficients(const Load& load, const Eigen::VectorXd& of_damage) {
-  coefficients_.setZero(exact_.count());
+  coefficients_.setZero(exact_->count());
   for (std::size_t i = 0; i < place_.size(); ++i) {
     coefficients_[place_[i]] = of_damage[static_cast<Index>(i)];
   }
@@ -174,7 +206,7 @@ Loaded InverseRoute::set_coefficients(const Load& load, const Eigen::VectorXd& o
       rest.values.push_back(load.forces[i]);
     }
   }
-  exact_.set_coefficients(coefficients_);
+  exact_->set_coefficients(coefficients_);
   return rest;
 }
 
@@ -184,7 +216,7 @@ void InverseRoute::solve_deferred(const Load& load, double energy_tolerance, boo
   const Loaded loaded = set_coefficients(
       load, update_->deferred().coefficients({load.force_dofs, load.forces}, load.displacements,
                                              energy_tolerance));
-  if (loaded.dofs.empty() && exact_.whole_in_one()) {
+  if (loaded.dofs.empty() && exact_->whole_in_one()) {
     solve_on_exact(balance);
     return;
   }
@@ -194,7 +226,7 @@ void InverseRoute::solve_deferred(const Load& load, double energy_tolerance, boo
   fields_.record_keep(commands_);
   commands_.pass("solve");
   std::uint32_t chunks = base_.record_loaded(commands_, 0);
-  chunks += exact_.record_apply(commands_, chunks);
+  chunks += exact_->record_apply(commands_, chunks);
   record_solution(Field::displacement, chunks, false);
   fields_.record_hold(commands_, Field::displacement);
   fields_.record_state(commands_, balance);
@@ -205,15 +237,15 @@ void InverseRoute::solve_deferred(const Load& load, double energy_tolerance, boo
 void InverseRoute::solve_on_exact(bool balance) {
   Recorded& frame = balance ? checked_ : quiet_;
   const bool keep = fields_.keeps_next(), timed = kernels_.device().timing();
-  if (frame.columns != exact_.count() || frame.keep != keep || frame.timed != timed) {
-    frame.columns = exact_.count();
+  if (frame.columns != exact_->count() || frame.keep != keep || frame.timed != timed) {
+    frame.columns = exact_->count();
     frame.keep = keep;
     frame.timed = timed;
     vulkan::Commands& commands = frame.commands;
     commands.begin();
     fields_.record_keep(commands);
     commands.pass("solve");
-    exact_.record_solve(commands);
+    exact_->record_solve(commands);
     fields_.record_hold(commands, Field::displacement);
     fields_.record_state(commands, balance);
     commands.end();
@@ -323,14 +355,14 @@ void InverseRoute::destroy(std::span<const Index> elements) {
   }
   constexpr std::size_t kUnknowns = 12;  // of an element: so many columns at most
   const auto most = static_cast<Index>(std::min(all_.size(), kUnknowns * elements.size()));
-  update_->follow({.leave = elements}, exact_.count() + most > exact_.most());
+  update_->follow({.leave = elements}, exact_->count() + most > exact_->most());
   follow_update();
 }
 
 void InverseRoute::grip(const fem::Event& event) {
   if (eager_) throw UsageError("update eager takes no other grips");
   const auto most = static_cast<Index>(event.grasp.size());
-  update_->follow(event, exact_.count() + most > exact_.most());
+  update_->follow(event, exact_->count() + most > exact_->most());
   quiet_.columns = checked_.columns = kNone;
   follow_update();
 }
@@ -348,13 +380,66 @@ bool InverseRoute::rebase() {
 
 /// What the update has gained since, or its new base.
 void InverseRoute::follow_update() {
-  if (update_->bases() == bases_) {
-    extend_exact();
-    return;
+  if (update_->bases() == bases_) extend_exact();
+  if (renews_) renew();
+  if (update_->bases() == bases_) return;
+  const bool there = take_next();
+  base_stale_ = !there;
+  base_events_ = update_->base_events();
+  new_base(there);
+}
+
+/// Begins with the next base's inverse where the update has begun with that, goes on with it, and
+/// lets that catch up once it is made.
+void InverseRoute::renew() {
+  const auto coming = update_->coming_events();
+  if (next_->in_work() && coming != next_events_) next_->drop();
+  if (update_->made()) {
+    catch_up();
+  } else if (next_->in_work()) {
+    next_->advance();
+  } else if (coming == body_.events() && !base_stale_) {
+    begin_next();
   }
-  base_stale_ = true;
-  base_events_ = body_.events();  // where it is made on the device, nothing renews it beside
-  new_base();
+}
+
+void InverseRoute::begin_next() {
+  update_->deferred().copy_damage(between_);
+  const int events = renewal_of(problem_, *intact_, true).events;
+  next_->begin(base_, *exact_, place_, between_, static_cast<std::size_t>(events));
+  next_events_ = body_.events();
+  next_tried_ = false;
+  next_exact_->clear();
+}
+
+/// The next base follows some events more, with columns of its inverse where that is right.
+void InverseRoute::catch_up() {
+  if (next_->in_work() && !next_tried_) {
+    next_->finish();
+    if (!static_cast<HostBase&>(update_->made()->base()).try_device(next_->inverse())) {
+      next_->drop();
+    }
+    next_tried_ = true;
+  }
+  const solver::Deferred* made = update_->made();
+  update_->catch_up();
+  const bool in_place = !update_->made() && &update_->deferred() == made;
+  if (!next_->in_work() || (!update_->made() && !in_place)) return;
+  const auto& base = static_cast<const HostBase&>(made->base());
+  const Index before = next_exact_->count();
+  next_exact_->append(base.columns().middleCols(before, base.count() - before));
+}
+
+/// The update has a new base. False: it is not the one whose inverse is there.
+bool InverseRoute::take_next() {
+  if (!renews_ || !next_->in_work()) return false;
+  if (!next_tried_ || next_events_ != update_->base_events()) {
+    next_->drop();
+    return false;
+  }
+  next_->hand_over(base_);
+  std::swap(exact_, next_exact_);
+  return true;
 }
 
 /// X += Z Z^T with Z = X W L^-T, L L^T = I - W^T X W, all as it stands on the device. False: the
@@ -383,7 +468,7 @@ void InverseRoute::defer() {
   }
   if (!destroyed.empty()) update_->follow({.leave = destroyed});
   if (update_->bases() > 1) base_events_ = body_.events();
-  new_base();
+  new_base(false);
 }
 
 std::vector<BufferPlan> InverseRoute::buffers() const {
@@ -394,7 +479,10 @@ std::vector<BufferPlan> InverseRoute::buffers() const {
     plan.push_back({"factor and inverse of the base (host)", intact_->bytes()});
     return plan;
   }
-  plan.push_back({"exact columns (device)", exact_.bytes()});
+  plan.push_back({"exact columns (device)", exact_->bytes()});
+  if (renews_) {
+    plan.push_back({"inverse of the next base (device)", next_->bytes() + next_exact_->bytes()});
+  }
   for (BufferPlan& b : update_->deferred().buffers()) plan.push_back(std::move(b));
   return plan;
 }

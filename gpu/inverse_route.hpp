@@ -9,6 +9,7 @@
 #include "gpu/host_update.hpp"
 #include "gpu/passes/add.hpp"
 #include "gpu/passes/exact_columns.hpp"
+#include "gpu/passes/inverse_update.hpp"
 #include "gpu/route.hpp"
 
 namespace sunder::gpu {
@@ -61,7 +62,7 @@ class InverseRoute final : public DeviceRoute {
   [[nodiscard]] const DenseInverse* exact_base(const HostInverse& host) const;
   void read_columns();
   void bind();
-  void new_base();
+  void new_base(bool with_columns);
   void extend_exact();
   void hold_loads(const Load& load);
   void record_solution(Field field, std::uint32_t chunks, bool add);
@@ -74,6 +75,14 @@ class InverseRoute final : public DeviceRoute {
   void factor_grips();
   [[nodiscard]] Loaded grip_forces(Field field, std::span<const double> displacement) const;
   void follow_update();
+  [[nodiscard]] bool can_renew() const;
+  [[nodiscard]] std::uint32_t next_columns() const;
+  void make_next();
+  void renew();
+  void begin_next();
+  void try_next();
+  void catch_up();
+  [[nodiscard]] bool take_next();
   void defer();
 
   const KernelFactory& kernels_;
@@ -87,11 +96,19 @@ class InverseRoute final : public DeviceRoute {
   bool base_stale_ = false;      // base_ is that of an earlier one
   bool columns_there_ = false;   // new columns are read from base_
   std::size_t base_events_ = 0;  // of the body that base_ is to be made of
+  bool renews_ = false;          // bases are made anew, base_ by next_
   KernelFactory stored_;         // in the precision that base_ is stored in
   DenseInverse base_;
   std::unique_ptr<solver::RenewedUpdate> update_;  // empty while eager; reads columns of base_
+  // Where renews_: the next base's inverse, of the body after so many events, what its making goes
+  // by, whether its base has tried to read columns there, and the columns of that.
+  std::unique_ptr<InverseUpdate> next_;
+  std::size_t next_events_ = 0;
+  solver::DamageMatrices between_;
+  bool next_tried_ = false;
+  std::unique_ptr<ExactColumns> next_exact_;
   // The update's columns and those of loads, as they came: where each column is among them.
-  ExactColumns exact_;
+  std::unique_ptr<ExactColumns> exact_;
   std::vector<Index> place_;       // of the update's columns
   std::vector<Index> load_place_;  // of each unknown's unit load; kNone: it has none
   std::vector<Index> all_;         // every unknown: the loads of a residual

@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // X = S (I - B) S for a diagonal S, rounded to storage precision: the last step of the inversion on the
-// device. Of B only the lower tiles count, X is whole; a dispatch fills in what one panel of B has. In
+// device; `mirror`: X = S B S. Of B only the lower tiles count, X is whole; a dispatch fills in what one panel of B has. In
 // place by two dispatches: the tiles over the diagonal from those under it, then these themselves.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
@@ -23,7 +23,9 @@ void main() {
       value = -dvec4(DVEC4(swept, at)[q], DVEC4(swept, at + step)[q], DVEC4(swept, at + 2u * step)[q],
                      DVEC4(swept, at + 3u * step)[q]);
     }
-    [[unroll]] for (uint i = 0u; i < 4u; ++i) value[i] += 4u * pack + i == column ? 1.0LF : 0.0LF;
+    if (p.mirror != 0u) value = -value;
+    const double one = p.mirror != 0u ? 0.0LF : 1.0LF;
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) value[i] += 4u * pack + i == column ? one : 0.0LF;
     const double scale = DVEC4(scales, column / 4u)[q];
     const dvec4 result = scale > 0.0LF ? scale * DVEC4(scales, pack) * value : dvec4(0);
     matrix.data[gl_WorkGroupID.y * p.packs + pack] = REAL4(result);

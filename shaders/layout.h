@@ -24,6 +24,7 @@ SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update
 SUNDER_CONST kLowerTiles = 1u;     // those on and under the diagonal
 SUNDER_CONST kUpperTiles = 2u;     // those over it
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
+SUNDER_CONST kDepth = 8u;          // rows of both factors that a product takes at once
 SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
 SUNDER_CONST kPartsAtOnce = 256u;  // partial results that one of many workgroups joins
 SUNDER_CONST kRateUnrolled = 8u;   // multiply-adds in a row, where a device's rates are measured
@@ -180,6 +181,18 @@ struct ComplementPush {
   uint first_column, columns;  // of the panel that is read
   uint to;                     // first column of the panel that is written
   uint left_out;               // kLowerTiles, kUpperTiles, or 0
+  uint mirror;                 // 1: X = S B S
+};
+
+struct ProductPush {
+  uint packs;         // rows / 4
+  uint depth;         // rows of both factors, a multiple of kDepth
+  uint right_packs;   // of a row of the right factor
+  uint right_first;   // its column for the panel's first one
+  uint first_column;  // of the panel, in the matrix
+  uint column;        // of the panel, where this dispatch begins
+  float keep;         // of what was there; 0: nothing, which then is not looked at
+  uint lower;         // 1: tiles over the diagonal are left out
 };
 
 struct CgPush {
@@ -345,7 +358,8 @@ static_assert(sizeof(NodePartial) == 32);
 static_assert(sizeof(ElementFacts) == 16);
 static_assert(sizeof(Summary) == 80);
 static_assert(sizeof(CgPush) == 56);
-static_assert(sizeof(ComplementPush) == 20);
+static_assert(sizeof(ComplementPush) == 24);
+static_assert(sizeof(ProductPush) == 32);
 static_assert(sizeof(CgState) == 56);
 static_assert(sizeof(FinitePush) == 80);
 static_assert(sizeof(FinitePatch) == 24);

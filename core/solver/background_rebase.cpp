@@ -38,9 +38,10 @@ Deferred& Based::laid_over() const {
 }
 
 BackgroundRebase::BackgroundRebase(const fem::DamagedBody& body, int events,
-                                   std::chrono::milliseconds rest)
+                                   std::chrono::milliseconds rest, bool follows)
     : of_(body),
       events_(events),
+      follows_(follows),
       rest_(rest),
       body_(body),
       recorded_(body.events()),
@@ -93,7 +94,8 @@ bool BackgroundRebase::take(Based& based) {
   const auto start = Clock::now();
   making_ = false;
   std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return phase_ == Phase::following && at_ == recorded_; });
+  done_.wait(lock,
+             [this] { return phase_ == Phase::following && (!follows_ || at_ == recorded_); });
   waited_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   phase_ = Phase::idle;
   if (!result_.deferred) return false;
@@ -103,6 +105,14 @@ bool BackgroundRebase::take(Based& based) {
   lock.unlock();
   asked_.notify_one();
   return true;
+}
+
+void BackgroundRebase::free(Based&& based) {
+  {
+    const std::lock_guard lock(mutex_);
+    old_ = std::move(based);
+  }
+  asked_.notify_one();
 }
 
 /// Whatever is in work is of no use any more.
@@ -141,7 +151,7 @@ void BackgroundRebase::start_again(std::size_t start, const Load& load, MakeBase
 
 bool BackgroundRebase::work_waits() const {
   return quit_ || old_.deferred || phase_ == Phase::asked ||
-         (phase_ == Phase::following && at_ < recorded_);
+         (phase_ == Phase::following && follows_ && at_ < recorded_);
 }
 
 void BackgroundRebase::run() {

@@ -51,8 +51,10 @@ using MakeBase =
 class BackgroundRebase {
  public:
   /// The body must outlive it; a base is taken so many events after its start. The thread rests
-  /// before each thing that it does (CpuOptions::rest).
-  BackgroundRebase(const fem::DamagedBody& body, int events, std::chrono::milliseconds rest);
+  /// before each thing that it does (CpuOptions::rest). `follows`: false where a base is taken as
+  /// it was made, and whoever takes it follows the events since.
+  BackgroundRebase(const fem::DamagedBody& body, int events, std::chrono::milliseconds rest,
+                   bool follows = true);
   /// Gives up what is being made.
   ~BackgroundRebase();
   BackgroundRebase(const BackgroundRebase&) = delete;
@@ -74,9 +76,12 @@ class BackgroundRebase {
   void start_again(std::size_t start, const Load& load, MakeBase make);
   /// Whether the next event is to find the base that is being made in place.
   [[nodiscard]] bool due() const { return making_ && followed_ >= events_; }
-  /// Waits until every event is followed; `based` goes to the thread to be freed, which takes as
-  /// long as a frame. False, and nothing changes: not positive definite in double precision.
+  /// Waits until the base is made, and every event followed where the thread does that; `based`
+  /// goes to the thread to be freed, which takes as long as a frame. False, and nothing changes:
+  /// not positive definite in double precision.
   [[nodiscard]] bool take(Based& based);
+  /// The thread frees this; nothing else may wait to be freed.
+  void free(Based&& based);
   /// Gives up the base that is being made, and waits until nothing that makes it is used any more.
   void give_up();
   /// Milliseconds that take() has waited so far.
@@ -97,6 +102,7 @@ class BackgroundRebase {
   const fem::DamagedBody& of_;
   int events_, followed_ = 0;
   bool making_ = false;
+  const bool follows_;
   double waited_ms_ = 0;
   // The thread's.
   std::chrono::milliseconds rest_;

@@ -147,13 +147,18 @@ std::size_t loaded_unknowns(const Problem& problem) {
 }
 
 int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor, std::size_t elements) {
-  constexpr double kSolutions = 4;  // of the check, each forward and backward
   constexpr double kUpdate = 3e-5;  // seconds of a frame with a fracture, whatever the size
   const double solve = host_seconds(kValue * real(factor.entries()));
-  const double count = real(elements);
+  return frames_of_a_factor(factor, elements,
+                            1.5 * solve + FrameRates{}.stress * real(elements) + kUpdate);
+}
+
+int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor, std::size_t elements,
+                       double frame) {
+  constexpr double kSolutions = 4;  // of the check, each forward and backward
   const double making = 2 * multiply_adds(factor.supernodes()) / kFactorFlops +
-                        kCheckSeconds * count + 2 * kSolutions * solve;
-  const double frame = 1.5 * solve + FrameRates{}.stress * count + kUpdate;
+                        kCheckSeconds * real(elements) +
+                        2 * kSolutions * host_seconds(kValue * real(factor.entries()));
   return std::clamp(static_cast<int>(kAllowanceOfAThread * making / frame), 48, 256);
 }
 

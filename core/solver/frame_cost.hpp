@@ -101,6 +101,9 @@ struct FrameCost {
 /// must not depend on how long anything took.
 [[nodiscard]] int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor,
                                      std::size_t elements);
+/// The same where a frame takes so many seconds.
+[[nodiscard]] int frames_of_a_factor(const linear_algebra::SupernodalCholesky& factor,
+                                     std::size_t elements, double frame);
 
 /// Whether an event of so many elements is worth a new factor of the body instead of an update.
 [[nodiscard]] bool takes_new_factor(std::size_t unknowns, std::size_t elements);

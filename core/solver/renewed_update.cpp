@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/renewed_update.hpp"
 
+#include <new>
+
 #include "solver/load_room.hpp"
 #include "solver/new_base_timer.hpp"
 #include "sunder/error.hpp"
@@ -19,11 +21,11 @@ RenewedUpdate::RenewedUpdate(const fem::DamagedBody& body, Based first, const Re
   renewal_ = renewal;
   make_ = std::move(make);
   threshold_ = renewal.first_columns;
-  coming_.emplace(body, renewal.events, renewal.rest);
+  coming_.emplace(body, renewal.events, renewal.rest, renewal.events_at_once == 0);
 }
 
 void RenewedUpdate::follow(const fem::Event& event, bool anew) {
-  if (coming_->due()) take_base();
+  if (coming_->due()) renewal_.events_at_once == 0 ? take_base() : take_made();
   coming_->follow();
   if (anew || !based_.follow(event)) {
     if (!rebase()) throw NumericalError("the update of the split body is singular");
@@ -61,6 +63,7 @@ RenewedUpdate::State RenewedUpdate::state() const {
 }
 
 void RenewedUpdate::stop(std::size_t events) {
+  made_.reset();
   if (coming_) coming_->go_back(events);
 }
 
@@ -93,8 +96,8 @@ bool RenewedUpdate::begins() const {
   // The load is the last frame's: since then nothing may have been grasped.
   const bool fits = load_.displacements.empty() ||
                     load_.displacements.size() == static_cast<std::size_t>(deferred.grips());
-  return !coming_->making() && static_cast<std::size_t>(columns) > threshold_ && fits &&
-         can_be_renewed();
+  return !held_ && !coming_->making() && !made_ && static_cast<std::size_t>(columns) > threshold_ &&
+         fits && can_be_renewed();
 }
 
 bool RenewedUpdate::rebase() {
@@ -102,6 +105,7 @@ bool RenewedUpdate::rebase() {
   const NewBaseTimer timer(new_bases_);
   coming_->give_up();
   saved_ms_ = saved_ms();
+  made_.reset();
   based_ = {};  // frees the old base first
   based_ = make_(body_, {});
   renewed();
@@ -112,6 +116,46 @@ void RenewedUpdate::take_base() {
   const double saved = saved_ms();
   if (!coming_->take(based_)) return;  // what there is still holds; the next event tries again
   saved_ms_ = saved;
+  ++new_bases_.count;
+  renewed();
+}
+
+void RenewedUpdate::take_made() {
+  Based made;
+  if (!coming_->take(made)) return;  // as in take_base()
+  made_ = std::move(made);
+  made_events_ = start_events_;
+}
+
+/// An event more. False: it cannot be followed.
+bool RenewedUpdate::follow_made() {
+  body_.read(made_events_, event_);
+  const fem::Event event(event_);
+  if (event.of_grips()) made_->check = {};  // it was of loads by other grips
+  try {
+    if (!made_->follow(event)) return false;
+  } catch (const NumericalError&) {
+    return false;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+  ++made_events_;
+  return true;
+}
+
+void RenewedUpdate::catch_up() {
+  if (!made_) return;
+  for (int i = 0; i < renewal_.events_at_once && made_events_ < body_.events(); ++i) {
+    if (follow_made()) continue;
+    coming_->free(std::move(*made_));  // what there is still holds
+    made_.reset();
+    return;
+  }
+  if (made_events_ < body_.events()) return;
+  saved_ms_ = saved_ms();
+  std::swap(based_, *made_);
+  coming_->free(std::move(*made_));
+  made_.reset();
   ++new_bases_.count;
   renewed();
 }

@@ -19,6 +19,10 @@ struct Renewal {
   std::size_t first_columns = kNever;  ///< over the first one
   int events = 0;                      ///< from its start to the event that finds it in place
   std::chrono::milliseconds rest{0};   ///< of the thread that makes it (background_rebase.hpp)
+  /// 0: that thread follows the events since. Otherwise that event finds the base made alone, and
+  /// catch_up() follows so many at each event, until it puts it in place; there is then no way back
+  /// to a state before.
+  int events_at_once = 0;
 };
 
 class RenewedUpdate {
@@ -66,6 +70,21 @@ class RenewedUpdate {
   /// The factor of the damaged body below; null: the base is the first.
   [[nodiscard]] const linear_algebra::Factor* factor() const { return based_.factor.get(); }
   [[nodiscard]] int bases() const { return bases_; }
+  /// Events of the body that the present base holds, and those that the one that is being made
+  /// will hold.
+  [[nodiscard]] std::size_t base_events() const {
+    return body_.events() - static_cast<std::size_t>(deferred().events());
+  }
+  [[nodiscard]] std::optional<std::size_t> coming_events() const {
+    const bool comes = coming_ && (coming_->making() || made_);
+    return comes ? std::optional(start_events_) : std::nullopt;
+  }
+  /// A base that is made and lacks events (Renewal::events_at_once); null: there is none.
+  [[nodiscard]] Deferred* made() const { return made_ ? made_->deferred.get() : nullptr; }
+  /// While held no base begins.
+  void hold(bool held) { held_ = held; }
+  /// Follows some of these, and puts it in place once it lacks none. After follow().
+  void catch_up();
   [[nodiscard]] const BaseCheck& base_check() const { return based_.check; }
   /// All after the first one so far.
   [[nodiscard]] NewBases new_bases() const {
@@ -78,6 +97,8 @@ class RenewedUpdate {
   }
 
  private:
+  void take_made();
+  [[nodiscard]] bool follow_made();
   [[nodiscard]] bool can_be_renewed() const;
   [[nodiscard]] bool begins() const;
   [[nodiscard]] Based make_checked(const fem::DamagedBody& body, const Load& load,
@@ -91,6 +112,10 @@ class RenewedUpdate {
   Load start_load_;               // of the base that is being made
   std::size_t start_events_ = 0;  // before it
   Based based_;
+  bool held_ = false;
+  std::optional<Based> made_;
+  std::size_t made_events_ = 0;  // that it holds
+  fem::Change event_;            // of them
   Renewal renewal_;
   Make make_;
   std::size_t threshold_ = 0;  // columns at which a new base begins

@@ -380,37 +380,86 @@ void DenseInverse::record_low_rank(vulkan::Commands& commands, const Panel& pane
                     shaders::LowRankPush{rows_ / 4, blocks, panel.first, rows, sign}, groups);
 }
 
-void DenseInverse::take_complement(const DenseInverse& other, std::span<const double> scales) {
-  const auto kernel = kernels_.make("complement");
+/// What the complement's kernel needs beside the panels.
+void DenseInverse::scale_by(std::span<const double> scales) {
+  complement_ = kernels_.make("complement");
   std::vector<double> padded(std::max(rows_, columns_), 0.0);
   std::ranges::copy(scales, padded.begin());
-  Buffer diagonal(kernels_.device(), padded.size() * sizeof(double), Placement::staging);
-  diagonal.write(std::span<const double>(padded));
-  std::vector<std::unique_ptr<Binding>> bindings;
+  scales_ = Buffer(kernels_.device(), padded.size() * sizeof(double), Placement::staging);
+  scales_.write(std::span<const double>(padded));
+}
+
+void DenseInverse::add_passages(const DenseInverse& other, std::uint32_t left_out, bool mirror,
+                                std::vector<Passage>& to) const {
+  for (const Panel& from : other.panels_) {
+    for (const Panel& panel : panels_) {
+      if (left_out == shaders::kUpperTiles && from.first != panel.first) continue;
+      to.push_back({bind_buffers(kernels_, *complement_, {&from.matrix, &scales_, &panel.matrix}),
+                    {rows_ / 4, from.first, from.columns, panel.first, left_out, mirror ? 1u : 0u},
+                    panel.columns});
+    }
+  }
+}
+
+void DenseInverse::record(vulkan::Commands& commands, std::span<const Passage> passages) const {
+  for (const Passage& p : passages) {
+    commands.dispatch(*p.binding, p.push, rows_ / shaders::kRowPad, p.columns);
+  }
+}
+
+void DenseInverse::take_complement(const DenseInverse& other, std::span<const double> scales) {
+  scale_by(scales);
+  std::vector<Passage> passages;
+  if (&other == this) {
+    add_passages(other, shaders::kLowerTiles, false, passages);
+    add_passages(other, shaders::kUpperTiles, false, passages);
+  } else {
+    add_passages(other, 0, false, passages);
+  }
   vulkan::Commands commands(kernels_.device());
   commands.begin();
-  const auto record = [&](std::uint32_t left_out) {
-    for (const Panel& from : other.panels_) {
-      for (const Panel& to : panels_) {
-        if (left_out == shaders::kUpperTiles && from.first != to.first) continue;
-        bindings.push_back(bind_buffers(kernels_, *kernel, {&from.matrix, &diagonal, &to.matrix}));
-        commands.dispatch(
-            *bindings.back(),
-            shaders::ComplementPush{rows_ / 4, from.first, from.columns, to.first, left_out},
-            rows_ / shaders::kRowPad, to.columns);
-      }
-    }
-  };
-  if (&other == this) {
-    record(shaders::kLowerTiles);
-    record(shaders::kUpperTiles);
-  } else {
-    record(0);
-  }
+  record(commands, passages);
   commands.end();
   commands.submit();
+  passages.clear();
+  mirror_.clear();
+  complement_.reset();
+  scales_ = Buffer();
   release_room();
   trust(false);
+}
+
+std::vector<DenseInverse::Part> DenseInverse::parts() const {
+  std::vector<Part> parts;
+  for (const Panel& panel : panels_) parts.push_back({&panel.matrix, panel.first, panel.columns});
+  return parts;
+}
+
+void DenseInverse::prepare_mirror() {
+  scale_by(std::vector<double>(static_cast<std::size_t>(n_), 1.0));
+  mirror_.clear();
+  add_passages(*this, shaders::kLowerTiles, true, mirror_);
+}
+
+void DenseInverse::record_mirror(vulkan::Commands& commands) const { record(commands, mirror_); }
+
+void DenseInverse::swap(DenseInverse& other) {
+  for (DenseInverse* one : {this, &other}) {
+    for (Panel& panel : one->panels_) {
+      panel.loaded.reset();
+      panel.dense.reset();
+    }
+    one->release_room();
+  }
+  for (std::size_t i = 0; i < panels_.size(); ++i) {
+    std::swap(panels_[i].matrix, other.panels_[i].matrix);
+  }
+  for (DenseInverse* one : {this, &other}) {
+    if (one->partials_) one->bind_loaded();
+    if (one->mirror_.empty()) continue;
+    one->mirror_.clear();
+    one->add_passages(*one, shaders::kLowerTiles, true, one->mirror_);
+  }
 }
 
 /// What pick() and update() work with comes back with the next of them.

@@ -89,6 +89,18 @@ class DenseInverse {
   /// X = S (I - other) S, S the diagonal matrix of the scales, positive ones; `other` in fp64, of
   /// the same size, which may be this one.
   void take_complement(const DenseInverse& other, std::span<const double> scales);
+  /// Its panels, for whoever multiplies by them.
+  struct Part {
+    const vulkan::Buffer* matrix;
+    std::uint32_t first, columns;
+  };
+  [[nodiscard]] std::vector<Part> parts() const;
+  /// Makes ready for record_mirror().
+  void prepare_mirror();
+  /// The tiles over the diagonal from those under it, after somebody else has written these.
+  void record_mirror(vulkan::Commands& commands) const;
+  /// Changes matrices with another of the same size, both whole.
+  void swap(DenseInverse& other);
   /// Columns of X, stored in fp64 and not updated, into `to`, shape (n x dofs): a submit where the
   /// memory is not mapped.
   void read_columns(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> to) const;
@@ -104,7 +116,17 @@ class DenseInverse {
     std::uint32_t first_entry = 0, last_entry = 0;
   };
 
+  /// How take_complement() and record_mirror() go from panel to panel.
+  struct Passage {
+    std::unique_ptr<vulkan::Binding> binding;
+    shaders::ComplementPush push;
+    std::uint32_t columns;
+  };
   void create_panels(std::size_t panel_bytes);
+  void scale_by(std::span<const double> scales);
+  void add_passages(const DenseInverse& other, std::uint32_t left_out, bool mirror,
+                    std::vector<Passage>& to) const;
+  void record(vulkan::Commands& commands, std::span<const Passage> passages) const;
   void create_apply();
   void trust(bool lower_alone);
   void release_room();
@@ -127,7 +149,10 @@ class DenseInverse {
   std::vector<Panel> panels_;
   const PartialSums* partials_ = nullptr;
   const vulkan::Buffer* dense_vector_ = nullptr;
-  std::unique_ptr<vulkan::Kernel> apply_, narrow_, dense_, pick_, vectors_, low_rank_, rank_6_;
+  std::unique_ptr<vulkan::Kernel> apply_, narrow_, dense_, pick_, vectors_, low_rank_, rank_6_,
+      complement_;
+  vulkan::Buffer scales_;                       // that complement_ reads
+  std::vector<Passage> mirror_;                 // empty: not prepared
   std::unique_ptr<vulkan::Binding> narrowing_;  // empty: the vector has storage precision
   vulkan::Buffer vector_, entries_, pick_dofs_, picked_, update_dofs_, factors_, z_;
 };

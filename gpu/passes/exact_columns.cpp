@@ -145,6 +145,14 @@ void ExactColumns::record_solve(vulkan::Commands& commands) const {
                     rows_ / shaders::kRowPad);
 }
 
+void ExactColumns::record_copy(vulkan::Commands& commands, Index first, Index count,
+                               const Buffer& to, std::size_t to_offset) const {
+  const std::size_t column_bytes = rows_ * sizeof(double);
+  commands.copy(columns_.handle(),
+                columns_.offset() + static_cast<std::size_t>(first) * column_bytes, to.handle(),
+                to.offset() + to_offset, static_cast<std::size_t>(count) * column_bytes);
+}
+
 void ExactColumns::set_coefficients(const Eigen::VectorXd& coefficients) {
   if (count_ == 0) return;
   auto* to = coefficients_.mapped<double>();

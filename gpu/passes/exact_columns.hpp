@@ -52,6 +52,10 @@ class ExactColumns {
   /// nodal = columns times coefficients, without partial sums.
   void record_solve(vulkan::Commands& commands) const;
 
+  /// Copies some columns that lie side by side.
+  void record_copy(vulkan::Commands& commands, Index first, Index count, const vulkan::Buffer& to,
+                   std::size_t to_offset) const;
+
   [[nodiscard]] std::size_t bytes() const { return columns_.bytes(); }
 
  private:

@@ -5,8 +5,8 @@
 #include "body/assembly.hpp"
 #include "gpu/host_base.hpp"
 #include "gpu/passes/block_inversion.hpp"
-#include "gpu_body.hpp"
 #include "linear_algebra/factor.hpp"
+#include "on_device.hpp"
 #include "sunder/error.hpp"
 #include "support/table1_board.hpp"
 
@@ -14,36 +14,6 @@ namespace sunder::test {
 namespace {
 
 using Inversion = WithVulkan<>;
-
-struct OnDevice {
-  OnDevice(gpu::Variant variant, bool fp64) {
-    vulkan::InstanceOptions options;
-    options.validation = validated();
-    options.messages = messages;
-    const auto instance = std::make_shared<vulkan::Instance>(options);
-    device = watched_device(instance, watched_probe());
-    factory = std::make_unique<gpu::KernelFactory>(*device, variant, fp64);
-  }
-  ~OnDevice() {
-    factory.reset();
-    device.reset();
-    for (const std::string& m : messages->texts) ADD_FAILURE() << m;
-  }
-  OnDevice(const OnDevice&) = delete;
-  OnDevice& operator=(const OnDevice&) = delete;
-  Eigen::MatrixXd invert(const linear_algebra::SparseMatrix& lower, std::size_t panel_bytes) {
-    const auto n = static_cast<Index>(lower.rows());
-    const auto rows = gpu::round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
-    gpu::DenseInverse inverse(*factory, n, rows, panel_bytes);
-    gpu::invert_on_device(*factory, lower, rows, panel_bytes, inverse);
-    std::vector<Index> all(static_cast<std::size_t>(n));
-    std::iota(all.begin(), all.end(), 0);
-    return inverse.pick(all, all);
-  }
-  std::shared_ptr<vulkan::Messages> messages = std::make_shared<vulkan::Messages>();
-  std::unique_ptr<vulkan::Device> device;
-  std::unique_ptr<gpu::KernelFactory> factory;
-};
 
 /// Some 300 unknowns, no multiple of 60 or 64, with a stiff frame.
 linear_algebra::SparseMatrix small_stiffness() {

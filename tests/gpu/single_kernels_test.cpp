@@ -282,7 +282,7 @@ TEST_P(SingleKernels, ComplementMirrorsTheLowerTiles) {
   const Matrix b = random_symmetric(kUnknowns);
   const Matrix swept = lower_tiles(b, kColumns);
   const auto kernel = factory_->make("complement");
-  for (const bool panels : {false, true}) {
+  for (const auto& [panels, mirror] : {std::pair{false, false}, {true, false}, {true, true}}) {
     const auto x = stored(Matrix::Constant(shaders::kRowPad, kColumns, kNaN));
     for (const Index first : panels ? std::vector<Index>{0, kSplit} : std::vector<Index>{0}) {
       const Index count = !panels ? kColumns : first == 0 ? kSplit : kColumns - kSplit;
@@ -290,7 +290,7 @@ TEST_P(SingleKernels, ComplementMirrorsTheLowerTiles) {
       const auto of_panel = buffer(Doubles(panel.data(), panel.data() + panel.size()));
       run(*kernel, {&of_panel, &diagonal, &x},
           shaders::ComplementPush{shaders::kRowPad / 4, static_cast<std::uint32_t>(first),
-                                  static_cast<std::uint32_t>(count), 0, 0},
+                                  static_cast<std::uint32_t>(count), 0, 0, mirror ? 1u : 0u},
           1, kColumns);
     }
     const Matrix got = read_stored(x, shaders::kRowPad, kColumns);
@@ -300,7 +300,8 @@ TEST_P(SingleKernels, ComplementMirrorsTheLowerTiles) {
         const bool inside = r < kUnknowns && c < kUnknowns;
         const double scale =
             scales[static_cast<std::size_t>(r)] * scales[static_cast<std::size_t>(c)];
-        const double one = r == c ? 1 : 0, expected = inside ? scale * (one - b(r, c)) : 0;
+        const double one = r == c && !mirror ? 1 : 0;
+        const double expected = inside ? scale * (mirror ? b(r, c) : one - b(r, c)) : 0;
         const double size = inside ? scale * (one + std::abs(b(r, c))) : 0;
         if (r >= kUnknowns && r == c) continue;  // nobody reads a row of padding
         ASSERT_LE(std::abs(got(r, c) - expected), units * size) << r << ", " << c;
