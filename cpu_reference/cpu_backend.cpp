@@ -204,7 +204,10 @@ class CpuBackend final : public Backend {
 
   void do_prepare(std::span<const Index> elements) override {
     using Clock = std::chrono::steady_clock;
-    if (!prepares()) return;
+    if (!prepares()) {
+      route_->prepare(elements);  // what else it may bring to hand counts nothing
+      return;
+    }
     const auto start = Clock::now();
     is_prepared_.assign(problem().mesh().tets.size(), 0);
     prepared_.clear();

@@ -122,7 +122,9 @@ class DeferredRoute final : public InverseRoute {
 
   // A column of the dense inverse is at hand without.
   bool prepares() const override { return !dense_ || update_->factor(); }
-  void prepare(std::span<const Index> elements) override { update_->deferred().prepare(elements); }
+  void prepare(std::span<const Index> elements) override {
+    if (prepares()) update_->deferred().prepare(elements);
+  }
   double saved_ms() const override { return update_->saved_ms(); }
 
   const solver::Deferred* deferred() const override { return &update_->deferred(); }

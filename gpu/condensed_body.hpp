@@ -33,6 +33,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void publish_stress() override { outside_.publish_stress(); }
   void destroy(std::span<const Index> elements) override;
   void grip(const fem::Event& event, std::span<const Index> before) override;
+  void prepare(std::span<const Index> elements) override { route_->prepare(elements); }
 
   void read_displacement(std::span<double> displacement) const override;
   void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const override;

@@ -56,6 +56,8 @@ class DeviceBody {
   virtual void destroy(std::span<const Index> elements) = 0;
   /// The same of grips; `before`: what was gripped.
   virtual void grip(const fem::Event& event, std::span<const Index> before) = 0;
+  /// The host may destroy these next.
+  virtual void prepare(std::span<const Index>) {}
   virtual void cut_off(std::span<const Index> elements) { fields().cut_off(on_device(elements)); }
   /// Outside a region nothing is a candidate.
   virtual void exclude(std::span<const Index> elements) { fields().exclude(on_device(elements)); }

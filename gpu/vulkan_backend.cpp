@@ -289,6 +289,7 @@ class VulkanBackend final : public Backend {
     grasped_since_.insert(grasped_since_.end(), change.grasp.begin(), change.grasp.end());
   }
 
+  void do_prepare(std::span<const Index> elements) override { body_->prepare(elements); }
   void do_exclude_candidates(std::span<const Index> elements) override {
     finish_display();
     body_->exclude(elements);

@@ -237,6 +237,13 @@ class CondensedRoute final : public InverseRoute {
     if (strayed_) prepare_around(event);
   }
 
+  void prepare(std::span<const Index> elements) override {
+    if (!growth_ || !based_.deferred) return;
+    touched_.clear();
+    for (Index e : elements) touch(e);
+    if (!base_of(based_).inside(touched_)) look_around();
+  }
+
   std::unique_ptr<RouteState> state() const override {
     auto state = std::make_unique<State>();
     state->based = based_;
@@ -301,7 +308,9 @@ class CondensedRoute final : public InverseRoute {
       plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
     }
     if (next_) plan.push_back({"damage that the next base takes over", next_->bytes()});
-    if (strayed_) plan.push_back({"columns that the region may grow by", growth_->bytes()});
+    if (growth_ && growth_->bytes() > 0) {
+      plan.push_back({"columns that the region may grow by", growth_->bytes()});
+    }
     plan.push_back(
         {"room of full checks", whole_.bytes() + room_.bytes() +
                                     static_cast<std::size_t>(everywhere_.size()) * sizeof(double)});
@@ -383,6 +392,11 @@ class CondensedRoute final : public InverseRoute {
     touched_.assign(event.grasp.begin(), event.grasp.end());
     for (Index e : event.leave) touch(e);
     for (const fem::Coming& c : event.come) touch(c.element);
+    look_around();
+  }
+
+  /// A thread computes what S may grow by around touched_.
+  void look_around() {
     const CondensedBase& base = base_of(based_);
     growth_->follow(base.factor(), base.dofs(), touched_);
   }

@@ -42,8 +42,9 @@ class InverseRoute {
   /// Goes back to one that it gave, after the first `events` events of the body, which still
   /// records those since. False, and nothing changes: it cannot.
   virtual bool go_back(const RouteState&, std::size_t /*events*/) { return false; }
-  /// Whether prepare() is worth calling.
+  /// Whether prepare() is worth calling for what breaks by itself.
   [[nodiscard]] virtual bool prepares() const { return false; }
+  /// The host may destroy these next.
   virtual void prepare(std::span<const Index>) {}
   /// Milliseconds that events have been spared so far.
   [[nodiscard]] virtual double saved_ms() const { return 0; }

@@ -205,11 +205,13 @@ class Backend {
   /// did so before.
   virtual void take_over_instrument_forces(std::shared_ptr<InstrumentForces>) {}
 
-  /// Whether preparing fractures saves this backend anything.
+  /// Whether preparing those that break by themselves saves this backend anything.
   [[nodiscard]] virtual bool prepares() const { return false; }
   [[nodiscard]] virtual PreparationReport preparation() const { return {}; }
   /// Brings to hand what destroying these elements will need, in place of what was prepared before.
-  /// Nothing else changes, no later result by a bit. Those destroyed already are ignored.
+  /// Nothing else changes, no later result by a bit. Those destroyed already are ignored. Where
+  /// some lie beyond route condensed's region, a thread begins with it: a host says so where an
+  /// instrument comes near.
   void prepare(std::span<const Index> elements);
 
   /// Loads for the following solves. Throws UsageError when sizes or dofs do not fit.

@@ -238,6 +238,33 @@ TEST_F(Growing, TheRouteTakesWhatIsThere) {
   }));
 }
 
+// What a host says that it may destroy beyond the region is at hand the first time.
+TEST_F(Growing, TheRouteIsWarned) {
+  fem::DamagedBody body(std::make_shared<const Problem>(test::held_board()));
+  const auto route = condensed_route(body, factor, inside, true, {});
+  EXPECT_FALSE(route->prepares());
+  const auto& base = dynamic_cast<const CondensedBase&>(route->deferred()->base());
+  std::vector<Index> within, across;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    const auto corners = dofs_of(problem.mesh().tets[static_cast<std::size_t>(e)]);
+    const auto in = std::ranges::count_if(corners, [&](Index d) { return base.inside({&d, 1}); });
+    if (static_cast<std::size_t>(in) == corners.size()) {
+      within.push_back(e);
+    } else if (in > 0) {
+      across.push_back(e);
+    }
+  }
+  route->prepare(within);
+  base.growth()->wait();
+  EXPECT_EQ(base.growth()->bytes(), 0u) << "nothing of the kind is missing";
+  route->prepare({&across[3], 1});
+  base.growth()->wait();
+  EXPECT_GT(base.growth()->bytes(), 0u);
+  body.destroy({&across[3], 1});
+  route->follow({.leave = {&across[3], 1}});
+  EXPECT_GT(base.growth()->taken(), 0u);
+}
+
 // S keeps what it has grown by; where it was before, the same events have the same bits again.
 TEST_F(Growing, TheRouteGoesBackToTheSameBits) {
   fem::DamagedBody body(std::make_shared<const Problem>(test::held_board()));
