@@ -9,7 +9,9 @@
 // a body of a million: medians of the first and of the last 50, and what of these is the calling
 // thread's, which a device leaves to the host. Rows "wander" cut 60 elements beyond a patch of
 // 1,000 or 10,000 unknowns, where the region must grow, without a pause and with 33 ms after each
-// ("rests"), in which a thread computes what it may grow by.
+// ("rests"), in which a thread computes what it may grow by; the first of those is announced.
+// "long_tear_device_inverse": 800 elements one by one under route inverse, whose inverse the device
+// computes, over several bases.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -163,7 +165,7 @@ void live(benchmark::State& state, const Variant& variant, bool by_device, Index
 }
 
 /// A host that cuts where nothing breaks by itself, on from the patch: an element a frame, `rest`
-/// after each.
+/// after each, and once before where it says so.
 void wander(benchmark::State& state, const Variant& variant, std::chrono::milliseconds rest,
             Index cells) {
   const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
@@ -173,6 +175,8 @@ void wander(benchmark::State& state, const Variant& variant, std::chrono::millis
   Load load = corner_pull(*problem);
   frame(*backend, load, {});
   const auto order = tear_beyond_patch(*problem);
+  if (rest.count() > 0) backend->prepare({order.data(), 1});
+  std::this_thread::sleep_for(rest);
   std::vector<double> times;
   for (auto _ : state) {
     const double ms = frame(*backend, load, {&order[times.size()], 1}).ms;
@@ -259,6 +263,38 @@ void cascade(benchmark::State& state, const Variant& variant, Index cells) {
     state.counters["worst_ms"] = ms.back();
     state.counters["waited_ms"] = waited;
   }
+}
+
+/// A tear that goes on for long where the device has computed the inverse: a new base's comes from
+/// the last one's.
+void long_tear(benchmark::State& state, Index cells) {
+  const Variant variant{"", Route::inverse, false, true, true, false, "vulkan", 12};
+  Scene scene = scene_of(variant, cells);
+  scene.solver.precision = Precision::fp64;
+  const auto problem = std::make_shared<Problem>(std::move(scene));
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  gpu::VulkanOptions options;
+  options.invert_on_device = true;
+  const auto backend = gpu::create(problem, needs, options);
+  Load load = corner_pull(*problem);
+  frame(*backend, load, {});
+  const auto order = patch_tear(*problem);
+  std::vector<double> times, host;
+  for (auto _ : state) {
+    const double before = thread_ms();
+    times.push_back(frame(*backend, load, {&order[times.size()], 1}).ms);
+    host.push_back(thread_ms() - before);
+    state.SetIterationTime(1e-3 * times.back());
+  }
+  const std::size_t some = times.size() / 6;
+  state.counters["last_ms"] = median_of({times.end() - some, times.end()});
+  state.counters["last_host_ms"] = median_of({host.end() - some, host.end()});
+  std::sort(host.begin(), host.end());
+  state.counters["median_host_ms"] = median_of(host);
+  state.counters["p99_host_ms"] = host[host.size() * 99 / 100];
+  state.counters["bases"] = backend->take_new_bases().count;
+  state.counters["median_ms"] = state.counters["min_ms"] = median_of(times);
 }
 
 constexpr int kSteps = 60;
@@ -353,10 +389,21 @@ void register_rows() {
           ->Unit(benchmark::kMillisecond);
     }
     register_simulated(cells);
+    if (has_vulkan() && cells == 18) {
+      benchmark::RegisterBenchmark(
+          ("needs/long_tear_device_inverse/" + std::to_string(6 * cells * cells)).c_str(),
+          [=](auto& state) { long_tear(state, cells); })
+          ->UseManualTime()
+          ->Iterations(800)
+          ->Unit(benchmark::kMillisecond);
+    }
     std::vector<Variant> cascades{{"factor", Route::factor, false, true, true},
                                   {"condensed", Route::condensed, false, true, true}};
     if (cells > 18) {
       cascades.push_back({"condensed_3750", Route::condensed, false, true, true, false, "cpu", 24});
+    }
+    if (cells > 71) {
+      cascades.push_back({"condensed_10k", Route::condensed, false, true, true, false, "cpu", 40});
     }
     for (const Variant& v : cascades) {
       benchmark::RegisterBenchmark(
