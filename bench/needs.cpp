@@ -165,7 +165,7 @@ void live(benchmark::State& state, const Variant& variant, bool by_device, Index
 }
 
 /// A host that cuts where nothing breaks by itself, on from the patch: an element a frame, `rest`
-/// after each, and once before where it says so.
+/// after each. With rests the first one is announced a rest before.
 void wander(benchmark::State& state, const Variant& variant, std::chrono::milliseconds rest,
             Index cells) {
   const auto problem = std::make_shared<Problem>(scene_of(variant, cells));

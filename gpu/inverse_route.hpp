@@ -80,7 +80,6 @@ class InverseRoute final : public DeviceRoute {
   void make_next();
   void renew();
   void begin_next();
-  void try_next();
   void catch_up();
   [[nodiscard]] bool take_next();
   void defer();

@@ -1,8 +1,8 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // X = S (I - B) S for a diagonal S, rounded to storage precision: the last step of the inversion on the
-// device; `mirror`: X = S B S. Of B only the lower tiles count, X is whole; a dispatch fills in what one panel of B has. In
-// place by two dispatches: the tiles over the diagonal from those under it, then these themselves.
+// device; `mirror`: X = S B S. Of B only the lower tiles count, X is whole; a dispatch fills in what one
+// panel of B has. In place by two dispatches: the tiles over the diagonal from those under it, then these themselves.
 #extension GL_GOOGLE_include_directive : require
 #include "common.glsl"
 

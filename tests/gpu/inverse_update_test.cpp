@@ -166,6 +166,13 @@ struct LongTear {
       if (!static_cast<const gpu::HostBase&>(made->base()).reads_device()) ++without;
     }
   }
+  /// Until a base is being made, or until it is made and lacks events.
+  void tear_until(bool made) {
+    const auto there = [&] {
+      return made ? route.update()->made() != nullptr : route.update()->coming_events().has_value();
+    };
+    while (!there()) tear(done + 1);
+  }
   [[nodiscard]] bool renews() const {
     return std::ranges::any_of(route.buffers(), [](const BufferPlan& b) {
       return b.name == "inverse of the next base (device)";
@@ -243,9 +250,7 @@ TEST_F(Inversion, ABaseThatComesBetweenHasColumnsOfItsFactor) {
   for (const bool catching_up : {false, true}) {
     LongTear tear(gpu::Variant::lvp);
     const auto& update = *tear.route.update();
-    while (!(catching_up ? update.made() != nullptr : update.coming_events().has_value())) {
-      tear.tear(tear.done + 1);
-    }
+    tear.tear_until(catching_up);
     tear.tear(tear.done + 2);
     ASSERT_EQ(update.made() != nullptr, catching_up);
     ASSERT_TRUE(tear.route.rebase());
@@ -282,9 +287,7 @@ TEST_F(Inversion, AGripTakesHoldWhileABaseIsMade) {
   for (const bool catching_up : {false, true}) {
     LongTear tear(gpu::Variant::lvp);
     const auto& update = *tear.route.update();
-    while (!(catching_up ? update.made() != nullptr : update.coming_events().has_value())) {
-      tear.tear(tear.done + 1);
-    }
+    tear.tear_until(catching_up);
     tear.grasp({1, 5, 9});
     const int bases = update.bases();
     while (update.bases() == bases) tear.tear(tear.done + 1);
