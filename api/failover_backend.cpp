@@ -37,9 +37,7 @@ class FailoverBackend final : public Backend {
   }
   bool prepares() const override { return current_->prepares(); }
   PreparationReport preparation() const override { return current_->preparation(); }
-  bool can_destroy(Index element) const override { return current_->can_destroy(element); }
   std::string why_no_grasp() const override { return current_->why_no_grasp(); }
-  bool can_grasp(Index node) const override { return current_->can_grasp(node); }
   void time_passes(bool on) override { current_->time_passes(on); }
   std::vector<PassTime> take_pass_times() override { return current_->take_pass_times(); }
   NewBases take_new_bases() override { return current_->take_new_bases(); }

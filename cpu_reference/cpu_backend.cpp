@@ -283,10 +283,6 @@ class CpuBackend final : public Backend {
     return true;
   }
 
-  bool can_destroy(Index element) const override {
-    return needs().damage && (!fields_.region() || fields_.region()->holds(element));
-  }
-
   std::string why_no_grasp() const override {
     if (needs().pristine && !intact_) {
       return "the intact body's field, which the fracture model reads, has no factor here that a "
@@ -294,9 +290,6 @@ class CpuBackend final : public Backend {
              "\"A\"";
     }
     return {};
-  }
-  bool can_grasp(Index node) const override {
-    return !fields_.region() || fields_.region()->inside[node] != 0;
   }
 
   void do_grip(const GripChange& change) override {

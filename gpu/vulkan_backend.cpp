@@ -116,9 +116,6 @@ class VulkanBackend final : public Backend {
     }
     return instruments_ ? instruments_->forces() : nullptr;
   }
-  bool can_destroy(Index element) const override {
-    return needs().damage && (!plan_.region || plan_.region->holds(element));
-  }
   void take_over_instrument_forces(std::shared_ptr<InstrumentForces> forces) override {
     if (instrument_forces()) instruments_->take_over(std::move(forces));
   }
@@ -276,9 +273,6 @@ class VulkanBackend final : public Backend {
              "backend cpu";
     }
     return {};
-  }
-  bool can_grasp(Index node) const override {
-    return !plan_.region || plan_.region->inside[static_cast<std::size_t>(node)] != 0;
   }
 
   void do_grip(const GripChange& change) override {

@@ -2,6 +2,7 @@
 // What a host takes hold of a body by, and pushes it with, while the simulation runs.
 #include <algorithm>
 
+#include "c/places.hpp"
 #include "c/simulation.hpp"
 #include "c/structs.hpp"
 
@@ -15,12 +16,6 @@ std::span<const Index> to_nodes(const std::int32_t* nodes, std::size_t count) {
   if (count > 0) require(nodes, "nodes");
   require_rows(count, "nodes");
   return {nodes, count};
-}
-
-Vec3 to_vector(const double* values, const char* what) {
-  require(values, what);
-  require_finite(values, 3, what);
-  return Vec3(values);
 }
 
 }  // namespace
@@ -41,13 +36,7 @@ sunder_status sunder_simulation_grasp_near(sunder_simulation simulation, const d
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
     require(grip, "grip");
     const bool turns = choice<int>(rigid, 2, "rigid") == 1;
-    const Vec3 place = to_vector(near, "near");
-    require_finite(radius, "radius");
-    if (!(radius > 0)) {
-      throw Failure(SUNDER_ERROR_VALUE,
-                    "radius = " + std::to_string(radius) + "; it must be above 0 mm");
-    }
-    *grip = object.simulation().grasp(place, radius, turns);
+    *grip = object.simulation().grasp(to_place(near, "near"), to_radius(radius), turns);
   });
 }
 
@@ -79,7 +68,7 @@ sunder_status sunder_simulation_pose(sunder_simulation simulation, int32_t grip,
                                      const double position[3], const double quaternion[4]) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
     sunder::Pose pose;
-    pose.position = to_vector(position, "position");
+    pose.position = to_place(position, "position");
     if (quaternion) {
       require_finite(quaternion, 4, "quaternion");
       std::copy_n(quaternion, 4, pose.quaternion.begin());
@@ -112,14 +101,14 @@ sunder_status sunder_simulation_push(sunder_simulation simulation, const int32_t
                                      size_t count, const double force[3], int32_t* push) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
     require(push, "push");
-    *push = object.simulation().push(to_nodes(nodes, count), to_vector(force, "force"));
+    *push = object.simulation().push(to_nodes(nodes, count), to_place(force, "force"));
   });
 }
 
 sunder_status sunder_simulation_move(sunder_simulation simulation, int32_t push,
                                      const int32_t* nodes, size_t count, const double force[3]) {
   return call<SimulationObject>(simulation, [&](SimulationObject& object) {
-    object.simulation().move(push, to_nodes(nodes, count), to_vector(force, "force"));
+    object.simulation().move(push, to_nodes(nodes, count), to_place(force, "force"));
   });
 }
 

@@ -2,6 +2,7 @@
 // What a host does to a live body, and taking it back.
 #include <cstring>
 
+#include "c/places.hpp"
 #include "c/simulation.hpp"
 #include "c/structs.hpp"
 
@@ -60,6 +61,22 @@ sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* 
       for (std::size_t p = 0; p < 3; ++p) triangles[t][p] = Vec3(swept + 9 * t + 3 * p);
     }
     put(removed, object.simulation().cut(triangles));
+  });
+}
+
+sunder_status sunder_simulation_prepare(sunder_simulation simulation, const int32_t* elements,
+                                        size_t count) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    if (count > 0) require(elements, "elements");
+    require_rows(count, "elements");
+    object.simulation().prepare({elements, count});
+  });
+}
+
+sunder_status sunder_simulation_prepare_near(sunder_simulation simulation, const double near[3],
+                                             double radius, int32_t* count) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    put(count, object.simulation().prepare(to_place(near, "near"), to_radius(radius)));
   });
 }
 

@@ -230,6 +230,12 @@ internal static class Native {
   public static extern int sunder_simulation_cut(IntPtr simulation, double[] swept, UIntPtr size,
                                                  out int removed);
   [DllImport(Library)]
+  public static extern int sunder_simulation_prepare(IntPtr simulation, int[] elements,
+                                                     UIntPtr count);
+  [DllImport(Library)]
+  public static extern int sunder_simulation_prepare_near(IntPtr simulation, double[] near,
+                                                          double radius, out int count);
+  [DllImport(Library)]
   public static extern int sunder_simulation_grasp(IntPtr simulation, int[] nodes, UIntPtr count,
                                                    int rigid, out int grip);
   [DllImport(Library)]

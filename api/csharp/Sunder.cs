@@ -335,6 +335,17 @@ public sealed class Simulation : Handle {
     Error.Check(Native.sunder_simulation_cut(handle, swept, Size(swept), out removed));
     return removed;
   }
+  /// <summary>Elements that may soon be removed, cut or grasped, in place of those named before.
+  /// No result changes.</summary>
+  public void Prepare(params int[] elements) {
+    Error.Check(Native.sunder_simulation_prepare(handle, elements, Size(elements)));
+  }
+  /// <summary>The same of those within a radius [mm] of a place now. Returns how many.</summary>
+  public int Prepare(double[] near, double radius) {
+    int count;
+    Error.Check(Native.sunder_simulation_prepare_near(handle, Three(near), radius, out count));
+    return count;
+  }
 
   // ---- back and forth
 

@@ -423,8 +423,8 @@ SUNDER_API void sunder_dynamics_init(sunder_dynamics* dynamics);
 SUNDER_API sunder_status sunder_scene_set_dynamics(sunder_scene scene,
                                                    const sunder_dynamics* dynamics);
 /// Whether a host may grasp, remove elements and cut at any time (default 0). Needed where the
-/// scene has neither a fracture model nor removals; on route condensed all of the body is computed
-/// then.
+/// scene has neither a fracture model nor removals; on route condensed each frame computes all of
+/// the body then, else what the scene names, and what a host comes to beside that.
 SUNDER_API sunder_status sunder_scene_set_live(sunder_scene scene, int32_t live);
 /// Whether stress is wanted (default 1). With 0 it is left out unless the fracture model needs it.
 SUNDER_API sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted);
@@ -829,8 +829,8 @@ SUNDER_API sunder_status sunder_simulation_warm_up(sunder_simulation simulation)
 
 /// Takes live elements out between two steps, by one event with SUNDER_CAUSE_SCRIPT. In statics,
 /// after the first step, fields and forces are those of the new body at once, under the same load.
-/// SUNDER_ERROR_ORDER, and nothing changes: an element that is not there, named twice, gone already
-/// or out of this route's reach; nothing can be removed (sunder_scene_set_live).
+/// SUNDER_ERROR_ORDER, and nothing changes: an element that is not there, named twice, gone
+/// already; nothing can be removed (sunder_scene_set_live).
 SUNDER_API sunder_status sunder_simulation_remove(sunder_simulation simulation,
                                                   const int32_t* elements, size_t count);
 /// Removes the live elements that a blade has passed: those whose inside, as it is now, any of the
@@ -842,13 +842,26 @@ SUNDER_API sunder_status sunder_simulation_remove(sunder_simulation simulation,
 SUNDER_API sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* swept,
                                                size_t size, int32_t* removed);
 
+/// Says which elements may soon be removed, cut or grasped, in place of those named before (count
+/// 0: none). What the route needs for them is brought to hand: on route condensed, where some lie
+/// beyond its region, by a thread; on route factor of the CPU at once, and again after each quiet
+/// step; elsewhere there is nothing. No result changes by a bit. SUNDER_ERROR_ORDER, and nothing
+/// changes: an element that is not there; nothing can be removed (sunder_scene_set_live).
+SUNDER_API sunder_status sunder_simulation_prepare(sunder_simulation simulation,
+                                                   const int32_t* elements, size_t count);
+/// The same of the live elements with a corner within a radius [mm] of a place now. `count`, how
+/// many, may be null.
+SUNDER_API sunder_status sunder_simulation_prepare_near(sunder_simulation simulation,
+                                                        const double near[3], double radius,
+                                                        int32_t* count);
+
 /// Takes hold of nodes where they are now, on all axes: nothing moves by it. `rigid` 1: they move
 /// as one solid, which may turn, about its place, the mean of theirs; 0: as points that all go the
 /// same way. `grip`: its id, after the indices of the scene's instruments; none comes twice.
 /// SUNDER_ERROR_ORDER, and nothing changes: a node that is not there, named twice, held by a
-/// support or another grip, of which all elements are gone, or out of this route's reach; nothing
-/// can be removed (sunder_scene_set_live), or this backend and route hold no more
-/// nodes (the sentence names one that does).
+/// support or another grip, or of which all elements are gone; nothing can be removed
+/// (sunder_scene_set_live), or this backend and route hold no more nodes (the sentence names one
+/// that does).
 SUNDER_API sunder_status sunder_simulation_grasp(sunder_simulation simulation, const int32_t* nodes,
                                                  size_t count, int32_t rigid, int32_t* grip);
 /// The same of all nodes that are within a radius [mm] of a place now and could be grasped; that is

@@ -72,7 +72,7 @@ void Simulation::set_up() {
 
 /// Steps append to what is here and allocate nothing, up to so many destroyed elements.
 void Simulation::reserve() {
-  constexpr std::size_t kDestroyed = 1 << 16, kFindings = 256, kInLine = 1 << 14;
+  constexpr std::size_t kDestroyed = 1 << 16, kFindings = 256;
   const std::size_t elements = problem_->mesh().tets.size();
   if (backend_->needs().damage) destroyed_.reserve(std::min(elements, kDestroyed));
   if (backend_->needs().damage) event_.reserve(std::min(elements, kDestroyed));
@@ -84,7 +84,7 @@ void Simulation::reserve() {
   if (backend_->needs().pristine) pristine_.reserve(3 * problem_->mesh().nodes.size());
   findings_.reserve(kFindings);
   of_loads_.reserve(kFindings);
-  next_in_line_.reserve(std::min(elements, kInLine));
+  reserve_in_line();
   std::size_t nodes = 0;
   for (const InstrumentNodes& i : problem_->instrument_nodes()) {
     nodes += std::max(i.nodes.size(), std::size_t{2});  // a press has up to two
@@ -317,12 +317,19 @@ void Simulation::decide(const StressSummary& summary) {
   if (!decision_->elements.empty()) ++decisions_this_step_;
 }
 
+/// Of what breaks by itself so many, and all that a host has named.
+void Simulation::reserve_in_line() {
+  constexpr std::size_t kInLine = 1 << 14;
+  next_in_line_.reserve(std::min(problem_->mesh().tets.size(), kInLine) + named_.size());
+}
+
 /// In a frame in which nothing breaks: brings to hand what the next fractures will need.
 void Simulation::prepare_next(const StressSummary& summary) {
   const Scene& scene = problem_->scene();
   if (!scene.solver.prepare || !backend_->prepares() || ended_early() || done()) return;
   if (!row_of(scene.fracture.model).breaks) return;
   criterion_->next_in_line(fracture_state(summary), next_in_line_);
+  next_in_line_.insert(next_in_line_.end(), named_.begin(), named_.end());
   backend_->prepare(next_in_line_);
 }
 

@@ -33,12 +33,7 @@ void check_nodes(std::span<const Index> nodes, const Problem& problem, const std
 }  // namespace
 
 void Simulation::require_grasp() const {
-  if (!backend_->needs().damage) {
-    throw UsageError(
-        "nothing can be grasped: the scene has neither fracture nor removals, and was not told "
-        "that "
-        "it is live before the simulation was made");
-  }
+  require_damage("grasped");
   if (const std::string why = backend_->why_no_grasp(); !why.empty()) {
     throw UsageError("nothing can be grasped: " + why);
   }
@@ -56,11 +51,6 @@ std::string Simulation::why_not(Index node) const {
     if (std::ranges::find(gripped, problem_->dof(node, axis)) != gripped.end()) {
       return "another grip holds it";
     }
-  }
-  if (!backend_->can_grasp(node)) {
-    return "route " + backend_->info().route +
-           " computes a region that it lies outside of; take route factor or inverse, or a scene "
-           "that is live";
   }
   if (looks_ > 0 && loose_->isolated(node)) return "all elements around it are gone";
   return {};

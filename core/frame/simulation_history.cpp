@@ -222,6 +222,7 @@ void Simulation::renew_backend() {
   begin_anew();
   for (const auto& action : path) perform(action);
   arrive();
+  if (!named_.empty()) backend_->prepare(named_);
 }
 
 Mark Simulation::save() {

@@ -107,13 +107,16 @@ void Simulation::end_step_early() {
   now_.out_of_time.add(now_.next_step);
 }
 
+/// Where a host may change the body. `verb`: what it wants to do, "removed" say.
+void Simulation::require_damage(const std::string& verb) const {
+  if (backend_->needs().damage) return;
+  throw UsageError("nothing can be " + verb +
+                   ": the scene has neither fracture nor removals, and was not told that it is "
+                   "live before the simulation was made");
+}
+
 void Simulation::check_removal(std::span<const Index> elements) const {
-  if (!backend_->needs().damage) {
-    throw UsageError(
-        "nothing can be removed: the scene has neither fracture nor removals, and was not told "
-        "that "
-        "it is live before the simulation was made");
-  }
+  require_damage("removed");
   std::vector<Index> sorted(elements.begin(), elements.end());
   std::ranges::sort(sorted);
   const auto twice = std::ranges::adjacent_find(sorted);
@@ -124,11 +127,6 @@ void Simulation::check_removal(std::span<const Index> elements) const {
   for (Index e : elements) {
     if (e < 0 || e >= problem_->tet_count()) refuse(e, "the mesh has none of that number");
     if (backend_->destroyed()[e]) refuse(e, "it is gone already");
-    if (!backend_->can_destroy(e)) {
-      refuse(e, "route " + backend_->info().route +
-                    " computes a region that it lies outside of; take route factor or inverse, or "
-                    "a scene that is live");
-    }
   }
   if (now_.preset) return;
   for (const auto& crack : problem_->crack_elements()) {
@@ -176,6 +174,39 @@ int Simulation::cut(std::span<const std::array<Vec3, 3>> swept) {
   }
   remove(passed);
   return static_cast<int>(passed.size());
+}
+
+void Simulation::prepare(std::span<const Index> elements) {
+  require_damage("prepared for");
+  for (Index e : elements) {
+    if (e >= 0 && e < problem_->tet_count()) continue;
+    throw UsageError("element " + std::to_string(e) +
+                     " cannot be prepared for: the mesh has none of that number");
+  }
+  named_.assign(elements.begin(), elements.end());
+  reserve_in_line();
+  backend_->prepare(named_);
+}
+
+int Simulation::prepare(const Vec3& near, double radius) {
+  require_damage("prepared for");
+  if (!near.allFinite()) throw UsageError("the place to prepare for must be finite");
+  if (!(radius > 0) || !std::isfinite(radius)) {
+    throw UsageError("the radius around the place to prepare for must be finite and above 0 mm");
+  }
+  const Mesh body = mesh();
+  const std::vector<Vec3> moved = displacement();
+  std::vector<Index> elements;
+  for (Index e = 0; e < problem_->tet_count(); ++e) {
+    if (backend_->destroyed()[e]) continue;
+    const auto is_near = [&](Index n) {
+      return (body.nodes[static_cast<std::size_t>(n)] + moved[static_cast<std::size_t>(n)] - near)
+                 .norm() <= radius;
+    };
+    if (std::ranges::any_of(body.tets[static_cast<std::size_t>(e)], is_near)) elements.push_back(e);
+  }
+  prepare(elements);
+  return static_cast<int>(elements.size());
 }
 
 int Simulation::cut_faces(std::span<const std::array<Vec3, 3>> swept) {

@@ -16,7 +16,7 @@ void Simulation::open_recording(std::span<const std::uint8_t> bytes) {
   const BackendInfo info = backend_->info();
   const bool live = problem_->scene().live;
   std::vector<std::uint64_t> bodies{fingerprint(*problem_, info, live)};
-  // What may be removed decides the region of route condensed, and nothing else.
+  // Where nothing breaks by itself it decides the region of route condensed, and nothing else.
   if (info.route != "condensed") bodies.push_back(fingerprint(*problem_, info, !live));
   Actions actions = from_bytes(bytes, bodies);
   keep_history({}, 0);

@@ -151,9 +151,23 @@ void CondensedBase::add(const GrownInverse& x, std::span<const Index> places,
   add_columns(starts_, values, x.added(), y + x.first_rows());
 }
 
+/// S is the first so many of its unknowns again.
+void CondensedBase::shrink(std::size_t size) {
+  if (dofs_.size() == size) return;
+  for (Index d : std::span(dofs_).subspan(size)) place_[d] = kNone;
+  dofs_.resize(size);
+  const Eigen::Index added = static_cast<Eigen::Index>(size) - x_.first_rows();
+  x_.keep_added(added);
+  x_of_factor_.keep_added(added);
+  is_touched_.resize(size);
+  load_.forget();
+  u_.setZero(x_.size());
+}
+
 void CondensedBase::push(std::span<const Difference> vectors, linear_algebra::RowMajor& gram) {
+  const std::size_t unknowns = dofs_.size();
   grow(vectors);
-  pushes_.push_back(vectors_.size());
+  pushes_.push_back({vectors_.size(), unknowns});
   vectors_.insert(vectors_.end(), vectors.begin(), vectors.end());
   for (const Difference& v : vectors) {
     for (Index d : {v.dof, v.other}) {
@@ -179,11 +193,13 @@ void CondensedBase::push(std::span<const Difference> vectors, linear_algebra::Ro
 }
 
 void CondensedBase::pop() {
-  vectors_.resize(pushes_.back());
+  const Before before = pushes_.back();
+  vectors_.resize(before.vectors);
   pushes_.pop_back();
   if (product_) product_->forget(count());
   for (Index p : touched_) is_touched_[p] = kNone;
   touched_.clear();
+  shrink(before.unknowns);
   for (const Difference& v : vectors_) {
     for (Index d : {v.dof, v.other}) {
       if (d == kNone || is_touched_[place_[d]] != kNone) continue;

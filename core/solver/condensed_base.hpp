@@ -58,6 +58,8 @@ class CondensedBase final : public Base {
   [[nodiscard]] Index size() const override { return factor_->cholesky().size(); }
   /// Vectors that leave S make S grow: one solve for their unknowns, where grow_by() has none.
   void push(std::span<const Difference> vectors, linear_algebra::RowMajor& gram) override;
+  /// S is as it was before the push: later results depend on no way that was taken back. No copy
+  /// of a state with more may be in use.
   void pop() override;
   /// A load that leaves S costs one solve; the same load as last time costs nothing.
   const Eigen::VectorXd& load(const Forces& forces) override;
@@ -92,6 +94,7 @@ class CondensedBase final : public Base {
   CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs,
                 std::shared_ptr<const Eigen::MatrixXd> x);
   void grow(std::span<const Difference> vectors);
+  void shrink(std::size_t size);
   void collect_forces(const Eigen::VectorXd& c, Index first, Index end);
   void add_grown_rows(Index from);
   void add_loaded_columns();
@@ -111,7 +114,10 @@ class CondensedBase final : public Base {
   GrownInverse x_of_factor_;                   // the same where nothing was lost
   std::shared_ptr<const LostStiffness> lost_;  // between factor_ and x_; empty: nothing
   std::vector<Difference> vectors_;
-  std::vector<std::size_t> pushes_;          // vectors_.size() before each
+  struct Before {
+    std::size_t vectors, unknowns;  // of S
+  };
+  std::vector<Before> pushes_;               // what there was before each
   std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_
   std::vector<double> forces_;               // B c on them
   RegionProduct* product_ = nullptr;

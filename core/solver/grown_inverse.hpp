@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 
 #include "sunder/types.hpp"
@@ -36,6 +37,9 @@ class GrownInverse {
   /// Columns of further unknowns, which are the last ones: shape (size() + k) x k. Of several
   /// copies one alone may add.
   void add(const Eigen::MatrixXd& columns);
+  /// Takes the last ones away, down to so many unknowns that have come. Copies that know of them
+  /// must not be read any more.
+  void keep_added(Eigen::Index added) { added_ = std::min(added_, added); }
   /// X v.
   [[nodiscard]] Eigen::VectorXd times(const Eigen::VectorXd& v) const;
   /// As one matrix: that of the beginning where nothing has come, else a new one.

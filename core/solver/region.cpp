@@ -18,22 +18,21 @@ void mark_elements(const Problem& problem, const Needs& needs, Region& region) {
     mark(problem, e, region.inside);
     region.tears = region.tears || row_of(problem.scene().fracture.model).breaks;
   }
-  if (problem.scene().live) {
-    for (Index e = 0; e < problem.tet_count(); ++e) mark(problem, e, region.inside);
-    region.tears = true;
-  }
-  if (!needs.damage) return;
-  for (const auto* lists : {&problem.crack_elements(), &problem.removal_elements()}) {
-    for (const auto& elements : *lists) {
-      for (Index e : elements) mark(problem, e, region.inside);
-      region.tears = region.tears || !elements.empty();
+  if (needs.damage) {
+    for (const auto* lists : {&problem.crack_elements(), &problem.removal_elements()}) {
+      for (const auto& elements : *lists) {
+        for (Index e : elements) mark(problem, e, region.inside);
+        region.tears = region.tears || !elements.empty();
+      }
     }
   }
+  if (region.tears || !problem.scene().live) return;
+  // Only a host changes it: it may do so anywhere.
+  for (Index e = 0; e < problem.tet_count(); ++e) mark(problem, e, region.inside);
+  region.tears = true;
 }
 
 }  // namespace
-
-bool Region::holds(Index element) const { return std::ranges::binary_search(elements, element); }
 
 Region region_of(const Problem& problem, const Needs& needs, std::span<const Index> beyond) {
   Region region;

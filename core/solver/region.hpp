@@ -24,7 +24,6 @@ struct Region {
   std::vector<Index> elements;       ///< whose corners are all in the region or held, ascending
   std::vector<std::uint8_t> inside;  ///< per node: in `nodes`, or without unknowns
   bool tears = false;                ///< the scene itself names elements that can be destroyed
-  [[nodiscard]] bool holds(Index element) const;
 };
 
 /// `beyond`: elements that shall be in it besides.

@@ -255,8 +255,6 @@ class Backend {
   /// Why no further nodes can be gripped by this backend for this scene, and what can; empty: they
   /// can.
   [[nodiscard]] virtual std::string why_no_grasp() const;
-  /// Whether grasp() can take a node: on route condensed those of its region.
-  [[nodiscard]] virtual bool can_grasp(Index) const { return true; }
   /// Grips these unknowns, at no factor where a base is there: from now on a load prescribes their
   /// displacement, behind those of all gripped before. What the last solution was can still be
   /// read. They must be unknowns of the problem, distinct, not gripped yet. Throws UsageError
@@ -300,8 +298,6 @@ class Backend {
   /// bit what it would have been. False, and nothing changes: it is another backend's, or cannot be
   /// gone back to. A state holds on to the base that it rests on.
   [[nodiscard]] bool restore(const BackendState& state);
-  /// Whether destroy() can take an element: on route condensed those of its region.
-  [[nodiscard]] virtual bool can_destroy(Index) const { return needs_.damage; }
 
   [[nodiscard]] const Problem& problem() const { return *problem_; }
   [[nodiscard]] const Needs& needs() const { return needs_; }

@@ -242,7 +242,9 @@ struct Scene {
   OutputOptions output;
   Vec3 gravity = Vec3::Zero();       ///< [mm/s^2]
   std::optional<Dynamics> dynamics;  ///< none: statics
-  bool live = false;  ///< a host may remove any element at any time (Simulation::remove)
+  /// A host may grasp and remove at any time (Simulation), also where nothing breaks or is removed
+  /// by the scene.
+  bool live = false;
 };
 
 }  // namespace sunder

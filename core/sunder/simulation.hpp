@@ -91,9 +91,9 @@ class Simulation {
   /// Takes live elements out between two steps, by one event with cause script: the same change as
   /// a rupture. Where there has been a solution, in statics, it is computed anew under the same
   /// load, and what is read and felt follows at once; what breaks by it breaks in the next step.
-  /// Throws UsageError, and nothing changes, for an element that is not there, named twice, gone
-  /// already or out of this route's reach, and where nothing can be destroyed (Scene::live). Throws
-  /// NumericalError where the body has no solution: the elements are gone then.
+  /// Throws UsageError, and nothing changes, for an element that is not there, named twice or
+  /// gone already, and where nothing can be destroyed (Scene::live). Throws NumericalError where
+  /// the body has no solution: the elements are gone then.
   void remove(std::span<const Index> elements);
 
   /// Removes the live elements that a blade has passed: those whose inside, as displacement leaves
@@ -105,6 +105,19 @@ class Simulation {
   /// lies along the board's plane, or more new nodes than fracture.max_new_nodes allows.
   int cut(std::span<const std::array<Vec3, 3>> swept);
 
+  /// Says which elements a host may soon remove, cut or grasp, in place of those it has named
+  /// before: none ends it. What the route needs for them is brought to hand, beside what breaks
+  /// next by itself: on route condensed, where some lie beyond its region, by a thread
+  /// (docs/embedding.md "A live body"); on route factor of the CPU at once, again after each quiet
+  /// step; elsewhere there is nothing. No result changes by a bit, and no history has it. Those
+  /// gone already are ignored. Throws UsageError, and nothing changes, for an element that is not
+  /// there, and where nothing can be destroyed (Scene::live).
+  void prepare(std::span<const Index> elements);
+  /// The same of the live elements with a corner within a radius [mm] of a place now. Returns how
+  /// many; UsageError also for a place or radius that is not finite, or a radius that is not above
+  /// 0.
+  int prepare(const Vec3& near, double radius);
+
   /// Makes the backend of the same problem once more, as it was before the first step.
   using MakeBackend = std::function<std::unique_ptr<Backend>()>;
   /// Takes hold of nodes, all of their axes, where they are now: nothing moves by it. Rigid: they
@@ -112,9 +125,9 @@ class Simulation {
   /// all go the same way. No factor is made for it in statics by law linear (docs/embedding.md "A
   /// live body"). Returns the grip's id, after those of the scene's instruments; none comes twice.
   /// Throws UsageError, and nothing changes, for a node that is not there, named twice, held by a
-  /// support or another grip, of which all elements are gone or out of this route's reach; where
-  /// nothing can be destroyed (Scene::live) or the backend cannot. Where a node of the mesh has
-  /// parted, or parts later, its grip holds the lip that keeps the node, and the other one is free.
+  /// support or another grip, or of which all elements are gone; where nothing can be destroyed
+  /// (Scene::live) or the backend cannot. Where a node of the mesh has parted, or parts later, its
+  /// grip holds the lip that keeps the node, and the other one is free.
   int grasp(std::span<const Index> nodes, bool rigid = false);
   /// The same of all nodes that are within a radius [mm] of a place now and could be grasped; the
   /// grip's place is that one. UsageError where there are none.
@@ -298,8 +311,10 @@ class Simulation {
   void record_solve(const SolveReport& solve, StepReport& report);
   [[nodiscard]] FractureState fracture_state(const StressSummary& summary);
   void reserve();
+  void reserve_in_line();
   void decide(const StressSummary& summary);  // fills decision_
   void prepare_next(const StressSummary& summary);
+  void require_damage(const std::string& verb) const;
   bool apply_event();  // of decision_; false: nothing broke
   void attribute_event();
   void find_loose();
@@ -352,6 +367,7 @@ class Simulation {
   // Of the event or the frame in work; they have room from the start.
   std::unique_ptr<Decision> decision_;
   std::vector<Index> event_, next_in_line_;  // elements: to destroy, to prepare
+  std::vector<Index> named_;                 // those that a host wants prepared
   std::vector<std::uint8_t> taken_;          // by a scripted removal, per element
   std::vector<Finding> of_loads_;
   std::vector<NodalForce> instrument_forces_;

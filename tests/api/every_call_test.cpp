@@ -119,6 +119,8 @@ std::vector<EveryCall> calls_of_simulations() {
       SUNDER_CALL(simulation, sunder_simulation_warning_at, 0, r.text, 16, &r.size),
       SUNDER_CALL(simulation, sunder_simulation_remove, r.ids, 1),
       SUNDER_CALL(simulation, sunder_simulation_cut, r.numbers, 9, r.ids),
+      SUNDER_CALL(simulation, sunder_simulation_prepare, r.ids, 1),
+      SUNDER_CALL(simulation, sunder_simulation_prepare_near, r.numbers, 1, r.ids),
       SUNDER_CALL(simulation, sunder_simulation_grasp, r.ids, 1, 0, r.ids + 1),
       SUNDER_CALL(simulation, sunder_simulation_grasp_near, r.numbers, 1, 0, r.ids),
       SUNDER_CALL(simulation, sunder_simulation_held_nodes, 1, r.ids, 8, &r.size),

@@ -106,6 +106,26 @@ TEST_F(CLive, RecordingsAreToldToAnother) {
   EXPECT_OK(sunder_simulation_destroy(other));
 }
 
+TEST_F(CLive, NamesWhatItMayCut) {
+  const std::int32_t elements[] = {0, 3};
+  const double gentle[3] = {0, -0.1, 0}, corner[3] = {0, 0, 0};
+  ASSERT_OK(sunder_simulation_drive(simulation, 0, gentle));
+  ASSERT_OK(sunder_simulation_prepare(simulation, elements, 2));
+  ASSERT_OK(sunder_simulation_step(simulation, nullptr));
+  const Read before(simulation);
+  std::int32_t count = 0, less = 0;
+  ASSERT_OK(sunder_simulation_prepare_near(simulation, corner, 1, &count));
+  EXPECT_GT(count, 0);
+  EXPECT_LT(count, kTets);
+  ASSERT_OK(sunder_simulation_remove(simulation, elements, 1));
+  ASSERT_OK(sunder_simulation_prepare_near(simulation, corner, 1, &less));
+  EXPECT_EQ(less, count - 1);
+  ASSERT_OK(sunder_simulation_prepare_near(simulation, corner, 1, nullptr));
+  ASSERT_OK(sunder_simulation_prepare(simulation, nullptr, 0));
+  ASSERT_OK(sunder_simulation_undo(simulation, 1, nullptr, nullptr));
+  EXPECT_TRUE(Read(simulation) == before);
+}
+
 TEST_F(CLive, RemovesAndCuts) {
   const std::int32_t elements[] = {0, 3};
   const double gentle[3] = {0, -0.1, 0};

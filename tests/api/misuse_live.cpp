@@ -171,6 +171,11 @@ std::vector<Misuse> live_counts() {
          return with_huge(
              [&](std::size_t n) { return sunder_simulation_remove(w.simulation, &kNode, n); });
        }},
+      {"prepared_huge", SUNDER_ERROR_SIZE, "elements",
+       [](World& w) {
+         return with_huge(
+             [&](std::size_t n) { return sunder_simulation_prepare(w.simulation, &kNode, n); });
+       }},
       {"swept_huge", SUNDER_ERROR_SIZE, "swept",
        [](World& w) {
          return with_huge([&](std::size_t n) {
@@ -345,6 +350,15 @@ std::vector<Misuse> live_values() {
          std::int32_t grip = 0;
          return sunder_simulation_grasp_near(w.simulation, w.values, -1, 0, &grip);
        }},
+      {"prepared_near_infinite", SUNDER_ERROR_VALUE, "near[2] = inf",
+       [](World& w) {
+         w.values[2] = kInfinity;
+         return sunder_simulation_prepare_near(w.simulation, w.values, 1, nullptr);
+       }},
+      {"prepared_radius_negative", SUNDER_ERROR_VALUE, "radius = -1",
+       [](World& w) {
+         return sunder_simulation_prepare_near(w.simulation, w.values, -1, nullptr);
+       }},
       {"undo_negative", SUNDER_ERROR_VALUE, "actions = -1",
        [](World& w) { return sunder_simulation_undo(w.simulation, -1, nullptr, nullptr); }},
       {"redo_none", SUNDER_ERROR_VALUE, "actions = 0",
@@ -384,6 +398,11 @@ std::vector<Misuse> live_values() {
        [](World& w) {
          const std::int32_t element = -1;
          return sunder_simulation_remove(w.simulation, &element, 1);
+       }},
+      {"prepare_below_none", SUNDER_ERROR_ORDER, "element -1",
+       [](World& w) {
+         const std::int32_t element = -1;
+         return sunder_simulation_prepare(w.simulation, &element, 1);
        }},
       {"grasp_below_none", SUNDER_ERROR_ORDER, "node -1",
        [](World& w) {

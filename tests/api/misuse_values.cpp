@@ -252,6 +252,11 @@ std::vector<Misuse> order() {
          const std::int32_t element = 96;
          return sunder_simulation_remove(w.simulation, &element, 1);
        }},
+      {"prepare_beyond", SUNDER_ERROR_ORDER, "element 96 cannot be prepared for",
+       [](World& w) {
+         const std::int32_t element = 96;
+         return sunder_simulation_prepare(w.simulation, &element, 1);
+       }},
       {"remove_twice", SUNDER_ERROR_ORDER, "named twice",
        [](World& w) {
          const std::int32_t elements[] = {4, 4};
@@ -447,6 +452,13 @@ std::vector<Misuse> not_finite() {
          std::int32_t grip = 0;
          return sunder_simulation_grasp_near(w.simulation, w.values, kNaN, 0, &grip);
        }},
+      {"prepared_near_nan", SUNDER_ERROR_VALUE, "near[1] = nan",
+       [](World& w) {
+         const double near[3] = {0, kNaN, 0};
+         return sunder_simulation_prepare_near(w.simulation, near, 1, nullptr);
+       }},
+      {"prepared_radius_zero", SUNDER_ERROR_VALUE, "radius = 0",
+       [](World& w) { return sunder_simulation_prepare_near(w.simulation, w.values, 0, nullptr); }},
       {"rigid_as_no_word", SUNDER_ERROR_VALUE, "rigid = 2",
        [](World& w) {
          const std::int32_t node = 7;

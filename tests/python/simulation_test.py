@@ -304,7 +304,13 @@ class Fields(unittest.TestCase):
             s.step()
             self.assertGreater(s.displacement()[12, 2], 0.1)
             s.drop(push)
+            self.assertEqual(s.prepare([0]), 1)
+            near = s.prepare(near=[0.5, 0.5, 0.5], radius=0.9)
+            self.assertGreater(near, 1)
             s.remove([0])
+            self.assertEqual(s.prepare(near=[0.5, 0.5, 0.5], radius=0.9), near - 1)
+            with self.assertRaises(sunder.InputError):
+                s.prepare([0], near=[0, 0, 0])
             self.assertEqual(s.history(), (7, 0))
             self.assertEqual(s.undo(), (1, False))
             self.assertEqual(s.redo(), 1)

@@ -110,6 +110,22 @@ class Live:
         check(_lib.sunder_simulation_cut(self.handle, t.ctypes.data, t.size, c.byref(removed)))
         return removed.value
 
+    def prepare(self, elements: Sequence[int] | None = None, *, near: Any = None,
+                radius: float | None = None) -> int:
+        """Says which elements may soon be removed, cut or grasped, ids (k,), or those within
+        `radius` [mm] of the place `near`, (3,) [mm], now; in place of those named before. No
+        result changes. Returns how many elements."""
+        if (elements is None) == (near is None) or (near is None) != (radius is None):
+            raise InputError("it takes elements, or near with radius")
+        if elements is not None:
+            ids = _arrays.ids(elements, "elements", (None,))
+            check(_lib.sunder_simulation_prepare(self.handle, ids.ctypes.data, ids.size))
+            return ids.size
+        count = c.c_int32()
+        place = _arrays.reals(near, "near", (3,))
+        check(_lib.sunder_simulation_prepare_near(self.handle, place.ctypes.data, radius, c.byref(count)))
+        return count.value
+
     # ---- back and forth
 
     def keep_history(self, quick: int = 100) -> None:

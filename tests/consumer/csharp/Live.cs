@@ -99,6 +99,8 @@ static class Live {
       Expect(Math.Abs(s.Displacement()[47] - 0.3) < 0.03, "pushed");
       s.Drop(push);
 
+      s.Prepare(0);
+      Expect(s.Prepare(new[] { 0.5, 0.5, 0.5 }, 0.9) > 1, "prepared");
       s.Remove(0);
       Expect(s.Destroyed().Count(d => d) == 1 && s.Ruptures().Single().element == 0, "removed");
       int triangles, nodes;

@@ -17,11 +17,13 @@ struct LiveWay {
   const char* name;
   Route route;
   Update update = Update::automatic;
+  bool patch = false;  ///< what lies below y = 3 alone can break: the region of route condensed
 };
 inline void PrintTo(const LiveWay& way, std::ostream* out) { *out << way.name; }
 inline const std::vector<LiveWay> kLiveWays{{"inverse", Route::inverse},
                                             {"factor", Route::factor},
                                             {"condensed", Route::condensed},
+                                            {"patch", Route::condensed, Update::automatic, true},
                                             {"cg", Route::cg},
                                             {"eager", Route::inverse, Update::eager}};
 
@@ -31,6 +33,13 @@ inline Scene live_strip(const LiveWay& way) {
   scene.instruments[0].ramp.reset();
   scene.live = true;
   scene.fracture.model = FractureModel::none;
+  if (way.patch) {
+    scene.mesh = structured_board({4, 8, 1, 4, 8, 1}, [](const Vec3& at) {
+      return std::string(at.y() < 3 ? "board" : "firm");
+    });
+    scene.materials["firm"] = {5, 0.3, {}};
+    scene.fracture.model = FractureModel::a;
+  }
   scene.solver.route = way.route;
   scene.solver.update = way.update;
   return scene;

@@ -143,17 +143,6 @@ TEST(Removal, RefusesWhatItCannotTakeAndChangesNothing) {
   none.fracture.model = FractureModel::none;
   SceneRun fixed(std::move(none));
   refused(fixed.simulation, {5}, "live");
-
-  // Only the lower half can break: route condensed computes nothing else.
-  Scene part = strip(1e9, 2, 2);
-  part.mesh = structured_board({4, 8, 1, 4, 8, 1}, [](const Vec3& at) {
-    return std::string(at.y() < 3 ? "board" : "firm");
-  });
-  part.materials["firm"] = {5, 0.3, {}};
-  part.solver.route = Route::condensed;
-  SceneRun condensed(std::move(part));
-  refused(condensed.simulation, {191}, "route condensed");
-  condensed.simulation.remove(std::vector<Index>{0});
 }
 
 // The clock decides how many events a step has, but not what the sequence is.

@@ -51,6 +51,18 @@ TEST(GrownInverse, IsTheWholeMatrixWhateverHasComeBeside) {
     EXPECT_FALSE(before.same_as(grown));
   }
   EXPECT_EQ(size, n);
+  // The last ones go, and others come in their place.
+  grown.keep_added(71 - first);
+  EXPECT_EQ(*grown.whole(), all.topLeftCorner(71, 71));
+  Eigen::MatrixXd other = all.bottomRightCorner(90, 90);
+  other.topLeftCorner(71, 71) = all.topLeftCorner(71, 71);
+  other.bottomLeftCorner(19, 71) = other.topRightCorner(71, 19).transpose();
+  grown.add(other.rightCols(19));
+  EXPECT_EQ(*grown.whole(), other);
+  grown.keep_added(300);
+  EXPECT_EQ(grown.size(), 90);
+  grown.keep_added(0);
+  EXPECT_EQ(grown.whole().get(), &grown.first());
 }
 
 /// The board of Table 1; S: the unknowns at its right.
@@ -265,7 +277,8 @@ TEST_F(Growing, TheRouteIsWarned) {
   EXPECT_GT(base.growth()->taken(), 0u);
 }
 
-// S keeps what it has grown by; where it was before, the same events have the same bits again.
+// S is what it was there, whatever it had grown by since, and the same events have the same bits
+// again.
 TEST_F(Growing, TheRouteGoesBackToTheSameBits) {
   fem::DamagedBody body(std::make_shared<const Problem>(test::held_board()));
   const auto route = condensed_route(body, factor, inside, true, {});
@@ -295,6 +308,7 @@ TEST_F(Growing, TheRouteGoesBackToTheSameBits) {
   ASSERT_EQ(events.size(), 2u);
   const Eigen::VectorXd before = solution();
   const auto state = route->state();
+  const std::vector<Index> dofs(base.dofs().begin(), base.dofs().end());
   std::vector<Eigen::VectorXd> seen;
   for (const bool again : {false, true}) {
     SCOPED_TRACE(again);
@@ -315,6 +329,8 @@ TEST_F(Growing, TheRouteGoesBackToTheSameBits) {
     ASSERT_EQ(event, 4u);
     ASSERT_TRUE(route->go_back(*state, 2));
     body.take_back(2);
+    EXPECT_TRUE(std::ranges::equal(base.dofs(), dofs));
+    EXPECT_FALSE(base.inside(dofs_of(problem.mesh().tets[static_cast<std::size_t>(events[2])])));
     EXPECT_EQ(solution(), before);
     base.growth()->wait();
   }
