@@ -11,7 +11,8 @@
 // 1,000 or 10,000 unknowns, where the region must grow, without a pause and with 33 ms after each
 // ("rests"), in which a thread computes what it may grow by; the first of those is announced.
 // "long_tear_device_inverse": 800 elements one by one under route inverse, whose inverse the device
-// computes, over several bases.
+// computes, over several bases. "wide_cut": 2,000 elements beyond the patch in one event, which
+// makes a new base, and quiet_ms, the frame after it.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -205,6 +206,38 @@ void register_wander() {
           ->Iterations(60)
           ->Unit(benchmark::kMillisecond);
     }
+  }
+}
+
+/// One event of 2,000 elements beyond the patch, and the frame after it.
+void wide_cut(benchmark::State& state, const Variant& variant, Index cells) {
+  const auto problem = std::make_shared<Problem>(scene_of(variant, cells));
+  Needs needs;
+  needs.stress = needs.yield = needs.damage = true;
+  const auto backend = create_backend(problem, needs).backend;
+  const Load load = corner_pull(*problem);
+  frame(*backend, load, {});
+  const auto order = tear_beyond_patch(*problem);
+  for (auto _ : state) {
+    const double ms = frame(*backend, load, {order.data(), 2000}).ms;
+    state.counters["min_ms"] = state.counters["median_ms"] = ms;
+    state.SetIterationTime(1e-3 * ms);
+  }
+  state.counters["quiet_ms"] = frame(*backend, load, {}).ms;
+  state.counters["new_bases"] = backend->take_new_bases().count;
+}
+
+void register_wide_cut() {
+  constexpr Index kCells = 141;
+  for (const Variant& v : {Variant{"condensed", Route::condensed, false, true, true},
+                           Variant{"factor", Route::factor, false, true, true}}) {
+    benchmark::RegisterBenchmark(
+        ("needs/wide_cut_" + std::string(v.name) + "/" + std::to_string(6 * kCells * kCells))
+            .c_str(),
+        [=](auto& state) { wide_cut(state, v, kCells); })
+        ->UseManualTime()
+        ->Iterations(1)
+        ->Unit(benchmark::kMillisecond);
   }
 }
 
@@ -424,5 +457,6 @@ int main(int argc, char** argv) {
   sunder::bench::register_rows();
   sunder::bench::register_live();
   sunder::bench::register_wander();
+  sunder::bench::register_wide_cut();
   return sunder::bench::run_rows(argc, argv);
 }

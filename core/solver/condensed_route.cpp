@@ -42,6 +42,20 @@ constexpr std::size_t kLargestEvent = 512, kUsualEvent = 32;
 // is up to 2e-11 within 30,246 elements and 1e-11 within 119,286, without growth from base to base.
 constexpr double kDrift = 5e-11;
 
+// An event of more elements costs more than a factor of the body as it is and X_SS by that: its
+// small matrix grows by some four columns an element. 119,286 tetrahedra (ms, inside the region or
+// beyond): 1,000 elements 4,500 to 13,000, 2,000 as much as 45,000; X_SS of 1,000 unknowns by a new
+// factor 2,000, of 10,000 10,000.
+constexpr std::size_t kColumnsByOne = 4, kWide = 2000, kUnknownsPerColumn = 4;
+
+bool is_wide(const fem::Event& event, std::size_t dofs) {
+  return kColumnsByOne * event.leave.size() > kWide + dofs / kUnknownsPerColumn;
+}
+
+// S grows where a host goes. Once it has more unknowns than this the next base is made by a factor,
+// over what S was at first: an hour of cuts costs no more memory than a minute's.
+std::size_t most_unknowns(std::size_t dofs) { return dofs + dofs / 4 + 2048; }
+
 void complete_by(const CondensedBase& base, Equilibrium& whole, WholeRoom& room,
                  Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
   base.equilibrium(whole);
@@ -115,13 +129,16 @@ std::vector<Index> elements_within(const Problem& problem, std::span<const Index
   return elements;
 }
 
-/// The base that comes next: the last one updated, or a new factor where that has drifted. It has
-/// its room from the start, so that beginning one allocates nothing.
+/// The base that comes next: the last one updated, or a new factor where that has drifted or S has
+/// grown too large. It has its room from the start, so that beginning one allocates nothing.
 class NextBase {
  public:
-  /// Over the unknowns `dofs`; it begins once the damage has more columns than `threshold`.
-  NextBase(const Problem& problem, std::span<const Index> dofs, std::size_t threshold)
-      : within_(elements_within(problem, dofs)) {
+  /// Over the unknowns `dofs` and what they have grown by, where those are more than `most` by a
+  /// factor over `dofs` alone; it begins once the damage has more columns than `threshold`. `dofs`
+  /// must outlive it.
+  NextBase(const Problem& problem, std::span<const Index> dofs, std::size_t most,
+           std::size_t threshold)
+      : dofs_(dofs), most_(most), within_(elements_within(problem, dofs)) {
     const std::size_t columns = std::min(dofs.size(), threshold + kLargestEvent);
     state_.reserve(dofs.size(), columns);
     const auto room = static_cast<Eigen::Index>(columns),
@@ -146,13 +163,16 @@ class NextBase {
       NextBase& next;
       ~AtEnd() { next.release(); }
     } at_end{*this};
-    state_.settle();
-    Based based = updated(body, load);
-    if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
-    if (based.check.error <= kDrift) return based;
-    based = condensed_by(
+    if (state_.dofs.size() <= most_) {
+      state_.settle();
+      Based based = updated(body, load);
+      if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
+      if (based.check.error <= kDrift) return based;
+    }
+    state_.release();
+    Based based = condensed_by(
         body.forms(), std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body, work)),
-        state_.dofs, true);
+        dofs_, true);
     check_condensed(based, body, load);
     return based;
   }
@@ -172,6 +192,8 @@ class NextBase {
         true);
   }
 
+  std::span<const Index> dofs_;
+  std::size_t most_;
   CondensedState state_;
   DamageMatrices damage_;
   std::size_t factored_ = 0;   // events of the body that the factor holds
@@ -183,7 +205,7 @@ class CondensedRoute final : public InverseRoute {
  public:
   CondensedRoute(const fem::DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
                  std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest,
-                 RegionProduct* product)
+                 RegionProduct* product, std::size_t most)
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()), product_(product) {
     std::iota(all_.begin(), all_.end(), 0);
     based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage);
@@ -193,7 +215,7 @@ class CondensedRoute final : public InverseRoute {
     if (!damage) return;
     growth_.emplace(body.problem());
     lend();
-    next_.emplace(body.problem(), dofs_, threshold());
+    next_.emplace(body.problem(), dofs_, most, threshold());
     coming_.emplace(body, static_cast<int>(events_of_a_base(dofs_.size())), rest);
   }
 
@@ -222,7 +244,7 @@ class CondensedRoute final : public InverseRoute {
   void follow(const fem::Event& event) override {
     if (coming_->due()) take_base();
     coming_->follow();
-    const bool followed = based_.laid_over().follow(event);
+    const bool followed = !is_wide(event, dofs_.size()) && based_.laid_over().follow(event);
     strayed_ = strayed_ || base_of(based_).dofs().size() > size_;
     if (!followed) {
       rebase();
@@ -459,8 +481,10 @@ std::unique_ptr<InverseRoute> condensed_route(const fem::DamagedBody& body,
                                               std::shared_ptr<const linear_algebra::Factor> intact,
                                               std::span<const Index> dofs, bool damage,
                                               std::chrono::milliseconds rest,
-                                              RegionProduct* product) {
-  return std::make_unique<CondensedRoute>(body, std::move(intact), dofs, damage, rest, product);
+                                              RegionProduct* product,
+                                              std::optional<std::size_t> most) {
+  return std::make_unique<CondensedRoute>(body, std::move(intact), dofs, damage, rest, product,
+                                          most.value_or(most_unknowns(dofs.size())));
 }
 
 }  // namespace sunder::solver
