@@ -90,6 +90,7 @@ class FailoverBackend final : public Backend {
     grips_since_.push_back(now);
   }
   void do_prepare(std::span<const Index> elements) override {
+    prepared_.assign(elements.begin(), elements.end());
     attempt([&] { current_->prepare(elements); });
   }
   void do_exclude_candidates(std::span<const Index> elements) override {
@@ -144,6 +145,7 @@ class FailoverBackend final : public Backend {
     // Only now: what it has found so far is what they have been given already.
     if (instruments_) current_->take_over_instrument_forces(instruments_);
     for (const Grips& grips : grips_since_) grips.tell(*current_);
+    if (!prepared_.empty()) current_->prepare(prepared_);
   }
 
   /// Unknowns grasped or let go at once.
@@ -159,7 +161,7 @@ class FailoverBackend final : public Backend {
   std::function<std::unique_ptr<Backend>()> replacement_;
   mutable std::string lost_;                       // why the primary is gone; empty: it is not
   std::shared_ptr<InstrumentForces> instruments_;  // as handed out
-  std::vector<Index> events_, excluded_, cut_off_;
+  std::vector<Index> events_, excluded_, cut_off_, prepared_;
   std::optional<Load> load_;
   std::vector<Index> grasped_, let_go_;  // beside the problem's own, and of these, under load_
   std::vector<Grips> grips_since_;       // since load_

@@ -60,7 +60,7 @@ class FrameFields final : public solver::HostFields {
   /// What is published, at all nodes and elements or some; outside a region at the price of a
   /// solve.
   void read_displacement(std::span<double> displacement) const;
-  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const;
+  void read_displacement(std::span<const Index> nodes, std::span<Vec3> displacement) const override;
   void read_stress(std::span<Voigt> stress) const;
   [[nodiscard]] Voigt read_stress(Index element) const;
 

@@ -423,8 +423,8 @@ SUNDER_API void sunder_dynamics_init(sunder_dynamics* dynamics);
 SUNDER_API sunder_status sunder_scene_set_dynamics(sunder_scene scene,
                                                    const sunder_dynamics* dynamics);
 /// Whether a host may grasp, remove elements and cut at any time (default 0). Needed where the
-/// scene has neither a fracture model nor removals; on route condensed each frame computes all of
-/// the body then, else what the scene names, and what a host comes to beside that.
+/// scene has neither a fracture model nor removals. Where nothing breaks by itself, frames of route
+/// condensed compute the fields of all of the body then; else those of what the scene names.
 SUNDER_API sunder_status sunder_scene_set_live(sunder_scene scene, int32_t live);
 /// Whether stress is wanted (default 1). With 0 it is left out unless the fracture model needs it.
 SUNDER_API sunder_status sunder_scene_set_stress(sunder_scene scene, int32_t wanted);
@@ -842,15 +842,18 @@ SUNDER_API sunder_status sunder_simulation_remove(sunder_simulation simulation,
 SUNDER_API sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* swept,
                                                size_t size, int32_t* removed);
 
-/// Says which elements may soon be removed, cut or grasped, in place of those named before (count
-/// 0: none). What the route needs for them is brought to hand: on route condensed, where some lie
-/// beyond its region, by a thread; on route factor of the CPU at once, and again after each quiet
-/// step; elsewhere there is nothing. No result changes by a bit. SUNDER_ERROR_ORDER, and nothing
-/// changes: an element that is not there; nothing can be removed (sunder_scene_set_live).
+/// Says which elements may soon be removed, cut or grasped, the likeliest first, in place of those
+/// named before (count 0: none). What the route needs for the first 128 of them is brought to hand:
+/// on route condensed, where some lie beyond its region, by a thread, for some 85 nodes; on route
+/// factor of the CPU, and inverse once a factor has taken its place, at once and again in quiet
+/// steps after an event; elsewhere there is nothing. No result changes by a bit.
+/// SUNDER_ERROR_ORDER, and nothing changes: an element that is not there; nothing can be removed
+/// (sunder_scene_set_live).
 SUNDER_API sunder_status sunder_simulation_prepare(sunder_simulation simulation,
                                                    const int32_t* elements, size_t count);
-/// The same of the live elements with a corner within a radius [mm] of a place now. `count`, how
-/// many, may be null.
+/// The same of the live elements with a corner within a radius [mm] of a place now, the nearest
+/// first. `count`, how many there are, may be null. It reads where all nodes are, which on route
+/// condensed takes a solve with the factor.
 SUNDER_API sunder_status sunder_simulation_prepare_near(sunder_simulation simulation,
                                                         const double near[3], double radius,
                                                         int32_t* count);

@@ -323,12 +323,15 @@ void Simulation::reserve_in_line() {
   next_in_line_.reserve(std::min(problem_->mesh().tets.size(), kInLine) + named_.size());
 }
 
-/// In a frame in which nothing breaks: brings to hand what the next fractures will need.
+/// In a frame in which nothing breaks: brings to hand what the next fractures will need, and what a
+/// host has named.
 void Simulation::prepare_next(const StressSummary& summary) {
   const Scene& scene = problem_->scene();
-  if (!scene.solver.prepare || !backend_->prepares() || ended_early() || done()) return;
-  if (!row_of(scene.fracture.model).breaks) return;
-  criterion_->next_in_line(fracture_state(summary), next_in_line_);
+  if (!backend_->prepares() || ended_early() || done()) return;
+  const bool predicts = scene.solver.prepare && row_of(scene.fracture.model).breaks;
+  if (!predicts && named_.empty()) return;
+  next_in_line_.clear();
+  if (predicts) criterion_->next_in_line(fracture_state(summary), next_in_line_);
   next_in_line_.insert(next_in_line_.end(), named_.begin(), named_.end());
   backend_->prepare(next_in_line_);
 }

@@ -212,6 +212,7 @@ bool Simulation::go_to(const Actions& actions, const std::shared_ptr<const Kept>
   }
   for (std::size_t i = at; i < path.size(); ++i) perform(path[i]);
   arrive();
+  if (!back && !named_.empty()) backend_->prepare(named_);
   return !back;
 }
 

@@ -2,6 +2,8 @@
 // What a host does to a simulation: steps, instruments by hand, elements that it removes.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "body/triangle_crossing.hpp"
 #include "fracture/averaged_strength.hpp"
@@ -183,7 +185,8 @@ void Simulation::prepare(std::span<const Index> elements) {
     throw UsageError("element " + std::to_string(e) +
                      " cannot be prepared for: the mesh has none of that number");
   }
-  named_.assign(elements.begin(), elements.end());
+  const auto first = elements.first(std::min(elements.size(), kNamed));
+  named_.assign(first.begin(), first.end());
   reserve_in_line();
   backend_->prepare(named_);
 }
@@ -196,15 +199,19 @@ int Simulation::prepare(const Vec3& near, double radius) {
   }
   const Mesh body = mesh();
   const std::vector<Vec3> moved = displacement();
-  std::vector<Index> elements;
+  std::vector<std::pair<double, Index>> within;
   for (Index e = 0; e < problem_->tet_count(); ++e) {
     if (backend_->destroyed()[e]) continue;
-    const auto is_near = [&](Index n) {
-      return (body.nodes[static_cast<std::size_t>(n)] + moved[static_cast<std::size_t>(n)] - near)
-                 .norm() <= radius;
-    };
-    if (std::ranges::any_of(body.tets[static_cast<std::size_t>(e)], is_near)) elements.push_back(e);
+    double least = std::numeric_limits<double>::infinity();
+    for (Index n : body.tets[static_cast<std::size_t>(e)]) {
+      const auto i = static_cast<std::size_t>(n);
+      least = std::min(least, (body.nodes[i] + moved[i] - near).norm());
+    }
+    if (least <= radius) within.emplace_back(least, e);
   }
+  std::ranges::sort(within);
+  std::vector<Index> elements;
+  for (const auto& [distance, e] : within) elements.push_back(e);
   prepare(elements);
   return static_cast<int>(elements.size());
 }

@@ -77,8 +77,8 @@ void Factor::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& wo
   for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y[place[i]];
 }
 
-Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
-                                      std::span<const Index> columns) const {
+Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows, std::span<const Index> columns,
+                                      const std::atomic<bool>* stop) const {
   const auto& place = cholesky_.supernodes().place;
   // In the factor's own order, so that the columns of a block share their path.
   std::vector<Index> order(columns.size());
@@ -92,6 +92,7 @@ Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows,
   for (Index r : rows) seeds.push_back(place[r]);
   cholesky_.reach(seeds, wanted, work);
   for (std::size_t start = 0; start < columns.size(); start += kBlock) {
+    if (stop && *stop) throw Stopped();
     const std::size_t width = std::min(kBlock, columns.size() - start);
     block.setZero(cholesky_.size(), static_cast<Index>(width));
     seeds.clear();

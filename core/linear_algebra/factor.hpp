@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <span>
 #include <stdexcept>
 
@@ -36,9 +37,10 @@ class Factor {
   /// Some columns of the inverse, shape (n x columns).
   [[nodiscard]] Eigen::MatrixXd inverse_columns(std::span<const Index> columns) const;
   /// Some columns of the inverse at some rows, shape (rows x columns). An entry has the same bits
-  /// whatever others it is computed with.
+  /// whatever others it is computed with. Throws Stopped once `stop` is true.
   [[nodiscard]] Eigen::MatrixXd inverse_block(std::span<const Index> rows,
-                                              std::span<const Index> columns) const;
+                                              std::span<const Index> columns,
+                                              const std::atomic<bool>* stop = nullptr) const;
   /// Entries of L: a triangular solve reads each once.
   [[nodiscard]] std::size_t entries() const { return cholesky_.entries(); }
   /// Entries of L that a solution with forces on some unknowns reads on its way forward.

@@ -42,9 +42,10 @@ void CondensedState::release() {
 }
 
 CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor,
-                             std::span<const Index> dofs)
-    : CondensedBase(factor, dofs,
-                    std::make_shared<const Eigen::MatrixXd>(factor->inverse_block(dofs, dofs))) {}
+                             std::span<const Index> dofs, const std::atomic<bool>* stop)
+    : CondensedBase(
+          factor, dofs,
+          std::make_shared<const Eigen::MatrixXd>(factor->inverse_block(dofs, dofs, stop))) {}
 
 CondensedBase::CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
                              std::shared_ptr<const LostStiffness> lost)

@@ -5,6 +5,7 @@
 // is solved for with the factor when somebody asks.
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "linear_algebra/factor.hpp"
@@ -48,8 +49,9 @@ struct CondensedState {
 
 class CondensedBase final : public Base {
  public:
-  /// Over the unknowns `dofs`, ascending.
-  CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs);
+  /// Over the unknowns `dofs`, ascending. Throws Stopped once `stop` is true.
+  CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs,
+                const std::atomic<bool>* stop = nullptr);
   /// X_SS of a body that has lost stiffness, all of it within S, since it was factored; `before` is
   /// settled.
   CondensedBase(const CondensedState& before, Eigen::MatrixXd x,

@@ -59,6 +59,7 @@ void CondensedFields::restore(const State& state) {
 }
 
 void CondensedFields::complete(std::span<double> nodal) {
+  if (!displacement_.everywhere && !displacement_.of.factor) return;  // nothing was solved yet
   solve(displacement_);
   for (std::size_t n = 0; n < region_.inside.size(); ++n) {
     if (region_.inside[n]) continue;

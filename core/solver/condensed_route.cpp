@@ -2,6 +2,7 @@
 #include "solver/condensed_route.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <optional>
 
@@ -53,7 +54,7 @@ bool is_wide(const fem::Event& event, std::size_t dofs) {
 }
 
 // S grows where a host goes. Once it has more unknowns than this the next base is made by a factor,
-// over what S was at first: an hour of cuts costs no more memory than a minute's.
+// over what S was at first: an hour of cuts costs no more memory than minutes.
 std::size_t most_unknowns(std::size_t dofs) { return dofs + dofs / 4 + 2048; }
 
 void complete_by(const CondensedBase& base, Equilibrium& whole, WholeRoom& room,
@@ -78,10 +79,11 @@ Based lay_over(const fem::Forms& in_base, std::shared_ptr<const linear_algebra::
   return based;
 }
 
-/// X_SS by a factor.
+/// X_SS by a factor; given up once `stop` is true.
 Based condensed_by(const fem::Forms& in_base, std::shared_ptr<const linear_algebra::Factor> factor,
-                   std::span<const Index> dofs, bool damage) {
-  auto base = std::make_unique<CondensedBase>(factor, dofs);
+                   std::span<const Index> dofs, bool damage,
+                   const std::atomic<bool>* stop = nullptr) {
+  auto base = std::make_unique<CondensedBase>(factor, dofs, stop);
   return lay_over(in_base, std::move(factor), std::move(base), damage);
 }
 
@@ -163,7 +165,7 @@ class NextBase {
       NextBase& next;
       ~AtEnd() { next.release(); }
     } at_end{*this};
-    if (state_.dofs.size() <= most_) {
+    if (state_.dofs.size() <= most_ + body.forms().gripped().size()) {
       state_.settle();
       Based based = updated(body, load);
       if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
@@ -172,7 +174,7 @@ class NextBase {
     state_.release();
     Based based = condensed_by(
         body.forms(), std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body, work)),
-        dofs_, true);
+        dofs_, true, work.stop);
     check_condensed(based, body, load);
     return based;
   }
@@ -236,16 +238,19 @@ class CondensedRoute final : public InverseRoute {
     complete_by(base_of(based_), whole_, room_, everywhere_, u);
   }
 
+  std::span<const Index> known() const override { return base_of(based_).dofs(); }
+
   bool equilibrium(Equilibrium& of) const override {
     base_of(based_).equilibrium(of);
     return true;
   }
 
   void follow(const fem::Event& event) override {
-    if (coming_->due()) take_base();
+    const bool wide = is_wide(event, dofs_.size());
+    if (!wide && coming_->due()) take_base();
     coming_->follow();
-    const bool followed = !is_wide(event, dofs_.size()) && based_.laid_over().follow(event);
-    strayed_ = strayed_ || base_of(based_).dofs().size() > size_;
+    const bool followed = !wide && based_.laid_over().follow(event);
+    if (followed) strayed_ = strayed_ || base_of(based_).dofs().size() > size_;
     if (!followed) {
       rebase();
     } else if (event.of_grips()) {
@@ -260,10 +265,8 @@ class CondensedRoute final : public InverseRoute {
   }
 
   void prepare(std::span<const Index> elements) override {
-    if (!growth_ || !based_.deferred) return;
-    touched_.clear();
-    for (Index e : elements) touch(e);
-    if (!base_of(based_).inside(touched_)) look_around();
+    named_.assign(elements.begin(), elements.end());
+    prepare_named();
   }
 
   std::unique_ptr<RouteState> state() const override {
@@ -311,6 +314,7 @@ class CondensedRoute final : public InverseRoute {
     lend();
     factored_ = body_.events();
     ++bases_;
+    prepare_named();
     return true;
   }
 
@@ -417,6 +421,14 @@ class CondensedRoute final : public InverseRoute {
     look_around();
   }
 
+  /// What a host has named, by the factor that there is.
+  void prepare_named() {
+    if (!growth_ || !based_.deferred || named_.empty()) return;
+    touched_.clear();
+    for (Index e : named_) touch(e);
+    if (!base_of(based_).inside(touched_)) look_around();
+  }
+
   /// A thread computes what S may grow by around touched_.
   void look_around() {
     const CondensedBase& base = base_of(based_);
@@ -442,6 +454,7 @@ class CondensedRoute final : public InverseRoute {
     if (based_.factor != factor) {
       factored_ = started_;
       growth_->forget();
+      prepare_named();
     }
     ++bases_;
     ++new_bases_.count;
@@ -466,6 +479,7 @@ class CondensedRoute final : public InverseRoute {
   std::size_t size_ = 0;        // of S when the base came
   bool strayed_ = false;        // S has grown some time
   std::vector<Index> touched_;  // unknowns of an event
+  std::vector<Index> named_;    // elements that a host may destroy next
   std::optional<NextBase> next_;
   std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
 };

@@ -128,13 +128,19 @@ void FactorBase::spread_missing() {
 
 void FactorBase::prepare(std::span<const Difference> vectors) {
   using Clock = std::chrono::steady_clock;
+  const auto same = [](const Difference& a, const Difference& b) {
+    return a.dof == b.dof && a.other == b.other;
+  };
+  if (std::ranges::equal(vectors, asked_, same)) return;
   make_room();
+  asked_.reserve(kPredicted);
+  asked_.assign(vectors.begin(), vectors.end());
   prepared_.retain(vectors);
   wanted_.clear();
   wanted_.reserve(kPredicted);
   for (const Difference& v : vectors) {
-    const bool known = std::ranges::any_of(
-        wanted_, [&](const Difference& o) { return o.dof == v.dof && o.other == v.other; });
+    const bool known =
+        std::ranges::any_of(wanted_, [&](const Difference& o) { return same(o, v); });
     if (!known && !prepared_.holds(v)) wanted_.push_back(v);
   }
   std::array<Index, kGroup> all{};

@@ -39,7 +39,8 @@ class FactorBase final : public Base {
   PathColumns columns_;
   PreparedColumns prepared_;
   std::vector<Index> missing_;        // of the group: not prepared
-  std::vector<Difference> wanted_;    // to be prepared, each once
+  std::vector<Difference> asked_;     // to be prepared
+  std::vector<Difference> wanted_;    // of them, each once: those that are not there
   std::vector<Index> groups_;         // of each push
   std::vector<Index> places_, path_;  // of the group in L
   linear_algebra::RowMajor rows_,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 
 #include "solver/region.hpp"
 
@@ -18,6 +19,9 @@ class HostFields {
 
   /// What a frame computes alone; null: all of the body.
   [[nodiscard]] virtual const Region* region() const = 0;
+  /// Of the last finished solution, at some nodes [mm].
+  virtual void read_displacement(std::span<const Index> nodes,
+                                 std::span<Vec3> displacement) const = 0;
   /// Takes the displacement in work, over all unknowns, and computes its stress. Returns the
   /// largest over live elements [MPa]; nothing: nobody needs stress.
   virtual std::optional<double> take(const Eigen::VectorXd& u) = 0;

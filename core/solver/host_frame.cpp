@@ -53,6 +53,7 @@ void HostFrame::restore(const State& state) {
 }
 
 void HostFrame::follow_grips(std::span<const Index> before) {
+  if (fields_.region()) read_grips(before);
   std::vector<double> displacements, reactions;
   for (Index d : gripped()) {
     const auto was = static_cast<std::size_t>(std::ranges::find(before, d) - before.begin());
@@ -63,6 +64,34 @@ void HostFrame::follow_grips(std::span<const Index> before) {
   }
   load_.displacements = std::move(displacements);
   reactions_ = std::move(reactions);
+}
+
+/// Where those are that nobody held before: a region's frames leave u_ as it was beyond it.
+void HostFrame::read_grips(std::span<const Index> before) {
+  std::vector<Index> beyond, nodes;
+  for (Index d : gripped()) {
+    if (std::ranges::find(before, d) == before.end() &&
+        !std::ranges::binary_search(fields_.region()->dofs, d)) {
+      beyond.push_back(d);
+    }
+  }
+  if (beyond.empty()) return;
+  std::ranges::sort(beyond);
+  for (Index n = 0; n < problem().node_count(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::ranges::binary_search(beyond, problem().dof(n, axis))) continue;
+      nodes.push_back(n);
+      break;
+    }
+  }
+  std::vector<Vec3> displacement(nodes.size());
+  fields_.read_displacement(nodes, displacement);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index d = problem().dof(nodes[i], axis);
+      if (d != kNone) u_[d] = displacement[i][axis];
+    }
+  }
 }
 
 /// Offsets of new nodes bear no load.
@@ -151,7 +180,7 @@ FrameDevice::OnRegion HostFrame::solve_region(double energy_tolerance) {
 FrameDevice::OnRegion HostFrame::on_region() {
   compute_stress();
   OnRegion found;
-  for (Index d : fields_.region()->dofs) {
+  for (Index d : route_.known()) {  // what has come loose beyond the region among them
     found.largest_u = std::max(found.largest_u, std::abs(u_[d]));
   }
   found.largest_stress = largest_;

@@ -65,6 +65,7 @@ class HostFrame final : public FrameDevice {
   [[nodiscard]] double stress_ms() const { return stress_ms_; }
 
  private:
+  void read_grips(std::span<const Index> before);
   void compute_residual();
   void make_room_for_offsets();
   void compute_stress();

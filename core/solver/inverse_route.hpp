@@ -33,6 +33,8 @@ class InverseRoute {
   virtual Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& x) = 0;
   /// Fills what solve() left out of x: a condensed route solves for its own unknowns only.
   virtual void complete(Eigen::VectorXd&) {}
+  /// The unknowns that solve() finds on a route that leaves some out.
+  [[nodiscard]] virtual std::span<const Index> known() const { return {}; }
   /// What complete() would need later on, for the last solve(); false: it left nothing out.
   virtual bool equilibrium(Equilibrium&) const { return false; }
   /// Follows an event that the body has recorded already.

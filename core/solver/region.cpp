@@ -66,13 +66,13 @@ Region region_of(const Problem& problem, const Needs& needs, std::span<const Ind
 
 std::vector<std::string> left_out_of(const Problem& problem, const Region& region) {
   const auto all = static_cast<std::size_t>(problem.dof_count());
-  return {"inverse of the other " + std::to_string(all - region.dofs.size()) +
-              " unknowns: they cannot break and no instrument holds them",
-          "stress of the other " +
-              std::to_string(problem.mesh().tets.size() - region.elements.size()) +
-              " elements and displacement of the other nodes in a frame: solved for when a file or "
-              "a picture asks",
-          "largest strain and rotation of those elements: what is told of them is of the region"};
+  return {
+      "inverse of the other " + std::to_string(all - region.dofs.size()) +
+          " unknowns: they cannot break by themselves and no instrument of the scene holds them",
+      "stress of the other " + std::to_string(problem.mesh().tets.size() - region.elements.size()) +
+          " elements and displacement of the other nodes in a frame: solved for when a file or "
+          "a picture asks",
+      "largest strain and rotation of those elements: what is told of them is of the region"};
 }
 
 }  // namespace sunder::solver

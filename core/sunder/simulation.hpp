@@ -105,17 +105,20 @@ class Simulation {
   /// lies along the board's plane, or more new nodes than fracture.max_new_nodes allows.
   int cut(std::span<const std::array<Vec3, 3>> swept);
 
-  /// Says which elements a host may soon remove, cut or grasp, in place of those it has named
-  /// before: none ends it. What the route needs for them is brought to hand, beside what breaks
-  /// next by itself: on route condensed, where some lie beyond its region, by a thread
-  /// (docs/embedding.md "A live body"); on route factor of the CPU at once, again after each quiet
-  /// step; elsewhere there is nothing. No result changes by a bit, and no history has it. Those
-  /// gone already are ignored. Throws UsageError, and nothing changes, for an element that is not
-  /// there, and where nothing can be destroyed (Scene::live).
+  /// Of the elements that a host names, so many count.
+  static constexpr std::size_t kNamed = 128;
+  /// Says which elements a host may soon remove, cut or grasp, the likeliest first, in place of
+  /// those it has named before: none ends it. What the route needs for the first kNamed of them is
+  /// brought to hand: on route condensed, where some lie beyond its region, by a thread, for some
+  /// 85 nodes; on route factor of the CPU, and inverse once a factor has taken its place, at once
+  /// and again in quiet steps after an event; elsewhere there is nothing. No result changes by a
+  /// bit, and no history has it. Those gone already are ignored. Throws UsageError, and nothing
+  /// changes, for an element that is not there, and where nothing can be destroyed (Scene::live).
   void prepare(std::span<const Index> elements);
-  /// The same of the live elements with a corner within a radius [mm] of a place now. Returns how
-  /// many; UsageError also for a place or radius that is not finite, or a radius that is not above
-  /// 0.
+  /// The same of the live elements with a corner within a radius [mm] of a place now, the nearest
+  /// first. Returns how many there are. Reads where all nodes are, which on route condensed takes a
+  /// solve with the factor. UsageError also for a place or radius that is not finite, or a radius
+  /// that is not above 0.
   int prepare(const Vec3& near, double radius);
 
   /// Makes the backend of the same problem once more, as it was before the first step.

@@ -65,5 +65,49 @@ TEST(BeyondARegion, AGripHoldsWhereTheRegionIsWithoutStress) {
   run.expect_fresh(kCrackTolerance);
 }
 
+// Taken back to where it had just taken hold, it feels nothing: the region's frames had not said
+// where its nodes are.
+TEST(BeyondARegion, AGripThatComesBackFeelsNothing) {
+  LiveRun run(live_strip({"patch", Route::condensed, Update::automatic, true}));
+  Simulation& s = run.simulation;
+  run.keep_history();
+  const auto forces = s.grip_forces();
+  ASSERT_TRUE(forces);
+  s.step();
+  run.drive(Vec3(0.3, -1, 0));
+  s.step();
+  run.drive(Vec3(0, -3, 0));  // a sum of loads that were checked
+  s.step();
+  const int grip = s.grasp(std::vector<Index>{30, 31, 75});
+  s.remove(std::vector<Index>{150});
+  ASSERT_EQ(s.undo(1).events, 1);
+  ASSERT_EQ(s.held_nodes(grip).size(), 3u);
+  Hand hands[1];
+  hands[0].grip = grip;
+  hands[0].position = s.centre_of(grip);
+  static_cast<void>(forces->feel({}, {}, hands));
+  EXPECT_LE(hands[0].force.norm(), 1e-9);
+}
+
+// A piece that a push loads comes loose where no frame looks: the body is checked anew.
+TEST(BeyondARegion, APieceComesLoose) {
+  LiveRun run(live_strip({"patch", Route::condensed, Update::automatic, true}));
+  Simulation& s = run.simulation;
+  run.push({29, 34, 74, 79}, Vec3(0.5, 0.2, 0));  // cell (3, 5)
+  for (int i = 0; i < 3; ++i) s.step();
+  std::vector<Index> around;
+  for (const Index cell : {4 * 4 + 3, 4 * 6 + 3, 4 * 5 + 2, 4 * 4 + 2, 4 * 6 + 2}) {
+    for (Index e = 0; e < 6; ++e) around.push_back(6 * cell + e);
+  }
+  s.remove(around);
+  EXPECT_NE(s.piece_of(6 * (4 * 5 + 3)), kNone);
+  for (int i = 0; i < 2; ++i) {
+    run.expect_fresh(kCutTolerance);
+    s.step();
+    s.remove(std::vector<Index>{static_cast<Index>(180 + 2 * i)});
+  }
+  run.expect_fresh(kCutTolerance);
+}
+
 }  // namespace
 }  // namespace sunder::test

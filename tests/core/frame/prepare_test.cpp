@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <numeric>
 #include <thread>
 
 #include "core/frame/live_world.hpp"
@@ -58,6 +59,30 @@ TEST(Prepare, IsMetOnRouteFactor) {
   run.simulation.prepare(std::vector<Index>{});
   run.simulation.remove(std::vector<Index>{103});
   EXPECT_EQ(predicted(run.simulation), 3) << "none is named any more";
+}
+
+TEST(Prepare, LastsWhereAPathIsTakenBack) {
+  LiveRun run(by_factor());
+  run.keep_history();
+  const Mark start = run.simulation.save();
+  run.simulation.step();
+  run.simulation.prepare(kAcross);
+  run.simulation.restore(start);
+  run.simulation.step();
+  run.simulation.remove(kAcross);
+  EXPECT_EQ(predicted(run.simulation), 3);
+}
+
+TEST(Prepare, TakesTheFirstOnes) {
+  LiveRun run(by_factor());
+  run.simulation.step();
+  std::vector<Index> all(190);
+  std::iota(all.rbegin(), all.rend(), 0);
+  run.simulation.prepare(all);
+  run.simulation.remove(std::vector<Index>{100, 189, 189 - 127, 189 - 128});
+  EXPECT_EQ(predicted(run.simulation), 3);
+  run.simulation.remove(std::vector<Index>{3});
+  EXPECT_EQ(predicted(run.simulation), 3);
 }
 
 // A quiet step prepares what breaks next by itself, and forgets nothing that a host has named.
