@@ -131,7 +131,7 @@ void FactorBase::prepare(std::span<const Difference> vectors) {
   const auto same = [](const Difference& a, const Difference& b) {
     return a.dof == b.dof && a.other == b.other;
   };
-  if (std::ranges::equal(vectors, asked_, same)) return;
+  if (!vectors.empty() && std::ranges::equal(vectors, asked_, same)) return;
   make_room();
   asked_.reserve(kPredicted);
   asked_.assign(vectors.begin(), vectors.end());
