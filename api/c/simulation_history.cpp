@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a host does to a live body, and taking it back.
 #include <cstring>
+#include <span>
 
 #include "c/places.hpp"
 #include "c/simulation.hpp"
@@ -28,6 +29,17 @@ void require_count(std::int32_t actions) {
                 "actions = " + std::to_string(actions) + "; it must be at least 1");
 }
 
+/// Does something with a caller's list of elements.
+template <class Do>
+sunder_status with_elements(sunder_simulation simulation, const std::int32_t* elements,
+                            std::size_t count, Do act) {
+  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
+    if (count > 0) require(elements, "elements");
+    require_rows(count, "elements");
+    act(object.simulation(), std::span<const Index>(elements, count));
+  });
+}
+
 }  // namespace
 
 extern "C" {
@@ -39,11 +51,7 @@ sunder_status sunder_simulation_warm_up(sunder_simulation simulation) {
 
 sunder_status sunder_simulation_remove(sunder_simulation simulation, const int32_t* elements,
                                        size_t count) {
-  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
-    if (count > 0) require(elements, "elements");
-    require_rows(count, "elements");
-    object.simulation().remove({elements, count});
-  });
+  return with_elements(simulation, elements, count, [](auto& of, auto all) { of.remove(all); });
 }
 
 sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* swept, size_t size,
@@ -66,11 +74,7 @@ sunder_status sunder_simulation_cut(sunder_simulation simulation, const double* 
 
 sunder_status sunder_simulation_prepare(sunder_simulation simulation, const int32_t* elements,
                                         size_t count) {
-  return call<SimulationObject>(simulation, [&](SimulationObject& object) {
-    if (count > 0) require(elements, "elements");
-    require_rows(count, "elements");
-    object.simulation().prepare({elements, count});
-  });
+  return with_elements(simulation, elements, count, [](auto& of, auto all) { of.prepare(all); });
 }
 
 sunder_status sunder_simulation_prepare_near(sunder_simulation simulation, const double near[3],

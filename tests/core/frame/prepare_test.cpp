@@ -61,18 +61,6 @@ TEST(Prepare, IsMetOnRouteFactor) {
   EXPECT_EQ(predicted(run.simulation), 3) << "none is named any more";
 }
 
-TEST(Prepare, LastsWhereAPathIsTakenBack) {
-  LiveRun run(by_factor());
-  run.keep_history();
-  const Mark start = run.simulation.save();
-  run.simulation.step();
-  run.simulation.prepare(kAcross);
-  run.simulation.restore(start);
-  run.simulation.step();
-  run.simulation.remove(kAcross);
-  EXPECT_EQ(predicted(run.simulation), 3);
-}
-
 TEST(Prepare, TakesTheFirstOnes) {
   LiveRun run(by_factor());
   run.simulation.step();
@@ -98,14 +86,23 @@ TEST(Prepare, LastsBesideWhatBreaksByItself) {
   EXPECT_EQ(predicted(run.simulation), 3);
 }
 
-TEST(Prepare, LastsWhereTheBackendIsAnother) {
-  LiveRun run(by_factor());
-  run.keep_history();
-  run.simulation.prepare(kAcross);
-  run.simulation.step();
-  run.simulation.renew_backend();
-  run.simulation.remove(kAcross);
-  EXPECT_EQ(predicted(run.simulation), 3);
+TEST(Prepare, LastsOnAnotherWayAndBackend) {
+  for (const bool renewed : {false, true}) {
+    SCOPED_TRACE(renewed);
+    LiveRun run(by_factor());
+    run.keep_history();
+    const Mark start = run.simulation.save();
+    run.simulation.step();
+    run.simulation.prepare(kAcross);
+    if (renewed) {
+      run.simulation.renew_backend();
+    } else {
+      run.simulation.restore(start);
+    }
+    run.simulation.step();
+    run.simulation.remove(kAcross);
+    EXPECT_EQ(predicted(run.simulation), 3);
+  }
 }
 
 // Where the body is now, not where it was: a grip has moved it 3 mm.
