@@ -8,6 +8,7 @@
 
 #include "body/deformation.hpp"
 #include "body/pooled_law.hpp"
+#include "linear_algebra/shared_loop.hpp"
 #include "material/linear.hpp"
 #include "material/singular_values.hpp"
 
@@ -21,8 +22,7 @@ constexpr std::size_t kNodesSorted = 64;
 constexpr std::size_t kBlockForces = 12 * kLanes;
 
 int pass_threads(Index elements) {
-  const auto machine = static_cast<Index>(std::max(1U, std::thread::hardware_concurrency()));
-  return std::clamp<Index>(elements / kPassElementsPerThread, 1, machine);
+  return std::clamp<Index>(elements / kPassElementsPerThread, 1, linear_algebra::machine_threads());
 }
 
 Mat3 from_lane(const Lanes<9>& m, int l) {

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "linear_algebra/row_product.hpp"
-#include "linear_algebra/workers.hpp"
+#include "linear_algebra/shared_loop.hpp"
 
 namespace sunder::linear_algebra {
 namespace {
@@ -18,6 +18,9 @@ constexpr std::size_t kSharedEntries = 100'000;
 constexpr std::size_t kWorthThreads = 1'000'000;
 // Parts of a shared panel for each thread: their rows cost unequal work.
 constexpr int kParts = 3;
+// Subtrees for each thread: the largest ones that threads take one by one do a share of the work
+// that is by so much smaller.
+constexpr int kSubtrees = 4;
 // Rows that are solved together: with a panel's triangle they stay in the cache.
 constexpr Index kSolvedRows = 256;
 
@@ -27,9 +30,27 @@ struct Contribution {
   Index panel, from, reached;
 };
 
-/// A thread's own.
+/// A descendant that has to wait for a panel.
+struct Waiting {
+  Index descendant, panel;
+};
+
+/// What a thread works with.
 struct Room {
   std::vector<double> product, packed;
+};
+
+/// The panel in work: row of each unknown in it, and what its descendants contribute.
+struct Gathering {
+  std::vector<Index> at;
+  std::vector<Contribution> contributions;
+};
+
+/// A subtree of supernodes, first to last, which depends on nothing else; and which of its
+/// supernodes wait for panels outside, in the order in which they came to that.
+struct Subtree {
+  Index first, last;
+  std::vector<Waiting> outside = {};
 };
 
 class Factorisation {
@@ -39,76 +60,146 @@ class Factorisation {
       : nodes_(nodes),
         matrix_(matrix),
         values_(values),
+        loop_(values.size() < kWorthThreads ? 1 : work.threads, work.stop),
         stop_(work.stop),
-        workers_(values.size() < kWorthThreads ? 1 : work.threads),
-        rooms_(static_cast<std::size_t>(workers_.count())),
+        rooms_(static_cast<std::size_t>(loop_.count())),
+        gatherings_(rooms_.size()),
         head_(static_cast<std::size_t>(nodes.count()), kNone),
         next_(head_),
-        done_(head_),
-        at_(nodes.place.size()) {}
+        done_(head_) {}
 
+  /// Subtrees that many threads take one by one, then what is above them panel by panel. A panel's
+  /// descendants wait for it in the order in which one thread would have come by them.
   bool run() {
-    for (Index s = 0; s < nodes_.count(); ++s) {
-      if (stop_ && stop_->load(std::memory_order_relaxed)) return false;
-      begin(s);
-      share(s, [&](Index first, Index last, Room& room) { collect(s, first, last, room); });
-      if (!factor_triangle(s)) return false;
-      if (nodes_.below(s).empty()) continue;
-      share(s, [&](Index first, Index last, Room& room) { solve_rows(s, first, last, room); });
-      done_[s] = 0;
-      wait_for(s, nodes_.below(s).front());
+    find_subtrees();
+    std::atomic<bool> positive{true};
+    if (!loop_.run(static_cast<Index>(subtrees_.size()), [&](Index t, int worker) {
+          Subtree& subtree = subtrees_[static_cast<std::size_t>(t)];
+          const auto w = static_cast<std::size_t>(worker);
+          for (Index s = subtree.first; s <= subtree.last && positive && !stopped(); ++s) {
+            if (!factor(s, w, &subtree)) positive = false;
+          }
+        })) {
+      return false;
     }
-    return true;
+    if (!positive) return false;
+    auto subtree = subtrees_.begin();
+    for (Index s = 0; s < nodes_.count(); ++s) {
+      if (subtree != subtrees_.end() && s == subtree->first) {
+        for (const Waiting& w : subtree->outside) wait_in(w.panel, w.descendant);
+        s = subtree->last;
+        ++subtree;
+        continue;
+      }
+      if (stopped() || !factor(s, 0, nullptr)) return false;
+    }
+    return !stopped();
   }
 
  private:
+  [[nodiscard]] bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
   double* panel(Index s) { return values_.data() + nodes_.value_begin[s]; }
 
+  Gathering& gathering(std::size_t worker) {
+    Gathering& g = gatherings_[worker];
+    g.at.resize(nodes_.place.size());
+    return g;
+  }
+
+  /// The largest subtrees that are small enough for threads to have about as much each; none for
+  /// one thread.
+  void find_subtrees() {
+    if (loop_.count() == 1) return;
+    const auto count = static_cast<std::size_t>(nodes_.count());
+    std::vector<double> work(count, 0.0);
+    std::vector<Index> first(count);
+    std::iota(first.begin(), first.end(), 0);
+    double all = 0;
+    for (Index s = 0; s < nodes_.count(); ++s) {
+      const double height = nodes_.height(s), own = height * height * nodes_.width(s);
+      all += own;
+      work[s] += own;
+      const Index above = nodes_.parent[s];
+      if (above == kNone) continue;
+      work[above] += work[s];
+      first[above] = std::min(first[above], first[s]);
+    }
+    const double most = all / (kSubtrees * loop_.count());
+    for (Index s = 0; s < nodes_.count(); ++s) {
+      const Index above = nodes_.parent[s];
+      if (work[s] <= most && (above == kNone || work[above] > most)) {
+        subtrees_.push_back({first[s], s});
+      }
+    }
+  }
+
+  /// One panel, by a thread that has its subtree for itself, or by all.
+  bool factor(Index s, std::size_t worker, Subtree* within) {
+    Gathering& g = gathering(worker);
+    const auto by_rows = [&](auto&& body) {
+      within ? body(0, nodes_.height(s), rooms_[worker]) : share(s, body);
+    };
+    begin(s, g, within);
+    by_rows([&](Index first, Index last, Room& room) { collect(s, first, last, g, room); });
+    if (!factor_triangle(s)) return false;
+    if (nodes_.below(s).empty()) return true;
+    by_rows([&](Index first, Index last, Room& room) { solve_rows(s, first, last, room); });
+    done_[s] = 0;
+    wait_for(s, nodes_.below(s).front(), within);
+    return true;
+  }
+
   /// The descendant waits in the list of the next panel that its rows reach.
-  void wait_for(Index descendant, Index row) {
+  void wait_for(Index descendant, Index row, Subtree* within) {
     const Index target = nodes_.of[row];
+    if (within && target > within->last) {
+      within->outside.push_back({descendant, target});
+    } else {
+      wait_in(target, descendant);
+    }
+  }
+
+  void wait_in(Index target, Index descendant) {
     next_[descendant] = head_[target];
     head_[target] = descendant;
   }
 
-  void begin(Index s) {
+  void begin(Index s, Gathering& g, Subtree* within) {
     const Index first = nodes_.first[s], end = nodes_.first[s + 1];
-    std::iota(at_.begin() + first, at_.begin() + end, 0);
+    std::iota(g.at.begin() + first, g.at.begin() + end, 0);
     const auto below = nodes_.below(s);
     for (std::size_t i = 0; i < below.size(); ++i) {
-      at_[below[i]] = end - first + static_cast<Index>(i);
+      g.at[below[i]] = end - first + static_cast<Index>(i);
     }
-    contributions_.clear();
+    g.contributions.clear();
     for (Index d = head_[s]; d != kNone;) {
       const Index following = next_[d];
       const auto rows = nodes_.below(d).subspan(static_cast<std::size_t>(done_[d]));
       const auto reached =
           static_cast<Index>(std::lower_bound(rows.begin(), rows.end(), end) - rows.begin());
-      contributions_.push_back({d, done_[d], reached});
+      g.contributions.push_back({d, done_[d], reached});
       done_[d] += reached;
       if (static_cast<std::size_t>(reached) < rows.size()) {
-        wait_for(d, rows[static_cast<std::size_t>(reached)]);
+        wait_for(d, rows[static_cast<std::size_t>(reached)], within);
       }
       d = following;
     }
   }
 
-  /// Calls body(first, last, room) for parts of the panel's rows that make up all of them.
+  /// Calls body(first, last, room) for parts of the panel's rows that make up all of them, by all
+  /// threads where it is large.
   template <class Body>
   void share(Index s, Body&& body) {
     const Index height = nodes_.height(s);
     const std::size_t entries = nodes_.value_begin[s + 1] - nodes_.value_begin[s];
-    if (workers_.count() == 1 || entries < kSharedEntries) {
+    if (loop_.count() == 1 || entries < kSharedEntries) {
       body(0, height, rooms_.front());
       return;
     }
-    const Index parts = kParts * workers_.count();
-    std::atomic<Index> taken{0};
-    workers_.run([&](int worker) {
-      for (Index p = taken++; p < parts; p = taken++) {
-        body(part(height, p, parts), part(height, p + 1, parts),
-             rooms_[static_cast<std::size_t>(worker)]);
-      }
+    const Index parts = kParts * loop_.count();
+    (void)loop_.run(parts, [&](Index p, int worker) {
+      body(part(height, p, parts), part(height, p + 1, parts),
+           rooms_[static_cast<std::size_t>(worker)]);
     });
   }
 
@@ -124,28 +215,30 @@ class Factorisation {
   }
 
   /// The matrix's columns less what the descendants contribute, in some rows of the panel.
-  void collect(Index s, Index first, Index last, Room& room) {
+  void collect(Index s, Index first, Index last, const Gathering& g, Room& room) {
     if (first == last) return;
     const Index begin = nodes_.first[s], width = nodes_.width(s), height = nodes_.height(s);
     double* p = panel(s);
     for (Index j = 0; j < width; ++j) {
+      std::fill_n(p + static_cast<std::ptrdiff_t>(j) * height + first, last - first, 0.0);
       for (SparseMatrix::InnerIterator it(matrix_, begin + j); it; ++it) {
-        const Index row = at_[it.row()];
+        const Index row = g.at[it.row()];
         if (row >= first && row < last)
           p[static_cast<std::ptrdiff_t>(j) * height + row] = it.value();
       }
     }
     const Index lowest = unknown(s, first), highest = unknown(s, last - 1);
-    for (const Contribution& c : contributions_) {
+    for (const Contribution& c : g.contributions) {
       const auto rows = nodes_.below(c.panel).subspan(static_cast<std::size_t>(c.from));
       const auto from = std::lower_bound(rows.begin(), rows.end(), lowest) - rows.begin();
       const auto to = std::upper_bound(rows.begin() + from, rows.end(), highest) - rows.begin();
-      if (from < to) subtract(c, s, static_cast<Index>(from), static_cast<Index>(to), room);
+      if (from < to) subtract(c, s, static_cast<Index>(from), static_cast<Index>(to), g.at, room);
     }
   }
 
   /// Rows from..to of the contribution, each up to its diagonal.
-  void subtract(const Contribution& c, Index s, Index from, Index to, Room& room) {
+  void subtract(const Contribution& c, Index s, Index from, Index to, const std::vector<Index>& at,
+                Room& room) {
     const auto rows = nodes_.below(c.panel).subspan(static_cast<std::size_t>(c.from));
     const Index height = nodes_.height(c.panel), columns = std::min(c.reached, to);
     const Index count = to - from;
@@ -157,10 +250,10 @@ class Factorisation {
     for (Index j = 0; j < columns; ++j) {
       double* column =
           panel(s) +
-          static_cast<std::ptrdiff_t>(at_[rows[static_cast<std::size_t>(j)]]) * nodes_.height(s);
+          static_cast<std::ptrdiff_t>(at[rows[static_cast<std::size_t>(j)]]) * nodes_.height(s);
       const double* product = room.product.data() + static_cast<std::ptrdiff_t>(j) * count;
       for (Index i = std::max(from, j); i < to; ++i) {
-        column[at_[rows[static_cast<std::size_t>(i)]]] -= product[i - from];
+        column[at[rows[static_cast<std::size_t>(i)]]] -= product[i - from];
       }
     }
   }
@@ -186,13 +279,13 @@ class Factorisation {
   const Supernodes& nodes_;
   const SparseMatrix& matrix_;
   std::span<double> values_;
+  SharedLoop loop_;
   const std::atomic<bool>* stop_;
-  Workers workers_;
-  std::vector<Room> rooms_;
+  std::vector<Room> rooms_;            // each thread's
+  std::vector<Gathering> gatherings_;  // each thread's
+  std::vector<Subtree> subtrees_;
   std::vector<Index> head_, next_;  // lists of the descendants that wait for a panel
   std::vector<Index> done_;         // rows below a panel that have contributed
-  std::vector<Index> at_;           // unknown -> row of the current panel
-  std::vector<Contribution> contributions_;
 };
 
 }  // namespace

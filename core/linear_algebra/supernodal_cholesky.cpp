@@ -31,8 +31,9 @@ SupernodalCholesky::SupernodalCholesky(std::shared_ptr<const Supernodes> nodes,
 
 void SupernodalCholesky::compute(const SparseMatrix& ordered, const FactorWork& work) {
   for (Index s = 0; s < nodes_->count(); ++s) tallest_ = std::max(tallest_, nodes_->height(s));
-  values_.assign(nodes_->value_begin.back() + kPanelLanes, 0.0);
-  succeeded_ = factorise(*nodes_, ordered, work, values_);
+  values_.resize(static_cast<Eigen::Index>(entries()) + kPanelLanes);
+  values_.tail(kPanelLanes).setZero();
+  succeeded_ = factorise(*nodes_, ordered, work, {values_.data(), entries()});
 }
 
 /// What lies under a panel, and its solved part.
@@ -175,7 +176,7 @@ void SupernodalCholesky::backward(std::span<const Index> supernodes, Eigen::Ref<
 }
 
 std::size_t SupernodalCholesky::bytes() const {
-  return values_.size() * sizeof(double) +
+  return static_cast<std::size_t>(values_.size()) * sizeof(double) +
          (nodes_->rows.size() + 2 * nodes_->place.size()) * sizeof(Index);
 }
 

@@ -71,7 +71,7 @@ class SupernodalCholesky {
   void compute(const SparseMatrix& ordered, const FactorWork& work);
 
   std::shared_ptr<const Supernodes> nodes_;
-  std::vector<double> values_;
+  Eigen::VectorXd values_;
   Index tallest_ = 0;
   bool succeeded_ = false;
 };

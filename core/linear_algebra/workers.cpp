@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "linear_algebra/workers.hpp"
 
+#include <algorithm>
+
 namespace sunder {
 
 Workers::Workers(int count) {
-  for (int w = 1; w < count; ++w) threads_.emplace_back([this, w] { work(w); });
+  threads_.reserve(static_cast<std::size_t>(std::max(count - 1, 0)));
+  try {
+    for (int w = 1; w < count; ++w) threads_.emplace_back([this, w] { work(w); });
+  } catch (const std::exception&) {
+    // Out of threads or of memory for one: those that there are share the work.
+  }
 }
 
 Workers::~Workers() {
@@ -23,13 +30,23 @@ void Workers::start(Call call, void* body) {
 void Workers::finish() {
   auto left = working_.load(std::memory_order_acquire);
   while (left != 0) left = wait(working_, left);
+  if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+}
+
+void Workers::keep_exception() noexcept {
+  const std::lock_guard lock(throwing_);
+  if (!thrown_) thrown_ = std::current_exception();
 }
 
 void Workers::work(int worker) {
   for (std::uint32_t seen = 0;; ++seen) {
     wait(round_, seen);
     if (!call_) return;
-    call_(body_, worker);
+    try {
+      call_(body_, worker);
+    } catch (...) {
+      keep_exception();
+    }
     if (working_.fetch_sub(1, std::memory_order_acq_rel) == 1) notify(working_);
   }
 }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -14,7 +15,8 @@ namespace sunder {
 
 class Workers {
  public:
-  /// `count` threads share a loop, the caller's among them; at least one.
+  /// `count` threads share a loop, the caller's among them; at least one, and fewer where the
+  /// system has no more.
   explicit Workers(int count);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -22,8 +24,8 @@ class Workers {
 
   [[nodiscard]] int count() const { return static_cast<int>(threads_.size()) + 1; }
 
-  /// Calls body(worker) once for each worker 0 ... count() - 1 and returns when all are done. The
-  /// body must not throw.
+  /// Calls body(worker) once for each worker 0 ... count() - 1 and returns when all are done.
+  /// Throws what the body has thrown, of several one.
   template <class Body>
   void run(Body&& body) {
     if (threads_.empty()) {
@@ -32,7 +34,11 @@ class Workers {
     }
     start([](void* b, int worker) { (*static_cast<std::remove_reference_t<Body>*>(b))(worker); },
           &body);
-    body(0);
+    try {
+      body(0);
+    } catch (...) {
+      keep_exception();
+    }
     finish();
   }
 
@@ -41,6 +47,7 @@ class Workers {
   void start(Call call, void* body);
   void finish();
   void work(int worker);
+  void keep_exception() noexcept;
 
   /// Until `value` is no longer `seen`; what it is then.
   std::uint32_t wait(std::atomic<std::uint32_t>& value, std::uint32_t seen);
@@ -54,6 +61,8 @@ class Workers {
 #endif
   Call call_ = nullptr;  // nullptr: the end
   void* body_ = nullptr;
+  std::mutex throwing_;  // guards thrown_ while a loop runs
+  std::exception_ptr thrown_;
 };
 
 }  // namespace sunder

@@ -9,6 +9,7 @@
 
 #include "body/element.hpp"
 #include "body/pools.hpp"
+#include "linear_algebra/shared_loop.hpp"
 #include "sunder/error.hpp"
 #include "sunder/fracture_model.hpp"
 #include "sunder/stress_measures.hpp"
@@ -45,7 +46,7 @@ std::optional<bool> shears(const Voigt& s, double k) {
 }
 
 int threads_for(std::size_t elements) {
-  const auto machine = std::max(1U, std::thread::hardware_concurrency());
+  const auto machine = static_cast<std::size_t>(linear_algebra::machine_threads());
   return static_cast<int>(std::clamp<std::size_t>(elements / kElementsPerThread, 1, machine));
 }
 

@@ -8,6 +8,7 @@
 
 #include "body/analysis.hpp"
 #include "body/assembly.hpp"
+#include "sunder/error.hpp"
 #include "support/structured_board.hpp"
 
 namespace sunder::fem {
@@ -99,18 +100,39 @@ TEST(NestedDissection, ShortensTheElimination) {
 }
 
 TEST(NestedDissection, FactorHasTheSameBitsForAnyNumberOfThreads) {
-  const Problem problem = board({16, 16, 16, 50, 50, 50});
-  const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(problem.dof_count(), -1, 2);
-  const Factor one = factor_stiffness(problem, {}, {.threads = 1});
-  ASSERT_GT(one.entries(), 1'000'000u);  // enough for threads to share panels
-  const Eigen::VectorXd u = one.solve(f);
-  for (int threads : {2, 3, 7}) {
-    EXPECT_EQ(factor_stiffness(problem, {}, {.threads = threads}).solve(f), u)
-        << threads << " threads";
+  // Large panels, which threads share, and many subtrees, which they take one by one.
+  for (const test::BoardShape& size :
+       {test::BoardShape{16, 16, 16, 50, 50, 50}, {40, 40, 1, 50, 50, 2.5}}) {
+    const Problem problem = board(size);
+    const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(problem.dof_count(), -1, 2);
+    const Factor one = factor_stiffness(problem, {}, {.threads = 1});
+    ASSERT_GT(one.entries(), 1'000'000u);  // enough for more threads than one
+    const Eigen::VectorXd u = one.solve(f);
+    for (int threads : {2, 3, 7}) {
+      EXPECT_EQ(factor_stiffness(problem, {}, {.threads = threads}).solve(f), u)
+          << threads << " threads";
+    }
+    const SparseMatrix lower = assemble_lower(problem, {});
+    const Eigen::VectorXd product = lower.selfadjointView<Eigen::Lower>() * u;
+    EXPECT_LE((product - f).norm(), 1e-9 * f.norm());
   }
-  const SparseMatrix lower = assemble_lower(problem, {});
-  const Eigen::VectorXd product = lower.selfadjointView<Eigen::Lower>() * u;
-  EXPECT_LE((product - f).norm(), 1e-9 * f.norm());
+}
+
+TEST(NestedDissection, ThreadsFindWhatIsNotPositiveDefinite) {
+  const Problem problem = board({40, 40, 1, 50, 50, 2.5});
+  SparseMatrix lower = assemble_lower(problem, {});
+  const std::vector<Index> place = elimination_order(problem);
+  // In a subtree, and in the last panel.
+  for (const Index row : {0, problem.dof_count() / 3, problem.dof_count() - 1}) {
+    const auto d = static_cast<Index>(std::ranges::find(place, row) - place.begin());
+    const double was = lower.coeff(d, d);
+    lower.coeffRef(d, d) = -was;
+    for (int threads : {1, 2, 5}) {
+      const linear_algebra::FactorWork work{.threads = threads};
+      EXPECT_THROW(static_cast<void>(Factor(lower, place, work)), NumericalError) << row;
+    }
+    lower.coeffRef(d, d) = was;
+  }
 }
 
 TEST(NestedDissection, FactorStopsWhenAsked) {
