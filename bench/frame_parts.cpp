@@ -17,6 +17,7 @@
 #include "body/stiffness_factor.hpp"
 
 #include "body/assembly.hpp"
+#include "frame_bases.hpp"
 #include "frame_cascades.hpp"
 #include "frame_measures.hpp"
 #include "frame_passes.hpp"
@@ -260,6 +261,7 @@ void register_rows() {
 
 int main(int argc, char** argv) {
   sunder::bench::register_rows();
+  sunder::bench::register_bases();
   sunder::bench::register_cascades();
   sunder::bench::register_measures();
   sunder::bench::register_passes();

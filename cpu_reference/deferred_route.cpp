@@ -33,7 +33,7 @@ class DeferredRoute final : public InverseRoute {
       : dense_(dense),
         all_(static_cast<std::size_t>(body.problem().dof_count())),
         unknowns_(all_.size()),
-        stiffness_(std::move(intact.stiffness)) {
+        factors_(std::move(intact.factors)) {
     std::iota(all_.begin(), all_.end(), 0);
     std::unique_ptr<solver::Base> base;
     if (dense) {
@@ -44,7 +44,7 @@ class DeferredRoute final : public InverseRoute {
       base = std::make_unique<solver::FactorBase>(intact.factor);
     }
     solver::Based first;
-    if (!stiffness_) {
+    if (!factors_) {
       first.deferred = std::make_unique<solver::Deferred>(body.problem(), std::move(base), false);
       update_.emplace(body, std::move(first));
       return;
@@ -138,7 +138,7 @@ class DeferredRoute final : public InverseRoute {
     if (update_->factor()) {
       plan.push_back({"damaged factor (sparse Cholesky)", update_->factor()->bytes()});
     }
-    if (stiffness_) plan.push_back({"stiffness in the factor's order", stiffness_->bytes()});
+    if (factors_) plan.push_back({"stiffness in the factor's order", factors_->bytes()});
     return plan;
   }
 
@@ -168,12 +168,8 @@ class DeferredRoute final : public InverseRoute {
       based.parted = std::make_shared<fem::PartedBody>(body);
       based.factor = std::make_shared<const linear_algebra::Factor>(
           fem::factor_stiffness(based.parted->body(), work));
-    } else if (body.others().empty() && !body.problem().pools()) {
-      stiffness_->follow(body);
-      based.factor = std::make_shared<const linear_algebra::Factor>(stiffness_->factor(work));
-    } else {  // entries that the intact body's stiffness has no place for, or patches' pressures
-      based.factor =
-          std::make_shared<const linear_algebra::Factor>(fem::factor_stiffness(body, work));
+    } else {
+      based.factor = factors_->of(body, work);
     }
     based.deferred = std::make_unique<solver::Deferred>(
         based.parted ? based.parted->body().forms() : body.forms(),
@@ -188,8 +184,8 @@ class DeferredRoute final : public InverseRoute {
   std::size_t unknowns_;    // of the mesh
   Eigen::VectorXd of_base_, forces_;
   double energy_tolerance_ = 0;
-  std::unique_ptr<fem::OrderedStiffness> stiffness_;  // of whoever makes a base
-  std::optional<solver::RenewedUpdate> update_;       // last: its thread uses what is above
+  std::unique_ptr<fem::BodyFactors> factors_;    // of whoever makes a base
+  std::optional<solver::RenewedUpdate> update_;  // last: its thread uses what is above
 };
 
 }  // namespace

@@ -2,23 +2,15 @@
 #include "cpu_reference/intact_body.hpp"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include "sunder/error.hpp"
 
 namespace sunder::cpu_reference {
-namespace {
-
-int machine_threads() {
-  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
-
-}  // namespace
 
 std::shared_ptr<const linear_algebra::Factor> factor_of(const fem::Analysis& analysis) {
-  return std::make_shared<const linear_algebra::Factor>(
-      analysis.nodes, analysis.ordered, linear_algebra::FactorWork{.threads = machine_threads()});
+  return std::make_shared<const linear_algebra::Factor>(analysis.nodes, analysis.ordered,
+                                                        linear_algebra::work_at_once());
 }
 
 void Grips::set_columns(Eigen::MatrixXd columns) {
@@ -66,7 +58,7 @@ IntactBody::IntactBody(const Problem& problem, bool rebases, const fem::Analysis
                        std::shared_ptr<const linear_algebra::Factor> of)
     : factor_(std::move(of)), factor(*factor_), grips(problem.gripped_dofs()) {
   if (rebases) {
-    stiffness = std::make_unique<fem::OrderedStiffness>(problem, analysis.nodes, analysis.ordered);
+    factors = std::make_unique<fem::BodyFactors>(problem, analysis.nodes, analysis.ordered);
   }
   if (!grips.none()) grips.set_columns(factor.inverse_columns(grips.dofs()));
 }

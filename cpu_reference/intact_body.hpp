@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "body/analysis.hpp"
+#include "body/body_factors.hpp"
 #include "body/damaged_body.hpp"
-#include "body/ordered_stiffness.hpp"
 #include "linear_algebra/factor.hpp"
 #include "sunder/problem.hpp"
 
@@ -68,7 +68,7 @@ struct IntactBody {
  public:
   const linear_algebra::Factor& factor;
   Grips grips;
-  std::unique_ptr<fem::OrderedStiffness> stiffness;  // empty without `rebases`, or handed on
+  std::unique_ptr<fem::BodyFactors> factors;  // empty without `rebases`, or handed on
   /// The whole inverse where it is there already; empty: nobody has made it, or handed on.
   std::shared_ptr<const Eigen::MatrixXd> inverse;
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "body/damaged_body.hpp"
 #include "gpu/host_inverse.hpp"
 #include "solver/base.hpp"
 #include "solver/last_load.hpp"

@@ -16,19 +16,18 @@ constexpr Index kHostDense = 6000;
 }  // namespace
 
 HostInverse::HostInverse(const Problem& problem, bool keep_dense)
-    : HostInverse(fem::factor_stiffness(problem), keep_dense) {}
+    : HostInverse(std::make_shared<const linear_algebra::Factor>(
+                      fem::factor_stiffness(problem, {}, linear_algebra::work_at_once())),
+                  keep_dense, linear_algebra::work_at_once()) {}
 
-HostInverse::HostInverse(const fem::DamagedBody& body, bool keep_dense,
+HostInverse::HostInverse(std::shared_ptr<const linear_algebra::Factor> factor, bool keep_dense,
                          const linear_algebra::FactorWork& work)
-    : HostInverse(fem::factor_stiffness(body, work), keep_dense) {}
-
-HostInverse::HostInverse(linear_algebra::Factor factor, bool keep_dense)
     : factor_(std::move(factor)) {
-  if (keep_dense && factor_.cholesky().size() <= kHostDense) dense_ = factor_.inverse();
+  if (keep_dense && factor_->cholesky().size() <= kHostDense) dense_ = factor_->inverse(work);
 }
 
 Eigen::MatrixXd HostInverse::columns(std::span<const Index> dofs) const {
-  if (dense_.size() == 0) return factor_.inverse_columns(dofs);
+  if (dense_.size() == 0) return factor_->inverse_columns(dofs);
   const std::vector<Index> list(dofs.begin(), dofs.end());
   return dense_(Eigen::all, list);
 }
@@ -37,7 +36,7 @@ Eigen::MatrixXd HostInverse::range(Index first, Index count) const {
   if (dense_.size() > 0) return dense_.middleCols(first, count);
   std::vector<Index> list(static_cast<std::size_t>(count));
   std::iota(list.begin(), list.end(), first);
-  return factor_.inverse_columns(list);
+  return factor_->inverse_columns(list, linear_algebra::work_at_once());
 }
 
 void upload_inverse(const HostInverse& host, DenseInverse& device) {
@@ -45,7 +44,7 @@ void upload_inverse(const HostInverse& host, DenseInverse& device) {
 }
 
 std::size_t HostInverse::bytes() const {
-  return factor_.bytes() + static_cast<std::size_t>(dense_.size()) * sizeof(double);
+  return factor_->bytes() + static_cast<std::size_t>(dense_.size()) * sizeof(double);
 }
 
 }  // namespace sunder::gpu

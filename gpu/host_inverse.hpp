@@ -4,9 +4,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 
-#include "body/damaged_body.hpp"
 #include "gpu/passes/dense_inverse.hpp"
 #include "linear_algebra/factor.hpp"
 
@@ -16,21 +16,19 @@ class HostInverse {
  public:
   /// Of the intact body's stiffness.
   HostInverse(const Problem& problem, bool keep_dense);
-  /// Of a body's. Throws linear_algebra::Stopped when the work was given up.
-  HostInverse(const fem::DamagedBody& body, bool keep_dense,
+  /// By a factor. Throws linear_algebra::Stopped when the work was given up.
+  HostInverse(std::shared_ptr<const linear_algebra::Factor> factor, bool keep_dense,
               const linear_algebra::FactorWork& work);
   [[nodiscard]] Eigen::MatrixXd columns(std::span<const Index> dofs) const;
   [[nodiscard]] Eigen::MatrixXd range(Index first, Index count) const;
   [[nodiscard]] bool is_dense() const { return dense_.size() > 0; }
   /// Empty where it is not kept.
   [[nodiscard]] const Eigen::MatrixXd& dense() const { return dense_; }
-  [[nodiscard]] const linear_algebra::Factor& factor() const { return factor_; }
+  [[nodiscard]] const linear_algebra::Factor& factor() const { return *factor_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  HostInverse(linear_algebra::Factor factor, bool keep_dense);
-
-  linear_algebra::Factor factor_;
+  std::shared_ptr<const linear_algebra::Factor> factor_;
   Eigen::MatrixXd dense_;  // empty: too large
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "body/body_factors.hpp"
 #include "solver/frame_cost.hpp"
 
 namespace sunder::gpu {
@@ -72,17 +73,19 @@ std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
   const bool beside = renews && !dense;
   const Index between = beside ? columns_between(renewal) : 0;
   const Index columns = std::max(kColumnsPerBase, between) + between;
+  const auto factors = std::make_shared<fem::BodyFactors>(
+      body.problem(), intact->factor().cholesky().shared_supernodes());
   const fem::DamagedBody before = body.as_of(0);
   solver::Based first = based_on(before.forms(), std::move(intact), damage,
                                  fp64 ? &before : nullptr, device, columns);
   if (!damage) return std::make_unique<solver::RenewedUpdate>(body, std::move(first));
   return std::make_unique<solver::RenewedUpdate>(
       body, std::move(first), renewal,
-      [dense, fp64, beside, columns](const fem::DamagedBody& of,
-                                     const linear_algebra::FactorWork& work) {
-        solver::Based based =
-            based_on(of.forms(), std::make_shared<const HostInverse>(of, dense, work), true,
-                     fp64 ? &of : nullptr, nullptr, columns);
+      [dense, fp64, beside, columns, factors](const fem::DamagedBody& of,
+                                              const linear_algebra::FactorWork& work) {
+        solver::Based based = based_on(
+            of.forms(), std::make_shared<const HostInverse>(factors->of(of, work), dense, work),
+            true, fp64 ? &of : nullptr, nullptr, columns);
         if (beside) static_cast<HostBase&>(based.deferred->base()).keep_columns();
         return based;
       });

@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <numeric>
 
+#include "linear_algebra/shared_loop.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::linear_algebra {
 namespace {
 
 // Right-hand sides that go through the factor together: wide enough for the panels' products.
-constexpr std::size_t kBlock = 64;
+constexpr Index kBlock = 64;
+// Bytes of such blocks that threads may have at the same time: of a body of a million tetrahedra,
+// 300 MB each, three.
+constexpr std::size_t kRooms = std::size_t{1} << 30;
 
 /// The part of a block of columns from `start` on that is in the lower triangle, and its mirror
 /// image. A square at a time: both its rows and its columns stay in the cache.
@@ -77,8 +81,42 @@ void Factor::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& wo
   for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y[place[i]];
 }
 
+/// What a thread solves with for a block of columns.
+struct Factor::Room {
+  RowMajor block;
+  SolveWork work;
+  std::vector<Index> seeds, path, tail;
+
+  /// A unit vector for each seed; zeros in the rows that their paths, and the way back to some
+  /// supernodes, go through, which alone are read. In a large body these are few.
+  void begin(const Supernodes& nodes, std::span<const Index> wanted) {
+    for (const std::span<const Index> some : {std::span<const Index>(path), wanted}) {
+      for (Index s : some) block.middleRows(nodes.first[s], nodes.width(s)).setZero();
+    }
+    for (std::size_t c = 0; c < seeds.size(); ++c) block(seeds[c], static_cast<Index>(c)) = 1;
+  }
+};
+
+/// body(start, width, room) for each block of columns, by several threads.
+template <class Body>
+void Factor::each_block(Index columns, const FactorWork& work, Body&& body) const {
+  const Index blocks = (columns + kBlock - 1) / kBlock;
+  const std::size_t room_bytes =
+      static_cast<std::size_t>(cholesky_.size()) * kBlock * sizeof(double);
+  const auto most = static_cast<int>(std::max<std::size_t>(kRooms / room_bytes, 1));
+  SharedLoop loop(std::min({work.threads, static_cast<int>(blocks), most}), work.stop);
+  std::vector<Room> rooms(static_cast<std::size_t>(loop.count()));
+  const bool done = loop.run(blocks, [&](Index b, int worker) {
+    const Index start = b * kBlock, width = std::min(kBlock, columns - start);
+    Room& room = rooms[static_cast<std::size_t>(worker)];
+    room.block.resize(cholesky_.size(), width);
+    body(start, width, room);
+  });
+  if (!done) throw Stopped();
+}
+
 Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows, std::span<const Index> columns,
-                                      const std::atomic<bool>* stop) const {
+                                      const FactorWork& work) const {
   const auto& place = cholesky_.supernodes().place;
   // In the factor's own order, so that the columns of a block share their path.
   std::vector<Index> order(columns.size());
@@ -86,30 +124,26 @@ Eigen::MatrixXd Factor::inverse_block(std::span<const Index> rows, std::span<con
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return place[columns[a]] < place[columns[b]]; });
   Eigen::MatrixXd result(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
-  RowMajor block;
-  SolveWork work;
-  std::vector<Index> seeds, path, wanted;
+  std::vector<Index> seeds, wanted;
+  SolveWork reaching;
   for (Index r : rows) seeds.push_back(place[r]);
-  cholesky_.reach(seeds, wanted, work);
-  for (std::size_t start = 0; start < columns.size(); start += kBlock) {
-    if (stop && *stop) throw Stopped();
-    const std::size_t width = std::min(kBlock, columns.size() - start);
-    block.setZero(cholesky_.size(), static_cast<Index>(width));
-    seeds.clear();
-    for (std::size_t c = 0; c < width; ++c) {
-      seeds.push_back(place[columns[order[start + c]]]);
-      block(seeds.back(), static_cast<Index>(c)) = 1;
+  cholesky_.reach(seeds, wanted, reaching);
+  each_block(static_cast<Index>(columns.size()), work, [&](Index start, Index width, Room& room) {
+    room.seeds.clear();
+    for (Index c = 0; c < width; ++c) {
+      room.seeds.push_back(place[columns[order[start + c]]]);
     }
-    cholesky_.reach(seeds, path, work);
-    cholesky_.forward(path, block, work);
-    cholesky_.backward(wanted, block, work);
-    for (std::size_t c = 0; c < width; ++c) {
+    cholesky_.reach(room.seeds, room.path, room.work);
+    room.begin(cholesky_.supernodes(), wanted);
+    cholesky_.forward(room.path, room.block, room.work);
+    cholesky_.backward(wanted, room.block, room.work);
+    for (Index c = 0; c < width; ++c) {
       auto column = result.col(order[start + c]);
       for (std::size_t i = 0; i < rows.size(); ++i) {
-        column[static_cast<Eigen::Index>(i)] = block(place[rows[i]], static_cast<Index>(c));
+        column[static_cast<Eigen::Index>(i)] = room.block(place[rows[i]], c);
       }
     }
-  }
+  });
   return result;
 }
 
@@ -124,36 +158,33 @@ std::size_t Factor::path_entries(std::span<const Index> dofs) const {
   return entries;
 }
 
-Eigen::MatrixXd Factor::inverse_columns(std::span<const Index> columns) const {
+Eigen::MatrixXd Factor::inverse_columns(std::span<const Index> columns,
+                                        const FactorWork& work) const {
   std::vector<Index> rows(static_cast<std::size_t>(cholesky_.size()));
   std::iota(rows.begin(), rows.end(), 0);
-  return inverse_block(rows, columns);
+  return inverse_block(rows, columns, work);
 }
 
 // In the factor's order the rows of a block of columns from its first one on are the lower
 // triangle: the way back up stops there, which halves it, and the rest is its mirror image, to the
 // last bit.
-Eigen::MatrixXd Factor::inverse() const {
+Eigen::MatrixXd Factor::inverse(const FactorWork& work) const {
   const Supernodes& nodes = cholesky_.supernodes();
-  const auto n = static_cast<Index>(cholesky_.size());
-  std::vector<Index> unknown(static_cast<std::size_t>(n)), seeds, path, tail;
+  const Index n = cholesky_.size();
+  std::vector<Index> unknown(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) unknown[nodes.place[i]] = i;
   Eigen::MatrixXd result(n, n);
-  RowMajor block;
-  SolveWork work;
-  for (Index start = 0; start < n; start += static_cast<Index>(kBlock)) {
-    const Index width = std::min(static_cast<Index>(kBlock), n - start);
-    block.setZero(n, width);
-    for (Index c = 0; c < width; ++c) block(start + c, c) = 1;
-    seeds.resize(static_cast<std::size_t>(width));
-    std::iota(seeds.begin(), seeds.end(), start);
-    tail.resize(static_cast<std::size_t>(nodes.count() - nodes.of[start]));
-    std::iota(tail.begin(), tail.end(), nodes.of[start]);
-    cholesky_.reach(seeds, path, work);
-    cholesky_.forward(path, block, work);
-    cholesky_.backward(tail, block, work);
-    leave_triangle(block, start, unknown, result);
-  }
+  each_block(n, work, [&](Index start, Index width, Room& room) {
+    room.seeds.resize(static_cast<std::size_t>(width));
+    std::iota(room.seeds.begin(), room.seeds.end(), start);
+    room.tail.resize(static_cast<std::size_t>(nodes.count() - nodes.of[start]));
+    std::iota(room.tail.begin(), room.tail.end(), nodes.of[start]);
+    cholesky_.reach(room.seeds, room.path, room.work);
+    room.begin(nodes, room.tail);
+    cholesky_.forward(room.path, room.block, room.work);
+    cholesky_.backward(room.tail, room.block, room.work);
+    leave_triangle(room.block, start, unknown, result);
+  });
   return result;
 }
 

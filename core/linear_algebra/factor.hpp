@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
 #include <span>
 #include <stdexcept>
 
@@ -32,15 +31,18 @@ class Factor {
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
   /// The same into x, which is another vector than rhs; allocates only until `work` has grown.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& work) const;
-  /// Inverse as a dense matrix, shape (n x n). Cost at most 2 n nnz(L) multiply-adds.
-  [[nodiscard]] Eigen::MatrixXd inverse() const;
+  /// Inverse as a dense matrix, shape (n x n). Cost at most 2 n nnz(L) multiply-adds. This and what
+  /// follows take a block of right sides, n x 64, for each thread, and throw Stopped where the work
+  /// was given up.
+  [[nodiscard]] Eigen::MatrixXd inverse(const FactorWork& work = {}) const;
   /// Some columns of the inverse, shape (n x columns).
-  [[nodiscard]] Eigen::MatrixXd inverse_columns(std::span<const Index> columns) const;
+  [[nodiscard]] Eigen::MatrixXd inverse_columns(std::span<const Index> columns,
+                                                const FactorWork& work = {}) const;
   /// Some columns of the inverse at some rows, shape (rows x columns). An entry has the same bits
-  /// whatever others it is computed with. Throws Stopped once `stop` is true.
+  /// whatever others it is computed with.
   [[nodiscard]] Eigen::MatrixXd inverse_block(std::span<const Index> rows,
                                               std::span<const Index> columns,
-                                              const std::atomic<bool>* stop = nullptr) const;
+                                              const FactorWork& work = {}) const;
   /// Entries of L: a triangular solve reads each once.
   [[nodiscard]] std::size_t entries() const { return cholesky_.entries(); }
   /// Entries of L that a solution with forces on some unknowns reads on its way forward.
@@ -49,7 +51,10 @@ class Factor {
   [[nodiscard]] const SupernodalCholesky& cholesky() const { return cholesky_; }
 
  private:
+  struct Room;
   void check() const;
+  template <class Body>
+  void each_block(Index columns, const FactorWork& work, Body&& body) const;
 
   SupernodalCholesky cholesky_;
 };

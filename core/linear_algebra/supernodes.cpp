@@ -13,14 +13,6 @@ constexpr Index kWidest = 256;
 
 using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index>;
 
-SparseMatrix permute_lower(const SparseMatrix& lower, const std::vector<Index>& place) {
-  Permutation p(static_cast<Index>(place.size()));
-  std::copy(place.begin(), place.end(), p.indices().data());
-  SparseMatrix result(lower.rows(), lower.cols());
-  result.selfadjointView<Eigen::Lower>() = lower.selfadjointView<Eigen::Lower>().twistedBy(p);
-  return result;
-}
-
 std::vector<Index> minimum_degree(const SparseMatrix& lower) {
   SparseMatrix full = lower.selfadjointView<Eigen::Lower>();
   Permutation order;  // column i of the result is unknown order[i]
@@ -185,6 +177,14 @@ void find_rows(const SparseMatrix& lower, const std::vector<Index>& column_paren
 }
 
 }  // namespace
+
+SparseMatrix permute_lower(const SparseMatrix& lower, const std::vector<Index>& place) {
+  Permutation p(static_cast<Index>(place.size()));
+  std::copy(place.begin(), place.end(), p.indices().data());
+  SparseMatrix result(lower.rows(), lower.cols());
+  result.selfadjointView<Eigen::Lower>() = lower.selfadjointView<Eigen::Lower>().twistedBy(p);
+  return result;
+}
 
 Supernodes find_supernodes(const SparseMatrix& lower, std::vector<Index> place,
                            SparseMatrix& permuted) {

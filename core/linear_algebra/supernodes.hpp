@@ -32,6 +32,10 @@ struct Supernodes {
   }
 };
 
+/// A symmetric matrix, lower triangle, whose row i becomes row place[i].
+[[nodiscard]] SparseMatrix permute_lower(const SparseMatrix& lower,
+                                         const std::vector<Index>& place);
+
 /// The unknowns in the order `place` (empty: by minimum degree) but for a postorder of the
 /// elimination tree. `permuted` receives the matrix in the factor's order, lower triangle.
 [[nodiscard]] Supernodes find_supernodes(const SparseMatrix& lower, std::vector<Index> place,

@@ -206,7 +206,7 @@ void BackgroundRebase::make(Lock& lock) {
   lock.unlock();
   Based based;
   try {
-    based = make(body_, load_of_job_, {.stop = &unwanted_});
+    based = make(body_, load_of_job_, linear_algebra::work_beside(unwanted_));
   } catch (const std::exception&) {
     // Out of memory, not definite or unwanted: it stays empty, and the frame that takes it decides.
   }

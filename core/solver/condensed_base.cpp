@@ -42,10 +42,10 @@ void CondensedState::release() {
 }
 
 CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor,
-                             std::span<const Index> dofs, const std::atomic<bool>* stop)
+                             std::span<const Index> dofs, const linear_algebra::FactorWork& work)
     : CondensedBase(
           factor, dofs,
-          std::make_shared<const Eigen::MatrixXd>(factor->inverse_block(dofs, dofs, stop))) {}
+          std::make_shared<const Eigen::MatrixXd>(factor->inverse_block(dofs, dofs, work))) {}
 
 CondensedBase::CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
                              std::shared_ptr<const LostStiffness> lost)
@@ -66,6 +66,7 @@ CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> facto
   is_touched_.assign(dofs_.size(), kNone);
   of_load_.setZero(x_.size());
   u_.setZero(x_.size());
+  by_factor_ = lacks_ = all_forces_ = mended_ = u_;
   starts_.reserve(dofs_.size());
   projected_.resize(kVectors);
   touched_.reserve(dofs_.size());
@@ -102,7 +103,7 @@ void CondensedBase::grow(std::span<const Difference> vectors) {
   const auto added = std::span(dofs_).subspan(before);
   Eigen::MatrixXd columns;
   if (!growth_ || !growth_->take(*factor_, dofs_, added, columns)) {
-    columns = factor_->inverse_block(dofs_, added);
+    columns = factor_->inverse_block(dofs_, added, linear_algebra::work_at_once());
   }
   x_of_factor_.add(columns);
   if (lost_) {
@@ -224,14 +225,14 @@ void CondensedBase::lose(const double* u, std::span<double> moved, std::span<dou
   lost_->multiply(moved, forces);
 }
 
-/// D u of u on S, as forces on S.
-Eigen::VectorXd CondensedBase::forces_lost(const Eigen::VectorXd& u) const {
+/// D u of u on S, as forces on S: all_forces_.
+void CondensedBase::find_lost_forces(const Eigen::VectorXd& u) {
   const auto dofs = lost_->dofs();
-  std::vector<double> moved(dofs.size()), forces(dofs.size());
-  lose(u.data(), moved, forces);
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
-  for (std::size_t i = 0; i < dofs.size(); ++i) result[place_[dofs[i]]] = forces[i];
-  return result;
+  moved_.resize(dofs.size());
+  of_moved_.resize(dofs.size());
+  lose(u.data(), moved_, of_moved_);
+  all_forces_.setZero(u.size());
+  for (std::size_t i = 0; i < dofs.size(); ++i) all_forces_[place_[dofs[i]]] = of_moved_[i];
 }
 
 /// of_load_ += X D of_load_.
@@ -254,23 +255,29 @@ void CondensedBase::apply_everywhere(std::span<const Index> dofs, std::span<cons
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
     of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
   }
+  by_factor_ = of_load_;
   if (lost_) add_lost();
 }
 
 const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
   if (load_.take(forces)) {
-    if (inside(forces.dofs)) {
-      apply_inside(forces.dofs, forces.values);
-    } else {
+    outside_ = !inside(forces.dofs);
+    if (outside_) {
       apply_everywhere(forces.dofs, forces.values);
+    } else {
+      apply_inside(forces.dofs, forces.values);
     }
   }
+  return project(of_load_);
+}
+
+const Eigen::VectorXd& CondensedBase::project(const Eigen::VectorXd& v) {
   const auto count = static_cast<Eigen::Index>(vectors_.size());
   if (projected_.size() < count) projected_.resize(2 * count + 256);
   for (std::size_t i = 0; i < vectors_.size(); ++i) {
     const auto [dof, other] = vectors_[i];
-    const double u = of_load_[place_[dof]];
-    projected_[static_cast<Eigen::Index>(i)] = other == kNone ? u : u - of_load_[place_[other]];
+    const double u = v[place_[dof]];
+    projected_[static_cast<Eigen::Index>(i)] = other == kNone ? u : u - v[place_[other]];
   }
   return projected_;
 }
@@ -324,6 +331,19 @@ void CondensedBase::add_loaded_columns() {
 }
 
 void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
+  mended_.setZero(u_.size());
+  multiply(c);
+  write(u);
+}
+
+void CondensedBase::expand_mended(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
+  multiply(c);
+  u_ += mended_;
+  write(u);
+}
+
+/// u_ = (X (f + B c))_S.
+void CondensedBase::multiply(const Eigen::VectorXd& c) {
   const Index there = product_ ? product_->follow(*this) : 0;
   u_.setZero();
   if (there == 0) {
@@ -340,6 +360,9 @@ void CondensedBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
     collect_forces(c, 0, count());
   }
   u_ += of_load_;
+}
+
+void CondensedBase::write(Eigen::VectorXd& u) const {
   if (u.size() != size()) u.setZero(size());
   for (std::size_t i = 0; i < dofs_.size(); ++i) u[dofs_[i]] = u_[static_cast<Eigen::Index>(i)];
 }
@@ -348,16 +371,46 @@ bool CondensedBase::inside(std::span<const Index> dofs) const {
   return std::ranges::all_of(dofs, [&](Index d) { return place_[d] != kNone; });
 }
 
-Eigen::VectorXd CondensedBase::drift() const {
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(u_.size());
-  if (lost_) forces = forces_lost(u_);
-  for (std::size_t i = 0; i < load_.dofs().size(); ++i) {
-    forces[place_[load_.dofs()[i]]] += load_.values()[i];
+/// y += x times a vector by the columns at its entries that are not 0: these are few.
+void CondensedBase::add_product(const GrownInverse& x, const Eigen::VectorXd& v,
+                                Eigen::VectorXd& y) {
+  loaded_.clear();
+  loads_.clear();
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    if (v[i] == 0) continue;
+    loaded_.push_back(static_cast<Index>(i));
+    loads_.push_back(v[i]);
   }
-  for (std::size_t i = 0; i < touched_.size(); ++i) forces[touched_[i]] += forces_[i];
-  Eigen::VectorXd lacks = x_of_factor_.times(forces) - u_;
-  if (lost_) lacks += x_.times(forces_lost(lacks));
-  return lacks;
+  if (!loaded_.empty()) add(x, loaded_, loads_, y.data());
+}
+
+const Eigen::VectorXd& CondensedBase::drift() {
+  if (lost_) {
+    find_lost_forces(u_);
+  } else {
+    all_forces_.setZero(u_.size());
+  }
+  lacks_ = -u_;
+  if (outside_) {
+    lacks_ += by_factor_;
+  } else {
+    for (std::size_t i = 0; i < load_.dofs().size(); ++i) {
+      all_forces_[place_[load_.dofs()[i]]] += load_.values()[i];
+    }
+  }
+  for (std::size_t i = 0; i < touched_.size(); ++i) all_forces_[touched_[i]] += forces_[i];
+  add_product(x_of_factor_, all_forces_, lacks_);
+  if (lost_) {
+    find_lost_forces(lacks_);
+    add_product(x_, all_forces_, lacks_);
+  }
+  return lacks_;
+}
+
+const Eigen::VectorXd& CondensedBase::project_mended() {
+  mended_ += drift();
+  lacks_ += u_;
+  return project(lacks_);
 }
 
 void CondensedBase::copy_state(CondensedState& to) const {

@@ -5,7 +5,6 @@
 // is solved for with the factor when somebody asks.
 #pragma once
 
-#include <atomic>
 #include <memory>
 
 #include "linear_algebra/factor.hpp"
@@ -49,9 +48,9 @@ struct CondensedState {
 
 class CondensedBase final : public Base {
  public:
-  /// Over the unknowns `dofs`, ascending. Throws Stopped once `stop` is true.
+  /// Over the unknowns `dofs`, ascending. Throws Stopped when the work was given up.
   CondensedBase(std::shared_ptr<const linear_algebra::Factor> factor, std::span<const Index> dofs,
-                const std::atomic<bool>* stop = nullptr);
+                const linear_algebra::FactorWork& work = {});
   /// X_SS of a body that has lost stiffness, all of it within S, since it was factored; `before` is
   /// settled.
   CondensedBase(const CondensedState& before, Eigen::MatrixXd x,
@@ -69,9 +68,15 @@ class CondensedBase final : public Base {
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
   /// What stands behind the last expand().
   void equilibrium(Equilibrium& of) const;
-  /// What the last expand() lacks on S by the factor's own inverse, D u as a force: with X0 that
-  /// inverse and g = X0 (f + B c + D u) - u it is g + X D g. All loads inside S.
-  [[nodiscard]] Eigen::VectorXd drift() const;
+  /// u on S, of the last expand() or expand_mended().
+  [[nodiscard]] const Eigen::VectorXd& on_region() const { return u_; }
+  /// What that lacks by the factor's own inverse, D u as a force: with X0 that inverse and
+  /// g = X0 (f + B c + D u) - u it is g + X D g. Until the next call.
+  [[nodiscard]] const Eigen::VectorXd& drift();
+  /// B^T (u + drift()), which expand_mended() goes by; until the next call of this or load().
+  [[nodiscard]] const Eigen::VectorXd& project_mended();
+  /// expand() and what has drifted by all project_mended() since.
+  void expand_mended(const Eigen::VectorXd& c, Eigen::VectorXd& u);
   /// `product` takes what it can of every expand() from now on; it must outlive this. Null: nobody.
   void multiply_by(RegionProduct* product);
   /// `growth` may have columns for S at hand where it grows; it must outlive this. Null: nobody
@@ -81,6 +86,8 @@ class CondensedBase final : public Base {
   [[nodiscard]] const std::shared_ptr<const linear_algebra::Factor>& factor() const {
     return factor_;
   }
+  /// X_SS is more than the factor's own.
+  [[nodiscard]] bool drifts() const { return lost_ != nullptr; }
   /// Columns of X_SS B into `to`, shape (rows x columns): the first rows of dofs().
   void columns(Index first, Eigen::Ref<Eigen::MatrixXd> to) const;
   /// Of B.
@@ -97,17 +104,21 @@ class CondensedBase final : public Base {
                 std::shared_ptr<const Eigen::MatrixXd> x);
   void grow(std::span<const Difference> vectors);
   void shrink(std::size_t size);
+  [[nodiscard]] const Eigen::VectorXd& project(const Eigen::VectorXd& v);
+  void multiply(const Eigen::VectorXd& c);
+  void write(Eigen::VectorXd& u) const;
   void collect_forces(const Eigen::VectorXd& c, Index first, Index end);
   void add_grown_rows(Index from);
   void add_loaded_columns();
   void add_lost_to(Eigen::MatrixXd& columns);
   void add(const GrownInverse& x, std::span<const Index> places, std::span<const double> values,
            double* y);
+  void add_product(const GrownInverse& x, const Eigen::VectorXd& v, Eigen::VectorXd& y);
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
   void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
   void make_room_everywhere();
   void lose(const double* u, std::span<double> moved, std::span<double> forces) const;
-  [[nodiscard]] Eigen::VectorXd forces_lost(const Eigen::VectorXd& u) const;
+  void find_lost_forces(const Eigen::VectorXd& u);
   void add_lost();
 
   std::shared_ptr<const linear_algebra::Factor> factor_;
@@ -129,6 +140,10 @@ class CondensedBase final : public Base {
   std::vector<Index> loaded_;  // places that a load touches
   std::vector<double> loads_;  // those of damage that the host multiplies
   Eigen::VectorXd of_load_;    // (X f)_S
+  bool outside_ = false;       // a part of the load is outside S
+  Eigen::VectorXd by_factor_;  // (X0 f)_S then
+  Eigen::VectorXd lacks_, all_forces_;
+  Eigen::VectorXd mended_;  // that has drifted since the last expand()
   Eigen::VectorXd u_, projected_, right_side_, solution_;
   // Where a load is outside S and stiffness was lost: u on the unknowns of D and D u there.
   std::vector<double> moved_, of_moved_;

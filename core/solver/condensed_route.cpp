@@ -2,12 +2,11 @@
 #include "solver/condensed_route.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <optional>
 
 #include "body/assembly.hpp"
-#include "body/stiffness_factor.hpp"
+#include "body/body_factors.hpp"
 #include "solver/background_rebase.hpp"
 #include "solver/condensed_update.hpp"
 #include "solver/load_room.hpp"
@@ -79,11 +78,11 @@ Based lay_over(const fem::Forms& in_base, std::shared_ptr<const linear_algebra::
   return based;
 }
 
-/// X_SS by a factor; given up once `stop` is true.
+/// X_SS by a factor.
 Based condensed_by(const fem::Forms& in_base, std::shared_ptr<const linear_algebra::Factor> factor,
                    std::span<const Index> dofs, bool damage,
-                   const std::atomic<bool>* stop = nullptr) {
-  auto base = std::make_unique<CondensedBase>(factor, dofs, stop);
+                   const linear_algebra::FactorWork& work) {
+  auto base = std::make_unique<CondensedBase>(factor, dofs, work);
   return lay_over(in_base, std::move(factor), std::move(base), damage);
 }
 
@@ -99,10 +98,10 @@ void check_condensed(Based& based, const fem::DamagedBody& body, const Load& loa
 /// outside follows from the forces on S by that factor, exactly. False: it cannot be had.
 bool check_updated(Based& based, const fem::DamagedBody& body, const Load& load,
                    std::span<const Index> elements) {
-  if (elements.empty() || !base_of(based).inside(load.force_dofs)) return false;
+  if (elements.empty()) return false;
   Eigen::VectorXd u, du;
   based.deferred->solve({load.force_dofs, load.forces}, load.displacements, u);
-  const Eigen::VectorXd lacks = base_of(based).drift();
+  const Eigen::VectorXd& lacks = base_of(based).drift();
   du.setZero(u.size());
   const auto dofs = base_of(based).dofs();
   for (std::size_t i = 0; i < dofs.size(); ++i) du[dofs[i]] = lacks[static_cast<Eigen::Index>(i)];
@@ -159,7 +158,7 @@ class NextBase {
   }
 
   /// On another thread; holds nothing of the last base afterwards.
-  Based make(const fem::DamagedBody& body, const Load& load,
+  Based make(const fem::DamagedBody& body, const Load& load, fem::BodyFactors& factors,
              const linear_algebra::FactorWork& work) {
     const struct AtEnd {
       NextBase& next;
@@ -167,14 +166,12 @@ class NextBase {
     } at_end{*this};
     if (state_.dofs.size() <= most_ + body.forms().gripped().size()) {
       state_.settle();
-      Based based = updated(body, load);
+      Based based = updated(body, load, work);
       if (!check_updated(based, body, load, within_)) check_condensed(based, body, load);
       if (based.check.error <= kDrift) return based;
     }
     state_.release();
-    Based based = condensed_by(
-        body.forms(), std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body, work)),
-        dofs_, true, work.stop);
+    Based based = condensed_by(body.forms(), factors.of(body, work), dofs_, true, work);
     check_condensed(based, body, load);
     return based;
   }
@@ -186,12 +183,13 @@ class NextBase {
   }
 
  private:
-  Based updated(const fem::DamagedBody& body, const Load& load) const {
-    return lay_over(
-        body.forms(), state_.factor,
-        std::make_unique<CondensedBase>(state_, updated_inverse(state_, damage_, load.force_dofs),
-                                        std::make_shared<const LostStiffness>(body, factored_)),
-        true);
+  Based updated(const fem::DamagedBody& body, const Load& load,
+                const linear_algebra::FactorWork& work) const {
+    return lay_over(body.forms(), state_.factor,
+                    std::make_unique<CondensedBase>(
+                        state_, updated_inverse(state_, damage_, load.force_dofs, work),
+                        std::make_shared<const LostStiffness>(body, factored_)),
+                    true);
   }
 
   std::span<const Index> dofs_;
@@ -210,13 +208,15 @@ class CondensedRoute final : public InverseRoute {
                  RegionProduct* product, std::size_t most)
       : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()), product_(product) {
     std::iota(all_.begin(), all_.end(), 0);
-    based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage);
+    based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage,
+                          linear_algebra::work_at_once());
     lend();
     intact_ = based_.factor.get();
     make_room(body.problem());
     if (!damage) return;
     growth_.emplace(body.problem());
     lend();
+    factors_.emplace(body.problem(), based_.factor->cholesky().shared_supernodes());
     next_.emplace(body.problem(), dofs_, most, threshold());
     coming_.emplace(body, static_cast<int>(events_of_a_base(dofs_.size())), rest);
   }
@@ -239,6 +239,22 @@ class CondensedRoute final : public InverseRoute {
   }
 
   std::span<const Index> known() const override { return base_of(based_).dofs(); }
+  bool drifts() const override { return base_of(based_).drifts(); }
+
+  bool refine(const Load& load, Eigen::VectorXd& u, Eigen::VectorXd& added) override {
+    CondensedBase& base = base_of(based_);
+    Deferred& deferred = based_.laid_over();
+    // Beyond the region nobody looks at stress.
+    if (deferred.offsets().size() > 0 || base.dofs().size() != dofs_.size()) return false;
+    before_ = base.on_region();
+    base.expand_mended(deferred.refine_at(base.project_mended(), load.displacements), u);
+    deferred.hold(load.displacements, u);
+    for (std::size_t i = 0; i < dofs_.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      added[dofs_[i]] = base.on_region()[at] - before_[at];
+    }
+    return true;
+  }
 
   bool equilibrium(Equilibrium& of) const override {
     base_of(based_).equilibrium(of);
@@ -308,9 +324,8 @@ class CondensedRoute final : public InverseRoute {
     next_->release();
     if (growth_) growth_->forget();
     based_ = {};  // frees the old base first
-    based_ = condensed_by(body_.forms(),
-                          std::make_shared<linear_algebra::Factor>(fem::factor_stiffness(body_)),
-                          dofs_, true);
+    const linear_algebra::FactorWork work = linear_algebra::work_at_once();
+    based_ = condensed_by(body_.forms(), factors_->of(body_, work), dofs_, true, work);
     lend();
     factored_ = body_.events();
     ++bases_;
@@ -334,6 +349,9 @@ class CondensedRoute final : public InverseRoute {
       plan.push_back({"damaged factor (sparse Cholesky)", based_.factor->bytes()});
     }
     if (next_) plan.push_back({"damage that the next base takes over", next_->bytes()});
+    if (factors_ && factors_->bytes() > 0) {
+      plan.push_back({"stiffness in the factor's order", factors_->bytes()});
+    }
     if (growth_ && growth_->bytes() > 0) {
       plan.push_back({"columns that the region may grow by", growth_->bytes()});
     }
@@ -357,7 +375,9 @@ class CondensedRoute final : public InverseRoute {
 
   [[nodiscard]] MakeBase make_next() {
     return [this](const fem::DamagedBody& body, const Load& load,
-                  const linear_algebra::FactorWork& work) { return next_->make(body, load, work); };
+                  const linear_algebra::FactorWork& work) {
+      return next_->make(body, load, *factors_, work);
+    };
   }
 
   /// The base that was being made begins from the damage that there was when it was begun.
@@ -386,6 +406,7 @@ class CondensedRoute final : public InverseRoute {
     whole_.reserve(all_.size(), dofs_.size());
     room_.reserve(problem.dof_count(), dofs_.size());
     everywhere_.resize(problem.dof_count());
+    before_ = base_of(based_).on_region();
   }
 
   std::size_t threshold() const {
@@ -472,6 +493,7 @@ class CondensedRoute final : public InverseRoute {
   Equilibrium whole_;
   WholeRoom room_;
   Eigen::VectorXd everywhere_;
+  Eigen::VectorXd before_;  // a solution on S that is refined
   double energy_tolerance_ = 0;
   int bases_ = 1;
   NewBases new_bases_;
@@ -480,6 +502,7 @@ class CondensedRoute final : public InverseRoute {
   bool strayed_ = false;        // S has grown some time
   std::vector<Index> touched_;  // unknowns of an event
   std::vector<Index> named_;    // elements that a host may destroy next
+  std::optional<fem::BodyFactors> factors_;
   std::optional<NextBase> next_;
   std::optional<BackgroundRebase> coming_;  // last: its thread uses what is above
 };

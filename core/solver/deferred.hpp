@@ -74,6 +74,12 @@ class Deferred {
   /// rank() entries, until the next call.
   const Eigen::VectorXd& coefficients(const Forces& forces, std::span<const double> displacement,
                                       double energy_tolerance = 0);
+  /// Refines the forces x of the last solution once by u itself, as B^T u, and holds the grips:
+  /// where u is more exact than X (f + B x). No new nodes. Returns x.
+  const Eigen::VectorXd& refine_at(const Eigen::VectorXd& u_in_b,
+                                   std::span<const double> displacement);
+  /// Puts the gripped unknowns where they are held, free of rounding.
+  void hold(std::span<const double> displacement, Eigen::VectorXd& u) const;
   /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
   /// residual where damage acts, in the base's arithmetic.
   [[nodiscard]] double defect_energy() const { return defect_energy_; }
@@ -162,6 +168,7 @@ class Deferred {
   [[nodiscard]] Forces on_body(const Forces& forces);
   void start(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
+  [[nodiscard]] double refine_at_v(std::span<const double> displacement);
   [[nodiscard]] double refine_by_base(std::span<const double> displacement);
   [[nodiscard]] double refine_with_border(std::span<const double> displacement);
   void add_grips(std::span<const double> displacement);

@@ -36,9 +36,20 @@ const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
 void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
                      double energy_tolerance) {
   base_->expand(coefficients(forces, displacement, energy_tolerance), u);
-  for (std::size_t i = 0; i < held_.size(); ++i) {  // free of rounding
+  hold(displacement, u);
+}
+
+void Deferred::hold(std::span<const double> displacement, Eigen::VectorXd& u) const {
+  for (std::size_t i = 0; i < held_.size(); ++i) {
     u[held_[i].dof] = displacement.empty() ? 0.0 : displacement[i];
   }
+}
+
+const Eigen::VectorXd& Deferred::refine_at(const Eigen::VectorXd& u_in_b,
+                                           std::span<const double> displacement) {
+  v_.head(count()) = u_in_b.head(count());
+  defect_energy_ = refine_at_v(displacement);
+  return x_;
 }
 
 void Deferred::correct(const Forces& residual, Eigen::VectorXd& du) {
@@ -90,7 +101,13 @@ void Deferred::start(const Eigen::VectorXd& p, std::span<const double> displacem
 double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displacement) {
   const Eigen::Index n = count();
   multiply(compliance_, n, n, x_, v_);
-  v_.head(n) += p.head(n);               // B^T u
+  v_.head(n) += p.head(n);  // B^T u
+  return refine_at_v(displacement);
+}
+
+/// The same with v_ = B^T u at hand.
+double Deferred::refine_at_v(std::span<const double> displacement) {
+  const Eigen::Index n = count();
   multiply(d_, n, changed_, v_, lack_);  // D B^T u - x
   lack_.head(n) -= x_.head(n);
   for (Index d : units_) lack_[unit_[d]] = 0;  // where only grips act

@@ -19,6 +19,10 @@ constexpr double kAmplified = 100;
 constexpr double kRefined = 1e-10;
 // A displacement so many times that of the last full check (a piece has come loose) needs another.
 constexpr double kGrowth = 10;
+// The bound by energy is of the worst element there is. What a refinement has changed stress by is
+// some thousandths of it, and stays within so many times that for so many events.
+constexpr double kAllowance = 100;
+constexpr int kEventsOfAWorth = 16;
 // What rounding of the displacement costs by its bound, so many times.
 constexpr double kRoundings = 10;
 
@@ -30,9 +34,17 @@ EnergyCheck::EnergyCheck(const Problem& problem)
       stress_of_energy_(solver::largest_stress_of_energy(problem)),
       known_(problem) {}
 
-void EnergyCheck::checked(const Load& load, const SolveReport& report, double unrefined, int bases,
-                          double largest_u, double largest) {
+void EnergyCheck::checked(const Load& load, const SolveReport& report, double unrefined,
+                          bool drifts, int bases, double largest_u, double largest) {
   report_ = report;
+  if (!drifts) of_factor_ = unrefined;
+  known_.checked(load, {unrefined, 0, largest_u, largest}, bases);
+}
+
+void EnergyCheck::refined(const Load& load, double unrefined, double energy, int bases,
+                          double largest_u, double largest) {
+  worth_ = energy > 0 ? kAllowance * unrefined * largest / std::sqrt(energy) : HUGE_VAL;
+  worth_events_ = kEventsOfAWorth;
   known_.checked(load, {unrefined, 0, largest_u, largest}, bases);
 }
 
@@ -56,7 +68,8 @@ std::optional<SolveReport> EnergyCheck::known(const CheckedLoads::Sum& expected,
   if (!(largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
   if (!(expected.largest_stress <= kGrowth * largest)) return std::nullopt;  // shares that cancel
   const double of_base = std::max(expected.error, expected.stress_error / largest),
-               lacking = stress_of_energy_ * std::sqrt(std::max(0.0, energy)) / largest;
+               worth = std::min(stress_of_energy_, worth_),
+               lacking = worth * std::sqrt(std::max(0.0, energy)) / largest;
   if (expected.fresh) {  // the same of a sum
     report.error = std::max(report.error, of_base) + lacking;
     if (report.error <= std::min(kEnough, tolerance)) return report;
@@ -64,6 +77,18 @@ std::optional<SolveReport> EnergyCheck::known(const CheckedLoads::Sum& expected,
   report.error = kAmplified * of_base + lacking;
   if (!(report.error <= std::min(kEnough, tolerance / 10))) return std::nullopt;
   return report;
+}
+
+std::optional<SolveReport> EnergyCheck::known_refined(double error, double largest) const {
+  if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
+  SolveReport known = report_;
+  known.polished = false;
+  known.iterations = 0;
+  known.error = error + kAmplified * of_factor_;
+  if (!(known.error <= std::min(kEnough, problem_.scene().solver.tolerance / 10))) {
+    return std::nullopt;
+  }
+  return known;
 }
 
 std::optional<SolveReport> EnergyCheck::known_by_base(const SolveReport& report, double unrefined,

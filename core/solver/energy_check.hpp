@@ -6,6 +6,7 @@
 // stress that it misses.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "solver/base_check.hpp"
@@ -18,13 +19,22 @@ class EnergyCheck {
   explicit EnergyCheck(const Problem& problem);
 
   /// Takes what a full check said of a load, and the error before it refined the solution: that is
-  /// what the base gives by itself. `largest`: the largest stress over live elements.
-  void checked(const Load& load, const SolveReport& report, double unrefined, int bases,
-               double largest_u, double largest);
+  /// what the base gives by itself, of which nothing is the factor's where it `drifts`. `largest`:
+  /// the largest stress over live elements.
+  void checked(const Load& load, const SolveReport& report, double unrefined, bool drifts,
+               int bases, double largest_u, double largest);
+  /// The same of a solution that was refined on the region alone.
+  /// `energy`: of what the deferred update had lacked there.
+  void refined(const Load& load, double unrefined, double energy, int bases, double largest_u,
+               double largest);
   /// Nothing is known any more: the loads to come are of other grips.
   void forget() { known_.forget(); }
   /// Takes what is known of a base that is new since the last full check.
-  void follow(int bases, const BaseCheck& check) { static_cast<void>(known_.follow(bases, check)); }
+  void follow(int bases, const BaseCheck& check, bool drifts) {
+    if (!known_.follow(bases, check)) return;
+    worth_ = HUGE_VAL;
+    if (!drifts) of_factor_ = check.error;
+  }
   /// Whether what this knows is of loads on the same unknowns.
   [[nodiscard]] bool takes(const Load& load) const { return known_.takes(load); }
   /// What full checks let expect of another load; nothing: it needs a full check.
@@ -32,7 +42,10 @@ class EnergyCheck {
     return known_.expected(load, bases);
   }
   /// An event has changed the body.
-  void event() { known_.event(); }
+  void event() {
+    known_.event();
+    if (worth_events_ > 0 && --worth_events_ == 0) worth_ = HUGE_VAL;
+  }
 
   /// Energy [N mm] of a defect that needs no refinement.
   [[nodiscard]] double energy_tolerance(const CheckedLoads::Sum& expected) const;
@@ -40,6 +53,10 @@ class EnergyCheck {
   /// what the deferred update lacked (Deferred::defect_energy).
   [[nodiscard]] std::optional<SolveReport> known(const CheckedLoads::Sum& expected, double energy,
                                                  double largest_u, double largest) const;
+  /// What is known of a solution whose last refinement on the region alone has changed stress by
+  /// `error`, relative: that sees what the base and the update lack beside the factor. Nothing: a
+  /// full check is needed.
+  [[nodiscard]] std::optional<SolveReport> known_refined(double error, double largest) const;
   /// The same where grips are new since the last full check on this base, which said `report` and
   /// found `unrefined` before it refined. What they exert are forces on the region, as those of
   /// damage are: the base gives those wrong by as much, with the same room.
@@ -49,9 +66,14 @@ class EnergyCheck {
 
  private:
   const Problem& problem_;
-  double stress_of_rounding_;  // of a displacement of 1 mm
-  double stress_of_energy_;    // sqrt of the largest stress^2 per energy over all elements
-  SolveReport report_;         // of the last full check
+  double stress_of_rounding_;    // of a displacement of 1 mm
+  double stress_of_energy_;      // sqrt of the largest stress^2 per energy over all elements
+  SolveReport report_;           // of the last full check
+  double of_factor_ = HUGE_VAL;  // what the last full check of a factor's own inverse found
+  // Stress [MPa] per root of such an energy, with room, as a refinement on the region has found it;
+  // for so many events more.
+  double worth_ = HUGE_VAL;
+  int worth_events_ = 0;
   CheckedLoads known_;
 };
 

@@ -65,8 +65,8 @@ FiniteBase::FiniteBase(const fem::HyperelasticBody& body, std::vector<double> u,
   for (Index d : problem_->gripped_dofs()) coupled_[d] = 0;
 }
 
-void FiniteBase::keep_inverse() {
-  inverse_ = factor_.inverse();
+void FiniteBase::keep_inverse(const linear_algebra::FactorWork& work) {
+  inverse_ = factor_.inverse(work);
   stamps_.inverse = next_stamp();
 }
 

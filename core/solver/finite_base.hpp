@@ -51,7 +51,7 @@ class FiniteBase {
   /// From now on x = Q A^-1 Q^T b, Q the rotations of the nodes from the base's state to u.
   void turn(const RestingBody& now, std::span<const double> u);
   /// Computes A^-1, dense: from now on solve() multiplies by it. What follows is the same.
-  void keep_inverse();
+  void keep_inverse(const linear_algebra::FactorWork& work = {});
   /// x = A^-1 b.
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
   /// The same of several right sides at once, in their place, the unknowns in an order of the

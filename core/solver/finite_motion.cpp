@@ -282,8 +282,9 @@ bool FiniteMotion::better_where_it_is(const FiniteTarget& target) const {
 bool FiniteMotion::renew(const std::vector<double>& u, const fem::Inertia& inertia,
                          Report& report) {
   const NewBaseTimer timer(report.new_bases);
-  base_ = projected_base(moving_.body(), u, pattern(), report.factors, {}, inertia);
-  if (base_ && options_.inverse && !parted_) base_->keep_inverse();
+  base_ = projected_base(moving_.body(), u, pattern(), report.factors,
+                         linear_algebra::work_at_once(), inertia);
+  if (base_ && options_.inverse && !parted_) base_->keep_inverse(linear_algebra::work_at_once());
   return base_ != nullptr;
 }
 
@@ -340,8 +341,8 @@ bool FiniteMotion::take_exact(const std::vector<double>& u, const fem::Inertia& 
   const NewBaseTimer timer(report.new_bases);
   ++report.factors;
   try {
-    base_ =
-        std::make_unique<FiniteBase>(moving_.body(), u, fem::Tangent::exact, pattern(), inertia);
+    base_ = std::make_unique<FiniteBase>(moving_.body(), u, fem::Tangent::exact, pattern(), inertia,
+                                         linear_algebra::work_at_once());
     return true;
   } catch (const NumericalError&) {
     return false;

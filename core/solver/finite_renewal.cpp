@@ -81,7 +81,7 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
   thread_ = std::thread(
       [this, &pattern, base, judgement, inertia, made = std::move(made), stable = std::move(stable),
        of = fem::HyperelasticBody{body.problem, body.law_of_volume, out_, body.split}]() mutable {
-        const linear_algebra::FactorWork work{.stop = &unwanted_};
+        const linear_algebra::FactorWork work = linear_algebra::work_beside(unwanted_);
         // Out of memory or unwanted: the old base goes on.
         const auto keep = [&](auto& promise, auto make, auto otherwise) {
           if (rest_.count() > 0) std::this_thread::sleep_for(rest_);
@@ -95,7 +95,7 @@ void FiniteRenewal::ask(const fem::HyperelasticBody& body, const std::vector<dou
           int factors = 0;
           auto one = inertia.factor > 0 ? projected_base(of, u_, pattern, factors, work, inertia)
                                         : base_at_rest(of, u_, pattern, factors, work);
-          if (inverse_ && one) one->keep_inverse();
+          if (inverse_ && one) one->keep_inverse(work);
           return one;
         };
         if (base) keep(made, make_base, std::unique_ptr<FiniteBase>());

@@ -144,12 +144,14 @@ void FiniteStatics::body_changed() {
 bool FiniteStatics::renew(const std::vector<double>& u, fem::Tangent kind, Report& report) {
   const NewBaseTimer timer(report.new_bases);
   if (kind == fem::Tangent::projected) {
-    base_ = projected_base(resting_.body(), u, pattern_.get(), report.factors);
+    base_ = projected_base(resting_.body(), u, pattern_.get(), report.factors,
+                           linear_algebra::work_at_once());
     return base_ != nullptr;
   }
   ++report.factors;
   try {
-    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, pattern_.get());
+    base_ = std::make_unique<FiniteBase>(resting_.body(), u, kind, pattern_.get(), fem::Inertia{},
+                                         linear_algebra::work_at_once());
   } catch (const NumericalError&) {
     base_.reset();
   }
@@ -161,7 +163,7 @@ bool FiniteStatics::ensure_base(const std::vector<double>& u, Report& report) {
   if (base_ && !base_->follow(resting_, options_.most_rank)) base_.reset();
   if (!base_) {
     if (!renew(u, fem::Tangent::projected, report)) return false;
-    if (options_.inverse && !parted_) base_->keep_inverse();
+    if (options_.inverse && !parted_) base_->keep_inverse(linear_algebra::work_at_once());
   }
   report.rank = std::max(report.rank, base_->rank());
   return true;
@@ -457,14 +459,15 @@ void FiniteStatics::renew_if_due(const FiniteTarget& end, Report& report) {
   worn_ = 0;
   {
     const NewBaseTimer timer(report.new_bases);
-    if (auto base = base_at_rest(resting_.body(), u_, pattern_.get(), report.factors)) {
-      if (options_.inverse) base->keep_inverse();
+    if (auto base = base_at_rest(resting_.body(), u_, pattern_.get(), report.factors,
+                                 linear_algebra::work_at_once())) {
+      if (options_.inverse) base->keep_inverse(linear_algebra::work_at_once());
       base_ = std::move(base);
     }
   }
   if (!check) return;
   ++report.factors;
-  judged(is_stable(resting_.body(), u_, pattern_.get()));
+  judged(is_stable(resting_.body(), u_, pattern_.get(), linear_algebra::work_at_once()));
   if (!suspected_) return;
   state_ = shown_;
   const Report at_rest = report;

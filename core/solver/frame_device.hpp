@@ -3,6 +3,8 @@
 // that it was given last, a solution in work, its residual and its stress, and a correction.
 #pragma once
 
+#include <optional>
+
 #include "solver/base_check.hpp"
 #include "solver/deferred.hpp"
 
@@ -81,6 +83,14 @@ class FrameDevice {
   };
   /// Puts the solution on the region in work.
   virtual OnRegion solve_region(double /*energy_tolerance*/) { return {}; }
+  /// Whether the base has an error beside its factor's (InverseRoute::drifts()).
+  [[nodiscard]] virtual bool drifts() const { return false; }
+  struct RefinedOnRegion {
+    double stress = 0;  ///< largest of what was added [MPa]
+    OnRegion solution;
+  };
+  /// Refines the solution of solve_region() once; nothing: it cannot be had on the region alone.
+  virtual std::optional<RefinedOnRegion> refine_region() { return std::nullopt; }
   /// Of a solution that solve() has put in work.
   virtual OnRegion on_region() { return {}; }
 };

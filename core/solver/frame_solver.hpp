@@ -40,6 +40,7 @@ class FrameSolver {
   SolveReport solve_condensed(const Load& load);
   [[nodiscard]] std::optional<SolveReport> solve_known(const Load& load);
   [[nodiscard]] std::optional<SolveReport> solve_by_base(const EnergyCheck& check);
+  [[nodiscard]] std::optional<SolveReport> refine_on_region(EnergyCheck& check, const Load& load);
   [[nodiscard]] FrameCheck* check_of(const Load& load);
   [[nodiscard]] int bases() const;
   [[nodiscard]] bool speaks_for_itself() const;

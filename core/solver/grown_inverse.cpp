@@ -39,16 +39,6 @@ void GrownInverse::add(const Eigen::MatrixXd& columns) {
   added_ += k;
 }
 
-Eigen::VectorXd GrownInverse::times(const Eigen::VectorXd& v) const {
-  const Eigen::Index n = first_rows();
-  Eigen::VectorXd result(size());
-  result.head(n) = *first_ * v.head(n);
-  if (added_ == 0) return result;
-  result.head(n) += right_->leftCols(added_) * v.tail(added_);
-  result.tail(added_) = below_->topLeftCorner(added_, size()) * v;
-  return result;
-}
-
 std::shared_ptr<const Eigen::MatrixXd> GrownInverse::whole() const {
   if (added_ == 0) return first_;
   const Eigen::Index n = first_rows();

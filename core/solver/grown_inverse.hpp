@@ -40,8 +40,6 @@ class GrownInverse {
   /// Takes the last ones away, down to so many unknowns that have come. Copies that know of them
   /// must not be read any more.
   void keep_added(Eigen::Index added) { added_ = std::min(added_, added); }
-  /// X v.
-  [[nodiscard]] Eigen::VectorXd times(const Eigen::VectorXd& v) const;
   /// As one matrix: that of the beginning where nothing has come, else a new one.
   [[nodiscard]] std::shared_ptr<const Eigen::MatrixXd> whole() const;
   /// That of the beginning: all of it where nothing has come.

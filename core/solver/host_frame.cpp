@@ -170,11 +170,25 @@ FrameDevice::OnRegion HostFrame::solve_region(double energy_tolerance) {
   route_.set_energy_tolerance(energy_tolerance);
   route_.solve(load_, force_, u_);
   const OnRegion found = on_region();
+  find_reactions();
+  return found;
+}
+
+/// By the forces of the route's grips.
+void HostFrame::find_reactions() {
   const auto anchors = anchors_.of(gripped());
   for (std::size_t g = 0; g < gripped().size(); ++g) {
     reactions_[g] = grip_force(g) - anchors[g] * u_[gripped()[g]];  // the anchor's share
   }
-  return found;
+}
+
+std::optional<FrameDevice::RefinedOnRegion> HostFrame::refine_region() {
+  if (du_.size() != u_.size()) du_.setZero(u_.size());
+  if (!route_.refine(load_, u_, du_)) return std::nullopt;
+  const double stress = body_.largest_stress(du_, fields_.region()->elements);
+  const OnRegion found = on_region();
+  find_reactions();
+  return RefinedOnRegion{stress, found};
 }
 
 FrameDevice::OnRegion HostFrame::on_region() {

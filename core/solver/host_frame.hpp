@@ -59,7 +59,9 @@ class HostFrame final : public FrameDevice {
   [[nodiscard]] const BaseCheck& base_check() const override { return route_.base_check(); }
   [[nodiscard]] bool condensed() const override { return fields_.region() != nullptr; }
   OnRegion solve_region(double energy_tolerance) override;
+  std::optional<RefinedOnRegion> refine_region() override;
   OnRegion on_region() override;
+  [[nodiscard]] bool drifts() const override { return route_.drifts(); }
 
   /// Of computing the stress of solutions, all so far [ms].
   [[nodiscard]] double stress_ms() const { return stress_ms_; }
@@ -69,6 +71,7 @@ class HostFrame final : public FrameDevice {
   void compute_residual();
   void make_room_for_offsets();
   void compute_stress();
+  void find_reactions();
   [[nodiscard]] const Problem& problem() const { return body_.problem(); }
   [[nodiscard]] InverseRoute& route() { return other_ ? *other_ : route_; }
   [[nodiscard]] double grip_force(std::size_t g) const;

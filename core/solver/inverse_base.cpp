@@ -14,7 +14,7 @@ namespace sunder::solver {
 Eigen::MatrixXd InverseBase::inverse_of(const linear_algebra::Factor& factor) {
   std::vector<Index> all(static_cast<std::size_t>(factor.cholesky().size()));
   std::iota(all.begin(), all.end(), 0);
-  return factor.inverse_columns(all);
+  return factor.inverse_columns(all, linear_algebra::work_at_once());
 }
 
 InverseBase::InverseBase(const linear_algebra::Factor& factor,

@@ -33,6 +33,14 @@ class InverseRoute {
   virtual Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& x) = 0;
   /// Fills what solve() left out of x: a condensed route solves for its own unknowns only.
   virtual void complete(Eigen::VectorXd&) {}
+  /// Whether the inverse that it works with is more than a factor's own, with an error beside that.
+  [[nodiscard]] virtual bool drifts() const { return false; }
+  /// Of a route that leaves some out: refines the last solve() once on its own unknowns by the
+  /// factor's own inverse and the damage, and gives what that has added to x there. False, and
+  /// nothing changes: it cannot.
+  virtual bool refine(const Load&, Eigen::VectorXd& /*x*/, Eigen::VectorXd& /*added*/) {
+    return false;
+  }
   /// The unknowns that solve() finds on a route that leaves some out.
   [[nodiscard]] virtual std::span<const Index> known() const { return {}; }
   /// What complete() would need later on, for the last solve(); false: it left nothing out.

@@ -107,7 +107,7 @@ bool RenewedUpdate::rebase() {
   saved_ms_ = saved_ms();
   made_.reset();
   based_ = {};  // frees the old base first
-  based_ = make_(body_, {});
+  based_ = make_(body_, linear_algebra::work_at_once());
   renewed();
   return true;
 }

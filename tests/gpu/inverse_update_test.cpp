@@ -127,8 +127,9 @@ TEST_F(Inversion, AnInverseThatIsNotTheBasesIsNotRead) {
   OnDevice device(gpu::Variant::lvp, true);
   Damaged300 torn(device, 0);
   const auto intact = std::make_shared<const gpu::HostInverse>(*torn.problem, false),
-             damaged = std::make_shared<const gpu::HostInverse>(torn.body, false,
-                                                                linear_algebra::FactorWork{});
+             damaged = std::make_shared<const gpu::HostInverse>(
+                 std::make_shared<const linear_algebra::Factor>(torn.body.stiffness()), false,
+                 linear_algebra::FactorWork{});
   for (const auto& of : {intact, damaged}) {
     gpu::HostBase base(of);
     base.keep_columns();

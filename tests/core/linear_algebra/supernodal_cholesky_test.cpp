@@ -88,6 +88,36 @@ TEST(SupernodalCholesky, AnEntryHasTheSameBitsWhateverItIsComputedWith) {
   }
 }
 
+// Blocks of 64 columns, the last one of fewer; more threads than blocks.
+TEST(SupernodalCholesky, SeveralThreadsGiveTheSameBits) {
+  const Index n = 331;
+  const Factor factor(random_matrix(n, 2, 3));
+  std::vector<Index> rows(n), columns;
+  std::iota(rows.begin(), rows.end(), 0);
+  for (Index j = n - 1; j >= 0; j -= 2) columns.push_back(j);
+  const Eigen::MatrixXd inverse = factor.inverse(), some = factor.inverse_columns(columns),
+                        block = factor.inverse_block(columns, columns);
+  for (const int threads : {2, 3, 16}) {
+    SCOPED_TRACE(threads);
+    const FactorWork work{.threads = threads};
+    EXPECT_EQ(factor.inverse(work), inverse);
+    EXPECT_EQ(factor.inverse_columns(columns, work), some);
+    EXPECT_EQ(factor.inverse_block(columns, columns, work), block);
+  }
+}
+
+TEST(SupernodalCholesky, AnInverseIsGivenUp) {
+  const Factor factor(random_matrix(331, 2, 3));
+  const std::atomic<bool> stop{true};
+  const std::vector<Index> columns{3, 5};
+  for (const int threads : {1, 3}) {
+    const FactorWork work{.threads = threads, .stop = &stop};
+    EXPECT_THROW((void)factor.inverse(work), Stopped);
+    EXPECT_THROW((void)factor.inverse_columns(columns, work), Stopped);
+    EXPECT_THROW((void)factor.inverse_block(columns, columns, work), Stopped);
+  }
+}
+
 TEST(SupernodalCholesky, ForwardSolutionStaysOnItsPath) {
   const SparseMatrix a = random_matrix(597, 1, 11);
   const SupernodalCholesky l(a);

@@ -111,6 +111,7 @@ TEST(UpdatedInverse, IsThatOfTheDamagedBody) {
   Deferred deferred(torn.problem, std::move(base));
   for (const Index& e : torn.elements) ASSERT_TRUE(deferred.destroy({&e, 1}));
   const Eigen::MatrixXd x = updated_inverse(state_of(condensed), damage_of(deferred));
+  EXPECT_EQ(updated_inverse(state_of(condensed), damage_of(deferred), {}, {.threads = 3}), x);
   const Eigen::MatrixXd expected =
       linear_algebra::Factor(fem::assemble_lower(torn.problem, torn.scale))
           .inverse_block(dofs, dofs);
@@ -149,6 +150,14 @@ TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
   const Index place = 3, loaded = dofs[place], elsewhere = 5;
   CondensedState state = state_of(condensed);
   const Eigen::MatrixXd mended = updated_inverse(state, damage_of(deferred), {&loaded, 1});
+  for (const int threads : {2, 3}) {
+    EXPECT_EQ(updated_inverse(state, damage_of(deferred), {&loaded, 1}, {.threads = threads}),
+              mended)
+        << "other bits by several threads";
+  }
+  const std::atomic<bool> stop{true};
+  EXPECT_THROW((void)updated_inverse(state, damage_of(deferred), {}, {.stop = &stop}),
+               linear_algebra::Stopped);
   state.lost = nullptr;  // as if it were the factor's own
   const Eigen::MatrixXd plain = updated_inverse(state, damage_of(deferred), {&loaded, 1});
   const Eigen::MatrixXd expected =
@@ -161,6 +170,63 @@ TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
   EXPECT_GE(error(plain, place), kLacks / 10);
   EXPECT_GE(error(mended, elsewhere), kLacks / 10) << "other columns wait for damage or loads";
   EXPECT_EQ(mended, mended.transpose());
+}
+
+// As the one above, but the solution is mended and not the inverse: under a load on S and under one
+// that is not, with a grip.
+TEST(CondensedBase, AWornInverseIsMadeUpForByTheFactor) {
+  constexpr double kLacks = 1e-7;
+  const Torn torn;
+  const std::span<const Index> elements = torn.elements;
+  const LostStiffness all(torn.problem, elements);
+  const auto before = std::make_shared<const LostStiffness>(torn.problem, elements.first(20));
+  std::vector<Index> dofs(all.dofs().begin(), all.dofs().end());
+  std::vector<double> scale(torn.scale.size(), 1.0);
+  for (Index e : elements.first(20)) scale[e] = torn.problem.scene().fracture.alpha;
+  const auto intact =
+      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {}));
+  const linear_algebra::Factor torn_factor(fem::assemble_lower(torn.problem, torn.scale));
+  const Eigen::MatrixXd x0 = intact->inverse_block(dofs, dofs),
+                        x = linear_algebra::Factor(fem::assemble_lower(torn.problem, scale))
+                                .inverse_block(dofs, dofs) *
+                            (1 + kLacks);
+  const CondensedState worn{
+      intact, dofs, {}, GrownInverse(std::make_shared<const Eigen::MatrixXd>(x0)), before, {}};
+  auto owned = std::make_unique<CondensedBase>(worn, x, before);
+  CondensedBase& base = *owned;
+  EXPECT_TRUE(base.drifts());
+  Deferred deferred(torn.problem, std::move(owned));
+  for (const Index& e : elements.subspan(20)) ASSERT_TRUE(deferred.destroy({&e, 1}));
+  const Index grip = dofs[7];
+  ASSERT_TRUE(deferred.follow({.grasp = {&grip, 1}}));
+
+  Index outside = 0;
+  while (std::ranges::binary_search(all.dofs(), outside)) ++outside;
+  for (const Index loaded : {dofs[3], outside}) {
+    SCOPED_TRACE(loaded == outside ? "outside" : "on S");
+    const double force = 2, held[] = {0.25};
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(torn.problem.dof_count()), unit = f, u;
+    f[loaded] = force;
+    unit[grip] = 1;
+    const Eigen::VectorXd of_grip = torn_factor.solve(unit), of_force = torn_factor.solve(f);
+    const Eigen::VectorXd exact = of_force + of_grip * ((held[0] - of_force[grip]) / of_grip[grip]);
+    const auto error = [&] {
+      double square = 0, all_square = 0;
+      for (Index d : dofs) {
+        square += (u[d] - exact[d]) * (u[d] - exact[d]);
+        all_square += exact[d] * exact[d];
+      }
+      return std::sqrt(square / all_square);
+    };
+    deferred.solve({{&loaded, 1}, {&force, 1}}, held, u);
+    EXPECT_GE(error(), kLacks / 100);
+    for (int pass = 0; pass < 2; ++pass) {
+      base.expand_mended(deferred.refine_at(base.project_mended(), held), u);
+      deferred.hold(held, u);
+      EXPECT_LE(error(), pass == 0 ? 1e-10 : 1e-11);
+    }
+    EXPECT_EQ(u[grip], held[0]);
+  }
 }
 
 }  // namespace

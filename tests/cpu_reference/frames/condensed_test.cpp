@@ -196,6 +196,44 @@ TEST(CondensedRoute, GrowsAndIsLoadedOutsideItsRegionOnANewBase) {
   expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
 }
 
+// What a long tear makes worse on a large region is found and mended there: no frame solves for the
+// whole body again.
+TEST(CondensedRoute, ChecksALongTearOnItsRegionAlone) {
+  Scene scene;
+  const double h = 50.0 / 71, edge = 24 * h;
+  scene.mesh = structured_board({71, 71, 1, 50, 50, 2.5}, [edge](const Vec3& x) {
+    return x.x() > 50 - edge && std::abs(x.y() - 25) < edge / 2 ? "patch" : "organ";
+  });
+  scene.materials = {{"patch", {5, 0.4, 2.0}}, {"organ", {5, 0.4, std::nullopt}}};
+  scene.supports.push_back({Box{Vec3(-1, 49.99, -1), Vec3(51, 50.01, 4)}, Axes{7}});
+  scene.solver.backend = "cpu";
+  scene.solver.route = Route::condensed;
+  const Body body(std::move(scene));
+  const auto force = corner_force(body.problem->mesh());
+  body.load(force);
+  const double residual = body.backend->solve().residual;  // of the full check
+  int mended = 0;
+  const Mesh& mesh = body.problem->mesh();
+  std::vector<Index> slot;  // row by row from the middle, from the edge inwards
+  for (Index e = 0; e < body.problem->tet_count(); ++e) {
+    if (body.problem->breakable(e)) slot.push_back(e);
+  }
+  std::ranges::sort(slot, {}, [&](Index e) {
+    const Vec3 c = centroid(mesh, e);
+    return std::pair(std::round(std::abs(c.y() - 25.01)), -c.x());
+  });
+  for (const Index& e : std::span(slot).first(560)) {
+    body.backend->destroy({&e, 1});
+    body.load(force);
+    const SolveReport report = body.backend->solve();
+    EXPECT_EQ(report.residual, residual) << "another full check";
+    EXPECT_LE(report.error, 1e-8);
+    mended += report.back_solves > 1 ? 1 : 0;
+  }
+  EXPECT_GT(mended, 0) << "the bound by energy has sufficed all along: a test of nothing";
+  expect_agreement(body, force, body.backend->destroyed(), kCrackTolerance);
+}
+
 /// Two cuts through what nobody expected to break, 144 elements, that leave the board in one piece.
 std::vector<Index> cuts_beyond(const Mesh& mesh) {
   std::vector<Index> order;
