@@ -182,9 +182,14 @@ void HostBase::expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) {
 }
 
 std::vector<BufferPlan> HostBase::buffers() const {
-  return {{"factor and inverse of the base (host)", inverse_->bytes()},
-          {"exact columns (host)",
-           static_cast<std::size_t>(columns_.size() + units_.size()) * sizeof(double)}};
+  std::vector<BufferPlan> plan = {
+      {"factor and inverse of the base (host)", inverse_->bytes()},
+      {"exact columns (host)",
+       static_cast<std::size_t>(columns_.size() + units_.size()) * sizeof(double)}};
+  if (factors_ && factors_->bytes() > 0) {
+    plan.push_back({"stiffness in the factor's order (host)", factors_->bytes()});
+  }
+  return plan;
 }
 
 }  // namespace sunder::gpu

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "body/body_factors.hpp"
 #include "body/damaged_body.hpp"
 #include "gpu/host_inverse.hpp"
 #include "solver/base.hpp"
@@ -46,6 +47,8 @@ class HostBase final : public solver::Base {
   const Eigen::VectorXd& load(const solver::Forces& forces) override;
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
   [[nodiscard]] std::vector<BufferPlan> buffers() const override;
+  /// Counts what later bases are made by among buffers().
+  void count_in(std::shared_ptr<const fem::BodyFactors> factors) { factors_ = std::move(factors); }
 
   [[nodiscard]] const HostInverse& inverse() const { return *inverse_; }
   /// X B, shape (n x at least count()).
@@ -60,6 +63,7 @@ class HostBase final : public solver::Base {
   [[nodiscard]] std::vector<Index> tried_unknowns() const;
 
   std::shared_ptr<const HostInverse> inverse_;
+  std::shared_ptr<const fem::BodyFactors> factors_;  // empty: none
   const DenseInverse* device_ = nullptr;
   std::optional<fem::DamagedBody> body_;  // to refine by
   bool refines_ = false;

@@ -79,6 +79,7 @@ std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
   solver::Based first = based_on(before.forms(), std::move(intact), damage,
                                  fp64 ? &before : nullptr, device, columns);
   if (!damage) return std::make_unique<solver::RenewedUpdate>(body, std::move(first));
+  static_cast<HostBase&>(first.deferred->base()).count_in(factors);
   return std::make_unique<solver::RenewedUpdate>(
       body, std::move(first), renewal,
       [dense, fp64, beside, columns, factors](const fem::DamagedBody& of,
@@ -86,7 +87,9 @@ std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
         solver::Based based = based_on(
             of.forms(), std::make_shared<const HostInverse>(factors->of(of, work), dense, work),
             true, fp64 ? &of : nullptr, nullptr, columns);
-        if (beside) static_cast<HostBase&>(based.deferred->base()).keep_columns();
+        auto& base = static_cast<HostBase&>(based.deferred->base());
+        if (beside) base.keep_columns();
+        base.count_in(factors);
         return based;
       });
 }

@@ -25,7 +25,13 @@ std::shared_ptr<const linear_algebra::Factor> BodyFactors::of(
     return std::make_shared<const linear_algebra::Factor>(factor_stiffness(body, work));
   }
   if (!stiffness_) hold(linear_algebra::permute_lower(assemble_lower(problem_, {}), nodes_->place));
-  stiffness_->follow(body);
+  try {
+    stiffness_->follow(body);
+  } catch (...) {  // out of memory, half way: the next one begins anew
+    stiffness_.reset();
+    bytes_ = 0;
+    throw;
+  }
   return std::make_shared<const linear_algebra::Factor>(stiffness_->factor(work));
 }
 

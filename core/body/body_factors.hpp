@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "body/damaged_body.hpp"
 #include "body/ordered_stiffness.hpp"

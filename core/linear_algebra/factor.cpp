@@ -12,9 +12,9 @@ namespace {
 
 // Right-hand sides that go through the factor together: wide enough for the panels' products.
 constexpr Index kBlock = 64;
-// Bytes of such blocks that threads may have at the same time: of a body of a million tetrahedra,
-// 300 MB each, three.
-constexpr std::size_t kRooms = std::size_t{1} << 30;
+// Bytes of such blocks that threads may have at the same time: of a body of a million tetrahedra
+// one has 300 MB.
+constexpr std::size_t kRooms = std::size_t{1} << 29;
 
 /// The part of a block of columns from `start` on that is in the lower triangle, and its mirror
 /// image. A square at a time: both its rows and its columns stay in the cache.

@@ -12,7 +12,7 @@ namespace sunder::linear_algebra {
 
 /// How a factor, or what it is to give, is computed. The bits do not depend on it.
 struct FactorWork {
-  int threads = 1;                          ///< share the rows of large panels, and right sides
+  int threads = 1;                          ///< share subtrees, large panels' rows, right sides
   const std::atomic<bool>* stop = nullptr;  ///< once true, the work is given up
   SparseMatrix* ordered = nullptr;          ///< receives the matrix in the factor's order
 };

@@ -103,7 +103,7 @@ void CondensedBase::grow(std::span<const Difference> vectors) {
   const auto added = std::span(dofs_).subspan(before);
   Eigen::MatrixXd columns;
   if (!growth_ || !growth_->take(*factor_, dofs_, added, columns)) {
-    columns = factor_->inverse_block(dofs_, added, linear_algebra::work_at_once());
+    columns = factor_->inverse_block(dofs_, added, {.threads = growing_threads_});
   }
   x_of_factor_.add(columns);
   if (lost_) {

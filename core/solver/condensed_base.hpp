@@ -79,9 +79,12 @@ class CondensedBase final : public Base {
   void expand_mended(const Eigen::VectorXd& c, Eigen::VectorXd& u);
   /// `product` takes what it can of every expand() from now on; it must outlive this. Null: nobody.
   void multiply_by(RegionProduct* product);
-  /// `growth` may have columns for S at hand where it grows; it must outlive this. Null: nobody
-  /// has.
-  void grow_by(RegionGrowth* growth) { growth_ = growth; }
+  /// The frames have it from now on, and wait where S grows: for that it takes all processors.
+  /// `growth` may have columns at hand; it must outlive this. Null: nobody has.
+  void grow_by(RegionGrowth* growth) {
+    growth_ = growth;
+    growing_threads_ = linear_algebra::machine_threads();
+  }
   [[nodiscard]] RegionGrowth* growth() const { return growth_; }
   [[nodiscard]] const std::shared_ptr<const linear_algebra::Factor>& factor() const {
     return factor_;
@@ -135,17 +138,18 @@ class CondensedBase final : public Base {
   std::vector<double> forces_;               // B c on them
   RegionProduct* product_ = nullptr;
   RegionGrowth* growth_ = nullptr;
+  int growing_threads_ = linear_algebra::background_threads();
   std::vector<const double*> starts_;  // of columns that are added up
   LastLoad load_;
   std::vector<Index> loaded_;  // places that a load touches
-  std::vector<double> loads_;  // those of damage that the host multiplies
+  std::vector<double> loads_;  // those of damage that the host multiplies, or of drift()
   Eigen::VectorXd of_load_;    // (X f)_S
   bool outside_ = false;       // a part of the load is outside S
   Eigen::VectorXd by_factor_;  // (X0 f)_S then
   Eigen::VectorXd lacks_, all_forces_;
   Eigen::VectorXd mended_;  // that has drifted since the last expand()
   Eigen::VectorXd u_, projected_, right_side_, solution_;
-  // Where a load is outside S and stiffness was lost: u on the unknowns of D and D u there.
+  // Where stiffness was lost: u on the unknowns of D and D u there.
   std::vector<double> moved_, of_moved_;
   linear_algebra::SolveWork work_;
 };

@@ -21,11 +21,14 @@ namespace {
 // Events between the start of a new base and the frame that takes it. For 1,000 unknowns it takes
 // 30 to 60 ms: after 64 events frames that follow without a pause waited up to 40 ms (two
 // processors shared by four programs), after 96 up to 17; later ones gather more columns. A base
-// takes n^2 multiply-adds a column and a frame n, so that more unknowns need more frames.
-constexpr Index kFewestEvents = 96, kMostEvents = 384, kUnknownsPerEvent = 16;
+// takes n^2 multiply-adds a column and a frame n, so that more unknowns need more frames: of 3,750
+// and 10,000 one waited .4 and .9 s after 234 and 384 events, none after 375 and 512, and the
+// median frame took up to a tenth longer.
+constexpr Index kFewestEvents = 96, kMostEvents = 512, kSmall = 1000, kUnknownsPerEvent = 8;
 
 Index events_of_a_base(std::size_t dofs) {
-  return std::clamp(static_cast<Index>(dofs) / kUnknownsPerEvent, kFewestEvents, kMostEvents);
+  return std::clamp((static_cast<Index>(dofs) - kSmall) / kUnknownsPerEvent, kFewestEvents,
+                    kMostEvents);
 }
 
 // A new base begins when the damage has so many columns: the small matrices then cost a frame about
@@ -239,7 +242,8 @@ class CondensedRoute final : public InverseRoute {
   }
 
   std::span<const Index> known() const override { return base_of(based_).dofs(); }
-  bool drifts() const override { return base_of(based_).drifts(); }
+  int factor() const override { return factor_number_; }
+  bool drifts() const override { return based_.deferred && base_of(based_).drifts(); }
 
   bool refine(const Load& load, Eigen::VectorXd& u, Eigen::VectorXd& added) override {
     CondensedBase& base = base_of(based_);
@@ -290,6 +294,7 @@ class CondensedRoute final : public InverseRoute {
     state->based = based_;
     state->factored = factored_;
     state->bases = bases_;
+    state->factor = factor_number_;
     state->laid = based_.laid_over().events();
     state->loaded = load_;
     if (!coming_ || !coming_->making()) return state;
@@ -310,6 +315,7 @@ class CondensedRoute final : public InverseRoute {
     lend();
     factored_ = state.factored;
     bases_ = state.bases;
+    factor_number_ = state.factor;
     based_.laid_over().take_back(based_.laid_over().events() - state.laid);
     load_ = state.loaded;
     if (state.making) make_again(state, events);
@@ -329,6 +335,7 @@ class CondensedRoute final : public InverseRoute {
     lend();
     factored_ = body_.events();
     ++bases_;
+    ++factor_number_;
     prepare_named();
     return true;
   }
@@ -365,7 +372,7 @@ class CondensedRoute final : public InverseRoute {
   struct State final : RouteState {
     Based based;  // held on to: its memory with it
     std::size_t factored = 0;
-    int bases = 1;
+    int bases = 1, factor = 1;
     Index laid = 0;  // events over the base
     bool making = false;
     std::size_t start = 0;  // events before the base that was being made
@@ -474,6 +481,7 @@ class CondensedRoute final : public InverseRoute {
     lend();
     if (based_.factor != factor) {
       factored_ = started_;
+      ++factor_number_;
       growth_->forget();
       prepare_named();
     }
@@ -495,7 +503,7 @@ class CondensedRoute final : public InverseRoute {
   Eigen::VectorXd everywhere_;
   Eigen::VectorXd before_;  // a solution on S that is refined
   double energy_tolerance_ = 0;
-  int bases_ = 1;
+  int bases_ = 1, factor_number_ = 1;
   NewBases new_bases_;
   // Where something can be destroyed.
   std::size_t size_ = 0;        // of S when the base came

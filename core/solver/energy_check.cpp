@@ -35,17 +35,33 @@ EnergyCheck::EnergyCheck(const Problem& problem)
       known_(problem) {}
 
 void EnergyCheck::checked(const Load& load, const SolveReport& report, double unrefined,
-                          bool drifts, int bases, double largest_u, double largest) {
+                          double mended, int bases, double largest_u, double largest) {
   report_ = report;
-  if (!drifts) of_factor_ = unrefined;
-  known_.checked(load, {unrefined, 0, largest_u, largest}, bases);
+  worth_ = HUGE_VAL;
+  if (!takes(load)) of_factor_ = HUGE_VAL;  // of loads on other unknowns
+  if (unrefined > 0) {                      // an exact solution says nothing about others
+    of_factor_ = std::isfinite(of_factor_) ? std::max(of_factor_, unrefined) : unrefined;
+  }
+  known_.checked(load, {std::max(unrefined, mended), 0, largest_u, largest}, bases);
 }
 
 void EnergyCheck::refined(const Load& load, double unrefined, double energy, int bases,
                           double largest_u, double largest) {
   worth_ = energy > 0 ? kAllowance * unrefined * largest / std::sqrt(energy) : HUGE_VAL;
+  worth_base_ = bases;
   worth_events_ = kEventsOfAWorth;
-  known_.checked(load, {unrefined, 0, largest_u, largest}, bases);
+  known_.checked(load, {std::max(unrefined, of_factor_), 0, largest_u, largest}, bases);
+}
+
+void EnergyCheck::forget() {
+  known_.forget();
+  of_factor_ = worth_ = HUGE_VAL;
+}
+
+void EnergyCheck::follow(int bases, const BaseCheck& check, int factor, bool drifts) {
+  if (factor != factor_) of_factor_ = HUGE_VAL;
+  factor_ = factor;
+  if (known_.follow(bases, check) && !drifts) of_factor_ = check.error;
 }
 
 double EnergyCheck::energy_tolerance(const CheckedLoads::Sum& expected) const {
@@ -79,12 +95,21 @@ std::optional<SolveReport> EnergyCheck::known(const CheckedLoads::Sum& expected,
   return report;
 }
 
-std::optional<SolveReport> EnergyCheck::known_refined(double error, double largest) const {
+bool EnergyCheck::trusts_factor() const {
+  return kAmplified * of_factor_ <= std::min(kEnough, problem_.scene().solver.tolerance / 10);
+}
+
+std::optional<SolveReport> EnergyCheck::known_refined(const CheckedLoads::Sum& expected,
+                                                      double error, double largest_u,
+                                                      double largest) const {
   if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
+  if (!(largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
+  if (!(expected.largest_stress <= kGrowth * largest)) return std::nullopt;  // shares that cancel
   SolveReport known = report_;
   known.polished = false;
   known.iterations = 0;
-  known.error = error + kAmplified * of_factor_;
+  known.error =
+      error + kAmplified * of_factor_ + kRoundings * stress_of_rounding_ * largest_u / largest;
   if (!(known.error <= std::min(kEnough, problem_.scene().solver.tolerance / 10))) {
     return std::nullopt;
   }

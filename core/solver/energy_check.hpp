@@ -18,27 +18,25 @@ class EnergyCheck {
  public:
   explicit EnergyCheck(const Problem& problem);
 
-  /// Takes what a full check said of a load, and the error before it refined the solution: that is
-  /// what the base gives by itself, of which nothing is the factor's where it `drifts`. `largest`:
-  /// the largest stress over live elements.
-  void checked(const Load& load, const SolveReport& report, double unrefined, bool drifts,
+  /// Takes what a full check said of a load: its report, the error before it refined the solution,
+  /// which is what the factor gives by itself, and what a base that drifts had given beside that
+  /// (FrameDevice::mended()). `largest`: the largest stress over live elements.
+  void checked(const Load& load, const SolveReport& report, double unrefined, double mended,
                int bases, double largest_u, double largest);
-  /// The same of a solution that was refined on the region alone.
+  /// The same of a solution that was refined on the region alone, `unrefined` by the first time.
   /// `energy`: of what the deferred update had lacked there.
   void refined(const Load& load, double unrefined, double energy, int bases, double largest_u,
                double largest);
   /// Nothing is known any more: the loads to come are of other grips.
-  void forget() { known_.forget(); }
-  /// Takes what is known of a base that is new since the last full check.
-  void follow(int bases, const BaseCheck& check, bool drifts) {
-    if (!known_.follow(bases, check)) return;
-    worth_ = HUGE_VAL;
-    if (!drifts) of_factor_ = check.error;
-  }
+  void forget();
+  /// Takes what is known of a base that is new since the last full check; `factor` and `drifts`:
+  /// FrameDevice's.
+  void follow(int bases, const BaseCheck& check, int factor, bool drifts);
   /// Whether what this knows is of loads on the same unknowns.
   [[nodiscard]] bool takes(const Load& load) const { return known_.takes(load); }
   /// What full checks let expect of another load; nothing: it needs a full check.
   [[nodiscard]] std::optional<CheckedLoads::Sum> expected(const Load& load, int bases) {
+    if (bases != worth_base_) worth_ = HUGE_VAL;
     return known_.expected(load, bases);
   }
   /// An event has changed the body.
@@ -53,11 +51,14 @@ class EnergyCheck {
   /// what the deferred update lacked (Deferred::defect_energy).
   [[nodiscard]] std::optional<SolveReport> known(const CheckedLoads::Sum& expected, double energy,
                                                  double largest_u, double largest) const;
-  /// What is known of a solution whose last refinement on the region alone has changed stress by
-  /// `error`, relative: that sees what the base and the update lack beside the factor. Nothing: a
-  /// full check is needed.
-  [[nodiscard]] std::optional<SolveReport> known_refined(double error, double largest) const;
-  /// The same where grips are new since the last full check on this base, which said `report` and
+  /// The same of a solution whose last refinement on the region alone has changed stress by
+  /// `error`, relative: that sees what the base and the update lack beside the factor.
+  [[nodiscard]] std::optional<SolveReport> known_refined(const CheckedLoads::Sum& expected,
+                                                         double error, double largest_u,
+                                                         double largest) const;
+  /// Whether the factor is known to be so good that known_refined() may say something.
+  [[nodiscard]] bool trusts_factor() const;
+  /// As known() where grips are new since the last full check on this base, which said `report` and
   /// found `unrefined` before it refined. What they exert are forces on the region, as those of
   /// damage are: the base gives those wrong by as much, with the same room.
   [[nodiscard]] std::optional<SolveReport> known_by_base(const SolveReport& report,
@@ -66,14 +67,15 @@ class EnergyCheck {
 
  private:
   const Problem& problem_;
-  double stress_of_rounding_;    // of a displacement of 1 mm
-  double stress_of_energy_;      // sqrt of the largest stress^2 per energy over all elements
-  SolveReport report_;           // of the last full check
-  double of_factor_ = HUGE_VAL;  // what the last full check of a factor's own inverse found
+  double stress_of_rounding_;  // of a displacement of 1 mm
+  double stress_of_energy_;    // sqrt of the largest stress^2 per energy over all elements
+  SolveReport report_;         // of the last full check
+  int factor_ = 0;
+  double of_factor_ = HUGE_VAL;  // the most that full checks have found it to give wrong
   // Stress [MPa] per root of such an energy, with room, as a refinement on the region has found it;
-  // for so many events more.
+  // on that base, for so many events more.
   double worth_ = HUGE_VAL;
-  int worth_events_ = 0;
+  int worth_base_ = 0, worth_events_ = 0;
   CheckedLoads known_;
 };
 

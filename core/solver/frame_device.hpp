@@ -83,8 +83,12 @@ class FrameDevice {
   };
   /// Puts the solution on the region in work.
   virtual OnRegion solve_region(double /*energy_tolerance*/) { return {}; }
-  /// Whether the base has an error beside its factor's (InverseRoute::drifts()).
+  /// As InverseRoute's.
+  [[nodiscard]] virtual int factor() const { return 1; }
   [[nodiscard]] virtual bool drifts() const { return false; }
+  /// By how much of its largest stress solve() has refined the solution on the region before
+  /// anything else, where the base drifts.
+  [[nodiscard]] virtual double mended() const { return 0; }
   struct RefinedOnRegion {
     double stress = 0;  ///< largest of what was added [MPa]
     OnRegion solution;

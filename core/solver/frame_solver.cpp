@@ -149,7 +149,7 @@ FrameCheck* FrameSolver::check_of(const Load& load) {
 /// its error.
 SolveReport FrameSolver::solve_condensed(const Load& load) {
   for (EnergyCheck& each : energy_checks_->all()) {
-    each.follow(device_.bases(), device_.base_check(), device_.drifts());
+    each.follow(device_.bases(), device_.base_check(), device_.factor(), device_.drifts());
   }
   EnergyCheck& check = energy_checks_->of(load);
   // The solution without a full check, where one like it has had its check.
@@ -160,21 +160,24 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
       everywhere_ = false;
       return *known;
     }
-    if (const auto refined = refine_on_region(check, load)) return *refined;
+    if (const auto refined = refine_on_region(check, *expected, load)) return *refined;
   }
   if (auto known = solve_by_base(check)) return *known;
   SolveReport report;
   solve_once(0, report);
   check_fully(report);
   const auto [largest_u, largest] = device_.on_region();
-  check.checked(load, report, unrefined_, device_.drifts(), device_.bases(), largest_u, largest);
-  checked_base_ = {device_.bases(), unrefined_, report, false};
+  check.checked(load, report, unrefined_, device_.mended(), device_.bases(), largest_u, largest);
+  checked_base_ = {device_.bases(), std::max(unrefined_, device_.mended()), report, false};
   return report;
 }
 
 /// Corrects a solution of the region by the factor's own inverse, until what that changes is
 /// rounding's: a full check takes two solutions of the whole body. Nothing: it needs that.
-std::optional<SolveReport> FrameSolver::refine_on_region(EnergyCheck& check, const Load& load) {
+std::optional<SolveReport> FrameSolver::refine_on_region(EnergyCheck& check,
+                                                         const CheckedLoads::Sum& expected,
+                                                         const Load& load) {
+  if (!check.trusts_factor()) return std::nullopt;
   double error = std::numeric_limits<double>::infinity();
   const double energy = device_.deferred()->defect_energy();
   FrameDevice::OnRegion solution;
@@ -188,7 +191,7 @@ std::optional<SolveReport> FrameSolver::refine_on_region(EnergyCheck& check, con
     done = now <= precision_.refined || !(now < error / 2) || attempt == kRefinements;
     error = now;
   }
-  auto report = check.known_refined(error, solution.largest_stress);
+  auto report = check.known_refined(expected, error, solution.largest_u, solution.largest_stress);
   if (!report) return std::nullopt;
   report->back_solves = 1 + attempt;
   check.refined(load, unrefined_, energy, device_.bases(), solution.largest_u,
@@ -282,8 +285,10 @@ void FrameSolver::polish(SolveReport& report) {
     refine(report, true);
   }
   if (!(report.error <= tolerance()) && device_.fall_back(true)) {
+    const double of_base = unrefined_;
     solve_once(0, report);
     refine(report, false);
+    unrefined_ = of_base;
     device_.fall_back(false);
   }
   kept_error_ = std::max(kept_error_, std::min(kLikeFresh * report.error, tolerance()));

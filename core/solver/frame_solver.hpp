@@ -40,7 +40,9 @@ class FrameSolver {
   SolveReport solve_condensed(const Load& load);
   [[nodiscard]] std::optional<SolveReport> solve_known(const Load& load);
   [[nodiscard]] std::optional<SolveReport> solve_by_base(const EnergyCheck& check);
-  [[nodiscard]] std::optional<SolveReport> refine_on_region(EnergyCheck& check, const Load& load);
+  [[nodiscard]] std::optional<SolveReport> refine_on_region(EnergyCheck& check,
+                                                            const CheckedLoads::Sum& expected,
+                                                            const Load& load);
   [[nodiscard]] FrameCheck* check_of(const Load& load);
   [[nodiscard]] int bases() const;
   [[nodiscard]] bool speaks_for_itself() const;
@@ -72,7 +74,7 @@ class FrameSolver {
   const Load* load_ = nullptr;   // of the solve() in work
   FrameCheck* check_ = nullptr;  // of that load, of checks_
   Balance balance_;              // of the solution in work
-  double unrefined_ = 0;         // error of the last full check's solution before it was refined
+  double unrefined_ = 0;         // error of the last checked solution before it was refined
   bool everywhere_ = true;
   bool refined_ = false;  // the solution in work is more than what the route gives by itself
   // The last frame, where a multiple of its load has the same relative error.

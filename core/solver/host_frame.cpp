@@ -111,8 +111,10 @@ int HostFrame::solve(double energy_tolerance, bool) {
   make_room_for_offsets();
   route().set_energy_tolerance(energy_tolerance);
   const int iterations = route().solve(load_, force_, u_).iterations;
+  const auto added = condensed() && route().drifts() ? refine() : std::nullopt;
   route().complete(u_);
   compute_residual();
+  mended_ = added ? *added / largest_ : 0;
   return iterations;
 }
 
@@ -182,13 +184,19 @@ void HostFrame::find_reactions() {
   }
 }
 
-std::optional<FrameDevice::RefinedOnRegion> HostFrame::refine_region() {
+/// On the region; the largest stress of what that has added.
+std::optional<double> HostFrame::refine() {
   if (du_.size() != u_.size()) du_.setZero(u_.size());
   if (!route_.refine(load_, u_, du_)) return std::nullopt;
-  const double stress = body_.largest_stress(du_, fields_.region()->elements);
+  return body_.largest_stress(du_, fields_.region()->elements);
+}
+
+std::optional<FrameDevice::RefinedOnRegion> HostFrame::refine_region() {
+  const auto stress = refine();
+  if (!stress) return std::nullopt;
   const OnRegion found = on_region();
   find_reactions();
-  return RefinedOnRegion{stress, found};
+  return RefinedOnRegion{*stress, found};
 }
 
 FrameDevice::OnRegion HostFrame::on_region() {

@@ -61,7 +61,9 @@ class HostFrame final : public FrameDevice {
   OnRegion solve_region(double energy_tolerance) override;
   std::optional<RefinedOnRegion> refine_region() override;
   OnRegion on_region() override;
+  [[nodiscard]] int factor() const override { return route_.factor(); }
   [[nodiscard]] bool drifts() const override { return route_.drifts(); }
+  [[nodiscard]] double mended() const override { return mended_; }
 
   /// Of computing the stress of solutions, all so far [ms].
   [[nodiscard]] double stress_ms() const { return stress_ms_; }
@@ -72,6 +74,7 @@ class HostFrame final : public FrameDevice {
   void make_room_for_offsets();
   void compute_stress();
   void find_reactions();
+  [[nodiscard]] std::optional<double> refine();
   [[nodiscard]] const Problem& problem() const { return body_.problem(); }
   [[nodiscard]] InverseRoute& route() { return other_ ? *other_ : route_; }
   [[nodiscard]] double grip_force(std::size_t g) const;
@@ -90,6 +93,7 @@ class HostFrame final : public FrameDevice {
   Eigen::VectorXd force_, u_, du_, product_, r_;
   std::vector<double> reactions_;
   double load_squared_ = 0, largest_ = 0;  // of the solution in work: its load, its stress
+  double mended_ = 0;
   double stress_ms_ = 0;
 };
 

@@ -33,6 +33,8 @@ class InverseRoute {
   virtual Applied apply(const Eigen::VectorXd& r, Eigen::VectorXd& x) = 0;
   /// Fills what solve() left out of x: a condensed route solves for its own unknowns only.
   virtual void complete(Eigen::VectorXd&) {}
+  /// The factor behind the base: the how manieth it is, from 1.
+  [[nodiscard]] virtual int factor() const { return 1; }
   /// Whether the inverse that it works with is more than a factor's own, with an error beside that.
   [[nodiscard]] virtual bool drifts() const { return false; }
   /// Of a route that leaves some out: refines the last solve() once on its own unknowns by the

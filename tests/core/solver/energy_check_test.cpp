@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a frame of a region may do without a full check.
+#include "solver/energy_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/table1_board.hpp"
+
+namespace sunder::solver {
+namespace {
+
+class EnergyChecked : public testing::Test {
+ protected:
+  EnergyChecked() {
+    load.force_dofs = {7};
+    load.forces = {-2};
+    other.force_dofs = {9};
+    other.forces = {1};
+  }
+  void check_fully(double unrefined, double mended = 0, int base = 1) {
+    check.checked(load, {}, unrefined, mended, base, kU, kStress);
+  }
+  [[nodiscard]] auto refined(double error, double u = kU, double stress = kStress) {
+    return check.known_refined(expected(), error, u, stress);
+  }
+  [[nodiscard]] CheckedLoads::Sum expected(int base = 1) {
+    return check.expected(load, base).value();
+  }
+  [[nodiscard]] bool known(double energy, int base = 1) {
+    return check.known(expected(base), energy, kU, kStress).has_value();
+  }
+
+  static constexpr double kU = 0.5, kStress = 3;
+  const Problem problem{test::pulled_board()};
+  EnergyCheck check{problem};
+  Load load, other;
+};
+
+TEST_F(EnergyChecked, TrustsAFactorThatAFullCheckHasSeen) {
+  EXPECT_FALSE(check.trusts_factor());
+  check_fully(0);
+  EXPECT_FALSE(check.trusts_factor()) << "an exact solution says nothing about others";
+  check_fully(1e-12);
+  ASSERT_TRUE(check.trusts_factor());
+  EXPECT_NEAR(refined(1e-11).value().error, 1.1e-10, 1e-11);
+  check_fully(5e-12);
+  EXPECT_GE(refined(0).value().error, 5e-10) << "the most that any has found";
+  check_fully(1e-12);
+  EXPECT_GE(refined(0).value().error, 5e-10);
+  check_fully(2e-10);
+  EXPECT_FALSE(check.trusts_factor());
+  EXPECT_FALSE(refined(0));
+}
+
+TEST_F(EnergyChecked, TellsWhatDriftsFromTheFactor) {
+  check_fully(1e-12, 3e-9);
+  EXPECT_TRUE(check.trusts_factor());
+  EXPECT_GE(expected().error, 3e-9) << "what the base gives by itself";
+  check.event();
+  EXPECT_FALSE(known(0));
+  EXPECT_TRUE(refined(1e-11));
+}
+
+TEST_F(EnergyChecked, ForgetsAnotherFactorsErrors) {
+  check.follow(1, {}, 1, false);
+  check_fully(1e-12);
+  check.follow(2, {load, 1, 4e-12}, 1, true);
+  EXPECT_TRUE(check.trusts_factor()) << "a base that has come from the same factor";
+  check.follow(3, {load, 1, 4e-12}, 2, true);
+  EXPECT_FALSE(check.trusts_factor());
+  check.follow(4, {load, 1, 3e-12}, 2, false);
+  EXPECT_TRUE(check.trusts_factor()) << "its own check";
+  check.forget();
+  EXPECT_FALSE(check.trusts_factor());
+  check_fully(1e-12, 0, 4);
+  EXPECT_TRUE(check.trusts_factor());
+  check.checked(other, {}, 0, 0, 4, kU, kStress);
+  EXPECT_FALSE(check.trusts_factor()) << "of loads on other unknowns";
+}
+
+TEST_F(EnergyChecked, AsksForAFullCheckWhereTheBodyHasChanged) {
+  check_fully(1e-12);
+  EXPECT_TRUE(refined(1e-12, 9 * kU));
+  EXPECT_FALSE(refined(1e-12, 11 * kU)) << "a piece has come loose";
+  EXPECT_FALSE(refined(1e-12, kU, kStress / 11)) << "shares that cancel";
+  EXPECT_FALSE(refined(1e-12, kU, 0));
+  EXPECT_FALSE(refined(2e-8));
+}
+
+// The bound by energy is of the worst element; a refinement on the region has seen what it is worth
+// where damage acts.
+TEST_F(EnergyChecked, TakesWhatARefinementHasFoundForAWhile) {
+  check_fully(1e-12);
+  check.event();
+  double energy = 1e-30;
+  while (known(energy)) energy *= 2;
+  check.refined(load, 1e-12, energy, 1, kU, kStress);
+  for (int event = 0; event < 15; ++event) {
+    check.event();
+    EXPECT_TRUE(known(energy)) << event;
+  }
+  check.event();
+  EXPECT_FALSE(known(energy)) << "too long ago";
+  check.refined(load, 1e-12, energy, 1, kU, kStress);
+  check.event();
+  ASSERT_TRUE(known(energy));
+  EXPECT_FALSE(known(1e12 * energy));
+  check.follow(2, {load, 1, 1e-12}, 0, true);
+  EXPECT_FALSE(known(energy, 2)) << "another base";
+}
+
+TEST_F(EnergyChecked, ARefinedSolutionIsNoBetterThanItsFactor) {
+  check_fully(2e-11);
+  check.refined(load, 1e-14, 0, 1, kU, kStress);
+  EXPECT_GE(expected().error, 2e-11);
+}
+
+}  // namespace
+}  // namespace sunder::solver
