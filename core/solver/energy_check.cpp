@@ -95,10 +95,6 @@ std::optional<SolveReport> EnergyCheck::known(const CheckedLoads::Sum& expected,
   return report;
 }
 
-bool EnergyCheck::trusts_factor() const {
-  return kAmplified * of_factor_ <= std::min(kEnough, problem_.scene().solver.tolerance / 10);
-}
-
 std::optional<SolveReport> EnergyCheck::known_refined(const CheckedLoads::Sum& expected,
                                                       double error, double largest_u,
                                                       double largest) const {

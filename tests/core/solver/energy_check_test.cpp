@@ -26,6 +26,10 @@ class EnergyChecked : public testing::Test {
   [[nodiscard]] CheckedLoads::Sum expected(int base = 1) {
     return check.expected(load, base).value();
   }
+  [[nodiscard]] bool trusts_factor(const Load& of, int base = 1) {
+    const auto known = check.expected(of, base);
+    return known && check.known_refined(*known, 0, kU, kStress).has_value();
+  }
   [[nodiscard]] bool known(double energy, int base = 1) {
     return check.known(expected(base), energy, kU, kStress).has_value();
   }
@@ -37,24 +41,24 @@ class EnergyChecked : public testing::Test {
 };
 
 TEST_F(EnergyChecked, TrustsAFactorThatAFullCheckHasSeen) {
-  EXPECT_FALSE(check.trusts_factor());
+  EXPECT_FALSE(trusts_factor(load));
   check_fully(0);
-  EXPECT_FALSE(check.trusts_factor()) << "an exact solution says nothing about others";
+  EXPECT_FALSE(trusts_factor(load)) << "an exact solution says nothing about others";
   check_fully(1e-12);
-  ASSERT_TRUE(check.trusts_factor());
+  ASSERT_TRUE(trusts_factor(load));
   EXPECT_NEAR(refined(1e-11).value().error, 1.1e-10, 1e-11);
   check_fully(5e-12);
   EXPECT_GE(refined(0).value().error, 5e-10) << "the most that any has found";
   check_fully(1e-12);
   EXPECT_GE(refined(0).value().error, 5e-10);
   check_fully(2e-10);
-  EXPECT_FALSE(check.trusts_factor());
+  EXPECT_FALSE(trusts_factor(load));
   EXPECT_FALSE(refined(0));
 }
 
 TEST_F(EnergyChecked, TellsWhatDriftsFromTheFactor) {
   check_fully(1e-12, 3e-9);
-  EXPECT_TRUE(check.trusts_factor());
+  EXPECT_TRUE(trusts_factor(load));
   EXPECT_GE(expected().error, 3e-9) << "what the base gives by itself";
   check.event();
   EXPECT_FALSE(known(0));
@@ -65,17 +69,17 @@ TEST_F(EnergyChecked, ForgetsAnotherFactorsErrors) {
   check.follow(1, {}, 1, false);
   check_fully(1e-12);
   check.follow(2, {load, 1, 4e-12}, 1, true);
-  EXPECT_TRUE(check.trusts_factor()) << "a base that has come from the same factor";
+  EXPECT_TRUE(trusts_factor(load, 2)) << "a base that has come from the same factor";
   check.follow(3, {load, 1, 4e-12}, 2, true);
-  EXPECT_FALSE(check.trusts_factor());
+  EXPECT_FALSE(trusts_factor(load, 3));
   check.follow(4, {load, 1, 3e-12}, 2, false);
-  EXPECT_TRUE(check.trusts_factor()) << "its own check";
+  EXPECT_TRUE(trusts_factor(load, 4)) << "its own check";
   check.forget();
-  EXPECT_FALSE(check.trusts_factor());
+  EXPECT_FALSE(trusts_factor(load, 4));
   check_fully(1e-12, 0, 4);
-  EXPECT_TRUE(check.trusts_factor());
+  EXPECT_TRUE(trusts_factor(load, 4));
   check.checked(other, {}, 0, 0, 4, kU, kStress);
-  EXPECT_FALSE(check.trusts_factor()) << "of loads on other unknowns";
+  EXPECT_FALSE(trusts_factor(other, 4)) << "of loads on other unknowns";
 }
 
 TEST_F(EnergyChecked, AsksForAFullCheckWhereTheBodyHasChanged) {
