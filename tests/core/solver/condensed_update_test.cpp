@@ -121,28 +121,33 @@ TEST(UpdatedInverse, IsThatOfTheDamagedBody) {
   }
 }
 
+/// An inverse over `dofs` that was updated before, after the first 20 elements, and lacks kLacks.
+constexpr double kLacks = 1e-7;
+std::unique_ptr<CondensedBase> worn_base(const Torn& torn, const std::vector<Index>& dofs) {
+  const auto few = std::span(torn.elements).first(20);
+  std::vector<double> scale(torn.scale.size(), 1.0);
+  for (Index e : few) scale[e] = torn.problem.scene().fracture.alpha;
+  const auto intact =
+      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {}));
+  const auto before = std::make_shared<const LostStiffness>(torn.problem, few);
+  const auto x0 = std::make_shared<const Eigen::MatrixXd>(intact->inverse_block(dofs, dofs));
+  const Eigen::MatrixXd x =
+      linear_algebra::Factor(fem::assemble_lower(torn.problem, scale)).inverse_block(dofs, dofs) *
+      (1 + kLacks);
+  return std::make_unique<CondensedBase>(
+      CondensedState{intact, dofs, {}, GrownInverse(x0), before, {}}, x, before);
+}
+
 // An inverse that was updated before has an error. Where damage and loads act it does not last.
 TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
-  constexpr double kLacks = 1e-7;
   const Torn torn;
   const std::span<const Index> elements = torn.elements;
   const LostStiffness all(torn.problem, elements);
-  const auto before = std::make_shared<const LostStiffness>(torn.problem, elements.first(20));
   std::vector<Index> dofs;
   for (Index d = 0; d < torn.problem.dof_count(); ++d) {
     if (d % 17 == 0 || std::ranges::binary_search(all.dofs(), d)) dofs.push_back(d);
   }
-  std::vector<double> scale(torn.scale.size(), 1.0);
-  for (Index e : elements.first(20)) scale[e] = torn.problem.scene().fracture.alpha;
-  const auto intact =
-      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {}));
-  const Eigen::MatrixXd x0 = intact->inverse_block(dofs, dofs),
-                        x = linear_algebra::Factor(fem::assemble_lower(torn.problem, scale))
-                                .inverse_block(dofs, dofs) *
-                            (1 + kLacks);
-  const CondensedState worn{
-      intact, dofs, {}, GrownInverse(std::make_shared<const Eigen::MatrixXd>(x0)), before, {}};
-  auto base = std::make_unique<CondensedBase>(worn, x, before);
+  auto base = worn_base(torn, dofs);
   const CondensedBase& condensed = *base;
   Deferred deferred(torn.problem, std::move(base));
   for (const Index& e : elements.subspan(20)) ASSERT_TRUE(deferred.destroy({&e, 1}));
@@ -175,24 +180,12 @@ TEST(UpdatedInverse, TakesOutWhatTheOneBeforeLacked) {
 // As the one above, but the solution is mended and not the inverse: under a load on S and under one
 // that is not, with a grip.
 TEST(CondensedBase, AWornInverseIsMadeUpForByTheFactor) {
-  constexpr double kLacks = 1e-7;
   const Torn torn;
   const std::span<const Index> elements = torn.elements;
   const LostStiffness all(torn.problem, elements);
-  const auto before = std::make_shared<const LostStiffness>(torn.problem, elements.first(20));
   std::vector<Index> dofs(all.dofs().begin(), all.dofs().end());
-  std::vector<double> scale(torn.scale.size(), 1.0);
-  for (Index e : elements.first(20)) scale[e] = torn.problem.scene().fracture.alpha;
-  const auto intact =
-      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {}));
   const linear_algebra::Factor torn_factor(fem::assemble_lower(torn.problem, torn.scale));
-  const Eigen::MatrixXd x0 = intact->inverse_block(dofs, dofs),
-                        x = linear_algebra::Factor(fem::assemble_lower(torn.problem, scale))
-                                .inverse_block(dofs, dofs) *
-                            (1 + kLacks);
-  const CondensedState worn{
-      intact, dofs, {}, GrownInverse(std::make_shared<const Eigen::MatrixXd>(x0)), before, {}};
-  auto owned = std::make_unique<CondensedBase>(worn, x, before);
+  auto owned = worn_base(torn, dofs);
   CondensedBase& base = *owned;
   EXPECT_TRUE(base.drifts());
   Deferred deferred(torn.problem, std::move(owned));
