@@ -29,11 +29,10 @@ SUNDER_FORCE_INLINE void store(double* p, const Vector& v) {
 /// AVX2: .8 instead of 3 Gflop/s and more). Every sum is the same by both.
 SUNDER_FORCE_INLINE bool wide_registers() { return machine::wide_registers(); }
 
-/// Rows x (two vectors) entries of c, kept in registers.
-template <bool Add, int Rows, class Vector>
+/// Rows x (some vectors) entries of c, kept in registers.
+template <bool Add, int Rows, class Vector, int kVectors = 2>
 SUNDER_FORCE_INLINE void tile(const LeftFactor& a, Index row, const double* b, Index b_stride,
                               double* c, Index c_stride) {
-  constexpr int kVectors = 2;
   constexpr Index kEach = sizeof(Vector) / sizeof(double);
   Vector sum[Rows][kVectors] = {};
   for (int r = 0; Add && r < Rows; ++r) {
@@ -53,15 +52,16 @@ SUNDER_FORCE_INLINE void tile(const LeftFactor& a, Index row, const double* b, I
   }
 }
 
-template <bool Add, class Vector>
+template <bool Add, class Vector, int kRows = 4, int kVectors = 2>
 SUNDER_FORCE_INLINE void strip(const LeftFactor& a, const double* b, Index b_stride, double* c,
                                Index c_stride) {
-  constexpr int kRows = 4;
   Index i = 0;
   for (; i + kRows <= a.rows; i += kRows) {
-    tile<Add, kRows, Vector>(a, i, b, b_stride, c + i * c_stride, c_stride);
+    tile<Add, kRows, Vector, kVectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
   }
-  for (; i < a.rows; ++i) tile<Add, 1, Vector>(a, i, b, b_stride, c + i * c_stride, c_stride);
+  for (; i < a.rows; ++i) {
+    tile<Add, 1, Vector, kVectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+  }
 }
 
 template <bool Add>
@@ -70,6 +70,9 @@ SUNDER_FORCE_INLINE void product(const LeftFactor& a, const double* b, Index b_s
   Index j = 0;
   for (; wide_registers() && j + 2 * kLanes <= width; j += 2 * kLanes) {
     strip<Add, Lanes>(a, b + j, b_stride, c + j, c_stride);
+  }
+  for (; wide_registers() && j + kLanes <= width; j += kLanes) {
+    strip<Add, Lanes, 8, 1>(a, b + j, b_stride, c + j, c_stride);
   }
   for (; j + kLanes <= width; j += kLanes) {
     strip<Add, HalfLanes>(a, b + j, b_stride, c + j, c_stride);

@@ -90,6 +90,7 @@ void Deferred::reserve(Index columns) {
   compliance_.conservativeResize(size, padded(size));
   m_.conservativeResize(size, padded(size));
   d_.conservativeResize(size, padded(size));
+  filled_.reserve(size);
   under_grips_.conservativeResize(under_grips_.rows(), padded(size));
   for (Eigen::VectorXd* v : {&v_, &x_, &lack_, &gx_, &mgx_}) v->resize(size);
 }
@@ -324,6 +325,7 @@ void Deferred::clear() {
   changed_ = 0;
   m_.topLeftCorner(count(), padded(count())).setZero();
   d_.topLeftCorner(count(), padded(count())).setZero();
+  filled_.clear();
   find_grips();
 }
 
@@ -345,6 +347,7 @@ std::size_t Deferred::go_to_sums() {
   changed_ = of.changed;
   m_.topLeftCorner(of.m.rows(), of.m.cols()) = of.m;
   d_.topLeftCorner(of.d.rows(), of.d.cols()) = of.d;
+  filled_.find(of.d, of.d.rows());
   grip_compliance_ = of.grip_compliance;
   under_grips_.resize(of.under_grips.rows(), m_.cols());
   under_grips_.leftCols(padded(count())).setZero();
@@ -486,6 +489,7 @@ void Deferred::add_to_d(bool more) {
   linear_algebra::row_product({u_.data(), rows, width, u_.outerStride(), 1}, zt_.data(),
                               zt_.outerStride(), padded(rows), product_.data(),
                               product_.outerStride());
+  filled_.add(rows_);
   for (Eigen::Index i = 0; i < rows; ++i) {
     double* row = d_.row(rows_[static_cast<std::size_t>(i)]).data();
     for (Eigen::Index j = 0; j < rows; ++j) {

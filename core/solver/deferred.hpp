@@ -20,6 +20,7 @@
 
 #include "body/change.hpp"
 #include "body/stiffness_difference.hpp"
+#include "linear_algebra/filled_blocks.hpp"
 #include "solver/base.hpp"
 #include "solver/border.hpp"
 #include "solver/difference_basis.hpp"
@@ -208,6 +209,7 @@ class Deferred {
   std::vector<Difference> fresh_;   // unit vectors that come
   linear_algebra::RowMajor compliance_, m_,
       d_;                     // G = B^T X B, M and the stiffness D that is gone, in B
+  linear_algebra::FilledBlocks filled_;  // of D, which is sparse
   bool stiffened_ = false;    // the last event has changed M
   Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG

@@ -21,6 +21,8 @@ const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
                                               std::span<const double> displacement,
                                               double energy_tolerance) {
   constexpr int kRefinements = 4;
+  // Of energy: what rounding alone leaves lacking may be so many times the tolerance.
+  constexpr double kOfRounding = 2500;
   const Eigen::VectorXd& p = base_->load(on_body(forces));
   start(p, displacement);
   converged_ = before_.empty();
@@ -28,7 +30,13 @@ const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
   for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
     const double before = defect_energy_;
     defect_energy_ = refine(p, displacement);
-    converged_ = defect_energy_ <= energy_tolerance || (pass > 0 && !(defect_energy_ < before / 4));
+    converged_ = defect_energy_ <= energy_tolerance;
+    if (pass == 0) continue;
+    // Another would change nothing: rounding has the word already, or from here on.
+    const bool stalls = !(defect_energy_ < before / 4),
+               next_is_under = defect_energy_ * defect_energy_ <= energy_tolerance * before;
+    converged_ =
+        converged_ || stalls || (next_is_under && defect_energy_ <= kOfRounding * energy_tolerance);
   }
   return x_;
 }
@@ -108,8 +116,9 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
 /// The same with v_ = B^T u at hand.
 double Deferred::refine_at_v(std::span<const double> displacement) {
   const Eigen::Index n = count();
-  multiply(d_, n, changed_, v_, lack_);  // D B^T u - x
-  lack_.head(n) -= x_.head(n);
+  v_.segment(n, linear_algebra::padded(n) - n).setZero();
+  filled_.multiply(d_.data(), d_.outerStride(), n, v_.data(), lack_.data());
+  lack_.head(n) -= x_.head(n);                 // D B^T u - x
   for (Index d : units_) lack_[unit_[d]] = 0;  // where only grips act
   if (!border_.empty()) border_.add_lack(v_, lack_);
   multiply(compliance_, n, n, lack_, gx_);

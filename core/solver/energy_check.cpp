@@ -65,7 +65,7 @@ void EnergyCheck::follow(int bases, const BaseCheck& check, int factor, bool dri
 }
 
 double EnergyCheck::energy_tolerance(const CheckedLoads::Sum& expected) const {
-  const double e = kRefined * expected.largest_stress / stress_of_energy_;
+  const double e = kRefined * expected.largest_stress / std::min(stress_of_energy_, worth_);
   return e * e;
 }
 

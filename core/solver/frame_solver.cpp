@@ -174,31 +174,30 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
   return report;
 }
 
-/// Corrects a solution of the region by the factor's own inverse, until what that changes is
-/// rounding's: a full check takes two solutions of the whole body. Nothing: it needs that.
+/// Corrects a solution of the region by the factor's own inverse, until what the last time has
+/// changed is little enough: a full check takes two solutions of the whole body. Nothing: it needs
+/// that.
 std::optional<SolveReport> FrameSolver::refine_on_region(EnergyCheck& check,
                                                          const CheckedLoads::Sum& expected,
                                                          const Load& load) {
-  double error = std::numeric_limits<double>::infinity();
   const double energy = device_.deferred()->defect_energy();
-  FrameDevice::OnRegion solution;
-  int attempt = 0;
-  for (bool done = false; !done; ++attempt) {
+  double error = std::numeric_limits<double>::infinity();
+  for (int attempt = 0; attempt <= kRefinements; ++attempt) {
     const auto refined = device_.refine_region();
     if (!refined) return std::nullopt;
-    solution = refined->solution;
-    const double now = refined->stress / solution.largest_stress;
-    if (attempt == 0) unrefined_ = now;
-    done = now <= precision_.refined || !(now < error / 2) || attempt == kRefinements;
-    error = now;
+    const auto [largest_u, largest] = refined->solution;
+    const double before = error;
+    error = refined->stress / largest;
+    if (attempt == 0) unrefined_ = error;
+    if (auto report = check.known_refined(expected, error, largest_u, largest)) {
+      report->back_solves = 2 + attempt;
+      check.refined(load, unrefined_, energy, device_.bases(), largest_u, largest);
+      everywhere_ = false;
+      return report;
+    }
+    if (error <= precision_.refined || !(error < before / 2)) break;
   }
-  auto report = check.known_refined(expected, error, solution.largest_u, solution.largest_stress);
-  if (!report) return std::nullopt;
-  report->back_solves = 1 + attempt;
-  check.refined(load, unrefined_, energy, device_.bases(), solution.largest_u,
-                solution.largest_stress);
-  everywhere_ = false;
-  return report;
+  return std::nullopt;
 }
 
 /// Under loads of grips that have come or gone since the last full check; nothing: it needs one.
