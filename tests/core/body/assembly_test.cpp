@@ -44,6 +44,36 @@ TEST(Assembly, MatrixAndElementProductAgree) {
   EXPECT_LE((by_matrix - by_element).norm(), 1e-14 * by_matrix.norm());
 }
 
+// Bit by bit what Eigen adds up of all elements' entries in the order of the elements, in a body
+// some of whose nodes are held along one axis, all or none.
+TEST(Assembly, SumsElementsInTheirOrder) {
+  Scene scene = test::held_board();
+  scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(20, 10, 3)}, Axes{2}});
+  scene.supports.push_back({Box{Vec3(30, -1, -1), Vec3(51, 10, 3)}, Axes{5}});
+  const Problem problem(scene);
+  const auto scale = random_scale(problem.mesh().tets.size());
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  for (Index e = 0; e < problem.tet_count(); ++e) {
+    ElementMatrix k = element_stiffness(problem, e);
+    k *= scale[e];
+    for (int i = 0; i < 12; ++i) {
+      for (int j = 0; j < 12; ++j) {
+        const Index row = problem.dof(problem.mesh().tets[e][i / 3], i % 3),
+                    column = problem.dof(problem.mesh().tets[e][j / 3], j % 3);
+        if (column != kNone && row >= column) entries.emplace_back(row, column, k(i, j));
+      }
+    }
+  }
+  for (Index d : problem.anchored_dofs()) entries.emplace_back(d, d, problem.anchor_stiffness());
+  linear_algebra::SparseMatrix sum(problem.dof_count(), problem.dof_count());
+  sum.setFromTriplets(entries.begin(), entries.end());
+  const linear_algebra::SparseMatrix k = assemble_lower(problem, scale);
+  ASSERT_EQ(k.nonZeros(), sum.nonZeros());
+  EXPECT_TRUE(std::equal(k.outerIndexPtr(), k.outerIndexPtr() + k.cols() + 1, sum.outerIndexPtr()));
+  EXPECT_TRUE(std::equal(k.innerIndexPtr(), k.innerIndexPtr() + k.nonZeros(), sum.innerIndexPtr()));
+  EXPECT_TRUE(std::equal(k.valuePtr(), k.valuePtr() + k.nonZeros(), sum.valuePtr()));
+}
+
 TEST(Assembly, RigidModesOfTheWholeBodyGiveNoForce) {
   const Problem problem(test::held_board());
   const std::size_t n = problem.mesh().nodes.size();
