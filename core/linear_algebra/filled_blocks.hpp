@@ -30,6 +30,10 @@ class FilledBlocks {
                 double* y) const;
 
  private:
+  template <int Rows, class Vector>
+  void take_rows(Eigen::Index first, const double* s, Eigen::Index stride, Eigen::Index words,
+                 const double* x, double* y) const;
+
   static constexpr Eigen::Index kBlock = 8, kWord = 64 * kBlock;  // columns
   Eigen::Index words_ = 0;                                        // of a row
   std::vector<std::uint64_t> filled_;                             // a bit for each block

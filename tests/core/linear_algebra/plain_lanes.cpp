@@ -8,6 +8,7 @@
 
 #define SUNDER_PLAIN_COMPILER
 #define linear_algebra plain_linear_algebra
+#include "../core/linear_algebra/filled_blocks.cpp"
 #include "../core/linear_algebra/panel_kernels.cpp"
 #include "../core/linear_algebra/row_product.cpp"
 #include "../core/linear_algebra/symmetric_product.cpp"
@@ -30,6 +31,17 @@ std::vector<double> plain_symmetric_product(const std::vector<double>& s, Index 
                                             const std::vector<double>& x) {
   std::vector<double> y(x.size());
   linear_algebra::symmetric_product(s.data(), stride, n, x.data(), y.data());
+  return y;
+}
+
+std::vector<double> plain_filled_product(std::span<const std::vector<int>> filled,
+                                         const std::vector<double>& s, Index stride, Index n,
+                                         const std::vector<double>& x) {
+  linear_algebra::FilledBlocks blocks;
+  blocks.reserve(n);
+  for (const std::vector<int>& rows : filled) blocks.add(rows);
+  std::vector<double> y(static_cast<std::size_t>(n));
+  blocks.multiply(s.data(), stride, n, x.data(), y.data());
   return y;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "sunder/types.hpp"
@@ -17,6 +18,10 @@ namespace sunder::test {
 [[nodiscard]] std::vector<double> plain_symmetric_product(const std::vector<double>& s,
                                                           Index stride, Index n,
                                                           const std::vector<double>& x);
+/// The same of a matrix that these rows and columns fill, each set by itself.
+[[nodiscard]] std::vector<double> plain_filled_product(std::span<const std::vector<int>> filled,
+                                                       const std::vector<double>& s, Index stride,
+                                                       Index n, const std::vector<double>& x);
 /// As the functions of panel_kernels.hpp without `plain_`.
 void plain_forward_few(const double* panel, Index width, Index height, Index columns, double* x,
                        double* below, double* product, Index stride);

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "linear_algebra/filled_blocks.hpp"
 #include "linear_algebra/panel_kernels.hpp"
 #include "linear_algebra/row_product.hpp"
 #include "linear_algebra/symmetric_product.hpp"
@@ -44,6 +45,28 @@ TEST(PlainLanes, GiveSymmetricProductsOfTheSameBits) {
     std::vector<double> y(x.size());
     linear_algebra::symmetric_product(s.data(), stride, n, x.data(), y.data());
     EXPECT_EQ(plain_symmetric_product(s, stride, n, x), y) << n;
+  }
+}
+
+TEST(PlainLanes, GiveProductsOfFilledBlocksOfTheSameBits) {
+  for (Index n : {1, 3, 8, 13, 41, 700}) {
+    const Index stride = linear_algebra::padded(n) + 8;
+    std::vector<std::vector<int>> filled;
+    for (int e = 0; e < n; e += 2) filled.push_back({e, (e * 7 + 1) % n, (e * 11 + 5) % n});
+    auto x = random_values(stride);
+    std::vector<double> s(static_cast<std::size_t>(n * stride), 0.0),
+        y(static_cast<std::size_t>(n));
+    const auto values = random_values(n * stride);
+    linear_algebra::FilledBlocks blocks;
+    blocks.reserve(n);
+    for (const std::vector<int>& rows : filled) {
+      blocks.add(rows);
+      for (int i : rows) {
+        for (int j : rows) s[i * stride + j] = values[i * stride + j];
+      }
+    }
+    blocks.multiply(s.data(), stride, n, x.data(), y.data());
+    EXPECT_EQ(plain_filled_product(filled, s, stride, n, x), y) << n;
   }
 }
 
