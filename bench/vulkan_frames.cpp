@@ -63,7 +63,7 @@ class Frames {
   /// That a frame moves on its device at least; 0: there is none.
   [[nodiscard]] double bytes(bool fracture) const {
     const solver::FrameCost cost = gpu::predicted(*backend_);
-    return fracture ? cost.fracture_bytes : cost.quiet_bytes;
+    return fracture ? cost.fracture.bytes : cost.quiet.bytes;
   }
   void prepare_fracture() {
     if (broken_ == crack_.size()) renew();

@@ -72,8 +72,8 @@ class CpuBackend final : public Backend {
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
     const solver::FrameCost cost = solver::frame_cost(shape(), {});
-    info.quiet_ms = cost.quiet_ms;
-    info.fracture_ms = cost.fracture_ms;
+    info.quiet_ms = cost.quiet.ms;
+    info.fracture_ms = cost.fracture.ms;
     return info;
   }
 

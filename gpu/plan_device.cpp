@@ -10,9 +10,6 @@ namespace {
 // than a second. Never on a processor that emulates a GPU, where the host is quicker at every size.
 constexpr Index kInvertOnDevice = 3000;
 
-// Of an element's stress, beside the bytes that it moves: so many by the kernel that measures a
-// device take as long (lavapipe).
-constexpr double kStressFlops = 900;
 // Of the rate at which a kernel reads what lies side by side, what those of a frame reach, which
 // gather (lavapipe).
 constexpr double kOfStreaming = .7;
@@ -42,7 +39,7 @@ solver::FrameRates rates_of(const vulkan::PhysicalDevice& device) {
   rates.dispatch = kept->dispatch;
   rates.bytes = kOfStreaming * kept->bytes;
   rates.flops = kept->flops;
-  rates.stress = kStressFlops / kept->flops;
+  rates.stress = solver::kStressFlops / kept->flops;
   rates.measured = true;
   return rates;
 }

@@ -93,11 +93,11 @@ class VulkanBackend final : public Backend {
     if (plan_.eager && body_->update()) info.update = "deferred";  // rounding has made it so
     info.why = plan_.why;
     for (const BufferPlan& b : buffers()) info.memory_bytes += b.bytes;
-    const solver::FrameCost cost = predicted();
+    const solver::FrameCost cost = predicted(rates());
     info.predicted_by =
         for_plan_.rates.measured ? "rates measured on the device" : "nominal rates of such devices";
-    info.quiet_ms = cost.quiet_ms;
-    info.fracture_ms = cost.fracture_ms;
+    info.quiet_ms = cost.quiet.ms;
+    info.fracture_ms = cost.fracture.ms;
     return info;
   }
 
@@ -141,7 +141,10 @@ class VulkanBackend final : public Backend {
     return times;
   }
 
-  solver::FrameCost predicted() const { return solver::frame_cost(shape(), for_plan_.rates); }
+  [[nodiscard]] const solver::FrameRates& rates() const { return for_plan_.rates; }
+  solver::FrameCost predicted(const solver::FrameRates& by) const {
+    return solver::frame_cost(shape(), by);
+  }
   DeviceUse device_use() const {
     return {device_->held_bytes(), device_->most_bytes(), device_->queue().submits(),
             device_->pipelines(), device_->dispatches()};
@@ -361,9 +364,10 @@ DeviceUse device_use(const Backend& backend) {
   return vulkan_backend ? vulkan_backend->device_use() : DeviceUse{};
 }
 
-solver::FrameCost predicted(const Backend& backend) {
+solver::FrameCost predicted(const Backend& backend, const std::optional<solver::FrameRates>& by) {
   const auto* vulkan_backend = dynamic_cast<const VulkanBackend*>(&backend);
-  return vulkan_backend ? vulkan_backend->predicted() : solver::FrameCost{};
+  if (!vulkan_backend) return {};
+  return vulkan_backend->predicted(by ? *by : vulkan_backend->rates());
 }
 
 std::vector<Index> over_yield(const Backend& backend) {

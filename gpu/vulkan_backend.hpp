@@ -75,8 +75,10 @@ struct DeviceUse {
 };
 [[nodiscard]] DeviceUse device_use(const Backend& backend);
 
-/// What a frame of such a backend will take, and the bytes that its passes move; else nothing.
-[[nodiscard]] solver::FrameCost predicted(const Backend& backend);
+/// What a frame of such a backend will take, by these rates; none: by those of its device. Of
+/// another one nothing.
+[[nodiscard]] solver::FrameCost predicted(const Backend& backend,
+                                          const std::optional<solver::FrameRates>& by = {});
 
 /// Live breakable elements at or over yield after the last solve, ascending, as the device listed
 /// them: only they cross to the host. Of a backend that create() returned; else empty.

@@ -208,10 +208,10 @@ class Deferred {
   std::vector<Difference> wanted_;  // by what is to be prepared
   std::vector<Difference> fresh_;   // unit vectors that come
   linear_algebra::RowMajor compliance_, m_,
-      d_;                     // G = B^T X B, M and the stiffness D that is gone, in B
+      d_;                                // G = B^T X B, M and the stiffness D that is gone, in B
   linear_algebra::FilledBlocks filled_;  // of D, which is sparse
-  bool stiffened_ = false;    // the last event has changed M
-  Eigen::Index changed_ = 0;  // rows of M, the first ones, that are not all 0
+  bool stiffened_ = false;               // the last event has changed M
+  Eigen::Index changed_ = 0;             // rows of M, the first ones, that are not all 0
   linear_algebra::RowMajor grip_compliance_;  // (A^-1)_GG
   linear_algebra::RowMajor under_grips_;      // (M G)^T of the grips, a row each
   linear_algebra::RowMajor grip_columns_;     // of G, where they are not the first ones

@@ -33,10 +33,15 @@ constexpr double kIterationsOfANode = 25, kIterationsOfFewGroups = 400, kManyGro
 constexpr double kIterationDispatches = 7, kIterationBytes = 13 * 32 + 2 * 16;
 constexpr std::size_t kDenseGroups = 64;
 constexpr double kGroupBytes = 22 * 160;
+// Of an iteration, beside the stiffness: vectors and blocks, for each unknown.
+constexpr double kIterationFlops = 40;
 // Bytes of an element's stress there: shape, corners, state, displacement of four nodes.
 constexpr double kStressBytes = 96 + 16 + 16 + 128;
 
 double real(std::size_t count) { return static_cast<double>(count); }
+
+/// Of a product with a matrix in fp64 or in blocks of it.
+double flops_of(std::size_t matrix_bytes) { return 2 * real(matrix_bytes) / kValue; }
 
 double host_seconds(double bytes) {
   return bytes / (bytes > kCacheBytes ? kFromMemory : kFromCache);
@@ -77,16 +82,31 @@ void FrameWork::host(double values, double times, double flops) {
 
 void FrameWork::product(double elements) { seconds_ += kProductSeconds * elements; }
 
-void FrameWork::passes(double dispatches, double bytes) {
+void FrameWork::submit() {
+  if (!rates_.apart()) return;
+  seconds_ += rates_.submit;
+  ++apart_.submits;
+}
+
+void FrameWork::passes(double dispatches, double bytes, double flops) {
   if (!rates_.apart()) return;
   seconds_ += dispatches * rates_.dispatch + bytes / rates_.bytes;
-  bytes_ += bytes;
+  apart_.dispatches += dispatches;
+  apart_.bytes += bytes;
+  apart_.flops += flops;
+}
+
+FrameSum FrameWork::sum() const {
+  FrameSum sum = apart_;
+  sum.ms = 1e3 * seconds_;
+  return sum;
 }
 
 void FrameWork::fields(const FrameShape& s, bool balance) {
   const double stressed = real(s.stressed);
   if (s.stressed > 0) {
-    pass((kStressBytes + (s.stress ? 8 * real(s.real_bytes) : 0)) * stressed);
+    pass((kStressBytes + (s.stress ? 8 * real(s.real_bytes) : 0)) * stressed,
+         kStressFlops * stressed);
     seconds_ += stressed * rates_.stress / real(std::max<std::size_t>(s.threads, 1));
   }
   balance = balance || s.stressed == 0;
@@ -97,7 +117,7 @@ void FrameWork::fields(const FrameShape& s, bool balance) {
   } else if (balance && s.host_corrects) {
     product(real(s.elements));
   } else if (balance) {
-    pass(real(s.stiffness_bytes));
+    pass(real(s.stiffness_bytes), flops_of(s.stiffness_bytes));
   }
   pass(0);
 }
@@ -113,27 +133,23 @@ void FrameWork::iterate(const FrameShape& s, double iterations) {
   const bool levels = s.groups > kDenseGroups;
   const double bytes = real(s.stiffness_bytes) + kIterationBytes * real(s.kept) / 3 +
                        (levels ? kGroupBytes * real(s.groups) : 0);
-  passes(iterations * (kIterationDispatches + (levels ? 2 : 0)), iterations * bytes);
+  passes(iterations * (kIterationDispatches + (levels ? 2 : 0)), iterations * bytes,
+         iterations * (flops_of(s.stiffness_bytes) + kIterationFlops * real(s.kept)));
 }
 
 void FrameWork::check(const FrameShape& s) {
   submit();
-  pass(real(s.kept) * real(s.kept) * real(s.inverse_bytes));
+  pass(real(s.kept) * real(s.kept) * real(s.inverse_bytes), 2 * real(s.kept) * real(s.kept));
   pass(2 * real(s.kept) * kValue);
-  pass(kStressBytes * real(s.elements));
+  pass(kStressBytes * real(s.elements), kStressFlops * real(s.elements));
   seconds_ += real(s.elements) * rates_.stress;
   pass(0);
 }
 
 FrameCost frame_cost(const FrameShape& shape, const FrameRates& rates) {
   FrameCost cost;
-  const FrameWork quiet = work_of(shape, rates, false);
-  cost.quiet_ms = quiet.milliseconds();
-  cost.quiet_bytes = quiet.bytes();
-  if (!shape.damage) return cost;
-  const FrameWork torn = work_of(shape, rates, true);
-  cost.fracture_ms = torn.milliseconds();
-  cost.fracture_bytes = torn.bytes();
+  cost.quiet = work_of(shape, rates, false).sum();
+  if (shape.damage) cost.fracture = work_of(shape, rates, true).sum();
   return cost;
 }
 

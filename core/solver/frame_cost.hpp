@@ -11,6 +11,10 @@
 
 namespace sunder::solver {
 
+/// Of an element's stress on a device, principal ones and summary among them: so many by the kernel
+/// that measures a device take as long (lavapipe).
+inline constexpr double kStressFlops = 900;
+
 /// Nominal rates of what computes frames. A host computes all of one; a device apart from it the
 /// fields, and the products with its base.
 struct FrameRates {
@@ -50,6 +54,16 @@ struct FrameShape {
   std::size_t exact_loads = 0;      ///< up to so many loads have columns in fp64
   std::size_t stiffness_bytes = 0;  ///< that f - K u reads
   std::size_t groups = 1;           ///< whose rigid motions precondition its conjugate gradients
+  std::size_t columns = 0;          ///< of the damage before this frame, of a condensed region
+  bool region_there = false;        ///< the device multiplies them
+};
+
+/// What a frame takes, and what of that is a device's apart from the host.
+struct FrameSum {
+  double ms = 0;
+  double submits = 0, dispatches = 0;
+  double bytes = 0;  ///< that its passes read and write at least
+  double flops = 0;  ///< of its passes; a multiply-add is two
 };
 
 /// A frame's work, added up as it comes.
@@ -63,9 +77,9 @@ class FrameWork {
   /// The product K u there, by plain loops over so many elements.
   void product(double elements);
   // On a device apart from it; on the host nothing.
-  void submit() { seconds_ += rates_.submit; }
-  void pass(double bytes) { passes(1, bytes); }
-  void passes(double dispatches, double bytes);
+  void submit();
+  void pass(double bytes, double flops = 0) { passes(1, bytes, flops); }
+  void passes(double dispatches, double bytes, double flops = 0);
   /// Stress with its summary, and f - K u where it does not come with the stress.
   void fields(const FrameShape& shape, bool balance);
   /// So many iterations of conjugate gradients there.
@@ -73,19 +87,17 @@ class FrameWork {
   /// Where nothing estimates the error: a correction by the whole inverse, and its stress.
   void check(const FrameShape& shape);
 
-  [[nodiscard]] double milliseconds() const { return 1e3 * seconds_; }
-  [[nodiscard]] double bytes() const { return bytes_; }
+  [[nodiscard]] FrameSum sum() const;
 
  private:
   const FrameRates& rates_;
-  double seconds_ = 0, bytes_ = 0;
+  double seconds_ = 0;
+  FrameSum apart_;  // but the time
 };
 
 struct FrameCost {
-  double quiet_ms = 0;
-  double fracture_ms = 0;  ///< 0: nothing can be destroyed
-  // What the passes on a device apart from the host read and write at least.
-  double quiet_bytes = 0, fracture_bytes = 0;
+  FrameSum quiet;
+  FrameSum fracture;  ///< nothing: nothing can be destroyed
 };
 
 /// Of conjugate gradients on a device apart, from the last solution to that with an element less.

@@ -26,12 +26,17 @@ constexpr double kInversionBytes = 8, kInversionColumns = 60;
 // only grown they are all that conjugate gradients on a device take.
 constexpr double kKnownSteps = 2;
 constexpr double kTouched = 12;     // unknowns of a first fracture
+constexpr double kRank = 6;         // of the update that it brings
 constexpr double kDifferences = 9;  // of them, that the element resists: columns of the damage
 // Iterations of conjugate gradients preconditioned by the intact body: none broken, one broken.
 constexpr double kQuietIterations = 1, kFractureIterations = 6;
 // By an incomplete factor, for the cube root of the unknowns; a new crack hardly adds to them.
 constexpr double kIncompleteIterations = 8;
 constexpr double kStiffness = 22;  // entries of the stiffness for each unknown, lower triangle
+
+// Of the small matrices of route condensed, for each pair of columns: values read for the forces of
+// damage (a start and three refinements, ten products that read half a matrix), and by an update.
+constexpr double kForcesOfDamage = 5, kUpdateOfDamage = 3;
 
 std::string megabytes(std::size_t bytes) {
   if (bytes < 10000000) return std::to_string(bytes / 1000) + " kB";
@@ -95,12 +100,21 @@ std::string why_condensed(const Question& q) {
 }
 
 void condensed_solution(FrameWork& work, const FrameShape& s, bool torn) {
-  work.host(real(s.kept) * (real(s.loaded + s.grips) + (torn ? kTouched : 0)));
+  const double rows = real(s.kept), columns = real(s.columns) + (torn ? kDifferences : 0);
+  work.host(kForcesOfDamage * real(s.columns) * real(s.columns));
+  if (!s.region_there) {
+    work.host(rows * (real(s.loaded + s.grips + s.columns) + (torn ? kTouched : 0)));
+    return;
+  }
+  work.host(rows * real(s.loaded + s.grips));
+  work.submit();
+  work.pass(rows * columns * sizeof(double), 2 * rows * columns);
+  work.pass(2 * rows * sizeof(double));
 }
 
 /// The small matrix of the damage.
-void small_update(FrameWork& work, const FrameShape&) {
-  work.host(2 * kDifferences * kDifferences);
+void small_update(FrameWork& work, const FrameShape& s) {
+  work.host(2 * kDifferences * kDifferences + kUpdateOfDamage * real(s.columns) * real(s.columns));
 }
 
 // inverse
@@ -164,7 +178,8 @@ std::string no_dense_inverse(const Question& q) {
 
 /// u = X f by the loaded columns, on a device apart as they are stored.
 void stored_columns(FrameWork& work, const FrameShape& s) {
-  work.pass(real(s.kept) * real(s.loaded) * real(s.inverse_bytes));
+  work.pass(real(s.kept) * real(s.loaded) * real(s.inverse_bytes),
+            2 * real(s.kept) * real(s.loaded));
   work.pass(2 * real(s.kept) * sizeof(double));
 }
 
@@ -182,7 +197,7 @@ void inverse_solution(FrameWork& work, const FrameShape& s, bool torn) {
     if (s.host_corrects) {
       work.host(values + 3 * n);
     } else {
-      work.pass(values * sizeof(double));
+      work.pass(values * sizeof(double), 2 * values);
     }
     if (!exact) stored_columns(work, s);
   }
@@ -201,7 +216,7 @@ void inverse_update(FrameWork& work, const FrameShape& s) {
     work.pass(0);
     work.submit();
     work.pass(kTouched * n * bytes);
-    work.pass(n * n * bytes);  // half of them, read and written
+    work.pass(n * n * bytes, kRank * n * n);  // half of them, read and written
   } else if (s.apart && s.columns_there && s.entries > 0) {
     work.submit();  // new exact columns, there and back
     work.pass(2 * kTouched * n * sizeof(double));

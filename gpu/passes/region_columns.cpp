@@ -68,9 +68,7 @@ std::size_t RegionColumns::bytes() const {
 }
 
 Index RegionColumns::follow(const solver::CondensedBase& base) {
-  if (static_cast<std::size_t>(base.count()) * static_cast<std::size_t>(unknowns_) < least_) {
-    return 0;
-  }
+  if (!takes(base.count())) return 0;
   const Index before = columns_.count(),
               end = std::min({base.count(), before + kAtOnce, static_cast<Index>(capacity_)});
   if (end > before) {

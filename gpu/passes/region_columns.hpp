@@ -29,6 +29,10 @@ class RegionColumns final : public solver::RegionProduct {
   Index follow(const solver::CondensedBase& base) override;
   void add(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
   Index rows() const override { return unknowns_; }
+  /// Whether a base of so many columns has its product here.
+  [[nodiscard]] bool takes(Index columns) const {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(unknowns_) >= least_;
+  }
 
  private:
   Index unknowns_;

@@ -39,11 +39,11 @@ TEST(DeviceCostModel, OrdersFrames) {
     eager.eager = true;
     cg.route = Route::cg;
     const FrameCost deferred = frame_cost(board(6000), device(kind));
-    EXPECT_GT(deferred.quiet_ms, 0);
-    EXPECT_GT(deferred.fracture_ms, deferred.quiet_ms);
-    EXPECT_GT(frame_cost(eager, device(kind)).fracture_ms, deferred.fracture_ms);
-    EXPECT_GT(frame_cost(cg, device(kind)).fracture_ms, deferred.fracture_ms);
-    EXPECT_LT(frame_cost(organ, device(kind)).fracture_ms, deferred.fracture_ms);
+    EXPECT_GT(deferred.quiet.ms, 0);
+    EXPECT_GT(deferred.fracture.ms, deferred.quiet.ms);
+    EXPECT_GT(frame_cost(eager, device(kind)).fracture.ms, deferred.fracture.ms);
+    EXPECT_GT(frame_cost(cg, device(kind)).fracture.ms, deferred.fracture.ms);
+    EXPECT_LT(frame_cost(organ, device(kind)).fracture.ms, deferred.fracture.ms);
   }
 }
 
@@ -53,10 +53,10 @@ TEST(DeviceCostModel, CountsWhatASceneNeeds) {
   gripped.grips = 60;
   loaded.loaded = 3000;
   const auto lavapipe = device(VK_PHYSICAL_DEVICE_TYPE_CPU);
-  const double least = frame_cost(quiet, lavapipe).quiet_ms;
-  EXPECT_EQ(frame_cost(quiet, lavapipe).fracture_ms, 0);
-  EXPECT_GT(frame_cost(gripped, lavapipe).quiet_ms, least) << "reactions are f - K u";
-  EXPECT_GT(frame_cost(loaded, lavapipe).quiet_ms, least);
+  const double least = frame_cost(quiet, lavapipe).quiet.ms;
+  EXPECT_EQ(frame_cost(quiet, lavapipe).fracture.ms, 0);
+  EXPECT_GT(frame_cost(gripped, lavapipe).quiet.ms, least) << "reactions are f - K u";
+  EXPECT_GT(frame_cost(loaded, lavapipe).quiet.ms, least);
 }
 
 // Half of the inverse is read and written once: 4 n^2 bytes in fp32.
@@ -64,7 +64,7 @@ TEST(DeviceCostModel, AnEagerUpdateIsBoundByTheInverse) {
   FrameShape small = board(6000), large = board(24000);
   small.eager = large.eager = true;
   const auto gpu = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
-  const double ratio = frame_cost(large, gpu).fracture_ms / frame_cost(small, gpu).fracture_ms;
+  const double ratio = frame_cost(large, gpu).fracture.ms / frame_cost(small, gpu).fracture.ms;
   EXPECT_GT(ratio, 8);
   EXPECT_LT(ratio, 16);
 }
@@ -76,11 +76,11 @@ TEST(DeviceCostModel, CountsTheBytesOfAFrame) {
   const auto gpu = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
   const double columns = 6 * 1024 * 8;
   const double state = 1024 * (96 + 16 + 16 + 128 + 8 * 4);
-  EXPECT_EQ(frame_cost(shape, gpu).quiet_bytes, columns + state);
+  EXPECT_EQ(frame_cost(shape, gpu).quiet.bytes, columns + state);
   // 12 unknowns more in u = X f, and f - K u.
-  EXPECT_EQ(frame_cost(shape, gpu).fracture_bytes, 3 * columns + state + 500 * 1024);
+  EXPECT_EQ(frame_cost(shape, gpu).fracture.bytes, 3 * columns + state + 500 * 1024);
   shape.real_bytes = 8;
-  EXPECT_EQ(frame_cost(shape, gpu).quiet_bytes, columns + state + 1024 * 8 * 4);
+  EXPECT_EQ(frame_cost(shape, gpu).quiet.bytes, columns + state + 1024 * 8 * 4);
 }
 
 // Of boards with stiff frames on lavapipe (bench_scaling): solution alone, nodes and groups.
@@ -105,8 +105,8 @@ TEST(DeviceCostModel, CountsTheHostsColumns) {
   FrameShape kept = board(6000), factored = board(6000);
   factored.entries = 1'000'000;
   const auto gpu = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
-  EXPECT_GT(frame_cost(factored, gpu).fracture_ms, frame_cost(kept, gpu).fracture_ms + 1);
-  EXPECT_EQ(frame_cost(factored, gpu).quiet_ms, frame_cost(kept, gpu).quiet_ms);
+  EXPECT_GT(frame_cost(factored, gpu).fracture.ms, frame_cost(kept, gpu).fracture.ms + 1);
+  EXPECT_EQ(frame_cost(factored, gpu).quiet.ms, frame_cost(kept, gpu).quiet.ms);
 }
 
 // A load that has only grown takes steps along solutions that are known.
@@ -114,13 +114,13 @@ TEST(DeviceCostModel, AQuietFrameOfConjugateGradientsIteratesNot) {
   FrameShape cg = board(6000);
   cg.route = Route::cg;
   const FrameCost cost = frame_cost(cg, device(VK_PHYSICAL_DEVICE_TYPE_CPU));
-  EXPECT_LT(20 * cost.quiet_ms, cost.fracture_ms);
+  EXPECT_LT(20 * cost.quiet.ms, cost.fracture.ms);
 }
 
 TEST(DeviceCostModel, AGpuIsQuickerOnLargeBodies) {
   const FrameCost lavapipe = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_CPU));
   const FrameCost gpu = frame_cost(board(30000), device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU));
-  EXPECT_GT(lavapipe.quiet_ms, 5 * gpu.quiet_ms);
+  EXPECT_GT(lavapipe.quiet.ms, 5 * gpu.quiet.ms);
 }
 
 }  // namespace

@@ -247,8 +247,8 @@ TEST(Plan, GivesTheShapeOfAFrame) {
   EXPECT_EQ(shape.route, Route::condensed);
   EXPECT_TRUE(shape.damage);
   const FrameCost cost = frame_cost(shape, host().rates);
-  EXPECT_GT(cost.fracture_ms, cost.quiet_ms);
-  EXPECT_EQ(cost.quiet_bytes, 0) << "nothing is apart from the host";
+  EXPECT_GT(cost.fracture.ms, cost.quiet.ms);
+  EXPECT_EQ(cost.quiet.bytes, 0) << "nothing is apart from the host";
 }
 
 }  // namespace

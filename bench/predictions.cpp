@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// What frames will take on GPUs that were not at hand. Each body runs on the Vulkan device that
+// there is, which says that it is a discrete GPU: plan, submits and dispatches of a frame are
+// counted; bytes and flops of its passes, and milliseconds by two sets of rates, are the cost
+// model's (core/solver/frame_cost). Prints a table in Markdown. Minutes on lavapipe, and 4 GB.
+//   bench_predictions [TETRAHEDRA]     at most so many
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gpu/vulkan_backend.hpp"
+#include "torn_patch.hpp"
+
+namespace sunder::bench {
+namespace {
+
+/// 400 GB/s and 300 GFLOP/s in fp64, as a plan takes any discrete GPU for, and a larger one.
+constexpr double kSubmit = 20e-6, kDispatch = 5e-6, kOfStreaming = .7, kEvent = 60e-6;
+
+solver::FrameRates rates_of(double bytes, double flops) {
+  solver::FrameRates rates;
+  rates.stress = solver::kStressFlops / flops;
+  rates.frame = 0;
+  rates.event = kEvent;
+  rates.bytes = kOfStreaming * bytes;
+  rates.submit = kSubmit;
+  rates.dispatch = kDispatch;
+  rates.flops = flops;
+  return rates;
+}
+
+struct Body {
+  Index cells, patch;  // of the board, and of what alone can tear, by route condensed; 0: all of it
+  int events;          // before the frames that are counted
+};
+
+constexpr std::array<Body, 6> kBodies = {
+    {{18, 0, 0}, {36, 0, 0}, {71, 0, 0}, {71, kPatch, 0}, {409, 40, 0}, {409, 40, 300}}};
+
+class Frames {
+ public:
+  explicit Frames(const Body& body) {
+    Scene scene = patch_scene(body.cells, body.patch == 0 ? kPatch : body.patch);
+    if (body.patch == 0) scene.materials["organ"].yield = 2.0;
+    if (body.patch > 0) scene.solver.route = Route::condensed;
+    scene.solver.backend = "vulkan";
+    problem_ = std::make_shared<Problem>(std::move(scene));
+    order_ = patch_tear(*problem_);
+    Needs needs;
+    needs.stress = needs.yield = needs.damage = true;
+    gpu::VulkanOptions options;
+    options.probe.as_gpu = true;
+    backend_ = gpu::create(problem_, needs, options);
+    for (Index n : problem_->instrument_nodes()[0].nodes) {
+      load_.force_dofs.push_back(problem_->dof(n, 1));
+      load_.forces.push_back(-30);
+    }
+    frame(0);  // has the full check
+    for (int i = 0; i < body.events; ++i) frame(1);
+  }
+
+  gpu::DeviceUse frame(std::size_t broken) {
+    const gpu::DeviceUse before = gpu::device_use(*backend_);
+    if (broken > 0) backend_->destroy({&order_[next_], broken});
+    next_ += broken;
+    for (double& f : load_.forces) f *= 1.0009765625;
+    backend_->set_load(load_);
+    backend_->solve();
+    backend_->stress();
+    gpu::DeviceUse use = gpu::device_use(*backend_);
+    use.submits -= before.submits;
+    use.dispatches -= before.dispatches;
+    return use;
+  }
+  [[nodiscard]] const Backend& backend() const { return *backend_; }
+  [[nodiscard]] const Problem& problem() const { return *problem_; }
+
+ private:
+  std::shared_ptr<const Problem> problem_;
+  std::vector<Index> order_;
+  std::unique_ptr<Backend> backend_;
+  Load load_;
+  std::size_t next_ = 0;
+};
+
+void print(const Body& body) {
+  Frames frames(body);
+  for (const std::size_t broken : {1, 0}) frames.frame(broken);
+  const solver::FrameCost nominal = gpu::predicted(frames.backend()),
+                          larger = gpu::predicted(frames.backend(), rates_of(2e12, 10e12));
+  for (const bool torn : {false, true}) {
+    const gpu::DeviceUse use = frames.frame(torn ? 1 : 0);
+    const auto& of = torn ? nominal.fracture : nominal.quiet;
+    const auto& by_larger = torn ? larger.fracture : larger.quiet;
+    std::printf("| %lld, %s%s | %s | %zu; %.0f | %zu; %.0f | %.3g | %.3g | %.3g | %.3g |\n",
+                static_cast<long long>(frames.problem().tet_count()),
+                frames.backend().info().route.c_str(),
+                body.events > 0 ? (", after " + std::to_string(body.events)).c_str() : "",
+                torn ? "fracture" : "quiet", use.submits, of.submits, use.dispatches, of.dispatches,
+                1e-6 * of.bytes, 1e-6 * of.flops, of.ms, by_larger.ms);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+}  // namespace sunder::bench
+
+int main(int argc, char** argv) {
+  const long most = argc > 1 ? std::strtol(argv[1], nullptr, 10) : 1'003'686;
+  std::puts(
+      "| tetrahedra, route | frame | submits: counted; predicted | dispatches | MB | Mflop | ms at "
+      "400 GB/s, 300 GFLOP/s | ms at 2 TB/s, 10 TFLOP/s |\n|---|---|---|---|---:|---:|---:|---:|");
+  for (const auto& body : sunder::bench::kBodies) {
+    if (6L * body.cells * body.cells <= most) sunder::bench::print(body);
+  }
+}
