@@ -3,9 +3,12 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 
+#include "body/assembly.hpp"
 #include "body/stiffness_factor.hpp"
 #include "solver/condensed_update.hpp"
 #include "solver/region.hpp"
@@ -69,9 +72,50 @@ void bases(benchmark::State& state, Index cells, Index patch, int threads) {
   state.counters["unknowns"] = static_cast<double>(region.dofs.size());
 }
 
+/// The stiffness, beside Eigen's sum of the same elements' entries from a list.
+void assembly(benchmark::State& state, Index cells) {
+  const Problem problem(patch_scene(cells));
+  linear_algebra::SparseMatrix stiffness, listed(problem.dof_count(), problem.dof_count());
+  const auto list = [&] {
+    std::vector<Eigen::Triplet<double, Index>> entries;
+    entries.reserve(static_cast<std::size_t>(problem.tet_count()) * 78);
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      const fem::ElementMatrix k = fem::element_stiffness(problem, e);
+      for (int i = 0; i < 144; ++i) {
+        const auto& corners = problem.mesh().tets[static_cast<std::size_t>(e)];
+        const Index row = problem.dof(corners[i % 12 / 3], i % 3),
+                    column = problem.dof(corners[i / 36], i / 12 % 3);
+        if (column != kNone && row >= column) entries.emplace_back(row, column, k(i % 12, i / 12));
+      }
+    }
+    listed.setFromTriplets(entries.begin(), entries.end());
+  };
+  double least = HUGE_VAL, least_of_list = HUGE_VAL;
+  for (auto _ : state) {
+    const double ms = ms_of([&] { stiffness = fem::assemble_lower(problem, {}); });
+    state.SetIterationTime(1e-3 * ms);
+    least = std::min(least, ms);
+    least_of_list = std::min(least_of_list, ms_of(list));
+  }
+  const bool same =
+      listed.nonZeros() == stiffness.nonZeros() &&
+      std::equal(listed.valuePtr(), listed.valuePtr() + listed.nonZeros(), stiffness.valuePtr());
+  if (!same) state.SkipWithError("not what Eigen adds up");
+  state.counters["min_ms"] = least;
+  state.counters["eigen_ms"] = least_of_list;
+  state.counters["eigen_over_ours"] = least_of_list / least;
+}
+
 }  // namespace
 
 void register_bases() {
+  for (const Index cells : {18, 141, 409}) {
+    benchmark::RegisterBenchmark(("assembly/" + std::to_string(6 * cells * cells)).c_str(),
+                                 [=](auto& s) { assembly(s, cells); })
+        ->UseManualTime()
+        ->Iterations(3)
+        ->Unit(benchmark::kMillisecond);
+  }
   for (const Index cells : {18, 141}) {
     for (const Index patch : {12, 40}) {
       if (patch > cells) continue;
