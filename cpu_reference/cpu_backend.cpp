@@ -100,6 +100,9 @@ class CpuBackend final : public Backend {
       shape.path = intact_->factor.path_entries(an_element_that_can_break());
       shape.load_path = intact_->factor.path_entries(loaded_by_instruments());
     }
+    if (const solver::Deferred* deferred = plan_.region ? route_->deferred() : nullptr) {
+      shape.columns = static_cast<std::size_t>(deferred->rank() - deferred->grips());
+    }
     shape.stressed = fields_.stressed();
     shape.threads = fields_.threads();
     return shape;

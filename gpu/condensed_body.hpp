@@ -46,9 +46,9 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   std::vector<BufferPlan> buffers() const override;
   NewBases new_bases() const override { return route_->new_bases(); }
   void add_to(solver::FrameShape& shape) const override {
-    const Index columns = route_->deferred()->rank();
-    shape.columns = static_cast<std::size_t>(columns);
-    shape.region_there = columns_ && columns_->takes(columns);
+    const solver::Deferred& deferred = *route_->deferred();
+    shape.columns = static_cast<std::size_t>(deferred.rank() - deferred.grips());
+    shape.region_there = columns_ && columns_->takes(deferred.rank());
   }
 
  private:

@@ -59,6 +59,9 @@ SUNDER_FORCE_INLINE void strip(const LeftFactor& a, const double* b, Index b_str
   for (; i + kRows <= a.rows; i += kRows) {
     tile<Add, kRows, Vector, kVectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
   }
+  for (; kRows > 4 && i + 4 <= a.rows; i += 4) {
+    tile<Add, 4, Vector, kVectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
+  }
   for (; i < a.rows; ++i) {
     tile<Add, 1, Vector, kVectors>(a, i, b, b_stride, c + i * c_stride, c_stride);
   }

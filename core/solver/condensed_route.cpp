@@ -78,6 +78,7 @@ Based lay_over(const fem::Forms& in_base, std::shared_ptr<const linear_algebra::
   based.factor = std::move(factor);
   const Index columns = columns_of_a_base(base->dofs().size());
   based.deferred = std::make_unique<Deferred>(in_base, std::move(base), damage, columns);
+  based.deferred->judge_by_energy();
   return based;
 }
 

@@ -81,6 +81,9 @@ class Deferred {
                                    std::span<const double> displacement);
   /// Puts the gripped unknowns where they are held, free of rounding.
   void hold(std::span<const double> displacement, Eigen::VectorXd& u) const;
+  /// Solutions are judged by defect_energy() alone, which is all of their error: refining may end
+  /// where the next time would bring that under the tolerance.
+  void judge_by_energy() { by_energy_ = true; }
   /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
   /// residual where damage acts, in the base's arithmetic.
   [[nodiscard]] double defect_energy() const { return defect_energy_; }
@@ -235,7 +238,7 @@ class Deferred {
   // A solution: u in B, the forces x on B, what they lack, and its products; count() entries each.
   Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_, moved_, at_held_;
   double defect_energy_ = 0;
-  bool converged_ = true;
+  bool converged_ = true, by_energy_ = false;
 };
 
 }  // namespace sunder::solver

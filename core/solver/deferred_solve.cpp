@@ -21,8 +21,9 @@ const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
                                               std::span<const double> displacement,
                                               double energy_tolerance) {
   constexpr int kRefinements = 4;
-  // Of energy: what rounding alone leaves lacking may be so many times the tolerance.
-  constexpr double kOfRounding = 2500;
+  // Where defect_energy() is what a solution is judged by: so many times the tolerance may lack of
+  // it, by rounding alone.
+  constexpr double kOfRounding = 400;
   const Eigen::VectorXd& p = base_->load(on_body(forces));
   start(p, displacement);
   converged_ = before_.empty();
@@ -34,9 +35,9 @@ const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
     if (pass == 0) continue;
     // Another would change nothing: rounding has the word already, or from here on.
     const bool stalls = !(defect_energy_ < before / 4),
-               next_is_under = defect_energy_ * defect_energy_ <= energy_tolerance * before;
-    converged_ =
-        converged_ || stalls || (next_is_under && defect_energy_ <= kOfRounding * energy_tolerance);
+               next_is_under = by_energy_ && defect_energy_ <= kOfRounding * energy_tolerance &&
+                               defect_energy_ * defect_energy_ <= energy_tolerance * before;
+    converged_ = converged_ || stalls || next_is_under;
   }
   return x_;
 }

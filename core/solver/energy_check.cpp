@@ -47,7 +47,8 @@ void EnergyCheck::checked(const Load& load, const SolveReport& report, double un
 
 void EnergyCheck::refined(const Load& load, double unrefined, double energy, int bases,
                           double largest_u, double largest) {
-  worth_ = energy > 0 ? kAllowance * unrefined * largest / std::sqrt(energy) : HUGE_VAL;
+  const bool found = energy > 0 && unrefined > 0;
+  worth_ = found ? kAllowance * unrefined * largest / std::sqrt(energy) : HUGE_VAL;
   worth_base_ = bases;
   worth_events_ = kEventsOfAWorth;
   known_.checked(load, {std::max(unrefined, of_factor_), 0, largest_u, largest}, bases);
@@ -65,7 +66,7 @@ void EnergyCheck::follow(int bases, const BaseCheck& check, int factor, bool dri
 }
 
 double EnergyCheck::energy_tolerance(const CheckedLoads::Sum& expected) const {
-  const double e = kRefined * expected.largest_stress / std::min(stress_of_energy_, worth_);
+  const double e = kRefined * expected.largest_stress / stress_of_energy_;
   return e * e;
 }
 

@@ -13,9 +13,10 @@
 namespace sunder::solver {
 namespace {
 
-// Bytes of an element while its stiffness goes into the matrix: entries of 12, some 17 of thin
-// boards and 28 of thick bodies, and lists of the nodes around each node.
-constexpr std::size_t kAssembly = 28 * 12 + 32;
+// Bytes of an element while its stiffness goes into the matrix: at most 28 entries of 12, and lists
+// of the nodes around each node. Where it pools its volume: some 48 entries of its patch in a list
+// with row and column, and again in a matrix.
+constexpr std::size_t kAssembly = 28 * 12 + 32, kPooled = 48 * (16 + 12);
 // And then of all else that a frame holds: shapes, stress, the matrix and its incomplete factor.
 constexpr std::size_t kElement = 800;
 
@@ -142,8 +143,10 @@ void require(const RouteRow& row, const Question& q) {
 
 /// Counts what all routes of a host are made by, before it is computed.
 std::shared_ptr<const fem::Analysis> analyse(Question& q) {
-  const std::size_t least =
-      static_cast<std::size_t>(q.problem.tet_count()) * (kAssembly + kElement);
+  std::size_t least = static_cast<std::size_t>(q.problem.tet_count()) * (kAssembly + kElement);
+  for (Index e = 0; q.problem.pools() && e < q.problem.tet_count(); ++e) {
+    if (q.problem.material(e).volume == MaterialVolume::pooled) least += kPooled;
+  }
   if (least > q.device.memory) {
     refuse("even route cg", least, q, "use a coarser mesh or a larger machine");
   }

@@ -31,7 +31,8 @@ class RegionColumns final : public solver::RegionProduct {
   Index rows() const override { return unknowns_; }
   /// Whether a base of so many columns has its product here.
   [[nodiscard]] bool takes(Index columns) const {
-    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(unknowns_) >= least_;
+    return columns > 0 &&
+           static_cast<std::size_t>(columns) * static_cast<std::size_t>(unknowns_) >= least_;
   }
 
  private:

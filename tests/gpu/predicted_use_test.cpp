@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cost model counts the submits and dispatches that frames take: what it predicts of a GPU
 // stands on them.
+#include <algorithm>
+
 #include "gpu_body.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"

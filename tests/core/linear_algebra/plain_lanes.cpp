@@ -16,11 +16,13 @@
 namespace sunder::test {
 
 std::vector<double> plain_product(const Eigen::MatrixXd& a, const std::vector<double>& b,
-                                  Index width, bool packed) {
-  std::vector<double> c(static_cast<std::size_t>(a.rows() * width)), room;
+                                  Index width, bool packed, bool add) {
+  std::vector<double> c(static_cast<std::size_t>(a.rows() * width), 0.3), room;
   const linear_algebra::LeftFactor left = linear_algebra::plain(a);
   if (packed) {
     linear_algebra::packed_product(left, b.data(), width, width, c.data(), width, room);
+  } else if (add) {
+    linear_algebra::row_product_add(left, b.data(), width, width, c.data(), width);
   } else {
     linear_algebra::row_product(left, b.data(), width, width, c.data(), width);
   }

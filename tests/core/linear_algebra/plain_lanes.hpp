@@ -10,10 +10,10 @@
 
 namespace sunder::test {
 
-/// A b, of a row-major b; packed: as packed_product() sums it.
+/// A b, of a row-major b; packed: as packed_product() sums it; add: .3 of every entry and that.
 [[nodiscard]] std::vector<double> plain_product(const Eigen::MatrixXd& a,
                                                 const std::vector<double>& b, Index width,
-                                                bool packed);
+                                                bool packed, bool add = false);
 /// S x of a symmetric S, row by row at `stride`, n x n.
 [[nodiscard]] std::vector<double> plain_symmetric_product(const std::vector<double>& s,
                                                           Index stride, Index n,

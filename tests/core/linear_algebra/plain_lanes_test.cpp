@@ -23,7 +23,7 @@ std::vector<double> random_values(Index count) {
 }
 
 TEST(PlainLanes, GiveProductsOfTheSameBits) {
-  for (Index rows : {1, 4, 9, 17}) {
+  for (Index rows : {1, 4, 9, 17, 28}) {
     for (Index width : {1, 3, 8, 15, 16, 35, 64}) {
       const Index inner = 23;
       const auto left = random_values(rows * inner), b = random_values(inner * width);
@@ -32,6 +32,9 @@ TEST(PlainLanes, GiveProductsOfTheSameBits) {
       std::vector<double> c(static_cast<std::size_t>(rows * width)), packed = c, room;
       linear_algebra::row_product(factor, b.data(), width, width, c.data(), width);
       EXPECT_EQ(plain_product(a, b, width, false), c) << rows << " x " << width;
+      std::vector<double> added(c.size(), 0.3);
+      linear_algebra::row_product_add(factor, b.data(), width, width, added.data(), width);
+      EXPECT_EQ(plain_product(a, b, width, false, true), added) << rows << " x " << width;
       linear_algebra::packed_product(factor, b.data(), width, width, packed.data(), width, room);
       EXPECT_EQ(plain_product(a, b, width, true), packed) << rows << " x " << width;
     }

@@ -57,6 +57,36 @@ struct Board {
   std::vector<Index> dofs;
 };
 
+// Whatever the tolerance, a solution that is judged by its energy lacks no more than is reported,
+// and ends within rounding of the fully refined one where the tolerance asks for that.
+TEST(Deferred, JudgedByEnergyEndsWhereItsReportIsTrue) {
+  const Board board{test::held_board()};
+  const auto crack = test::crack_sequence(board.problem, 60, 10);
+  Deferred deferred(board.problem, board.base("inverse"));
+  for (const Index& e : crack) ASSERT_TRUE(deferred.destroy({&e, 1}));
+  Eigen::VectorXd exact, u;
+  deferred.solve({board.dofs, board.values}, {}, exact);
+  deferred.judge_by_energy();
+  const auto stiffness = [&] {
+    std::vector<double> scale(board.problem.mesh().tets.size(), 1.0);
+    for (Index e : crack) scale[e] = board.problem.scene().fracture.alpha;
+    return fem::assemble_lower(board.problem, scale);
+  }();
+  const auto energy_of = [&](const Eigen::VectorXd& v) {
+    return v.dot(stiffness.selfadjointView<Eigen::Lower>() * v);
+  };
+  const double rounding = 1e-18 * energy_of(exact);  // of u itself
+  for (double tolerance = 1e-4; tolerance > 1e-30; tolerance *= 1e-2) {
+    SCOPED_TRACE(tolerance);
+    deferred.solve({board.dofs, board.values}, {}, u, tolerance);
+    EXPECT_LE(energy_of(u - exact), deferred.defect_energy() + rounding);
+    if (tolerance > 1e3 * rounding) {
+      EXPECT_LE(deferred.defect_energy(), 400 * tolerance);
+    }
+  }
+  EXPECT_LE((u - exact).norm(), 1e-11 * exact.norm());
+}
+
 struct Engine {
   std::string name;
   std::size_t batch;
