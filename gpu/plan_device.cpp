@@ -30,6 +30,12 @@ solver::FrameRates nominal(VkPhysicalDeviceType type) {
   return rates;
 }
 
+void set_throughput(double bytes, double flops, solver::FrameRates& rates) {
+  rates.bytes = kOfStreaming * bytes;
+  rates.flops = flops;
+  rates.stress = solver::kStressFlops / flops;
+}
+
 /// As measured once, else of its kind.
 solver::FrameRates rates_of(const vulkan::PhysicalDevice& device) {
   solver::FrameRates rates = nominal(device.type);
@@ -37,9 +43,7 @@ solver::FrameRates rates_of(const vulkan::PhysicalDevice& device) {
   if (!kept) return rates;
   rates.submit = kept->submit;
   rates.dispatch = kept->dispatch;
-  rates.bytes = kOfStreaming * kept->bytes;
-  rates.flops = kept->flops;
-  rates.stress = solver::kStressFlops / kept->flops;
+  set_throughput(kept->bytes, kept->flops, rates);
   rates.measured = true;
   return rates;
 }
@@ -58,6 +62,12 @@ solver::PlanDevice plan_device(const vulkan::PhysicalDevice& device, bool displa
   if (!device.is_cpu()) plan.inverts_from = kInvertOnDevice;
   plan.rates = rates_of(device);
   return plan;
+}
+
+solver::FrameRates rates_of_a_gpu(double bytes, double flops) {
+  solver::FrameRates rates = nominal(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
+  set_throughput(bytes, flops, rates);
+  return rates;
 }
 
 bool host_inverts_anyway(const Problem& problem) {

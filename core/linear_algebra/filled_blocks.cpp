@@ -26,16 +26,14 @@ void FilledBlocks::clear() { std::fill(filled_.begin(), filled_.end(), 0); }
 
 void FilledBlocks::add(std::span<const int> rows) {
   for (int i : rows) {
-    std::uint64_t* const row = filled_.data() + i * words_;
-    for (int j : rows) row[j / kWord] |= std::uint64_t{1} << (j % kWord / kBlock);
+    for (int j : rows) fill(i, j);
   }
 }
 
 void FilledBlocks::find(const RowMajor& s, Eigen::Index n) {
   for (Eigen::Index i = 0; i < n; ++i) {
-    std::uint64_t* const row = filled_.data() + i * words_;
     for (Eigen::Index j = 0; j < n; ++j) {
-      if (s(i, j) != 0) row[j / kWord] |= std::uint64_t{1} << (j % kWord / kBlock);
+      if (s(i, j) != 0) fill(i, j);
     }
   }
 }

@@ -34,6 +34,11 @@ class FilledBlocks {
   void take_rows(Eigen::Index first, const double* s, Eigen::Index stride, Eigen::Index words,
                  const double* x, double* y) const;
 
+  void fill(Eigen::Index row, Eigen::Index column) {
+    filled_[static_cast<std::size_t>(row * words_ + column / kWord)] |=
+        std::uint64_t{1} << (column % kWord / kBlock);
+  }
+
   static constexpr Eigen::Index kBlock = 8, kWord = 64 * kBlock;  // columns
   Eigen::Index words_ = 0;                                        // of a row
   std::vector<std::uint64_t> filled_;                             // a bit for each block

@@ -117,9 +117,10 @@ double Deferred::refine(const Eigen::VectorXd& p, std::span<const double> displa
 /// The same with v_ = B^T u at hand.
 double Deferred::refine_at_v(std::span<const double> displacement) {
   const Eigen::Index n = count();
+  // D B^T u - x
   v_.segment(n, linear_algebra::padded(n) - n).setZero();
   filled_.multiply(d_.data(), d_.outerStride(), n, v_.data(), lack_.data());
-  lack_.head(n) -= x_.head(n);                 // D B^T u - x
+  lack_.head(n) -= x_.head(n);
   for (Index d : units_) lack_[unit_[d]] = 0;  // where only grips act
   if (!border_.empty()) border_.add_lack(v_, lack_);
   multiply(compliance_, n, n, lack_, gx_);
