@@ -3,7 +3,8 @@
 
 namespace sunder::bench {
 
-/// Rows "assembly/TETRAHEDRA": the stiffness, beside Eigen's sum of a list of entries. Rows "bases/TETRAHEDRA/UNKNOWNS/THREADS": what a new base of route condensed takes, part by
+/// Rows "assembly/TETRAHEDRA": the stiffness, beside Eigen's sum of a list of entries.
+/// Rows "bases/TETRAHEDRA/UNKNOWNS/THREADS": what a new base of route condensed takes, part by
 /// part.
 void register_bases();
 
