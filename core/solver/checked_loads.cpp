@@ -53,13 +53,13 @@ bool CheckedLoads::follow(int bases, const BaseCheck& check) {
   const auto sum = takes(check.load) ? sum_of(check.load) : std::nullopt;
   if (!sum) return false;
   checked(check.load,
-          {check.error, check.stress_of_residual, sum->largest_u, sum->largest_stress, false},
+          {check.error, check.stress_of_residual, sum->largest_u, sum->largest_stress, 0, 1},
           bases);
   return true;
 }
 
 void CheckedLoads::event() {
-  for (Found& of : found_) of.fresh = false;
+  for (Found& of : found_) ++of.events;
 }
 
 std::optional<CheckedLoads::Sum> CheckedLoads::expected(const Load& load, int bases) {
@@ -147,7 +147,7 @@ void CheckedLoads::sort_in(std::size_t newest) {
       double most = 0;
       std::size_t next = 0;
       for (std::size_t i = 0; i < left; ++i) {
-        if (found_[others[i]].fresh != fresh) continue;
+        if ((found_[others[i]].events == 0) != fresh) continue;
         bring(others[i]);
         const double beyond = beyond_span();
         if (beyond > most) next = i;
@@ -168,20 +168,24 @@ std::optional<CheckedLoads::Sum> CheckedLoads::sum_of(const Load& load) {
   const auto k = static_cast<Eigen::Index>(size_);
   r_.topLeftCorner(k, k).triangularView<Eigen::Upper>().solveInPlace(shares_);
   Sum sum;
-  sum.alone = sum.fresh = true;
+  sum.alone = true;
+  bool forces_known = true;
   const double all = shares_.cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < size_; ++i) {
     const double share = std::abs(shares_[static_cast<Eigen::Index>(i)]);
     if (share <= kInSpan * all) continue;
     const Found& of = found_[order_[i]];
     sum.alone = sum.alone && i == 0;
-    sum.fresh = sum.fresh && of.fresh;
+    sum.events = std::max(sum.events, of.events);
     sum.largest_u += share * of.largest_u;
     sum.largest_stress += share * of.largest_stress;
     sum.stress_error += share * of.largest_stress * of.error;
+    sum.forces += share * of.forces;
+    forces_known = forces_known && of.forces > 0;
     sum.error = std::max(sum.error, of.error);
     sum.stress_of_residual = std::max(sum.stress_of_residual, of.stress_of_residual);
   }
+  if (!forces_known) sum.forces = 0;
   return sum;
 }
 

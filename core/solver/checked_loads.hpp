@@ -28,7 +28,8 @@ class CheckedLoads {
     double stress_of_residual = 0;  ///< that a residual of 1 N is worth [MPa]
     double largest_u = 0;           ///< [mm]
     double largest_stress = 0;      ///< over live elements [MPa]
-    bool fresh = true;              ///< no event has changed the body since
+    double forces = 0;              ///< of damage and grips (Deferred::forces); 0: unknown
+    int events = 0;                 ///< that have changed the body since
   };
   /// Takes what a full check has found, on the base of that number (from 1), before what others
   /// have: of them those stay that are of that base and add most to what all span.
@@ -47,8 +48,11 @@ class CheckedLoads {
     double largest_u = 0, largest_stress = 0;  ///< at most, by the shares
     double stress_error = 0;                   ///< at most, by the shares [MPa]
     double error = 0, stress_of_residual = 0;  ///< the largest of those that it is made of
+    double forces = 0;                         ///< at most, by the shares; 0: one is unknown
     bool alone = false;                        ///< a multiple of the last one checked
-    bool fresh = false;                        ///< no event since any of them
+    int events = 0;                            ///< since the first of them
+    /// No event since any of them.
+    [[nodiscard]] bool fresh() const { return events == 0; }
   };
   /// Of a load; nothing: it is no sum of theirs, or the base is one that nothing is known of.
   [[nodiscard]] std::optional<Sum> expected(const Load& load, int bases);

@@ -246,11 +246,16 @@ class CondensedRoute final : public InverseRoute {
   int factor() const override { return factor_number_; }
   bool drifts() const override { return based_.deferred && base_of(based_).drifts(); }
 
+  /// Beyond the region nobody looks at stress.
+  bool refines() const override {
+    return based_.laid_over().offsets().size() == 0 &&
+           base_of(based_).dofs().size() == dofs_.size();
+  }
+
   bool refine(const Load& load, Eigen::VectorXd& u, Eigen::VectorXd& added) override {
+    if (!refines()) return false;
     CondensedBase& base = base_of(based_);
     Deferred& deferred = based_.laid_over();
-    // Beyond the region nobody looks at stress.
-    if (deferred.offsets().size() > 0 || base.dofs().size() != dofs_.size()) return false;
     before_ = base.on_region();
     base.expand_mended(deferred.refine_at(base.project_mended(), load.displacements), u);
     deferred.hold(load.displacements, u);

@@ -93,6 +93,8 @@ class Deferred {
   const Eigen::VectorXd& correction_coefficients(const Eigen::VectorXd& projection);
   /// Whether the last solution was refined down to `energy_tolerance` or to rounding.
   [[nodiscard]] bool converged() const { return converged_; }
+  /// |x| of the last solution: the forces of damage and grips in B [N].
+  [[nodiscard]] double forces() const { return x_.head(count()).norm(); }
   /// Gripped unknowns, as forms().gripped().
   [[nodiscard]] Index grips() const { return static_cast<Index>(held_.size()); }
   /// Force of a grip on the base in the last solution, its anchor included.

@@ -20,18 +20,29 @@ class EnergyCheck {
 
   /// Takes what a full check said of a load: its report, the error before it refined the solution,
   /// which is what the factor gives by itself, and what a base that drifts had given beside that
-  /// (FrameDevice::mended()). `largest`: the largest stress over live elements.
+  /// (FrameDevice::mended()). `forces`: Deferred::forces(), 0: unknown; `largest`: the largest
+  /// stress over live elements.
   void checked(const Load& load, const SolveReport& report, double unrefined, double mended,
-               int bases, double largest_u, double largest);
-  /// The same of a solution that was refined on the region alone, `unrefined` by the first time.
-  /// `energy`: of what the deferred update had lacked there.
-  void refined(const Load& load, double unrefined, double energy, int bases, double largest_u,
-               double largest);
+               int bases, double forces, double largest_u, double largest);
+  /// What a refinement on the region alone changed stress by, relative, and the energy of what the
+  /// deferred update lacked before it; `alone`: of nothing else, since another had come before.
+  struct Lack {
+    double error = 0, energy = 0;
+    bool alone = false;
+  };
+  /// The same of a solution that was so refined, `unrefined` by the first time.
+  void refined(const Load& load, double unrefined, const Lack& last, int bases, double forces,
+               double largest_u, double largest);
+  /// Whether knowing what such an energy is worth by itself would spare later frames a refinement.
+  [[nodiscard]] bool wants_worth(double unrefined, int bases) const;
   /// Nothing is known any more: the loads to come are of other grips.
   void forget();
   /// Takes what is known of a base that is new since the last full check; `factor` and `drifts`:
   /// FrameDevice's.
   void follow(int bases, const BaseCheck& check, int factor, bool drifts);
+  /// A base that drifts has come with events laid over it since it was checked, and no frame has
+  /// looked yet at what it gives wrong by now.
+  [[nodiscard]] bool unseen() const { return unseen_; }
   /// Whether what this knows is of loads on the same unknowns.
   [[nodiscard]] bool takes(const Load& load) const { return known_.takes(load); }
   /// What full checks let expect of another load; nothing: it needs a full check.
@@ -50,7 +61,8 @@ class EnergyCheck {
   /// What is known of a solution without a full check; nothing when that is needed. `energy`: of
   /// what the deferred update lacked (Deferred::defect_energy).
   [[nodiscard]] std::optional<SolveReport> known(const CheckedLoads::Sum& expected, double energy,
-                                                 double largest_u, double largest) const;
+                                                 double forces, double largest_u,
+                                                 double largest) const;
   /// The same of a solution whose last refinement on the region alone has changed stress by
   /// `error`, relative: that sees what the base and the update lack beside the factor.
   [[nodiscard]] std::optional<SolveReport> known_refined(const CheckedLoads::Sum& expected,
@@ -64,6 +76,10 @@ class EnergyCheck {
                                                          double largest_u, double largest) const;
 
  private:
+  [[nodiscard]] bool knows_worth(int bases) const;
+  void forget_worth();
+  [[nodiscard]] static double amplified(const CheckedLoads::Sum& expected, double forces);
+
   const Problem& problem_;
   double stress_of_rounding_;  // of a displacement of 1 mm
   double stress_of_energy_;    // sqrt of the largest stress^2 per energy over all elements
@@ -74,6 +90,8 @@ class EnergyCheck {
   // on that base, for so many events more.
   double worth_ = HUGE_VAL;
   int worth_base_ = 0, worth_events_ = 0;
+  bool worth_alone_ = false;  // it was found of nothing else
+  bool unseen_ = false;
   CheckedLoads known_;
 };
 

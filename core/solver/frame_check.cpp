@@ -47,7 +47,7 @@ std::optional<double> FrameCheck::error(const CheckedLoads::Sum& expected,
   if (!(solution.largest_u <= kGrowth * expected.largest_u)) return std::nullopt;
   const bool cancels = !(expected.largest_stress <= kGrowth * solution.largest_stress);
   if (cancels && !expected.alone) return std::nullopt;
-  const double error = (expected.fresh ? kSpread : kAllowance) * expected.stress_of_residual *
+  const double error = (expected.fresh() ? kSpread : kAllowance) * expected.stress_of_residual *
                        solution.residual / solution.largest_stress;
   if (!(error <= promised_)) return std::nullopt;
   return error;

@@ -93,6 +93,8 @@ class FrameDevice {
     double stress = 0;  ///< largest of what was added [MPa]
     OnRegion solution;
   };
+  /// As InverseRoute's refines().
+  [[nodiscard]] virtual bool refines_region() const { return false; }
   /// Refines the solution of solve_region() once; nothing: it cannot be had on the region alone.
   virtual std::optional<RefinedOnRegion> refine_region() { return std::nullopt; }
   /// Of a solution that solve() has put in work.

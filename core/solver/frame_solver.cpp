@@ -158,21 +158,29 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
   // The solution without a full check, where one like it has had its check.
   if (const auto expected = check.expected(load, device_.bases())) {
     const auto [largest_u, largest] = device_.solve_region(check.energy_tolerance(*expected));
-    if (const auto known =
-            check.known(*expected, device_.deferred()->defect_energy(), largest_u, largest)) {
+    const Deferred& damage = *device_.deferred();
+    const auto known =
+        check.known(*expected, damage.defect_energy(), damage.forces(), largest_u, largest);
+    const bool refines = device_.refines_region() &&  // and it could say something
+                         check.known_refined(*expected, 0, largest_u, largest);
+    if (known && !(refines && check.unseen())) {
       everywhere_ = false;
       return *known;
     }
-    if (check.known_refined(*expected, 0, largest_u, largest)) {  // or it could say nothing
+    if (refines) {
       if (const auto refined = refine_on_region(check, *expected, load)) return *refined;
     }
   }
   if (auto known = solve_by_base(check)) return *known;
   SolveReport report;
   solve_once(0, report);
+  const int base = device_.bases();
+  const double by_base = device_.deferred()->forces();
   check_fully(report);
+  const double forces = device_.bases() == base ? by_base : 0;
   const auto [largest_u, largest] = device_.on_region();
-  check.checked(load, report, unrefined_, device_.mended(), device_.bases(), largest_u, largest);
+  check.checked(load, report, unrefined_, device_.mended(), device_.bases(), forces, largest_u,
+                largest);
   checked_base_ = {device_.bases(), std::max(unrefined_, device_.mended()), report, false};
   return report;
 }
@@ -183,7 +191,7 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
 std::optional<SolveReport> FrameSolver::refine_on_region(EnergyCheck& check,
                                                          const CheckedLoads::Sum& expected,
                                                          const Load& load) {
-  const double energy = device_.deferred()->defect_energy();
+  double energy = device_.deferred()->defect_energy();
   double error = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt <= kRefinements; ++attempt) {
     const auto refined = device_.refine_region();
@@ -192,11 +200,15 @@ std::optional<SolveReport> FrameSolver::refine_on_region(EnergyCheck& check,
     const double before = error;
     error = refined->stress / largest;
     if (attempt == 0) unrefined_ = error;
+    // From the second time on the base's own error is mended, and what damage lacks stands alone.
+    if (attempt > 0) energy = device_.deferred()->defect_energy();
     // What the first time leaves is unknown: less than what it has changed, with room.
     const double left = attempt == 0 ? kUnmeasured * error : error;
     if (auto report = check.known_refined(expected, left, largest_u, largest)) {
+      if (attempt == 0 && check.wants_worth(unrefined_, device_.bases())) continue;
       report->back_solves = 2 + attempt;
-      check.refined(load, unrefined_, energy, device_.bases(), largest_u, largest);
+      check.refined(load, unrefined_, {error, energy, attempt > 0}, device_.bases(),
+                    device_.deferred()->forces(), largest_u, largest);
       everywhere_ = false;
       return report;
     }

@@ -59,6 +59,7 @@ class HostFrame final : public FrameDevice {
   [[nodiscard]] const BaseCheck& base_check() const override { return route_.base_check(); }
   [[nodiscard]] bool condensed() const override { return fields_.region() != nullptr; }
   OnRegion solve_region(double energy_tolerance) override;
+  bool refines_region() const override { return route_.refines(); }
   std::optional<RefinedOnRegion> refine_region() override;
   OnRegion on_region() override;
   [[nodiscard]] int factor() const override { return route_.factor(); }

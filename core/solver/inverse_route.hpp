@@ -37,9 +37,10 @@ class InverseRoute {
   [[nodiscard]] virtual int factor() const { return 1; }
   /// Whether the inverse that it works with is more than a factor's own, with an error beside that.
   [[nodiscard]] virtual bool drifts() const { return false; }
-  /// Of a route that leaves some out: refines the last solve() once on its own unknowns by the
-  /// factor's own inverse and the damage, and gives what that has added to x there. False, and
-  /// nothing changes: it cannot.
+  /// Of a route that leaves some out: whether refine() can be had of the body as it is.
+  [[nodiscard]] virtual bool refines() const { return false; }
+  /// Refines the last solve() once on the route's own unknowns by the factor's own inverse and the
+  /// damage, and gives what that has added to x there. False, and nothing changes: it cannot.
   virtual bool refine(const Load&, Eigen::VectorXd& /*x*/, Eigen::VectorXd& /*added*/) {
     return false;
   }

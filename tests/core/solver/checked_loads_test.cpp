@@ -49,6 +49,21 @@ TEST_F(Checked, KnowsMultiplesAndSums) {
   EXPECT_FALSE(known.takes(other));
 }
 
+TEST_F(Checked, ForcesAndEventsAreThoseOfAllShares) {
+  known.checked(load({1, 0, 0, 0, 0}), {1e-12, 10, 2, 5, 30}, 1);
+  EXPECT_EQ(known.expected(load({2, 0, 0, 0, 0}), 1)->forces, 60);
+  known.event();
+  known.checked(load({0, 1, 0, 0, 0}), {1e-12, 10, 2, 5, 40}, 1);
+  const auto sum = known.expected(load({1, -2, 0, 0, 0}), 1);
+  ASSERT_TRUE(sum);
+  EXPECT_NEAR(sum->forces, 30 + 2 * 40, 1e-12);
+  EXPECT_EQ(sum->events, 1);
+  EXPECT_FALSE(sum->fresh());
+  EXPECT_TRUE(known.expected(load({0, 1, 0, 0, 0}), 1)->fresh());
+  known.checked(load({0, 1, 0, 0, 0}), {1e-12, 10, 2, 5, 0}, 1);
+  EXPECT_EQ(known.expected(load({1, -2, 0, 0, 0}), 1)->forces, 0) << "of one nothing is known";
+}
+
 TEST_F(Checked, ANewBaseForgetsAllButWhatIsKnownOfIt) {
   check({1, 0, 0, 0, 0}, 2, 5);
   check({0, 1, 0, 0, 0}, 3, 7);

@@ -17,8 +17,8 @@ class EnergyChecked : public testing::Test {
     other.force_dofs = {9};
     other.forces = {1};
   }
-  void check_fully(double unrefined, double mended = 0, int base = 1) {
-    check.checked(load, {}, unrefined, mended, base, kU, kStress);
+  void check_fully(double unrefined, double mended = 0, int base = 1, double forces = 0) {
+    check.checked(load, {}, unrefined, mended, base, forces, kU, kStress);
   }
   [[nodiscard]] auto refined(double error, double u = kU, double stress = kStress) {
     return check.known_refined(expected(), error, u, stress);
@@ -30,8 +30,8 @@ class EnergyChecked : public testing::Test {
     const auto known = check.expected(of, base);
     return known && check.known_refined(*known, 0, kU, kStress).has_value();
   }
-  [[nodiscard]] bool known(double energy, int base = 1) {
-    return check.known(expected(base), energy, kU, kStress).has_value();
+  [[nodiscard]] bool known(double energy, int base = 1, double forces = 0) {
+    return check.known(expected(base), energy, forces, kU, kStress).has_value();
   }
 
   static constexpr double kU = 0.5, kStress = 3;
@@ -78,7 +78,7 @@ TEST_F(EnergyChecked, ForgetsAnotherFactorsErrors) {
   EXPECT_FALSE(trusts_factor(load, 4));
   check_fully(1e-12, 0, 4);
   EXPECT_TRUE(trusts_factor(load, 4));
-  check.checked(other, {}, 0, 0, 4, kU, kStress);
+  check.checked(other, {}, 0, 0, 4, 0, kU, kStress);
   EXPECT_FALSE(trusts_factor(other, 4)) << "of loads on other unknowns";
 }
 
@@ -98,14 +98,14 @@ TEST_F(EnergyChecked, TakesWhatARefinementHasFoundForAWhile) {
   check.event();
   double energy = 1e-30;
   while (known(energy)) energy *= 2;
-  check.refined(load, 1e-12, energy, 1, kU, kStress);
+  check.refined(load, 1e-12, {1e-12, energy}, 1, 0, kU, kStress);
   for (int event = 0; event < 15; ++event) {
     check.event();
     EXPECT_TRUE(known(energy)) << event;
   }
   check.event();
   EXPECT_FALSE(known(energy)) << "too long ago";
-  check.refined(load, 1e-12, energy, 1, kU, kStress);
+  check.refined(load, 1e-12, {1e-12, energy}, 1, 0, kU, kStress);
   check.event();
   ASSERT_TRUE(known(energy));
   EXPECT_FALSE(known(1e12 * energy));
@@ -113,9 +113,80 @@ TEST_F(EnergyChecked, TakesWhatARefinementHasFoundForAWhile) {
   EXPECT_FALSE(known(energy, 2)) << "another base";
 }
 
+// What a base gives wrong grows with the forces of the damage, a hundredfold where nobody knows
+// them.
+TEST_F(EnergyChecked, ErrorsGrowWithTheForcesOfTheDamageForAWhile) {
+  constexpr double kForces = 40, kError = 1e-9;
+  check_fully(1e-12, kError, 1, kForces);
+  check.event();
+  EXPECT_NEAR(check.known(expected(), 0, kForces, kU, kStress).value().error, 5 * kError, 1e-15);
+  EXPECT_TRUE(known(0, 1, kForces / 10));
+  EXPECT_TRUE(known(0, 1, 1.9 * kForces));
+  EXPECT_FALSE(known(0, 1, 2.1 * kForces));
+  for (int event = 1; event < 8; ++event) check.event();
+  EXPECT_TRUE(known(0, 1, kForces));
+  check.event();
+  EXPECT_FALSE(known(0, 1, kForces)) << "too long ago";
+  check.refined(load, kError, {}, 1, kForces, kU, kStress);
+  check.event();
+  EXPECT_TRUE(known(0, 1, kForces));
+  check.follow(2, {load, 1, kError}, 0, true);
+  EXPECT_FALSE(known(0, 2, kForces)) << "another base";
+}
+
+// A base that drifts hides what little the damage lacks: the second refinement has it alone.
+TEST_F(EnergyChecked, TellsWhatDamageLacksFromWhatTheBaseGivesWrong) {
+  constexpr double kForces = 40, kError = 1e-9;
+  check_fully(1e-12, kError, 1, kForces);
+  check.event();
+  double energy = 1e-30;
+  while (known(energy, 1, kForces)) energy *= 2;
+  EXPECT_TRUE(check.wants_worth(kError, 1));
+  EXPECT_FALSE(check.wants_worth(3e-9, 1)) << "the base alone is over the bound";
+  check.refined(load, kError, {kError, energy}, 1, kForces, kU, kStress);
+  check.event();
+  EXPECT_FALSE(known(energy, 1, kForces)) << "all of the error put down to the damage";
+  EXPECT_TRUE(check.wants_worth(kError, 1));
+  check.refined(load, kError, {1e-12, energy, true}, 1, kForces, kU, kStress);
+  check.event();
+  EXPECT_TRUE(known(energy, 1, kForces));
+  EXPECT_FALSE(check.wants_worth(kError, 1));
+  EXPECT_TRUE(check.wants_worth(kError, 2)) << "another base";
+  for (int event = 2; event < 64; ++event) {
+    check.refined(load, kError, {kError, energy}, 1, kForces, kU, kStress);
+    check.event();
+    EXPECT_TRUE(known(energy, 1, kForces)) << event;
+  }
+  check.event();
+  EXPECT_TRUE(check.wants_worth(kError, 1)) << "too long ago";
+  EXPECT_FALSE(known(energy, 1, kForces));
+}
+
+// A base that drifts is checked as it is made, before the events since.
+TEST_F(EnergyChecked, LooksOnceAtABaseThatDrifts) {
+  check.follow(1, {}, 1, false);
+  check_fully(1e-12);
+  EXPECT_FALSE(check.unseen());
+  check.follow(2, {load, 1, 4e-12}, 1, true);
+  EXPECT_TRUE(check.unseen());
+  check.refined(load, 1e-11, {}, 2, 0, kU, kStress);
+  check.follow(2, {load, 1, 4e-12}, 1, true);
+  EXPECT_FALSE(check.unseen());
+  check.follow(3, {load, 1, 4e-12}, 1, true);
+  EXPECT_TRUE(check.unseen());
+  check.follow(4, {load, 1, 4e-12}, 2, false);
+  EXPECT_FALSE(check.unseen()) << "the factor's own";
+  check.follow(5, {load, 1, 4e-12}, 2, true);
+  check_fully(1e-12, 0, 5);
+  EXPECT_FALSE(check.unseen());
+  check.follow(6, {load, 1, 4e-12}, 2, true);
+  check.forget();
+  EXPECT_FALSE(check.unseen()) << "nothing is known of any";
+}
+
 TEST_F(EnergyChecked, ARefinedSolutionIsNoBetterThanItsFactor) {
   check_fully(2e-11);
-  check.refined(load, 1e-14, 0, 1, kU, kStress);
+  check.refined(load, 1e-14, {}, 1, 0, kU, kStress);
   EXPECT_GE(expected().error, 2e-11);
 }
 
