@@ -33,8 +33,10 @@ CondensedBody::CondensedBody(const DeviceSetup& setup, const solver::Region& reg
       commands_(setup.kernels.device()),
       intact_(std::make_shared<const HostInverse>(problem_, false)),
       columns_(make_columns(setup, region)),
+      damage_(DamageSolution::make(setup.kernels, solver::columns_of_a_base(region.dofs.size()),
+                                   problem_.gripped_dofs().size(), setup.inverse.damage)),
       route_(solver::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
-                                     setup.needs.damage, {}, columns_.get())),
+                                     setup.needs.damage, {}, columns_.get(), damage_.get())),
       frame_(damaged_, *route_, *this),
       outside_(damaged_, region),
       nodal_(part_.problem()->dofs().size(), 0.0),
@@ -157,6 +159,7 @@ std::vector<BufferPlan> CondensedBody::buffers() const {
   plan.push_back({"fields outside the condensed region (host)",
                   outside_.bytes() + whole_nodal_.size() * sizeof(double)});
   if (columns_) plan.push_back({"columns of the region (device)", columns_->bytes()});
+  if (damage_) plan.push_back({"small matrices of the damage (device)", damage_->bytes()});
   for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
   return plan;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "gpu/device_body.hpp"
+#include "gpu/passes/damage_solution.hpp"
 #include "gpu/passes/region_columns.hpp"
 #include "solver/condensed_fields.hpp"
 #include "solver/condensed_route.hpp"
@@ -49,6 +50,8 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
     const solver::Deferred& deferred = *route_->deferred();
     shape.columns = static_cast<std::size_t>(deferred.rank() - deferred.grips());
     shape.region_there = columns_ && columns_->takes(deferred.rank());
+    shape.damage_there =
+        damage_ && deferred.events() > 0 && damage_->takes(deferred.rank(), deferred.grips());
   }
 
  private:
@@ -63,6 +66,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   IntactInverse intact_;                        // its factor
   std::shared_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
   std::unique_ptr<RegionColumns> columns_;      // null: the host multiplies
+  std::unique_ptr<DamageSolution> damage_;      // likewise
   std::unique_ptr<solver::InverseRoute> route_;
   solver::HostFrame frame_;
   mutable solver::CondensedFields outside_;  // computes what is read

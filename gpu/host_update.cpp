@@ -64,6 +64,12 @@ Index columns_between(const solver::Renewal& renewal) {
   return kColumnsOfAnEvent * static_cast<Index>(renewal.events + lacking);
 }
 
+Index columns_of_a_base(const solver::Renewal& renewal) {
+  if (renewal.columns == solver::Renewal::kNever) return solver::Deferred::kReserved;
+  const Index between = columns_between(renewal);
+  return std::max(kColumnsPerBase, between) + between;
+}
+
 std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
                                                    std::shared_ptr<const HostInverse> intact,
                                                    bool damage, bool fp64,
@@ -71,8 +77,7 @@ std::unique_ptr<solver::RenewedUpdate> host_update(const fem::DamagedBody& body,
   const bool dense = intact->is_dense();
   const solver::Renewal renewal = renewal_of(body.problem(), *intact, renews);
   const bool beside = renews && !dense;
-  const Index between = beside ? columns_between(renewal) : 0;
-  const Index columns = std::max(kColumnsPerBase, between) + between;
+  const Index columns = beside ? columns_of_a_base(renewal) : kColumnsPerBase;
   const auto factors = std::make_shared<fem::BodyFactors>(
       body.problem(), intact->factor().cholesky().shared_supernodes());
   const fem::DamagedBody before = body.as_of(0);

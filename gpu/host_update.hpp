@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The deferred update of a device: its base and its small matrices are the host's, the product with
-// the base's columns is the device's.
+// The deferred update of a device: its base and its small matrices are the host's (beside
+// passes/damage_solution.hpp), the product with the base's columns is the device's.
 #pragma once
 
 #include <memory>
@@ -31,6 +31,8 @@ inline constexpr std::size_t kExactLoads = 64;
                                          bool renews);
 /// Columns that come from the beginning of such a base to the event that has it in place.
 [[nodiscard]] Index columns_between(const solver::Renewal& renewal);
+/// Columns of the damage that a base of such an update is expected to come to.
+[[nodiscard]] Index columns_of_a_base(const solver::Renewal& renewal);
 
 /// The base that such an update has at present.
 [[nodiscard]] inline const HostBase& base_of(const solver::RenewedUpdate& update) {

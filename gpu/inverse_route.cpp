@@ -66,6 +66,12 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
     update_ = host_update(body_, intact_, damage_, kernels_.fp64(), exact_base(*intact_), renews_);
     new_base(false);
     if (renews_) make_next();
+    if (damage_) {  // last: what a frame needs has its room
+      damage_solution_ =
+          DamageSolution::make(kernels_, columns_of_a_base(renewal_of(problem_, *intact_, renews_)),
+                               problem_.gripped_dofs().size(), options_.damage);
+      update_->deferred().solve_by(damage_solution_.get());
+    }
   }
 }
 
@@ -143,6 +149,7 @@ void InverseRoute::bind() {
 /// they are there, and nothing else is.
 void InverseRoute::new_base(bool with_columns) {
   bases_ = update_->bases();
+  if (damage_solution_) update_->deferred().solve_by(damage_solution_.get());
   read_columns();
   if (!with_columns) exact_->clear();
   exact_->reserve();
@@ -482,6 +489,9 @@ std::vector<BufferPlan> InverseRoute::buffers() const {
   plan.push_back({"exact columns (device)", exact_->bytes()});
   if (renews_) {
     plan.push_back({"inverse of the next base (device)", next_->bytes() + next_exact_->bytes()});
+  }
+  if (damage_solution_) {
+    plan.push_back({"small matrices of the damage (device)", damage_solution_->bytes()});
   }
   for (BufferPlan& b : update_->deferred().buffers()) plan.push_back(std::move(b));
   return plan;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Route inverse: a dense inverse on the device, with the damage either as a correction to it
-// (deferred) or worked into it (eager). The small matrices are the host's.
+// (deferred) or worked into it (eager). The small matrices are the host's, and the device's too
+// where they are large.
 #pragma once
 
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include "gpu/host_update.hpp"
 #include "gpu/passes/add.hpp"
+#include "gpu/passes/damage_solution.hpp"
 #include "gpu/passes/exact_columns.hpp"
 #include "gpu/passes/inverse_update.hpp"
 #include "gpu/route.hpp"
@@ -22,6 +24,9 @@ struct InverseOptions {
   /// Of route condensed: values of the region's columns from which on the device multiplies them;
   /// none: the host does.
   std::optional<std::size_t> region = {};
+  /// Columns of the damage from which on the device solves with the small matrices, on either
+  /// route; none: the host does.
+  std::optional<Index> damage = {};
 };
 
 class InverseRoute final : public DeviceRoute {
@@ -54,6 +59,11 @@ class InverseRoute final : public DeviceRoute {
     shape.columns_there = columns_there_;
     shape.columns_refined = update_ && base_of(*update_).refines();
     shape.inverse_bytes = stored_.real_bytes();
+    if (!update_) return;
+    const solver::Deferred& deferred = update_->deferred();
+    shape.columns = static_cast<std::size_t>(deferred.rank() - deferred.grips());
+    shape.damage_there = damage_solution_ && deferred.events() > 0 &&
+                         damage_solution_->takes(deferred.rank(), deferred.grips());
   }
 
  private:
@@ -98,7 +108,8 @@ class InverseRoute final : public DeviceRoute {
   bool renews_ = false;          // bases are made anew, base_ by next_
   KernelFactory stored_;         // in the precision that base_ is stored in
   DenseInverse base_;
-  std::unique_ptr<solver::RenewedUpdate> update_;  // empty while eager; reads columns of base_
+  std::unique_ptr<DamageSolution> damage_solution_;  // null: the host has the small matrices alone
+  std::unique_ptr<solver::RenewedUpdate> update_;    // empty while eager; reads columns of base_
   // Where renews_: the next base's inverse, of the body after so many events, what its making goes
   // by, whether its base has tried to read columns there, and the columns of that.
   std::unique_ptr<InverseUpdate> next_;

@@ -15,6 +15,7 @@
 #include "gpu/whole_body.hpp"
 #include "solver/frame_solver.hpp"
 #include "solver/instrument_block.hpp"
+#include "solver/route_table.hpp"
 #include "sunder/error.hpp"
 
 namespace sunder::gpu {
@@ -52,6 +53,16 @@ std::optional<std::size_t> region_from(const VulkanOptions& options,
   return device.is_cpu() ? std::nullopt : std::optional(kLeast);
 }
 
+/// From so many columns on the small matrices are the device's.
+std::optional<Index> damage_from(const VulkanOptions& options, const vulkan::PhysicalDevice& device,
+                                 const solver::FrameRates& rates, const Needs& needs) {
+  if (!needs.damage || !device.float64) return {};
+  if (options.damage_on_device) {
+    return *options.damage_on_device ? std::optional<Index>(1) : std::nullopt;
+  }
+  return device.is_cpu() ? std::nullopt : solver::columns_worth_a_device(rates);
+}
+
 class VulkanBackend final : public Backend {
  public:
   VulkanBackend(std::shared_ptr<const Problem> problem, Needs needs, const VulkanOptions& options)
@@ -62,8 +73,12 @@ class VulkanBackend final : public Backend {
         plan_(solver::make_plan(*problem, this->needs(), for_plan_)),
         kernels_(*device_, options.variant.value_or(choose_variant(device_->physical())),
                  plan_.fp64),
-        inverse_{plan_.eager, options.panel_bytes, plan_.invert_on_device, plan_.exact_inverse,
-                 region_from(options, device_->physical(), this->needs())} {
+        inverse_{plan_.eager,
+                 options.panel_bytes,
+                 plan_.invert_on_device,
+                 plan_.exact_inverse,
+                 region_from(options, device_->physical(), this->needs()),
+                 damage_from(options, device_->physical(), for_plan_.rates, this->needs())} {
     device_->set_timing(false);
     for (const std::string& what : plan_.left_out) leave_out(what);
     const DeviceSetup setup{damaged_body(), kernels_, plan_, inverse_, this->needs()};

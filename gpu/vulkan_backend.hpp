@@ -26,6 +26,7 @@ struct VulkanOptions {
   std::size_t panel_bytes = 0;           ///< largest buffer of the inverse, 0: the device's limit
   std::optional<bool> invert_on_device;  ///< none: on a GPU, for larger scenes
   std::optional<bool> region_on_device;  ///< product of route condensed; none: on a GPU, where long
+  std::optional<bool> damage_on_device;  ///< its small matrices; none: on a GPU, where worth it
   std::optional<vulkan::LentDevice> lent;  ///< a host's device; none: one of our own
   DisplayTargets display;                  ///< on a host's device: where to put what it draws
   std::shared_ptr<PipelineCache> cache;    ///< of the host's; null: nobody keeps it

@@ -73,6 +73,8 @@ uint number_in(double bits) { return unpackDouble2x32(bits).x; }
 // Written or read one by one.
 #define IN_WORDS(b, Block, name) \
   layout(std430, set = 0, binding = b) readonly buffer Block { uint data[]; } name;
+#define IN_DOUBLES(b, Block, name) \
+  layout(std430, set = 0, binding = b) readonly buffer Block { double data[]; } name;
 #define OUT(b, Block, type, name) \
   layout(std430, set = 0, binding = b) writeonly buffer Block { type data[]; } name;
 #define INOUT(b, Block, type, name) \

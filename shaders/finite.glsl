@@ -4,9 +4,6 @@
 #include "reduce.glsl"
 #include "part_sum.glsl"
 
-#define IN_DOUBLES(b, Block, name) \
-  layout(std430, set = 0, binding = b) readonly buffer Block { double data[]; } name;
-
 double infinity() { return packDouble2x32(uvec2(0u, 0x7ff00000u)); }
 // NaN included.
 double bounded(double x) { return x < infinity() ? x : infinity(); }

@@ -3,9 +3,6 @@
 // column, in packs of four. Whoever includes this binds it as `tangents`.
 #include "cg.glsl"
 
-#define IN_DOUBLES(b, Block, name) \
-  layout(std430, set = 0, binding = b) readonly buffer Block { double data[]; } name;
-
 IN_REAL4(0, Tangents, tangents)
 IN_DOUBLES(1, Shape, shape)
 layout(push_constant) uniform Push { FiniteCgPush p; };

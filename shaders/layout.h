@@ -24,6 +24,7 @@ SUNDER_CONST kTile = 64u;          // edge of the tiles that the low-rank update
 SUNDER_CONST kLowerTiles = 1u;     // those on and under the diagonal
 SUNDER_CONST kUpperTiles = 2u;     // those over it
 SUNDER_CONST kUpdateColumns = 8u;  // columns of the inverse that one invocation updates at once
+SUNDER_CONST kDamageRows = 16u;    // of the small matrices, a workgroup
 SUNDER_CONST kDepth = 8u;          // rows of both factors that a product takes at once
 SUNDER_CONST kUpdateTurns = 2u;    // so often, where lavapipe updates with rank 6
 SUNDER_CONST kPartsAtOnce = 256u;  // partial results that one of many workgroups joins
@@ -150,6 +151,23 @@ struct SummaryPush {
 struct SolvePush {
   uint packs;
   uint columns;
+};
+
+// Of the small matrices of damage, all stored by columns of so many rows.
+struct DamagePush {
+  uint columns, grips;
+  uint rows;
+  uint energies;  // where those of this refinement begin among what is found
+};
+
+struct DamageFollowPush {
+  uint columns, grips;
+  uint rows;
+  uint first;             // column of S that is new, and those after it
+  uint first_compliance;  // the same of G
+  uint rank;
+  uint vectors;   // where those of this event begin
+  uint subtract;  // 1: the product is taken away
 };
 
 struct PickPush {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 namespace sunder::linear_algebra {
@@ -12,6 +13,12 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Entries of a row that is processed in full vectors, wherever its n end.
 [[nodiscard]] constexpr Eigen::Index padded(Eigen::Index n) { return (n + 7) / 8 * 8; }
+
+/// At least so large; what it held is lost when it grows.
+inline void make_room(RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
+  if (a.rows() >= rows && a.cols() >= columns) return;
+  a.resize(std::max(rows, a.rows()), std::max(columns, a.cols()));
+}
 
 /// A strided view of a left factor; a transpose swaps the strides.
 struct LeftFactor {

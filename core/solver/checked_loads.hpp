@@ -28,7 +28,7 @@ class CheckedLoads {
     double stress_of_residual = 0;  ///< that a residual of 1 N is worth [MPa]
     double largest_u = 0;           ///< [mm]
     double largest_stress = 0;      ///< over live elements [MPa]
-    double forces = 0;              ///< of damage and grips (Deferred::forces); 0: unknown
+    double forces = 0;              ///< of damage (Deferred::forces); 0: unknown
     int events = 0;                 ///< that have changed the body since
   };
   /// Takes what a full check has found, on the base of that number (from 1), before what others

@@ -209,8 +209,12 @@ class CondensedRoute final : public InverseRoute {
  public:
   CondensedRoute(const fem::DamagedBody& body, std::shared_ptr<const linear_algebra::Factor> intact,
                  std::span<const Index> dofs, bool damage, std::chrono::milliseconds rest,
-                 RegionProduct* product, std::size_t most)
-      : body_(body), dofs_(dofs.begin(), dofs.end()), all_(dof_count()), product_(product) {
+                 RegionProduct* product, DamageSolver* solver, std::size_t most)
+      : body_(body),
+        dofs_(dofs.begin(), dofs.end()),
+        all_(dof_count()),
+        product_(product),
+        solver_(solver) {
     std::iota(all_.begin(), all_.end(), 0);
     based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage,
                           linear_algebra::work_at_once());
@@ -444,6 +448,7 @@ class CondensedRoute final : public InverseRoute {
     CondensedBase& base = base_of(based_);
     base.multiply_by(product_);
     base.grow_by(growth_ ? &*growth_ : nullptr);
+    if (solver_) based_.deferred->solve_by(solver_);
     size_ = base.dofs().size();
   }
 
@@ -498,6 +503,7 @@ class CondensedRoute final : public InverseRoute {
   const fem::DamagedBody& body_;
   std::vector<Index> dofs_, all_;  // S at first; every unknown: the loads of a residual
   RegionProduct* product_;
+  DamageSolver* solver_;
   const linear_algebra::Factor* intact_ = nullptr;
   Load load_;                           // of the last solution
   Load start_load_;                     // of the one before coming_ started
@@ -532,10 +538,10 @@ std::unique_ptr<InverseRoute> condensed_route(const fem::DamagedBody& body,
                                               std::shared_ptr<const linear_algebra::Factor> intact,
                                               std::span<const Index> dofs, bool damage,
                                               std::chrono::milliseconds rest,
-                                              RegionProduct* product,
+                                              RegionProduct* product, DamageSolver* solver,
                                               std::optional<std::size_t> most) {
   return std::make_unique<CondensedRoute>(body, std::move(intact), dofs, damage, rest, product,
-                                          most.value_or(most_unknowns(dofs.size())));
+                                          solver, most.value_or(most_unknowns(dofs.size())));
 }
 
 }  // namespace sunder::solver

@@ -10,18 +10,13 @@
 
 namespace sunder::solver {
 
+using linear_algebra::make_room;
 using linear_algebra::padded;
 
 namespace {
 
 // Room for the differences of predicted fractures.
 constexpr std::size_t kPredicted = std::size_t{1} << 14;
-
-/// At least so large; what it held is lost when it grows.
-void make_room(linear_algebra::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
-  if (a.rows() >= rows && a.cols() >= columns) return;
-  a.resize(std::max(rows, a.rows()), std::max(columns, a.cols()));
-}
 
 /// So that the system gives the memory now and no frame waits for it.
 void clear_corner(linear_algebra::RowMajor& a, Eigen::Index rows, Eigen::Index columns) {
@@ -117,6 +112,7 @@ bool Deferred::factor_grips() {
 
 /// Which unknowns are gripped now, and (A^-1)_GG by M as it is.
 void Deferred::find_grips() {
+  if (elsewhere_) elsewhere_->forget_forces();
   held_.clear();
   for (Index d : forms_.gripped()) held_.push_back({d, unit_[d]});
   const Eigen::Index g = grips(), n = changed_;
@@ -322,6 +318,7 @@ void Deferred::take_back(Index events) {
 
 /// No element differs from what the base has: A^-1 = X.
 void Deferred::clear() {
+  if (elsewhere_) elsewhere_->forget();
   changed_ = 0;
   m_.topLeftCorner(count(), padded(count())).setZero();
   d_.topLeftCorner(count(), padded(count())).setZero();
@@ -467,6 +464,7 @@ bool Deferred::update(std::span<const Part> parts, bool more) {
   linear_algebra::lower_solve(c_.data(), c_.outerStride(), width, zt_.data(), zt_.outerStride(),
                               padded(n), product.data());
   if (!zt_.topLeftCorner(width, n).allFinite()) return false;
+  update_elsewhere(width, more);
   const linear_algebra::RowMajor* left = &zt_;
   if (more) {
     product.topLeftCorner(width, padded(n)) = -zt_.topLeftCorner(width, padded(n));
@@ -490,6 +488,7 @@ void Deferred::add_to_d(bool more) {
                               zt_.outerStride(), padded(rows), product_.data(),
                               product_.outerStride());
   filled_.add(rows_);
+  if (elsewhere_) elsewhere_->change_stiffness(rows_);
   for (Eigen::Index i = 0; i < rows; ++i) {
     double* row = d_.row(rows_[static_cast<std::size_t>(i)]).data();
     for (Eigen::Index j = 0; j < rows; ++j) {

@@ -23,6 +23,7 @@
 #include "linear_algebra/filled_blocks.hpp"
 #include "solver/base.hpp"
 #include "solver/border.hpp"
+#include "solver/damage_solver.hpp"
 #include "solver/difference_basis.hpp"
 #include "solver/update_vectors.hpp"
 
@@ -81,11 +82,15 @@ class Deferred {
                                    std::span<const double> displacement);
   /// Puts the gripped unknowns where they are held, free of rounding.
   void hold(std::span<const double> displacement, Eigen::VectorXd& u) const;
+  /// `solver` solves where it takes a solution's size; it must outlive this, or until the next
+  /// call. Null: the host always does.
+  void solve_by(DamageSolver* solver);
   /// Solutions are judged by defect_energy() alone, which is all of their error: refining may end
   /// where the next time would bring that under the tolerance.
   void judge_by_energy() { by_energy_ = true; }
-  /// Energy r^T A^-1 r of what the last solution lacked before its last refinement: r is the
-  /// residual where damage acts, in the base's arithmetic.
+  /// Energy r^T A^-1 r of what the last solution lacked before its last refinement, or a bound of
+  /// it where the host solved and grips hold the body: r is the residual where damage acts, in the
+  /// base's arithmetic.
   [[nodiscard]] double defect_energy() const { return defect_energy_; }
   /// One application of A^-1 with u_G = 0, to the few digits that a correction needs.
   void correct(const Forces& residual, Eigen::VectorXd& du);
@@ -93,8 +98,8 @@ class Deferred {
   const Eigen::VectorXd& correction_coefficients(const Eigen::VectorXd& projection);
   /// Whether the last solution was refined down to `energy_tolerance` or to rounding.
   [[nodiscard]] bool converged() const { return converged_; }
-  /// |x| of the last solution: the forces of damage and grips in B [N].
-  [[nodiscard]] double forces() const { return x_.head(count()).norm(); }
+  /// Norm of the last solution's x on differences: the forces of damage, in B [N].
+  [[nodiscard]] double forces() const;
   /// Gripped unknowns, as forms().gripped().
   [[nodiscard]] Index grips() const { return static_cast<Index>(held_.size()); }
   /// Force of a grip on the base in the last solution, its anchor included.
@@ -172,6 +177,16 @@ class Deferred {
   void sum_up_d(std::span<const Part> parts, bool more);
   [[nodiscard]] bool follow_border(const fem::Event& event, Eigen::Index columns);
   [[nodiscard]] Forces on_body(const Forces& forces);
+  [[nodiscard]] bool judge(int refinement, double energy, double tolerance);
+  [[nodiscard]] Eigen::Index column_of_grip(Eigen::Index grip) const {
+    return held_[static_cast<std::size_t>(grip)].column;
+  }
+  void update_elsewhere(Eigen::Index width, bool more);
+  [[nodiscard]] bool bring_elsewhere();
+  [[nodiscard]] bool refine_elsewhere(const Eigen::VectorXd& p,
+                                      std::span<const double> displacement, double tolerance);
+  [[nodiscard]] bool solve_elsewhere(const Eigen::VectorXd& p, std::span<const double> displacement,
+                                     double tolerance);
   void start(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine(const Eigen::VectorXd& p, std::span<const double> displacement);
   [[nodiscard]] double refine_at_v(std::span<const double> displacement);
@@ -241,6 +256,7 @@ class Deferred {
   Eigen::VectorXd v_, x_, lack_, gx_, mgx_, forces_, moved_, at_held_;
   double defect_energy_ = 0;
   bool converged_ = true, by_energy_ = false;
+  DamageSolver* elsewhere_ = nullptr;  // solves instead where it takes a solution's size
 };
 
 }  // namespace sunder::solver

@@ -144,7 +144,11 @@ bool Deferred::apply(const fem::Event& event, fem::Forms* after) {
 }
 
 bool Deferred::update_both() {
-  return (more_.empty() || update(more_, true)) && (less_.empty() || update(less_, false));
+  if (!more_.empty() && !update(more_, true)) return false;
+  if (less_.empty()) return true;
+  // Who solves elsewhere is told of the second with the grips as the first has left them.
+  const bool of_grips = elsewhere_ && !more_.empty() && border_.empty();
+  return (!of_grips || factor_grips()) && update(less_, false);
 }
 
 /// All that differs from what the base has.
@@ -166,6 +170,7 @@ void Deferred::collect_all() {
 /// D element by element: what has come back leaves no rounding of its own stiffness in that of its
 /// neighbours.
 void Deferred::sum_up_d() {
+  if (elsewhere_) elsewhere_->forget();
   d_.topLeftCorner(count(), count()).setZero();
   sum_up_d(more_, true);
   sum_up_d(less_, false);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // A solution by the small matrices over the base: the forces of damage and grips, and what refines
 // them.
+#include <algorithm>
+#include <cmath>
+
 #include "linear_algebra/symmetric_product.hpp"
 #include "solver/deferred.hpp"
 
 namespace sunder::solver {
 namespace {
+
+constexpr int kRefinements = 4;
 
 /// y = S x for a symmetric S of which the leading k rows and columns alone are not 0; n entries of
 /// x and y.
@@ -20,32 +25,43 @@ void multiply(const linear_algebra::RowMajor& s, Eigen::Index n, Eigen::Index k,
 const Eigen::VectorXd& Deferred::coefficients(const Forces& forces,
                                               std::span<const double> displacement,
                                               double energy_tolerance) {
-  constexpr int kRefinements = 4;
+  const Eigen::VectorXd& p = base_->load(on_body(forces));
+  converged_ = before_.empty();
+  defect_energy_ = 0;
+  if (!converged_ && solve_elsewhere(p, displacement, energy_tolerance)) return x_;
+  start(p, displacement);
+  for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
+    converged_ = judge(pass, refine(p, displacement), energy_tolerance);
+  }
+  return x_;
+}
+
+/// Takes what a solution lacked before a refinement; whether that was the last one.
+bool Deferred::judge(int refinement, double energy, double tolerance) {
   // Where defect_energy() is what a solution is judged by: so many times the tolerance may lack of
   // it, by rounding alone.
   constexpr double kOfRounding = 400;
-  const Eigen::VectorXd& p = base_->load(on_body(forces));
-  start(p, displacement);
-  converged_ = before_.empty();
-  defect_energy_ = 0;
-  for (int pass = 0; pass < kRefinements && !converged_; ++pass) {
-    const double before = defect_energy_;
-    defect_energy_ = refine(p, displacement);
-    converged_ = defect_energy_ <= energy_tolerance;
-    if (pass == 0) continue;
-    // Another would change nothing: rounding has the word already, or from here on.
-    const bool stalls = !(defect_energy_ < before / 4),
-               next_is_under = by_energy_ && defect_energy_ <= kOfRounding * energy_tolerance &&
-                               defect_energy_ * defect_energy_ <= energy_tolerance * before;
-    converged_ = converged_ || stalls || next_is_under;
-  }
-  return x_;
+  const double before = defect_energy_;
+  defect_energy_ = energy;
+  if (energy <= tolerance) return true;
+  if (refinement == 0) return false;
+  // Another would change nothing: rounding has the word already, or from here on.
+  const bool stalls = !(energy < before / 4), next_is_under = by_energy_ &&
+                                                              energy <= kOfRounding * tolerance &&
+                                                              energy * energy <= tolerance * before;
+  return stalls || next_is_under;
 }
 
 void Deferred::solve(const Forces& forces, std::span<const double> displacement, Eigen::VectorXd& u,
                      double energy_tolerance) {
   base_->expand(coefficients(forces, displacement, energy_tolerance), u);
   hold(displacement, u);
+}
+
+double Deferred::forces() const {
+  double squared = 0;
+  for (Index column : column_) squared += x_[column] * x_[column];
+  return std::sqrt(squared);
 }
 
 void Deferred::hold(std::span<const double> displacement, Eigen::VectorXd& u) const {
@@ -58,6 +74,13 @@ const Eigen::VectorXd& Deferred::refine_at(const Eigen::VectorXd& u_in_b,
                                            std::span<const double> displacement) {
   v_.head(count()) = u_in_b.head(count());
   defect_energy_ = refine_at_v(displacement);
+  if (held_.empty() || !border_.empty()) return x_;
+  // With the grips held: less L^-1 (E + M G_G)^T g, g = G lack, by itself.
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    at_held_[static_cast<Eigen::Index>(i)] += gx_[held_[i].column];
+  }
+  grip_block_.matrixL().solveInPlace(at_held_);
+  defect_energy_ = std::max(0.0, defect_energy_ - at_held_.squaredNorm());
   return x_;
 }
 

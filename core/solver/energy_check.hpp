@@ -78,7 +78,7 @@ class EnergyCheck {
  private:
   [[nodiscard]] bool knows_worth(int bases) const;
   void forget_worth();
-  [[nodiscard]] static double amplified(const CheckedLoads::Sum& expected, double forces);
+  [[nodiscard]] double amplified(const CheckedLoads::Sum& expected, double forces) const;
 
   const Problem& problem_;
   double stress_of_rounding_;  // of a displacement of 1 mm

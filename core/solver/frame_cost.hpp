@@ -54,8 +54,9 @@ struct FrameShape {
   std::size_t exact_loads = 0;      ///< up to so many loads have columns in fp64
   std::size_t stiffness_bytes = 0;  ///< that f - K u reads
   std::size_t groups = 1;           ///< whose rigid motions precondition its conjugate gradients
-  std::size_t columns = 0;          ///< of the damage before this frame, of a condensed region
+  std::size_t columns = 0;          ///< of the damage before this frame
   bool region_there = false;        ///< the device multiplies them
+  bool damage_there = false;        ///< and solves with the small matrices
 };
 
 /// What a frame takes, and what of that is a device's apart from the host.

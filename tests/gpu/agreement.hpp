@@ -11,10 +11,11 @@
 
 namespace sunder::test {
 
-/// All ways of route inverse, and those of route cg.
+/// All ways of route inverse, what a device may do of it beside, and those of route cg.
 inline std::vector<Way> ways_of_every_route() {
   std::vector<Way> ways = all_ways();
   ways.push_back({.inverts = true});
+  ways.push_back({.damage = true});
   for (gpu::Variant variant : {gpu::Variant::gpu, gpu::Variant::lvp}) {
     for (Precision precision : {Precision::fp32, Precision::fp64}) {
       ways.push_back({variant, precision, Update::automatic, 1e-4, 0, Route::cg});

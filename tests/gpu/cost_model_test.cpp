@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gpu/plan_device.hpp"
+#include "solver/route_table.hpp"
 
 namespace sunder::test {
 namespace {
@@ -115,6 +116,16 @@ TEST(DeviceCostModel, AQuietFrameOfConjugateGradientsIteratesNot) {
   cg.route = Route::cg;
   const FrameCost cost = frame_cost(cg, device(VK_PHYSICAL_DEVICE_TYPE_CPU));
   EXPECT_LT(20 * cost.quiet.ms, cost.fracture.ms);
+}
+
+// By the bytes a second that products with them reach (docs/vulkan.md).
+TEST(DeviceCostModel, SmallMatricesAreWorthADeviceWhereTheyAreLarge) {
+  auto rates = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
+  EXPECT_EQ(solver::columns_worth_a_device(rates), 512);
+  rates.bytes *= 5;
+  EXPECT_EQ(solver::columns_worth_a_device(rates), 384);
+  EXPECT_EQ(solver::columns_worth_a_device(device(VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU)),
+            std::nullopt);
 }
 
 TEST(DeviceCostModel, AGpuIsQuickerOnLargeBodies) {

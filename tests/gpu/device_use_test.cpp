@@ -143,25 +143,39 @@ TEST_F(DeviceUse, MemoryOfACondensedSceneIsKnownToTheByteBeforeItIsAllocated) {
 }
 
 // What only makes a frame quicker is no reason to refuse a scene.
-TEST_F(DeviceUse, ColumnsOfARegionAreLeftToTheHostWhereMemoryIsShort) {
-  Way way{.route = Route::condensed, .region = true};
-  const auto problem = problem_for(organ(), way);
-  gpu::VulkanOptions options = watched(way);
-  const auto holds_columns = [&] {
-    const auto backend = gpu::create(problem, needs_with(true), options);
-    return std::ranges::count(backend->buffers(), "columns of the region (device)",
-                              &BufferPlan::name) > 0;
+// Columns of a condensed region, and the small matrices of damage.
+TEST_F(DeviceUse, WhatADeviceMultipliesIsLeftToTheHostWhereMemoryIsShort) {
+  struct Case {
+    const char* name;
+    Route route;
+    std::optional<bool> gpu::VulkanOptions::*option;
   };
-  options.region_on_device = true;
-  const std::size_t bytes = gpu::device_use(*gpu::create(problem, needs_with(true), options)).bytes;
-  options.probe.memory = bytes;
-  EXPECT_TRUE(holds_columns());
-  options.probe.memory = bytes - 1;
-  EXPECT_FALSE(holds_columns());
-  options.probe.memory = 0;
-  options.probe.as_gpu = true;
-  options.region_on_device.reset();
-  EXPECT_FALSE(holds_columns()) << "366 unknowns never come to 262,144 values";
+  for (const auto& [name, route, option] :
+       {Case{"columns of the region (device)", Route::condensed,
+             &gpu::VulkanOptions::region_on_device},
+        Case{"small matrices of the damage (device)", Route::condensed,
+             &gpu::VulkanOptions::damage_on_device},
+        Case{"small matrices of the damage (device)", Route::inverse,
+             &gpu::VulkanOptions::damage_on_device}}) {
+    SCOPED_TRACE(std::string(name) + (route == Route::inverse ? ", inverse" : ", condensed"));
+    const Way way{.route = route};
+    const auto problem = problem_for(organ(), way);
+    gpu::VulkanOptions options = watched(way);
+    const auto made = [&] { return gpu::create(problem, needs_with(true), options); };
+    const auto holds = [&](const Backend& backend) {
+      return std::ranges::count(backend.buffers(), name, &BufferPlan::name) > 0;
+    };
+    EXPECT_FALSE(holds(*made()));
+    options.*option = true;
+    options.probe.memory = gpu::device_use(*made()).bytes;
+    EXPECT_TRUE(holds(*made()));
+    --options.probe.memory;
+    EXPECT_FALSE(holds(*made()));
+    options.probe.memory = 0;
+    options.probe.as_gpu = true;
+    (options.*option).reset();
+    EXPECT_FALSE(holds(*made())) << "a body of this size never comes to so many columns";
+  }
 }
 
 TEST_F(DeviceUse, MemoryOfAnInversionOnTheDeviceIsKnownBeforeItIsAllocated) {
@@ -349,7 +363,7 @@ TEST_F(DeviceUse, AFrameIsOneSubmitAndAQuietOneReadsNoFieldBack) {
 // Memory that the host does not map.
 struct Unmapped {
   explicit Unmapped(Route route, Scene scene = held_board(), bool inverts = false,
-                    bool region = false) {
+                    bool region = false, bool damage = false) {
     Way way{gpu::Variant::lvp, Precision::fp64};
     way.route = route;
     if (route == Route::cg) way.update = Update::automatic;
@@ -359,6 +373,7 @@ struct Unmapped {
     options.probe.allocations = &allocations;
     if (inverts) options.invert_on_device = true;
     options.region_on_device = region;
+    options.damage_on_device = damage;
     backend = gpu::create(problem, needs_with(true), options);
   }
   SolveReport frame(const Vec3& force) {
@@ -457,6 +472,48 @@ TEST_F(DeviceUse, AProductOfTheRegionIsOneSubmitMore) {
                                    Pair::displacement(*body.backend),
                                    Pair::displacement(*by_host.backend)),
                 kCrackTolerance);
+    }
+  }
+}
+
+// Its forces with three refinements are one submit, once the matrices have come over three
+// solutions.
+TEST_F(DeviceUse, ASolutionByTheSmallMatricesIsOneSubmitMore) {
+  for (const Route route : {Route::inverse, Route::condensed}) {
+    SCOPED_TRACE(route == Route::inverse ? "inverse" : "condensed");
+    Unmapped body(route, held_board(), false, false, true), by_host(route);
+    const auto submits_more = [&] {
+      const std::size_t before = body.use().submits, allocated = body.allocations,
+                        of_host = by_host.use().submits;
+      body.frame(Vec3(0, -10, 0));
+      by_host.frame(Vec3(0, -10, 0));
+      EXPECT_EQ(body.allocations, allocated);
+      EXPECT_LE(displacement_error(body.problem->mesh(), body.backend->destroyed(),
+                                   Pair::displacement(*body.backend),
+                                   Pair::displacement(*by_host.backend)),
+                kCrackTolerance);
+      return body.use().submits - before - (by_host.use().submits - of_host);
+    };
+    EXPECT_EQ(submits_more(), 0u);
+    const auto crack = crack_sequence(*body.problem, 113, 10);
+    std::size_t gone = 0;
+    const auto destroy = [&](std::size_t count) {
+      for (const Unmapped* of : {&body, &by_host}) {
+        of->backend->destroy({crack.data() + gone, count});
+      }
+      gone += count;
+    };
+    destroy(1);
+    for (const std::size_t more : {0, 0, 1, 1}) EXPECT_EQ(submits_more(), more);
+    for (const std::size_t count : {1, 1, 10}) {
+      destroy(count);
+      EXPECT_EQ(submits_more(), 1u) << count << " elements";
+    }
+    destroy(100);                                 // more vectors than there is room for
+    for (const std::size_t solutions : {3, 1}) {  // in the first frame the region is refined
+      const std::size_t more = submits_more();
+      EXPECT_GE(more, 1u);
+      EXPECT_LE(more, 2 * solutions) << "a fourth refinement is one more";
     }
   }
 }

@@ -275,17 +275,20 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     }
     fields.set_load(force, {});
     // Whose stress would be the largest of all, did it count.
-    Index gone = kNone;
-    double most = 0;
+    std::vector<double> norms;
     for (Index e = 0; e < problem.tet_count(); ++e) {
-      const double norm = tensor_norm(fem::stress(problem.shape(e), problem.small_strain(e),
-                                                  fem::corner_displacement(problem.mesh(), e, u)));
-      if (norm > most) gone = e;
-      most = std::max(most, norm);
+      norms.push_back(tensor_norm(fem::stress(problem.shape(e), problem.small_strain(e),
+                                              fem::corner_displacement(problem.mesh(), e, u))));
     }
-    std::vector<double> scale(problem.mesh().tets.size(), 1.0);
-    scale[gone] = problem.scene().fracture.alpha;
-    fields.destroy({&gone, 1}, scale);
+    const double most = *std::ranges::max_element(norms);
+    std::vector<Index> gone;
+    std::vector<double> scale(norms.size(), 1.0);
+    for (Index e = 0; e < problem.tet_count(); ++e) {
+      if (norms[e] < 0.98 * most) continue;
+      gone.push_back(e);
+      scale[e] = problem.scene().fracture.alpha;
+    }
+    fields.destroy(gone, scale);
     compute_state(fields);
 
     std::vector<Voigt> stress(scale.size());
@@ -301,7 +304,7 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
                            (corners.rightCols<3>().colwise() - corners.col(0)).norm();
       EXPECT_LE(tensor_norm(stress[e] - s), 8 * GetParam().eps() / (1 - 2 * nu) * scale[e] * norms)
           << "element " << e << ", nu " << nu;
-      if (e == gone) continue;
+      if (scale[e] < 1) continue;
       largest = std::max(largest, tensor_norm(s));
       const double ratio = max_shear(s) / 2.0;
       if (ratio > worst_ratio) {
@@ -312,7 +315,7 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     const shaders::Summary summary = fields.state();
     EXPECT_EQ(static_cast<Index>(summary.any_element), worst);
     EXPECT_NEAR(summary.any_ratio, worst_ratio, 32 * GetParam().eps() / (1 - 2 * nu) * worst_ratio);
-    EXPECT_LT(largest, 0.99 * most);
+    EXPECT_LT(largest, 0.98 * most);
     EXPECT_NEAR(std::sqrt(summary.stress_squared), largest,
                 32 * GetParam().eps() / (1 - 2 * nu) * largest);
 

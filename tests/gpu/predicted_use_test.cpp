@@ -31,7 +31,9 @@ struct Frames {
 TEST_F(PredictedUse, IsThatOfAFrame) {
   for (const Way& way :
        {Way{.route = Route::inverse}, Way{.route = Route::inverse, .inverts = true},
-        Way{.route = Route::condensed}, Way{.route = Route::condensed, .region = true}}) {
+        Way{.route = Route::inverse, .damage = true}, Way{.route = Route::condensed},
+        Way{.route = Route::condensed, .region = true},
+        Way{.route = Route::condensed, .region = true, .damage = true}}) {
     SCOPED_TRACE(name_of(way) + (way.route == Route::condensed ? ", condensed" : ""));
     const auto problem = vulkan_problem(pulled_board(), way);
     gpu::VulkanOptions options;
@@ -40,6 +42,7 @@ TEST_F(PredictedUse, IsThatOfAFrame) {
     options.probe.as_gpu = true;
     if (way.inverts) options.invert_on_device = true;
     options.region_on_device = way.region;
+    options.damage_on_device = way.damage;
     Needs needs;
     needs.stress = needs.yield = needs.damage = true;
     const auto backend = gpu::create(problem, needs, options);
@@ -69,7 +72,7 @@ TEST_F(PredictedUse, IsThatOfAFrame) {
     }
     EXPECT_EQ(quiet.most, quiet.of);
     EXPECT_EQ(torn.most, torn.of);
-    EXPECT_EQ(quiet.of, way.region ? 2 : 1);
+    EXPECT_EQ(quiet.of, 1 + way.damage + way.region);
     const solver::FrameCost cost = gpu::predicted(*backend);
     EXPECT_GT(cost.fracture.ms, cost.quiet.ms);
     solver::FrameRates slow = solver::FrameRates{.submit = 1, .dispatch = 1};

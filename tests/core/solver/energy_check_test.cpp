@@ -180,6 +180,10 @@ TEST_F(EnergyChecked, LooksOnceAtABaseThatDrifts) {
   check_fully(1e-12, 0, 5);
   EXPECT_FALSE(check.unseen());
   check.follow(6, {load, 1, 4e-12}, 2, true);
+  EXPECT_TRUE(known(0, 6)) << "where the region cannot be refined: a thousand times that";
+  check.refined(load, 1e-11, {}, 6, 0, kU, kStress);
+  check.follow(7, {load, 1, 5e-11}, 2, true);
+  EXPECT_FALSE(known(0, 7)) << "not a hundred";
   check.forget();
   EXPECT_FALSE(check.unseen()) << "nothing is known of any";
 }

@@ -36,7 +36,7 @@ class Wandering : public testing::Test {
     load.forces = {-1};
   }
   [[nodiscard]] std::unique_ptr<InverseRoute> route(std::optional<std::size_t> most = {}) const {
-    return condensed_route(body, intact, inside, true, {}, nullptr, most);
+    return condensed_route(body, intact, inside, true, {}, nullptr, nullptr, most);
   }
   static const CondensedBase& base_of(const InverseRoute& route) {
     return dynamic_cast<const CondensedBase&>(route.deferred()->base());
