@@ -2,6 +2,7 @@
 #include "gpu/cg_route.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "gpu/passes/cg_sizes.hpp"
 #include "sunder/error.hpp"
@@ -48,7 +49,8 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
       rigid_(kernels, body.problem(), body.destroyed(), body.problem().scene().fracture.alpha),
       add_(kernels, fields),
       most_known_(most_known(kernels, body.problem())),
-      commands_(kernels.device()) {
+      commands_(kernels.device()),
+      iterations_(kernels.device()) {
   const vulkan::PhysicalDevice& device = kernels.device().physical();
   device.require(std::max({matrix_.groups(), matrix_.patches().groups(), rigid_.most_workgroups()}),
                  device.limits.groups, "route cg");
@@ -63,7 +65,8 @@ CgRoute::CgRoute(const KernelFactory& kernels, const fem::DamagedBody& body, Fie
   }
   known_ = Buffer(kernels.device(), known_slot(nodes) * most_known_, Placement::device);
   known_.fill_zero();
-  state_ = Buffer(kernels.device(), sizeof(shaders::CgState), Placement::host);
+  state_ = Buffer(kernels.device(), sizeof(shaders::CgState), Placement::device);
+  found_ = Buffer(kernels.device(), sizeof(shaders::CgState), Placement::host);
   arguments_ = Buffer(kernels.device(), kCgSizeWords * sizeof(std::uint32_t), Placement::device);
   create_kernels(fields);
 }
@@ -77,7 +80,7 @@ std::size_t CgRoute::planned_bytes(const KernelFactory& kernels, const Problem& 
   return std::size_t{4} * nodes * 4 * sizeof(double) +
          known_slot(nodes) * most_known(kernels, problem) +
          2 * round_up(nodes / shaders::kGroup * kernels.parts(), 4) * sizeof(double) +
-         Buffer::padded(sizeof(shaders::CgState)) +
+         2 * Buffer::padded(sizeof(shaders::CgState)) +
          Buffer::padded(kCgSizeWords * sizeof(std::uint32_t)) + RigidSpace::planned_bytes(problem);
 }
 
@@ -156,18 +159,35 @@ void CgRoute::record_start(double reduction, bool solution) {
 
 void CgRoute::record_iterations() {
   const shaders::CgPush of_iteration = push(false);
+  const bool timed = kernels_.device().timing();
+  if (recorded_ && timed == recorded_timed_ &&
+      std::memcmp(&*recorded_, &of_iteration, sizeof(of_iteration)) == 0) {
+    return;
+  }
+  recorded_.reset();
+  iterations_.begin();
+  iterations_.pass("solve");
   const auto dispatch = [&](const Pass& pass, std::uint32_t kind) {
-    commands_.dispatch_indirect(*pass.binding, of_iteration, arguments_, size_of_dispatch(kind));
+    iterations_.dispatch_indirect(*pass.binding, of_iteration, arguments_, size_of_dispatch(kind));
   };
   for (int i = 0; i < kIterations; ++i) {
     if (patch_sums_.binding) dispatch(patch_sums_, shaders::kCgByElement);
     dispatch(multiply_, shaders::kCgByNode);
     dispatch(length_, shaders::kCgByOne);
     dispatch(step_, shaders::kCgByNode);
-    rigid_.record_indirect(commands_, of_iteration, arguments_);
+    rigid_.record_indirect(iterations_, of_iteration, arguments_);
     dispatch(check_, shaders::kCgByOne);
     dispatch(direction_, shaders::kCgByNode);
   }
+  record_state(iterations_);
+  iterations_.end();
+  recorded_ = of_iteration;
+  recorded_timed_ = timed;
+}
+
+void CgRoute::record_state(vulkan::Commands& commands) const {
+  commands.copy(state_.handle(), state_.offset(), found_.handle(), found_.offset(),
+                sizeof(shaders::CgState));
 }
 
 void CgRoute::record_begin() {
@@ -181,17 +201,33 @@ void CgRoute::record_begin() {
   fields_.record_state(commands_);
 }
 
+void CgRoute::start(double reduction, bool solution) {
+  const bool iterates = !solution || !quiet_;
+  if (iterates) record_iterations();
+  commands_.begin();
+  commands_.pass("solve");
+  if (solution) record_begin();
+  record_start(reduction, solution);
+  if (iterates) {
+    commands_.end_for_all();
+    commands_.submit(&iterations_);
+  } else {
+    record_state(commands_);
+    commands_.end();
+    commands_.submit();
+  }
+}
+
 int CgRoute::run(double reduction, bool solution) {
   rigid_.update();
   for (int submits = 0;; ++submits) {
-    commands_.begin();
-    commands_.pass("solve");
-    if (submits == 0 && solution) record_begin();
-    if (submits == 0) record_start(reduction, solution);
-    if (submits > 0 || !solution || !quiet_) record_iterations();
-    commands_.end();
-    commands_.submit();
-    const shaders::CgState state = *state_.mapped<shaders::CgState>();
+    if (submits == 0) {
+      start(reduction, solution);
+    } else {
+      record_iterations();
+      iterations_.submit();
+    }
+    const shaders::CgState state = *found_.mapped<shaders::CgState>();
     const auto iterations = static_cast<int>(state.iterations);
     if (state.broken) {
       throw NumericalError("conjugate gradients broke down after " + std::to_string(iterations) +
@@ -246,7 +282,7 @@ void CgRoute::add_correction() { finish(false); }
 
 std::vector<BufferPlan> CgRoute::buffers() const {
   const std::size_t vectors = r_.bytes() + p_.bytes() + q_.bytes() + z_.bytes() + pq_.bytes() +
-                              rz_.bytes() + state_.bytes() + arguments_.bytes();
+                              rz_.bytes() + state_.bytes() + found_.bytes() + arguments_.bytes();
   return {{"conjugate gradient vectors (device)", vectors},
           {"solutions that conjugate gradients begin with (device)", known_.bytes()},
           {"rigid motions of groups of nodes (device)", rigid_.bytes()}};

@@ -3,6 +3,8 @@
 // a converged run zeroes the size of the dispatches that were recorded beyond it.
 #pragma once
 
+#include <optional>
+
 #include "gpu/passes/add.hpp"
 #include "gpu/passes/block_matrix.hpp"
 #include "gpu/passes/rigid_space.hpp"
@@ -46,13 +48,17 @@ class CgRoute final : public DeviceRoute {
   /// correction = K^-1 r, to a share of the first r^T M r; of a solution, or of its energy if that
   /// is more: then what is known of it goes to the displacement first. Returns iterations.
   int run(double reduction, bool solution);
+  /// Its first submit.
+  void start(double reduction, bool solution);
   [[nodiscard]] shaders::CgPush push(bool first) const;
   /// Of one sum, in packs of four.
   [[nodiscard]] std::uint32_t partials() const;
   /// Bytes of a solution that is known.
   [[nodiscard]] std::size_t slot_bytes() const { return known_.bytes() / most_known_; }
   void record_start(double reduction, bool solution);
+  /// Once: what they read of the body does not move.
   void record_iterations();
+  void record_state(vulkan::Commands& commands) const;
   /// The displacement where nothing but grips has moved; of bodies of which nothing is known the
   /// last one takes the place of that.
   void record_begin();
@@ -70,6 +76,7 @@ class CgRoute final : public DeviceRoute {
   RigidSpace rigid_;
   AddCorrection add_;
   vulkan::Buffer r_, p_, q_, z_, pq_, rz_, state_, arguments_;
+  vulkan::Buffer found_;  // what the host reads of state_
   // Solutions of this body, each of a load's share that those before it left over: K keeps them
   // apart, so that a load that is a sum of former ones takes a step along each and no iteration.
   vulkan::Buffer known_;
@@ -81,7 +88,9 @@ class CgRoute final : public DeviceRoute {
   };
   Pass patch_sums_;  // before multiply_, of a body that pools
   Pass begin_, known_step_, multiply_, length_, step_, check_, direction_;
-  vulkan::Commands commands_;
+  vulkan::Commands commands_, iterations_;
+  std::optional<shaders::CgPush> recorded_;  // what iterations_ was recorded with
+  bool recorded_timed_ = false;              // and whether its passes are timed
 };
 
 }  // namespace sunder::gpu

@@ -56,7 +56,8 @@ FiniteCg::FiniteCg(const KernelFactory& kernels, const Problem& problem,
   dofs_ = make(padded * 4 * sizeof(std::uint32_t));
   for (Buffer* vector : {&x_, &r_, &p_, &q_, &z_}) *vector = make(padded * 4 * sizeof(double));
   for (Buffer* sums : {&pq_, &rz_}) *sums = make(partials_ * 4 * sizeof(double));
-  state_ = Buffer(device, sizeof(shaders::CgState), Placement::host);
+  state_ = Buffer(device, sizeof(shaders::CgState), Placement::device);
+  read_ = Buffer(device, sizeof(shaders::CgState), Placement::host);
   arguments_ = make(kCgSizeWords * sizeof(std::uint32_t));
   create_passes(body);
 }
@@ -185,16 +186,18 @@ void FiniteCg::record(vulkan::Commands& commands, const shaders::FinitePush& of_
     again(direction_, kByNode);
   }
   dispatch(found_, of_tangent, node_groups_);
+  commands.copy(state_.handle(), state_.offset(), read_.handle(), read_.offset(),
+                sizeof(shaders::CgState));
 }
 
 int FiniteCg::iterations() const {
-  return static_cast<int>(state_.mapped<shaders::CgState>()->iterations);
+  return static_cast<int>(read_.mapped<shaders::CgState>()->iterations);
 }
 
 void FiniteCg::learn() { recorded_ = std::clamp(2 * iterations(), kFewestRecorded, kMostRecorded); }
 
 std::vector<BufferPlan> FiniteCg::buffers() const {
-  std::size_t vectors = dofs_.bytes() + state_.bytes() + arguments_.bytes();
+  std::size_t vectors = dofs_.bytes() + state_.bytes() + read_.bytes() + arguments_.bytes();
   for (const Buffer* of : {&x_, &r_, &p_, &q_, &z_, &pq_, &rz_}) vectors += of->bytes();
   return {{"tangents of all elements (device)", tangents_.bytes() + inverses_.bytes()},
           {"conjugate gradient vectors (device)", vectors},

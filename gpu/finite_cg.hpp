@@ -64,6 +64,7 @@ class FiniteCg {
   std::vector<std::uint8_t> out_;  // as rigid_ has it
   RigidSpace rigid_;
   vulkan::Buffer tangents_, inverses_, dofs_, x_, r_, p_, q_, z_, pq_, rz_, state_, arguments_;
+  vulkan::Buffer read_;         // what the host reads of state_
   Pass tangent_[2], begin_[2];  // by state
   Pass blocks_, apply_, multiply_, length_, step_, check_, direction_, found_;
 };

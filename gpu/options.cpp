@@ -37,6 +37,7 @@ std::uint64_t* limit(std::string_view word, vulkan::LimitsProbe& probe) {
       {"buffer_bytes", &probe.buffer_bytes},
       {"texels", &probe.texels},
       {"allocation_bytes", &probe.allocation_bytes},
+      {"allocations", &probe.allocations},
       {"alignment", &probe.alignment}};
   for (const auto& named : all) {
     if (named.first == word) return named.second;
@@ -50,6 +51,7 @@ bool set(std::string_view asked, vulkan::DeviceProbe& probe) {
   const std::string_view word = asked.substr(0, sign);
   if (sign == std::string_view::npos) {
     if (word == "as_gpu") return probe.as_gpu = true;
+    if (word == "maps") return probe.maps = true;
     if (word == "no_compute") return probe.no_compute = true;
     return false;
   }
@@ -65,9 +67,10 @@ void set_all(std::string_view list, vulkan::DeviceProbe& probe) {
     const std::size_t comma = list.find(',');
     const std::string_view asked = list.substr(0, comma);
     if (!set(asked, probe)) {
-      throw UsageError("SUNDER_VULKAN_PROBE has \"" + std::string(asked) +
-                       "\"; it may have as_gpu, no_compute, memory=BYTES, lost=SUBMITS and limits "
-                       "(LimitsProbe in gpu/vulkan/limits.hpp), groups=3 say");
+      throw UsageError(
+          "SUNDER_VULKAN_PROBE has \"" + std::string(asked) +
+          "\"; it may have as_gpu, maps, no_compute, memory=BYTES, lost=SUBMITS and limits "
+          "(LimitsProbe in gpu/vulkan/limits.hpp), groups=3 say");
     }
     list = comma == std::string_view::npos ? "" : list.substr(comma + 1);
   }

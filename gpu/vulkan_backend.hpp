@@ -73,6 +73,7 @@ struct DeviceUse {
   std::size_t submits = 0;     ///< so far
   int pipelines = 0;           ///< created so far
   std::size_t dispatches = 0;  ///< so far, those of no size too
+  std::size_t recorded = 0;    ///< of these, as often as they were recorded
 };
 [[nodiscard]] DeviceUse device_use(const Backend& backend);
 

@@ -60,8 +60,8 @@ DamageSolution::DamageSolution(const KernelFactory& kernels, Index columns, Inde
   forces_ = doubles(sizes.forces, Placement::device);
   vectors_ = doubles(sizes.vectors, Placement::device);
   state_ = doubles(sizes.state, Placement::device);
-  given_ = doubles(sizes.given, Placement::host);
-  facts_ = Buffer(device, sizes.facts * sizeof(std::uint32_t), Placement::host);
+  given_ = doubles(sizes.given, Placement::sent);
+  facts_ = Buffer(device, sizes.facts * sizeof(std::uint32_t), Placement::sent);
   found_ = doubles(sizes.found, Placement::host);
   updates_.reserve(kUpdates);
   stale_.reserve(static_cast<std::size_t>(columns));

@@ -77,7 +77,7 @@ DenseInverse::DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t 
   if (narrows(kernels)) {
     vector_ = Buffer(kernels_.device(), rows_ * sizeof(float), Placement::device);
   }
-  entries_ = Buffer(kernels_.device(), kFirstEntries * sizeof(shaders::Entry), Placement::host);
+  entries_ = Buffer(kernels_.device(), kFirstEntries * sizeof(shaders::Entry), Placement::sent);
 }
 
 DenseInverse::Planned DenseInverse::planned(const KernelFactory& kernels, Index n,
@@ -194,7 +194,7 @@ shaders::Entry DenseInverse::entry_of(std::uint32_t column, double value) const 
 void DenseInverse::set_loaded(const Loaded& load) {
   if (load.dofs.size() * sizeof(shaders::Entry) > entries_.bytes()) {
     entries_ =
-        Buffer(kernels_.device(), 2 * load.dofs.size() * sizeof(shaders::Entry), Placement::host);
+        Buffer(kernels_.device(), 2 * load.dofs.size() * sizeof(shaders::Entry), Placement::sent);
     bind_loaded();
   }
   auto* entry = entries_.mapped<shaders::Entry>();
@@ -265,7 +265,7 @@ void DenseInverse::reserve_pick(std::size_t dofs, std::size_t values) {
     return;
   }
   for (Panel& panel : panels_) panel.pick.reset();
-  pick_dofs_ = Buffer(kernels_.device(), 2 * dofs * 4, Placement::host);
+  pick_dofs_ = Buffer(kernels_.device(), 2 * dofs * 4, Placement::sent);
   picked_ = Buffer(kernels_.device(), 2 * values * 8, Placement::host);
   for (Panel& panel : panels_) {
     panel.pick = bind_buffers(kernels_, *pick_, {&panel.matrix, &pick_dofs_, &picked_});
@@ -311,7 +311,7 @@ void DenseInverse::reserve_update(std::size_t dofs, std::uint32_t blocks) {
     panel.low_rank.reset();
     panel.rank_6.reset();
   }
-  update_dofs_ = Buffer(kernels_.device(), dofs * 4, Placement::host);
+  update_dofs_ = Buffer(kernels_.device(), dofs * 4, Placement::sent);
   factors_ = Buffer(kernels_.device(), factor_bytes, Placement::device);
   z_ = Buffer(kernels_.device(), z_bytes, Placement::device);
   for (Panel& panel : panels_) {

@@ -71,7 +71,7 @@ void ExactColumns::allocate(std::uint32_t capacity) {
   columns_ =
       Buffer(kernels_.device(), std::size_t{capacity_} * rows_ * sizeof(double), Placement::device);
   zeroed_ = 0;
-  coefficients_ = Buffer(kernels_.device(), capacity_ * sizeof(double), Placement::host);
+  coefficients_ = Buffer(kernels_.device(), capacity_ * sizeof(double), Placement::sent);
   coefficients_.fill_zero();
   if (count_ == 0) return;
   zeroed_ = static_cast<std::uint32_t>(count_);

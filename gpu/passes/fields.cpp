@@ -59,7 +59,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   displacement_ = make(nodal_bytes);
   kept_ = make(nodal_bytes);
   correction_ = make(nodal_bytes);
-  load_ = make(std::size_t{4} * nodes_ * sizeof(double), Placement::host);
+  load_ = make(std::size_t{4} * nodes_ * sizeof(double), Placement::sent);
   residual_ = make(rows_ * sizeof(double));
   balance_ = make(std::size_t{4} * nodes_ * sizeof(double));
   stress_ = make(keep_stress_ ? std::size_t{elements_} * 8 * kernels.real_bytes() : 16);
@@ -342,7 +342,7 @@ void Fields::create_hold() {
   for (Index d : gripped_) held.push_back(place_[d]);
   held_ = Buffer(device, held.size() * sizeof(std::uint32_t), Placement::device);
   held_.write(std::span<const std::uint32_t>(held));
-  prescribed_ = Buffer(device, held.size() * sizeof(double), Placement::host);
+  prescribed_ = Buffer(device, held.size() * sizeof(double), Placement::sent);
   if (!hold_pass_.kernel) hold_pass_.kernel = kernels_.make_fp64("hold");
   const Buffer* of_displacement[] = {&held_, &prescribed_, &displacement_};
   const Buffer* of_correction[] = {&held_, &prescribed_, &correction_};

@@ -370,7 +370,7 @@ void SurfaceWriter::record(VkCommandBuffer commands, const Surface& surface) {
   if (!list_.empty() && list_.size() > changes_room_) {
     changes_binding_.reset();
     changes_room_ = std::max(list_.size(), 2 * changes_room_);
-    changes_ = Buffer(device_, 4 * changes_room_, Placement::host);
+    changes_ = Buffer(device_, 4 * changes_room_, Placement::sent);
   }
   if (!list_.empty()) {
     if (!changes_binding_) bind_changes();

@@ -14,6 +14,12 @@ namespace {
 
 constexpr unsigned char kSentinel = 0xa5;
 
+constexpr VkMemoryPropertyFlags kVisible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                           VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                                kLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                                // What the host reads is quick to read where it is cached.
+    kRead = kVisible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+
 void copy(Device& device, VkBuffer from, std::size_t from_offset, VkBuffer to,
           std::size_t to_offset, std::size_t bytes) {
   Commands commands(device);
@@ -24,6 +30,17 @@ void copy(Device& device, VkBuffer from, std::size_t from_offset, VkBuffer to,
 }
 
 }  // namespace
+
+std::span<const VkMemoryPropertyFlags> memory_wishes(Placement placement, bool maps) {
+  static constexpr VkMemoryPropertyFlags kMapped[] = {kLocal | kRead, kLocal | kVisible, kLocal},
+                                         kUnmapped[] = {kLocal},
+                                         kSent[] = {kLocal | kRead, kLocal | kVisible, kVisible},
+                                         kOfHost[] = {kRead, kVisible};
+  if (placement == Placement::sent && maps) return kSent;
+  if (placement != Placement::device) return kOfHost;
+  if (maps) return kMapped;
+  return kUnmapped;
+}
 
 Buffer::Buffer(Device& device, std::size_t bytes, Placement placement)
     : device_(&device), bytes_(padded(bytes)), guard_(device.guard_bytes()) {
@@ -61,6 +78,8 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
   mapped_ = std::exchange(other.mapped_, nullptr);
   counted_ = std::exchange(other.counted_, false);
+  counted_memory_ = std::exchange(other.counted_memory_, false);
+  read_there_ = std::exchange(other.read_there_, false);
   return *this;
 }
 
@@ -71,6 +90,7 @@ void Buffer::release() noexcept {
   if (counted_) device_->count_buffer(-static_cast<std::ptrdiff_t>(bytes_));
   device_->vk().DestroyBuffer(device_->handle(), handle_, nullptr);
   device_->vk().FreeMemory(device_->handle(), memory_, nullptr);
+  if (counted_memory_) device_->forget_allocation();
   device_ = nullptr;
 }
 
@@ -91,25 +111,21 @@ void Buffer::allocate(Placement placement) {
   vk.GetBufferMemoryRequirements(device_->handle(), handle_, &needed);
   const PhysicalDevice& physical = device_->physical();
   physical.require(needed.size, physical.limits.allocation_bytes, "a buffer of this scene");
-  constexpr VkMemoryPropertyFlags visible =
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const bool on_host = placement != Placement::device, map = on_host || physical.unified();
+  const bool maps = physical.unified() || physical.maps,
+             map = maps || placement != Placement::device;
+  read_there_ =
+      physical.unified() || placement == Placement::host || placement == Placement::staging;
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needed.size;
-  // What the host reads is quick to read where it is cached.
-  constexpr VkMemoryPropertyFlags local = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
-                                  read = visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-  const std::uint32_t allowed = needed.memoryTypeBits;
-  info.memoryTypeIndex = on_host ? device_->memory_type(allowed, {read, visible})
-                         : map
-                             ? device_->memory_type(allowed, {local | read, local | visible, local})
-                             : device_->memory_type(allowed, {local});
+  info.memoryTypeIndex =
+      device_->memory_type(needed.memoryTypeBits, memory_wishes(placement, maps));
   device_->count_allocation();
   const std::string purpose = "allocating " + std::to_string(bytes_) + " bytes";
+  counted_memory_ = true;
   check(vk.AllocateMemory(device_->handle(), &info, nullptr, &memory_), purpose.c_str());
   check(vk.BindBufferMemory(device_->handle(), handle_, memory_, 0), "vkBindBufferMemory");
-  if (map && (device_->memory_flags(info.memoryTypeIndex) & visible) == visible) {
+  if (map && (device_->memory_flags(info.memoryTypeIndex) & kVisible) == kVisible) {
     check(vk.MapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
   }
 }
@@ -170,14 +186,14 @@ void Buffer::read_all(std::span<const Part> parts) {
     if (part.to.empty()) continue;
     const Buffer& from = *part.from;
     from.device_->count_read(part.to.size());
-    if (from.mapped_) {
+    if (from.mapped_ && from.read_there_) {
       std::memcpy(part.to.data(), from.begin() + part.offset, part.to.size());
     } else {
       from.device_->uploads().want(from.handle_, from.guard_ + part.offset, part.to);
     }
   }
   for (const Part& part : parts) {
-    if (!part.to.empty() && !part.from->mapped_) {
+    if (!part.to.empty() && !(part.from->mapped_ && part.from->read_there_)) {
       part.from->device_->uploads().read();
       return;
     }

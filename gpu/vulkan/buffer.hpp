@@ -11,12 +11,17 @@
 
 namespace sunder::vulkan {
 
-/// Where a buffer lives. On unified memory both are mapped.
+/// Where a buffer lives. On unified memory all are mapped.
 enum class Placement {
-  device,   ///< device-local; the host goes through staging where memory is not unified
-  host,     ///< mapped, for small things that cross every frame
+  device,   ///< device-local; the host goes through staging where it maps none of that
+  host,     ///< the host's and mapped, for small things that it reads every frame
+  sent,     ///< mapped, for what the host writes and never reads: the device's where it maps that
   staging,  ///< mapped, what others are written and read through; not counted among what is held
 };
+
+/// The kinds of memory of such a buffer, the best one first. `maps`: the host maps all of the
+/// device's memory (PhysicalDevice::maps, or it is unified).
+[[nodiscard]] std::span<const VkMemoryPropertyFlags> memory_wishes(Placement placement, bool maps);
 
 class Buffer {
  public:
@@ -65,7 +70,7 @@ class Buffer {
   void read(std::span<T> values, std::size_t first = 0) const {
     read(first * sizeof(T), std::as_writable_bytes(values));
   }
-  /// The mapping; only of host buffers.
+  /// The mapping; only of what is placed at the host or sent.
   template <class T>
   [[nodiscard]] T* mapped() const {
     return reinterpret_cast<T*>(begin());
@@ -85,7 +90,8 @@ class Buffer {
   VkBuffer handle_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   void* mapped_ = nullptr;
-  bool counted_ = false;
+  bool counted_ = false, counted_memory_ = false;
+  bool read_there_ = false;  // by the host, which is slow where memory is the device's own
 };
 
 }  // namespace sunder::vulkan

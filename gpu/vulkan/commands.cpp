@@ -61,8 +61,13 @@ void Commands::end_for_all() {
   end();
 }
 
-void Commands::submit() {
-  device_.submit(handle_);
+void Commands::submit(const Commands* then) {
+  device_.submit(handle_, then ? then->handle_ : VK_NULL_HANDLE);
+  count();
+  if (then) then->count();
+}
+
+void Commands::count() const {
   device_.count_dispatches(dispatches_);
   for (const PassTime& time : pass_times()) device_.add_time(time.pass, time.milliseconds);
 }
@@ -102,6 +107,7 @@ void Commands::bind(const Binding& binding, const void* push, std::uint32_t byte
 void Commands::dispatch(const Kernel& kernel, std::uint32_t x, std::uint32_t y) {
   const FoldedGroups groups(device_.physical(), kernel, x, y);
   ++dispatches_;
+  device_.count_recorded();
   groups.dispatch_rows(device_.vk(), handle_);
   if (groups.rest == 0) return;
   // Other bytes than the rows': the barrier is for those who watch.
@@ -111,6 +117,7 @@ void Commands::dispatch(const Kernel& kernel, std::uint32_t x, std::uint32_t y) 
 
 void Commands::dispatch_indirect(const Buffer& arguments, std::size_t offset) {
   ++dispatches_;
+  device_.count_recorded();
   device_.vk().CmdDispatchIndirect(handle_, arguments.handle(), arguments.offset() + offset);
 }
 

@@ -23,8 +23,9 @@ class Commands {
   void end();
   /// Likewise; every later command of the queue sees what was written.
   void end_for_all();
-  /// Waits, and adds its pass times to the device's sums.
-  void submit();
+  /// Waits, and adds its pass times to the device's sums. `then`: goes after it in the same submit;
+  /// this one has ended for all.
+  void submit(const Commands* then = nullptr);
 
   /// Names what follows, for pass_times(); `name` must live on. Only while the device times passes:
   /// lavapipe waits for all work at every time stamp (15 us).
@@ -78,6 +79,7 @@ class Commands {
   void dispatch(const Kernel& kernel, std::uint32_t x, std::uint32_t y);
   void dispatch_indirect(const Buffer& arguments, std::size_t offset);
   void write_time();
+  void count() const;
 
   Device& device_;
   VkCommandBuffer handle_ = VK_NULL_HANDLE;

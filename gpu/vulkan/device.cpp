@@ -84,7 +84,10 @@ PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe) {
   lower(device.limits, probe.limits);
   if (probe.no_float64) device.float64 = false;
   if (probe.no_compute) device.compute_family = -1;
-  if (probe.as_gpu && device.is_cpu()) device.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  if (probe.as_gpu && device.is_cpu()) {
+    device.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    device.maps = probe.maps;
+  }
   return device;
 }
 
@@ -138,9 +141,9 @@ Device::~Device() {
   vk().DestroyCommandPool(handle(), pool_, nullptr);
 }
 
-std::optional<std::uint32_t> choose_memory_type(
-    const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
-    std::initializer_list<VkMemoryPropertyFlags> wishes) {
+std::optional<std::uint32_t> choose_memory_type(const VkPhysicalDeviceMemoryProperties& memory,
+                                                std::uint32_t allowed,
+                                                std::span<const VkMemoryPropertyFlags> wishes) {
   for (const VkMemoryPropertyFlags wanted : wishes) {
     for (std::uint32_t t = 0; t < memory.memoryTypeCount; ++t) {
       const VkMemoryPropertyFlags has = memory.memoryTypes[t].propertyFlags;
@@ -151,7 +154,7 @@ std::optional<std::uint32_t> choose_memory_type(
 }
 
 std::uint32_t Device::memory_type(std::uint32_t allowed,
-                                  std::initializer_list<VkMemoryPropertyFlags> wishes) const {
+                                  std::span<const VkMemoryPropertyFlags> wishes) const {
   if (const auto type = choose_memory_type(handles_.memory, allowed, wishes)) return *type;
   throw DeviceError("the Vulkan device \"" + physical_.name + "\" has no memory of the kind asked");
 }
@@ -182,10 +185,11 @@ void Device::forget(VkBuffer buffer) noexcept {
   if (uploads_) uploads_->forget(buffer);
 }
 
-void Device::submit(VkCommandBuffer commands) {
+void Device::submit(VkCommandBuffer commands, VkCommandBuffer then) {
   const VkCommandBuffer written = uploads_ ? uploads_->record() : VK_NULL_HANDLE;
-  const std::array<VkCommandBuffer, 2> both{written, commands};
-  submit(std::span(both).subspan(written ? 0 : 1));
+  const std::array<VkCommandBuffer, 3> all{written, commands, then};
+  const std::size_t first = written ? 0 : 1, last = then ? 3 : 2;
+  submit(std::span(all).subspan(first, last - first));
   if (uploads_) uploads_->clear();
 }
 

@@ -63,6 +63,8 @@ struct DeviceProbe {
   /// A processor that emulates a GPU passes for a discrete one: `auto` takes it, and the host
   /// reaches device-local memory by copies alone.
   bool as_gpu = false;
+  /// Such a one, whose memory the host writes directly; it reads by copies.
+  bool maps = false;
   /// Counts the device's allocations of memory, where given.
   std::size_t* allocations = nullptr;
 };
@@ -74,7 +76,7 @@ class Uploads;
 /// of the next one.
 [[nodiscard]] std::optional<std::uint32_t> choose_memory_type(
     const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
-    std::initializer_list<VkMemoryPropertyFlags> wishes);
+    std::span<const VkMemoryPropertyFlags> wishes);
 
 /// What a device claims to be.
 [[nodiscard]] PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe);
@@ -106,8 +108,8 @@ class Device {
   [[nodiscard]] VkPipelineCache pipeline_cache() const;
 
   /// As choose_memory_type(). Throws DeviceError where there is none.
-  [[nodiscard]] std::uint32_t memory_type(
-      std::uint32_t allowed, std::initializer_list<VkMemoryPropertyFlags> wishes) const;
+  [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed,
+                                          std::span<const VkMemoryPropertyFlags> wishes) const;
   [[nodiscard]] VkMemoryPropertyFlags memory_flags(std::uint32_t type) const {
     return handles_.memory.memoryTypes[type].propertyFlags;
   }
@@ -115,7 +117,8 @@ class Device {
   [[nodiscard]] const Queue& queue() const { return queue_; }
   /// Submits and waits; what was written by uploads() goes before. Throws DeviceLost, or
   /// DeviceError with the first validation message.
-  void submit(VkCommandBuffer commands);
+  /// `then`: more that was recorded, in the same submit.
+  void submit(VkCommandBuffer commands, VkCommandBuffer then = VK_NULL_HANDLE);
   /// Submits what was written, where something waits: before commands that somebody else submits.
   void flush();
 
@@ -151,12 +154,18 @@ class Device {
     const auto it = living_.find(name);
     if (it != living_.end()) living_.erase(it);
   }
-  /// Dispatches of all submits so far, those of no size too.
+  /// Dispatches of all submits so far, those of no size too, and as often as they were recorded.
   [[nodiscard]] std::size_t dispatches() const { return dispatches_; }
+  [[nodiscard]] std::size_t recorded() const { return recorded_; }
   void count_dispatches(std::size_t more) { dispatches_ += more; }
+  void count_recorded() { ++recorded_; }
+  /// Of memory, before it is made. Throws DeviceError where the device has no more.
   void count_allocation() {
+    physical_.require(allocations_ + 1, physical_.limits.allocations, "a scene");
+    ++allocations_;
     if (probe_.allocations) ++*probe_.allocations;
   }
+  void forget_allocation() noexcept { --allocations_; }
 
   /// Throws DeviceError when `bytes` more than the device's memory are asked for; `instead`: what
   /// would do.
@@ -174,7 +183,8 @@ class Device {
   std::shared_ptr<Messages> messages_;
   DeviceProbe probe_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::size_t bytes_read_ = 0, held_bytes_ = 0, most_bytes_ = 0, dispatches_ = 0;
+  std::size_t bytes_read_ = 0, held_bytes_ = 0, most_bytes_ = 0, dispatches_ = 0, recorded_ = 0;
+  std::size_t allocations_ = 0;  // that live
   int pipelines_ = 0;
   std::multiset<std::string> living_;
   bool timing_;

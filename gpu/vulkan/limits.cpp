@@ -22,6 +22,7 @@ void read_limits(const VkPhysicalDeviceLimits& from, Limits& limits) {
   limits.buffers.value = from.maxPerStageResources;
   limits.buffer_bytes.value = from.maxStorageBufferRange;
   limits.texels.value = from.maxTexelBufferElements;
+  limits.allocations.value = from.maxMemoryAllocationCount;
   limits.alignment =
       std::max(from.minStorageBufferOffsetAlignment, from.minTexelBufferOffsetAlignment);
 }
@@ -41,6 +42,7 @@ void lower(Limits& limits, const LimitsProbe& probe) {
   to(limits.buffer_bytes, probe.buffer_bytes);
   to(limits.texels, probe.texels);
   to(limits.allocation_bytes, probe.allocation_bytes);
+  to(limits.allocations, probe.allocations);
   limits.alignment = std::max(limits.alignment, probe.alignment);
 }
 

@@ -40,6 +40,8 @@ struct Limits {
   Limit allocation_bytes{std::uint64_t{1} << 30, "maxMemoryAllocationSize",
                          "bytes in one allocation",
                          "use precision fp32, another route, a smaller mesh or backend cpu"};
+  Limit allocations{4096, "maxMemoryAllocationCount", "allocations of memory at a time",
+                    "use fewer backends at a time, another route or backend cpu"};
   /// At whose multiples storage and texel buffers begin [bytes], the largest.
   std::uint64_t alignment = 256;
 };
@@ -51,7 +53,7 @@ void read_limits(const VkPhysicalDeviceLimits& from, Limits& limits);
 struct LimitsProbe {
   std::uint64_t groups = 0, rows_of_groups = 0, group = 0, shared_bytes = 0, push_bytes = 0,
                 storage_buffers = 0, texel_buffers = 0, buffers = 0, buffer_bytes = 0, texels = 0,
-                allocation_bytes = 0, alignment = 0;
+                allocation_bytes = 0, allocations = 0, alignment = 0;
 };
 void lower(Limits& limits, const LimitsProbe& probe);
 

@@ -88,7 +88,27 @@ void read_memory(const InstanceFunctions& vk, PhysicalDevice& device) {
       device.memory = std::max(device.memory, memory.memoryHeaps[h].size);
     }
   }
+  device.maps = maps_its_memory(memory);
 }
+
+}  // namespace
+
+bool maps_its_memory(const VkPhysicalDeviceMemoryProperties& memory) {
+  constexpr VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
+                                           VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                           VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkDeviceSize largest = 0, mapped = 0;
+  for (std::uint32_t t = 0; t < memory.memoryTypeCount; ++t) {
+    const VkMemoryType& type = memory.memoryTypes[t];
+    const VkMemoryHeap& heap = memory.memoryHeaps[type.heapIndex];
+    if (!(heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)) continue;
+    largest = std::max(largest, heap.size);
+    if ((type.propertyFlags & wanted) == wanted) mapped = std::max(mapped, heap.size);
+  }
+  return largest > 0 && mapped == largest;
+}
+
+namespace {
 
 void read_queues(const InstanceFunctions& vk, PhysicalDevice& device) {
   std::uint32_t count = 0;

@@ -28,6 +28,7 @@ struct PhysicalDevice {
   std::uint32_t timestamp_bits = 0;  ///< of that family
   double timestamp_period = 0;       ///< [ns]
   VkDeviceSize memory = 0;           ///< largest device-local heap [bytes]
+  bool maps = false;                 ///< the host can map all of that heap
   Limits limits;
   std::uint32_t subgroup = 0;       ///< invocations of a subgroup
   bool subgroup_arithmetic = true;  ///< sums and extrema over one, in compute kernels
@@ -51,6 +52,9 @@ struct PhysicalDevice {
     vulkan::require(needed, limit, name, who);
   }
 };
+
+/// Whether the host can map all of its largest device-local heap, not a window into that alone.
+[[nodiscard]] bool maps_its_memory(const VkPhysicalDeviceMemoryProperties& memory);
 
 [[nodiscard]] PhysicalDevice describe_device(const InstanceFunctions& vk, VkPhysicalDevice handle);
 

@@ -3,6 +3,7 @@
 // the scene needs, one submit a frame, no field read back in a quiet one.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "gpu_body.hpp"
 #include "sunder/error.hpp"
@@ -360,20 +361,20 @@ TEST_F(DeviceUse, AFrameIsOneSubmitAndAQuietOneReadsNoFieldBack) {
   }
 }
 
-// Memory that the host does not map.
+// Memory that the host does not map; `maps`: that it writes directly and reads by copies.
 struct Unmapped {
-  explicit Unmapped(Route route, Scene scene = held_board(), bool inverts = false,
-                    bool region = false, bool damage = false) {
-    Way way{gpu::Variant::lvp, Precision::fp64};
-    way.route = route;
-    if (route == Route::cg) way.update = Update::automatic;
+  explicit Unmapped(Route route, Scene scene = held_board())
+      : Unmapped(Way{.route = route}, std::move(scene)) {}
+  explicit Unmapped(Way way, Scene scene = held_board(), bool maps = false) {
+    if (way.route == Route::cg) way.update = Update::automatic;
     problem = problem_for(std::move(scene), way);
     gpu::VulkanOptions options = watched(way);
     options.probe.as_gpu = true;
+    options.probe.maps = maps;
     options.probe.allocations = &allocations;
-    if (inverts) options.invert_on_device = true;
-    options.region_on_device = region;
-    options.damage_on_device = damage;
+    if (way.inverts) options.invert_on_device = true;
+    options.region_on_device = way.region;
+    options.damage_on_device = way.damage;
     backend = gpu::create(problem, needs_with(true), options);
   }
   SolveReport frame(const Vec3& force) {
@@ -392,23 +393,74 @@ struct Unmapped {
 // From the change to the stress after it: what must cross to the device rides in the frame's own
 // submit. A full check, which reads the residual and sends a correction, takes two more, its
 // addition one. 100 elements at once take two checks where the base is the whole body's, and of the
-// region a refinement.
+// region a refinement. Memory that the host maps has the same bits.
 TEST_F(DeviceUse, AnEventIsOneSubmitAndNoAllocation) {
   for (const Route route : {Route::inverse, Route::condensed}) {
     for (const std::size_t of_an_event : {1, 10, 100}) {
       SCOPED_TRACE(std::string(route == Route::inverse ? "inverse" : "condensed") + ", elements " +
                    std::to_string(of_an_event));
-      Unmapped body(route);
-      body.frame(Vec3(0, -10, 0));
-      const auto crack = crack_sequence(*body.problem, 3 * of_an_event, 10);
-      for (std::size_t event = 0; event < 3; ++event) {
-        const std::size_t submits = body.use().submits, allocated = body.allocations;
-        body.backend->destroy({crack.data() + event * of_an_event, of_an_event});
-        body.frame(Vec3(0, -10, 0));
-        const std::size_t expected = of_an_event < 100 ? 1 : route == Route::inverse ? 6 : 2;
-        EXPECT_EQ(body.use().submits - submits, expected) << "event " << event;
-        EXPECT_EQ(body.allocations, allocated) << "event " << event;
+      Unmapped unmapped(route), mapped({.route = route}, held_board(), true);
+      for (Unmapped* of : {&unmapped, &mapped}) {
+        of->frame(Vec3(0, -10, 0));
+        const auto crack = crack_sequence(*of->problem, 3 * of_an_event, 10);
+        for (std::size_t event = 0; event < 3; ++event) {
+          const std::size_t submits = of->use().submits, allocated = of->allocations;
+          of->backend->destroy({crack.data() + event * of_an_event, of_an_event});
+          of->frame(Vec3(0, -10, 0));
+          const std::size_t expected = of_an_event < 100 ? 1 : route == Route::inverse ? 6 : 2;
+          EXPECT_EQ(of->use().submits - submits, expected) << "event " << event;
+          EXPECT_EQ(of->allocations, allocated) << "event " << event;
+        }
       }
+      EXPECT_EQ(Pair::displacement(*mapped.backend), Pair::displacement(*unmapped.backend));
+    }
+  }
+}
+
+// What a haptic loop reads after a frame: some nodes, and the forces of the grips.
+TEST_F(DeviceUse, NodesAndReactionsAreReadInOneSubmitEach) {
+  for (const Route route : {Route::inverse, Route::condensed, Route::cg}) {
+    SCOPED_TRACE(static_cast<int>(route));
+    Scene scene = held_board();
+    scene.instruments.push_back(
+        {"grip",
+         Grip{Box{Vec3(20, -0.001, -1), Vec3(51, 0.001, 3)}, Vec3(0.5, -2, 0), Axes{7}},
+         {}});
+    Unmapped body(route, std::move(scene));
+    std::vector<Index> nodes(64);
+    std::iota(nodes.begin(), nodes.end(), 0);
+    std::vector<Vec3> u(nodes.size());
+    std::vector<double> reactions(body.problem->gripped_dofs().size());
+    std::vector<double> held(reactions.size(), 0.1);
+    const auto crack = crack_sequence(*body.problem, 3, 10);
+    for (std::size_t event = 0; event < 3; ++event) {
+      body.backend->destroy({&crack[event], 1});
+      Load load = pull(*body.problem, nodes_in(body.problem->mesh(), lower_right_corner()),
+                       Vec3(0, -10, 0));
+      load.displacements = held;
+      body.backend->set_load(load);
+      static_cast<void>(body.backend->solve());
+      static_cast<void>(body.backend->stress());
+      const std::size_t allocated = body.allocations;
+      const auto submits_of = [&](auto&& read) {
+        const std::size_t before = body.use().submits;
+        read();
+        return body.use().submits - before;
+      };
+      for (const std::size_t count : {1, 2, 64}) {
+        EXPECT_LE(submits_of([&] {
+                    body.backend->read_displacement(std::span(nodes).first(count),
+                                                    std::span(u).first(count));
+                  }),
+                  1u)
+            << count << " nodes";
+      }
+      EXPECT_LE(submits_of([&] { body.backend->read_reactions(reactions); }), 1u);
+      EXPECT_EQ(body.allocations, allocated) << "event " << event;
+    }
+    const std::vector<double> all = Pair::displacement(*body.backend);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(u[i][axis], all[3 * i + axis]);
     }
   }
 }
@@ -436,16 +488,17 @@ TEST_F(DeviceUse, ACheckByElementsTakesNoMoreSubmitsThanAnother) {
 // Of an inverse that the device has computed the host has no columns: those that are new come in a
 // submit before, and no factor solves for them.
 TEST_F(DeviceUse, AnEventOfAnInverseFromTheDeviceIsTwoSubmits) {
-  for (const std::size_t of_an_event : {1, 10}) {
+  for (const std::size_t of_an_event : {1, 10, 100}) {
     SCOPED_TRACE(std::to_string(of_an_event) + " elements");
-    Unmapped body(Route::inverse, held_board(), true);
+    Unmapped body(Way{.inverts = true});
     body.frame(Vec3(0, -10, 0));
     const auto crack = crack_sequence(*body.problem, 3 * of_an_event, 10);
-    for (std::size_t event = 0; event < 3; ++event) {
+    const std::size_t events = of_an_event < 100 ? 3 : 1;  // 200 make a new base
+    for (std::size_t event = 0; event < events; ++event) {
       const std::size_t submits = body.use().submits, allocated = body.allocations;
       body.backend->destroy({crack.data() + event * of_an_event, of_an_event});
       body.frame(Vec3(0, -10, 0));
-      EXPECT_EQ(body.use().submits - submits, 2u) << "event " << event;
+      EXPECT_EQ(body.use().submits - submits, of_an_event < 100 ? 2u : 7u) << "event " << event;
       EXPECT_EQ(body.allocations, allocated) << "event " << event;
     }
   }
@@ -455,7 +508,7 @@ TEST_F(DeviceUse, AnEventOfAnInverseFromTheDeviceIsTwoSubmits) {
 // stress: four of them, with two of stress, where 100 elements at once take a refinement.
 TEST_F(DeviceUse, AProductOfTheRegionIsOneSubmitMore) {
   for (const std::size_t of_an_event : {1, 10, 100}) {
-    Unmapped body(Route::condensed, held_board(), false, true), by_host(Route::condensed);
+    Unmapped body({.route = Route::condensed, .region = true}), by_host(Route::condensed);
     body.frame(Vec3(0, -10, 0));
     by_host.frame(Vec3(0, -10, 0));
     const auto crack = crack_sequence(*body.problem, 3 * of_an_event, 10);
@@ -481,7 +534,7 @@ TEST_F(DeviceUse, AProductOfTheRegionIsOneSubmitMore) {
 TEST_F(DeviceUse, ASolutionByTheSmallMatricesIsOneSubmitMore) {
   for (const Route route : {Route::inverse, Route::condensed}) {
     SCOPED_TRACE(route == Route::inverse ? "inverse" : "condensed");
-    Unmapped body(route, held_board(), false, false, true), by_host(route);
+    Unmapped body({.route = route, .damage = true}), by_host(route);
     const auto submits_more = [&] {
       const std::size_t before = body.use().submits, allocated = body.allocations,
                         of_host = by_host.use().submits;
@@ -519,13 +572,14 @@ TEST_F(DeviceUse, ASolutionByTheSmallMatricesIsOneSubmitMore) {
 }
 
 // Conjugate gradients of an event: a submit for every 64 iterations, of the solution and of the
-// estimate of its error, and some for what goes before and after.
+// estimate of its error, and some for what goes before and after. The iterations are recorded once.
 TEST_F(DeviceUse, AnEventOfConjugateGradientsTakesFewSubmits) {
   Unmapped body(Route::cg);
   body.frame(Vec3(0, -10, 0));
   const auto crack = crack_sequence(*body.problem, 100, 10);
   for (const std::size_t of_an_event : {1, 10, 89}) {
-    const std::size_t submits = body.use().submits, allocated = body.allocations;
+    const std::size_t submits = body.use().submits, allocated = body.allocations,
+                      recorded = body.use().recorded, dispatches = body.use().dispatches;
     body.backend->destroy({crack.data() + (of_an_event == 1    ? 0
                                            : of_an_event == 10 ? 1
                                                                : 11),
@@ -534,6 +588,8 @@ TEST_F(DeviceUse, AnEventOfConjugateGradientsTakesFewSubmits) {
     EXPECT_GT(report.iterations, 64);
     EXPECT_LE(body.use().submits - submits, static_cast<std::size_t>(report.iterations) / 64 + 8);
     EXPECT_EQ(body.allocations, allocated);
+    EXPECT_GT(body.use().dispatches - dispatches, 7 * static_cast<std::size_t>(report.iterations));
+    EXPECT_LE(body.use().recorded - recorded, 64u);
   }
 }
 

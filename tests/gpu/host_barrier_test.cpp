@@ -19,7 +19,7 @@ struct Barrier {
 };
 struct Seen {
   bool barrier_came_last = false, at_the_end = false;
-  Barrier last;
+  Barrier last, before;
 };
 Seen seen;
 
@@ -35,6 +35,7 @@ VKAPI_ATTR void VKAPI_CALL see_barrier(VkCommandBuffer commands, VkPipelineStage
                                        std::uint32_t, const VkBufferMemoryBarrier*, std::uint32_t,
                                        const VkImageMemoryBarrier*) {
   ASSERT_EQ(count, 1u);
+  seen.before = seen.barrier_came_last ? seen.last : Barrier{};
   seen.last = {from_stages, to_stages, barriers->srcAccessMask, barriers->dstAccessMask};
   seen.barrier_came_last = true;
   real_barrier(commands, from_stages, to_stages, flags, count, barriers, 0, nullptr, 0, nullptr);
@@ -112,6 +113,13 @@ TEST_F(HostBarrier, EndsEveryCommandBuffer) {
     EXPECT_EQ(seen.last.from & written, written);
     EXPECT_NE(seen.last.to_stages & VK_PIPELINE_STAGE_HOST_BIT, 0u);
     EXPECT_NE(seen.last.to & VK_ACCESS_HOST_READ_BIT, 0u);
+    if (!for_all) continue;
+    // Whatever comes later, of this submit or another, sees what was written.
+    EXPECT_EQ(seen.before.from_stages & stages, stages);
+    EXPECT_EQ(seen.before.from & written, written);
+    EXPECT_EQ(seen.before.to_stages, VkPipelineStageFlags{VK_PIPELINE_STAGE_ALL_COMMANDS_BIT});
+    EXPECT_EQ(seen.before.to,
+              VkAccessFlags{VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT});
   }
 }
 

@@ -137,6 +137,21 @@ TEST_F(Limits, OfBuffers) {
       << too_large;
 }
 
+// Vulkan promises 4,096 of a device, for all backends together.
+TEST_F(Limits, OfAllocations) {
+  const LimitedDevice limited({.allocations = 2});
+  vulkan::Device& device = *limited.device;
+  {
+    const Buffer first(device, 64, Placement::device), second(device, 64, Placement::host);
+    EXPECT_EQ(
+        message_of([&] { const Buffer third(device, 64, Placement::device); }),
+        "a scene" +
+            needs(device, 3, "allocations of memory at a time", 2, "maxMemoryAllocationCount") +
+            "use fewer backends at a time, another route or backend cpu");
+  }
+  const Buffer again(device, 64, Placement::device), and_again(device, 64, Placement::device);
+}
+
 // Stress of 324 elements, padded to 384: eight numbers each, the largest storage buffer of lvp,
 // which reads all else that is as large as texels.
 TEST_F(Limits, OfTheStressOfAllElements) {
