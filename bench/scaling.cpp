@@ -109,7 +109,9 @@ Index most_cells(const Method& method, bool software) {
   const bool slow = software && method.options.backend == "vulkan";
   const bool fp64 = method.options.precision == Precision::fp64;
   if (method.options.route != Route::inverse) return slow && !fp64 ? 141 : 409;
-  return method.options.update == Update::eager ? 18 : 36;
+  if (method.options.update == Update::eager) return 18;
+  const bool gpu = !software && method.options.backend == "vulkan";
+  return gpu && fp64 ? 71 : 36;  // 7.5 GB, which a GPU inverts in some seconds
 }
 
 bool software_renderer_only() {

@@ -34,7 +34,7 @@ struct VulkanOptions {
 
 /// Options from the environment: SUNDER_VULKAN_VALIDATION=1 turns the validation layers on and
 /// their messages into errors. For tests: SUNDER_VULKAN_NO_FLOAT64=1 takes shaderFloat64 away, and
-/// SUNDER_VULKAN_PROBE lists what else the device pretends, separated by commas: as_gpu,
+/// SUNDER_VULKAN_PROBE lists what else the device pretends, separated by commas: as_gpu, maps,
 /// no_compute, memory=BYTES, lost=SUBMITS (vulkan::DeviceProbe), and limits by their names in
 /// vulkan::LimitsProbe. Throws UsageError for another word.
 [[nodiscard]] VulkanOptions options_from_environment();
