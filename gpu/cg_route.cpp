@@ -160,7 +160,7 @@ void CgRoute::record_start(double reduction, bool solution) {
 void CgRoute::record_iterations() {
   const shaders::CgPush of_iteration = push(false);
   const bool timed = kernels_.device().timing();
-  if (recorded_ && timed == recorded_timed_ &&
+  if (recorded_ && timed == recorded_timed_ && rigid_.bound() == recorded_levels_ &&
       std::memcmp(&*recorded_, &of_iteration, sizeof(of_iteration)) == 0) {
     return;
   }
@@ -183,6 +183,7 @@ void CgRoute::record_iterations() {
   iterations_.end();
   recorded_ = of_iteration;
   recorded_timed_ = timed;
+  recorded_levels_ = rigid_.bound();
 }
 
 void CgRoute::record_state(vulkan::Commands& commands) const {
@@ -209,7 +210,7 @@ void CgRoute::start(double reduction, bool solution) {
   if (solution) record_begin();
   record_start(reduction, solution);
   if (iterates) {
-    commands_.end_for_all();
+    commands_.end();
     commands_.submit(&iterations_);
   } else {
     record_state(commands_);

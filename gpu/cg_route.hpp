@@ -56,7 +56,7 @@ class CgRoute final : public DeviceRoute {
   /// Bytes of a solution that is known.
   [[nodiscard]] std::size_t slot_bytes() const { return known_.bytes() / most_known_; }
   void record_start(double reduction, bool solution);
-  /// Once: what they read of the body does not move.
+  /// Where they are not as they were: of the body only the levels' buffers ever move.
   void record_iterations();
   void record_state(vulkan::Commands& commands) const;
   /// The displacement where nothing but grips has moved; of bodies of which nothing is known the
@@ -89,8 +89,11 @@ class CgRoute final : public DeviceRoute {
   Pass patch_sums_;  // before multiply_, of a body that pools
   Pass begin_, known_step_, multiply_, length_, step_, check_, direction_;
   vulkan::Commands commands_, iterations_;
-  std::optional<shaders::CgPush> recorded_;  // what iterations_ was recorded with
-  bool recorded_timed_ = false;              // and whether its passes are timed
+  // What iterations_ was recorded with: its sizes, whether its passes are timed, and the levels as
+  // they were bound then.
+  std::optional<shaders::CgPush> recorded_;
+  bool recorded_timed_ = false;
+  int recorded_levels_ = 0;
 };
 
 }  // namespace sunder::gpu

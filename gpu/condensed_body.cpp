@@ -20,7 +20,13 @@ std::unique_ptr<RegionColumns> make_columns(const DeviceSetup& setup,
   if (!least || RegionColumns::most_values(device.physical(), unknowns) < *least) return nullptr;
   const std::size_t bytes = RegionColumns::planned_bytes(device.physical(), unknowns);
   if (device.held_bytes() + bytes > device.physical().memory) return nullptr;
-  return std::make_unique<RegionColumns>(setup.kernels, unknowns, *least);
+  try {
+    return std::make_unique<RegionColumns>(setup.kernels, unknowns, *least);
+  } catch (const DeviceLost&) {
+    throw;
+  } catch (const DeviceError&) {  // others have the memory
+    return nullptr;
+  }
 }
 
 }  // namespace

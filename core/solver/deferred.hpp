@@ -61,7 +61,8 @@ class Deferred {
   /// Prepares the base for the removal of live elements, each by itself.
   void prepare(std::span<const Index> elements);
   [[nodiscard]] double saved_ms() const { return base_->saved_ms(); }
-  /// Takes the last events back: every later result is bit by bit what it was before them.
+  /// Takes the last events back: every later result that the host solves for is bit by bit what it
+  /// was before them.
   void take_back(Index events = 1);
   /// Keeps, every few events, what they have added up to: taking later ones back then adds no more
   /// up again than those since.

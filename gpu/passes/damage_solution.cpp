@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sunder/error.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -102,7 +104,13 @@ std::unique_ptr<DamageSolution> DamageSolution::make(const KernelFactory& kernel
       device.held_bytes() + planned_bytes(most, grips) > device.physical().memory) {
     return nullptr;
   }
-  return std::make_unique<DamageSolution>(kernels, most, grips, *least);
+  try {
+    return std::make_unique<DamageSolution>(kernels, most, grips, *least);
+  } catch (const DeviceLost&) {
+    throw;
+  } catch (const DeviceError&) {  // others have the memory
+    return nullptr;
+  }
 }
 
 std::size_t DamageSolution::planned_bytes(Index columns, Index grips) {

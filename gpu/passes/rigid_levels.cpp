@@ -122,6 +122,7 @@ void RigidLevels::bind_all() {
   bind(solve_, {&inverse_, &of_y_, &of_w_, &of_terms_});
   bind(expand_, {&blocks_, &slices_, y_, &of_w_, w_, terms_});
   rebind_ = false;
+  ++bound_;
 }
 
 void RigidLevels::hold(Buffer& buffer, std::size_t bytes) {

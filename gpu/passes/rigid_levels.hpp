@@ -34,6 +34,8 @@ class RigidLevels {
   void record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
                        const vulkan::Buffer& arguments) const;
   [[nodiscard]] std::size_t bytes() const;
+  /// How often it was bound anew: what was recorded before can no longer be submitted.
+  [[nodiscard]] int bound() const { return bound_; }
 
  private:
   void write_sums(const SmoothedLevels& levels);
@@ -50,6 +52,7 @@ class RigidLevels {
   std::uint32_t aggregates_ = 1, rows_;  // rows_: workgroups of 64 groups
   const vulkan::Buffer *y_ = nullptr, *w_ = nullptr, *terms_ = nullptr;
   bool rebind_ = true;
+  int bound_ = 0;
   vulkan::Buffer blocks_, slices_, restriction_, first_, inverse_, of_y_, of_w_, of_terms_;
   struct Pass {
     std::unique_ptr<vulkan::Kernel> kernel;

@@ -64,6 +64,8 @@ class RigidSpace {
   /// The same with sizes of dispatches that the device has written.
   void record_indirect(vulkan::Commands& commands, const shaders::CgPush& push,
                        const vulkan::Buffer& arguments) const;
+  /// RigidLevels::bound().
+  [[nodiscard]] int bound() const { return levels_ ? levels_->bound() : 0; }
 
   // What a kernel needs for z + Z w.
   [[nodiscard]] const vulkan::Buffer& modes() const { return modes_; }

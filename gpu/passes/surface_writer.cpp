@@ -83,7 +83,7 @@ SurfaceWriter::SurfaceWriter(const LentField& field, const Simulation& simulatio
     // Stress that the host writes is in fp32.
     values_kernel_ = (displacement_ ? kernels_ : kernels_.in_fp32()).make("surface_values");
     if (!displacement_) {
-      own_stress_ = Buffer(device_, std::size_t{16} * elements_, Placement::host);
+      own_stress_ = Buffer(device_, std::size_t{16} * elements_, Placement::sent);
     }
   }
   if (skin) upload_skin(*skin);
@@ -142,7 +142,7 @@ void SurfaceWriter::make_room(std::size_t nodes) {
   changes_binding_.reset();
   on_device_parents_ = Buffer(device_, 4 * room_, Placement::device);
   if (!displacement_) {
-    own_displacement_ = Buffer(device_, 4 * sizeof(double) * room_, Placement::host);
+    own_displacement_ = Buffer(device_, 4 * sizeof(double) * room_, Placement::sent);
   }
   bind();
 }

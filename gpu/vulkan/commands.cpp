@@ -51,14 +51,9 @@ void Commands::begin() {
 
 void Commands::end() {
   if (!passes_.empty()) write_time();
-  memory_barrier(VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+  memory_barrier(VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,
+                 VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT | VK_ACCESS_HOST_READ_BIT);
   check(device_.vk().EndCommandBuffer(handle_), "vkEndCommandBuffer");
-}
-
-void Commands::end_for_all() {
-  memory_barrier(VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                 VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
-  end();
 }
 
 void Commands::submit(const Commands* then) {

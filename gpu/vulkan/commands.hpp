@@ -20,11 +20,9 @@ class Commands {
 
   /// Starts anew; forgets what was recorded.
   void begin();
+  /// The host and every later command of the queue see what was written.
   void end();
-  /// Likewise; every later command of the queue sees what was written.
-  void end_for_all();
-  /// Waits, and adds its pass times to the device's sums. `then`: goes after it in the same submit;
-  /// this one has ended for all.
+  /// Waits, and adds its pass times to the device's sums. `then`: goes after it in the same submit.
   void submit(const Commands* then = nullptr);
 
   /// Names what follows, for pass_times(); `name` must live on. Only while the device times passes:

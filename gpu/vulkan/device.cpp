@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <mutex>
 
 #include "gpu/vulkan/check.hpp"
 #include "gpu/vulkan/kernel_cache.hpp"
@@ -77,6 +79,17 @@ VkDevice create_handle(const Instance& instance, const PhysicalDevice& physical)
   return device;
 }
 
+/// One counter for a handle, however often that is lent.
+std::shared_ptr<std::atomic<std::size_t>> allocations_of(VkDevice device) {
+  static std::mutex mutex;
+  static std::map<VkDevice, std::weak_ptr<std::atomic<std::size_t>>> all;
+  const std::lock_guard lock(mutex);
+  std::erase_if(all, [](const auto& known) { return known.second.expired(); });
+  auto counter = all[device].lock();
+  if (!counter) all[device] = counter = std::make_shared<std::atomic<std::size_t>>(0);
+  return counter;
+}
+
 }  // namespace
 
 PhysicalDevice probed(PhysicalDevice device, const DeviceProbe& probe) {
@@ -118,6 +131,7 @@ Device::Device(DeviceHandles handles, PhysicalDevice physical, std::shared_ptr<M
       physical_(std::move(physical)),
       messages_(std::move(messages)),
       probe_(probe),
+      allocations_(allocations_of(handles_.device)),
       timing_(physical_.timestamp_bits > 0),
       queue_(handles_.vk, handles_.device, handles_.queue, handles_.lock,
              physical_.is_cpu() ? kPatienceWithAProcessor : kPatience),
@@ -157,6 +171,17 @@ std::uint32_t Device::memory_type(std::uint32_t allowed,
                                   std::span<const VkMemoryPropertyFlags> wishes) const {
   if (const auto type = choose_memory_type(handles_.memory, allowed, wishes)) return *type;
   throw DeviceError("the Vulkan device \"" + physical_.name + "\" has no memory of the kind asked");
+}
+
+void Device::count_allocation() {
+  const std::size_t now = ++*allocations_;
+  try {
+    physical_.require(now, physical_.limits.allocations, "a scene");
+  } catch (const DeviceError&) {
+    forget_allocation();
+    throw;
+  }
+  if (probe_.allocations) ++*probe_.allocations;
 }
 
 void Device::require_memory(VkDeviceSize bytes, const std::string& purpose,

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstring>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <set>
@@ -159,13 +159,10 @@ class Device {
   [[nodiscard]] std::size_t recorded() const { return recorded_; }
   void count_dispatches(std::size_t more) { dispatches_ += more; }
   void count_recorded() { ++recorded_; }
-  /// Of memory, before it is made. Throws DeviceError where the device has no more.
-  void count_allocation() {
-    physical_.require(allocations_ + 1, physical_.limits.allocations, "a scene");
-    ++allocations_;
-    if (probe_.allocations) ++*probe_.allocations;
-  }
-  void forget_allocation() noexcept { --allocations_; }
+  /// Of memory, before it is made, with those of others that have the same device. Throws
+  /// DeviceError where it has no more.
+  void count_allocation();
+  void forget_allocation() noexcept { --*allocations_; }
 
   /// Throws DeviceError when `bytes` more than the device's memory are asked for; `instead`: what
   /// would do.
@@ -184,7 +181,7 @@ class Device {
   DeviceProbe probe_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::size_t bytes_read_ = 0, held_bytes_ = 0, most_bytes_ = 0, dispatches_ = 0, recorded_ = 0;
-  std::size_t allocations_ = 0;  // that live
+  std::shared_ptr<std::atomic<std::size_t>> allocations_;  // that live, of all who have the handle
   int pipelines_ = 0;
   std::multiset<std::string> living_;
   bool timing_;

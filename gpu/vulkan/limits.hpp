@@ -41,7 +41,7 @@ struct Limits {
                          "bytes in one allocation",
                          "use precision fp32, another route, a smaller mesh or backend cpu"};
   Limit allocations{4096, "maxMemoryAllocationCount", "allocations of memory at a time",
-                    "use fewer backends at a time, another route or backend cpu"};
+                    "use fewer backends on one device, another route or backend cpu"};
   /// At whose multiples storage and texel buffers begin [bytes], the largest.
   std::uint64_t alignment = 256;
 };

@@ -89,7 +89,7 @@ VkCommandBuffer Uploads::record() {
       copies_.copy(room_.handle(), room_.offset() + copy.at, copy.to, copy.offset, copy.bytes);
     }
   }
-  copies_.end_for_all();
+  copies_.end();
   return copies_.handle();
 }
 

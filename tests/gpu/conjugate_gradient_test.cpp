@@ -217,6 +217,30 @@ std::vector<Index> cells_in(const Problem& problem, const BoardShape& shape, con
   return found;
 }
 
+using RecordedIterations = WithVulkan<>;
+
+// As many groups and aggregates as before, but more entries between them: their buffers are new,
+// and iterations that were recorded with the old ones must not be submitted again.
+TEST_F(RecordedIterations, FollowLevelsThatAreMadeAnew) {
+  const BoardShape shape{36, 36, 1, 50, 50, 2.5};
+  const double side = 50.0 / 36;
+  Pair pair(framed_body(shape), {.update = Update::automatic, .route = Route::cg});
+  pair.load(pull(pair.problem(),
+                 nodes_in(pair.problem().mesh(), {Vec3(49.9, -1, -1), Vec3(51, 4, 51)}),
+                 Vec3(0.1, -1, 0.3)));
+  pair.solve();
+  const auto cells = [&](int x, int y, int end_x, int end_y) {
+    return cells_in(pair.problem(), shape,
+                    {Vec3(x * side, y * side, -1), Vec3(end_x * side, end_y * side, 51)});
+  };
+  auto cut = cells(10, 10, 12, 12);
+  for (Index e : cells(12, 10, 16, 11)) cut.push_back(e);
+  std::ranges::sort(cut);
+  EXPECT_EQ(cut.size(), 48u);
+  pair.destroy(cut);
+  EXPECT_LE(pair.solve().u, kCutTolerance);
+}
+
 /// Hundreds of groups of nodes, and their aggregates, thick and thin: intact, with a cut through
 /// nine tenths of the width, and once a piece has come off.
 TEST_P(ConjugateGradient, LargeBodiesTakeUnderTwoHundredIterations) {

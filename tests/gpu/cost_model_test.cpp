@@ -120,10 +120,8 @@ TEST(DeviceCostModel, AQuietFrameOfConjugateGradientsIteratesNot) {
 
 // By the bytes a second that products with them reach (docs/vulkan.md).
 TEST(DeviceCostModel, SmallMatricesAreWorthADeviceWhereTheyAreLarge) {
-  auto rates = device(VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU);
-  EXPECT_EQ(solver::columns_worth_a_device(rates), 512);
-  rates.bytes *= 5;
-  EXPECT_EQ(solver::columns_worth_a_device(rates), 384);
+  EXPECT_EQ(solver::columns_worth_a_device(gpu::rates_of_a_gpu(400e9, 300e9)), 576);
+  EXPECT_EQ(solver::columns_worth_a_device(gpu::rates_of_a_gpu(2e12, 10e12)), 384);
   EXPECT_EQ(solver::columns_worth_a_device(device(VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU)),
             std::nullopt);
 }

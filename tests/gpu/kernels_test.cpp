@@ -315,7 +315,6 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     const shaders::Summary summary = fields.state();
     EXPECT_EQ(static_cast<Index>(summary.any_element), worst);
     EXPECT_NEAR(summary.any_ratio, worst_ratio, 32 * GetParam().eps() / (1 - 2 * nu) * worst_ratio);
-    EXPECT_LT(largest, 0.98 * most);
     EXPECT_NEAR(std::sqrt(summary.stress_squared), largest,
                 32 * GetParam().eps() / (1 - 2 * nu) * largest);
 
