@@ -45,8 +45,7 @@ struct Sizes {
 
 DamageSolution::DamageSolution(const KernelFactory& kernels, Index columns, Index grips,
                                Index least)
-    : kernels_(kernels),
-      most_(columns),
+    : most_(columns),
       most_grips_(grips),
       least_(least),
       rows_(Sizes(columns, grips).rows),

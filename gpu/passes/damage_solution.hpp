@@ -66,7 +66,6 @@ class DamageSolution final : public solver::DamageSolver {
   void record_refinements(std::size_t count);
   void finish(std::span<double> energies, Eigen::VectorXd& x);
 
-  const KernelFactory& kernels_;
   Index most_, most_grips_, least_;
   std::uint32_t rows_;      // of each column, with room
   std::uint32_t of_group_;  // rows of a workgroup

@@ -5,6 +5,7 @@
 #include "body/assembly.hpp"
 #include "body/stiffness_factor.hpp"
 #include "kernels_fixture.hpp"
+#include "solver/deferred.hpp"
 #include "solver/inverse_base.hpp"
 #include "support/sequences.hpp"
 #include "support/table1_board.hpp"

@@ -151,30 +151,29 @@ TEST_F(DeviceUse, WhatADeviceMultipliesIsLeftToTheHostWhereMemoryIsShort) {
     Route route;
     std::optional<bool> gpu::VulkanOptions::*option;
   };
-  for (const auto& [name, route, option] :
-       {Case{"columns of the region (device)", Route::condensed,
-             &gpu::VulkanOptions::region_on_device},
-        Case{"small matrices of the damage (device)", Route::condensed,
-             &gpu::VulkanOptions::damage_on_device},
-        Case{"small matrices of the damage (device)", Route::inverse,
-             &gpu::VulkanOptions::damage_on_device}}) {
-    SCOPED_TRACE(std::string(name) + (route == Route::inverse ? ", inverse" : ", condensed"));
-    const Way way{.route = route};
+  for (const Case& of : {Case{"columns of the region (device)", Route::condensed,
+                              &gpu::VulkanOptions::region_on_device},
+                         Case{"small matrices of the damage (device)", Route::condensed,
+                              &gpu::VulkanOptions::damage_on_device},
+                         Case{"small matrices of the damage (device)", Route::inverse,
+                              &gpu::VulkanOptions::damage_on_device}}) {
+    SCOPED_TRACE(std::string(of.name) + (of.route == Route::inverse ? ", inverse" : ", condensed"));
+    const Way way{.route = of.route};
     const auto problem = problem_for(organ(), way);
     gpu::VulkanOptions options = watched(way);
     const auto made = [&] { return gpu::create(problem, needs_with(true), options); };
     const auto holds = [&](const Backend& backend) {
-      return std::ranges::count(backend.buffers(), name, &BufferPlan::name) > 0;
+      return std::ranges::count(backend.buffers(), of.name, &BufferPlan::name) > 0;
     };
     EXPECT_FALSE(holds(*made()));
-    options.*option = true;
+    options.*of.option = true;
     options.probe.memory = gpu::device_use(*made()).bytes;
     EXPECT_TRUE(holds(*made()));
     --options.probe.memory;
     EXPECT_FALSE(holds(*made()));
     options.probe.memory = 0;
     options.probe.as_gpu = true;
-    (options.*option).reset();
+    (options.*of.option).reset();
     EXPECT_FALSE(holds(*made())) << "a body of this size never comes to so many columns";
   }
 }

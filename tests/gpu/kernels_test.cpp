@@ -275,16 +275,16 @@ TEST_P(Kernels, StressAndResidualFromGivenDisplacement) {
     }
     fields.set_load(force, {});
     // Whose stress would be the largest of all, did it count.
-    std::vector<double> norms;
+    std::vector<double> of_all;
     for (Index e = 0; e < problem.tet_count(); ++e) {
-      norms.push_back(tensor_norm(fem::stress(problem.shape(e), problem.small_strain(e),
-                                              fem::corner_displacement(problem.mesh(), e, u))));
+      of_all.push_back(tensor_norm(fem::stress(problem.shape(e), problem.small_strain(e),
+                                               fem::corner_displacement(problem.mesh(), e, u))));
     }
-    const double most = *std::ranges::max_element(norms);
+    const double most = *std::ranges::max_element(of_all);
     std::vector<Index> gone;
-    std::vector<double> scale(norms.size(), 1.0);
+    std::vector<double> scale(of_all.size(), 1.0);
     for (Index e = 0; e < problem.tet_count(); ++e) {
-      if (norms[e] < 0.98 * most) continue;
+      if (of_all[e] < 0.98 * most) continue;
       gone.push_back(e);
       scale[e] = problem.scene().fracture.alpha;
     }
