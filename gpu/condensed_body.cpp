@@ -18,15 +18,9 @@ std::unique_ptr<RegionColumns> make_columns(const DeviceSetup& setup,
   const vulkan::Device& device = setup.kernels.device();
   const auto unknowns = static_cast<Index>(region.dofs.size());
   if (!least || RegionColumns::most_values(device.physical(), unknowns) < *least) return nullptr;
-  const std::size_t bytes = RegionColumns::planned_bytes(device.physical(), unknowns);
-  if (device.held_bytes() + bytes > device.physical().memory) return nullptr;
-  try {
-    return std::make_unique<RegionColumns>(setup.kernels, unknowns, *least);
-  } catch (const DeviceLost&) {
-    throw;
-  } catch (const DeviceError&) {  // others have the memory
-    return nullptr;
-  }
+  return where_room<RegionColumns>(
+      device, RegionColumns::planned_bytes(device.physical(), unknowns), "columns of the region",
+      setup.inverse.leave_out, setup.kernels, unknowns, *least);
 }
 
 }  // namespace
@@ -40,7 +34,8 @@ CondensedBody::CondensedBody(const DeviceSetup& setup, const solver::Region& reg
       intact_(std::make_shared<const HostInverse>(problem_, false)),
       columns_(make_columns(setup, region)),
       damage_(DamageSolution::make(setup.kernels, solver::columns_of_a_base(region.dofs.size()),
-                                   problem_.gripped_dofs().size(), setup.inverse.damage)),
+                                   problem_.gripped_dofs().size(), setup.inverse.damage,
+                                   setup.inverse.leave_out)),
       route_(solver::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
                                      setup.needs.damage, {}, columns_.get(), damage_.get())),
       frame_(damaged_, *route_, *this),

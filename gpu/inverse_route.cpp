@@ -69,7 +69,7 @@ InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody&
     if (damage_) {  // last: what a frame needs has its room
       damage_solution_ =
           DamageSolution::make(kernels_, columns_of_a_base(renewal_of(problem_, *intact_, renews_)),
-                               problem_.gripped_dofs().size(), options_.damage);
+                               problem_.gripped_dofs().size(), options_.damage, options_.leave_out);
       update_->deferred().solve_by(damage_solution_.get());
     }
   }

@@ -27,6 +27,8 @@ struct InverseOptions {
   /// Columns of the damage from which on the device solves with the small matrices, on either
   /// route; none: the host does.
   std::optional<Index> damage = {};
+  /// Takes what there is no room for.
+  LeaveOut leave_out = {};
 };
 
 class InverseRoute final : public DeviceRoute {

@@ -78,7 +78,8 @@ class VulkanBackend final : public Backend {
                  plan_.invert_on_device,
                  plan_.exact_inverse,
                  region_from(options, device_->physical(), this->needs()),
-                 damage_from(options, device_->physical(), for_plan_.rates, this->needs())} {
+                 damage_from(options, device_->physical(), for_plan_.rates, this->needs()),
+                 [this](std::string what) { leave_out(std::move(what)); }} {
     device_->set_timing(false);
     for (const std::string& what : plan_.left_out) leave_out(what);
     const DeviceSetup setup{damaged_body(), kernels_, plan_, inverse_, this->needs()};

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "sunder/error.hpp"
-
 namespace sunder::gpu {
 namespace {
 
@@ -92,24 +90,14 @@ DamageSolution::DamageSolution(const KernelFactory& kernels, Index columns, Inde
 
 std::unique_ptr<DamageSolution> DamageSolution::make(const KernelFactory& kernels, Index columns,
                                                      std::size_t gripped,
-                                                     std::optional<Index> least) {
+                                                     std::optional<Index> least,
+                                                     const LeaveOut& leave_out) {
   constexpr Index kGrasped = 192;  // unknowns that hands may hold
   if (!least || columns + static_cast<Index>(gripped) < *least) return nullptr;
   const Index grips = static_cast<Index>(gripped) + kGrasped, most = columns + grips;
-  const vulkan::Device& device = kernels.device();
-  const vulkan::Limits& limits = device.physical().limits;
-  const std::size_t largest = Sizes(most, grips).forces * sizeof(double);
-  if (largest > std::min(limits.buffer_bytes.value, limits.allocation_bytes.value) ||
-      device.held_bytes() + planned_bytes(most, grips) > device.physical().memory) {
-    return nullptr;
-  }
-  try {
-    return std::make_unique<DamageSolution>(kernels, most, grips, *least);
-  } catch (const DeviceLost&) {
-    throw;
-  } catch (const DeviceError&) {  // others have the memory
-    return nullptr;
-  }
+  return where_room<DamageSolution>(kernels.device(), planned_bytes(most, grips),
+                                    "small matrices of the damage", leave_out, kernels, most, grips,
+                                    *least);
 }
 
 std::size_t DamageSolution::planned_bytes(Index columns, Index grips) {

@@ -10,6 +10,7 @@
 
 #include "gpu/kernels.hpp"
 #include "gpu/vulkan/commands.hpp"
+#include "gpu/where_room.hpp"
 #include "solver/damage_solver.hpp"
 
 namespace sunder::gpu {
@@ -20,11 +21,12 @@ class DamageSolution final : public solver::DamageSolver {
   DamageSolution(const KernelFactory& kernels, Index columns, Index grips, Index least);
 
   /// The same with room for grasped unknowns beside, for at most so many columns of the damage
-  /// itself. Null where `least` is none, where there will never be so many, or where the device has
-  /// no memory left for it: the host solves then.
+  /// itself. Null where `least` is none, where there will never be so many, or where there is no
+  /// room (where_room.hpp): the host solves then.
   [[nodiscard]] static std::unique_ptr<DamageSolution> make(const KernelFactory& kernels,
                                                             Index columns, std::size_t gripped,
-                                                            std::optional<Index> least);
+                                                            std::optional<Index> least,
+                                                            const LeaveOut& leave_out = {});
   /// Device bytes of that, before it exists.
   [[nodiscard]] static std::size_t planned_bytes(Index columns, Index grips);
   [[nodiscard]] std::size_t bytes() const;

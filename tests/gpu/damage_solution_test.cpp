@@ -112,7 +112,17 @@ struct Both {
                   1e-9 * by_host.grip_forces().cwiseAbs().maxCoeff());
     }
   }
-  /// Over the frames in which the matrices come.
+  /// Element by element, each followed by the device; the matrices come after the first.
+  void tear(std::span<const Index> elements) {
+    destroy(elements.first(1));
+    bring();
+    for (std::size_t i = 1; i < elements.size(); ++i) {
+      SCOPED_TRACE(i);
+      destroy(elements.subspan(i, 1));
+      expect_agreement(true);
+    }
+  }
+  /// Over the solutions in which the matrices come.
   void bring(int line = __builtin_LINE()) {
     for (const bool there : {false, false, true}) expect_agreement(there, line);
   }
@@ -128,13 +138,7 @@ struct Both {
 void follow_a_tear(Scene scene, gpu::DamageSolution& solution) {
   Both both(std::move(scene), solution);
   const auto crack = crack_sequence(both.problem, 60, 12);
-  both.destroy(std::span(crack).first(1));
-  both.bring();
-  for (std::size_t i = 1; i < 12; ++i) {
-    SCOPED_TRACE(i);
-    both.destroy(std::span(crack).subspan(i, 1));
-    both.expect_agreement(true);
-  }
+  both.tear(std::span(crack).first(12));
   EXPECT_EQ(both.counted.updates, 11);
   both.expect_agreement(true);
   both.destroy(std::span(crack).subspan(12, 8));
@@ -184,13 +188,7 @@ TEST_P(DamageSolutionKernels, FollowATearOfPooledVolume) {
   gpu::DamageSolution solution(*factory_, 1500, grips, 1);
   Both both(scene, solution);
   const auto crack = crack_sequence(both.problem, 20, 12);
-  both.destroy(std::span(crack).first(1));
-  both.bring();
-  for (std::size_t i = 1; i < 20; ++i) {
-    SCOPED_TRACE(i);
-    both.destroy(std::span(crack).subspan(i, 1));
-    both.expect_agreement(true);
-  }
+  both.tear(crack);
   EXPECT_EQ(both.counted.updates, 38);
 }
 

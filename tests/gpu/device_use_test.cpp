@@ -170,7 +170,16 @@ TEST_F(DeviceUse, WhatADeviceMultipliesIsLeftToTheHostWhereMemoryIsShort) {
     options.probe.memory = gpu::device_use(*made()).bytes;
     EXPECT_TRUE(holds(*made()));
     --options.probe.memory;
-    EXPECT_FALSE(holds(*made()));
+    const auto short_of_it = made();
+    EXPECT_FALSE(holds(*short_of_it));
+    const auto said = [&](const Backend& backend) {
+      return std::ranges::any_of(backend.needs().left_out, [](const std::string& what) {
+        return what.find("no memory left for them: the host multiplies") != std::string::npos;
+      });
+    };
+    EXPECT_TRUE(said(*short_of_it));
+    options.probe.memory = 0;
+    EXPECT_FALSE(said(*made()));
     options.probe.memory = 0;
     options.probe.as_gpu = true;
     (options.*of.option).reset();

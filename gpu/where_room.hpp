@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a device has where there is room for it: the host does the same otherwise.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "gpu/vulkan/device.hpp"
+#include "sunder/error.hpp"
+
+namespace sunder::gpu {
+
+/// Takes what a backend leaves out, in words; empty: nobody listens.
+using LeaveOut = std::function<void(std::string)>;
+
+/// A T from these arguments, of so many bytes. Null where the device, or others who have it, leave
+/// no memory for that, which `leave_out` is told: `what`, in words. Throws DeviceLost.
+template <class T, class... Arguments>
+[[nodiscard]] std::unique_ptr<T> where_room(const vulkan::Device& device, std::size_t bytes,
+                                            const char* what, const LeaveOut& leave_out,
+                                            const Arguments&... arguments) {
+  if (device.held_bytes() + bytes <= device.physical().memory) {
+    try {
+      return std::make_unique<T>(arguments...);
+    } catch (const DeviceLost&) {
+      throw;
+    } catch (const DeviceError&) {  // others have the memory, or a buffer is too large
+    }
+  }
+  if (leave_out) {
+    leave_out(std::string(what) +
+              " on the device, which has no memory left for them: the host multiplies");
+  }
+  return nullptr;
+}
+
+}  // namespace sunder::gpu
