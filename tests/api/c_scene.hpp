@@ -69,6 +69,8 @@ inline sunder_solver_options on(sunder_backend backend) {
   return s;
 }
 
+constexpr int kBoardTets = 96, kBoardNodes = 50;  // of board_scene() as it is by itself
+
 /// A scene that tears within its 4 steps, unless `force` says otherwise.
 inline sunder_scene board_scene(sunder_backend backend = SUNDER_BACKEND_CPU, Index cells = 4,
                                 double force = -40, std::int32_t law = SUNDER_LAW_LINEAR) {

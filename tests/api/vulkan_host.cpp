@@ -93,7 +93,7 @@ VulkanHost::VulkanHost(const Options& options) : options_(options) {
 
 VulkanHost::~VulkanHost() {
   for (VkSemaphore s : semaphores_) vkDestroySemaphore(device, s, nullptr);
-  vkDestroyCommandPool(device, pool_, nullptr);
+  for (const Side& side : {lent_, drawing_}) vkDestroyCommandPool(device, side.pool, nullptr);
   vkDestroyDevice(device, nullptr);
   reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(
       instance, "vkDestroyDebugUtilsMessengerEXT"))(instance, messenger_, nullptr);
@@ -143,6 +143,11 @@ void VulkanHost::choose_family() {
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
   while (!(families.at(family).queueFlags & VK_QUEUE_COMPUTE_BIT)) ++family;
+  drawing_family = family;
+  if (!options_.draws_elsewhere) return;
+  drawing_family = 0;
+  while (!(families.at(drawing_family).queueFlags & VK_QUEUE_GRAPHICS_BIT)) ++drawing_family;
+  ASSERT_NE(drawing_family, family);
 }
 
 void VulkanHost::create_device() {
@@ -151,6 +156,11 @@ void VulkanHost::create_device() {
   queues.queueFamilyIndex = family;
   queues.queueCount = 1;
   queues.pQueuePriorities = &priority;
+  std::vector<VkDeviceQueueCreateInfo> wanted{queues};
+  if (options_.draws_elsewhere) {
+    queues.queueFamilyIndex = drawing_family;
+    wanted.push_back(queues);
+  }
   auto features12 =
       of<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
   features12.timelineSemaphore = options_.timeline;
@@ -159,14 +169,22 @@ void VulkanHost::create_device() {
   features.shaderInt64 = options_.int64;
   auto info = of<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.pNext = &features12;
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queues;
+  info.queueCreateInfoCount = static_cast<std::uint32_t>(wanted.size());
+  info.pQueueCreateInfos = wanted.data();
   info.pEnabledFeatures = &features;
   ASSERT_EQ(vkCreateDevice(physical, &info, nullptr, &device), VK_SUCCESS);
-  vkGetDeviceQueue(device, family, 0, &queue);
+  lent_ = side(family);
+  queue = lent_.queue;
+  if (options_.draws_elsewhere) drawing_ = side(drawing_family);
+}
+
+VulkanHost::Side VulkanHost::side(std::uint32_t of_family) const {
+  Side side;
+  vkGetDeviceQueue(device, of_family, 0, &side.queue);
   auto pool = of<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
-  pool.queueFamilyIndex = family;
-  expect(vkCreateCommandPool(device, &pool, nullptr, &pool_));
+  pool.queueFamilyIndex = of_family;
+  expect(vkCreateCommandPool(device, &pool, nullptr, &side.pool));
+  return side;
 }
 
 sunder_vulkan_host VulkanHost::lend() const {
@@ -187,12 +205,19 @@ sunder_vulkan_host VulkanHost::lend() const {
   return host;
 }
 
-VulkanHost::Memory VulkanHost::allocate(VkDeviceSize size, VkBufferUsageFlags usage) const {
+VulkanHost::Memory VulkanHost::allocate(VkDeviceSize size, VkBufferUsageFlags usage,
+                                        bool shared) const {
   Memory result;
   result.size = size;
   auto info = of<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = size;
   info.usage = usage;
+  const std::uint32_t both[] = {family, drawing_family};
+  if (shared) {
+    info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+    info.queueFamilyIndexCount = 2;
+    info.pQueueFamilyIndices = both;
+  }
   expect(vkCreateBuffer(device, &info, nullptr, &result.buffer));
   VkMemoryRequirements needed{};
   vkGetBufferMemoryRequirements(device, result.buffer, &needed);
@@ -218,9 +243,9 @@ void VulkanHost::free(const Memory& memory) const {
   vkFreeMemory(device, memory.memory, nullptr);
 }
 
-VkCommandBuffer VulkanHost::begin() const {
+VkCommandBuffer VulkanHost::begin(const Side& side) const {
   auto info = of<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-  info.commandPool = pool_;
+  info.commandPool = side.pool;
   info.commandBufferCount = 1;
   VkCommandBuffer commands{};
   expect(vkAllocateCommandBuffers(device, &info, &commands));
@@ -229,19 +254,19 @@ VkCommandBuffer VulkanHost::begin() const {
   return commands;
 }
 
-void VulkanHost::finish(VkCommandBuffer commands) const {
+void VulkanHost::finish(const Side& side, VkCommandBuffer commands) const {
   expect(vkEndCommandBuffer(commands));
   auto info = of<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
   info.commandBufferCount = 1;
   info.pCommandBuffers = &commands;
-  expect(vkQueueSubmit(queue, 1, &info, VK_NULL_HANDLE));
-  expect(vkQueueWaitIdle(queue));
-  vkFreeCommandBuffers(device, pool_, 1, &commands);
+  expect(vkQueueSubmit(side.queue, 1, &info, VK_NULL_HANDLE));
+  expect(vkQueueWaitIdle(side.queue));
+  vkFreeCommandBuffers(device, side.pool, 1, &commands);
 }
 
 std::vector<std::byte> VulkanHost::read(const sunder_vulkan_buffer& part) const {
   const Memory target = allocate(part.size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  run([&](VkCommandBuffer commands) {
+  draw([&](VkCommandBuffer commands) {
     const VkBufferCopy region{part.offset, 0, part.size};
     vkCmdCopyBuffer(commands, reinterpret_cast<VkBuffer>(part.buffer), target.buffer, 1, &region);
   });

@@ -26,6 +26,7 @@ class VulkanHost {
  public:
   struct Options {
     bool float64 = true, int64 = true, timeline = true;
+    bool draws_elsewhere = false;  ///< on a queue of another family than the one that it lends
   };
   explicit VulkanHost(const Options& options);
   VulkanHost() : VulkanHost(Options{}) {}
@@ -43,18 +44,22 @@ class VulkanHost {
     void* mapped{};
     VkDeviceSize size{};
   };
-  /// Filled with 0xa5.
-  [[nodiscard]] Memory allocate(VkDeviceSize size, VkBufferUsageFlags usage) const;
+  /// Filled with 0xa5. `shared`: by the lent queue's family and the one that draws.
+  [[nodiscard]] Memory allocate(VkDeviceSize size, VkBufferUsageFlags usage,
+                                bool shared = false) const;
   void free(const Memory& memory) const;
 
-  /// Records and runs body(commands) in a submit of the host's own.
+  /// Records and runs body(commands) in a submit of the host's own, on the lent queue.
   template <class Body>
   void run(Body&& body) const {
-    const VkCommandBuffer commands = begin();
-    body(commands);
-    finish(commands);
+    run(lent_, body);
   }
-  /// Bytes of any buffer with TRANSFER_SRC.
+  /// The same on the queue that draws.
+  template <class Body>
+  void draw(Body&& body) const {
+    run(options_.draws_elsewhere ? drawing_ : lent_, body);
+  }
+  /// Bytes of any buffer with TRANSFER_SRC, read by the queue that draws.
   [[nodiscard]] std::vector<std::byte> read(const sunder_vulkan_buffer& part) const;
 
   [[nodiscard]] VkSemaphore timeline() const;
@@ -63,7 +68,7 @@ class VulkanHost {
   VkPhysicalDevice physical{};
   VkDevice device{};
   VkQueue queue{};
-  std::uint32_t family = 0;
+  std::uint32_t family = 0, drawing_family = 0;
   std::vector<std::string> messages;
   static Calls calls;
 
@@ -71,12 +76,23 @@ class VulkanHost {
   void create_instance();
   void choose_family();
   void create_device();
-  [[nodiscard]] VkCommandBuffer begin() const;
-  void finish(VkCommandBuffer commands) const;
+  struct Side {
+    VkQueue queue{};
+    VkCommandPool pool{};
+  };
+  [[nodiscard]] Side side(std::uint32_t of) const;
+  template <class Body>
+  void run(const Side& side, Body&& body) const {
+    const VkCommandBuffer commands = begin(side);
+    body(commands);
+    finish(side, commands);
+  }
+  [[nodiscard]] VkCommandBuffer begin(const Side& side) const;
+  void finish(const Side& side, VkCommandBuffer commands) const;
 
   Options options_;
   VkDebugUtilsMessengerEXT messenger_{};
-  VkCommandPool pool_{};
+  Side lent_, drawing_;
   mutable std::vector<VkSemaphore> semaphores_;
 };
 

@@ -16,6 +16,7 @@
 #include "api/c_scene.hpp"
 #include "api/lent_buffers.hpp"
 #include "api/vulkan_host.hpp"
+#include "gpu/run_again.hpp"
 
 namespace sunder::test {
 namespace {
@@ -526,6 +527,15 @@ INSTANTIATE_TEST_SUITE_P(Memory, CVulkanSurface, testing::Values("", "as_gpu"),
                          [](const auto& info) {
                            return std::string(*info.param ? info.param : "mapped");
                          });
+
+// Its four kernels wait for each other where barriers stand, which are set by hand.
+TEST(CVulkanSurfaceBackwards, WhatStandsBetweenBarriersRunsInAnyOrder) {
+  if (std::getenv("SUNDER_EXPECT_NO_VULKAN")) GTEST_SKIP() << "no Vulkan device is expected";
+  const auto [output, code] =
+      run_again("SUNDER_TEST_LAYER=backwards", "Memory/CVulkanSurface.Follows*");
+  EXPECT_EQ(code, 0) << output;
+  EXPECT_NE(output.find("ran in reverse order"), std::string::npos) << output;
+}
 
 }  // namespace
 }  // namespace sunder::test

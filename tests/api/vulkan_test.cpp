@@ -16,8 +16,6 @@
 namespace sunder::test {
 namespace {
 
-constexpr int kTets = 96, kNodes = 50;
-
 class CVulkan : public testing::Test {
  protected:
   void SetUp() override {
@@ -51,7 +49,7 @@ class CVulkan : public testing::Test {
     return d;
   }
   [[nodiscard]] static std::vector<double> displacement(sunder_simulation of) {
-    std::vector<double> u(3 * kNodes);
+    std::vector<double> u(3 * kBoardNodes);
     EXPECT_OK(sunder_simulation_displacement(of, u.data(), u.size()));
     return u;
   }
@@ -59,24 +57,24 @@ class CVulkan : public testing::Test {
   void expect_shown(const std::vector<std::byte>& u, const std::vector<std::byte>& stress,
                     const std::vector<std::byte>& live) const {
     const std::vector<double> nodal = displacement(simulation);
-    std::vector<double> ratio(kTets);
-    std::vector<std::uint8_t> destroyed(kTets);
+    std::vector<double> ratio(kBoardTets);
+    std::vector<std::uint8_t> destroyed(kBoardTets);
     EXPECT_OK(sunder_simulation_yield_ratio(simulation, ratio.data(), ratio.size()));
     EXPECT_OK(sunder_simulation_destroyed(simulation, destroyed.data(), destroyed.size()));
-    std::vector<float> shown(4 * kNodes), colour(2 * kTets);
-    std::vector<std::uint32_t> alive(kTets);
+    std::vector<float> shown(4 * kBoardNodes), colour(2 * kBoardTets);
+    std::vector<std::uint32_t> alive(kBoardTets);
     ASSERT_EQ(u.size(), shown.size() * 4);
     ASSERT_EQ(stress.size(), colour.size() * 4);
     ASSERT_EQ(live.size(), alive.size() * 4);
     std::memcpy(shown.data(), u.data(), u.size());
     std::memcpy(colour.data(), stress.data(), stress.size());
     std::memcpy(alive.data(), live.data(), live.size());
-    for (std::size_t n = 0; n < kNodes; ++n) {
+    for (std::size_t n = 0; n < kBoardNodes; ++n) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         EXPECT_EQ(shown[4 * n + axis], static_cast<float>(nodal[3 * n + axis]));
       }
     }
-    for (std::size_t e = 0; e < kTets; ++e) {
+    for (std::size_t e = 0; e < kBoardTets; ++e) {
       EXPECT_EQ(alive[e], destroyed[e] ? 0u : 1u);
       // Two ways to a principal stress in fp32.
       EXPECT_NEAR(static_cast<double>(colour[2 * e + 1]), ratio[e], 1e-5 * (1 + ratio[e]));
@@ -137,7 +135,7 @@ TEST_F(CVulkan, WritesToTheHostsBuffersAndNotBeside) {
   constexpr VkBufferUsageFlags kUsage =
       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
   auto lent = host->lend();
-  const VkDeviceSize sizes[] = {16 * kNodes, 8 * kTets, 4 * kTets};
+  const VkDeviceSize sizes[] = {16 * kBoardNodes, 8 * kBoardTets, 4 * kBoardTets};
   sunder_vulkan_buffer* const parts[] = {&lent.displacement, &lent.stress, &lent.live};
   std::vector<VulkanHost::Memory> memory;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -381,7 +379,7 @@ TEST_F(CVulkan, FillsADisplayOfAnySizeAndNothingBeside) {
       auto* to = reinterpret_cast<sunder_vulkan_display*>(bytes->data());
       ASSERT_OK(sunder_vulkan_get_display(simulation, to));
       EXPECT_EQ(to->struct_size, stated);
-      EXPECT_EQ(to->nodes, static_cast<std::uint32_t>(kNodes));
+      EXPECT_EQ(to->nodes, static_cast<std::uint32_t>(kBoardNodes));
     }
     EXPECT_TRUE(longer.untouched_from(88));
   }

@@ -11,6 +11,7 @@
 #include "shaders/embedded.hpp"
 #include "shaders/layout.h"
 #include "tearing_board.hpp"
+#include "torn_run.hpp"
 
 namespace sunder::test {
 namespace {
@@ -298,24 +299,6 @@ TEST_F(Limits, AFoldedDispatchRunsEveryWorkgroupOnce) {
   }
   expect_added(7, 3, "add_lvp_fp64", false);
   expect_added(7, 3, "add_gpu_fp64", true);
-}
-
-struct Torn {
-  std::vector<Index> destroyed;
-  std::vector<Vec3> displacement;
-  std::vector<Voigt> stress;
-};
-
-Torn tear(const Way& way, std::uint64_t groups) {
-  WatchedBackend watched(pulled_until_it_tears(), way);
-  watched.options.probe.limits.groups = groups;
-  Simulation simulation(watched.problem, watched.create());
-  while (!simulation.done()) simulation.step();
-  Torn torn;
-  for (const DestroyedElement& d : simulation.destroyed()) torn.destroyed.push_back(d.element);
-  torn.displacement = simulation.displacement();
-  torn.stress = simulation.stress();
-  return torn;
 }
 
 // 2 does not divide the workgroups of elements, nodes and rows, so that there are rests.

@@ -34,7 +34,7 @@ class Log {
         << "khronos_validation.enables = "
            "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT\n";
     setenv("VK_LAYER_SETTINGS_PATH", (folder_ / "vk_layer_settings.txt").c_str(), 1);
-    setenv("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation", 1);
+    setenv("SUNDER_TEST_LAYER_LOG", std::to_string(ends_[1]).c_str(), 1);
   }
   ~Log() {
     std::error_code ignored;
@@ -75,6 +75,17 @@ class Watch : public testing::EmptyTestEventListener {
 };
 
 }  // namespace
+
+void choose_layers(bool validation) {
+  std::string layers;  // the first is the program's next
+  if (std::getenv("SUNDER_TEST_LAYER")) {
+    layers = "VK_LAYER_SUNDER_other_device";
+    setenv("VK_ADD_LAYER_PATH", SUNDER_TEST_LAYER_FOLDER, 1);
+  }
+  if (validation)
+    layers += (layers.empty() ? "" : ":") + std::string("VK_LAYER_KHRONOS_validation");
+  setenv("VK_INSTANCE_LAYERS", layers.c_str(), 1);
+}
 
 void watch_with_validation() {
   log();

@@ -11,6 +11,11 @@ namespace sunder::test {
 /// which it says anything. Called by main before anything else.
 void watch_with_validation();
 
+/// Puts tests/gpu/layer over every instance where SUNDER_TEST_LAYER says what device to make of the
+/// one at hand; `validation`: and the validation layer after it. Called by main before anything
+/// else.
+void choose_layers(bool validation);
+
 /// What the layer has said since the last call: for tests that provoke it.
 [[nodiscard]] std::string take_validation_messages();
 

@@ -10,6 +10,8 @@
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   setenv("SUNDER_CACHE_DIR", "", 0);  // no test leaves rates in the user's folder
-  if (!std::getenv("SUNDER_WITHOUT_VALIDATION")) sunder::test::watch_with_validation();
+  const bool validation = !std::getenv("SUNDER_WITHOUT_VALIDATION");
+  sunder::test::choose_layers(validation);
+  if (validation) sunder::test::watch_with_validation();
   return RUN_ALL_TESTS();
 }
