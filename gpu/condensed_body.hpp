@@ -45,6 +45,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void solve_pristine(const Load& load, std::span<double> displacement) override;
 
   std::vector<BufferPlan> buffers() const override;
+  std::size_t host_solves() const override { return intact_->solved(); }
   NewBases new_bases() const override { return route_->new_bases(); }
   void add_to(solver::FrameShape& shape) const override {
     const solver::Deferred& deferred = *route_->deferred();

@@ -74,6 +74,8 @@ class DeviceBody {
   virtual void solve_pristine(const Load& load, std::span<double> displacement) = 0;
 
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// Right sides that the host's factors have solved for so far.
+  [[nodiscard]] virtual std::size_t host_solves() const = 0;
   /// What a prediction of its frames has to know of it.
   virtual void add_to(solver::FrameShape&) const {}
   /// The deferred update of the whole body; null: it has another or none.

@@ -26,6 +26,8 @@ class HostInverse {
   [[nodiscard]] const Eigen::MatrixXd& dense() const { return dense_; }
   [[nodiscard]] const linear_algebra::Factor& factor() const { return *factor_; }
   [[nodiscard]] std::size_t bytes() const;
+  /// Right sides that it and all later factors of the body have solved for so far.
+  [[nodiscard]] std::size_t solved() const { return factor_->cholesky().supernodes().solved.get(); }
 
  private:
   std::shared_ptr<const linear_algebra::Factor> factor_;

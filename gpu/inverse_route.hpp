@@ -56,6 +56,7 @@ class InverseRoute final : public DeviceRoute {
     return eager_ ? &grips_.matrixLLT() : DeviceRoute::grip_factor();
   }
   std::vector<BufferPlan> buffers() const override;
+  std::size_t host_solves() const override { return intact_->solved(); }
   void add_to(solver::FrameShape& shape) const override {
     if (!intact_->is_dense()) shape.entries = intact_->factor().entries();
     shape.columns_there = columns_there_;

@@ -47,6 +47,8 @@ class DeviceRoute {
   }
 
   [[nodiscard]] virtual std::vector<BufferPlan> buffers() const = 0;
+  /// Right sides that the host's factors have solved for so far.
+  [[nodiscard]] virtual std::size_t host_solves() const { return 0; }
   /// solver::FrameDevice::iterates().
   [[nodiscard]] virtual bool iterates() const { return false; }
   /// What a prediction of its frames has to know of it.

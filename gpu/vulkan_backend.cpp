@@ -163,7 +163,8 @@ class VulkanBackend final : public Backend {
   }
   DeviceUse device_use() const {
     return {device_->held_bytes(), device_->most_bytes(), device_->queue().submits(),
-            device_->pipelines(),  device_->dispatches(), device_->recorded()};
+            device_->pipelines(),  device_->dispatches(), device_->recorded(),
+            body_->host_solves()};
   }
   std::vector<Index> over_yield() const {
     std::vector<Index> list = body_->fields().over_yield();

@@ -68,12 +68,13 @@ struct VulkanOptions {
 
 /// What a backend that create() returned holds and has held on its device; else nothing.
 struct DeviceUse {
-  std::size_t bytes = 0;       ///< of buffers, now
-  std::size_t most_bytes = 0;  ///< at any time so far
-  std::size_t submits = 0;     ///< so far
-  int pipelines = 0;           ///< created so far
-  std::size_t dispatches = 0;  ///< so far, those of no size too
-  std::size_t recorded = 0;    ///< of these, as often as they were recorded
+  std::size_t bytes = 0;        ///< of buffers, now
+  std::size_t most_bytes = 0;   ///< at any time so far
+  std::size_t submits = 0;      ///< so far
+  int pipelines = 0;            ///< created so far
+  std::size_t dispatches = 0;   ///< so far, those of no size too
+  std::size_t recorded = 0;     ///< of these, as often as they were recorded
+  std::size_t host_solves = 0;  ///< right sides that the host's factors have solved for so far
 };
 [[nodiscard]] DeviceUse device_use(const Backend& backend);
 

@@ -41,6 +41,7 @@ class WholeBody final : public DeviceBody {
   void solve_pristine(const Load& load, std::span<double> displacement) override;
 
   std::vector<BufferPlan> buffers() const override;
+  std::size_t host_solves() const override { return route_->host_solves(); }
   void add_to(solver::FrameShape& shape) const override { route_->add_to(shape); }
   const solver::RenewedUpdate* update() const override { return route_->update(); }
   NewBases new_bases() const override { return update() ? update()->new_bases() : NewBases{}; }

@@ -87,6 +87,7 @@ void SupernodalCholesky::forward(Eigen::VectorXd& y, SolveWork& work) const {
 }
 
 void SupernodalCholesky::backward(Eigen::VectorXd& y, SolveWork& work) const {
+  nodes_->solved.add(1);
   work.below.resize(room_of_a_panel());
   for (Index s = nodes_->count() - 1; s >= 0; --s) {
     const auto below = nodes_->below(s);
@@ -152,6 +153,7 @@ void SupernodalCholesky::backward(Eigen::Ref<RowMajor> y, SolveWork& work) const
 
 void SupernodalCholesky::backward(std::span<const Index> supernodes, Eigen::Ref<RowMajor> y,
                                   SolveWork& work) const {
+  nodes_->solved.add(static_cast<std::size_t>(y.cols()));
   RowMajor gathered;
   const Eigen::Index room = std::max<Eigen::Index>(tallest_, kBackRows) * y.cols();
   work.product.resize(std::max(work.product.size(), static_cast<std::size_t>(room)));

@@ -4,6 +4,7 @@
 // Linear Systems", 2006, chapter 4).
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -11,6 +12,24 @@
 #include "linear_algebra/sparse_matrix.hpp"
 
 namespace sunder::linear_algebra {
+
+/// A count that several threads add to.
+class SharedCount {
+ public:
+  SharedCount() = default;
+  SharedCount(const SharedCount& other) : count_(other.get()) {}
+  SharedCount& operator=(const SharedCount& other) {
+    count_ = other.get();
+    return *this;
+  }
+  ~SharedCount() = default;
+
+  void add(std::size_t more) { count_.fetch_add(more, std::memory_order_relaxed); }
+  [[nodiscard]] std::size_t get() const { return count_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::size_t> count_{0};
+};
 
 struct Supernodes {
   std::vector<Index> place;   ///< place[i]: row of L that unknown i became
@@ -20,6 +39,8 @@ struct Supernodes {
   std::vector<std::size_t> row_begin;    ///< per supernode into rows; one more at the back
   std::vector<Index> rows;               ///< rows below the supernode's own columns, ascending
   std::vector<std::size_t> value_begin;  ///< per supernode: its panel; one more at the back
+
+  mutable SharedCount solved;  ///< right sides that factors of this structure have solved for
 
   [[nodiscard]] Index count() const { return static_cast<Index>(parent.size()); }
   [[nodiscard]] Index width(Index s) const { return first[s + 1] - first[s]; }

@@ -64,9 +64,8 @@ CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> facto
       x_of_factor_(x_) {
   for (std::size_t i = 0; i < dofs_.size(); ++i) place_[dofs_[i]] = static_cast<Index>(i);
   is_touched_.assign(dofs_.size(), kNone);
-  of_load_.setZero(x_.size());
   u_.setZero(x_.size());
-  by_factor_ = lacks_ = all_forces_ = mended_ = u_;
+  lacks_ = all_forces_ = mended_ = u_;
   starts_.reserve(dofs_.size());
   projected_.resize(kVectors);
   touched_.reserve(dofs_.size());
@@ -81,13 +80,22 @@ CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> facto
 /// So that a load outside S, which is that of a full check, allocates nothing.
 void CondensedBase::make_room_everywhere() {
   const auto all = static_cast<std::size_t>(size());
-  load_.reserve(all);
+  for (Loaded* loaded : {&loads_of_some_, &loads_of_all_}) {
+    loaded->load.reserve(all);
+    loaded->u.setZero(x_.size());
+    loaded->by_factor.setZero(x_.size());
+  }
   right_side_.setZero(size());
   solution_.setZero(size());
   work_.below.reserve(all);
   work_.permuted.setZero(size());
   moved_.reserve(dofs_.size());
   of_moved_.reserve(dofs_.size());
+}
+
+void CondensedBase::forget_loads() {
+  loads_of_some_.load.forget();
+  loads_of_all_.load.forget();
 }
 
 void CondensedBase::grow(std::span<const Difference> vectors) {
@@ -113,7 +121,7 @@ void CondensedBase::grow(std::span<const Difference> vectors) {
     x_ = x_of_factor_;
   }
   is_touched_.resize(dofs_.size(), kNone);
-  load_.forget();
+  forget_loads();
   u_.setZero(x_.size());
 }
 
@@ -162,7 +170,7 @@ void CondensedBase::shrink(std::size_t size) {
   x_.keep_added(added);
   x_of_factor_.keep_added(added);
   is_touched_.resize(size);
-  load_.forget();
+  forget_loads();
   u_.setZero(x_.size());
 }
 
@@ -214,8 +222,8 @@ void CondensedBase::pop() {
 void CondensedBase::apply_inside(std::span<const Index> dofs, std::span<const double> values) {
   loaded_.clear();
   for (Index d : dofs) loaded_.push_back(place_[d]);
-  of_load_.setZero(x_.size());
-  add(x_, loaded_, values, of_load_.data());
+  last_->u.setZero(x_.size());
+  add(x_, loaded_, values, last_->u.data());
 }
 
 /// D u of one column u on S, on the unknowns of D; `moved` is u there.
@@ -235,15 +243,15 @@ void CondensedBase::find_lost_forces(const Eigen::VectorXd& u) {
   for (std::size_t i = 0; i < dofs.size(); ++i) all_forces_[place_[dofs[i]]] = of_moved_[i];
 }
 
-/// of_load_ += X D of_load_.
+/// u of the last load += X D u.
 void CondensedBase::add_lost() {
   const auto dofs = lost_->dofs();
   moved_.resize(dofs.size());
   of_moved_.resize(dofs.size());
-  lose(of_load_.data(), moved_, of_moved_);
+  lose(last_->u.data(), moved_, of_moved_);
   loaded_.clear();
   for (Index d : dofs) loaded_.push_back(place_[d]);
-  add(x_, loaded_, of_moved_, of_load_.data());
+  add(x_, loaded_, of_moved_, last_->u.data());
 }
 
 /// With g = X0 f, X f = g + X D g.
@@ -251,24 +259,25 @@ void CondensedBase::apply_everywhere(std::span<const Index> dofs, std::span<cons
   right_side_.setZero(size());
   for (std::size_t i = 0; i < dofs.size(); ++i) right_side_[dofs[i]] += values[i];
   factor_->solve(right_side_, solution_, work_);
-  of_load_.resize(x_.size());
+  last_->u.resize(x_.size());
   for (std::size_t i = 0; i < dofs_.size(); ++i) {
-    of_load_[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
+    last_->u[static_cast<Eigen::Index>(i)] = solution_[dofs_[i]];
   }
-  by_factor_ = of_load_;
+  last_->by_factor = last_->u;
   if (lost_) add_lost();
 }
 
 const Eigen::VectorXd& CondensedBase::load(const Forces& forces) {
-  if (load_.take(forces)) {
-    outside_ = !inside(forces.dofs);
-    if (outside_) {
+  last_ = forces.dofs.size() == place_.size() ? &loads_of_all_ : &loads_of_some_;
+  if (last_->load.take(forces)) {
+    last_->outside = !inside(forces.dofs);
+    if (last_->outside) {
       apply_everywhere(forces.dofs, forces.values);
     } else {
       apply_inside(forces.dofs, forces.values);
     }
   }
-  return project(of_load_);
+  return project(last_->u);
 }
 
 const Eigen::VectorXd& CondensedBase::project(const Eigen::VectorXd& v) {
@@ -359,7 +368,7 @@ void CondensedBase::multiply(const Eigen::VectorXd& c) {
     add_loaded_columns();
     collect_forces(c, 0, count());
   }
-  u_ += of_load_;
+  u_ += last_->u;
 }
 
 void CondensedBase::write(Eigen::VectorXd& u) const {
@@ -391,11 +400,12 @@ const Eigen::VectorXd& CondensedBase::drift() {
     all_forces_.setZero(u_.size());
   }
   lacks_ = -u_;
-  if (outside_) {
-    lacks_ += by_factor_;
+  const LastLoad& load = last_->load;
+  if (last_->outside) {
+    lacks_ += last_->by_factor;
   } else {
-    for (std::size_t i = 0; i < load_.dofs().size(); ++i) {
-      all_forces_[place_[load_.dofs()[i]]] += load_.values()[i];
+    for (std::size_t i = 0; i < load.dofs().size(); ++i) {
+      all_forces_[place_[load.dofs()[i]]] += load.values()[i];
     }
   }
   for (std::size_t i = 0; i < touched_.size(); ++i) all_forces_[touched_[i]] += forces_[i];
@@ -424,8 +434,9 @@ void CondensedBase::copy_state(CondensedState& to) const {
 
 void CondensedBase::equilibrium(Equilibrium& of) const {
   of.factor = factor_;
-  of.dofs.assign(load_.dofs().begin(), load_.dofs().end());
-  of.forces.assign(load_.values().begin(), load_.values().end());
+  const LastLoad& load = last_->load;
+  of.dofs.assign(load.dofs().begin(), load.dofs().end());
+  of.forces.assign(load.values().begin(), load.values().end());
   for (std::size_t i = 0; i < touched_.size(); ++i) {
     of.dofs.push_back(dofs_[touched_[i]]);
     of.forces.push_back(forces_[i]);

@@ -62,7 +62,8 @@ class CondensedBase final : public Base {
   /// S is as it was before the push: later results depend on no way that was taken back. No copy
   /// of a state with more may be in use.
   void pop() override;
-  /// A load that leaves S costs one solve; the same load as last time costs nothing.
+  /// A load that leaves S costs one solve; the same load as last time costs nothing, nor does it
+  /// after another on all unknowns.
   const Eigen::VectorXd& load(const Forces& forces) override;
   /// Only the entries of S are written; the others keep what they held (0 at first).
   void expand(const Eigen::VectorXd& c, Eigen::VectorXd& u) override;
@@ -120,6 +121,7 @@ class CondensedBase final : public Base {
   void apply_inside(std::span<const Index> dofs, std::span<const double> values);
   void apply_everywhere(std::span<const Index> dofs, std::span<const double> values);
   void make_room_everywhere();
+  void forget_loads();
   void lose(const double* u, std::span<double> moved, std::span<double> forces) const;
   void find_lost_forces(const Eigen::VectorXd& u);
   void add_lost();
@@ -140,12 +142,18 @@ class CondensedBase final : public Base {
   RegionGrowth* growth_ = nullptr;
   int growing_threads_ = linear_algebra::background_threads();
   std::vector<const double*> starts_;  // of columns that are added up
-  LastLoad load_;
+  struct Loaded {
+    LastLoad load;
+    Eigen::VectorXd u;          // (X f)_S
+    bool outside = false;       // a part of the load is outside S
+    Eigen::VectorXd by_factor;  // (X0 f)_S then
+  };
+  // A residual, which is a load on all unknowns, leaves the last other one what it was: the frame
+  // after a full check has no need to solve for its load again.
+  Loaded loads_of_some_, loads_of_all_;
+  Loaded* last_ = &loads_of_some_;
   std::vector<Index> loaded_;  // places that a load touches
   std::vector<double> loads_;  // those of damage that the host multiplies, or of drift()
-  Eigen::VectorXd of_load_;    // (X f)_S
-  bool outside_ = false;       // a part of the load is outside S
-  Eigen::VectorXd by_factor_;  // (X0 f)_S then
   Eigen::VectorXd lacks_, all_forces_;
   Eigen::VectorXd mended_;  // that has drifted since the last expand()
   Eigen::VectorXd u_, projected_, right_side_, solution_;

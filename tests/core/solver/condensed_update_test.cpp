@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "body/assembly.hpp"
 #include "solver/region.hpp"
@@ -220,6 +221,46 @@ TEST(CondensedBase, AWornInverseIsMadeUpForByTheFactor) {
     }
     EXPECT_EQ(u[grip], held[0]);
   }
+}
+
+// The frame after a full check, whose residual is a load on all unknowns, has its load again: no
+// solve of the whole body, and the same bits. Where S grows both are solved for anew.
+TEST(CondensedBase, AResidualLeavesTheLoadWhatItWas) {
+  const Torn torn;
+  const LostStiffness few(torn.problem, std::span(torn.elements).first(8));
+  const auto intact =
+      std::make_shared<const linear_algebra::Factor>(fem::assemble_lower(torn.problem, {}));
+  const auto solved = [&] { return intact->cholesky().supernodes().solved.get(); };
+  auto owned = std::make_unique<CondensedBase>(intact, few.dofs());
+  CondensedBase& base = *owned;
+  Deferred deferred(torn.problem, std::move(owned));
+  ASSERT_TRUE(deferred.destroy({&torn.elements[0], 1}));
+
+  Index outside = 0;
+  while (std::ranges::binary_search(few.dofs(), outside)) ++outside;
+  const double force = 2;
+  const Forces load{{&outside, 1}, {&force, 1}};
+  std::vector<Index> all(static_cast<std::size_t>(torn.problem.dof_count()));
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<double> residual(all.size(), 1e-9);
+  Eigen::VectorXd first, of_residual, again;
+  std::size_t before = solved();
+  deferred.solve(load, {}, first);
+  EXPECT_EQ(solved(), before + 1);
+  deferred.solve({all, residual}, {}, of_residual);
+  before = solved();
+  deferred.solve(load, {}, again);
+  EXPECT_EQ(solved(), before);
+  EXPECT_EQ(again, first);
+
+  const std::size_t unknowns = base.dofs().size();
+  ASSERT_TRUE(deferred.destroy({&torn.elements[39], 1}));
+  ASSERT_GT(base.dofs().size(), unknowns);
+  before = solved();
+  deferred.solve(load, {}, again);
+  EXPECT_EQ(solved(), before + 1);
+  deferred.solve({all, residual}, {}, of_residual);
+  EXPECT_EQ(solved(), before + 2);
 }
 
 }  // namespace
