@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What whole systems of equations take, on a GPU by its own clock: the product K p, conjugate
 // gradients, the dense inverse computed on the device.
+#include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "body/assembly.hpp"
 #include "cpu_reference/conjugate_gradient.hpp"
@@ -41,42 +43,58 @@ class AssembledCg {
   Eigen::VectorXd inverse_;
 };
 
-/// Time per iteration, of a solution to ten digits.
+/// Time per iteration, of a solution to ten digits by a route that knows that of another load
+/// alone: one that it knows takes no iteration, and the first one makes what all others go by.
 void conjugate_gradients(benchmark::State& state, const Rows& rows, const std::string& name,
                          Index cells) {
   rows.gpu.release();
   const auto problem = plain_board(cells);
   Fields fields(rows.gpu.kernels(true), *problem, field_needs(), {0, true});
   const fem::DamagedBody body(problem);
-  gpu::CgRoute route(rows.gpu.kernels(true), body, fields);
-  std::vector<double> force(fields.rows(), 0.0);
-  Load load;
-  for (Index d = 1; d < problem->dof_count(); d += 3) {
-    load.force_dofs.push_back(d);
-    load.forces.push_back(d % 2 == 0 ? 1e-3 : -1e-3);
-    force[static_cast<std::size_t>(d)] = load.forces.back();
-  }
-  fields.set_load(force, {});
+  std::optional<gpu::CgRoute> route;
+  struct Pull {
+    Load load;
+    std::vector<double> force;
+  };
+  const auto pull = [&](Index axis) {
+    Pull of{{}, std::vector<double>(fields.rows(), 0.0)};
+    for (Index d = axis; d < problem->dof_count(); d += 3) {
+      of.load.force_dofs.push_back(d);
+      of.load.forces.push_back(d % 2 == 0 ? 1e-3 : -1e-3);
+      of.force[static_cast<std::size_t>(d)] = of.load.forces.back();
+    }
+    return of;
+  };
+  const Pull other = pull(0), pulled = pull(1);
+  const auto solve = [&](const Pull& of) {
+    fields.set_load(of.force, {});
+    return route->solve(of.load, 0, true);
+  };
   const std::vector<double> rest(3 * problem->mesh().nodes.size(), 0.0);
   int iterations = 1;
   double wall = 0;
   Work work;
   work.warm_up = true;
-  work.prepare = [&] { fields.write_displacement(rest); };
+  work.prepare = [&] {
+    fields.write_displacement(rest);
+    route.emplace(rows.gpu.kernels(true), body, fields);
+    solve(other);
+  };
   work.run = [&] {
     const auto start = std::chrono::steady_clock::now();
-    iterations = std::max(1, route.solve(load, 0, true));
+    iterations = solve(pulled);
     wall =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
-  work.milliseconds = [&] { return wall / iterations; };
+  work.milliseconds = [&] { return wall / std::max(iterations, 1); };
   // The matrix once, 13 passes over vectors of four values a node, two over places in groups.
   work.bytes = static_cast<double>(fields.matrix().bytes()) +
                (13 * 32 + 2 * 16) * static_cast<double>(problem->node_count());
   Row& row = rows.table.measure(state, name, work);
   state.counters["iterations"] = iterations;
+  if (iterations < 10) state.SkipWithError("a solution that was known is no measure");
   const AssembledCg reference(*problem);
-  const Eigen::Map<const Eigen::VectorXd> f(force.data(), problem->dof_count());
+  const Eigen::Map<const Eigen::VectorXd> f(pulled.force.data(), problem->dof_count());
   const auto start = std::chrono::steady_clock::now();
   const int steps = std::max(1, reference.solve(f, 1e-4));
   row.reference_ms =
