@@ -25,6 +25,7 @@
 #include "cpu_reference/routes.hpp"
 #include "cpu_reference/stress.hpp"
 #include "machine/memory.hpp"
+#include "quantile.hpp"
 #include "run_rows.hpp"
 #include "solver/deferred.hpp"
 #include "solver/factor_base.hpp"
@@ -207,11 +208,6 @@ void own_refactor(benchmark::State& state, Index cells) {
   measure(
       state, [] {}, [&] { u = fem::factor_stiffness(*board.problem).solve(f); });
   state.counters["nnz_L"] = static_cast<double>(factor_of(cells).entries());
-}
-
-double median_of(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
 }
 
 /// What a user without an update does with a dense inverse: all of it anew, and its loaded columns.

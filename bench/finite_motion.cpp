@@ -40,6 +40,7 @@
 #ifdef SUNDER_GPU
 #include "gpu/law_machine.hpp"
 #endif
+#include "quantile.hpp"
 #include "run_rows.hpp"
 #include "sunder/stress_measures.hpp"
 
@@ -153,12 +154,6 @@ const Course& course_of(Index cells, int a_second) {
   auto& course = courses[{cells, a_second}];
   if (!course) course = std::make_unique<Course>(cells, a_second);
   return *course;
-}
-
-double quantile(std::vector<double> of, double share) {
-  if (of.empty()) return 0;
-  std::sort(of.begin(), of.end());
-  return of[static_cast<std::size_t>(share * static_cast<double>(of.size() - 1) + .999)];
 }
 
 /// What a method did, step by step.

@@ -27,6 +27,7 @@
 #include "material/corotated.hpp"
 #include "material/finite_stress.hpp"
 #include "material/law.hpp"
+#include "quantile.hpp"
 #include "run_rows.hpp"
 #include "solver/finite_statics.hpp"
 #include "sunder/error.hpp"
@@ -222,10 +223,6 @@ class Steps {
   }
 
  private:
-  static double quantile(std::vector<double> of, double share) {
-    std::sort(of.begin(), of.end());
-    return of[static_cast<std::size_t>(share * static_cast<double>(of.size() - 1) + .999)];
-  }
   FiniteSolver& solver_;
   const TearingBoard& board_;
   std::vector<double> ms_, cpu_, back_solves_, iterations_, factors_;

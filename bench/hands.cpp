@@ -12,6 +12,7 @@
 #include <random>
 
 #include "has_vulkan.hpp"
+#include "quantile.hpp"
 #include "sunder/simulation.hpp"
 #include "sunder/surface.hpp"
 #include "tearing_board.hpp"
@@ -78,11 +79,6 @@ double ms_of(clockid_t clock) {
   timespec t{};
   clock_gettime(clock, &t);
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-double quantile(std::vector<double> of, double q) {
-  std::ranges::sort(of);
-  return of[static_cast<std::size_t>(q * static_cast<double>(of.size() - 1))];
 }
 
 void quiet(benchmark::State& state, Index cells, const char* backend, Route route, Hands hands,

@@ -22,6 +22,7 @@
 
 #include "gpu/vulkan_backend.hpp"
 #include "has_vulkan.hpp"
+#include "quantile.hpp"
 #include "run_rows.hpp"
 #include "sunder/backends.hpp"
 #include "sunder/simulation.hpp"
@@ -119,11 +120,6 @@ void row(benchmark::State& state, const Variant& variant, Index cells) {
   state.counters["inverse_MiB"] = condensed / 1048576;
 }
 
-double median_of(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
-}
-
 double thread_ms() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -147,6 +143,7 @@ void live(benchmark::State& state, const Variant& variant, bool by_device, Index
   state.counters["setup_ms"] = milliseconds_since(start);
   Load load = corner_pull(*problem);
   frame(*backend, load, {});  // has the full check
+  state.counters["predicted_first_ms"] = backend->info().fracture_ms;
   const auto order = patch_tear(*problem);
   std::vector<double> times, host;
   for (auto _ : state) {
@@ -161,6 +158,7 @@ void live(benchmark::State& state, const Variant& variant, bool by_device, Index
   state.counters["first_ms"] = median_of({times.begin(), times.begin() + some});
   state.counters["last_ms"] = median_of({times.end() - some, times.end()});
   state.counters["last_host_ms"] = median_of({host.end() - some, host.end()});
+  state.counters["predicted_last_ms"] = backend->info().fracture_ms;
   state.counters["MiB"] = static_cast<double>(backend->info().memory_bytes) / 1048576;
   state.counters["unknowns"] = static_cast<double>(problem->dof_count());
 }
