@@ -82,17 +82,16 @@ void HostBase::read_units(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixX
 double HostBase::refine(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> columns) {
   const auto anchored = body_->problem().anchored_dofs();
   const double stiffness = body_->problem().anchor_stiffness();  // K has it beside its elements
+  body_->apply(columns, lacks_);
+  for (Index d : anchored) lacks_.row(d) += stiffness * columns.row(d);
+  lacks_ = -lacks_;
+  for (std::size_t i = 0; i < dofs.size(); ++i) lacks_(dofs[i], static_cast<Index>(i)) += 1;
+  inverse_->factor().solve(lacks_, block_, work_);
   double most = 0;
-  for (std::size_t i = 0; i < dofs.size(); ++i) {
-    auto column = columns.col(static_cast<Index>(i));
-    body_->apply(column, lacks_);
-    for (Index d : anchored) lacks_[d] += stiffness * column[d];
-    lacks_ = -lacks_;
-    lacks_[dofs[i]] += 1;
-    inverse_->factor().solve(lacks_, correction_, work_);
-    most = std::max(most, correction_.norm() / column.norm());
-    column += correction_;
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    most = std::max(most, lacks_.col(i).norm() / columns.col(i).norm());
   }
+  columns += lacks_;
   return most;
 }
 

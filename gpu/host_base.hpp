@@ -74,8 +74,10 @@ class HostBase final : public solver::Base {
   std::vector<solver::Difference> vectors_;  // B
   std::vector<std::size_t> pushes_;          // vectors_.size() before each
   solver::LastLoad load_;
-  Eigen::VectorXd projected_, right_side_, lacks_, correction_;
-  Index projected_columns_ = 0;  // of projected_ that belong to the last load
+  Eigen::VectorXd projected_, right_side_;
+  Eigen::MatrixXd lacks_;           // of columns that are refined
+  linear_algebra::RowMajor block_;  // the same in the factor's order
+  Index projected_columns_ = 0;     // of projected_ that belong to the last load
   linear_algebra::SolveWork work_;
 };
 

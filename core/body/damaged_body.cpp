@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "body/assembly.hpp"
+#include "body/eight_products.hpp"
 #include "body/element.hpp"
 #include "body/held_together.hpp"
 #include "body/pools.hpp"
@@ -177,6 +178,39 @@ void DamagedBody::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   }
   y.resize(x.size());
   gather(*problem_, nodal_out_, {y.data(), static_cast<std::size_t>(y.size())});
+}
+
+void DamagedBody::apply(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::MatrixXd& y) const {
+  y.resize(x.rows(), x.cols());
+  if (problem_->pools() || !others_.empty()) {
+    Eigen::VectorXd of;
+    for (Eigen::Index c = 0; c < x.cols(); ++c) {
+      apply(x.col(c), of);
+      y.col(c) = of;
+    }
+    return;
+  }
+  refuse_new_unknowns();
+  const auto dofs = problem_->dofs();
+  eight_in_.resize(dofs.size() * kAtOnce);
+  eight_out_.resize(eight_in_.size());
+  for (Eigen::Index first = 0; first < x.cols(); first += kAtOnce) {
+    const auto count = std::min<Eigen::Index>(kAtOnce, x.cols() - first);
+    std::fill(eight_in_.begin(), eight_in_.end(), 0.0);
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      if (dofs[i] == kNone) continue;
+      for (Eigen::Index c = 0; c < count; ++c) {
+        eight_in_[i * kAtOnce + static_cast<std::size_t>(c)] = x(dofs[i], first + c);
+      }
+    }
+    apply_stiffness_to_eight(*problem_, scale_, eight_in_, eight_out_);
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      if (dofs[i] == kNone) continue;
+      for (Eigen::Index c = 0; c < count; ++c) {
+        y(dofs[i], first + c) = eight_out_[i * kAtOnce + static_cast<std::size_t>(c)];
+      }
+    }
+  }
 }
 
 double DamagedBody::largest_stress(const Eigen::VectorXd& x) const {

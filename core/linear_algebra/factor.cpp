@@ -81,6 +81,24 @@ void Factor::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& wo
   for (std::size_t i = 0; i < place.size(); ++i) x[static_cast<Eigen::Index>(i)] = y[place[i]];
 }
 
+void Factor::solve(Eigen::Ref<Eigen::MatrixXd> columns, RowMajor& room, SolveWork& work) const {
+  const auto& place = cholesky_.supernodes().place;
+  std::vector<Index> all(static_cast<std::size_t>(cholesky_.supernodes().count()));
+  std::iota(all.begin(), all.end(), 0);
+  for (Eigen::Index first = 0; first < columns.cols(); first += kBlock) {
+    auto block = columns.middleCols(first, std::min<Eigen::Index>(kBlock, columns.cols() - first));
+    room.resize(block.rows(), block.cols());
+    for (Eigen::Index i = 0; i < block.rows(); ++i) {
+      room.row(place[static_cast<std::size_t>(i)]) = block.row(i);
+    }
+    cholesky_.forward(all, room, work);
+    cholesky_.backward(all, room, work);
+    for (Eigen::Index i = 0; i < block.rows(); ++i) {
+      block.row(i) = room.row(place[static_cast<std::size_t>(i)]);
+    }
+  }
+}
+
 /// What a thread solves with for a block of columns.
 struct Factor::Room {
   RowMajor block;

@@ -31,6 +31,8 @@ class Factor {
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
   /// The same into x, which is another vector than rhs; allocates only until `work` has grown.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x, SolveWork& work) const;
+  /// The same of several right sides, shape (n x columns), which become their solutions.
+  void solve(Eigen::Ref<Eigen::MatrixXd> columns, RowMajor& room, SolveWork& work) const;
   /// Inverse as a dense matrix, shape (n x n). Cost at most 2 n nnz(L) multiply-adds. This and what
   /// follows take a block of right sides, n x 64, for each thread, and throw Stopped where the work
   /// was given up.

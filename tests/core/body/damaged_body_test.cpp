@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "body/stiffness_factor.hpp"
@@ -137,6 +138,30 @@ TEST(DamagedBody, RefusesNewUnknownsWhereThereIsNoRoomForThem) {
   form.corners[0] = body.problem().node_count();
   ASSERT_TRUE(body.change({{}, {{5, form}}, {{node, Axes{}}}}));
   EXPECT_THROW(static_cast<void>(body.stiffness()), UsageError);
+}
+
+// Eleven displacements, eight at once and three more, are multiplied as each by itself: with
+// damage, and where forms that are not the mesh's leave no other way.
+TEST(DamagedBody, MultipliesSeveralDisplacementsAtOnce) {
+  DamagedBody body(row_of_cells());
+  body.destroy(std::vector<Index>{7, 3});
+  const auto check = [&] {
+    Eigen::MatrixXd x(body.problem().dof_count(), 11), all;
+    for (Index c = 0; c < x.cols(); ++c) {
+      for (Index d = 0; d < x.rows(); ++d) x(d, c) = std::sin(0.7 * d + c) + (c == 10 ? 1e6 : 0);
+    }
+    body.apply(x, all);
+    Eigen::VectorXd each;
+    for (Index c = 0; c < x.cols(); ++c) {
+      body.apply(Eigen::VectorXd(x.col(c)), each);
+      EXPECT_LE((all.col(c) - each).norm(), 1e-13 * each.norm()) << c;
+      EXPECT_GT(each.norm(), 0) << c;
+    }
+  };
+  check();
+  ASSERT_TRUE(body.change(with_form(4, stiffer(body, 4, 10))));
+  ASSERT_FALSE(body.others().empty());
+  check();
 }
 
 }  // namespace

@@ -52,6 +52,27 @@ TEST(SupernodalCholesky, SolvesLikeADenseFactor) {
   }
 }
 
+// A block of 64 right sides and some more; what each is does not depend on the others.
+TEST(SupernodalCholesky, SolvesForSeveralRightSides) {
+  const Index n = 211;
+  const Factor factor(random_matrix(n, 2, 3));
+  for (Index columns : {1, 12, 70}) {
+    Eigen::MatrixXd x(n, columns);
+    for (Index c = 0; c < columns; ++c) x.col(c) = Eigen::VectorXd::LinSpaced(n, c - 1, 2);
+    const Eigen::MatrixXd b = x;
+    RowMajor room;
+    SolveWork work;
+    factor.solve(x, room, work);
+    for (Index c = 0; c < columns; ++c) {
+      const Eigen::VectorXd alone = factor.solve(Eigen::VectorXd(b.col(c)));
+      EXPECT_LE((x.col(c) - alone).norm(), 1e-14 * alone.norm()) << c;
+    }
+    Eigen::MatrixXd last = b.rightCols(1);
+    factor.solve(last, room, work);
+    EXPECT_EQ(last, x.rightCols(1));
+  }
+}
+
 TEST(SupernodalCholesky, InvertsTheMatrix) {
   const SparseMatrix a = random_matrix(211, 2, 3);
   const Eigen::MatrixXd x = Factor(a).inverse();
