@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "gpu/passes/inverse_refinement.hpp"
+
 namespace sunder::gpu {
 namespace {
 
@@ -57,7 +59,8 @@ bool HostBase::try_device(const DenseInverse& device) {
     if (!(of_column <= kSame)) return false;
     off = std::max(off, of_column);
   }
-  refines_ = refines_ || (body_ && off > 2 * kExactTorn);
+  // What was kept is the factor's: refined, or by itself up to as much off.
+  refines_ = body_ && off > (refines_ ? 1 : 2) * kExactTorn;
   kept_.resize(0, 0);
   read_from(&device);
   return true;
@@ -80,12 +83,7 @@ void HostBase::read_units(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixX
 
 /// Returns the largest change of one, relative to its norm.
 double HostBase::refine(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> columns) {
-  const auto anchored = body_->problem().anchored_dofs();
-  const double stiffness = body_->problem().anchor_stiffness();  // K has it beside its elements
-  body_->apply(columns, lacks_);
-  for (Index d : anchored) lacks_.row(d) += stiffness * columns.row(d);
-  lacks_ = -lacks_;
-  for (std::size_t i = 0; i < dofs.size(); ++i) lacks_(dofs[i], static_cast<Index>(i)) += 1;
+  unit_residuals(*body_, dofs, columns, lacks_);
   inverse_->factor().solve(lacks_, block_, work_);
   double most = 0;
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {

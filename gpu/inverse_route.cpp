@@ -7,6 +7,7 @@
 #include "body/assembly.hpp"
 #include "body/event_factor.hpp"
 #include "gpu/passes/block_inversion.hpp"
+#include "gpu/passes/inverse_refinement.hpp"
 #include "solver/update_vectors.hpp"
 #include "sunder/error.hpp"
 
@@ -30,8 +31,9 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
       std::size_t{base.chunks + base.panels + capacity / shaders::kChunk} * rows * sizeof(double);
   if (!options.on_device) return bytes + sums;
   // While it is computed, before the rest exists.
-  return std::max(bytes + sums,
-                  base.bytes + planned_inversion_bytes(stored, n, rows, options.panel_bytes));
+  return std::max({bytes + sums,
+                   base.bytes + planned_inversion_bytes(stored, n, rows, options.panel_bytes),
+                   base.bytes + planned_refinement_bytes(rows)});
 }
 
 InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody& body,
@@ -105,12 +107,20 @@ void InverseRoute::make_next() {
 /// X of the body as it was after base_events_.
 void InverseRoute::fill_base(const HostInverse& host) {
   if (options_.on_device) {
-    invert_on_device(stored_, body_.as_of(base_events_).stiffness(), fields_.rows(),
-                     options_.panel_bytes, base_);
+    const fem::DamagedBody body = body_.as_of(base_events_);
+    invert_on_device(stored_, body.stiffness(), fields_.rows(), options_.panel_bytes, base_);
+    base_refined_ = !update_ && wants_refinement(host, body);  // later a frame would wait for it
+    if (base_refined_) refine_inverse(stored_, body, fields_.rows(), base_);
   } else {
     upload_inverse(host, base_);
   }
   base_stale_ = false;  // not where that has failed
+}
+
+/// Whether columns of the base would have to be refined with each event (gpu/host_base.hpp).
+bool InverseRoute::wants_refinement(const HostInverse& host, const fem::DamagedBody& body) const {
+  if (eager_ || !damage_ || !kernels_.fp64() || host.is_dense() || !base_.fp64()) return false;
+  return HostBase({std::shared_ptr<void>(), &host}, &body, &base_).refines();
 }
 
 /// The base on the device, which a new one leaves behind until a load needs it.
@@ -131,6 +141,7 @@ void InverseRoute::read_columns() {
   const DenseInverse* there = exact_base(host.inverse());
   columns_there_ = there != nullptr;
   host.read_from(there);
+  if (there && base_refined_) host.read_refined();
   update_->hold(renews_ && base_stale_);  // the next base would have columns by its factor
 }
 
@@ -445,6 +456,7 @@ bool InverseRoute::take_next() {
     return false;
   }
   next_->hand_over(base_);
+  base_refined_ = false;  // how good it is try_device() has said
   std::swap(exact_, next_exact_);
   return true;
 }

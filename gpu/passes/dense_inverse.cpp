@@ -103,6 +103,13 @@ void DenseInverse::create_panels(std::size_t panel_bytes) {
   }
 }
 
+std::size_t DenseInverse::panel_of(Index column) const {
+  const auto found = std::ranges::find_if(panels_, [&](const Panel& panel) {
+    return u32(column) >= panel.first && u32(column) < panel.first + panel.columns;
+  });
+  return static_cast<std::size_t>(found - panels_.begin());
+}
+
 void DenseInverse::create_apply() {
   apply_ = kernels_.make("apply", shaders::kGroup, lower_ ? 1 : 0);
 }
@@ -129,21 +136,25 @@ void DenseInverse::upload(const Columns& columns) {
   for (Panel& panel : panels_) {
     const Index end = std::min(n_, static_cast<Index>(panel.first + panel.columns));
     for (Index c = static_cast<Index>(panel.first); c < end; c += most) {
-      const Index count = std::min(most, end - c);
-      Eigen::MatrixXd block = Eigen::MatrixXd::Zero(static_cast<Index>(rows_), count);
-      block.topRows(n_) = columns(c, count);
-      const std::size_t at = (static_cast<std::size_t>(c) - panel.first) * rows_;
-      const std::size_t size = static_cast<std::size_t>(block.size());
-      if (kernels_.fp64()) {
-        panel.matrix.write(std::span<const double>(block.data(), size), at);
-      } else {
-        const Eigen::MatrixXf rounded = block.cast<float>();
-        panel.matrix.write(std::span<const float>(rounded.data(), size), at);
-      }
+      write_columns(c, columns(c, std::min(most, end - c)));
     }
     const std::size_t column_bytes = rows_ * kernels_.real_bytes();
     const std::size_t filled = column_bytes * (static_cast<std::size_t>(end) - panel.first);
     panel.matrix.fill_zero(filled, panel.matrix.bytes() - filled);
+  }
+}
+
+void DenseInverse::write_columns(Index first, const Eigen::MatrixXd& columns) {
+  Panel& panel = panels_[panel_of(first)];
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(static_cast<Index>(rows_), columns.cols());
+  block.topRows(n_) = columns;
+  const std::size_t at = (static_cast<std::size_t>(first) - panel.first) * rows_;
+  const std::size_t size = static_cast<std::size_t>(block.size());
+  if (kernels_.fp64()) {
+    panel.matrix.write(std::span<const double>(block.data(), size), at);
+  } else {
+    const Eigen::MatrixXf rounded = block.cast<float>();
+    panel.matrix.write(std::span<const float>(rounded.data(), size), at);
   }
 }
 
@@ -478,12 +489,10 @@ void DenseInverse::release_room() {
 void DenseInverse::read_columns(std::span<const Index> dofs, Eigen::Ref<Eigen::MatrixXd> to) const {
   std::vector<Buffer::Part> parts;
   for (std::size_t i = 0; i < dofs.size(); ++i) {
-    const auto panel = std::ranges::find_if(panels_, [&](const Panel& p) {
-      return u32(dofs[i]) >= p.first && u32(dofs[i]) < p.first + p.columns;
-    });
-    const std::size_t at = std::size_t{u32(dofs[i]) - panel->first} * rows_;
+    const Panel& panel = panels_[panel_of(dofs[i])];
+    const std::size_t at = std::size_t{u32(dofs[i]) - panel.first} * rows_;
     const std::span column(to.col(static_cast<Index>(i)).data(), static_cast<std::size_t>(n_));
-    parts.emplace_back(panel->matrix, at, column);
+    parts.emplace_back(panel.matrix, at, column);
   }
   Buffer::read_all(parts);
 }

@@ -68,6 +68,8 @@ class DenseInverse {
 
   /// Fills the matrix from the host.
   void upload(const Columns& columns);
+  /// Some columns, shape (n x columns), that lie in one panel, in place of what is there.
+  void write_columns(Index first, const Eigen::MatrixXd& columns);
 
   [[nodiscard]] std::uint32_t chunks() const { return columns_ / shaders::kChunk; }
   /// Chunks that record_loaded() needs for a load.
@@ -123,6 +125,8 @@ class DenseInverse {
     std::uint32_t columns;
   };
   void create_panels(std::size_t panel_bytes);
+  /// Which of panels_ has it.
+  [[nodiscard]] std::size_t panel_of(Index column) const;
   void scale_by(std::span<const double> scales);
   void add_passages(const DenseInverse& other, std::uint32_t left_out, bool mirror,
                     std::vector<Passage>& to) const;

@@ -139,29 +139,23 @@ TEST_F(DeviceUse, ACheckByElementsTakesNoMoreSubmitsThanAnother) {
 }
 
 // Of an inverse that the device has computed the host has no columns: those that are new come in a
-// submit before, and no factor solves for them but where frames are so stiff that columns of the
-// inverse are refined.
+// submit before, and no factor solves for them. With frames a hundred times stiffer, as of this
+// board, the inverse was refined when it was made.
 TEST_F(DeviceUse, AnEventOfAnInverseFromTheDeviceIsTwoSubmits) {
   for (const std::size_t of_an_event : {1, 10, 100}) {
-    for (const double contrast : {10.0, 100.0}) {
-      SCOPED_TRACE(std::to_string(of_an_event) + " elements, contrast " + std::to_string(contrast));
-      Scene scene = held_board();
-      set_contrast(scene, contrast);
-      Unmapped body(Way{.inverts = true}, std::move(scene));
+    SCOPED_TRACE(std::to_string(of_an_event) + " elements");
+    Unmapped body(Way{.inverts = true});
+    body.frame(Vec3(0, -10, 0));
+    const auto crack = crack_sequence(*body.problem, 3 * of_an_event, 10);
+    const std::size_t events = of_an_event < 100 ? 3 : 1;  // 200 make a new base
+    for (std::size_t event = 0; event < events; ++event) {
+      const std::size_t submits = body.use().submits, allocated = body.allocations,
+                        solved = body.use().host_solves;
+      body.backend->destroy({crack.data() + event * of_an_event, of_an_event});
       body.frame(Vec3(0, -10, 0));
-      const auto crack = crack_sequence(*body.problem, 3 * of_an_event, 10);
-      const std::size_t events = of_an_event < 100 ? 3 : 1;  // 200 make a new base
-      for (std::size_t event = 0; event < events; ++event) {
-        const std::size_t submits = body.use().submits, allocated = body.allocations,
-                          solved = body.use().host_solves;
-        body.backend->destroy({crack.data() + event * of_an_event, of_an_event});
-        body.frame(Vec3(0, -10, 0));
-        EXPECT_EQ(body.use().submits - submits, of_an_event < 100 ? 2u : 7u) << "event " << event;
-        EXPECT_EQ(body.allocations, allocated) << "event " << event;
-        if (contrast > 10) continue;
-        EXPECT_EQ(body.use().host_solves - solved, of_an_event < 100 ? 0u : 2u)
-            << "event " << event;
-      }
+      EXPECT_EQ(body.use().submits - submits, of_an_event < 100 ? 2u : 7u) << "event " << event;
+      EXPECT_EQ(body.use().host_solves - solved, of_an_event < 100 ? 0u : 2u) << "event " << event;
+      EXPECT_EQ(body.allocations, allocated) << "event " << event;
     }
   }
 }

@@ -5,6 +5,7 @@
 #include "body/assembly.hpp"
 #include "gpu/host_base.hpp"
 #include "gpu/passes/block_inversion.hpp"
+#include "gpu/passes/inverse_refinement.hpp"
 #include "linear_algebra/factor.hpp"
 #include "on_device.hpp"
 #include "sunder/error.hpp"
@@ -136,6 +137,42 @@ TEST_F(Inversion, ColumnsOfStiffFramesAreRefined) {
 }
 
 // Another matrix on the device than the host has tells whose columns are taken.
+// The same once and for all, panel by panel: what its columns lacked is gone.
+TEST_F(Inversion, IsRefinedBesideStiffFrames) {
+  Scene scene = held_board();
+  set_contrast(scene, 1e4);
+  const auto problem = std::make_shared<const Problem>(scene);
+  fem::DamagedBody body(problem);
+  body.destroy(std::vector<Index>{700, 701, 702});
+  const auto n = problem->dof_count();
+  const auto rows = gpu::round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
+  const auto factor = std::make_shared<const gpu::HostInverse>(
+      std::make_shared<const linear_algebra::Factor>(body.stiffness()), false,
+      linear_algebra::FactorWork{});
+  std::vector<Index> some;
+  for (Index d = 0; d < n; d += 97) some.push_back(d);
+  gpu::HostBase by_factor(factor, &body);
+  ASSERT_TRUE(by_factor.refines());
+  const Eigen::MatrixXd exact = by_factor.unit_columns(some);
+  for (const gpu::Variant variant : {gpu::Variant::lvp, gpu::Variant::gpu}) {
+    OnDevice device(variant, true);
+    gpu::DenseInverse inverse(*device.factory, n, rows, std::size_t{rows} * 700 * 8);
+    EXPECT_GT(inverse.parts().size(), 2u);
+    gpu::invert_on_device(*device.factory, body.stiffness(), rows, std::size_t{rows} * 700 * 8,
+                          inverse);
+    const auto error = [&] {
+      Eigen::MatrixXd columns(n, static_cast<Index>(some.size()));
+      inverse.read_columns(some, columns);
+      return (columns - exact).norm() / exact.norm();
+    };
+    EXPECT_GT(error(), 1e-10);
+    gpu::refine_inverse(*device.factory, body, rows, inverse);
+    EXPECT_LE(error(), 1e-13);
+    const gpu::HostBase read(factor, &body, &inverse);
+    EXPECT_FALSE(read.refines());
+  }
+}
+
 TEST_F(Inversion, NewColumnsAreReadFromTheDevice) {
   const linear_algebra::SparseMatrix lower = small_stiffness(), doubled = 2 * lower;
   const Eigen::MatrixXd reference = linear_algebra::Factor(doubled).inverse();

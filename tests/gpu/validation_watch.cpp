@@ -84,7 +84,7 @@ void choose_layers(bool validation) {
   }
   if (validation)
     layers += (layers.empty() ? "" : ":") + std::string("VK_LAYER_KHRONOS_validation");
-  setenv("VK_INSTANCE_LAYERS", layers.c_str(), 1);
+  if (!layers.empty()) setenv("VK_INSTANCE_LAYERS", layers.c_str(), 1);
 }
 
 void watch_with_validation() {
