@@ -31,9 +31,10 @@ std::size_t InverseRoute::planned_bytes(const KernelFactory& kernels, const Prob
       std::size_t{base.chunks + base.panels + capacity / shaders::kChunk} * rows * sizeof(double);
   if (!options.on_device) return bytes + sums;
   // While it is computed, before the rest exists.
+  const bool refines = !options.eager && kernels.fp64() && !problem.pools();
   return std::max({bytes + sums,
                    base.bytes + planned_inversion_bytes(stored, n, rows, options.panel_bytes),
-                   base.bytes + planned_refinement_bytes(rows)});
+                   base.bytes + (refines ? planned_refinement_bytes(rows) : 0)});
 }
 
 InverseRoute::InverseRoute(const KernelFactory& kernels, const fem::DamagedBody& body,
@@ -117,9 +118,11 @@ void InverseRoute::fill_base(const HostInverse& host) {
   base_stale_ = false;  // not where that has failed
 }
 
-/// Whether columns of the base would have to be refined with each event (gpu/host_base.hpp).
+/// Whether columns of the base would have to be refined with each event (gpu/host_base.hpp). Of a
+/// body with pooled volume the host has no quick products K X, and goes on so.
 bool InverseRoute::wants_refinement(const HostInverse& host, const fem::DamagedBody& body) const {
   if (eager_ || !damage_ || !kernels_.fp64() || host.is_dense() || !base_.fp64()) return false;
+  if (problem_.pools()) return false;
   return HostBase({std::shared_ptr<void>(), &host}, &body, &base_).refines();
 }
 

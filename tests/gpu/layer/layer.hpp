@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Vulkan layer that makes of the device at hand one that is not: what a driver may do, Vulkan
-// says so, and lavapipe does not. SUNDER_TEST_LAYER names what, one of
+// A Vulkan layer that makes another device of the one at hand: it does what Vulkan lets a driver do
+// and lavapipe does not. SUNDER_TEST_LAYER names what, one of
 //   backwards  what is recorded between two barriers runs in reverse order
 //   families   three families of queues: one that draws, one that copies, one that computes
 //   portable   a portable subset of Vulkan alone, which must be asked for by name
-// What a program does that such a device would not take is said once to SUNDER_TEST_LAYER_LOG, a
-// file descriptor: under tests/gpu/validation_watch every word there fails the test.
+// What a program does that such a device would not take is said to SUNDER_TEST_LAYER_LOG, a file
+// descriptor: under tests/gpu/validation_watch every word there fails the test.
 #pragma once
 
 #include <string>
