@@ -10,6 +10,7 @@
 #include "gpu/cg_route.hpp"
 #include "gpu/host_inverse.hpp"
 #include "gpu/passes/block_inversion.hpp"
+#include "gpu/passes/inverse_refinement.hpp"
 #include "vulkan_rows.hpp"
 
 namespace sunder::bench {
@@ -158,6 +159,23 @@ void inversion(benchmark::State& state, const Rows& rows, const std::string& nam
   rows.table.measure(state, name, work);
 }
 
+/// X += X (I - K X) of that, which follows where frames are stiff.
+void inverse_refinement(benchmark::State& state, const Rows& rows, const std::string& name,
+                        Index cells) {
+  rows.gpu.release();
+  const auto problem = plain_board(cells);
+  const gpu::KernelFactory& kernels = rows.gpu.kernels(true);
+  const fem::DamagedBody body(problem);
+  const Index n = problem->dof_count();
+  const auto padded = gpu::round_up(static_cast<std::uint32_t>(n), shaders::kRowPad);
+  DenseInverse inverse(kernels, n, padded, 0);
+  gpu::invert_on_device(kernels, body.stiffness(), padded, 0, inverse);
+  Work work;
+  work.warm_up = true;
+  work.run = [&] { gpu::refine_inverse(kernels, body, padded, inverse); };
+  rows.table.measure(state, name, work);
+}
+
 }  // namespace
 
 void register_system_rows(const Rows& rows) {
@@ -166,8 +184,10 @@ void register_system_rows(const Rows& rows) {
     stiffness_product(s, rows, "stiffness_product/fp64/nodes35912", 133);
   });
   for (const Index cells : rows.big ? std::vector<Index>{18, 31, 57} : std::vector<Index>{18}) {
-    const std::string name = "inversion/fp64/n" + std::to_string(6 * cells * (cells + 1));
+    const std::string size = "/fp64/n" + std::to_string(6 * cells * (cells + 1));
+    const std::string name = "inversion" + size, refinement = "inverse_refinement" + size;
     add_row(name, [=, &rows](auto& s) { inversion(s, rows, name, cells); });
+    add_row(refinement, [=, &rows](auto& s) { inverse_refinement(s, rows, refinement, cells); });
   }
   // 133 cells: as many nodes as the product above.
   for (const Index cells :

@@ -29,8 +29,6 @@ class HostBase final : public solver::Base {
   /// The same inverse, in fp64 on the device, to read columns of from now on; it must outlive this.
   /// Null: there is none.
   void read_from(const DenseInverse* device) { device_ = device; }
-  /// What is read there has been refined: its columns stay as they come.
-  void read_refined() { refines_ = false; }
   /// Columns of X, shape (n x dofs).
   [[nodiscard]] Eigen::MatrixXd unit_columns(std::span<const Index> dofs);
   /// Keeps some columns by the factor, for try_device().

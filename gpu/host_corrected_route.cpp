@@ -19,8 +19,8 @@ HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels, const fem::
                                        std::size_t panel_bytes, bool damage)
     : problem_(body.problem()),
       fields_(fields),
-      intact_(std::move(intact)),
-      update_(host_update(body, intact_, damage, false)),
+      supernodes_(intact->factor().cholesky().shared_supernodes()),
+      update_(host_update(body, intact, damage, false)),
       base_(kernels, problem_.dof_count(), fields.rows(), panel_bytes),
       partials_(kernels, fields.rows(), base_.chunks() + base_.loaded_chunks({})),
       add_(kernels, fields),
@@ -29,7 +29,7 @@ HostCorrectedRoute::HostCorrectedRoute(const KernelFactory& kernels, const fem::
   std::iota(all_.begin(), all_.end(), 0);
   base_.bind(partials_, fields_.residual());
   sum_displacement_ = partials_.bind_sum(fields_.positions(), fields_.nodal(Field::displacement));
-  upload_inverse(*intact_, base_);
+  upload_inverse(*intact, base_);
 }
 
 void HostCorrectedRoute::ensure_base() {

@@ -32,7 +32,7 @@ class HostCorrectedRoute final : public DeviceRoute {
 
   const solver::RenewedUpdate* update() const override { return update_.get(); }
   std::vector<BufferPlan> buffers() const override;
-  std::size_t host_solves() const override { return intact_->solved(); }
+  std::size_t host_solves() const override { return supernodes_->solved.get(); }
 
  private:
   void follow_update();
@@ -42,7 +42,7 @@ class HostCorrectedRoute final : public DeviceRoute {
 
   const Problem& problem_;
   Fields& fields_;
-  std::shared_ptr<const HostInverse> intact_;
+  std::shared_ptr<const linear_algebra::Supernodes> supernodes_;  // of all factors of the body
   std::unique_ptr<solver::RenewedUpdate> update_;
   int bases_ = 1;            // of update_
   bool base_stale_ = false;  // base_ is that of an earlier one

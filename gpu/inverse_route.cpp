@@ -110,19 +110,19 @@ void InverseRoute::fill_base(const HostInverse& host) {
   if (options_.on_device) {
     const fem::DamagedBody body = body_.as_of(base_events_);
     invert_on_device(stored_, body.stiffness(), fields_.rows(), options_.panel_bytes, base_);
-    base_refined_ = !update_ && wants_refinement(host, body);  // later a frame would wait for it
-    if (base_refined_) refine_inverse(stored_, body, fields_.rows(), base_);
+    if (wants_refinement(host, body)) refine_inverse(stored_, body, fields_.rows(), base_);
   } else {
     upload_inverse(host, base_);
   }
   base_stale_ = false;  // not where that has failed
 }
 
-/// Whether columns of the base would have to be refined with each event (gpu/host_base.hpp). Of a
-/// body with pooled volume the host has no quick products K X, and goes on so.
+/// Whether columns of the base would have to be refined with each event (gpu/host_base.hpp), and
+/// whoever reads them does not do so. Of a later base it does: a frame would wait for all of X. Of
+/// a body with pooled volume too: the host has no quick products K X.
 bool InverseRoute::wants_refinement(const HostInverse& host, const fem::DamagedBody& body) const {
   if (eager_ || !damage_ || !kernels_.fp64() || host.is_dense() || !base_.fp64()) return false;
-  if (problem_.pools()) return false;
+  if (problem_.pools() || (update_ && base_of(*update_).refines())) return false;
   return HostBase({std::shared_ptr<void>(), &host}, &body, &base_).refines();
 }
 
@@ -144,7 +144,6 @@ void InverseRoute::read_columns() {
   const DenseInverse* there = exact_base(host.inverse());
   columns_there_ = there != nullptr;
   host.read_from(there);
-  if (there && base_refined_) host.read_refined();
   update_->hold(renews_ && base_stale_);  // the next base would have columns by its factor
 }
 
@@ -459,7 +458,6 @@ bool InverseRoute::take_next() {
     return false;
   }
   next_->hand_over(base_);
-  base_refined_ = false;  // how good it is try_device() has said
   std::swap(exact_, next_exact_);
   return true;
 }

@@ -107,7 +107,6 @@ class InverseRoute final : public DeviceRoute {
   bool eager_, damage_;
   int bases_ = 0;                // of update_, whose columns are in exact_
   bool base_stale_ = false;      // base_ is that of an earlier one
-  bool base_refined_ = false;    // base_ is, and new columns stay as they come
   bool columns_there_ = false;   // new columns are read from base_
   std::size_t base_events_ = 0;  // of the body that base_ is to be made of
   bool renews_ = false;          // bases are made anew, base_ by next_

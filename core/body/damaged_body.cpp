@@ -192,22 +192,22 @@ void DamagedBody::apply(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Matri
   }
   refuse_new_unknowns();
   const auto dofs = problem_->dofs();
-  eight_in_.resize(dofs.size() * kAtOnce);
+  eight_in_.resize(dofs.size() * kProductsAtOnce);
   eight_out_.resize(eight_in_.size());
-  for (Eigen::Index first = 0; first < x.cols(); first += kAtOnce) {
-    const auto count = std::min<Eigen::Index>(kAtOnce, x.cols() - first);
+  for (Eigen::Index first = 0; first < x.cols(); first += kProductsAtOnce) {
+    const auto count = std::min<Eigen::Index>(kProductsAtOnce, x.cols() - first);
     std::fill(eight_in_.begin(), eight_in_.end(), 0.0);
     for (std::size_t i = 0; i < dofs.size(); ++i) {
       if (dofs[i] == kNone) continue;
       for (Eigen::Index c = 0; c < count; ++c) {
-        eight_in_[i * kAtOnce + static_cast<std::size_t>(c)] = x(dofs[i], first + c);
+        eight_in_[i * kProductsAtOnce + static_cast<std::size_t>(c)] = x(dofs[i], first + c);
       }
     }
     apply_stiffness_to_eight(*problem_, scale_, eight_in_, eight_out_);
     for (std::size_t i = 0; i < dofs.size(); ++i) {
       if (dofs[i] == kNone) continue;
       for (Eigen::Index c = 0; c < count; ++c) {
-        y(dofs[i], first + c) = eight_out_[i * kAtOnce + static_cast<std::size_t>(c)];
+        y(dofs[i], first + c) = eight_out_[i * kProductsAtOnce + static_cast<std::size_t>(c)];
       }
     }
   }

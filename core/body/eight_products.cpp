@@ -12,7 +12,7 @@ namespace sunder::fem {
 namespace {
 
 using machine::Lanes8;
-static_assert(sizeof(Lanes8) == kAtOnce * sizeof(double));
+static_assert(sizeof(Lanes8) == kProductsAtOnce * sizeof(double));
 
 /// By the differences to corner 0, as stress() takes them.
 SUNDER_VECTORISED void add_element(const std::array<Index, 4>& corners, const TetShape& shape,
@@ -20,12 +20,12 @@ SUNDER_VECTORISED void add_element(const std::array<Index, 4>& corners, const Te
                                    double* y) {
   Lanes8 first[3], h[3][3] = {};  // H_ij = du_i/dx_j
   for (int axis = 0; axis < 3; ++axis) {
-    std::memcpy(&first[axis], u + kAtOnce * (3 * corners[0] + axis), sizeof(Lanes8));
+    std::memcpy(&first[axis], u + kProductsAtOnce * (3 * corners[0] + axis), sizeof(Lanes8));
   }
   for (int a = 1; a < 4; ++a) {
     for (int axis = 0; axis < 3; ++axis) {
       Lanes8 d;
-      std::memcpy(&d, u + kAtOnce * (3 * corners[a] + axis), sizeof d);
+      std::memcpy(&d, u + kProductsAtOnce * (3 * corners[a] + axis), sizeof d);
       d = d + first[axis] * -1.0;
       for (int j = 0; j < 3; ++j) h[axis][j] = h[axis][j] + d * shape.gradient(j, a);
     }
@@ -38,7 +38,7 @@ SUNDER_VECTORISED void add_element(const std::array<Index, 4>& corners, const Te
   }
   for (int a = 0; a < 4; ++a) {
     for (int axis = 0; axis < 3; ++axis) {
-      double* const to = y + kAtOnce * (3 * corners[a] + axis);
+      double* const to = y + kProductsAtOnce * (3 * corners[a] + axis);
       Lanes8 sum;
       std::memcpy(&sum, to, sizeof sum);
       sum = sum + weight * (s[axis][0] * shape.gradient(0, a) + s[axis][1] * shape.gradient(1, a) +

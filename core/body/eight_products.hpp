@@ -8,7 +8,7 @@
 
 namespace sunder::fem {
 
-inline constexpr int kAtOnce = 8;
+inline constexpr int kProductsAtOnce = 8;
 
 /// y = K u as apply_stiffness() has it, of bodies without pooled volume. `u` and `y`: for each of
 /// the 3 * node_count entries the eight, one beside the other.

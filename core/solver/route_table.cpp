@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "body/eight_products.hpp"
 #include "sunder/words.hpp"
 
 namespace sunder::solver {
@@ -228,9 +229,9 @@ void inverse_solution(FrameWork& work, const FrameShape& s, bool torn) {
   }
 }
 
-/// Of an event, once more by what they lack: products K u, eight at once, and a solve for all.
+/// Of an event, once more by what they lack: products K u, several at once, and a solve for all.
 void refined_columns(FrameWork& work, const FrameShape& s) {
-  work.product(kTouched / 8 * real(s.elements));
+  work.product(kTouched / fem::kProductsAtOnce * real(s.elements));
   work.host(2 * real(s.entries), 1, 4 * kTouched * real(s.entries));
 }
 

@@ -306,7 +306,7 @@ TEST_F(Limits, ARunOfFoldedDispatchesHasTheSameBits) {
   for (const Way& way : all_ways()) {
     if (way.precision == Precision::fp64 && way.update == Update::deferred) continue;
     SCOPED_TRACE(name_of(way));
-    const Torn whole = tear(way, 0), folded = tear(way, 2);
+    const TornRun whole = tear(way, 0), folded = tear(way, 2);
     EXPECT_FALSE(whole.destroyed.empty());
     EXPECT_EQ(folded.destroyed, whole.destroyed);
     EXPECT_EQ(folded.displacement, whole.displacement);

@@ -38,7 +38,7 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {  // FNV-1a by word
   return (hash ^ word) * 0x100000001b3;
 }
 
-std::uint64_t bits_of(const Torn& torn) {
+std::uint64_t bits_of(const TornRun& torn) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const Index e : torn.destroyed) hash = mixed(hash, static_cast<std::uint64_t>(e));
   for (const Vec3& u : torn.displacement) {
@@ -53,7 +53,7 @@ std::uint64_t bits_of(const Torn& torn) {
 /// What a run of its own process prints: a line a way.
 TEST_F(OtherDevice, DISABLED_TellsTheBits) {
   for (const Way& way : ways()) {
-    const Torn torn = tear(way);
+    const TornRun torn = tear(way);
     EXPECT_FALSE(torn.destroyed.empty());
     std::printf("bits of %s: %016llx\n", name_of(way).c_str(),
                 static_cast<unsigned long long>(bits_of(torn)));
