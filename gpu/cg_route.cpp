@@ -270,12 +270,13 @@ int CgRoute::solve(const Load&, double, bool) {
   return iterations;
 }
 
-int CgRoute::correct() {
+int CgRoute::correct(bool add) {
   const int iterations = run(kCorrection, false);
   commands_.begin();
   fields_.record_correction(commands_);
   commands_.end();
   commands_.submit();
+  if (add) add_correction();
   return iterations;
 }
 

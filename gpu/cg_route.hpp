@@ -22,7 +22,7 @@ class CgRoute final : public DeviceRoute {
                                                  const Problem& problem);
 
   int solve(const Load& load, double energy_tolerance, bool balance) override;
-  int correct() override;
+  int correct(bool add) override;
   void add_correction() override;
   void destroy(std::span<const Index> elements) override {
     rigid_.destroy(elements);  // Fields' matrix follows by itself

@@ -32,9 +32,20 @@ solver::Precision DeviceFrame::precision() const {
   return {std::min(kFp32Refined, tolerance / 2), tolerance, kFp32Refined};
 }
 
-int DeviceFrame::solve(double energy_tolerance, bool residual) {
+int DeviceFrame::solve(double energy_tolerance, solver::Residual residual) {
   const bool reactions = !body_.forms().gripped().empty();
-  return route_.solve(load_, energy_tolerance, residual || reactions);
+  if (residual == solver::Residual::whole && route_.corrects_on_host()) {
+    read_along();
+  } else {
+    fields_.read_along(ReadAlong::What::nothing);
+  }
+  return route_.solve(load_, energy_tolerance, residual != solver::Residual::none || reactions);
+}
+
+/// A correction begins with the residual, or with the displacement where that is summed by
+/// elements: most likely as the last one did.
+void DeviceFrame::read_along() {
+  fields_.read_along(were_by_elements_ ? ReadAlong::What::displacement : ReadAlong::What::residual);
 }
 
 solver::Balance DeviceFrame::balance() const {
@@ -60,18 +71,20 @@ void DeviceFrame::sum_residual() {
   for (Index d : body_.forms().gripped()) r_[d] = 0;
 }
 
-int DeviceFrame::correct_by_elements() {
+int DeviceFrame::correct_by_elements(bool add) {
   sum_residual();
-  if (route_.correct_by_host(r_)) return 0;
+  if (route_.correct_by_host(r_, add)) return 0;
   padded_.assign(fields_.rows(), 0.0);
   std::copy(r_.begin(), r_.end(), padded_.begin());
   fields_.write_residual(padded_);
-  return route_.correct();
+  return route_.correct(add);
 }
 
-solver::FrameDevice::Correction DeviceFrame::correct() {
+solver::FrameDevice::Correction DeviceFrame::correct(bool add) {
   Correction found;
-  found.iterations = by_elements_ ? correct_by_elements() : route_.correct();
+  were_by_elements_ = by_elements_;
+  if (route_.corrects_on_host()) read_along();  // of a state that comes with it
+  found.iterations = by_elements_ ? correct_by_elements(add) : route_.correct(add);
   found.stress = fields_.largest_stress(Field::correction);
   return found;
 }

@@ -19,10 +19,11 @@ class DeviceFrame final : public solver::FrameDevice {
   [[nodiscard]] solver::Precision precision() const override;
   [[nodiscard]] bool residual_costs() const override { return true; }
   [[nodiscard]] bool iterates() const override { return route_.iterates(); }
-  int solve(double energy_tolerance, bool residual) override;
+  int solve(double energy_tolerance, solver::Residual residual) override;
   [[nodiscard]] solver::Balance balance() const override;
   [[nodiscard]] bool finite() const override { return fields_.finite(); }
-  Correction correct() override;
+  Correction correct(bool add) override;
+  [[nodiscard]] bool adds_at_once() const override { return route_.corrects_on_host(); }
   void add_correction() override { route_.add_correction(); }
   bool sum_by_elements(bool on) override;
   bool rebase() override { return route_.rebase(); }
@@ -32,7 +33,8 @@ class DeviceFrame final : public solver::FrameDevice {
 
  private:
   void sum_residual();
-  [[nodiscard]] int correct_by_elements();
+  void read_along();
+  [[nodiscard]] int correct_by_elements(bool add);
 
   const Problem& problem_;
   const fem::DamagedBody& body_;
@@ -41,8 +43,8 @@ class DeviceFrame final : public solver::FrameDevice {
   bool fp64_;
   Load load_;
   double force_squared_ = 0;
-  bool by_elements_ = false;
-  std::vector<double> nodal_, padded_;  // of by_elements_: u, r
+  bool by_elements_ = false, were_by_elements_ = false;  // the last corrections
+  std::vector<double> nodal_, padded_;                   // of by_elements_: u, r
   Eigen::VectorXd u_, r_;
 };
 

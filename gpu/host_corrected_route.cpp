@@ -59,7 +59,7 @@ void HostCorrectedRoute::write_exact(const Load& load, const Eigen::VectorXd& of
                         Eigen::Map<const Eigen::VectorXd>(
                             load.forces.data(), static_cast<Eigen::Index>(load.forces.size()));
   }
-  fields_.write_unknowns(Field::displacement, exact_);
+  fields_.write_unknowns(Field::correction, exact_);  // there is none yet
 }
 
 int HostCorrectedRoute::solve(const Load& load, double energy_tolerance, bool balance) {
@@ -67,17 +67,16 @@ int HostCorrectedRoute::solve(const Load& load, double energy_tolerance, bool ba
   const bool few = load.force_dofs.size() <= kExactLoads;
   const Eigen::VectorXd& c = update_->deferred().coefficients({load.force_dofs, load.forces},
                                                               load.displacements, energy_tolerance);
-  if (fields_.keeps_next()) {  // before the host writes there
-    commands_.begin();
-    fields_.record_keep(commands_);
-    commands_.end();
-    commands_.submit();
-  }
   write_exact(load, c, few);
   if (!few) ensure_base();
   base_.set_loaded(few ? Loaded{} : Loaded{load.force_dofs, load.forces});
+  fields_.read_along(balance ? ReadAlong::What::displacement : ReadAlong::What::nothing);
   commands_.begin();
+  fields_.record_keep(commands_);
   commands_.pass("solve");
+  const vulkan::Buffer &exact = fields_.nodal(Field::correction),
+                       &u = fields_.nodal(Field::displacement);
+  commands_.copy(exact.handle(), exact.offset(), u.handle(), u.offset(), u.bytes());
   const std::uint32_t chunks = base_.record_loaded(commands_, 0);
   if (chunks > 0) partials_.record_sum(commands_, *sum_displacement_, chunks, true);
   fields_.record_hold(commands_, Field::displacement);
@@ -88,23 +87,30 @@ int HostCorrectedRoute::solve(const Load& load, double energy_tolerance, bool ba
   return 0;
 }
 
-int HostCorrectedRoute::correct() {
+int HostCorrectedRoute::correct(bool add) {
   const Eigen::VectorXd& r = fields_.host_balance().residual();
   update_->deferred().correct({all_, {r.data(), all_.size()}}, correction_);
   fields_.write_unknowns(Field::correction, correction_);
   commands_.begin();
   commands_.pass("estimate");
   fields_.record_correction(commands_);
+  if (add) record_addition();
   commands_.end();
   commands_.submit();
+  if (add) fields_.balance_on_host();
   return 0;
+}
+
+void HostCorrectedRoute::record_addition() {
+  fields_.read_along(ReadAlong::What::displacement);
+  commands_.pass("refine");
+  add_.record(commands_);
+  fields_.record_state(commands_);
 }
 
 void HostCorrectedRoute::add_correction() {
   commands_.begin();
-  commands_.pass("refine");
-  add_.record(commands_);
-  fields_.record_state(commands_);
+  record_addition();
   commands_.end();
   commands_.submit();
   fields_.balance_on_host();

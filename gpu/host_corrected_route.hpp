@@ -24,7 +24,8 @@ class HostCorrectedRoute final : public DeviceRoute {
                                                  const Problem& problem, std::size_t panel_bytes);
 
   int solve(const Load& load, double energy_tolerance, bool balance) override;
-  int correct() override;
+  int correct(bool add) override;
+  bool corrects_on_host() const override { return true; }
   void add_correction() override;
   void destroy(std::span<const Index> elements) override;
   void grip(const fem::Event& event) override;
@@ -39,6 +40,7 @@ class HostCorrectedRoute final : public DeviceRoute {
   void ensure_base();
   [[nodiscard]] const Eigen::MatrixXd& load_columns(std::span<const Index> dofs);
   void write_exact(const Load& load, const Eigen::VectorXd& of_damage, bool loads);
+  void record_addition();
 
   const Problem& problem_;
   Fields& fields_;

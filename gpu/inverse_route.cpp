@@ -257,10 +257,13 @@ void InverseRoute::solve_deferred(const Load& load, double energy_tolerance, boo
 void InverseRoute::solve_on_exact(bool balance) {
   Recorded& frame = balance ? checked_ : quiet_;
   const bool keep = fields_.keeps_next(), timed = kernels_.device().timing();
-  if (frame.columns != exact_->count() || frame.keep != keep || frame.timed != timed) {
+  const ReadAlong::What along = fields_.reads_along();
+  if (frame.columns != exact_->count() || frame.keep != keep || frame.timed != timed ||
+      frame.along != along) {
     frame.columns = exact_->count();
     frame.keep = keep;
     frame.timed = timed;
+    frame.along = along;
     vulkan::Commands& commands = frame.commands;
     commands.begin();
     fields_.record_keep(commands);
@@ -270,7 +273,7 @@ void InverseRoute::solve_on_exact(bool balance) {
     fields_.record_state(commands, balance);
     commands.end();
   }
-  fields_.kept();
+  fields_.submitted_again();
   frame.commands.submit();
 }
 
@@ -295,23 +298,25 @@ void InverseRoute::solve_eager(const Load& load, bool balance) {
   commands_.submit();
 }
 
-int InverseRoute::correct() {
+int InverseRoute::correct(bool add) {
   if (eager_) {
     correct_eager();
+    if (add) add_correction();
     return 0;
   }
-  fields_.residual().read(std::span<double>(residual_.data(), all_.size()));
-  correct_by_host(residual_);
+  fields_.read_residual({residual_.data(), all_.size()});
+  correct_by_host(residual_, add);
   return 0;
 }
 
-bool InverseRoute::correct_by_host(const Eigen::VectorXd& r) {
+bool InverseRoute::correct_by_host(const Eigen::VectorXd& r, bool add) {
   if (eager_) return false;
   update_->deferred().correct({all_, {r.data(), all_.size()}}, correction_);
   fields_.write_unknowns(Field::correction, correction_);
   commands_.begin();
   commands_.pass("estimate");
   fields_.record_correction(commands_);
+  if (add) record_addition();
   commands_.end();
   commands_.submit();
   return true;
@@ -335,11 +340,15 @@ void InverseRoute::correct_eager() {
   commands_.submit();
 }
 
-void InverseRoute::add_correction() {
-  commands_.begin();
+void InverseRoute::record_addition() {
   commands_.pass("refine");
   add_.record(commands_);
   fields_.record_state(commands_, true);
+}
+
+void InverseRoute::add_correction() {
+  commands_.begin();
+  record_addition();
   commands_.end();
   commands_.submit();
 }

@@ -44,8 +44,9 @@ class InverseRoute final : public DeviceRoute {
                                                  const InverseOptions& options);
 
   int solve(const Load& load, double energy_tolerance, bool balance) override;
-  int correct() override;
-  bool correct_by_host(const Eigen::VectorXd& r) override;
+  int correct(bool add) override;
+  bool correct_by_host(const Eigen::VectorXd& r, bool add) override;
+  bool corrects_on_host() const override { return !eager_; }
   void add_correction() override;
   void destroy(std::span<const Index> elements) override;
   void grip(const fem::Event& event) override;
@@ -86,6 +87,7 @@ class InverseRoute final : public DeviceRoute {
   void solve_eager(const Load& load, bool balance);
   bool update_eager(std::span<const Index> elements);
   void correct_eager();
+  void record_addition();
   void factor_grips();
   [[nodiscard]] Loaded grip_forces(Field field, std::span<const double> displacement) const;
   void follow_update();
@@ -138,6 +140,7 @@ class InverseRoute final : public DeviceRoute {
     vulkan::Commands commands;
     Index columns = kNone;  // of the recording; kNone: none
     bool keep = false, timed = false;
+    ReadAlong::What along = ReadAlong::What::nothing;
   };
   Recorded quiet_, checked_;
 };

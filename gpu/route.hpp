@@ -26,10 +26,13 @@ class DeviceRoute {
   /// Displacement under a load, and Fields' state of it, with f - K u if `balance`. The deferred
   /// update may stop refining at `energy_tolerance` [N mm]. Returns iterations.
   virtual int solve(const Load& load, double energy_tolerance, bool balance) = 0;
-  /// Correction = A^-1 r with grips at 0, and Fields' summary of it. Returns iterations.
-  virtual int correct() = 0;
+  /// Correction = A^-1 r with grips at 0, and Fields' summary of it; `add`: and as
+  /// add_correction(). Returns iterations.
+  virtual int correct(bool add) = 0;
   /// The same of a residual r that the host has. False, and nothing is done: it reads the fields'.
-  virtual bool correct_by_host(const Eigen::VectorXd& /*r*/) { return false; }
+  virtual bool correct_by_host(const Eigen::VectorXd& /*r*/, bool /*add*/) { return false; }
+  /// Whether correct() takes the residual to the host, and adds in the submit of its estimate.
+  [[nodiscard]] virtual bool corrects_on_host() const { return false; }
   /// Displacement += correction, and Fields' state anew.
   virtual void add_correction() = 0;
   /// Follows an event; the body has destroyed the elements already.

@@ -25,6 +25,13 @@ struct Balance {
   double largest_stress = 0;  ///< over the live elements that a frame computes [MPa]
 };
 
+/// What is wanted of f - K u of a solution.
+enum class Residual {
+  none,
+  size,   ///< Balance::residual
+  whole,  ///< and all of it for FrameDevice::correct(), which is going to be called
+};
+
 class FrameDevice {
  public:
   FrameDevice() = default;
@@ -43,7 +50,7 @@ class FrameDevice {
   /// Puts a solution in work, with its residual if wanted, and its stress. The deferred update may
   /// stop refining at `energy_tolerance` [N mm] (Deferred::solve). Returns iterations of conjugate
   /// gradients.
-  virtual int solve(double energy_tolerance, bool residual) = 0;
+  virtual int solve(double energy_tolerance, Residual residual) = 0;
   /// Of the solution in work.
   [[nodiscard]] virtual Balance balance() const = 0;
   /// Whether the solution in work is made of numbers, where its residual was left out.
@@ -53,8 +60,10 @@ class FrameDevice {
     double stress = 0;  ///< largest over live elements [MPa]; infinite: there is none
     int iterations = 0;
   };
-  /// du = A^-1 r of the solution in work, grips at 0.
-  virtual Correction correct() = 0;
+  /// du = A^-1 r of the solution in work, grips at 0; `add`: and as add_correction().
+  virtual Correction correct(bool add) = 0;
+  /// Whether both at once cost less than one after the other.
+  [[nodiscard]] virtual bool adds_at_once() const { return false; }
   /// u += du, with residual and stress.
   virtual void add_correction() = 0;
 

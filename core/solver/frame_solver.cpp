@@ -83,6 +83,8 @@ void FrameSolver::restore(const State& state) {
   events_ = state.events_;
   last_ = state.last_;
   checked_base_ = state.checked_base_;
+  checked_fully_ = state.checked_fully_;
+  first_adds_ = state.first_adds_;
   check_ = nullptr;
   load_ = nullptr;
 }
@@ -108,7 +110,7 @@ bool FrameSolver::known(const Load& load) const {
 std::optional<SolveReport> FrameSolver::solve_known(const Load& load) {
   if (!known(load)) return std::nullopt;
   SolveReport report = last_.report;
-  report.iterations = device_.solve(0, false);
+  report.iterations = device_.solve(0, Residual::none);
   report.back_solves = 1;
   if (!device_.finite()) return std::nullopt;
   return report;
@@ -119,12 +121,16 @@ SolveReport FrameSolver::solve_everywhere(const Load& load) {
   refined_ = false;
   check_ = check_of(load);
   const auto expected = check_ ? check_->expected(load, bases()) : std::nullopt;
-  solve_once(expected ? check_->energy_tolerance(*expected) : 0, report);
+  // Where the last one had a full check this one may need it too.
+  solve_once(expected ? check_->energy_tolerance(*expected) : 0,
+             expected && !checked_fully_ ? Residual::size : Residual::whole, report);
   const auto known =
       expected && speaks_for_itself() ? check_->error(*expected, solution()) : std::nullopt;
+  checked_fully_ = !known;
   if (known) {
     report.error = *known;
   } else {
+    first_adds_ = first_adds_ || expected;  // it was not good enough to be known
     check_fully(report);
   }
   return report;
@@ -173,7 +179,7 @@ SolveReport FrameSolver::solve_condensed(const Load& load) {
   }
   if (auto known = solve_by_base(check)) return *known;
   SolveReport report;
-  solve_once(0, report);
+  solve_once(0, Residual::whole, report);
   const int base = device_.bases();
   const double by_base = device_.deferred()->forces();
   check_fully(report);
@@ -227,8 +233,8 @@ std::optional<SolveReport> FrameSolver::solve_by_base(const EnergyCheck& check) 
   return known;
 }
 
-void FrameSolver::solve_once(double energy_tolerance, SolveReport& report) {
-  report.iterations += device_.solve(energy_tolerance, true);
+void FrameSolver::solve_once(double energy_tolerance, Residual residual, SolveReport& report) {
+  report.iterations += device_.solve(energy_tolerance, residual);
   ++report.back_solves;
   read_balance(report);
 }
@@ -251,13 +257,23 @@ void FrameSolver::check_fully(SolveReport& report) {
   if (!(report.error <= tolerance())) fail(report);
 }
 
-/// Corrects the solution until the estimate is rounding's.
+/// Whether to add a correction before it is known: it is likely to be needed, and that costs less.
+/// `before`: error of the last one.
+bool FrameSolver::adds_at_once(int attempt, double before) const {
+  if (!device_.adds_at_once() || attempt == kRefinements) return false;
+  // Each leaves about the same share of what there was.
+  return attempt == 0 ? first_adds_ : before * unrefined_ > precision_.refined;
+}
+
+/// Corrects the solution until the estimate is rounding's. One that was added before it was known
+/// to be small enough has made the solution better.
 void FrameSolver::refine(SolveReport& report, bool by_base) {
   report.error = std::numeric_limits<double>::infinity();
   for (int attempt = 0;; ++attempt) {
     double stress = std::numeric_limits<double>::infinity();  // overflow
+    const bool added = adds_at_once(attempt, report.error);
     if (std::isfinite(report.residual) && std::isfinite(balance_.largest_stress)) {
-      const FrameDevice::Correction correction = device_.correct();
+      const FrameDevice::Correction correction = device_.correct(added);
       report.iterations += correction.iterations;
       ++report.back_solves;
       stress = correction.stress;
@@ -274,11 +290,14 @@ void FrameSolver::refine(SolveReport& report, bool by_base) {
     const bool stalled = attempt > 0 && !(error < report.error / 2);
     report.error = error;
     if (!std::isfinite(error)) return;  // there is no correction
-    const bool done = error <= precision_.refined && (attempt > 0 || !device_.yardstick());
-    if (done || attempt == kRefinements || stalled) return;
-    device_.add_correction();
+    const bool done = error <= precision_.refined && (attempt > 0 || !device_.yardstick()),
+               ends = done || attempt == kRefinements || (stalled && !added);
+    if (attempt == 0) first_adds_ = !ends;
+    if (ends && !added) return;
+    if (!added) device_.add_correction();
     refined_ = true;
     read_balance(report);
+    if (ends) return;
   }
 }
 
@@ -298,12 +317,12 @@ double FrameSolver::error_of_rounding() const {
 /// computed anew, and if that is not enough conjugate gradients on the intact base have the word.
 void FrameSolver::polish(SolveReport& report) {
   if (device_.rebase()) {
-    solve_once(0, report);
+    solve_once(0, Residual::whole, report);
     refine(report, true);
   }
   if (!(report.error <= tolerance()) && device_.fall_back(true)) {
     const double of_base = unrefined_;
-    solve_once(0, report);
+    solve_once(0, Residual::whole, report);
     refine(report, false);
     unrefined_ = of_base;
     device_.fall_back(false);

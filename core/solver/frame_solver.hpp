@@ -47,9 +47,10 @@ class FrameSolver {
   [[nodiscard]] int bases() const;
   [[nodiscard]] bool speaks_for_itself() const;
 
-  void solve_once(double energy_tolerance, SolveReport& report);
+  void solve_once(double energy_tolerance, Residual residual, SolveReport& report);
   void read_balance(SolveReport& report);
   void check_fully(SolveReport& report);
+  [[nodiscard]] bool adds_at_once(int attempt, double before) const;
   void refine(SolveReport& report, bool by_base);
   [[nodiscard]] bool misses_precision(double error) const;
   [[nodiscard]] double error_of_rounding() const;
@@ -77,6 +78,9 @@ class FrameSolver {
   double unrefined_ = 0;         // error of the last checked solution before it was refined
   bool everywhere_ = true;
   bool refined_ = false;  // the solution in work is more than what the route gives by itself
+  // By what is likely to be wanted: the last one had a full check; the last full check added its
+  // first correction.
+  bool checked_fully_ = true, first_adds_ = false;
   // The last frame, where a multiple of its load has the same relative error.
   struct Last {
     Load load;
@@ -102,7 +106,9 @@ class FrameSolver::State {
         kept_error_(of.kept_error_),
         events_(of.events_),
         last_(of.last_),
-        checked_base_(of.checked_base_) {}
+        checked_base_(of.checked_base_),
+        checked_fully_(of.checked_fully_),
+        first_adds_(of.first_adds_) {}
 
  private:
   friend class FrameSolver;
@@ -112,6 +118,7 @@ class FrameSolver::State {
   int events_;
   Last last_;
   CheckedBase checked_base_;
+  bool checked_fully_, first_adds_;
 };
 
 }  // namespace sunder::solver

@@ -107,7 +107,7 @@ Precision HostFrame::precision() const {
   return {yardstick_ || condensed() ? kReferenceError : kDeferredError, kDamagedError, kEstimated};
 }
 
-int HostFrame::solve(double energy_tolerance, bool) {
+int HostFrame::solve(double energy_tolerance, Residual) {
   make_room_for_offsets();
   route().set_energy_tolerance(energy_tolerance);
   const int iterations = route().solve(load_, force_, u_).iterations;
@@ -150,11 +150,13 @@ void HostFrame::compute_stress() {
   stress_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-FrameDevice::Correction HostFrame::correct() {
+FrameDevice::Correction HostFrame::correct(bool add) {
   const Applied applied = route().apply(r_, du_);
   if (!applied.converged) return {std::numeric_limits<double>::infinity(), applied.iterations};
-  return {fields_.has_forces() ? fields_.largest_stress(du_) : body_.largest_stress(du_),
-          applied.iterations};
+  const double stress =
+      fields_.has_forces() ? fields_.largest_stress(du_) : body_.largest_stress(du_);
+  if (add) add_correction();
+  return {stress, applied.iterations};
 }
 
 void HostFrame::add_correction() {

@@ -48,9 +48,9 @@ class HostFrame final : public FrameDevice {
 
   [[nodiscard]] Precision precision() const override;
   [[nodiscard]] bool yardstick() const override { return yardstick_; }
-  int solve(double energy_tolerance, bool residual) override;
+  int solve(double energy_tolerance, Residual residual) override;
   [[nodiscard]] Balance balance() const override;
-  Correction correct() override;
+  Correction correct(bool add) override;
   void add_correction() override;
   bool rebase() override { return route_.rebase(); }
   bool fall_back(bool on) override;

@@ -67,6 +67,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   stress_partials_ = make((norms_ ? element_parts_ : 1) * sizeof(shaders::StressPartial));
   node_partials_ = make(node_parts_ * sizeof(shaders::NodePartial));
   summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
+  if (has_residual_) along_ = ReadAlong(device, std::size_t{4} * nodes_ * sizeof(double));
   upload_mesh();
   if (norms_) upload_shapes();
   create_kernels();
@@ -91,6 +92,7 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
     sum += Buffer::padded(bytes);
   }
   sum += SummaryPass::planned_bytes(kernels_, most_parts());
+  if (has_residual_) sum += ReadAlong::planned_bytes(kernels_.device().physical(), nodal);
   if (norms_) {  // nodes and shapes of elements
     sum += Buffer::padded(4 * elements * sizeof(std::uint32_t)) +
            Buffer::padded(12 * elements * sizeof(double));
@@ -435,7 +437,7 @@ void Fields::record_stress(vulkan::Commands& commands, Field field, std::uint32_
                     elements_ / shaders::kGroup);
 }
 
-void Fields::record_state(vulkan::Commands& commands, bool balance) const {
+void Fields::record_state(vulkan::Commands& commands, bool balance) {
   balance = (balance || !norms_) && has_residual_ && !host_balance_;
   const std::uint32_t node_groups = nodes_ / shaders::kGroup;
   if (norms_) {
@@ -451,6 +453,7 @@ void Fields::record_state(vulkan::Commands& commands, bool balance) const {
   }
   commands.pass(norms_ ? "stress" : "residual");
   summary_pass_->record(commands, {norms_ ? element_parts_ : 0, balance ? node_parts_ : 0}, 0);
+  along_.record(commands, displacement_, residual_);
 }
 
 void Fields::record_correction(vulkan::Commands& commands) const {
@@ -470,10 +473,17 @@ void Fields::write_displacement(std::span<const double> nodal) {
 
 void Fields::read(Field field, std::span<double> nodal) const {
   std::vector<double> padded(4 * problem_.mesh().nodes.size());
-  read_wide(this->nodal(field), padded);
+  const Buffer& there = this->nodal(field);
+  read_wide(
+      field == Field::displacement ? along_.where(ReadAlong::What::displacement, there) : there,
+      padded);
   for (std::size_t n = 0; n < problem_.mesh().nodes.size(); ++n) {
     std::copy_n(&padded[4 * n], 3, &nodal[3 * n]);
   }
+}
+
+void Fields::read_residual(std::span<double> residual) const {
+  along_.where(ReadAlong::What::residual, residual_).read(residual);
 }
 
 Eigen::VectorXd Fields::read_unknowns(Field field, std::span<const Index> dofs) const {
@@ -569,7 +579,8 @@ std::vector<BufferPlan> Fields::buffers() const {
       {"stiffness, 3 x 3 blocks with preconditioner (device)", matrix_.bytes()},
       {"element stress (device)", stress_.bytes()},
       {"partial results and summary (device)",
-       sum({&stress_partials_, &node_partials_, &summaries_, &over_}) + summary_pass_->bytes()}};
+       sum({&stress_partials_, &node_partials_, &summaries_, &over_}) + summary_pass_->bytes() +
+           along_.bytes()}};
 }
 
 }  // namespace sunder::gpu

@@ -13,6 +13,7 @@
 #include "gpu/passes/gather.hpp"
 #include "gpu/passes/host_balance.hpp"
 #include "gpu/passes/patch_pressures.hpp"
+#include "gpu/passes/read_along.hpp"
 #include "gpu/passes/summary.hpp"
 #include "gpu/vulkan/commands.hpp"
 #include "shaders/layout.h"
@@ -64,7 +65,14 @@ class Fields {
   /// The next record_keep() sets the displacement aside, for restore() when the solve fails.
   void keep_next() { keep_ = true; }
   [[nodiscard]] bool keeps_next() const { return keep_; }
-  void kept() { keep_ = false; }
+  /// What the host reads of the states from the next one on: it comes along with them.
+  void read_along(ReadAlong::What what) { along_.ask(what); }
+  [[nodiscard]] ReadAlong::What reads_along() const { return along_.asked(); }
+  /// A state that was recorded as keeps_next() and reads_along() have it is submitted once more.
+  void submitted_again() {
+    keep_ = false;
+    along_.again();
+  }
   void record_keep(vulkan::Commands& commands);
   /// The displacement that was set aside, with its state.
   void restore();
@@ -72,7 +80,7 @@ class Fields {
   void record_hold(vulkan::Commands& commands, Field field) const;
   /// Stress of the displacement and its summary; with `balance`, or without norms(), f - K u with r
   /// (0 at grips) too.
-  void record_state(vulkan::Commands& commands, bool balance = true) const;
+  void record_state(vulkan::Commands& commands, bool balance = true);
   /// Largest stress of the correction.
   void record_correction(vulkan::Commands& commands) const;
 
@@ -114,6 +122,9 @@ class Fields {
   [[nodiscard]] const vulkan::Buffer& residual() const { return residual_; }
   /// Of each node: unknowns along x, y, z (kHeld: a support), gripped axes as bits.
   [[nodiscard]] const vulkan::Buffer& dofs() const { return dofs_; }
+
+  /// f - K u at all unknowns, 0 at grips.
+  void read_residual(std::span<double> residual) const;
 
   /// For tests of single kernels: inputs as given, shapes (3 * nodes) and (rows()).
   void write_displacement(std::span<const double> nodal);
@@ -170,6 +181,7 @@ class Fields {
   std::unique_ptr<HostBalance> host_balance_;  // empty: the device does it
   bool keep_ = false;
   vulkan::Buffer displacement_, kept_, correction_, load_, residual_, balance_;
+  ReadAlong along_;
   vulkan::Buffer stress_, stress_partials_, node_partials_, summaries_, over_;
 
   struct Pass {

@@ -29,7 +29,7 @@ TEST_P(CgKernels, MultiplyByTheDamagedStiffness) {
   scene.supports.push_back({Box{Vec3(-1, 9.5, -1), Vec3(11, 11, 2)}, Axes{5}});
   scene.supports.push_back({Box{Vec3(-1, -1, -1), Vec3(11, 0.5, 2)}, Axes{2}});
   const Problem problem(scene);
-  const gpu::Fields fields(*factory_, problem, all_needs());
+  gpu::Fields fields(*factory_, problem, all_needs());
   gpu::BlockMatrix matrix(*factory_, problem);
   Multiply multiply(*device_, *factory_, fields, matrix);
   std::vector<double> scale(problem.mesh().tets.size(), 1.0);

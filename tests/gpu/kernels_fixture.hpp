@@ -48,7 +48,7 @@ class Kernels : public WithVulkan<testing::TestWithParam<Numbers>> {
   }
 
   /// Stress of the displacement, its summary and f - K u.
-  void compute_state(const gpu::Fields& fields) {
+  void compute_state(gpu::Fields& fields) {
     vulkan::Commands commands(*device_);
     commands.begin();
     fields.record_state(commands);

@@ -13,9 +13,9 @@ class Iterating final : public FrameDevice {
  public:
   Precision precision() const override { return {2e-10, 1e-8, 5e-9}; }
   bool iterates() const override { return true; }
-  int solve(double, bool) override { return 100; }
+  int solve(double, Residual) override { return 100; }
   Balance balance() const override { return now; }
-  Correction correct() override {
+  Correction correct(bool) override {
     ++corrections;
     return {worth * now.residual, 30};
   }
