@@ -7,8 +7,10 @@ Names of files have spaces and letters that no code page of Windows has all of."
 import base64
 import csv
 import json
+import os
 import pathlib
 import re
+import shutil
 import signal
 import struct
 import subprocess
@@ -176,6 +178,23 @@ class Program(unittest.TestCase):
             self.assertIn(code, (1, 2, 3, 4, 5), error)
             self.assertRegex(error, "sunder: error: .*(" + words + ")")
             self.assertEqual(error.count("\n"), 1)
+
+    def test_finds_a_vulkan_loader_by_the_name_that_windows_has_for_it(self):
+        program = pathlib.Path(shutil.copy(THERE[-1], self.work))
+        loader = pathlib.Path(THERE[-1]).resolve().parents[1] / "tests/cross/loader/vulkan-1.dll"
+
+        def devices():
+            # Not wine's own.
+            overrides = os.environ.get("WINEDLLOVERRIDES", "") + ";vulkan-1=n"
+            done = subprocess.run(command([*THERE[:-1], program], "devices"), capture_output=True, check=True,
+                                  timeout=300, env={**os.environ, "WINEDLLOVERRIDES": overrides})
+            return done.stdout.decode("utf-8")
+
+        self.assertNotIn("vulkan", devices())
+        shutil.copy(loader, self.work)
+        # One device, which it shows only to who asks for a portable subset too.
+        self.assertRegex(devices(), r"vulkan +0 +a loader's of the tests")
+        self.assertIn("vulkan 0: cannot be used: it offers Vulkan 1.1 only; 1.2 is needed", devices())
 
     def test_meshes_and_plans_as_here(self):
         for program, name in ((HERE, "a.msh"), (THERE, "ä b.msh")):
