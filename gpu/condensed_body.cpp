@@ -10,17 +10,24 @@ namespace sunder::gpu {
 
 namespace {
 
-/// Null where the device is not to multiply, would never come to so many columns, or has no memory
-/// left for them beside the fields: the host does it then.
-std::unique_ptr<RegionColumns> make_columns(const DeviceSetup& setup,
+/// Whole where there is room for that beside the fields, else columns of it. Null where the device
+/// is not to multiply, would never come to so many columns, or has no memory left for them: the
+/// host does it then.
+std::unique_ptr<RegionInverse> make_inverse(const DeviceSetup& setup,
                                             const solver::Region& region) {
+  using Extent = RegionInverse::Extent;
   const auto& least = setup.inverse.region;
-  const vulkan::Device& device = setup.kernels.device();
+  const std::size_t panel = setup.inverse.panel_bytes;
   const auto unknowns = static_cast<Index>(region.dofs.size());
-  if (!least || RegionColumns::most_values(device.physical(), unknowns) < *least) return nullptr;
-  return where_room<RegionColumns>(
-      device, RegionColumns::planned_bytes(device.physical(), unknowns), "columns of the region",
-      setup.inverse.leave_out, setup.kernels, unknowns, *least);
+  if (!least || RegionInverse::most_values(unknowns) < *least) return nullptr;
+  const auto made = [&](Extent extent, const LeaveOut& leave_out) {
+    return where_room<RegionInverse>(
+        setup.kernels.device(),
+        RegionInverse::planned_bytes(setup.kernels, unknowns, panel, extent),
+        "columns of the region", leave_out, setup.kernels, unknowns, panel, *least, extent);
+  };
+  if (auto whole = made(Extent::whole, {})) return whole;
+  return made(Extent::columns, setup.inverse.leave_out);
 }
 
 }  // namespace
@@ -32,12 +39,12 @@ CondensedBody::CondensedBody(const DeviceSetup& setup, const solver::Region& reg
       fields_(setup.kernels, *part_.problem(), setup.needs, {.residual = false}),
       commands_(setup.kernels.device()),
       intact_(std::make_shared<const HostInverse>(problem_, false)),
-      columns_(make_columns(setup, region)),
+      inverse_(make_inverse(setup, region)),
       damage_(DamageSolution::make(setup.kernels, solver::columns_of_a_base(region.dofs.size()),
                                    problem_.gripped_dofs().size(), setup.inverse.damage,
                                    setup.inverse.leave_out)),
       route_(solver::condensed_route(damaged_, {intact_, &intact_->factor()}, region.dofs,
-                                     setup.needs.damage, {}, columns_.get(), damage_.get())),
+                                     setup.needs.damage, {}, inverse_.get(), damage_.get())),
       frame_(damaged_, *route_, *this),
       outside_(damaged_, region),
       nodal_(part_.problem()->dofs().size(), 0.0),
@@ -159,7 +166,12 @@ std::vector<BufferPlan> CondensedBody::buffers() const {
   plan.push_back({"intact factor (host)", intact_->bytes()});
   plan.push_back({"fields outside the condensed region (host)",
                   outside_.bytes() + whole_nodal_.size() * sizeof(double)});
-  if (columns_) plan.push_back({"columns of the region (device)", columns_->bytes()});
+  if (inverse_) {
+    plan.push_back({inverse_->extent() == RegionInverse::Extent::whole
+                        ? "inverse of the region (device)"
+                        : "columns of the region (device)",
+                    inverse_->bytes()});
+  }
   if (damage_) plan.push_back({"small matrices of the damage (device)", damage_->bytes()});
   for (BufferPlan& b : fields_.buffers()) plan.push_back(std::move(b));
   return plan;

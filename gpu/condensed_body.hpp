@@ -7,7 +7,7 @@
 
 #include "gpu/device_body.hpp"
 #include "gpu/passes/damage_solution.hpp"
-#include "gpu/passes/region_columns.hpp"
+#include "gpu/passes/region_inverse.hpp"
 #include "solver/condensed_fields.hpp"
 #include "solver/condensed_route.hpp"
 #include "solver/host_frame.hpp"
@@ -50,7 +50,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void add_to(solver::FrameShape& shape) const override {
     const solver::Deferred& deferred = *route_->deferred();
     shape.columns = static_cast<std::size_t>(deferred.rank() - deferred.grips());
-    shape.region_there = columns_ && columns_->takes(deferred.rank());
+    shape.region_there = inverse_ && inverse_->takes(deferred.rank());
     shape.damage_there =
         damage_ && deferred.events() > 0 && damage_->takes(deferred.rank(), deferred.grips());
   }
@@ -66,7 +66,7 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   vulkan::Commands commands_;
   IntactInverse intact_;                        // its factor
   std::shared_ptr<solver::Deferred> pristine_;  // of the intact body: its grips
-  std::unique_ptr<RegionColumns> columns_;      // null: the host multiplies
+  std::unique_ptr<RegionInverse> inverse_;      // null: the host multiplies
   std::unique_ptr<DamageSolution> damage_;      // likewise
   std::unique_ptr<solver::InverseRoute> route_;
   solver::HostFrame frame_;

@@ -74,6 +74,8 @@ CondensedBase::CondensedBase(std::shared_ptr<const linear_algebra::Factor> facto
   loads_.reserve(dofs_.size());
   vectors_.reserve(kVectors);
   pushes_.reserve(kVectors);
+  there_.reserve(dofs_.size());
+  forces_there_.reserve(dofs_.size());
   make_room_everywhere();
 }
 
@@ -166,6 +168,7 @@ void CondensedBase::shrink(std::size_t size) {
   if (dofs_.size() == size) return;
   for (Index d : std::span(dofs_).subspan(size)) place_[d] = kNone;
   dofs_.resize(size);
+  if (product_) product_->forget(static_cast<Index>(size));
   const Eigen::Index added = static_cast<Eigen::Index>(size) - x_.first_rows();
   x_.keep_added(added);
   x_of_factor_.keep_added(added);
@@ -206,7 +209,6 @@ void CondensedBase::pop() {
   const Before before = pushes_.back();
   vectors_.resize(before.vectors);
   pushes_.pop_back();
-  if (product_) product_->forget(count());
   for (Index p : touched_) is_touched_[p] = kNone;
   touched_.clear();
   shrink(before.unknowns);
@@ -293,48 +295,43 @@ const Eigen::VectorXd& CondensedBase::project(const Eigen::VectorXd& v) {
 
 void CondensedBase::multiply_by(RegionProduct* product) {
   product_ = product;
-  if (product_) product_->begin();
+  if (product_) product_->begin(*this);
 }
 
-void CondensedBase::columns(Index first, Eigen::Ref<Eigen::MatrixXd> to) const {
-  for (Eigen::Index j = 0; j < to.cols(); ++j) {
-    const auto [dof, other] = vectors_[static_cast<std::size_t>(first + j)];
-    const GrownInverse::Column a = x_.column(place_[dof]);
-    for (Eigen::Index i = 0; i < to.rows(); ++i) to(i, j) = a[i];
-    if (other == kNone) continue;
-    const GrownInverse::Column b = x_.column(place_[other]);
-    for (Eigen::Index i = 0; i < to.rows(); ++i) to(i, j) -= b[i];
-  }
-}
-
-/// B c of some of the vectors, on the places that B touches.
-void CondensedBase::collect_forces(const Eigen::VectorXd& c, Index first, Index end) {
+/// B c, on the places that B touches.
+void CondensedBase::collect_forces(const Eigen::VectorXd& c) {
   forces_.assign(touched_.size(), 0.0);
-  for (Index i = first; i < end; ++i) {
+  for (Index i = 0; i < count(); ++i) {
     const auto [dof, other] = vectors_[static_cast<std::size_t>(i)];
     forces_[is_touched_[place_[dof]]] += c[i];
     if (other != kNone) forces_[is_touched_[place_[other]]] -= c[i];
   }
 }
 
-/// u_ += X_SS forces_ in the rows from one on.
+/// u_ += X_SS of the places there_ times their forces, in the rows from one on.
 void CondensedBase::add_grown_rows(Index from) {
   for (Eigen::Index i = from; i < u_.size(); ++i) {
     const GrownInverse::Column row = x_.column(i);  // it is symmetric
     double sum = 0;
-    for (std::size_t t = 0; t < touched_.size(); ++t) sum += forces_[t] * row[touched_[t]];
+    for (std::size_t t = 0; t < there_.size(); ++t) sum += forces_there_[t] * row[there_[t]];
     u_[i] += sum;
   }
 }
 
-/// u_ += X_SS by the columns that bear a force.
-void CondensedBase::add_loaded_columns() {
+/// u_ += X_SS forces_, by product_ as far as that has the columns.
+void CondensedBase::multiply_there() {
+  there_.clear();
+  forces_there_.clear();
   loaded_.clear();
   loads_.clear();
   for (std::size_t i = 0; i < touched_.size(); ++i) {
-    if (forces_[i] == 0) continue;
-    loaded_.push_back(touched_[i]);
-    loads_.push_back(forces_[i]);
+    const bool there = there_.size() < product_->most() && product_->has(touched_[i]);
+    (there ? there_ : loaded_).push_back(touched_[i]);
+    (there ? forces_there_ : loads_).push_back(forces_[i]);
+  }
+  if (!there_.empty()) {
+    product_->add(there_, forces_there_, u_);
+    add_grown_rows(product_->rows());
   }
   if (!loaded_.empty()) add(x_, loaded_, loads_, u_.data());
 }
@@ -353,20 +350,12 @@ void CondensedBase::expand_mended(const Eigen::VectorXd& c, Eigen::VectorXd& u) 
 
 /// u_ = (X (f + B c))_S.
 void CondensedBase::multiply(const Eigen::VectorXd& c) {
-  const Index there = product_ ? product_->follow(*this) : 0;
+  collect_forces(c);
   u_.setZero();
-  if (there == 0) {
-    collect_forces(c, 0, count());
-    add(x_, touched_, forces_, u_.data());
+  if (product_ && product_->follow(*this, touched_)) {
+    multiply_there();
   } else {
-    product_->add(c, u_);
-    if (u_.size() > product_->rows()) {
-      collect_forces(c, 0, there);
-      add_grown_rows(product_->rows());
-    }
-    collect_forces(c, there, count());
-    add_loaded_columns();
-    collect_forces(c, 0, count());
+    add(x_, touched_, forces_, u_.data());
   }
   u_ += last_->u;
 }

@@ -92,8 +92,8 @@ class CondensedBase final : public Base {
   }
   /// X_SS is more than the factor's own.
   [[nodiscard]] bool drifts() const { return lost_ != nullptr; }
-  /// Columns of X_SS B into `to`, shape (rows x columns): the first rows of dofs().
-  void columns(Index first, Eigen::Ref<Eigen::MatrixXd> to) const;
+  /// X_SS.
+  [[nodiscard]] const GrownInverse& inverse() const { return x_; }
   /// Of B.
   [[nodiscard]] Index count() const { return static_cast<Index>(vectors_.size()); }
   [[nodiscard]] bool inside(std::span<const Index> dofs) const;
@@ -111,9 +111,9 @@ class CondensedBase final : public Base {
   [[nodiscard]] const Eigen::VectorXd& project(const Eigen::VectorXd& v);
   void multiply(const Eigen::VectorXd& c);
   void write(Eigen::VectorXd& u) const;
-  void collect_forces(const Eigen::VectorXd& c, Index first, Index end);
+  void collect_forces(const Eigen::VectorXd& c);
+  void multiply_there();
   void add_grown_rows(Index from);
-  void add_loaded_columns();
   void add_lost_to(Eigen::MatrixXd& columns);
   void add(const GrownInverse& x, std::span<const Index> places, std::span<const double> values,
            double* y);
@@ -138,6 +138,8 @@ class CondensedBase final : public Base {
   std::vector<Before> pushes_;               // what there was before each
   std::vector<Index> touched_, is_touched_;  // places that B touches; per place: where in touched_
   std::vector<double> forces_;               // B c on them
+  std::vector<Index> there_;                 // those of them that product_ multiplies
+  std::vector<double> forces_there_;
   RegionProduct* product_ = nullptr;
   RegionGrowth* growth_ = nullptr;
   int growing_threads_ = linear_algebra::background_threads();

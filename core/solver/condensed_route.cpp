@@ -218,12 +218,11 @@ class CondensedRoute final : public InverseRoute {
     std::iota(all_.begin(), all_.end(), 0);
     based_ = condensed_by(body.forms(), std::move(intact), dofs_, damage,
                           linear_algebra::work_at_once());
+    if (damage) growth_.emplace(body.problem());
     lend();
     intact_ = based_.factor.get();
     make_room(body.problem());
     if (!damage) return;
-    growth_.emplace(body.problem());
-    lend();
     factors_.emplace(body.problem(), based_.factor->cholesky().shared_supernodes());
     next_.emplace(body.problem(), dofs_, most, threshold());
     coming_.emplace(body, static_cast<int>(events_of_a_base(dofs_.size())), rest);

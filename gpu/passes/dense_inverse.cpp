@@ -69,9 +69,12 @@ void PartialSums::record_sum(vulkan::Commands& commands, const Binding& into, st
                     rows_ / shaders::kRowPad);
 }
 
-DenseInverse::DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t rows,
+DenseInverse::DenseInverse(const KernelFactory& kernels, Shape shape, std::uint32_t rows,
                            std::size_t panel_bytes)
-    : kernels_(kernels), n_(n), rows_(rows), columns_(round_up(u32(n), shaders::kColumnPad)) {
+    : kernels_(kernels),
+      n_(shape.n),
+      rows_(rows),
+      columns_(round_up(u32(shape.columns), shaders::kColumnPad)) {
   create_panels(panel_bytes);
   create_apply();
   if (narrows(kernels)) {
@@ -80,9 +83,9 @@ DenseInverse::DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t 
   entries_ = Buffer(kernels_.device(), kFirstEntries * sizeof(shaders::Entry), Placement::sent);
 }
 
-DenseInverse::Planned DenseInverse::planned(const KernelFactory& kernels, Index n,
+DenseInverse::Planned DenseInverse::planned(const KernelFactory& kernels, Shape shape,
                                             std::uint32_t rows, std::size_t panel_bytes) {
-  const std::uint32_t columns = round_up(u32(n), shaders::kColumnPad);
+  const std::uint32_t columns = round_up(u32(shape.columns), shaders::kColumnPad);
   const std::uint32_t most = panel_columns(kernels, rows, panel_bytes);
   return {std::size_t{columns} * rows * kernels.real_bytes() +
               Buffer::padded(kFirstEntries * sizeof(shaders::Entry)) +
@@ -158,6 +161,11 @@ void DenseInverse::write_columns(Index first, const Eigen::MatrixXd& columns) {
   }
 }
 
+void DenseInverse::write_column(Index column, std::span<const double> values) {
+  Panel& panel = panels_[panel_of(column)];
+  panel.matrix.write(values, (static_cast<std::size_t>(column) - panel.first) * rows_);
+}
+
 void DenseInverse::bind(const PartialSums& partials, const Buffer& vector) {
   partials_ = &partials;
   dense_vector_ = &vector;
@@ -202,11 +210,21 @@ shaders::Entry DenseInverse::entry_of(std::uint32_t column, double value) const 
   return {column, 0, static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
 }
 
+void DenseInverse::reserve_loaded(std::size_t dofs) {
+  if (dofs * sizeof(shaders::Entry) <= entries_.bytes()) return;
+  entries_ = Buffer(kernels_.device(), dofs * sizeof(shaders::Entry), Placement::sent);
+  if (partials_) bind_loaded();
+}
+
+std::size_t DenseInverse::planned_loaded(std::size_t dofs) {
+  return dofs <= kFirstEntries ? 0
+                               : Buffer::padded(dofs * sizeof(shaders::Entry)) -
+                                     Buffer::padded(kFirstEntries * sizeof(shaders::Entry));
+}
+
 void DenseInverse::set_loaded(const Loaded& load) {
   if (load.dofs.size() * sizeof(shaders::Entry) > entries_.bytes()) {
-    entries_ =
-        Buffer(kernels_.device(), 2 * load.dofs.size() * sizeof(shaders::Entry), Placement::sent);
-    bind_loaded();
+    reserve_loaded(2 * load.dofs.size());
   }
   auto* entry = entries_.mapped<shaders::Entry>();
   std::uint32_t next = 0;

@@ -48,17 +48,25 @@ class DenseInverse {
   /// Columns [first, first + count) of a matrix, shape (n x count).
   using Columns = std::function<Eigen::MatrixXd(Index first, Index count)>;
 
+  /// Unknowns, and columns: of a part of it there may be other ones than n.
+  struct Shape {
+    Shape(Index unknowns) : n(unknowns), columns(unknowns) {}
+    Shape(Index unknowns, Index of_them) : n(unknowns), columns(of_them) {}
+    Index n, columns;
+  };
+
   /// `panel_bytes`: largest buffer wanted, 0: the device's limit. Throws DeviceError, before
   /// anything is allocated, when the device cannot hold it.
-  DenseInverse(const KernelFactory& kernels, Index n, std::uint32_t rows, std::size_t panel_bytes);
+  DenseInverse(const KernelFactory& kernels, Shape shape, std::uint32_t rows,
+               std::size_t panel_bytes);
 
   /// Bytes of an inverse to come, and in how many panels.
   struct Planned {
     std::size_t bytes = 0;
     std::uint32_t panels = 0, chunks = 0;
   };
-  [[nodiscard]] static Planned planned(const KernelFactory& kernels, Index n, std::uint32_t rows,
-                                       std::size_t panel_bytes);
+  [[nodiscard]] static Planned planned(const KernelFactory& kernels, Shape shape,
+                                       std::uint32_t rows, std::size_t panel_bytes);
 
   /// Bytes that the first pick() of such a block takes.
   [[nodiscard]] static std::size_t planned_pick(std::size_t rows, std::size_t columns);
@@ -70,12 +78,17 @@ class DenseInverse {
   void upload(const Columns& columns);
   /// Some columns, shape (n x columns), that lie in one panel, in place of what is there.
   void write_columns(Index first, const Eigen::MatrixXd& columns);
+  /// One column of n, where X is stored in fp64.
+  void write_column(Index column, std::span<const double> values);
 
   [[nodiscard]] std::uint32_t chunks() const { return columns_ / shaders::kChunk; }
   /// Chunks that record_loaded() needs for a load.
   [[nodiscard]] std::uint32_t loaded_chunks(const Loaded& load) const;
   void bind(const PartialSums& partials, const vulkan::Buffer& vector);
 
+  /// Room for loads of so many dofs, and the bytes that it takes beside planned().
+  void reserve_loaded(std::size_t dofs);
+  [[nodiscard]] static std::size_t planned_loaded(std::size_t dofs);
   /// Writes a load for record_loaded().
   void set_loaded(const Loaded& load);
   /// partials from `first_chunk` on = X f of that load; returns how many.

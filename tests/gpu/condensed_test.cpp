@@ -62,7 +62,7 @@ TEST_P(CondensedOnVulkan, AlongACrack) {
   add_pull(scene);
   Pair pair(std::move(scene), GetParam());
   EXPECT_EQ(pair.vulkan->info().route, "condensed");
-  EXPECT_EQ(std::ranges::count(pair.vulkan->buffers(), "columns of the region (device)",
+  EXPECT_EQ(std::ranges::count(pair.vulkan->buffers(), "inverse of the region (device)",
                                &BufferPlan::name),
             GetParam().region ? 1 : 0);
   pair.load(corner_pull(pair.problem()));
