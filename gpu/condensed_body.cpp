@@ -10,9 +10,10 @@ namespace sunder::gpu {
 
 namespace {
 
-/// Whole where there is room for that beside the fields, else columns of it. Null where the device
-/// is not to multiply, would never come to so many columns, or has no memory left for them: the
-/// host does it then.
+/// Whole where there is room for that beside the fields and the host's own does not lie in the same
+/// memory (a processor is asked by name); else columns of it. Null where the device is not to
+/// multiply, would never come to so many columns, or has no memory left for them: the host does it
+/// then.
 std::unique_ptr<RegionInverse> make_inverse(const DeviceSetup& setup,
                                             const solver::Region& region) {
   using Extent = RegionInverse::Extent;
@@ -26,7 +27,10 @@ std::unique_ptr<RegionInverse> make_inverse(const DeviceSetup& setup,
         RegionInverse::planned_bytes(setup.kernels, unknowns, panel, extent),
         "columns of the region", leave_out, setup.kernels, unknowns, panel, *least, extent);
   };
-  if (auto whole = made(Extent::whole, {})) return whole;
+  const vulkan::PhysicalDevice& device = setup.kernels.device().physical();
+  if (!device.unified() || device.is_cpu()) {
+    if (auto whole = made(Extent::whole, {})) return whole;
+  }
   return made(Extent::columns, setup.inverse.leave_out);
 }
 

@@ -3,6 +3,7 @@
 // the host does not read the device's memory itself.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
