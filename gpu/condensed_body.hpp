@@ -50,7 +50,9 @@ class CondensedBody final : public DeviceBody, private solver::HostFields {
   void add_to(solver::FrameShape& shape) const override {
     const solver::Deferred& deferred = *route_->deferred();
     shape.columns = static_cast<std::size_t>(deferred.rank() - deferred.grips());
-    shape.region_there = inverse_ && inverse_->takes(deferred.rank());
+    const Index touched = static_cast<const solver::CondensedBase&>(deferred.base()).touched();
+    shape.region_there = inverse_ && inverse_->takes(touched);
+    shape.touched = static_cast<std::size_t>(touched);
     shape.damage_there =
         damage_ && deferred.events() > 0 && damage_->takes(deferred.rank(), deferred.grips());
   }

@@ -34,8 +34,9 @@ solver::Precision DeviceFrame::precision() const {
 
 int DeviceFrame::solve(double energy_tolerance, solver::Residual residual) {
   const bool reactions = !body_.forms().gripped().empty();
+  first_ = true;
   if (residual == solver::Residual::whole && route_.corrects_on_host()) {
-    read_along();
+    read_along(first_by_elements_);  // most likely
   } else {
     fields_.read_along(ReadAlong::What::nothing);
   }
@@ -43,9 +44,9 @@ int DeviceFrame::solve(double energy_tolerance, solver::Residual residual) {
 }
 
 /// A correction begins with the residual, or with the displacement where that is summed by
-/// elements: most likely as the last one did.
-void DeviceFrame::read_along() {
-  fields_.read_along(were_by_elements_ ? ReadAlong::What::displacement : ReadAlong::What::residual);
+/// elements.
+void DeviceFrame::read_along(bool by_elements) {
+  fields_.read_along(by_elements ? ReadAlong::What::displacement : ReadAlong::What::residual);
 }
 
 solver::Balance DeviceFrame::balance() const {
@@ -82,8 +83,9 @@ int DeviceFrame::correct_by_elements(bool add) {
 
 solver::FrameDevice::Correction DeviceFrame::correct(bool add) {
   Correction found;
-  were_by_elements_ = by_elements_;
-  if (route_.corrects_on_host()) read_along();  // of a state that comes with it
+  if (first_) first_by_elements_ = by_elements_;
+  first_ = false;
+  if (route_.corrects_on_host()) read_along(by_elements_);  // of a state that comes with it
   found.iterations = by_elements_ ? correct_by_elements(add) : route_.correct(add);
   found.stress = fields_.largest_stress(Field::correction);
   return found;

@@ -33,7 +33,7 @@ class DeviceFrame final : public solver::FrameDevice {
 
  private:
   void sum_residual();
-  void read_along();
+  void read_along(bool by_elements);
   [[nodiscard]] int correct_by_elements(bool add);
 
   const Problem& problem_;
@@ -43,8 +43,10 @@ class DeviceFrame final : public solver::FrameDevice {
   bool fp64_;
   Load load_;
   double force_squared_ = 0;
-  bool by_elements_ = false, were_by_elements_ = false;  // the last corrections
-  std::vector<double> nodal_, padded_;                   // of by_elements_: u, r
+  bool by_elements_ = false;
+  bool first_ = false,
+       first_by_elements_ = false;      // correction of a solution; the last one of them
+  std::vector<double> nodal_, padded_;  // of by_elements_: u, r
   Eigen::VectorXd u_, r_;
 };
 

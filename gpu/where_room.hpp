@@ -15,19 +15,22 @@ namespace sunder::gpu {
 /// Takes what a backend leaves out, in words; empty: nobody listens.
 using LeaveOut = std::function<void(std::string)>;
 
-/// A T from these arguments, of so many bytes. Null where the device, or others who have it, leave
-/// no memory for that, which `leave_out` is told: `what`, in words. Throws DeviceLost.
-template <class T, class... Arguments>
-[[nodiscard]] std::unique_ptr<T> where_room(const vulkan::Device& device, std::size_t bytes,
-                                            const char* what, const LeaveOut& leave_out,
+/// A T from these arguments, of `bytes()` bytes, where those leave a share of the device's memory
+/// free. Null where the device, or others who have it, leave no memory for that, which `leave_out`
+/// is told: `what`, in words. Throws DeviceLost.
+template <class T, class Bytes, class... Arguments>
+[[nodiscard]] std::unique_ptr<T> where_room(const vulkan::Device& device, double free,
+                                            const Bytes& bytes, const char* what,
+                                            const LeaveOut& leave_out,
                                             const Arguments&... arguments) {
-  if (device.held_bytes() + bytes <= device.physical().memory) {
-    try {
+  try {
+    if (static_cast<double>(device.held_bytes() + bytes()) <=
+        (1 - free) * static_cast<double>(device.physical().memory)) {
       return std::make_unique<T>(arguments...);
-    } catch (const DeviceLost&) {
-      throw;
-    } catch (const DeviceError&) {  // others have the memory, or a buffer is too large
     }
+  } catch (const DeviceLost&) {
+    throw;
+  } catch (const DeviceError&) {  // others have the memory, or a buffer is too large
   }
   if (leave_out) {
     leave_out(std::string(what) +

@@ -18,10 +18,11 @@ Fields::RouteNeeds route_needs(const DeviceSetup& setup, const Problem& problem)
     return {.bytes = CgRoute::planned_bytes(kernels, problem), .preconditioner = true};
   }
   if (kernels.single()) {
-    return {.bytes =
-                HostCorrectedRoute::planned_bytes(kernels, problem, setup.inverse.panel_bytes)};
+    return {.bytes = HostCorrectedRoute::planned_bytes(kernels, problem, setup.inverse.panel_bytes),
+            .along = true};
   }
-  return {.bytes = InverseRoute::planned_bytes(kernels, problem, setup.inverse)};
+  return {.bytes = InverseRoute::planned_bytes(kernels, problem, setup.inverse),
+          .along = !setup.inverse.eager};
 }
 
 }  // namespace

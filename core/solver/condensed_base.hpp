@@ -96,6 +96,8 @@ class CondensedBase final : public Base {
   [[nodiscard]] const GrownInverse& inverse() const { return x_; }
   /// Of B.
   [[nodiscard]] Index count() const { return static_cast<Index>(vectors_.size()); }
+  /// Unknowns of S that B touches: columns of X_SS that an expand() reads.
+  [[nodiscard]] Index touched() const { return static_cast<Index>(touched_.size()); }
   [[nodiscard]] bool inside(std::span<const Index> dofs) const;
   /// S; at first the unknowns given.
   [[nodiscard]] std::span<const Index> dofs() const { return dofs_; }

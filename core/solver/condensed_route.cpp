@@ -55,10 +55,6 @@ bool is_wide(const fem::Event& event, std::size_t dofs) {
   return kColumnsByOne * event.leave.size() > kWide + dofs / kUnknownsPerColumn;
 }
 
-// S grows where a host goes. Once it has more unknowns than this the next base is made by a factor,
-// over what S was at first: an hour of cuts costs no more memory than minutes.
-std::size_t most_unknowns(std::size_t dofs) { return dofs + dofs / 4 + 2048; }
-
 void complete_by(const CondensedBase& base, Equilibrium& whole, WholeRoom& room,
                  Eigen::VectorXd& everywhere, Eigen::VectorXd& u) {
   base.equilibrium(whole);
@@ -527,6 +523,8 @@ class CondensedRoute final : public InverseRoute {
 };
 
 }  // namespace
+
+std::size_t most_unknowns(std::size_t dofs) { return dofs + dofs / 4 + 2048; }
 
 // Fractures of some elements among them.
 Index columns_of_a_base(std::size_t dofs) {

@@ -26,6 +26,11 @@ namespace sunder::solver {
     RegionProduct* product = nullptr, DamageSolver* solver = nullptr,
     std::optional<std::size_t> most = {});
 
+/// S grows where a host goes. Once it has more unknowns than this, beside those that are gripped,
+/// the next base is made by a factor, over what S was at first, of `dofs` unknowns: an hour of cuts
+/// costs no more memory than minutes.
+[[nodiscard]] std::size_t most_unknowns(std::size_t dofs);
+
 /// Columns of X_SS B that a base of so many unknowns is expected to come to.
 [[nodiscard]] Index columns_of_a_base(std::size_t dofs);
 

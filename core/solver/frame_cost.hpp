@@ -55,7 +55,8 @@ struct FrameShape {
   std::size_t stiffness_bytes = 0;  ///< that f - K u reads
   std::size_t groups = 1;           ///< whose rigid motions precondition its conjugate gradients
   std::size_t columns = 0;          ///< of the damage before this frame
-  bool region_there = false;        ///< the device multiplies them
+  bool region_there = false;        ///< the device multiplies a region's inverse by it
+  std::size_t touched = 0;          ///< unknowns of the region that it touches then
   bool damage_there = false;        ///< and solves with the small matrices
 };
 

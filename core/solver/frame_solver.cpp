@@ -269,9 +269,10 @@ bool FrameSolver::adds_at_once(int attempt, double before) const {
 /// to be small enough has made the solution better.
 void FrameSolver::refine(SolveReport& report, bool by_base) {
   report.error = std::numeric_limits<double>::infinity();
+  bool stalled = false;
   for (int attempt = 0;; ++attempt) {
     double stress = std::numeric_limits<double>::infinity();  // overflow
-    const bool added = adds_at_once(attempt, report.error);
+    const bool added = !stalled && adds_at_once(attempt, report.error);
     if (std::isfinite(report.residual) && std::isfinite(balance_.largest_stress)) {
       const FrameDevice::Correction correction = device_.correct(added);
       report.iterations += correction.iterations;
@@ -286,10 +287,13 @@ void FrameSolver::refine(SolveReport& report, bool by_base) {
       if (check_ && by_base) check_->checked(*load_, solution(), stress, bases());
       report.polished = report.polished || !(error <= tolerance());
     }
-    // A correction that no longer shrinks is rounding.
-    const bool stalled = attempt > 0 && !(error < report.error / 2);
+    // A correction that no longer shrinks is rounding. One that was added has another look.
+    stalled = attempt > 0 && !(error < report.error / 2);
     report.error = error;
-    if (!std::isfinite(error)) return;  // there is no correction
+    if (!std::isfinite(error)) {  // there is no correction
+      if (added) solve_once(0, Residual::whole, report);
+      return;
+    }
     const bool done = error <= precision_.refined && (attempt > 0 || !device_.yardstick()),
                ends = done || attempt == kRefinements || (stalled && !added);
     if (attempt == 0) first_adds_ = !ends;

@@ -125,7 +125,7 @@ double ms_of_damage(const FrameRates& rates, Index columns, bool there) {
 }
 
 void condensed_solution(FrameWork& work, const FrameShape& s, bool torn) {
-  const double rows = real(s.kept), columns = real(s.columns) + (torn ? kDifferences : 0);
+  const double rows = real(s.kept), columns = real(s.touched) + (torn ? kTouched : 0);
   forces_of_damage(work, s, torn);
   if (!s.region_there) {
     work.host(rows * (real(s.loaded + s.grips + s.columns) + (torn ? kTouched : 0)));

@@ -95,9 +95,9 @@ std::unique_ptr<DamageSolution> DamageSolution::make(const KernelFactory& kernel
   constexpr Index kGrasped = 192;  // unknowns that hands may hold
   if (!least || columns + static_cast<Index>(gripped) < *least) return nullptr;
   const Index grips = static_cast<Index>(gripped) + kGrasped, most = columns + grips;
-  return where_room<DamageSolution>(kernels.device(), planned_bytes(most, grips),
-                                    "small matrices of the damage", leave_out, kernels, most, grips,
-                                    *least);
+  return where_room<DamageSolution>(
+      kernels.device(), 0, [&] { return planned_bytes(most, grips); },
+      "small matrices of the damage", leave_out, kernels, most, grips, *least);
 }
 
 std::size_t DamageSolution::planned_bytes(Index columns, Index grips) {

@@ -48,7 +48,7 @@ class DenseInverse {
   /// Columns [first, first + count) of a matrix, shape (n x count).
   using Columns = std::function<Eigen::MatrixXd(Index first, Index count)>;
 
-  /// Unknowns, and columns: of a part of it there may be other ones than n.
+  /// Unknowns, and columns that there is room for: all n, or those that somebody writes one by one.
   struct Shape {
     Shape(Index unknowns) : n(unknowns), columns(unknowns) {}
     Shape(Index unknowns, Index of_them) : n(unknowns), columns(of_them) {}

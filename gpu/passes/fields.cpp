@@ -31,6 +31,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
       list_over_(needs.yield),
       norms_(needs.stress || needs.yield || needs.damage || kernels.single()),
       has_residual_(route.residual),
+      has_along_(route.along),
       rows_(round_up(static_cast<std::uint32_t>(problem.dof_count()), shaders::kRowPad)),
       elements_(round_up(static_cast<std::uint32_t>(problem.tet_count()), shaders::kGroup)),
       nodes_(round_up(static_cast<std::uint32_t>(problem.node_count()), shaders::kGroup)),
@@ -67,7 +68,7 @@ Fields::Fields(const KernelFactory& kernels, const Problem& problem, const Needs
   stress_partials_ = make((norms_ ? element_parts_ : 1) * sizeof(shaders::StressPartial));
   node_partials_ = make(node_parts_ * sizeof(shaders::NodePartial));
   summaries_ = make(2 * sizeof(shaders::Summary), Placement::host);
-  if (has_residual_) along_ = ReadAlong(device, std::size_t{4} * nodes_ * sizeof(double));
+  if (has_along_) along_ = ReadAlong(device, std::size_t{4} * nodes_ * sizeof(double));
   upload_mesh();
   if (norms_) upload_shapes();
   create_kernels();
@@ -92,7 +93,7 @@ std::size_t Fields::planned_bytes(bool preconditioner) const {
     sum += Buffer::padded(bytes);
   }
   sum += SummaryPass::planned_bytes(kernels_, most_parts());
-  if (has_residual_) sum += ReadAlong::planned_bytes(kernels_.device().physical(), nodal);
+  if (has_along_) sum += ReadAlong::planned_bytes(kernels_.device().physical(), nodal);
   if (norms_) {  // nodes and shapes of elements
     sum += Buffer::padded(4 * elements * sizeof(std::uint32_t)) +
            Buffer::padded(12 * elements * sizeof(double));

@@ -31,6 +31,7 @@ class Fields {
     std::size_t bytes = 0;        ///< of its own buffers, at most
     bool preconditioner = false;  ///< of the stiffness
     bool residual = true;         ///< f - K u, and the stiffness for it
+    bool along = false;           ///< room for read_along()
   };
   /// Throws DeviceError, before anything is allocated, when the device's memory cannot hold the
   /// fields and the route's buffers together.
@@ -65,7 +66,8 @@ class Fields {
   /// The next record_keep() sets the displacement aside, for restore() when the solve fails.
   void keep_next() { keep_ = true; }
   [[nodiscard]] bool keeps_next() const { return keep_; }
-  /// What the host reads of the states from the next one on: it comes along with them.
+  /// What the host reads of the states from the next one on: it comes along with them, where there
+  /// is room.
   void read_along(ReadAlong::What what) { along_.ask(what); }
   [[nodiscard]] ReadAlong::What reads_along() const { return along_.asked(); }
   /// A state that was recorded as keeps_next() and reads_along() have it is submitted once more.
@@ -168,7 +170,7 @@ class Fields {
   const KernelFactory& kernels_;
   const Problem& problem_;
   bool keep_stress_, list_over_, norms_, shown_ = false;
-  bool has_residual_;
+  bool has_residual_, has_along_;
   std::uint32_t rows_, elements_, nodes_;          // padded
   std::uint32_t element_parts_, node_parts_;       // partial results
   std::vector<shaders::ElementFacts> facts_host_;  // copy of facts_

@@ -62,7 +62,7 @@ RegionInverse::RegionInverse(const KernelFactory& kernels, Index unknowns, std::
   inverse_.reserve_loaded(most_);
   inverse_.bind(partials_, product_);
   sum_ = partials_.bind_sum(positions_, product_);
-  slot_.reserve(static_cast<std::size_t>(unknowns) + most_);
+  slot_.reserve(solver::most_unknowns(static_cast<std::size_t>(unknowns)) + most_);
   free_.reserve(static_cast<std::size_t>(capacity(unknowns, extent)));
   for (std::vector<Index>* list : {&loaded_.dofs, &order_}) list->reserve(most_);
   loaded_.values.reserve(most_);

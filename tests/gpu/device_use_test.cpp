@@ -111,17 +111,25 @@ TEST_F(DeviceUse, MemoryOfACondensedSceneIsKnownToTheByteBeforeItIsAllocated) {
   }
 }
 
-// What only makes a frame quicker is no reason to refuse a scene: the inverse of a condensed
-// region, columns of it, and the small matrices of damage.
+bool holds(const Backend& backend, const char* buffer) {
+  return std::ranges::count(backend.buffers(), buffer, &BufferPlan::name) > 0;
+}
+
+bool says_that_the_host_multiplies(const Backend& backend) {
+  return std::ranges::any_of(backend.needs().left_out, [](const std::string& what) {
+    return what.find("no memory left for them: the host multiplies") != std::string::npos;
+  });
+}
+
+// What only makes a frame quicker is no reason to refuse a scene: columns of a condensed region's
+// inverse, and the small matrices of damage.
 TEST_F(DeviceUse, WhatADeviceMultipliesIsLeftToTheHostWhereMemoryIsShort) {
   struct Case {
     const char* name;
     Route route;
     std::optional<bool> gpu::VulkanOptions::*option;
   };
-  for (const Case& of : {Case{"inverse of the region (device)", Route::condensed,
-                              &gpu::VulkanOptions::region_on_device},
-                         Case{"columns of the region (device)", Route::condensed,
+  for (const Case& of : {Case{"columns of the region (device)", Route::condensed,
                               &gpu::VulkanOptions::region_on_device},
                          Case{"small matrices of the damage (device)", Route::condensed,
                               &gpu::VulkanOptions::damage_on_device},
@@ -132,33 +140,46 @@ TEST_F(DeviceUse, WhatADeviceMultipliesIsLeftToTheHostWhereMemoryIsShort) {
     const auto problem = problem_for(organ(), way);
     gpu::VulkanOptions options = watched(way);
     const auto made = [&] { return gpu::create(problem, needs_with(true), options); };
-    const auto holds = [&](const Backend& backend) {
-      return std::ranges::count(backend.buffers(), of.name, &BufferPlan::name) > 0;
-    };
-    EXPECT_FALSE(holds(*made()));
+    EXPECT_FALSE(holds(*made(), of.name));
     options.*of.option = true;
-    options.probe.memory = gpu::device_use(*made()).bytes;
-    if (!holds(*made())) {  // less of it
-      --options.probe.memory;
+    for (int i = 0; i < 2; ++i) {  // the whole inverse of the region, then columns alone
       options.probe.memory = gpu::device_use(*made()).bytes;
     }
-    EXPECT_TRUE(holds(*made()));
+    EXPECT_TRUE(holds(*made(), of.name));
     --options.probe.memory;
     const auto short_of_it = made();
-    EXPECT_FALSE(holds(*short_of_it));
-    const auto said = [&](const Backend& backend) {
-      return std::ranges::any_of(backend.needs().left_out, [](const std::string& what) {
-        return what.find("no memory left for them: the host multiplies") != std::string::npos;
-      });
-    };
-    EXPECT_EQ(said(*short_of_it), std::string(of.name) != "inverse of the region (device)");
+    EXPECT_FALSE(holds(*short_of_it, of.name));
+    EXPECT_TRUE(says_that_the_host_multiplies(*short_of_it));
     options.probe.memory = 0;
-    EXPECT_FALSE(said(*made()));
-    options.probe.memory = 0;
+    EXPECT_FALSE(says_that_the_host_multiplies(*made()));
     options.probe.as_gpu = true;
     (options.*of.option).reset();
-    EXPECT_FALSE(holds(*made())) << "a body of this size never comes to so many columns";
+    EXPECT_FALSE(holds(*made(), of.name)) << "a body of this size never comes to so many columns";
   }
+}
+
+// All of a region's inverse leaves others a tenth of the memory; a buffer that takes none of its
+// columns is no reason to refuse the scene either.
+TEST_F(DeviceUse, TheWholeInverseOfARegionIsThereWhereThereIsRoom) {
+  const Way way{.route = Route::condensed};
+  const auto problem = problem_for(organ(), way);
+  gpu::VulkanOptions options = watched(way);
+  options.region_on_device = true;
+  const auto made = [&] { return gpu::create(problem, needs_with(true), options); };
+  const std::size_t bytes = gpu::device_use(*made()).bytes;
+  EXPECT_TRUE(holds(*made(), "inverse of the region (device)"));
+  options.probe.memory = bytes * 10 / 9 + 64;
+  EXPECT_TRUE(holds(*made(), "inverse of the region (device)"));
+  options.probe.memory = bytes;
+  EXPECT_FALSE(holds(*made(), "inverse of the region (device)"));
+  EXPECT_TRUE(holds(*made(), "columns of the region (device)"));
+  EXPECT_FALSE(says_that_the_host_multiplies(*made()));
+  options.probe.memory = 0;
+  options.panel_bytes = 512;
+  const auto by_host = made();
+  EXPECT_FALSE(holds(*by_host, "inverse of the region (device)"));
+  EXPECT_FALSE(holds(*by_host, "columns of the region (device)"));
+  EXPECT_TRUE(says_that_the_host_multiplies(*by_host));
 }
 
 TEST_F(DeviceUse, MemoryOfAnInversionOnTheDeviceIsKnownBeforeItIsAllocated) {

@@ -30,6 +30,7 @@ std::vector<Way> ways(gpu::Variant variant) {
   list.push_back({.variant = variant, .panel_bytes = kPanel, .inverts = true});
   list.push_back({.variant = variant, .update = Update::eager, .panel_bytes = kPanel});
   list.push_back({.variant = variant, .damage = true});
+  list.push_back({.variant = variant, .route = Route::condensed, .region = true});
   return list;
 }
 
