@@ -21,18 +21,23 @@ std::unique_ptr<RegionInverse> make_inverse(const DeviceSetup& setup,
   const std::size_t panel = setup.inverse.panel_bytes;
   const auto unknowns = static_cast<Index>(region.dofs.size());
   if (!least || RegionInverse::most_values(unknowns) < *least) return nullptr;
-  const auto made = [&](Extent extent, double free, const LeaveOut& leave_out) {
+  const auto made = [&](Extent extent, double free, const char* instead) {
     return where_room<RegionInverse>(
         setup.kernels.device(), free,
         [&] { return RegionInverse::planned_bytes(setup.kernels, unknowns, panel, extent); },
-        "columns of the region", leave_out, setup.kernels, unknowns, panel, *least, extent);
+        instead, setup.inverse.leave_out, setup.kernels, unknowns, panel, *least, extent);
   };
   constexpr double kFree = .1;  // for what others bring
   const vulkan::PhysicalDevice& device = setup.kernels.device().physical();
   if (!device.unified() || device.is_cpu()) {
-    if (auto whole = made(Extent::whole, kFree, {})) return whole;
+    auto whole = made(Extent::whole, kFree,
+                      "the region's whole inverse on the device, which has no memory left for it: "
+                      "columns come with the frames that need them");
+    if (whole) return whole;
   }
-  return made(Extent::columns, 0, setup.inverse.leave_out);
+  return made(Extent::columns, 0,
+              "columns of the region on the device, which has no memory left for them: the host "
+              "multiplies");
 }
 
 }  // namespace

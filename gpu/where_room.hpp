@@ -16,11 +16,11 @@ namespace sunder::gpu {
 using LeaveOut = std::function<void(std::string)>;
 
 /// A T from these arguments, of `bytes()` bytes, where those leave a share of the device's memory
-/// free. Null where the device, or others who have it, leave no memory for that, which `leave_out`
-/// is told: `what`, in words. Throws DeviceLost.
+/// free. Null where the device, or others who have it, leave no memory for that: `leave_out` is
+/// told what is done `instead`, in words. Throws DeviceLost.
 template <class T, class Bytes, class... Arguments>
 [[nodiscard]] std::unique_ptr<T> where_room(const vulkan::Device& device, double free,
-                                            const Bytes& bytes, const char* what,
+                                            const Bytes& bytes, const char* instead,
                                             const LeaveOut& leave_out,
                                             const Arguments&... arguments) {
   try {
@@ -32,10 +32,7 @@ template <class T, class Bytes, class... Arguments>
     throw;
   } catch (const DeviceError&) {  // others have the memory, or a buffer is too large
   }
-  if (leave_out) {
-    leave_out(std::string(what) +
-              " on the device, which has no memory left for them: the host multiplies");
-  }
+  if (leave_out) leave_out(instead);
   return nullptr;
 }
 

@@ -97,7 +97,9 @@ std::unique_ptr<DamageSolution> DamageSolution::make(const KernelFactory& kernel
   const Index grips = static_cast<Index>(gripped) + kGrasped, most = columns + grips;
   return where_room<DamageSolution>(
       kernels.device(), 0, [&] { return planned_bytes(most, grips); },
-      "small matrices of the damage", leave_out, kernels, most, grips, *least);
+      "small matrices of the damage on the device, which has no memory left for them: the host "
+      "multiplies",
+      leave_out, kernels, most, grips, *least);
 }
 
 std::size_t DamageSolution::planned_bytes(Index columns, Index grips) {

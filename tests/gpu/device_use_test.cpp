@@ -115,10 +115,14 @@ bool holds(const Backend& backend, const char* buffer) {
   return std::ranges::count(backend.buffers(), buffer, &BufferPlan::name) > 0;
 }
 
-bool says_that_the_host_multiplies(const Backend& backend) {
-  return std::ranges::any_of(backend.needs().left_out, [](const std::string& what) {
-    return what.find("no memory left for them: the host multiplies") != std::string::npos;
+bool says(const Backend& backend, const char* words) {
+  return std::ranges::any_of(backend.needs().left_out, [&](const std::string& what) {
+    return what.find(words) != std::string::npos;
   });
+}
+
+bool says_that_the_host_multiplies(const Backend& backend) {
+  return says(backend, "no memory left for them: the host multiplies");
 }
 
 // What only makes a frame quicker is no reason to refuse a scene: columns of a condensed region's
@@ -170,9 +174,11 @@ TEST_F(DeviceUse, TheWholeInverseOfARegionIsThereWhereThereIsRoom) {
   EXPECT_TRUE(holds(*made(), "inverse of the region (device)"));
   options.probe.memory = bytes * 10 / 9 + 64;
   EXPECT_TRUE(holds(*made(), "inverse of the region (device)"));
+  EXPECT_FALSE(says(*made(), "no memory left"));
   options.probe.memory = bytes;
   EXPECT_FALSE(holds(*made(), "inverse of the region (device)"));
   EXPECT_TRUE(holds(*made(), "columns of the region (device)"));
+  EXPECT_TRUE(says(*made(), "no memory left for it: columns come with the frames that need them"));
   EXPECT_FALSE(says_that_the_host_multiplies(*made()));
   options.probe.memory = 0;
   options.panel_bytes = 512;

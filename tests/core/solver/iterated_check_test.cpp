@@ -3,8 +3,8 @@
 // solutions have the residual and the stress that a test wants.
 #include <gtest/gtest.h>
 
+#include "small_tissue.hpp"
 #include "solver/frame_solver.hpp"
-#include "support/structured_board.hpp"
 
 namespace sunder::solver {
 namespace {
@@ -26,15 +26,6 @@ class Iterating final : public FrameDevice {
   int corrections = 0;
 };
 
-Scene scene() {
-  Scene scene;
-  scene.mesh =
-      test::structured_board({2, 2, 1, 2, 2, 1}, [](const Vec3&) { return std::string("tissue"); });
-  scene.materials["tissue"] = {5, 0.4, 2.0};
-  scene.supports.push_back({Box{Vec3(-1, 1.99, -1), Vec3(3, 3, 2)}, Axes{7}});
-  return scene;
-}
-
 class IteratedCheck : public testing::Test {
  protected:
   /// Whether the frame had a full check.
@@ -44,7 +35,7 @@ class IteratedCheck : public testing::Test {
     return device_.corrections > before;
   }
 
-  Problem problem_{scene()};
+  Problem problem_{test::small_tissue()};
   Iterating device_;
   FrameSolver solver_{problem_, device_};
   Load load_{{0, 3}, {1, 2}, {}};

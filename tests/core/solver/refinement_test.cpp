@@ -5,9 +5,9 @@
 
 #include <limits>
 
+#include "small_tissue.hpp"
 #include "solver/frame_solver.hpp"
 #include "sunder/error.hpp"
-#include "support/structured_board.hpp"
 
 namespace sunder::solver {
 namespace {
@@ -44,11 +44,7 @@ class Correcting final : public FrameDevice {
 class Refinement : public testing::Test {
  protected:
   static Scene scene() {
-    Scene scene;
-    scene.mesh = test::structured_board({2, 2, 1, 2, 2, 1},
-                                        [](const Vec3&) { return std::string("tissue"); });
-    scene.materials["tissue"] = {5, 0.4, 2.0};
-    scene.supports.push_back({Box{Vec3(-1, 1.99, -1), Vec3(3, 3, 2)}, Axes{7}});
+    Scene scene = test::small_tissue();
     scene.solver.tolerance = 1e-2;
     return scene;
   }
